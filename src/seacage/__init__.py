@@ -1,0 +1,1 @@
+"""A multifidelity digital twin of aquaculture net cages."""

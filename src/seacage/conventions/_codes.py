@@ -1,0 +1,28 @@
+"""Result codes of a solve and quality flags of a sample."""
+
+from enum import IntEnum
+
+
+class Result(IntEnum):
+    """How a solve ended. The kernel cannot raise, so it returns one of these."""
+
+    CONVERGED = 0
+    NOT_CONVERGED = 1
+    DIVERGED = 2
+
+
+RESULTS: dict[Result, str] = {
+    Result.CONVERGED: "the residual force is below its limit at every node",
+    Result.NOT_CONVERGED: "the iterations ran out before the residual fell below its limit",
+    Result.DIVERGED: "the positions left the finite numbers; the case carries no answer",
+}
+
+
+class Flag(IntEnum):
+    """QARTOD flags of one value (IOOS QARTOD manuals, primary-level flags)."""
+
+    GOOD = 1
+    NOT_EVALUATED = 2
+    SUSPECT = 3
+    FAIL = 4
+    MISSING = 9

@@ -1,0 +1,17 @@
+"""The errors that seacage raises; each message says what, why not, and what to do."""
+
+
+class SeacageError(Exception):
+    """Anything that seacage refuses to do, in one clear sentence."""
+
+
+class InputError(SeacageError, ValueError):
+    """A value at a door is impossible, out of range or has no unit."""
+
+
+class RecordError(InputError):
+    """A file's structure is wrong, so that none of it can be trusted."""
+
+
+class ModelError(SeacageError):
+    """A saved model is damaged, foreign or of a version that this one cannot read."""

@@ -1,0 +1,3 @@
+"""Matplotlib figures of records, scores and states."""
+
+__all__: list[str] = []

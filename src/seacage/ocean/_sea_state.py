@@ -1,0 +1,101 @@
+"""One sea state: a current and long-crested waves."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.conventions import GRAVITY, InputError, folded, towards
+
+MAX_CURRENT_SPEED = 3.0
+"""Above any current a net cage is moored in; a larger one is a unit mistake [m/s]."""
+
+
+def steepness_limit(tp: float) -> float:
+    """Largest 2 pi Hs / (g Tp^2) that an irregular sea of this peak period sustains.
+
+    References
+    ----------
+    DNV-RP-C205 (2010), steepness criteria: 1/15 for Tp <= 8 s, 1/25 for Tp >= 15 s,
+    linear between.
+    """
+    return float(np.interp(tp, [8.0, 15.0], [1.0 / 15.0, 1.0 / 25.0]))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SeaState:
+    """Uniform current and irregular waves, validated.
+
+    Parameters
+    ----------
+    current_speed
+        [m/s], at most ``MAX_CURRENT_SPEED``.
+    current_to
+        Where the current goes, clockwise from true north [deg].
+    hs
+        Significant wave height [m]; 0 means no waves, and ``tp`` is then ignored.
+    tp
+        Peak period [s]; None means 5 sqrt(hs), the steepest sea the default spectrum takes.
+    wave_from
+        Where the waves come from, clockwise from true north [deg].
+
+    Raises
+    ------
+    InputError
+        A negative, infinite or missing number, a direction outside [0, 360], or a sea
+        steeper than ``steepness_limit``.
+    """
+
+    current_speed: float
+    current_to: float
+    hs: float = 0.0
+    tp: float | None = None
+    wave_from: float = 0.0
+
+    def __post_init__(self) -> None:
+        speed = _number("current_speed", self.current_speed, "m/s")
+        if speed > MAX_CURRENT_SPEED:
+            raise InputError(
+                f"SeaState: current_speed = {speed:g} m/s is above {MAX_CURRENT_SPEED:g} m/s. "
+                "Check that it is in m/s, not in cm/s or knots."
+            )
+        hs = _number("hs", self.hs, "m")
+        tp = 5.0 * math.sqrt(hs) if self.tp is None else _number("tp", self.tp, "s")
+        if hs > 0.0:
+            _check_steepness(hs, tp)
+        object.__setattr__(self, "current_speed", speed)
+        object.__setattr__(self, "current_to", folded(self.current_to, what="SeaState: current_to"))
+        object.__setattr__(self, "hs", hs)
+        object.__setattr__(self, "tp", tp if hs > 0.0 else 0.0)
+        object.__setattr__(self, "wave_from", folded(self.wave_from, what="SeaState: wave_from"))
+
+    @property
+    def current_velocity(self) -> Float[np.ndarray, "2"]:
+        """Velocity of the current, (east, north) [m/s]."""
+        return towards(np.array(self.current_speed), np.array(self.current_to))
+
+    @property
+    def wave_direction(self) -> Float[np.ndarray, "2"]:
+        """Unit vector the waves travel along, (east, north)."""
+        return -towards(np.array(1.0), np.array(self.wave_from))
+
+
+def _number(name: str, value: float, unit: str) -> float:
+    if not math.isfinite(value) or value < 0.0:
+        raise InputError(
+            f"SeaState: {name} = {value:g} {unit} is not a finite number of at least 0. "
+            "Leave the sea state out where there is no valid measurement."
+        )
+    return float(value)
+
+
+def _check_steepness(hs: float, tp: float) -> None:
+    steepness = math.inf if tp == 0.0 else 2.0 * math.pi * hs / (GRAVITY * tp**2)
+    limit = steepness_limit(tp)
+    if steepness > limit:
+        raise InputError(
+            f"SeaState: hs = {hs:g} m with tp = {tp:g} s has steepness {steepness:.2g}; a sea "
+            f"steeper than {limit:.3f} cannot stand (DNV-RP-C205, steepness criteria). "
+            "Check that tp is a period in s, not a frequency in Hz."
+        )

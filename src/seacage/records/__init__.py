@@ -1,0 +1,3 @@
+"""Labelled measurements and simulations: their schemas, readers, checks and stores."""
+
+__all__: list[str] = []

@@ -1,0 +1,3 @@
+"""Wires: command line, HTTP, WebSocket, clock and settings."""
+
+__all__: list[str] = []

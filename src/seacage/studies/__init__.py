@@ -1,0 +1,3 @@
+"""Whole experiments, from campaign to report."""
+
+__all__: list[str] = []

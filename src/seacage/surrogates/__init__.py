@@ -1,0 +1,3 @@
+"""Models that learn a simulator, and what a sensor adds to it."""
+
+__all__: list[str] = []

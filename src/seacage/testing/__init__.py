@@ -1,0 +1,3 @@
+"""Conformance suites and strategies for those who extend seacage."""
+
+__all__: list[str] = []

@@ -1,0 +1,3 @@
+"""The live loop as pure functions: sample in, events out."""
+
+__all__: list[str] = []
