@@ -5,6 +5,7 @@ from seacage.conventions._constants import GRAVITY, WATER_DENSITY, WATER_VISCOSI
 from seacage.conventions._directions import compass, folded, towards
 from seacage.conventions._errors import InputError, ModelError, RecordError, SeacageError
 from seacage.conventions._origin import Origin
+from seacage.conventions._progress import Progress
 
 __all__ = [
     "GRAVITY",
@@ -15,6 +16,7 @@ __all__ = [
     "InputError",
     "ModelError",
     "Origin",
+    "Progress",
     "RecordError",
     "Result",
     "SeacageError",

@@ -1,0 +1,6 @@
+"""How long work tells its caller where it is."""
+
+from collections.abc import Callable
+
+Progress = Callable[[str, int, int], None]
+"""Called as (stage, done, total), from the caller's own thread."""
