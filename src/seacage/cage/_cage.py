@@ -1,0 +1,275 @@
+"""A moored net cage: its parts, and the graph of nodes that they span."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
+from functools import cached_property
+from importlib import resources
+from pathlib import Path
+from typing import Any, Self
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from seacage.cage import _graph
+from seacage.cage._parts import (
+    AnchorLines,
+    Bridles,
+    Collar,
+    DepthSensorEntry,
+    Frame,
+    Mesh,
+    Netting,
+    Ropes,
+    ShackleEntry,
+    SinkerTube,
+    Site,
+    Tip,
+    altered,
+    quantity,
+)
+from seacage.cage._toml import parsed, written
+from seacage.cage._volume import enclosed_volume
+from seacage.conventions import InputError, towards
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Shackle:
+    """A load shackle: the name of its stream and the index of its bridle, from 0."""
+
+    name: str
+    bridle: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DepthSensor:
+    """A depth sensor: the name of its stream and the node it sits on."""
+
+    name: str
+    node: int
+
+
+# No slots here: what is derived from the parts is computed once and kept.
+@dataclass(frozen=True, kw_only=True)
+class Cage:
+    """A cage as its file describes it, with the node graph derived from it.
+
+    ``Cage.named("ace")`` is the reference cage, ``Cage.read("mine.toml")`` one's own;
+    ``.write`` makes a file to start from. Positions are x east, y north, z up [m] with
+    z = 0 at still water.
+    """
+
+    name: str = field(metadata={"unit": "", "meaning": "the name of the cage"})
+    heading: float = quantity("deg", "how far the whole cage is turned clockwise", low=-360.0)
+    site: Site
+    mesh: Mesh
+    collar: Collar
+    netting: Netting
+    ropes: Ropes
+    sinker_tube: SinkerTube
+    tip: Tip
+    frame: Frame
+    anchor_lines: AnchorLines
+    bridles: Bridles
+    shackle: tuple[ShackleEntry, ...]
+    depth_sensor: tuple[DepthSensorEntry, ...]
+
+    def __post_init__(self) -> None:
+        names = self.sensor_names
+        if len(set(names)) != len(names):
+            raise InputError(f"Cage {self.name}: two sensors share a name in {list(names)}.")
+        for entry in self.shackle:
+            if entry.bridle > self.bridle_count:
+                raise InputError(
+                    f"Cage {self.name}: {entry.name} sits on bridle {entry.bridle}, but there "
+                    f"are {self.bridle_count}. Bridles are numbered from 1."
+                )
+
+    # Doors
+
+    @classmethod
+    def named(cls, name: str) -> Self:
+        """A cage that comes with seacage."""
+        shelf = resources.files("seacage.cage") / "cages"
+        known = sorted(entry.name.removesuffix(".toml") for entry in shelf.iterdir())
+        if name not in known:
+            raise InputError(
+                f"Cage.named: no cage {name!r}; there are: {', '.join(known)}. "
+                "Read your own with Cage.read."
+            )
+        return cls.from_toml((shelf / f"{name}.toml").read_text("utf-8"), source=f"{name}.toml")
+
+    @classmethod
+    def read(cls, path: str | Path) -> Self:
+        """A cage from a TOML file, refused with the key's name where a key is wrong."""
+        try:
+            text = Path(path).read_text("utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            raise InputError(f"Cage.read: cannot read {path} as UTF-8 text ({error}).") from error
+        return cls.from_toml(text, source=str(path))
+
+    @classmethod
+    def from_toml(cls, text: str, *, source: str = "cage") -> Self:
+        """A cage from TOML text; ``source`` names it in errors."""
+        return parsed(cls, text, source=source)
+
+    def to_toml(self) -> str:
+        """TOML text with the unit in every key and the meaning beside it."""
+        return written(self)
+
+    def write(self, path: str | Path) -> None:
+        """Write a TOML file that ``read`` takes back."""
+        Path(path).write_text(self.to_toml(), "utf-8")
+
+    # Changed copies
+
+    def altered(self, **sections: Mapping[str, Any]) -> Self:
+        """A copy with some parameters changed, each named as in the cage file.
+
+        ``cage.altered(tip={"weight_n": 9800.0}, netting={"twine_diameter_m": 0.003})``
+        """
+        parts = {p.name for p in fields(self) if "unit" not in p.metadata}
+        for name in sections:
+            if name not in parts or isinstance(getattr(self, name), tuple):
+                raise InputError(f"Cage.altered: no section {name!r}; there are: {sorted(parts)}.")
+        changed = {n: altered(getattr(self, n), dict(keys)) for n, keys in sections.items()}
+        return replace(self, **changed)
+
+    def fouled(self, *, shallow: float, deep: float, boundary_depth: float = 10.0) -> Self:
+        """A copy whose netting has grown: solidity added above and below a depth [m]."""
+        return self.altered(
+            netting={
+                "fouling_shallow": shallow,
+                "fouling_deep": deep,
+                "fouling_boundary_depth_m": boundary_depth,
+            }
+        )
+
+    def rotated(self, degrees: float) -> Self:
+        """A copy turned clockwise, mooring and sensors with it."""
+        return replace(self, heading=(self.heading + degrees) % 360.0)
+
+    def refined(self) -> Self:
+        """A copy with twice the rings and spokes; every old node stays a node."""
+        depths = (*self.mesh.ring_depths, self.mesh.tip_depth)
+        finer = [d for a, b in zip(depths, depths[1:], strict=False) for d in (a, (a + b) / 2.0)]
+        return self.altered(mesh={"ring_depths_m": finer, "spokes": 2 * self.mesh.spokes})
+
+    # The graph
+
+    @property
+    def rings(self) -> int:
+        """Number of rings, the collar included and the tip not."""
+        return len(self.mesh.ring_depths)
+
+    @property
+    def spokes(self) -> int:
+        """Number of spokes."""
+        return self.mesh.spokes
+
+    @property
+    def node_count(self) -> int:
+        """Rings × spokes and the tip."""
+        return self.rings * self.spokes + 1
+
+    @property
+    def bottom_node(self) -> int:
+        """The tip of the cone."""
+        return self.node_count - 1
+
+    def node(self, ring: int, spoke: int) -> int:
+        """Index of a node; spokes count round and round."""
+        return self.spokes * ring + spoke % self.spokes
+
+    def ring_nodes(self, ring: int) -> Int[np.ndarray, " spoke"]:
+        """Nodes of one ring, counter-clockwise seen from above."""
+        return self.spokes * ring + np.arange(self.spokes)
+
+    @property
+    def tube_ring(self) -> int:
+        """The ring at the cylinder's lower edge, which carries the sinker tube."""
+        return self.mesh.ring_depths.index(self.mesh.cylinder_depth)
+
+    @cached_property
+    def design_position(self) -> Float[np.ndarray, "node 3"]:
+        """The shape the net was cut to [m]; the rest shape hangs a little narrower."""
+        return _graph.node_positions(self.mesh, radius=self.collar.radius, heading=self.heading)
+
+    @cached_property
+    def edges(self) -> Int[np.ndarray, "edge 2"]:
+        """Pairs of neighbouring nodes: rings, meridians, apex."""
+        return _graph.edges(self.rings, self.spokes)
+
+    @cached_property
+    def panels(self) -> Int[np.ndarray, "panel 4"]:
+        """Corners of each panel, counter-clockwise from outside; triangles repeat the last."""
+        return _graph.panels(self.rings, self.spokes)
+
+    def volume(self, node_position: Float[np.ndarray, "*case node 3"]) -> Float[np.ndarray, "*case"]:
+        """Volume that a shape of the net encloses, closed by the collar's polygon [m3]."""
+        return enclosed_volume(node_position, self.panels, self.ring_nodes(0))
+
+    # Mooring
+
+    @property
+    def bridle_count(self) -> int:
+        """Number of bridles."""
+        return len(self.bridles.bearings)
+
+    @property
+    def bridle_names(self) -> tuple[str, ...]:
+        """bridle-1, bridle-2, …: counter-clockwise from east."""
+        return tuple(f"bridle-{number + 1}" for number in range(self.bridle_count))
+
+    @cached_property
+    def bridle_nodes(self) -> Int[np.ndarray, " bridle"]:
+        """The collar node that each bridle holds."""
+        return np.array([self._nearest_spoke(bearing) for bearing in self.bridles.bearings])
+
+    @cached_property
+    def corner_position(self) -> Float[np.ndarray, "corner 3"]:
+        """Frame corners in still water: north-east, north-west, south-west, south-east [m]."""
+        bearing = np.array([45.0, 315.0, 225.0, 135.0]) + self.heading
+        horizontal = towards(np.full(4, self.frame.side / np.sqrt(2.0)), bearing)
+        return np.column_stack([horizontal, np.full(4, -self.frame.depth)])
+
+    @cached_property
+    def bridle_corner(self) -> Int[np.ndarray, " bridle"]:
+        """The frame corner that each bridle comes from: the nearest."""
+        ends = self.design_position[self.bridle_nodes]
+        distance = np.linalg.norm(ends[:, None] - self.corner_position, axis=-1)
+        return np.argmin(distance, axis=1)
+
+    @property
+    def bridle_capacity(self) -> Float[np.ndarray, " bridle"]:
+        """Breaking load over material factor [N]."""
+        return np.full(self.bridle_count, self.bridles.breaking_load / self.bridles.material_factor)
+
+    # Sensors
+
+    @cached_property
+    def shackles(self) -> tuple[Shackle, ...]:
+        """The load shackles."""
+        return tuple(Shackle(name=entry.name, bridle=entry.bridle - 1) for entry in self.shackle)
+
+    @cached_property
+    def depth_sensors(self) -> tuple[DepthSensor, ...]:
+        """The depth sensors, each on the node nearest to its place."""
+        return tuple(
+            DepthSensor(name=entry.name, node=self._nearest_node(entry))
+            for entry in self.depth_sensor
+        )
+
+    @property
+    def sensor_names(self) -> tuple[str, ...]:
+        """Streams of the depth sensors, then of the shackles."""
+        return tuple(entry.name for entry in (*self.depth_sensor, *self.shackle))
+
+    def _nearest_spoke(self, bearing: float) -> int:
+        return round((90.0 - bearing) / 360.0 * self.spokes) % self.spokes
+
+    def _nearest_node(self, entry: DepthSensorEntry) -> int:
+        depths = np.array([*self.mesh.ring_depths, self.mesh.tip_depth])
+        ring = int(np.argmin(np.abs(depths - entry.depth)))
+        if ring == self.rings:
+            return self.bottom_node
+        return self.node(ring, self._nearest_spoke(entry.bearing))

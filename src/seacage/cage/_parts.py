@@ -1,0 +1,249 @@
+"""The parts of a cage, each with its parameters, units and bounds."""
+
+import math
+from dataclasses import Field, dataclass, field, fields, replace
+from typing import Any
+
+from seacage.conventions import InputError
+
+
+def quantity(unit: str, meaning: str, *, low: float = 0.0, above: bool = False, **default: Any) -> Any:
+    """Declare a parameter: its unit (the suffix of its key in a file), meaning and bound.
+
+    ``low`` is the least value allowed; with ``above`` the value must exceed it.
+    """
+    return field(metadata={"unit": unit, "meaning": meaning, "low": low, "above": above}, **default)
+
+
+def key_of(parameter: Field[Any]) -> str:
+    """The key that a parameter has in a cage file: its name and its unit."""
+    unit = parameter.metadata.get("unit", "")
+    return f"{parameter.name}_{unit}" if unit else parameter.name
+
+
+class _Part:
+    """A part checks its numbers against the bounds it declares."""
+
+    __slots__ = ()
+
+    def __post_init__(self) -> None:
+        for parameter in fields(self):  # type: ignore[arg-type]
+            value = getattr(self, parameter.name)
+            for number in value if isinstance(value, tuple) else (value,):
+                if isinstance(number, int | float):
+                    _check_bound(type(self).__name__, parameter, float(number))
+
+
+def _check_bound(part: str, parameter: Field[Any], number: float) -> None:
+    low, above = parameter.metadata.get("low", -math.inf), parameter.metadata.get("above", False)
+    if not math.isfinite(number) or number < low or (above and number == low):
+        bound = f"above {low:g}" if above else f"at least {low:g}"
+        raise InputError(
+            f"Cage, {part}: {key_of(parameter)} = {number:g} must be a finite number {bound}. "
+            f"It is: {parameter.metadata['meaning']}."
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Mesh(_Part):
+    """How the net is cut into nodes: rings × spokes and a tip."""
+
+    spokes: int = quantity("", "spokes round the cage, the first one east", low=3)
+    ring_depths: tuple[float, ...] = quantity("m", "depth of each ring, the collar first")
+    cylinder_depth: float = quantity("m", "depth of the cylinder's lower edge", above=True)
+    tip_depth: float = quantity("m", "depth of the cone's tip", above=True)
+
+    def __post_init__(self) -> None:
+        super(Mesh, self).__post_init__()
+        depths = (*self.ring_depths, self.tip_depth)
+        rising = all(a < b for a, b in zip(depths, depths[1:], strict=False))
+        if len(depths) < 3 or depths[0] != 0.0 or not rising:
+            raise InputError(
+                f"Cage, Mesh: ring_depths_m = {list(self.ring_depths)} with tip_depth_m = "
+                f"{self.tip_depth:g} must start at 0 and grow to the tip, with at least two rings."
+            )
+        if self.cylinder_depth not in self.ring_depths:
+            raise InputError(
+                f"Cage, Mesh: cylinder_depth_m = {self.cylinder_depth:g} is no ring's depth. "
+                "Add it to ring_depths_m: the sinker tube is carried there."
+            )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Collar(_Part):
+    """The floating ring: equal pipes side by side."""
+
+    radius: float = quantity("m", "from the centre to the net's upper edge", above=True)
+    pipes: int = quantity("", "number of pipes", low=1)
+    pipe_diameter: float = quantity("m", "outer diameter of a pipe", above=True)
+    pipe_mass: float = quantity("kg_m", "mass of a pipe in air", above=True)
+    pipe_displaced: float = quantity("m3_m", "volume of a pipe", above=True)
+    pipe_bending_stiffness: float = quantity("n_m2", "EI of a pipe", above=True)
+    pipe_axial_stiffness: float = quantity("n", "EA of a pipe", above=True)
+    drag_coefficient: float = quantity("", "cross-flow drag of a pipe")
+    submerged_fraction: float = quantity("", "share of the pipe's diameter that the current meets")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Netting(_Part):
+    """Knotless square mesh, and what grows on it."""
+
+    twine_diameter: float = quantity("m", "diameter of a twine", above=True)
+    half_mesh: float = quantity("m", "distance between twines", above=True)
+    elastic_modulus: float = quantity("pa", "of the twine", above=True)
+    mass: float = quantity("kg_m2", "of net in air")
+    displaced: float = quantity("kg_m2", "mass of the water a net displaces")
+    added_mass_coefficient: float = quantity("", "added mass over displaced mass")
+    damping_ratio: float = quantity("", "structural damping over pair-critical damping")
+    fouling_shallow: float = quantity("", "solidity added by growth above the boundary depth")
+    fouling_deep: float = quantity("", "solidity added by growth below the boundary depth")
+    fouling_boundary_depth: float = quantity("m", "depth where shallow growth ends")
+
+    def __post_init__(self) -> None:
+        super(Netting, self).__post_init__()
+        for added in (self.fouling_shallow, self.fouling_deep):
+            if not 0.0 < self.solidity + added < 0.9:
+                raise InputError(
+                    f"Cage, Netting: the solidity is {self.solidity + added:.3g} "
+                    f"({self.solidity:.3g} of twine and {added:.3g} of growth), outside (0, 0.9). "
+                    "Check twine_diameter_m against half_mesh_m, and the fouling."
+                )
+
+    @property
+    def solidity(self) -> float:
+        """Projected twine area over panel area of the clean net, 2d/l − (d/l)² [-]."""
+        ratio = self.twine_diameter / self.half_mesh
+        return 2.0 * ratio - ratio**2
+
+    def solidity_at(self, depth: float) -> float:
+        """Solidity with growth at a depth [m] of the design shape [-]."""
+        shallow = depth < self.fouling_boundary_depth
+        return self.solidity + (self.fouling_shallow if shallow else self.fouling_deep)
+
+    @property
+    def stiffness(self) -> float:
+        """Axial stiffness per metre of width, E (pi/4) d² / l [N/m]."""
+        return self.elastic_modulus * math.pi / 4.0 * self.twine_diameter**2 / self.half_mesh
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ropes(_Part):
+    """Vertical ropes sewn on the meridians; they add stiffness, not drag."""
+
+    axial_stiffness: float = quantity("n", "EA of one rope; 0 for a net without ropes")
+    diameter: float = quantity("m", "of one rope")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SinkerTube(_Part):
+    """The weighted ring; the low fidelity carries it on the cylinder's lower edge."""
+
+    weight: float = quantity("n_m", "submerged weight")
+    mass: float = quantity("kg_m", "in air, with its filling")
+    diameter: float = quantity("m", "outer diameter")
+    bending_stiffness: float = quantity("n_m2", "EI")
+    axial_stiffness: float = quantity("n", "EA")
+    drag_coefficient: float = quantity("", "cross-flow drag")
+    hung_below: float = quantity("m", "below the cylinder's edge, where it hangs on its own ropes")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Tip(_Part):
+    """The weight in the cone's tip."""
+
+    weight: float = quantity("n", "submerged weight")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Frame(_Part):
+    """The square mooring frame; in the low fidelity its corners sit on linear springs."""
+
+    side: float = quantity("m", "length of a side", above=True)
+    depth: float = quantity("m", "of the corner plates")
+    corner_stiffness_horizontal: float = quantity("n_m", "spring in x and in y", above=True)
+    corner_stiffness_vertical: float = quantity("n_m", "spring in z: the buoy", above=True)
+    rope_diameter: float = quantity("m", "of the frame rope")
+    rope_axial_stiffness: float = quantity("n", "EA of the frame rope")
+    buoy_buoyancy: float = quantity("n", "net buoyancy of a corner buoy")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AnchorLines(_Part):
+    """Two lines from each frame corner to the sea bed, rope above chain."""
+
+    per_corner: int = quantity("", "lines from a corner")
+    rope_length: float = quantity("m", "of the rope")
+    rope_diameter: float = quantity("m", "of the rope")
+    rope_axial_stiffness: float = quantity("n", "EA of the rope")
+    rope_mass: float = quantity("kg_m", "of the rope in air")
+    chain_length: float = quantity("m", "of the bottom chain")
+    chain_mass: float = quantity("kg_m", "of the chain in air")
+    chain_axial_stiffness: float = quantity("n", "EA of the chain")
+    pretension: float = quantity("n", "in still water")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Bridles(_Part):
+    """Lines from the nearest frame corner to the collar: rope and chain in series."""
+
+    bearings: tuple[float, ...] = quantity("deg", "compass bearing of each collar end, heading 0")
+    pretension: float = quantity("n", "in still water")
+    rope_diameter: float = quantity("m", "of the rope")
+    rope_axial_stiffness: float = quantity("n", "EA of the rope", above=True)
+    chain_length: float = quantity("m", "of the chain at the corner")
+    chain_axial_stiffness: float = quantity("n", "EA of the chain", above=True)
+    length_offset: tuple[float, ...] = quantity(
+        "m", "how much longer each line is than it should be", low=-5.0
+    )
+    breaking_load: float = quantity("n", "least of rope and chain", above=True)
+    material_factor: float = quantity("", "divides the breaking load", low=1.0)
+
+    def __post_init__(self) -> None:
+        super(Bridles, self).__post_init__()
+        if len(self.length_offset) != len(self.bearings):
+            raise InputError(
+                f"Cage, Bridles: {len(self.bearings)} bearings_deg but "
+                f"{len(self.length_offset)} length_offset_m. Give one offset for each bridle."
+            )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Site(_Part):
+    """The water around the cage."""
+
+    water_depth: float = quantity("m", "still water to sea bed", above=True)
+    current_to: float = quantity("deg", "where the prevailing current goes, compass")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ShackleEntry(_Part):
+    """A load shackle, as a cage file names it."""
+
+    name: str = field(metadata={"meaning": "the name of its stream"})
+    bridle: int = quantity("", "the number of its bridle, from 1", low=1)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DepthSensorEntry(_Part):
+    """A depth sensor on the net, as a cage file names it; it sits on the nearest node."""
+
+    name: str = field(metadata={"meaning": "the name of its stream"})
+    depth: float = quantity("m", "in the design shape")
+    bearing: float = quantity("deg", "compass bearing on the net, heading 0")
+
+
+def altered(part: Any, changes: dict[str, Any]) -> Any:
+    """A copy of a part with the given file keys changed."""
+    names = {key_of(parameter): parameter.name for parameter in fields(part)}
+    unknown = sorted(set(changes) - set(names))
+    if unknown:
+        raise InputError(
+            f"Cage, {type(part).__name__}: no key {unknown[0]!r}. Its keys are: "
+            + ", ".join(names)
+            + "."
+        )
+    return replace(part, **{names[key]: _frozen(value) for key, value in changes.items()})
+
+
+def _frozen(value: Any) -> Any:
+    return tuple(value) if isinstance(value, list) else value
