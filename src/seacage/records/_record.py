@@ -1,0 +1,110 @@
+"""One stream over time."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from datetime import UTC, datetime
+
+import numpy as np
+from jaxtyping import Bool, Shaped
+
+from seacage.conventions import Flag, InputError, Origin
+from seacage.records._keys import DIRECTIONS, check_keys
+from seacage.records._sample import Sample, check_stream
+from seacage.records._times import instant
+
+_USABLE = (Flag.GOOD, Flag.NOT_EVALUATED, Flag.SUSPECT)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Record:
+    """What one stream said, in house units, at the times it said it.
+
+    Parameters
+    ----------
+    stream
+        Such as ``buoy-1``.
+    time
+        UTC, datetime64[us], strictly ascending; irregular steps stay irregular.
+    values
+        By door key, float64, raw: a bad value stays as it came, and NaN stands for none.
+    flags
+        By the same keys, ``Flag`` as uint8; ``NOT_EVALUATED`` where left out.
+    origin
+        How the numbers were made.
+    notes
+        What reader and check noticed, one sentence each.
+
+    Raises
+    ------
+    InputError
+        Arrays of unequal length, unknown keys, times that do not ascend.
+    """
+
+    stream: str
+    time: Shaped[np.ndarray, " t"]
+    values: Mapping[str, Shaped[np.ndarray, " t"]]
+    flags: Mapping[str, Shaped[np.ndarray, " t"]] = field(default_factory=dict[str, np.ndarray])
+    origin: Origin
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        check_stream(self.stream)
+        check_keys(self.values, where=self.stream)
+        time = np.asarray(self.time, dtype="datetime64[us]")
+        if np.any(np.diff(time) <= np.timedelta64(0, "us")) or np.any(np.isnat(time)):
+            raise InputError(
+                f"{self.stream}: the times of a record ascend, each once. "
+                "Sort them and keep one row of each time, or use read_record, which does."
+            )
+        values = {key: _folded(key, column) for key, column in self.values.items()}
+        unseen = np.full(time.shape, Flag.NOT_EVALUATED, dtype=np.uint8)
+        flags = {key: np.asarray(self.flags.get(key, unseen), dtype=np.uint8) for key in values}
+        for key, column in values.items():
+            if column.shape != time.shape or flags[key].shape != time.shape:
+                raise InputError(
+                    f"{self.stream}: {key} has {column.size} values and {flags[key].size} "
+                    f"flags for {time.size} times. Give one of each per time."
+                )
+        object.__setattr__(self, "time", time)
+        object.__setattr__(self, "values", values)
+        object.__setattr__(self, "flags", flags)
+
+    def __len__(self) -> int:
+        """How many times the stream spoke."""
+        return len(self.time)
+
+    def usable(self, key: str) -> Bool[np.ndarray, " t"]:
+        """Where a quantity may be used: finite, and neither failed nor missing.
+
+        A suspect value is usable; it says what it is by its flag.
+        """
+        return np.isin(self.flags[key], _USABLE) & np.isfinite(self.values[key])
+
+    def between(self, start: datetime, end: datetime) -> "Record":
+        """The part with start <= time < end; both times say their zone."""
+        rows = slice(*np.searchsorted(self.time, [instant(start), instant(end)]))
+        return replace(
+            self,
+            time=self.time[rows],
+            values={key: column[rows] for key, column in self.values.items()},
+            flags={key: column[rows] for key, column in self.flags.items()},
+        )
+
+    def samples(self) -> Iterator[Sample]:
+        """The record as the stream of samples that it was, in order of time."""
+        keys = tuple(self.values)
+        values = zip(*(self.values[key].tolist() for key in keys), strict=True)
+        flags = zip(*(self.flags[key].tolist() for key in keys), strict=True)
+        for time, value, flag in zip(self.time.tolist(), values, flags, strict=True):
+            yield Sample(
+                stream=self.stream,
+                t=time.replace(tzinfo=UTC),
+                values=dict(zip(keys, value, strict=True)),
+                flags={key: Flag(one) for key, one in zip(keys, flag, strict=True)},
+            )
+
+
+def _folded(key: str, column: np.ndarray) -> np.ndarray:
+    # At a door 360 degrees is 0; anything beyond is left for the check to flag.
+    numbers = np.asarray(column, dtype=np.float64)
+    return np.where(numbers == 360.0, 0.0, numbers) if key in DIRECTIONS else numbers
