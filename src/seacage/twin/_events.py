@@ -1,0 +1,68 @@
+"""What a step of the twin has to tell."""
+
+from dataclasses import dataclass
+from datetime import datetime
+
+from seacage.records import Sample
+from seacage.twin._answer import Answer
+from seacage.twin._metocean import Metocean
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Answered:
+    """The twin answered, with or without a number.
+
+    Parameters
+    ----------
+    t
+        The twin's clock.
+    answer
+        One row.
+    metocean
+        The reading it rests on, one row; None before the first.
+    input_age_s
+        Of that reading [s].
+    """
+
+    t: datetime
+    answer: Answer
+    metocean: Metocean | None
+    input_age_s: float | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Flagged:
+    """A sample was set aside, or a value in it did not pass its checks.
+
+    Parameters
+    ----------
+    sample
+        As it came, with the flags it got.
+    reason
+        One sentence for a person.
+    used
+        False where the sample was set aside whole and changed nothing.
+    """
+
+    sample: Sample
+    reason: str
+    used: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StreamSilent:
+    """A stream that had spoken has been quiet for longer than it may; said once."""
+
+    stream: str
+    since: datetime
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StreamBack:
+    """A silent stream speaks again."""
+
+    stream: str
+    t: datetime
+
+
+Event = Answered | Flagged | StreamSilent | StreamBack

@@ -1,0 +1,110 @@
+"""What a buoy tells a twin: currents and waves as vectors, one row per reading."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal, Self
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from seacage.conventions import towards
+from seacage.ocean import SeaState
+from seacage.records import Record
+from seacage.surrogates import current_features
+
+Input = Literal["current", "waves"]
+
+INPUT_KEYS: Mapping[Input, tuple[str, ...]] = {
+    "current": ("current_speed_m_s", "current_to_deg"),
+    "waves": ("hs_m", "wave_from_deg"),
+}
+"""The door keys that each kind of input is made from."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Metocean:
+    """The water at the buoy, NaN where it is not known.
+
+    Parameters
+    ----------
+    current_velocity
+        Towards (east, north) [m/s].
+    hs
+        Significant wave height [m].
+    wave_direction
+        Unit vector the waves travel along, (east, north) [-].
+    """
+
+    current_velocity: Float[np.ndarray, "case 2"]
+    hs: Float[np.ndarray, " case"]
+    wave_direction: Float[np.ndarray, "case 2"]
+
+    @classmethod
+    def of(cls, sea: SeaState | Sequence[SeaState]) -> Self:
+        """Read sea states; one of them makes one row."""
+        seas = [sea] if isinstance(sea, SeaState) else sea
+        return cls(
+            current_velocity=np.array([s.current_velocity for s in seas]).reshape(-1, 2),
+            hs=np.array([s.hs for s in seas], dtype=float),
+            wave_direction=np.array([s.wave_direction for s in seas]).reshape(-1, 2),
+        )
+
+    @classmethod
+    def from_columns(cls, columns: Mapping[str, Float[np.ndarray, " case"]], count: int) -> Self:
+        """Read columns named and united as at the doors; a missing one is all NaN."""
+        unknown = np.full(count, np.nan)
+        speed, current_to, hs, wave_from = (
+            columns.get(key, unknown) for keys in INPUT_KEYS.values() for key in keys
+        )
+        return cls(
+            current_velocity=towards(speed, current_to),
+            hs=hs,
+            wave_direction=-towards(np.ones(count), wave_from),
+        )
+
+    @classmethod
+    def of_record(cls, record: Record) -> Self:
+        """Read every row of a buoy's record; a value that failed its checks is NaN."""
+        keys = [key for keys in INPUT_KEYS.values() for key in keys if key in record.values]
+        usable = {key: np.where(record.usable(key), record.values[key], np.nan) for key in keys}
+        return cls.from_columns(usable, len(record))
+
+    def __len__(self) -> int:
+        return len(self.hs)
+
+    def rows(self, index: Int[np.ndarray, " row"] | Bool[np.ndarray, " case"]) -> Self:
+        """Return these rows alone, repeated where an index is."""
+        return type(self)(
+            current_velocity=self.current_velocity[index],
+            hs=self.hs[index],
+            wave_direction=self.wave_direction[index],
+        )
+
+    def limited(self, *, current_speed: float, hs: float) -> Self:
+        """Return the nearest milder water: slower and lower, in the same directions.
+
+        Parameters
+        ----------
+        current_speed, hs
+            Largest that are left as they are [m/s], [m].
+        """
+        speed = np.linalg.norm(self.current_velocity, axis=-1, keepdims=True)
+        slower = np.minimum(1.0, current_speed / np.maximum(speed, current_speed))
+        return type(self)(
+            current_velocity=self.current_velocity * slower,
+            hs=np.minimum(self.hs, hs),
+            wave_direction=self.wave_direction,
+        )
+
+    def features(self, inputs: tuple[Input, ...]) -> Float[np.ndarray, "case feature"]:
+        """Columns that the surrogates learn from.
+
+        The current enters as (speed, east, north), so that neither slack water nor north has
+        a seam; the waves as (hs, hs east, hs north). The peak period is left out: campaigns
+        tie it to hs.
+        """
+        columns = {
+            "current": lambda: current_features(self.current_velocity),
+            "waves": lambda: np.column_stack([self.hs, self.hs[:, None] * self.wave_direction]),
+        }
+        return np.hstack([columns[name]() for name in inputs])

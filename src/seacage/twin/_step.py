@@ -1,0 +1,141 @@
+"""The live loop's bookkeeping: who spoke, who is silent, which input holds."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from datetime import datetime, timedelta
+
+import numpy as np
+
+from seacage.conventions import Flag, InputError
+from seacage.records import Sample
+from seacage.twin._events import Flagged, StreamBack, StreamSilent
+from seacage.twin._metocean import INPUT_KEYS, Input, Metocean
+from seacage.twin._state import TwinState, Watch, taken_in, troubled, usable
+
+Notice = Flagged | StreamSilent | StreamBack
+
+
+def listened(
+    state: TwinState,
+    sample: Sample | None,
+    now: datetime,
+    *,
+    patience: Mapping[str, float],
+    watch: Watch,
+) -> tuple[TwinState, tuple[Notice, ...]]:
+    """Take a sample in, or let time pass, and say what was noticed.
+
+    Parameters
+    ----------
+    state, sample, now
+        Where we were, what came (None: a tick), and the clock, with its zone.
+    patience
+        The streams listened to, and how long each may be quiet [s].
+    watch
+        Limits on disorder and on clocks that are ahead.
+    """
+    if now.tzinfo is None:
+        raise InputError(
+            f"Twin.step: now = {now.isoformat()} does not say its zone. Give it in UTC."
+        )
+    notices: tuple[Notice, ...] = ()
+    if sample is not None:
+        state, notices = _taken(state, sample, now, known=patience, watch=watch)
+    silent = {
+        name
+        for name, stream in state.streams.items()
+        if (now - stream[-1].sample.t).total_seconds() > patience[name]
+    }
+    fallen = tuple(
+        StreamSilent(stream=name, since=state.streams[name][-1].sample.t)
+        for name in sorted(silent - state.silent)
+    )
+    back = tuple(
+        StreamBack(stream=name, t=state.streams[name][-1].sample.t)
+        for name in sorted(state.silent - silent)
+    )
+    state = replace(state, clock=now, silent=frozenset(silent))
+    return state, (*fallen, *back, *notices)
+
+
+def _taken(
+    state: TwinState, sample: Sample, now: datetime, *, known: Mapping[str, float], watch: Watch
+) -> tuple[TwinState, tuple[Notice, ...]]:
+    if sample.stream not in known:
+        return state, _set_aside(
+            sample, f"no stream {sample.stream!r} here; there are {', '.join(known)}"
+        )
+    if sample.t > now + timedelta(seconds=watch.future_s):
+        ahead = (sample.t - now).total_seconds()
+        return state, _set_aside(
+            sample, f"its time is {ahead:.0f} s ahead of the clock; check the source's clock"
+        )
+    before = state.streams.get(sample.stream, ())
+    after = taken_in(before, sample, disorder_s=watch.disorder_s)
+    if after is None:
+        return state, _set_aside(
+            sample, f"it came more than {watch.disorder_s:.0f} s after a later one"
+        )
+    if after is before:
+        return state, ()
+    state = replace(state, streams={**state.streams, sample.stream: after})
+    flagged = next(taken.sample for taken in after if taken.sample.t == sample.t)
+    if not troubled(flagged):
+        return state, ()
+    return state, (Flagged(sample=flagged, reason=" ".join(flagged.remarks), used=True),)
+
+
+def _set_aside(sample: Sample, why: str) -> tuple[Flagged]:
+    return (Flagged(sample=sample, reason=f"{sample.stream}: set aside, {why}.", used=False),)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Reading:
+    """The input that holds now.
+
+    Parameters
+    ----------
+    metocean
+        One row; None before the first.
+    age_s
+        Of its oldest part [s].
+    trouble
+        Why it cannot be used, in one sentence; "" where it can.
+    """
+
+    metocean: Metocean | None
+    age_s: float | None
+    trouble: str
+
+
+def held_reading(
+    state: TwinState, now: datetime, *, buoy: str, inputs: tuple[Input, ...], stale_after_s: float
+) -> Reading:
+    """Return the buoy's last word on each input, if it is sound and fresh.
+
+    The newest reading governs: where it failed its checks there is no input until the next
+    good one, for an older value says nothing about the water that the buoy could not measure.
+    """
+    stream = state.streams.get(buoy, ())
+    newest = stream[-1].newest if stream else {}
+    keys = [key for name in inputs for key in INPUT_KEYS[name]]
+    unsaid = [key for key in keys if key not in newest]
+    if unsaid:
+        return Reading(metocean=None, age_s=None, trouble=f"{buoy} has not said {unsaid[0]} yet.")
+
+    columns = {
+        key: np.array([sample.values[key] if usable(sample, key) else np.nan])
+        for key, sample in newest.items()
+    }
+    metocean = Metocean.from_columns(columns, 1)
+    age = max(0.0, max((now - newest[key].t).total_seconds() for key in keys))
+    trouble = next((failed(buoy, key, newest[key].flags[key]) for key in keys
+                    if not usable(newest[key], key)), "")
+    if not trouble and age > stale_after_s:
+        trouble = f"The last reading of {buoy} is {age:.0f} s old; {stale_after_s:.0f} s is the limit."
+    return Reading(metocean=metocean, age_s=age, trouble=trouble)
+
+
+def failed(buoy: str, key: str, flag: int) -> str:
+    """Say why a value is no input."""
+    return f"{buoy}: {key} is flagged {int(flag)} ({Flag(flag).name.lower()}); there is no valid input."
