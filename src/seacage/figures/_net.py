@@ -1,0 +1,189 @@
+"""The net in side and top view, coloured by how far each panel has moved."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.cage import Cage
+from seacage.conventions import Origin, towards
+from seacage.figures._style import (
+    AMOUNT,
+    FIT,
+    INK,
+    LOW,
+    MULTI,
+    MUTED,
+    blank_figure,
+    head,
+    style,
+)
+from seacage.ocean import SeaState
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.figure import Figure
+
+_View = Float[np.ndarray, "2 3"]
+
+
+def net_figure(
+    cage: Cage,
+    node_position: Float[np.ndarray, "node 3"],
+    *,
+    rest_position: Float[np.ndarray, "node 3"] | None = None,
+    bridle_tension: Float[np.ndarray, " bridle"] | None = None,
+    sea: SeaState | None = None,
+    origin: Origin = Origin.COMPUTED,
+) -> "Figure":
+    """Side and top view of one shape of the net, its bridles, frame and sensors.
+
+    The side view looks across the current, which goes to the right; the top view has north up.
+
+    Parameters
+    ----------
+    node_position
+        The shape to draw [m].
+    rest_position
+        What displacement is measured from and drawn as a ghost [m]; the design shape if None.
+    bridle_tension
+        Written beside each bridle in the top view [N].
+    sea
+        Its current is drawn as an arrow; without one the cage's prevailing direction is used.
+    origin
+        Where the shape comes from.
+    """
+    rest = cage.design_position if rest_position is None else rest_position
+    to = cage.site.current_to if sea is None else sea.current_to
+    along = towards(np.array(1.0), np.array(to))
+    side = np.array([[along[0], along[1], 0.0], [0.0, 0.0, 1.0]])
+    top = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+    across = np.array([along[1], -along[0], 0.0])  # from the page towards the reader
+    moved = np.linalg.norm(node_position - rest, axis=1)
+    with style():
+        figure = blank_figure(10.0, 3.9)
+        left, right = figure.subplots(1, 2, width_ratios=[1.62, 1.0])
+        for axes, view, toward in ((left, side, across), (right, top, np.array([0.0, 0.0, 1.0]))):
+            _draw_ghost(axes, cage, rest, view)
+            colours = _draw_net(axes, cage, node_position, moved, view=view, toward=toward)
+            _draw_mooring(axes, cage, node_position, view)
+            _draw_sensors(axes, cage, node_position, view)
+            axes.set_aspect("equal")
+            axes.grid(visible=False)
+        _finish_side(left, sea)
+        _finish_top(right, cage, node_position, bridle_tension, sea)
+        head(left, "Side view")
+        head(right, "Top view, north up", origin=origin)
+        bar = figure.colorbar(colours, ax=[left, right], shrink=0.8, aspect=32, pad=0.015)
+        bar.set_label("Displacement from rest [m]")
+        bar.outline.set_visible(False)  # pyright: ignore[reportCallIssue]
+    return figure
+
+
+def _draw_ghost(axes: "Axes", cage: Cage, rest: Float[np.ndarray, "node 3"], view: _View) -> None:
+    """The rest shape as a faint net, so that the eye sees how far the net has gone."""
+    from matplotlib.collections import LineCollection
+
+    lines = list((rest @ view.T)[cage.edges])
+    axes.add_collection(LineCollection(lines, colors="#b9c2ca", linewidths=0.35, zorder=1))
+
+
+def _draw_net(
+    axes: "Axes",
+    cage: Cage,
+    position: Float[np.ndarray, "node 3"],
+    moved: Float[np.ndarray, " node"],
+    *,
+    view: _View,
+    toward: Float[np.ndarray, "3"],
+) -> "ScalarMappable":
+    """Panels from the farthest to the nearest, so that near twines cover far ones."""
+    from matplotlib.collections import PolyCollection
+
+    corners = position[cage.panels]
+    order = np.argsort(corners.mean(axis=1) @ toward)
+    patches = PolyCollection(
+        list((corners @ view.T)[order]),
+        array=moved[cage.panels].mean(axis=1)[order],
+        cmap=AMOUNT,
+        edgecolors=(0.11, 0.15, 0.2, 0.55),
+        linewidths=0.35,
+        alpha=0.82,
+        zorder=2,
+    )
+    patches.set_clim(0.0, max(float(moved.max()), 0.1))
+    axes.add_collection(patches)
+    collar = (position @ view.T)[np.append(cage.ring_nodes(0), 0)]
+    axes.plot(collar[:, 0], collar[:, 1], color=INK, lw=2.2, solid_joinstyle="round", zorder=4)
+    return patches
+
+
+def _draw_mooring(
+    axes: "Axes", cage: Cage, position: Float[np.ndarray, "node 3"], view: _View
+) -> None:
+    from matplotlib.collections import LineCollection
+
+    ends = np.stack([cage.corner_position[cage.bridle_corner], position[cage.bridle_nodes]], axis=1)
+    axes.add_collection(LineCollection(list(ends @ view.T), colors=LOW, linewidths=0.9, zorder=3))
+    corner = cage.corner_position @ view.T
+    frame = np.vstack([corner, corner[:1]])
+    axes.plot(frame[:, 0], frame[:, 1], color=MUTED, lw=0.9, ls=(0, (4, 2)), zorder=1)
+    axes.plot(corner[:, 0], corner[:, 1], "s", color=MUTED, ms=4, zorder=4)
+
+
+def _draw_sensors(
+    axes: "Axes", cage: Cage, position: Float[np.ndarray, "node 3"], view: _View
+) -> None:
+    """Depth sensors as discs on the net, shackles as diamonds where a bridle meets the collar."""
+    depth = position[[sensor.node for sensor in cage.depth_sensors]] @ view.T
+    shackle = position[cage.bridle_nodes[[entry.bridle for entry in cage.shackles]]] @ view.T
+    look = {"mec": "white", "mew": 0.9, "ls": "", "zorder": 6}
+    axes.plot(depth[:, 0], depth[:, 1], "o", color=FIT, ms=6.5, label="Depth sensor", **look)
+    axes.plot(shackle[:, 0], shackle[:, 1], "D", color=MULTI, ms=5.5, label="Load shackle", **look)
+
+
+def _finish_side(axes: "Axes", sea: SeaState | None) -> None:
+    axes.axhline(0.0, color="#7fb2dd", lw=0.8, zorder=0)
+    axes.set_xlabel("Along the current [m]")
+    axes.set_ylabel("z [m]")
+    axes.legend(loc="lower left", handletextpad=0.2)
+    if sea is not None and sea.current_speed > 0.0:
+        low, _ = axes.get_xlim()
+        axes.annotate(
+            "",
+            (low + 18.0, -14.0),
+            (low + 2.0, -14.0),
+            arrowprops={"arrowstyle": "-|>", "color": LOW, "lw": 1.6},
+        )
+        axes.text(low + 2.0, -12.6, f"{sea.current_speed:.2g} m/s", color=LOW)
+
+
+def _finish_top(
+    axes: "Axes",
+    cage: Cage,
+    position: Float[np.ndarray, "node 3"],
+    tension: Float[np.ndarray, " bridle"] | None,
+    sea: SeaState | None,
+) -> None:
+    axes.set_xlabel("x, east [m]")
+    axes.set_ylabel("y, north [m]")
+    if sea is not None and sea.current_speed > 0.0:
+        upstream = -cage.collar.radius * sea.current_velocity / sea.current_speed
+        arrow = {"arrowstyle": "-|>", "color": LOW, "lw": 1.6}
+        axes.annotate("", tuple(1.12 * upstream), tuple(1.62 * upstream), arrowprops=arrow)
+    if tension is None:
+        return
+    ends = position[cage.bridle_nodes, :2]
+    middle = 0.7 * ends + 0.3 * cage.corner_position[cage.bridle_corner, :2]
+    for (x, y), newton in zip(middle, tension, strict=True):
+        axes.text(
+            x,
+            y,
+            f"{newton / 1000.0:.0f} kN",
+            ha="center",
+            va="center",
+            fontsize=6.5,
+            zorder=7,
+            bbox={"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.85},
+        )

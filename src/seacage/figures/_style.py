@@ -1,0 +1,106 @@
+"""How every figure looks: light, quiet, readable in print, the same bytes each time."""
+
+import io
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from seacage.conventions import Origin
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+INK = "#1d2733"
+MUTED = "#66727f"
+FAINT = "#dfe4e8"
+SENSOR = "#5b6570"
+LOW = "#2f74b5"
+MULTI = "#c8501e"
+FIT = "#d3222a"
+COUNTS = "viridis"
+AMOUNT = "viridis"
+
+_SETTINGS: dict[str, object] = {
+    "font.family": "sans-serif",
+    "font.sans-serif": ["DejaVu Sans"],  # ships with Matplotlib: the same everywhere
+    "font.size": 8.5,
+    "axes.titlesize": 9.5,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.labelsize": 8.5,
+    "axes.labelcolor": INK,
+    "axes.edgecolor": MUTED,
+    "axes.linewidth": 0.7,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "grid.color": FAINT,
+    "grid.linewidth": 0.6,
+    "text.color": INK,
+    "xtick.color": MUTED,
+    "ytick.color": MUTED,
+    "xtick.labelcolor": INK,
+    "ytick.labelcolor": INK,
+    "xtick.labelsize": 8.0,
+    "ytick.labelsize": 8.0,
+    "legend.frameon": False,
+    "legend.fontsize": 8.0,
+    "figure.facecolor": "white",
+    "savefig.facecolor": "white",
+    "savefig.dpi": 200,
+    "svg.fonttype": "path",
+    "svg.hashsalt": "seacage",
+    "path.simplify_threshold": 0.25,
+}
+
+
+@contextmanager
+def style() -> Iterator[None]:
+    """Draw and save inside this; the caller's own Matplotlib settings stay as they are."""
+    import matplotlib as mpl
+
+    with mpl.rc_context(_SETTINGS):  # pyright: ignore[reportArgumentType]
+        yield
+
+
+def blank_figure(width: float, height: float) -> "Figure":
+    """An empty figure without pyplot, so that nothing is kept or shown behind our back [inch]."""
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=(width, height), layout="constrained")
+
+
+def head(axes: "Axes", title: str, *, origin: Origin | None = None, legend: int = 0) -> None:
+    """Title on the left, where the numbers come from on the right.
+
+    With ``legend`` columns the legend lies in one row between them and the axes.
+    """
+    pad = 22.0 if legend else 8.0
+    axes.set_title(title, pad=pad)
+    if origin is not None:
+        axes.set_title(
+            str(origin), loc="right", pad=pad, color=MUTED, fontsize=8.0, fontweight="normal"
+        )
+    if legend:
+        axes.legend(loc="lower left", bbox_to_anchor=(-0.01, 0.985), ncols=legend, handlelength=1.6)
+
+
+def svg_text(figure: "Figure") -> str:
+    """The figure as one SVG document; the same figure gives the same text."""
+    buffer = io.StringIO()
+    with style():
+        figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": "seacage"})
+    return buffer.getvalue()
+
+
+def write_figure(figure: "Figure", path: Path) -> Path:
+    """Write the figure in the format that the path's ending names (svg, pdf, png)."""
+    if path.suffix == ".svg":
+        path.write_text(svg_text(figure), encoding="utf-8")
+        return path
+    with style():
+        figure.savefig(path)
+    return path

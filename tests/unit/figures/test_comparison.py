@@ -1,0 +1,89 @@
+"""The figures of one sensor."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from matplotlib.colors import to_hex
+
+from seacage.conventions import InputError, Origin
+from seacage.figures import Comparison, density_figure, series_figure
+
+START = np.datetime64("2020-02-22T00:00", "us")
+
+
+@pytest.fixture
+def comparison() -> Comparison:
+    noise = np.random.default_rng(0).standard_normal(400)
+    truth = np.linspace(5.0, 30.0, 400)
+    return Comparison(
+        sensor="shackle-1",
+        quantity="Tension",
+        unit="kN",
+        time=START + np.arange(400) * np.timedelta64(60, "s"),
+        reading=truth + noise,
+        low=0.5 * truth,
+        multi=truth,
+        multi_std=np.ones(400),
+        low_mae=8.75,
+        multi_mae=0.8,
+        low_line=(0.5, 0.0),
+        multi_line=(1.0, 0.0),
+        origin=Origin.VIRTUAL_FIELD,
+    )
+
+
+def test_both_panels_share_limits_and_counts(comparison):
+    low, multi, _ = density_figure(comparison).axes
+    assert low.get_xlim() == multi.get_xlim() == low.get_ylim()
+    assert low.collections[0].get_clim() == multi.collections[0].get_clim()
+
+
+def test_the_dashed_line_is_y_equals_x_and_the_red_one_the_given_fit(comparison):
+    low, *_ = density_figure(comparison).axes
+    diagonal, fit = low.lines
+    assert diagonal.is_dashed()
+    np.testing.assert_array_equal(diagonal.get_xdata(), diagonal.get_ydata())
+    red, green, blue = (int(to_hex(fit.get_color())[i : i + 2], 16) for i in (1, 3, 5))
+    assert red > 3 * max(green, blue)
+    np.testing.assert_allclose(fit.get_ydata(), 0.5 * np.asarray(fit.get_xdata()))
+
+
+def test_the_error_and_the_units_stand_in_the_panels(comparison):
+    low, multi, _ = density_figure(comparison).axes
+    assert [text.get_text() for text in low.texts] == ["MAE 8.75 kN"]
+    assert [text.get_text() for text in multi.texts] == ["MAE 0.8 kN"]
+    assert low.get_ylabel() == "Predicted tension [kN]"
+
+
+def test_every_axis_of_virtual_readings_says_virtual_field(comparison):
+    for axes in density_figure(comparison).axes[:2]:
+        assert "virtual field" in axes.get_xlabel()
+    series = series_figure(comparison, start=START, end=START + np.timedelta64(1, "h"))
+    assert series.axes[0].get_title(loc="right") == "virtual field"
+
+
+def test_a_series_shows_only_its_time_and_names_its_four_parts(comparison):
+    end = START + np.timedelta64(2, "h")
+    (axes,) = series_figure(comparison, start=START, end=end).axes
+    assert {len(line.get_xdata()) for line in axes.lines} == {120}
+    names = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert names == ["95 % interval", "shackle-1", "Low fidelity", "Multifidelity"]
+
+
+def test_a_lifted_net_stands_higher_on_the_page(comparison):
+    depth = replace(comparison, quantity="Depth", unit="m")
+    (axes,) = series_figure(depth, start=START, end=START + np.timedelta64(2, "h")).axes
+    assert axes.yaxis_inverted()
+
+
+def test_constant_readings_still_have_limits(comparison):
+    flat = np.full(400, 7.0)
+    figure = density_figure(replace(comparison, reading=flat, low=flat, multi=flat))
+    low, high = figure.axes[0].get_xlim()
+    assert low < 7.0 < high
+
+
+def test_a_sensor_without_readings_is_refused(comparison):
+    with pytest.raises(InputError, match="shackle-1 has no reading"):
+        replace(comparison, time=comparison.time[:0])
