@@ -1,3 +1,6 @@
 """Many simulations, planned, run and labelled; and the virtual field."""
 
-__all__: list[str] = []
+from seacage.campaigns._plan import Plan
+from seacage.campaigns._run import CampaignStatus, campaign_status, run_campaign
+
+__all__ = ["CampaignStatus", "Plan", "campaign_status", "run_campaign"]

@@ -4,7 +4,6 @@
 # pyright: reportUnknownMemberType=false
 
 import hashlib
-import os
 import shutil
 import warnings
 from collections.abc import Mapping, Sequence
@@ -161,7 +160,7 @@ def create_campaign(
     nodes: int,
     lines: int,
     block: int,
-    attributes: Mapping[str, str | int | float],
+    attributes: Mapping[str, str | float],
 ) -> None:
     """Make the store of a campaign with its sea states and no answers yet.
 
@@ -205,7 +204,7 @@ def create_campaign(
     with warnings.catch_warnings():  # zarr warns that other libraries may not look for this
         warnings.simplefilter("ignore")
         zarr.consolidate_metadata(unborn)
-    os.rename(unborn, path)
+    unborn.rename(path)
 
 
 def write_cases(path: Path, first: int, answers: Mapping[str, np.ndarray]) -> None:
@@ -273,7 +272,7 @@ def export_campaign(store: str | Path, path: str | Path) -> None:
         result = dataset["result"]
         result.attrs["flag_values"] = np.array(result.attrs["flag_values"], result.dtype)
         dataset.to_netcdf(unborn, engine="h5netcdf")
-    os.replace(unborn, path)
+    unborn.replace(path)
 
 
 def _array(path: Path, name: str) -> Any:

@@ -1,0 +1,237 @@
+"""Plans: which sea states a campaign visits."""
+
+import hashlib
+import itertools
+import json
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Self
+
+import numpy as np
+
+from seacage.conventions import InputError
+from seacage.ocean import MAX_CURRENT_SPEED, SeaState
+
+Range = tuple[float, float]
+
+_RANGES: Mapping[str, Mapping[str, Range]] = {
+    "paper": {},
+    "default": {"period_ratio": (0.8, 2.2)},
+    "current": {"hs": (0.0, 0.0)},
+}
+
+_DOOR = {
+    "current_speed_m_s": "current_speed",
+    "current_to_deg": "current_to",
+    "hs_m": "hs",
+    "tp_s": "tp",
+    "wave_from_deg": "wave_from",
+}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Plan:
+    """The sea states of a campaign, and what they stand for.
+
+    Parameters
+    ----------
+    name
+        What the plan is called in reports.
+    seas
+        The sea state of each case.
+    duration
+        How long each sea state lasts [s]. Equilibria do not use it; the plan keeps it, so
+        that the same plan can be simulated in time.
+    seed
+        Of the draw; 0 for a plan that was not drawn.
+    """
+
+    name: str
+    seas: tuple[SeaState, ...]
+    duration: float
+    seed: int
+
+    def __post_init__(self) -> None:
+        if not self.seas:
+            raise InputError("Plan: no sea states. Give at least one.")
+        if not (math.isfinite(self.duration) and self.duration > 0.0):
+            raise InputError(
+                f"Plan: duration = {self.duration:g} s is not a positive number of seconds."
+            )
+        if self.seed < 0:
+            raise InputError(
+                f"Plan: seed = {self.seed} is negative. Give a whole number from 0 on."
+            )
+
+    def __len__(self) -> int:
+        return len(self.seas)
+
+    @classmethod
+    def sample(
+        cls,
+        seed: int,
+        cases: int,
+        *,
+        duration: float = 1800.0,
+        current_speed: Range = (0.0, 1.0),
+        current_to: Range = (0.0, 360.0),
+        hs: Range = (0.0, 3.0),
+        period_ratio: Range = (1.0, 1.0),
+        wave_from: Range = (0.0, 360.0),
+        name: str = "sample",
+    ) -> Self:
+        """Draw sea states that fill the ranges evenly: a scrambled Sobol sequence.
+
+        The defaults are the paper's ranges. The first cases of a longer draw with the same
+        seed are the shorter draw.
+
+        Parameters
+        ----------
+        seed
+            Of the scrambling.
+        cases
+            How many sea states.
+        duration
+            Of each [s].
+        current_speed
+            Least and largest [m/s].
+        current_to, wave_from
+            Least and largest, clockwise from true north [deg].
+        hs
+            Least and largest significant wave height [m]; (0, 0) leaves the waves out.
+        period_ratio
+            Least and largest Tp / (5 sqrt(Hs)), with Tp in s and Hs in m.
+        name
+            Of the plan.
+
+        References
+        ----------
+        Sobol (1967); scrambling after Owen (1998), as ``scipy.stats.qmc.Sobol`` does it.
+        """
+        if cases < 1:
+            raise InputError(f"Plan.sample: cases = {cases}. Draw at least one sea state.")
+        ranges = {
+            "current_speed": _range("current_speed", current_speed, "m/s", MAX_CURRENT_SPEED),
+            "current_to": _range("current_to", current_to, "deg", 360.0),
+            "hs": _range("hs", hs, "m"),
+            "period_ratio": _range("period_ratio", period_ratio, "-"),
+            "wave_from": _range("wave_from", wave_from, "deg", 360.0),
+        }
+        low, high = np.array(list(ranges.values())).T
+        drawn = low + (high - low) * _sobol(seed, cases, len(ranges))
+        seas = tuple(_sea(*row) for row in drawn.tolist())
+        return cls(name=name, seas=seas, duration=duration, seed=seed)
+
+    @classmethod
+    def named(cls, name: str, seed: int, cases: int, *, duration: float = 1800.0) -> Self:
+        """Draw from ranges that have a name.
+
+        ``paper``: the paper's, where Tp = 5 sqrt(Hs). ``default``: the same with
+        Tp / (5 sqrt(Hs)) from 0.8 to 2.2, as real seas have it. ``current``: no waves.
+        """
+        if name not in _RANGES:
+            raise InputError(f"Plan.named: no plan {name!r}; there are: {', '.join(_RANGES)}.")
+        return cls.sample(seed, cases, duration=duration, name=name, **_RANGES[name])
+
+    @classmethod
+    def grid(
+        cls,
+        *,
+        current_speed: Iterable[float],
+        current_to: Iterable[float],
+        hs: Iterable[float] = (0.0,),
+        wave_from: Iterable[float] = (0.0,),
+        duration: float = 1800.0,
+        name: str = "grid",
+    ) -> Self:
+        """Every combination, the last named varying fastest; Tp = 5 sqrt(Hs)."""
+        seas = tuple(
+            SeaState(current_speed=speed, current_to=to, hs=height, wave_from=origin)
+            for speed, to, height, origin in itertools.product(
+                current_speed, current_to, hs, wave_from
+            )
+        )
+        return cls(name=name, seas=seas, duration=duration, seed=0)
+
+    @classmethod
+    def listed(
+        cls, seas: Iterable[SeaState], *, duration: float = 1800.0, name: str = "listed"
+    ) -> Self:
+        """The sea states given."""
+        return cls(name=name, seas=tuple(seas), duration=duration, seed=0)
+
+    @classmethod
+    def read(cls, path: str | Path) -> Self:
+        """A plan from the JSON file that ``write`` makes."""
+        try:
+            return cls.from_json(Path(path).read_text("utf-8"))
+        except (OSError, UnicodeDecodeError) as error:
+            raise InputError(f"Plan.read: cannot read {path} as UTF-8 text ({error}).") from error
+
+    def write(self, path: str | Path) -> None:
+        """Write a JSON file that ``read`` takes back, one case per line."""
+        Path(path).write_text(self.to_json(), "utf-8")
+
+    @classmethod
+    def from_json(cls, text: str) -> Self:
+        """A plan from JSON text."""
+        try:
+            table = json.loads(text)
+            seas = tuple(SeaState(**_inside(case)) for case in table["cases"])
+            return cls(
+                name=table["name"], seas=seas, duration=table["duration_s"], seed=table["seed"]
+            )
+        except (KeyError, TypeError, json.JSONDecodeError) as error:
+            raise InputError(
+                f"Plan: this is no plan ({error!r}). Expected the keys name, duration_s, seed and "
+                f"cases, each case with some of {', '.join(_DOOR)}."
+            ) from error
+
+    def to_json(self) -> str:
+        """JSON text with the unit in every key, one case per line."""
+        head = {"name": self.name, "duration_s": self.duration, "seed": self.seed}
+        cases = ",\n".join(
+            json.dumps({door: getattr(sea, name) for door, name in _DOOR.items()})
+            for sea in self.seas
+        )
+        return f'{json.dumps(head)[:-1]}, "cases": [\n{cases}\n]}}\n'
+
+    @property
+    def sha256(self) -> str:
+        """Hash of the whole plan."""
+        return hashlib.sha256(self.to_json().encode()).hexdigest()
+
+
+def _inside(case: Mapping[str, Any]) -> dict[str, float]:
+    return {_DOOR[key]: value for key, value in case.items()}
+
+
+def _range(name: str, given: Sequence[float], unit: str, top: float = math.inf) -> Range:
+    low, high = given
+    if not (0.0 <= low <= high <= top and math.isfinite(high)):
+        limit = "" if math.isinf(top) else f", {top:g} at most"
+        raise InputError(
+            f"Plan.sample: {name} = ({low:g}, {high:g}) {unit} is no range. "
+            f"Give the least and the largest, from 0 up{limit}."
+        )
+    return low, high
+
+
+def _sea(speed: float, to: float, hs: float, ratio: float, wave_from: float) -> SeaState:
+    return SeaState(
+        current_speed=speed,
+        current_to=to,
+        hs=hs,
+        tp=5.0 * ratio * math.sqrt(hs),
+        wave_from=wave_from,
+    )
+
+
+def _sobol(seed: int, cases: int, dimensions: int) -> np.ndarray:
+    from scipy.stats import qmc
+
+    engine = qmc.Sobol(dimensions, seed=np.random.default_rng(seed))
+    # Whole powers of two keep the balance of the sequence; its start is a sample as well.
+    return engine.random_base2((cases - 1).bit_length())[:cases]

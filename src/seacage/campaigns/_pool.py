@@ -1,0 +1,95 @@
+"""A pool of processes that start clean, end with their parent and need no guarded script."""
+
+import multiprocessing
+import os
+import sys
+import threading
+import types
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from typing import TypeVar
+
+from seacage.conventions import SeacageError
+
+_ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+
+Task = TypeVar("Task")
+Answer = TypeVar("Answer")
+
+
+def available_cores() -> int:
+    """Cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def mapped(
+    work: Callable[[Task], Answer], tasks: Sequence[Task], *, workers: int
+) -> Iterator[tuple[Task, Answer]]:
+    """Tasks with their answers, in the order in which they end.
+
+    One worker, or one task, means no other process. Closing the iterator drops what has
+    not begun.
+
+    Parameters
+    ----------
+    work
+        A function of a module: it travels to the workers by its name.
+    tasks
+        What to do.
+    workers
+        Processes at most.
+    """
+    workers = min(workers, len(tasks))
+    if workers <= 1:
+        yield from ((task, work(task)) for task in tasks)
+        return
+    spawn = multiprocessing.get_context("spawn")
+    pool = ProcessPoolExecutor(workers, mp_context=spawn, initializer=_leave_with_parent)
+    try:
+        with _clean_start():
+            futures = {pool.submit(work, task): task for task in tasks}
+        for future in as_completed(futures):
+            yield futures[future], future.result()
+    except BrokenProcessPool as error:
+        raise SeacageError(
+            "A worker process was ended from outside, perhaps for want of memory. "
+            "Run again with fewer workers; what is done is kept."
+        ) from error
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+@contextmanager
+def _clean_start() -> Iterator[None]:
+    """Processes started within compute on one thread each and leave the caller's script alone.
+
+    A spawned process would run the script that called us, down to the call that spawns, if
+    its author did not guard it; with an anonymous ``__main__`` there is nothing to run.
+    """
+    script, environment = sys.modules["__main__"], dict(os.environ)
+    sys.modules["__main__"] = types.ModuleType("__main__")
+    os.environ.update(_ONE_THREAD)
+    try:
+        yield
+    finally:
+        sys.modules["__main__"] = script
+        for name in _ONE_THREAD:
+            os.environ.pop(name)
+            if name in environment:
+                os.environ[name] = environment[name]
+
+
+def _leave_with_parent() -> None:
+    """End this worker when its parent is gone: killed, it could not say goodbye."""
+    threading.Thread(target=_await_parent, daemon=True).start()
+
+
+def _await_parent() -> None:
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
