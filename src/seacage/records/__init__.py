@@ -9,21 +9,30 @@ from seacage.records._campaign import (
     read_campaign,
     write_cases,
 )
+from seacage.records._check import QualityState, check_record, check_sample
 from seacage.records._field import FieldRecord
 from seacage.records._keys import KEYS, Key
+from seacage.records._limits import DEFAULT_LIMITS, Limits, Range, Steadiness
 from seacage.records._record import Record
 from seacage.records._sample import Sample
 from seacage.records._times import instant, moment
 
 __all__ = [
+    "DEFAULT_LIMITS",
     "KEYS",
     "NOT_RUN",
     "CampaignRecord",
     "FieldRecord",
     "Key",
+    "Limits",
+    "QualityState",
+    "Range",
     "Record",
     "Sample",
+    "Steadiness",
     "campaign_results",
+    "check_record",
+    "check_sample",
     "create_campaign",
     "export_campaign",
     "instant",
