@@ -1,0 +1,80 @@
+# Two commands are enough on a fresh machine: `make run` and `make test`.
+# Nothing is installed twice: a stamp in .venv stands for each install, until what it read changes.
+
+PYTHON ?= python3
+WORKERS ?= 2
+RECORD ?=
+
+BIN := .venv/bin
+PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
+PYTEST := $(BIN)/python -m pytest -n $(WORKERS)
+OUTSIDE := mosquitto,postgres,node,chromium
+KERNEL := src/seacage/dynamics/_kernel
+BUILT := $(wildcard $(KERNEL)_*.so $(KERNEL)_*.dylib)
+
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+.PHONY: help run test test-outside test-all lint check lock bench always
+
+help: ## this list
+	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 14
+
+run: .venv/.project ## the live page on http://127.0.0.1:8000 (RECORD=file.csv: a real buoy's record)
+	$(BIN)/seacage serve --data var --demo $(if $(RECORD),--record "$(RECORD)")
+
+test: .venv/.dev .venv/.project ## the fast tests; what needs an outside program skips without it
+	$(PYTEST) -m "not slow"
+
+test-outside: .venv/.dev .venv/.project ## the tests that need Mosquitto, PostgreSQL, Node or Chromium
+	tools/services.sh
+	SEACAGE_REQUIRE=$(OUTSIDE) $(PYTEST) -m "mosquitto or postgres or node or chromium"
+
+test-all: .venv/.dev .venv/.project ## every test; none may skip for want of an outside program
+	tools/services.sh
+	SEACAGE_REQUIRE=$(OUTSIDE) $(PYTEST)
+
+lint: .venv/.dev .venv/.project ## style, types, imports and spelling
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/pyright
+	$(BIN)/lint-imports
+	$(BIN)/typos
+
+check: lint test ## lint, then the fast tests
+
+bench: .venv/.dev .venv/.project ## time what people wait for (ONCE=1: only see that it runs)
+	@set -e; for script in benchmarks/*.py; do \
+	  echo "== $$script"; $(BIN)/python "$$script" $(if $(ONCE),--once); done
+
+# The development lock repeats the versions of the first, so both fit in one environment.
+COMPILE := $(BIN)/uv pip compile pyproject.toml --universal --python-version 3.11 --upgrade --quiet \
+  --generate-hashes --no-header --no-annotate --no-emit-index-url --no-emit-find-links
+lock: | $(BIN)/uv ## choose the newest versions again and write both locks
+	$(COMPILE) --extra sim -o requirements.lock
+	$(COMPILE) --extra sim --extra dev -c requirements.lock -o requirements-dev.lock
+
+$(BIN)/uv: | $(BIN)/python
+	@$(PIP) install uv
+
+$(BIN)/python:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+	  { echo "seacage needs Python 3.11 or newer; name one with: make PYTHON=python3.12 …"; exit 1; }
+	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || \
+	  { echo "$(PYTHON) cannot make environments with pip; mend it with: apt-get install -y python3-venv"; exit 1; }
+	$(PYTHON) -m venv .venv
+
+.venv/.core: requirements.lock | $(BIN)/python
+	@echo "Installing the packages of $< …"
+	@$(PIP) install --require-hashes -r $<
+	@touch $@
+
+.venv/.dev: requirements-dev.lock | .venv/.core
+	@echo "Installing the packages of $< …"
+	@$(PIP) install --require-hashes -r $<
+	@touch $@
+
+# A compiled kernel that went missing, after `git clean` say, is built again.
+.venv/.project: pyproject.toml hatch_build.py $(wildcard $(KERNEL)*.[ch]) $(if $(BUILT),,always) | .venv/.core
+	@echo "Installing seacage and compiling its kernel …"
+	@$(PIP) install --no-deps --editable .
+	@touch $@

@@ -1,0 +1,101 @@
+"""What every test shares: checked shapes, one thread each, and the programs it may need."""
+
+import os
+import shutil
+import socket
+import subprocess
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+# Before NumPy is loaded: the tests run side by side, so each has one thread.
+for library in ("OMP", "OPENBLAS", "MKL"):
+    os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+
+import jaxtyping  # noqa: E402
+
+# Before seacage is loaded: every annotated array is checked on the way in and out.
+jaxtyping.install_import_hook("seacage", "checking.annotated")
+
+import hypothesis  # noqa: E402
+import pytest  # noqa: E402
+
+from outside import PROGRAMS, program, serving, wait_for  # noqa: E402
+
+hypothesis.settings.register_profile("seacage", deadline=None)
+hypothesis.settings.load_profile("seacage")
+
+
+def skip_or_fail(need: str, why: str) -> None:
+    """Skip for want of `need`, unless SEACAGE_REQUIRE names it: then it is a failure."""
+    if need in os.environ.get("SEACAGE_REQUIRE", "").split(","):
+        pytest.fail(f"SEACAGE_REQUIRE names {need}, but {why}", pytrace=False)
+    pytest.skip(f"needs {need}: {why}")
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark each test with the outside programs whose fixtures it asks for."""
+    for item in items:
+        for name in PROGRAMS.keys() & getattr(item, "fixturenames", ()):
+            item.add_marker(name)
+
+
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Let no test start without the programs that its markers name."""
+    for name in PROGRAMS:
+        if item.get_closest_marker(name) and not program(name):
+            skip_or_fail(name, "it is not installed; `make test-all` installs it")
+
+
+@pytest.fixture(scope="session")
+def shared(pytestconfig: pytest.Config) -> Path:
+    """The folder of real records and published numbers, SEACAGE_SHARED or ../shared."""
+    beside = pytestconfig.rootpath.parent / "shared"
+    folder = Path(os.environ.get("SEACAGE_SHARED", beside))
+    if not folder.is_dir():
+        skip_or_fail("shared", f"there is no folder {folder}; name it in SEACAGE_SHARED")
+    return folder
+
+
+@pytest.fixture(scope="session")
+def node() -> Path | None:
+    """Node, to run or to check a script."""
+    return program("node")
+
+
+@pytest.fixture(scope="session")
+def chromium() -> Path | None:
+    """Chromium, to open a page with `--headless`."""
+    return program("chromium")
+
+
+@pytest.fixture(scope="session")
+def mosquitto(tmp_path_factory: pytest.TempPathFactory) -> Iterator[int]:
+    """A broker of our own; its port on 127.0.0.1."""
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = free.getsockname()[1]
+    settings = tmp_path_factory.mktemp("mosquitto") / "mosquitto.conf"
+    settings.write_text(f"listener {port} 127.0.0.1\nallow_anonymous true\n")
+    with serving([program("mosquitto"), "-c", settings]):
+        wait_for(lambda: socket.create_connection(("127.0.0.1", port), timeout=1).close())
+        yield port
+
+
+@pytest.fixture(scope="session")
+def postgres() -> Iterator[str]:
+    """A server of our own, on a Unix socket alone; the address that libpq understands."""
+    server = program("postgres").resolve()  # its tools lie beside it
+    with tempfile.TemporaryDirectory() as folder:
+        # PostgreSQL refuses to run as root, so root hands it to its own user.
+        owner = {"user": "postgres", "cwd": "/"} if os.geteuid() == 0 else {}
+        if owner:
+            shutil.chown(folder, "postgres")
+        tables = Path(folder, "tables")
+        make = [server.with_name("initdb"), "-D", tables, "-U", "seacage", "--no-sync"]
+        subprocess.run([*make, "--auth=trust"], check=True, capture_output=True, **owner)
+        with serving([server, "-D", tables, "-k", folder, "-c", "listen_addresses="], **owner):
+            address = f"host={folder} user=seacage dbname=postgres"
+            asks = [server.with_name("psql"), address, "-c", "select 1"]
+            wait_for(lambda: subprocess.run(asks, check=True, capture_output=True))
+            yield address

@@ -1,0 +1,12 @@
+"""A barge computer loads the service and the twin alone."""
+
+import subprocess
+import sys
+
+HEAVY = {"dask", "h5py", "jax", "matplotlib", "pandas", "xarray", "zarr"}
+
+
+def test_the_service_and_the_twin_load_nothing_that_a_barge_lacks() -> None:
+    tell = "import sys, seacage.service, seacage.twin; print(*sys.modules)"
+    told = subprocess.run([sys.executable, "-c", tell], check=True, capture_output=True, text=True)
+    assert not HEAVY & set(told.stdout.split())
