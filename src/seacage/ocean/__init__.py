@@ -1,5 +1,26 @@
 """The sea: its states, its spectrum and how its water moves."""
 
+from seacage.ocean._kinematics import (
+    Waves,
+    sample_waves,
+    surface_elevation,
+    water_motion,
+    wave_velocity_variance,
+    wavenumber,
+)
 from seacage.ocean._sea_state import MAX_CURRENT_SPEED, SeaState, steepness_limit
+from seacage.ocean._spectrum import peak_enhancement, spectrum
 
-__all__ = ["MAX_CURRENT_SPEED", "SeaState", "steepness_limit"]
+__all__ = [
+    "MAX_CURRENT_SPEED",
+    "SeaState",
+    "Waves",
+    "peak_enhancement",
+    "sample_waves",
+    "spectrum",
+    "steepness_limit",
+    "surface_elevation",
+    "water_motion",
+    "wave_velocity_variance",
+    "wavenumber",
+]

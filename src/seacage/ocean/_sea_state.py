@@ -76,6 +76,12 @@ class SeaState:
         return towards(np.array(self.current_speed), np.array(self.current_to))
 
     @property
+    def peak_period(self) -> float:
+        """``tp``, filled in where it was left out [s]; 0 without waves."""
+        assert self.tp is not None
+        return self.tp
+
+    @property
     def wave_direction(self) -> Float[np.ndarray, "2"]:
         """Unit vector the waves travel along, (east, north)."""
         return -towards(np.array(1.0), np.array(self.wave_from))

@@ -1,0 +1,233 @@
+"""Linear waves in water of finite depth, and the motion of the water under them."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.conventions import GRAVITY
+from seacage.ocean._sea_state import SeaState
+from seacage.ocean._spectrum import spectrum
+
+_BAND = (0.5, 4.0)
+"""The components' frequencies, over the peak's: all but 0.5 % of the energy, and nearly all of
+the motion below the first metre."""
+
+
+def wavenumber(
+    angular_frequency: Float[np.ndarray, "*n"], *, depth: float
+) -> Float[np.ndarray, "*n"]:
+    """Of a linear wave: the root k of omega^2 = g k tanh(k depth) [1/m].
+
+    Parameters
+    ----------
+    angular_frequency
+        At least 0 [rad/s].
+    depth
+        Of the water [m].
+
+    References
+    ----------
+    Start by Eckart (1952), within 5 %; then Newton, which doubles the digits each time.
+    """
+    deep = angular_frequency**2 * depth / GRAVITY
+    kh = np.where(deep > 0.0, deep / np.sqrt(np.tanh(np.where(deep > 0.0, deep, 1.0))), 0.0)
+    for _ in range(5):
+        tanh = np.tanh(kh)
+        slope = tanh + kh * (1.0 - tanh**2)
+        kh -= (kh * tanh - deep) / np.where(slope > 0.0, slope, 1.0)
+    return kh / depth
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Waves:
+    """A sum of linear waves, each long-crested.
+
+    Parameters
+    ----------
+    amplitude
+        [m].
+    angular_frequency
+        [rad/s].
+    wavenumber
+        [1/m].
+    phase
+        At the origin at time 0 [rad].
+    direction
+        Unit vector that each travels along, (east, north) [-].
+    depth
+        Of the water [m].
+    """
+
+    amplitude: Float[np.ndarray, " wave"]
+    angular_frequency: Float[np.ndarray, " wave"]
+    wavenumber: Float[np.ndarray, " wave"]
+    phase: Float[np.ndarray, " wave"]
+    direction: Float[np.ndarray, "wave 2"]
+    depth: float
+
+
+def sample_waves(sea: SeaState, *, seed: int, components: int = 30, depth: float = 191.0) -> Waves:
+    """Draw one realisation of a sea's waves.
+
+    Each component carries the energy of its own bin of frequency, so that their sum is that of
+    the sea; its frequency is random in the bin, so that the sea does not repeat, and so is its
+    phase. Left out: spreading of direction, and waves shorter than a quarter of the peak's
+    period. Without waves every amplitude is 0.
+
+    Parameters
+    ----------
+    sea
+        What to realise.
+    seed
+        The same seed gives the same sea.
+    components
+        How many waves; 30 or more for half an hour.
+    depth
+        Of the water [m].
+    """
+    random = np.random.default_rng(seed)
+    # A flat sea keeps its components, at frequencies that no amplitude needs.
+    peak = 2.0 * math.pi / sea.peak_period if sea.hs > 0.0 else 1.0
+    edges = peak * np.linspace(*_BAND, components + 1)
+    frequency = edges[:-1] + random.random(components) * np.diff(edges)
+    energy = _bin_energy(sea, edges)
+    return Waves(
+        amplitude=np.sqrt(2.0 * energy),
+        angular_frequency=frequency,
+        wavenumber=wavenumber(frequency, depth=depth),
+        phase=random.uniform(0.0, 2.0 * math.pi, components),
+        direction=np.tile(sea.wave_direction, (components, 1)),
+        depth=depth,
+    )
+
+
+def _bin_energy(sea: SeaState, edges: Float[np.ndarray, " edge"]) -> Float[np.ndarray, " bin"]:
+    """Variance of each bin, scaled to Hs^2 / 16 in all [m2]."""
+    fine = np.linspace(edges[:-1], edges[1:], 33)
+    energy = np.trapezoid(spectrum(sea, fine.ravel()).reshape(fine.shape), fine, axis=0)
+    total = energy.sum()
+    return energy * (sea.hs**2 / 16.0 / total) if total > 0.0 else energy
+
+
+def surface_elevation(
+    waves: Waves, position: Float[np.ndarray, "*#n 2"], time: Float[np.ndarray, "*#n"]
+) -> Float[np.ndarray, "*n"]:
+    """Height of the water's surface above still water [m].
+
+    Parameters
+    ----------
+    waves
+        The sea.
+    position
+        East, north [m].
+    time
+        Broadcast against the positions: ``time[:, None]`` gives all points at all times [s].
+    """
+    return np.cos(_angle(waves, position, time)) @ waves.amplitude
+
+
+def water_motion(
+    waves: Waves, position: Float[np.ndarray, "*#n 3"], time: Float[np.ndarray, "*#n"]
+) -> tuple[Float[np.ndarray, "*n 3"], Float[np.ndarray, "*n 3"]]:
+    """Velocity and local acceleration of the water, from the waves alone.
+
+    Wheeler's stretching carries the linear motion up to the moving surface; above it both are
+    zero. Left out: second-order waves and the convective acceleration.
+
+    Parameters
+    ----------
+    waves
+        The sea.
+    position
+        East, north, up from still water [m].
+    time
+        Broadcast against the positions [s].
+
+    Returns
+    -------
+    velocity
+        [m/s].
+    acceleration
+        [m/s2].
+
+    References
+    ----------
+    Airy (1845), finite depth; Wheeler (1970).
+    """
+    angle = _angle(waves, position[..., :2], time)
+    cosine, sine = np.cos(angle), np.sin(angle)
+    elevation = cosine @ waves.amplitude
+    wet = position[..., 2] <= elevation
+    height = _stretched(position[..., 2], elevation, waves.depth)
+    along, up = _decay(waves.wavenumber, height, waves.depth)
+    omega = waves.angular_frequency
+    speed = waves.amplitude * omega
+    velocity = _oriented(waves, speed * along * cosine, speed * up * sine)
+    acceleration = _oriented(waves, speed * omega * along * sine, -speed * omega * up * cosine)
+    return velocity * wet[..., None], acceleration * wet[..., None]
+
+
+def _angle(
+    waves: Waves, position: Float[np.ndarray, "*#n 2"], time: Float[np.ndarray, "*#n"]
+) -> Float[np.ndarray, "*n wave"]:
+    vector = waves.wavenumber[:, None] * waves.direction
+    return position @ vector.T - time[..., None] * waves.angular_frequency + waves.phase
+
+
+def _stretched(
+    z: Float[np.ndarray, "*#n"], elevation: Float[np.ndarray, "*n"], depth: float
+) -> Float[np.ndarray, "*n"]:
+    # Points above the surface are zeroed later; the clip keeps their exponentials finite.
+    return np.clip((z - elevation) * depth / (depth + elevation), -depth, 0.0)
+
+
+def _decay(
+    k: Float[np.ndarray, " wave"], z: Float[np.ndarray, "*n"], depth: float
+) -> tuple[Float[np.ndarray, "*n wave"], Float[np.ndarray, "*n wave"]]:
+    """How velocities fade: cosh k(z+h) / sinh kh and sinh k(z+h) / sinh kh, z in [-h, 0] [-].
+
+    Written with decaying exponentials: cosh itself overflows in deep water.
+    """
+    fall = np.exp(k * z[..., None])
+    bounce = np.exp(-2.0 * k * (z[..., None] + depth))
+    floor = -np.expm1(-2.0 * k * depth)
+    return fall * (1.0 + bounce) / floor, fall * (1.0 - bounce) / floor
+
+
+def _oriented(
+    waves: Waves, along: Float[np.ndarray, "*n wave"], up: Float[np.ndarray, "*n wave"]
+) -> Float[np.ndarray, "*n 3"]:
+    return np.concatenate([along @ waves.direction, up.sum(-1, keepdims=True)], axis=-1)
+
+
+def wave_velocity_variance(
+    sea: SeaState, z: Float[np.ndarray, " n"], *, depth: float = 191.0
+) -> Float[np.ndarray, "n 2"]:
+    """How strongly the waves stir the water at a height, by the whole spectrum.
+
+    Linear and unstretched: heights above still water count as 0, those below the bottom as the
+    bottom. Waves shorter than a tenth of the peak's period are left out.
+
+    Parameters
+    ----------
+    sea
+        Without waves everything is 0.
+    z
+        Up from still water [m].
+    depth
+        Of the water [m].
+
+    Returns
+    -------
+    variance
+        Of the velocity along the waves and of the vertical velocity [m2/s2].
+    """
+    if sea.hs == 0.0:
+        return np.zeros((z.size, 2))
+    omega = 2.0 * math.pi / sea.peak_period * np.geomspace(0.4, 10.0, 256)
+    along, up = _decay(wavenumber(omega, depth=depth), np.clip(z, -depth, 0.0), depth)
+    density = omega**2 * spectrum(sea, omega)
+    moments = [np.trapezoid(density * decay**2, omega, axis=-1) for decay in (along, up)]
+    return np.stack(moments, axis=-1)
