@@ -232,6 +232,6 @@ def _sea(speed: float, to: float, hs: float, ratio: float, wave_from: float) -> 
 def _sobol(seed: int, cases: int, dimensions: int) -> np.ndarray:
     from scipy.stats import qmc
 
-    engine = qmc.Sobol(dimensions, seed=np.random.default_rng(seed))
+    engine = qmc.Sobol(dimensions, rng=np.random.default_rng(seed))
     # Whole powers of two keep the balance of the sequence; its start is a sample as well.
     return engine.random_base2((cases - 1).bit_length())[:cases]

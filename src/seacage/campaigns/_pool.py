@@ -5,7 +5,7 @@ import os
 import sys
 import threading
 import types
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
@@ -28,7 +28,7 @@ def available_cores() -> int:
 
 def mapped(
     work: Callable[[Task], Answer], tasks: Sequence[Task], *, workers: int
-) -> Iterator[tuple[Task, Answer]]:
+) -> Generator[tuple[Task, Answer], None, None]:
     """Tasks with their answers, in the order in which they end.
 
     One worker, or one task, means no other process. Closing the iterator drops what has

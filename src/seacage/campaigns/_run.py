@@ -1,5 +1,7 @@
 """Running a campaign: blocks of cases, each kept as soon as it is done."""
 
+import hashlib
+import json
 from collections.abc import Mapping
 from contextlib import closing
 from dataclasses import dataclass
@@ -95,6 +97,13 @@ def run_campaign(
             done += len(task.seas)
             report("campaign", done, len(plan))
     return read_campaign(store)
+
+
+def campaign_key(cage: Cage, plan: Plan, law: str) -> str:
+    """A short name that only campaigns with the same numbers share."""
+    attributes = _attributes(cage, plan, law)
+    same = json.dumps([attributes[name] for name in _IDENTITY])
+    return hashlib.sha256(same.encode()).hexdigest()[:16]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

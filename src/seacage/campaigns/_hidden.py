@@ -1,0 +1,182 @@
+"""The hidden parameters of a virtual field: one file, whose hash its records carry."""
+
+import hashlib
+import math
+import tomllib
+from dataclasses import dataclass, fields, is_dataclass
+from importlib import resources
+from pathlib import Path
+from typing import Any, Self
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.cage import Cage
+from seacage.conventions import InputError
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HiddenNetting:
+    """How the true net differs."""
+
+    elastic_modulus_pa: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HiddenFouling:
+    """How growth adds solidity."""
+
+    shallow_least: float
+    shallow_most: float
+    deep_share: float
+    boundary_depth_m: float
+    half_grown_days: float
+    growth_days: float
+    cleaned_day: float
+
+    def grown(self, day: Float[np.ndarray, " t"]) -> Float[np.ndarray, " t"]:
+        """Growth on a day of the record, 0 just cleaned, 1 grown out [-]."""
+        age = np.where(day < self.cleaned_day, day, day - self.cleaned_day)
+        return 1.0 / (1.0 + np.exp(-(age - self.half_grown_days) / self.growth_days))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HiddenBridles:
+    """How uneven the lines are."""
+
+    length_sd_m: float
+    seed: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HiddenCurrent:
+    """What happens to the current between the buoy and the cage."""
+
+    factor_least: float
+    factor_most: float
+    factor_most_to_deg: float
+    turn_least_deg: float
+    turn_most_deg: float
+    turn_most_to_deg: float
+    distance_m: float
+    lag_most_s: float
+    residual_sd_m_s: float
+    residual_memory_s: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HiddenBuoy:
+    """How far the buoy's numbers are off."""
+
+    speed_sd_m_s: float
+    direction_sd_deg: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HiddenShackle:
+    """Errors of the load shackles, and when they were alive."""
+
+    gain: float
+    bias_kn: float
+    noise_sd_kn: float
+    spike_kn: float
+    window_start: list[float]
+    window_hours: list[float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HiddenDepth:
+    """Errors of the depth sensors."""
+
+    noise_sd_m: float
+    drift_m_week: float
+    spike_m: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HiddenOutages:
+    """What goes wrong with every sensor now and then."""
+
+    lost_share: float
+    gaps_per_week: float
+    gap_mean_h: float
+    spikes_per_week: float
+    stuck_per_week: float
+    stuck_mean_h: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Hidden:
+    """The truth behind a virtual field, which no training may read.
+
+    ``Hidden.read()`` is the one of cage ``ace``; its file says what each number means.
+    """
+
+    law: str
+    netting: HiddenNetting
+    fouling: HiddenFouling
+    bridles: HiddenBridles
+    current: HiddenCurrent
+    buoy: HiddenBuoy
+    shackle: HiddenShackle
+    depth: HiddenDepth
+    outages: HiddenOutages
+    sha256: str
+
+    @classmethod
+    def read(cls, path: str | Path | None = None) -> Self:
+        """Hidden parameters from a TOML file; None for those of cage ``ace``.
+
+        Raises
+        ------
+        InputError
+            No TOML, or a key that is unknown, missing or no finite number.
+        """
+        own = resources.files("seacage.campaigns") / "hidden_ace.toml"
+        try:
+            content = own.read_bytes() if path is None else Path(path).read_bytes()
+            table = tomllib.loads(content.decode())
+        except (OSError, ValueError) as error:
+            raise InputError(f"Hidden.read: cannot read {path} as TOML ({error}).") from error
+        sha256 = hashlib.sha256(content).hexdigest()
+        return _built(cls, {**table, "sha256": sha256}, where=f"{path or own}")
+
+    def true_cage(self, cage: Cage, growth: float) -> Cage:
+        """The cage as it truly is, its net grown by a share of the whole growth, 0 to 1."""
+        least, most = self.fouling.shallow_least, self.fouling.shallow_most
+        shallow = least + growth * (most - least)
+        rng = np.random.default_rng(self.bridles.seed)
+        offset = rng.normal(scale=self.bridles.length_sd_m, size=cage.bridle_count)
+        return cage.altered(
+            netting={"elastic_modulus_pa": self.netting.elastic_modulus_pa},
+            bridles={"length_offset_m": offset.tolist()},
+        ).fouled(
+            shallow=shallow,
+            deep=self.fouling.deep_share * shallow,
+            boundary_depth=self.fouling.boundary_depth_m,
+        )
+
+
+def _built(kind: Any, table: dict[str, Any], *, where: str) -> Any:
+    """A frozen value from a table that has its keys, all of them and no other."""
+    kinds = {field.name: field.type for field in fields(kind)}
+    wrong = sorted(kinds.keys() ^ table.keys())
+    if wrong:
+        raise InputError(
+            f"{where}: the key {wrong[0]!r} is {'missing' if wrong[0] in kinds else 'unknown'}. "
+            "Compare with the hidden parameters that come with seacage."
+        )
+    return kind(
+        **{key: _value(kinds[key], value, where=f"{where}, {key}") for key, value in table.items()}
+    )
+
+
+def _value(kind: Any, value: Any, *, where: str) -> Any:
+    if is_dataclass(kind):
+        return _built(kind, value if isinstance(value, dict) else {}, where=where)
+    if kind is str:
+        return str(value)
+    for number in value if isinstance(value, list) else [value]:
+        if not (isinstance(number, int | float) and math.isfinite(number)):
+            raise InputError(f"{where}: {number!r} is no finite number.")
+    return value

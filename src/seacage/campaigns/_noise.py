@@ -1,0 +1,34 @@
+"""Noise that remembers."""
+
+from itertools import accumulate
+
+import numpy as np
+from jaxtyping import Float
+
+
+def wandering(
+    rng: np.random.Generator, steps: int, *, sd: float, step_s: float, memory_s: float
+) -> Float[np.ndarray, "step 2"]:
+    """A stationary Ornstein–Uhlenbeck vector, sampled exactly.
+
+    Parameters
+    ----------
+    rng
+        Source of chance.
+    steps
+        How many samples.
+    sd
+        Of each component [any unit, kept].
+    step_s, memory_s
+        Time between samples, and in which the correlation falls to 1/e [s].
+
+    References
+    ----------
+    Uhlenbeck and Ornstein (1930); its samples are an AR(1) series.
+    """
+    kept = np.exp(-step_s / memory_s)
+    shocks = rng.normal(scale=sd * np.sqrt(1.0 - kept**2), size=(steps, 2))
+    shocks[0] = rng.normal(scale=sd, size=2)
+    walk = accumulate((shocks @ np.array([1.0, 1.0j])).tolist(), lambda last, shock: kept * last + shock)
+    both = np.array(list(walk))
+    return np.column_stack([both.real, both.imag])

@@ -1,0 +1,190 @@
+"""The true cage's answers on a grid of currents and growths, and smoothly between them."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.cage import Cage
+from seacage.campaigns._hidden import Hidden
+from seacage.campaigns._plan import Plan
+from seacage.campaigns._run import campaign_key, run_campaign
+from seacage.conventions import Progress, Result, SeacageError
+from seacage.records import CampaignRecord
+
+_SPEEDS = (0.1, 0.2, 0.3, 0.4, 0.55, 0.7, 0.9, 1.15, 1.45, 1.75)
+_DIRECTIONS = tuple(22.5 * number for number in range(16))
+_GROWTHS = (0.0, 0.5, 1.0)
+_HELD_OUT_GROWTH = 0.25
+_HELD_OUT = 24
+_WRAP = 4
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Responses:
+    """What every sensor of a cage would read without error, over currents and growths.
+
+    Parameters
+    ----------
+    sensor_names
+        As the cage names them.
+    speed
+        Grid of the current's speed, from 0 [m/s].
+    direction
+        Grid of where it goes: all round, evenly, an even number [rad], clockwise from north.
+    growth
+        Grid of the fouling's growth [-].
+    value
+        Depths [m] and tensions [kN].
+    """
+
+    sensor_names: tuple[str, ...]
+    speed: Float[np.ndarray, " speed"]
+    direction: Float[np.ndarray, " direction"]
+    growth: Float[np.ndarray, " growth"]
+    value: Float[np.ndarray, "growth speed direction sensor"]
+
+    def at(
+        self, velocity: Float[np.ndarray, "t 2"], growth: Float[np.ndarray, " t"]
+    ) -> Float[np.ndarray, "t sensor"]:
+        """Answers to currents (east, north) [m/s] at given growths.
+
+        Cubic in speed and direction, quadratic in growth. Speeds above the grid count as its
+        largest; tensions stay at or above zero.
+        """
+        speed = np.minimum(np.linalg.norm(velocity, axis=1), self.speed[-1])
+        direction = np.arctan2(velocity[:, 0], velocity[:, 1]) % (2.0 * np.pi)
+        weights = _lagrange(self.growth, growth)
+        answers = np.zeros((len(speed), len(self.sensor_names)))
+        for weight, level in zip(weights, self.value, strict=True):
+            for sensor in range(len(self.sensor_names)):
+                answers[:, sensor] += weight * self._surface(level[..., sensor], speed, direction)
+        return np.maximum(answers, 0.0)
+
+    def _surface(
+        self,
+        value: Float[np.ndarray, "speed direction"],
+        speed: Float[np.ndarray, " t"],
+        direction: Float[np.ndarray, " t"],
+    ) -> Float[np.ndarray, " t"]:
+        """A bicubic spline without a seam at north and without a corner at slack water."""
+        from scipy.interpolate import RectBivariateSpline
+
+        # A current of -u towards d is one of u towards d + 180.
+        opposite = np.roll(value, len(self.direction) // 2, axis=1)
+        through_zero = np.vstack([opposite[:0:-1], value])
+        around = np.hstack([through_zero[:, -_WRAP:], through_zero, through_zero[:, :_WRAP]])
+        turn = 2.0 * np.pi
+        spline = RectBivariateSpline(
+            np.concatenate([-self.speed[:0:-1], self.speed]),
+            np.concatenate(
+                [self.direction[-_WRAP:] - turn, self.direction, self.direction[:_WRAP] + turn]
+            ),
+            around,
+        )
+        return spline.ev(speed, direction)
+
+
+def true_responses(
+    cage: Cage,
+    hidden: Hidden,
+    *,
+    store: Path,
+    workers: int | None = None,
+    progress: Progress | None = None,
+) -> tuple[Responses, Float[np.ndarray, "case sensor"]]:
+    """Settle the true cage on the grid, and at some currents between for the error.
+
+    Parameters
+    ----------
+    cage
+        As drawn.
+    hidden
+        How it truly is.
+    store
+        Folder of the campaigns, which are kept: another call with the same cage, hidden
+        parameters and version reads them.
+    workers
+        Processes; None for one per available core.
+    progress
+        Called as ("virtual field", done, total) in cases.
+
+    Returns
+    -------
+    responses
+        On the grid.
+    error
+        Interpolated less settled, at currents and a growth off the grid [m or kN].
+    """
+    still = Plan.grid(current_speed=(0.0,), current_to=(0.0,))
+    moving = Plan.grid(current_speed=_SPEEDS, current_to=_DIRECTIONS)
+    grid = Plan.listed((*still.seas, *moving.seas), name="responses")
+    between = Plan.sample(0, _HELD_OUT, current_speed=(0.0, 1.2), hs=(0.0, 0.0), name="held out")
+    asked = [(growth, grid) for growth in _GROWTHS] + [(_HELD_OUT_GROWTH, between)]
+    total = sum(len(plan) for _, plan in asked)
+    campaigns: list[CampaignRecord] = []
+    for growth, plan in asked:
+        before = sum(map(len, campaigns))
+        truth = hidden.true_cage(cage, growth)
+        campaigns.append(
+            run_campaign(
+                truth,
+                plan,
+                store / campaign_key(truth, plan, hidden.law),
+                workers=workers,
+                law=hidden.law,
+                progress=_part_of_whole(progress, before, total),
+            )
+        )
+    responses = Responses(
+        sensor_names=cage.sensor_names,
+        speed=np.array([0.0, *_SPEEDS]),
+        direction=np.deg2rad(_DIRECTIONS),
+        growth=np.array(_GROWTHS),
+        value=np.stack([_on_grid(_readings(cage, campaign)) for campaign in campaigns[:-1]]),
+    )
+    velocity = np.array([sea.current_velocity for sea in between.seas])
+    interpolated = responses.at(velocity, np.full(len(between), _HELD_OUT_GROWTH))
+    return responses, interpolated - _readings(cage, campaigns[-1])
+
+
+def _readings(cage: Cage, campaign: CampaignRecord) -> Float[np.ndarray, "case sensor"]:
+    """Depths [m], then tensions [kN], as error-free sensors would read them."""
+    lost = np.flatnonzero(campaign.result == Result.DIVERGED)
+    if lost.size:
+        raise SeacageError(
+            f"The virtual field's cage cannot be settled in {campaign.seas[lost[0]]}: "
+            "its hidden parameters are out of reach of the solver. Weaken them."
+        )
+    nodes = [sensor.node for sensor in cage.depth_sensors]
+    bridles = [shackle.bridle for shackle in cage.shackles]
+    depth = -campaign.node_position[:, nodes, 2]
+    return np.hstack([depth, campaign.bridle_tension[:, bridles] / 1e3])
+
+
+def _on_grid(
+    readings: Float[np.ndarray, "case sensor"],
+) -> Float[np.ndarray, "speed direction sensor"]:
+    """Cases in the order of the grid's plan; still water looks the same in all directions."""
+    sensors = readings.shape[1]
+    still = np.broadcast_to(readings[0], (1, len(_DIRECTIONS), sensors))
+    moving = readings[1:].reshape(len(_SPEEDS), len(_DIRECTIONS), sensors)
+    return np.concatenate([still, moving])
+
+
+def _lagrange(
+    grid: Float[np.ndarray, " growth"], at: Float[np.ndarray, " t"]
+) -> Float[np.ndarray, "growth t"]:
+    """Weights of the polynomial through all grid values."""
+    weights = np.ones((len(grid), len(at)))
+    for i, own in enumerate(grid):
+        for other in np.delete(grid, i):
+            weights[i] *= (at - other) / (own - other)
+    return weights
+
+
+def _part_of_whole(progress: Progress | None, before: int, total: int) -> Progress | None:
+    if progress is None:
+        return None
+    return lambda _stage, done, _part: progress("virtual field", before + done, total)
