@@ -20,11 +20,13 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 ROOM = Path("src", "seacage", "dynamics")
 ZIGLANG = "ziglang>=0.13"
-FLAGS = ["-std=c99", "-O3", "-ffast-math", "-fno-math-errno", "-fopenmp-simd", "-fPIC", "-Wall"]
+FLAGS = (
+    "-std=c99 -O3 -ffast-math -fno-finite-math-only -fno-math-errno -fopenmp-simd -fPIC -Wall"
+).split()
 # Linked apart from -ffast-math, which would make older GCCs add start-up code that flushes
 # denormals to zero in the whole process, NumPy's too; and without the compiler's own runtime,
 # which the kernel does not need and zig would first build for half a minute.
-LINK = ["-shared", "-nodefaultlibs", "-lm", "-lc"]
+LINK = "-shared -nostdlib -lm -lc".split()
 PROBE = "#include <math.h>\ndouble probe(double x) { return sqrt(x); }\n"
 SUFFIX = {"Darwin": ".dylib", "Windows": ".dll"}.get(platform.system(), ".so")
 TARGETS = (
