@@ -1,3 +1,40 @@
 """Models that learn a simulator, and what a sensor adds to it."""
 
-__all__: list[str] = []
+from seacage.surrogates._arrays import Arrays, Settings
+from seacage.surrogates._domain import Domain
+from seacage.surrogates._features import current_features
+from seacage.surrogates._gaussian_process import FittedGaussianProcess, GaussianProcess
+from seacage.surrogates._nargp import NARGP, FittedNARGP
+from seacage.surrogates._pca import FittedPcaGP, PcaGP
+from seacage.surrogates._prediction import Prediction, Predicts
+from seacage.surrogates._saving import Fitted, decode, encode
+from seacage.surrogates._scores import block_bootstrap, coverage, crps, mae, mnll, rmse, skill
+from seacage.surrogates._shape import FittedCoordinate, FittedShapeGP, ShapeGP
+
+__all__ = [
+    "NARGP",
+    "Arrays",
+    "Domain",
+    "Fitted",
+    "FittedCoordinate",
+    "FittedGaussianProcess",
+    "FittedNARGP",
+    "FittedPcaGP",
+    "FittedShapeGP",
+    "GaussianProcess",
+    "PcaGP",
+    "Prediction",
+    "Predicts",
+    "Settings",
+    "ShapeGP",
+    "block_bootstrap",
+    "coverage",
+    "crps",
+    "current_features",
+    "decode",
+    "encode",
+    "mae",
+    "mnll",
+    "rmse",
+    "skill",
+]

@@ -1,0 +1,112 @@
+"""What every surrogate answers, and the checks of what it is asked."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from jaxtyping import Float
+from numpy.typing import ArrayLike
+
+from seacage.conventions import InputError
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Prediction:
+    """Mean and standard deviation, in the unit of what was learned.
+
+    Parameters
+    ----------
+    mean, std
+        Of the same shape: (row,), (row, output) or (row, node, 3).
+    """
+
+    mean: Float[np.ndarray, "row *rest"]
+    std: Float[np.ndarray, "row *rest"]
+
+
+class Predicts(Protocol):
+    """Anything fitted that answers with a mean and a standard deviation per row."""
+
+    def predict(self, x: Float[np.ndarray, "row feature"], /) -> Prediction:
+        """Answer at each row of features."""
+        ...
+
+
+def checked_inputs(
+    x: ArrayLike, *, what: str, width: int | None = None
+) -> Float[np.ndarray, "row feature"]:
+    """Features as finite numbers, one row per case.
+
+    Parameters
+    ----------
+    x
+        One row per case, one column per feature.
+    what
+        Who asks, for the error's sentence.
+    width
+        The number of features that was learned; None accepts any.
+
+    Raises
+    ------
+    InputError
+        Not a table, of another width, or with a number that is not finite.
+    """
+    rows = np.asarray(x, dtype=np.float64, order="C")
+    if rows.ndim != 2 or rows.shape[1] == 0:
+        raise InputError(
+            f"{what}: x has shape {rows.shape}; expected (rows, features). "
+            "Give one row per case, also for a single case."
+        )
+    if width is not None and rows.shape[1] != width:
+        raise InputError(
+            f"{what}: x has {rows.shape[1]} features per row, but {width} were learned. "
+            "Build x with the same features, in the same order, as in the training."
+        )
+    _refuse_missing(rows, name="x", what=what)
+    return rows
+
+
+def checked_outputs(
+    y: ArrayLike, *, what: str, rows: int, shape: str
+) -> Float[np.ndarray, "row *rest"]:
+    """Outputs as finite numbers, one entry per row of inputs.
+
+    Parameters
+    ----------
+    y
+        What was observed at each row.
+    what
+        Who asks, for the error's sentence.
+    rows
+        The number of rows of inputs, at least 2.
+    shape
+        The axes expected, e.g. ``"(rows, nodes, 3)"``; only their number and a last 3 count.
+
+    Raises
+    ------
+    InputError
+        Of another shape, fewer than 2 rows, or with a number that is not finite.
+    """
+    axes = [axis.strip() for axis in shape.strip("()").split(",") if axis.strip()]
+    outputs = np.asarray(y, dtype=np.float64, order="C")
+    fits = outputs.ndim == len(axes) and outputs.size > 0
+    if not fits or (axes[-1] == "3" and outputs.shape[-1] != 3):
+        raise InputError(f"{what}: the outputs have shape {outputs.shape}; expected {shape}.")
+    if len(outputs) != rows:
+        raise InputError(
+            f"{what}: {rows} rows of x but {len(outputs)} of outputs. Give one output per row."
+        )
+    if rows < 2:
+        raise InputError(f"{what}: {rows} row is too few to learn from. Give at least 2.")
+    _refuse_missing(outputs, name="the outputs", what=what)
+    return outputs
+
+
+def _refuse_missing(values: Float[np.ndarray, "row *rest"], *, name: str, what: str) -> None:
+    finite = np.isfinite(values)
+    if not finite.all():
+        row = int(np.argwhere(~finite)[0, 0])
+        raise InputError(
+            f"{what}: {name} holds a value in row {row} that is not a finite number. "
+            "Leave rows without a valid measurement out."
+        )

@@ -1,0 +1,56 @@
+"""Fitted models to plain settings and arrays, and back; nothing executable is stored."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from seacage.conventions import ModelError
+from seacage.surrogates._arrays import Arrays, Settings, setting
+from seacage.surrogates._gaussian_process import FittedGaussianProcess
+from seacage.surrogates._nargp import FittedNARGP
+from seacage.surrogates._pca import FittedPcaGP
+from seacage.surrogates._prediction import Predicts
+from seacage.surrogates._shape import FittedShapeGP
+
+Fitted = FittedGaussianProcess | FittedNARGP | FittedPcaGP | FittedShapeGP
+
+
+def encode(fitted: Fitted) -> tuple[Settings, Arrays]:
+    """A fitted model as values for JSON and float64 arrays by name.
+
+    Parameters
+    ----------
+    fitted
+        Any fitted model of this room. A view of one (an output, a coordinate) is made again
+        from its whole; a NARGP on a lent level 1 leaves that level out.
+    """
+    return fitted.to_arrays()
+
+
+def decode(
+    settings: Mapping[str, object],
+    arrays: Mapping[str, np.ndarray],
+    *,
+    lower: Predicts | None = None,
+) -> Fitted:
+    """The fitted model that was encoded.
+
+    Parameters
+    ----------
+    settings, arrays
+        As ``encode`` gave them.
+    lower
+        Level 1 of a NARGP that had it lent.
+
+    Raises
+    ------
+    ModelError
+        Of a kind that this version does not know, or with a part missing or damaged.
+    """
+    model = setting(settings, "model", str)
+    if model == FittedNARGP.MODEL:
+        return FittedNARGP.from_arrays(settings, arrays, lower=lower)
+    for kind in (FittedGaussianProcess, FittedPcaGP, FittedShapeGP):
+        if model == kind.MODEL:
+            return kind.from_arrays(settings, arrays)
+    raise ModelError(f"The saved model is a {model!r}, which this version does not know.")
