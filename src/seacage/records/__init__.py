@@ -10,11 +10,15 @@ from seacage.records._campaign import (
     write_cases,
 )
 from seacage.records._check import QualityState, check_record, check_sample
+from seacage.records._columns import Column, ColumnMap
 from seacage.records._field import FieldRecord
 from seacage.records._keys import KEYS, Key
 from seacage.records._limits import DEFAULT_LIMITS, Limits, Range, Steadiness
+from seacage.records._netcdf import write_record
+from seacage.records._reader import read_record
 from seacage.records._record import Record
 from seacage.records._sample import Sample
+from seacage.records._shipped import shipped_maps
 from seacage.records._times import instant, moment
 
 __all__ = [
@@ -22,6 +26,8 @@ __all__ = [
     "KEYS",
     "NOT_RUN",
     "CampaignRecord",
+    "Column",
+    "ColumnMap",
     "FieldRecord",
     "Key",
     "Limits",
@@ -38,5 +44,8 @@ __all__ = [
     "instant",
     "moment",
     "read_campaign",
+    "read_record",
+    "shipped_maps",
     "write_cases",
+    "write_record",
 ]

@@ -99,17 +99,18 @@ def check_record(record: Record, limits: Limits = DEFAULT_LIMITS) -> Record:
     """
     times = record.time.astype(np.int64).tolist()
     flags = {key: np.full(len(times), Flag.GOOD, dtype=np.uint8) for key in record.values}
-    tally: dict[tuple[str, Flag], tuple[int, str]] = {}
+    tally: dict[tuple[str, Flag], tuple[int, int, str]] = {}
     for group, keys in GROUPS.items():
         columns = {key: record.values[key].tolist() for key in keys if key in record.values}
         for row, finding, values in _findings(group, times, columns, limits):
             flags[finding.key][row] = max(flags[finding.key][row], finding.flag)
-            first = f"{record.time[row]}: {_sentence(record.stream, values, finding)}"
-            count, example = tally.get((finding.key, finding.flag), (0, first))
-            tally[finding.key, finding.flag] = (count + 1, example)
+            sentence = _sentence(record.stream, values, finding)
+            count, first, example = tally.get((finding.key, finding.flag), (0, row, sentence))
+            tally[finding.key, finding.flag] = (count + 1, first, example)
     notes = tuple(
-        f"{count} of {len(times)} {key} flagged {flag} ({_word(flag)}). First at {example}"
-        for (key, flag), (count, example) in tally.items()
+        f"{example} The first of {count} such among {len(times)}, "
+        f"at {record.time[first].astype('datetime64[s]')}Z."
+        for count, first, example in tally.values()
     )
     return replace(record, flags=flags, notes=tuple(dict.fromkeys(record.notes + notes)))
 

@@ -1,11 +1,18 @@
 """A buoy and the sensors on one cage: what a twin learns its upper level from."""
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Self, cast
 
-from seacage.conventions import InputError, Origin
+from seacage.conventions import InputError, Origin, RecordError
+from seacage.records._netcdf import read_netcdf, write_record
 from seacage.records._record import Record
+from seacage.records._sample import check_stream
 
+_SCHEMA = "seacage field record 1"
+_FILE = "field.json"
 _CURRENT = ("current_speed_m_s", "current_to_deg")
 _SENSOR = (("tension_kn",), ("depth_m",))
 
@@ -61,3 +68,76 @@ class FieldRecord:
                     f"this one {', '.join(sensor.values) or 'nothing'}."
                 )
         object.__setattr__(self, "sensors", dict(self.sensors))
+
+    def write(self, folder: Path | str) -> None:
+        """Write ``field.json`` and one CF-NetCDF file per stream.
+
+        The JSON comes last: a folder that has it is whole.
+        """
+        folder = Path(folder)
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / _FILE).unlink(missing_ok=True)
+        for record in (self.buoy, *self.sensors.values()):
+            write_record(record, folder / f"{record.stream}.nc")
+        description = {
+            "schema": _SCHEMA,
+            "cage": self.cage,
+            "origin": self.origin,
+            "buoy": self.buoy.stream,
+            "sensors": list(self.sensors),
+            "hidden_sha256": self.hidden_sha256,
+            "notes": self.notes,
+        }
+        unborn = folder / f".{_FILE}.unborn"
+        unborn.write_text(json.dumps(description, indent=2) + "\n", encoding="utf-8")
+        unborn.replace(folder / _FILE)
+
+    @classmethod
+    def read(cls, folder: Path | str) -> Self:
+        """Read back what ``write`` wrote.
+
+        Raises
+        ------
+        RecordError
+            A file that is missing or damaged, or of another schema.
+        """
+        folder = Path(folder)
+        description = _description(folder / _FILE)
+        try:
+            return cls(
+                cage=description["cage"],
+                buoy=_stream(folder, description["buoy"]),
+                sensors={name: _stream(folder, name) for name in description["sensors"]},
+                origin=Origin(description["origin"]),
+                hidden_sha256=description["hidden_sha256"],
+                notes=tuple(description["notes"]),
+            )
+        except (KeyError, TypeError) as error:
+            raise RecordError(
+                f"{folder / _FILE}: the field record's {error} is missing or of another kind. "
+                "Write the field record anew."
+            ) from error
+
+
+def _description(path: Path) -> dict[str, Any]:
+    try:
+        description: object = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise RecordError(
+            f"{path}: there is no field record ({error.strerror}). Give the folder that "
+            "FieldRecord.write made."
+        ) from error
+    except ValueError as error:
+        raise RecordError(f"{path}: this is no JSON ({error}). Write the record anew.") from error
+    table = cast("dict[str, Any]", description if isinstance(description, dict) else {})
+    if table.get("schema") != _SCHEMA:
+        raise RecordError(
+            f"{path}: its schema is {table.get('schema')!r}, and this seacage reads {_SCHEMA!r}. "
+            "Write the record anew."
+        )
+    return table
+
+
+def _stream(folder: Path, name: str) -> Record:
+    check_stream(name)  # a name with a slash would lead out of the folder
+    return read_netcdf(folder / f"{name}.nc")

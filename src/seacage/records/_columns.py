@@ -1,0 +1,366 @@
+"""Column maps: what a foreign file's columns mean, declared and never guessed."""
+
+import re
+import tomllib
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime, timedelta, timezone
+from pathlib import Path
+from typing import Self
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.conventions import Origin, RecordError
+from seacage.records._toml import (
+    Table,
+    check_names,
+    number_of,
+    numbers_of,
+    table_of,
+    text_of,
+    texts_of,
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Quantity:
+    """What a column may hold: its door key, and the units that turn into the key's, it first."""
+
+    key: str
+    units: Mapping[str, float]
+    sense: str | None = None
+
+
+_SPEED = {"m/s": 1.0, "cm/s": 0.01, "mm/s": 0.001, "km/h": 1.0 / 3.6, "knot": 1852.0 / 3600.0}
+_LENGTH = {"m": 1.0, "cm": 0.01, "mm": 0.001, "ft": 0.3048}
+_PERIOD = {"s": 1.0}
+_FORCE = {"kN": 1.0, "N": 0.001, "MN": 1000.0, "kgf": 0.00980665, "tf": 9.80665}
+_ANGLE = {"deg": 1.0, "rad": 180.0 / np.pi}
+
+_QUANTITIES: Mapping[str, _Quantity] = {
+    "current_speed": _Quantity(key="current_speed_m_s", units=_SPEED),
+    "current_direction": _Quantity(key="current_to_deg", units=_ANGLE, sense="towards"),
+    "hs": _Quantity(key="hs_m", units=_LENGTH),
+    "tp": _Quantity(key="tp_s", units=_PERIOD),
+    "wave_direction": _Quantity(key="wave_from_deg", units=_ANGLE, sense="from"),
+    "tension": _Quantity(key="tension_kn", units=_FORCE),
+    "depth": _Quantity(key="depth_m", units=_LENGTH),
+}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Column:
+    """One column of a foreign file.
+
+    Parameters
+    ----------
+    name
+        As the file's header spells it.
+    quantity
+        ``current_speed``, ``current_direction``, ``hs``, ``tp``, ``wave_direction``,
+        ``tension`` or ``depth``.
+    unit
+        Of the file's numbers; there is no default.
+    sense
+        Of a direction: where it goes (``towards``) or comes from (``from``); no default.
+    depth_m
+        Where the file holds a profile: of this column [m].
+    missing
+        Numbers that stand for no value, such as 99.0, in the file's unit.
+
+    Raises
+    ------
+    RecordError
+        Anything unknown, and a unit or a direction's sense that is not said.
+    """
+
+    name: str
+    quantity: str
+    unit: str = ""
+    sense: str = ""
+    depth_m: float | None = None
+    missing: tuple[float, ...] = ()
+
+    def __post_init__(self) -> None:
+        where = f"Column {self.name!r}"
+        if self.quantity not in _QUANTITIES:
+            raise RecordError(
+                f"{where}: the quantity {self.quantity!r} is unknown. "
+                f"Say one of {', '.join(_QUANTITIES)}, or list the column as ignored."
+            )
+        quantity = _QUANTITIES[self.quantity]
+        if self.unit not in quantity.units:
+            got = f"the unit {self.unit!r} is unknown" if self.unit else "its unit is missing"
+            raise RecordError(
+                f"{where}: {got}, so its {self.quantity} cannot be read. "
+                f"Declare unit as one of {', '.join(quantity.units)}."
+            )
+        if quantity.sense is None and self.sense:
+            raise RecordError(f"{where}: {self.quantity} has no sense. Leave sense out.")
+        if quantity.sense is not None and self.sense not in {"towards", "from"}:
+            raise RecordError(
+                f"{where}: nothing says where its direction points, and files differ. "
+                'Declare sense as "towards" or "from".'
+            )
+
+    @property
+    def key(self) -> str:
+        """The door key that the column becomes."""
+        return _QUANTITIES[self.quantity].key
+
+    def converted(self, numbers: Float[np.ndarray, " t"]) -> Float[np.ndarray, " t"]:
+        """The file's numbers in the unit and the sense of the door key, NaN where missing.
+
+        A direction outside [0, 360] is left as it is: turned round, it might look sound.
+        """
+        quantity = _QUANTITIES[self.quantity]
+        known = np.where(np.isin(numbers, self.missing), np.nan, numbers)
+        values = known * quantity.units[self.unit]
+        if quantity.sense is None or self.sense == quantity.sense:
+            return values
+        sound = (values >= 0.0) & (values <= 360.0)
+        return np.where(sound, (values + 180.0) % 360.0, values)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ColumnMap:
+    """What all columns of a foreign file mean.
+
+    A file must have all the columns that its map names, and no other: a column that nobody
+    expected is more often a shifted table than a bonus.
+
+    Parameters
+    ----------
+    title
+        What the file is, for messages.
+    origin
+        How its numbers were made.
+    time_column
+        The column of times.
+    time_format
+        ``iso``, or a format of ``datetime.strptime``.
+    time_zone
+        Of times that do not say theirs: ``UTC``, an offset such as ``+01:00``, or ``stated``
+        to refuse such times. No default, and no named zones: their autumn has an hour twice.
+    columns
+        Those that are read.
+    ignored
+        Those that are known and not read.
+    delimiter
+        Between cells.
+    depth_m
+        Which depth of a profile is read [m].
+
+    Raises
+    ------
+    RecordError
+        A column or a quantity declared twice, nothing to read, an unknown time zone.
+    """
+
+    title: str
+    origin: Origin
+    time_column: str
+    time_format: str
+    time_zone: str
+    columns: tuple[Column, ...]
+    ignored: tuple[str, ...] = ()
+    delimiter: str = ","
+    depth_m: float | None = None
+
+    def __post_init__(self) -> None:
+        _parsed_zone(self.time_zone)
+        names = (self.time_column, *(column.name for column in self.columns), *self.ignored)
+        for what in (names, (column.key for column in self.taken)):
+            twice = [one for one, count in Counter(what).items() if count > 1]
+            if twice:
+                raise RecordError(
+                    f"{self.title}: {twice[0]!r} is declared twice. Map one column to each "
+                    "quantity and list the others as ignored."
+                )
+        if not self.taken:
+            raise RecordError(
+                f"{self.title}: no column is read{self._depths()}. Map at least one quantity."
+            )
+
+    @classmethod
+    def read(cls, path: Path | str) -> Self:
+        """Read a map from a TOML file, see ``from_toml``.
+
+        Raises
+        ------
+        RecordError
+            Also where the file cannot be read.
+        """
+        try:
+            text = Path(path).read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            raise RecordError(f"{path}: the column map cannot be read ({error}).") from error
+        return cls.from_toml(text, where=str(path))
+
+    @classmethod
+    def from_toml(cls, text: str, *, where: str = "column map") -> Self:
+        """Read a map from TOML.
+
+        It looks like this::
+
+            title = "Buoy of the south site"
+            origin = "measured"             # or "computed"
+            ignored = ["battery"]
+
+            [time]
+            column = "timestamp"
+            format = "%d.%m.%Y %H:%M"       # or "iso"
+            zone = "+01:00"                 # or "UTC", or "stated"
+
+            [columns.spd]
+            quantity = "current_speed"
+            unit = "cm/s"
+
+            [columns.dir]
+            quantity = "current_direction"
+            unit = "deg"
+            sense = "towards"               # or "from"
+
+        Parameters
+        ----------
+        text
+            Its other keys are those of ``ColumnMap`` and of ``Column``.
+        where
+            Of the text, for messages.
+
+        Raises
+        ------
+        RecordError
+            No TOML, a misspelt or missing key, a value that is refused.
+        """
+        try:
+            table = tomllib.loads(text)
+        except tomllib.TOMLDecodeError as error:
+            raise RecordError(f"{where}: the column map is no TOML ({error}).") from error
+        known = ("title", "origin", "time", "columns", "ignored", "delimiter", "depth_m")
+        check_names(table, known, where=where)
+        columns = table_of(table, "columns", where=where)
+        time, in_time = table_of(table, "time", where=where), f"{where}, [time]"
+        check_names(time, ("column", "format", "zone"), where=in_time)
+        return cls(
+            title=text_of(table, "title", where=where),
+            origin=_origin(text_of(table, "origin", where=where), where),
+            time_column=text_of(time, "column", where=in_time),
+            time_format=text_of(time, "format", where=in_time),
+            time_zone=text_of(time, "zone", where=in_time),
+            columns=tuple(_column(columns, name, where) for name in columns),
+            ignored=texts_of(table, "ignored", where=where),
+            delimiter=text_of(table, "delimiter", where=where, default=","),
+            depth_m=number_of(table, "depth_m", where=where),
+        )
+
+    @classmethod
+    def of_keys(cls, keys: Iterable[str]) -> Self:
+        """Of a table whose columns are ``time`` and door keys, which say everything.
+
+        Each time in it must say its zone. It counts as measured.
+        """
+        held_by = {quantity.key: (name, quantity) for name, quantity in _QUANTITIES.items()}
+        columns: list[Column] = []
+        for key in keys:
+            name, quantity = held_by[key]
+            unit = next(iter(quantity.units))
+            columns.append(Column(name=key, quantity=name, unit=unit, sense=quantity.sense or ""))
+        return cls(
+            title="Table in house units",
+            origin=Origin.MEASURED,
+            time_column="time",
+            time_format="iso",
+            time_zone="stated",
+            columns=tuple(columns),
+        )
+
+    @property
+    def names(self) -> frozenset[str]:
+        """Of all columns that the file must have."""
+        return frozenset((self.time_column, *(c.name for c in self.columns), *self.ignored))
+
+    @property
+    def taken(self) -> tuple[Column, ...]:
+        """The columns that are read: those of the chosen depth and those without one."""
+        return tuple(c for c in self.columns if c.depth_m is None or c.depth_m == self.depth_m)
+
+    def taken_at(self, depth_m: float) -> Self:
+        """The same map, reading another depth of the profile [m].
+
+        Raises
+        ------
+        RecordError
+            Where the profile has no such depth.
+        """
+        if all(column.depth_m != depth_m for column in self.columns):
+            raise RecordError(
+                f"{self.title}: no column is at a depth of {depth_m:g} m{self._depths()}."
+            )
+        return replace(self, depth_m=depth_m)
+
+    def parsed_time(self, text: str) -> datetime:
+        """The time that a cell says, in UTC.
+
+        Raises
+        ------
+        ValueError
+            Where the text is no time of the map's format, or does not say its zone and must.
+        """
+        if self.time_format == "iso":
+            time = datetime.fromisoformat(text.strip())
+        else:
+            time = datetime.strptime(text.strip(), self.time_format)  # noqa: DTZ007
+        if time.tzinfo is None:
+            zone = _parsed_zone(self.time_zone)
+            if zone is None:
+                raise ValueError("it does not say its zone")
+            time = time.replace(tzinfo=zone)
+        return time.astimezone(UTC)
+
+    def _depths(self) -> str:
+        depths = sorted({c.depth_m for c in self.columns if c.depth_m is not None})
+        return f"; its profile has {', '.join(f'{depth:g}' for depth in depths)} m" * bool(depths)
+
+
+def _column(columns: Table, name: str, file: str) -> Column:
+    where = f"[columns.{name}]"
+    table = table_of(columns, name, where=file)
+    try:
+        check_names(table, ("quantity", "unit", "sense", "depth_m", "missing"), where=where)
+        return Column(
+            name=name,
+            quantity=text_of(table, "quantity", where=where),
+            unit=text_of(table, "unit", where=where, default=""),
+            sense=text_of(table, "sense", where=where, default=""),
+            depth_m=number_of(table, "depth_m", where=where),
+            missing=numbers_of(table, "missing", where=where),
+        )
+    except RecordError as error:
+        raise RecordError(f"{file}: {error}") from error
+
+
+def _origin(text: str, where: str) -> Origin:
+    try:
+        return Origin(text)
+    except ValueError as error:
+        known = ", ".join(repr(str(origin)) for origin in Origin)
+        raise RecordError(f"{where}: origin = {text!r} is unknown. Say one of {known}.") from error
+
+
+def _parsed_zone(text: str) -> timezone | None:
+    """A zone of fixed offset; None for ``stated``."""
+    if text == "stated":
+        return None
+    if text == "UTC":
+        return UTC
+    match = re.fullmatch(r"([+-])(0\d|1[0-4]):([0-5]\d)", text)
+    if match is None:
+        raise RecordError(
+            f"The time zone {text!r} cannot be read. "
+            'Declare "UTC", an offset such as "+01:00", or "stated" where each time says its own.'
+        )
+    offset = timedelta(hours=int(match[2]), minutes=int(match[3]))
+    return timezone(offset if match[1] == "+" else -offset)

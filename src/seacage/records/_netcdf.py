@@ -1,0 +1,123 @@
+"""One stream as a CF-NetCDF file that plain xarray opens."""
+
+# xarray leaves parts of its signatures untyped.
+# pyright: reportUnknownMemberType=false
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from seacage.conventions import Flag, Origin, RecordError
+from seacage.records._keys import KEYS
+from seacage.records._record import Record
+
+if TYPE_CHECKING:
+    import xarray
+
+_SCHEMA = "seacage stream 1"
+_FLAG = "_flag"
+_TIME = {
+    "standard_name": "time",
+    "long_name": "time of the source, UTC",
+    "units": "microseconds since 1970-01-01 00:00:00",
+    "calendar": "standard",
+}
+
+
+def write_record(record: Record, path: Path | str) -> None:
+    """Write one stream as CF-NetCDF; values, flags and times to the last bit.
+
+    Parameters
+    ----------
+    record
+        Origin and notes are kept too.
+    path
+        Ends in ``.nc``. What is there is replaced at once, by the whole file.
+    """
+    path = Path(path)
+    unborn = path.with_name(f".{path.name}.unborn")
+    _dataset(record).to_netcdf(unborn, engine="h5netcdf")
+    unborn.replace(path)
+
+
+def read_netcdf(path: Path) -> Record:
+    """Read back what ``write_record`` wrote.
+
+    Raises
+    ------
+    RecordError
+        No such file, no NetCDF, or one of another schema.
+    """
+    import xarray
+
+    try:
+        with xarray.open_dataset(path, engine="h5netcdf", decode_times=False) as dataset:
+            return _record(dataset)
+    except (OSError, KeyError, ValueError) as error:
+        raise RecordError(
+            f"{path}: this is no stream that seacage wrote ({error}). Give a file written by "
+            "write_record, or a table of text with its column map."
+        ) from error
+
+
+def _dataset(record: Record) -> "xarray.Dataset":
+    import xarray
+
+    variables: dict[str, Any] = {}
+    for key, values in record.values.items():
+        variables[key] = ("time", values, _value_attributes(key))
+        variables[key + _FLAG] = ("time", record.flags[key], _flag_attributes(key))
+    return xarray.Dataset(
+        variables,
+        coords={"time": ("time", record.time.astype(np.int64), _TIME)},
+        attrs={
+            "Conventions": "CF-1.11, ACDD-1.3",
+            "title": f"Stream {record.stream}, {record.origin}",
+            "schema": _SCHEMA,
+            "stream": record.stream,
+            "origin": str(record.origin),
+            "comment": "\n".join(record.notes),
+        },
+    )
+
+
+def _value_attributes(key: str) -> dict[str, str]:
+    known = KEYS[key]
+    attributes = {
+        "units": known.cf_unit,
+        "long_name": known.long_name,
+        "ancillary_variables": key + _FLAG,
+    }
+    if known.standard_name is not None:
+        attributes["standard_name"] = known.standard_name
+    return attributes
+
+
+def _flag_attributes(key: str) -> dict[str, Any]:
+    return {
+        "standard_name": "aggregate_quality_flag",
+        "long_name": f"QARTOD flag of {key}",
+        "flag_values": np.array(list(Flag), dtype=np.uint8),
+        "flag_meanings": " ".join(flag.name.lower() for flag in Flag),
+    }
+
+
+def _record(dataset: "xarray.Dataset") -> Record:
+    attributes = dataset.attrs
+    if attributes.get("schema") != _SCHEMA:
+        raise ValueError(f"its schema is {attributes.get('schema')!r}, not {_SCHEMA!r}")
+    keys = [str(name) for name in dataset.data_vars if not str(name).endswith(_FLAG)]
+    for key in keys:
+        units = dataset[key].attrs.get("units")
+        if key in KEYS and units != KEYS[key].cf_unit:
+            raise ValueError(f"{key} is in {units!r}, not in {KEYS[key].cf_unit!r}")
+    comment = str(attributes["comment"])
+    return Record(
+        stream=str(attributes["stream"]),
+        time=np.asarray(dataset["time"].values, dtype=np.int64).view("datetime64[us]"),
+        values={key: np.asarray(dataset[key].values, dtype=np.float64) for key in keys},
+        flags={key: np.asarray(dataset[key + _FLAG].values) for key in keys},
+        origin=Origin(attributes["origin"]),
+        notes=tuple(comment.split("\n")) if comment else (),
+    )

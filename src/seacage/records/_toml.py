@@ -1,0 +1,72 @@
+"""Values of a TOML table, each of the kind that its reader expects."""
+
+from collections.abc import Iterable, Mapping
+from difflib import get_close_matches
+from typing import cast
+
+from seacage.conventions import RecordError
+
+Table = Mapping[str, object]
+
+
+def check_names(table: Table, known: Iterable[str], *, where: str) -> None:
+    """Refuse a misspelt key, with the likely one.
+
+    Raises
+    ------
+    RecordError
+        At the first key that is not known.
+    """
+    known = tuple(known)
+    for name in table:
+        if name not in known:
+            close = get_close_matches(name, known, n=1)
+            hint = f"Did you mean {close[0]!r}?" if close else f"Known are {', '.join(known)}."
+            raise RecordError(f"{where}: the key {name!r} is unknown. {hint}")
+
+
+def table_of(table: Table, name: str, *, where: str) -> Table:
+    """A table in a table; refused where it is missing."""
+    value = table.get(name)
+    if not isinstance(value, dict):
+        raise RecordError(f"{where}: the table [{name}] is missing.")
+    return cast("Table", value)
+
+
+def text_of(table: Table, name: str, *, where: str, default: str | None = None) -> str:
+    """A text; refused where it is missing and there is no default."""
+    value = table.get(name, default)
+    if not isinstance(value, str):
+        raise RecordError(f'{where}: {name} is missing or no text. Write {name} = "…".')
+    return value
+
+
+def number_of(table: Table, name: str, *, where: str) -> float | None:
+    """A number; None where it is missing."""
+    return _number(table[name], name, where) if name in table else None
+
+
+def numbers_of(table: Table, name: str, *, where: str) -> tuple[float, ...]:
+    """A list of numbers; empty where it is missing."""
+    return tuple(_number(item, name, where) for item in _items(table, name, where))
+
+
+def texts_of(table: Table, name: str, *, where: str) -> tuple[str, ...]:
+    """A list of texts; empty where it is missing."""
+    items = _items(table, name, where)
+    if not all(isinstance(item, str) for item in items):
+        raise RecordError(f'{where}: {name} is no list of texts. Write {name} = ["…", "…"].')
+    return tuple(str(item) for item in items)
+
+
+def _number(value: object, name: str, where: str) -> float:
+    if not isinstance(value, int | float) or isinstance(value, bool):
+        raise RecordError(f"{where}: {name} = {value!r} is no number.")
+    return float(value)
+
+
+def _items(table: Table, name: str, where: str) -> list[object]:
+    value = table.get(name, [])
+    if not isinstance(value, list):
+        raise RecordError(f"{where}: {name} = {value!r} is no list. Write {name} = [ … ].")
+    return cast("list[object]", value)
