@@ -108,3 +108,7 @@ class Metocean:
             "waves": lambda: np.column_stack([self.hs, self.hs[:, None] * self.wave_direction]),
         }
         return np.hstack([columns[name]() for name in inputs])
+
+    def known(self, inputs: tuple[Input, ...]) -> Bool[np.ndarray, " case"]:
+        """Where all of these inputs are."""
+        return np.all(np.isfinite(self.features(inputs)), axis=1)

@@ -1,6 +1,6 @@
 """The live loop's bookkeeping: who spoke, who is silent, which input holds."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 
@@ -9,7 +9,7 @@ import numpy as np
 from seacage.conventions import Flag, InputError
 from seacage.records import Sample
 from seacage.twin._events import Flagged, StreamBack, StreamSilent
-from seacage.twin._metocean import INPUT_KEYS, Input, Metocean
+from seacage.twin._metocean import Metocean
 from seacage.twin._state import TwinState, Watch, taken_in, troubled, usable
 
 Notice = Flagged | StreamSilent | StreamBack
@@ -109,16 +109,15 @@ class Reading:
 
 
 def held_reading(
-    state: TwinState, now: datetime, *, buoy: str, inputs: tuple[Input, ...], stale_after_s: float
+    state: TwinState, now: datetime, *, buoy: str, keys: Sequence[str], stale_after_s: float
 ) -> Reading:
-    """Return the buoy's last word on each input, if it is sound and fresh.
+    """Return the buoy's last word on each key, if it is sound and fresh.
 
     The newest reading governs: where it failed its checks there is no input until the next
     good one, for an older value says nothing about the water that the buoy could not measure.
     """
     stream = state.streams.get(buoy, ())
-    newest = stream[-1].newest if stream else {}
-    keys = [key for name in inputs for key in INPUT_KEYS[name]]
+    newest: Mapping[str, Sample] = stream[-1].newest if stream else {}
     unsaid = [key for key in keys if key not in newest]
     if unsaid:
         return Reading(metocean=None, age_s=None, trouble=f"{buoy} has not said {unsaid[0]} yet.")
@@ -127,15 +126,20 @@ def held_reading(
         key: np.array([sample.values[key] if usable(sample, key) else np.nan])
         for key, sample in newest.items()
     }
-    metocean = Metocean.from_columns(columns, 1)
-    age = max(0.0, max((now - newest[key].t).total_seconds() for key in keys))
-    trouble = next((failed(buoy, key, newest[key].flags[key]) for key in keys
-                    if not usable(newest[key], key)), "")
-    if not trouble and age > stale_after_s:
-        trouble = f"The last reading of {buoy} is {age:.0f} s old; {stale_after_s:.0f} s is the limit."
-    return Reading(metocean=metocean, age_s=age, trouble=trouble)
+    age = max(0.0, *((now - newest[key].t).total_seconds() for key in keys))
+    bad = [key for key in keys if not usable(newest[key], key)]
+    if bad:
+        trouble = failed(buoy, bad[0], newest[bad[0]].flags[bad[0]])
+    elif age > stale_after_s:
+        trouble = (
+            f"The last reading of {buoy} is {age:.0f} s old; {stale_after_s:.0f} s is the limit."
+        )
+    else:
+        trouble = ""
+    return Reading(metocean=Metocean.from_columns(columns, 1), age_s=age, trouble=trouble)
 
 
 def failed(buoy: str, key: str, flag: int) -> str:
     """Say why a value is no input."""
-    return f"{buoy}: {key} is flagged {int(flag)} ({Flag(flag).name.lower()}); there is no valid input."
+    word = Flag(flag).name.lower().replace("_", " ")
+    return f"{buoy}: {key} is flagged {int(flag)} ({word}); there is no valid input."

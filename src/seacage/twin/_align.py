@@ -1,0 +1,189 @@
+"""A buoy and a sensor brought together in time: what was the water when the sensor spoke."""
+
+from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
+from typing import Self
+
+import numpy as np
+from jaxtyping import Bool, Float, Int, Shaped
+
+from seacage.conventions import Flag, InputError
+from seacage.records import FieldRecord, Record, instant
+from seacage.twin._metocean import INPUT_KEYS, Metocean
+
+HOLD_S = 10800.0
+"""A buoy's value is held for at most so long [s]; the live twin's default."""
+
+SI = {"tension_kn": 1000.0, "depth_m": 1.0}
+"""What the door keys of cage sensors are multiplied by: to N, to m."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Pairs:
+    """Readings of one sensor, each with the water that the buoy reported then.
+
+    Parameters
+    ----------
+    time
+        UTC, ascending.
+    metocean
+        At the buoy.
+    value
+        Of the sensor [N] or [m].
+    """
+
+    time: Shaped[np.ndarray, " pair"]
+    metocean: Metocean
+    value: Float[np.ndarray, " pair"]
+
+    def __len__(self) -> int:
+        return len(self.value)
+
+    def rows(self, index: Int[np.ndarray, " row"] | Bool[np.ndarray, " pair"]) -> Self:
+        """Return these pairs alone."""
+        return type(self)(
+            time=self.time[index], metocean=self.metocean.rows(index), value=self.value[index]
+        )
+
+
+def align(
+    field: FieldRecord,
+    sensor: str,
+    *,
+    start: datetime | None = None,
+    end: datetime | None = None,
+    mean_s: float | None = None,
+    hold_s: float = HOLD_S,
+    suspect: bool = False,
+) -> Pairs:
+    """Pair each reading of a sensor with the buoy's last word before it.
+
+    Readings that failed a check, and times without a sound and fresh word of the buoy, are
+    left out.
+
+    Parameters
+    ----------
+    field, sensor
+        The record, and the name of one of its sensors.
+    start, end
+        Of the sensor's readings that count: start <= t < end; both ends open where left out.
+    mean_s
+        Averages over windows so long [s], which begin at whole multiples since 1970: the
+        sensor's readings, and the buoy's vectors as they were held at each of them. The time
+        is the middle of the window.
+    hold_s
+        Oldest word of the buoy that is taken [s].
+    suspect
+        Keep readings, of sensor or buoy, that a check found suspect.
+    """
+    if sensor not in field.sensors:
+        raise InputError(
+            f"align: the field record has no sensor {sensor!r}; it has {', '.join(field.sensors)}."
+        )
+    record = field.sensors[sensor]
+    (key,) = record.values
+    sound = _sound(record, key, suspect=suspect) & _between(record.time, start, end)
+    time, value = record.time[sound], SI[key] * record.values[key][sound]
+
+    word = np.searchsorted(field.buoy.time, time, side="right") - 1
+    heard = word >= 0
+    time, value, word = time[heard], value[heard], word[heard]
+    age = (time - field.buoy.time[word]) / np.timedelta64(1, "s")
+    trusted = np.logical_and.reduce(
+        [_sound(field.buoy, key, suspect=suspect) for key in INPUT_KEYS["current"]]
+    )
+    known = (age <= hold_s) & trusted[word]
+    pairs = Pairs(
+        time=time[known],
+        metocean=Metocean.of_record(field.buoy).rows(word[known]),
+        value=value[known],
+    )
+    return pairs if mean_s is None else _averaged(pairs, mean_s)
+
+
+def teaching_window(record: Record, *, days: float, pause_s: float) -> tuple[datetime, datetime]:
+    """First window of a sensor's data: what may teach, so that the rest can judge.
+
+    It ends at the first silence longer than ``pause_s`` [s] and is at most ``days`` long, so a
+    shackle that came in two windows teaches with the first, and a depth sensor that never
+    stopped with its first days.
+
+    Returns
+    -------
+    start, end
+        The first reading, and the first moment after the window.
+    """
+    key = next(iter(record.values))
+    time = record.time[record.usable(key)]
+    if len(time) == 0:
+        raise InputError(f"{record.stream}: no reading passed its checks, so none can teach.")
+    pauses = np.flatnonzero(np.diff(time) > np.timedelta64(round(pause_s * 1e6), "us"))
+    first, last = time[[0, -1 if len(pauses) == 0 else pauses[0]]].tolist()
+    start, end = (one.replace(tzinfo=UTC) for one in (first, last))
+    return start, min(end + timedelta(microseconds=1), start + timedelta(days=days))
+
+
+def spread_out(pairs: Pairs, count: int, *, seed: int) -> Pairs:
+    """Choose pairs that fill the plane of currents and the time, farthest from each other.
+
+    Neighbours in time are the same sample twice: 300 in a row teach little more than one, and
+    give too narrow intervals. The whole time counts as much as two typical speeds.
+
+    References
+    ----------
+    Farthest-point design: Johnson, Moore & Ylvisaker (1990), maximin distance.
+    """
+    if len(pairs) <= count:
+        return pairs
+    place = _places(pairs)
+    chosen = [int(np.random.default_rng(seed).integers(len(pairs)))]
+    distance = np.full(len(pairs), np.inf)
+    for _ in range(count - 1):
+        distance = np.minimum(distance, np.sum((place - place[chosen[-1]]) ** 2, axis=1))
+        chosen.append(int(np.argmax(distance)))
+    return pairs.rows(np.sort(np.array(chosen)))
+
+
+def _places(pairs: Pairs) -> Float[np.ndarray, "pair 3"]:
+    velocity = pairs.metocean.current_velocity
+    elapsed = (pairs.time - pairs.time[0]) / (pairs.time[-1] - pairs.time[0])
+    typical = max(float(np.sqrt(np.mean(velocity**2) * 2.0)), 1e-9)
+    return np.column_stack([velocity / typical, 2.0 * elapsed])
+
+
+def _sound(record: Record, key: str, *, suspect: bool) -> Bool[np.ndarray, " t"]:
+    usable = record.usable(key)
+    return usable if suspect else usable & (record.flags[key] != Flag.SUSPECT)
+
+
+def _between(
+    time: Shaped[np.ndarray, " t"], start: datetime | None, end: datetime | None
+) -> Bool[np.ndarray, " t"]:
+    counts = np.ones(time.shape, dtype=bool)
+    if start is not None:
+        counts &= time >= instant(start)
+    if end is not None:
+        counts &= time < instant(end)
+    return counts
+
+
+def _averaged(pairs: Pairs, mean_s: float) -> Pairs:
+    length = round(mean_s * 1e6)
+    window, group = np.unique(
+        pairs.time.astype("datetime64[us]").astype(np.int64) // length, return_inverse=True
+    )
+    count = np.bincount(group, minlength=len(window))
+
+    def mean(column: Float[np.ndarray, " pair"]) -> Float[np.ndarray, " window"]:
+        return np.bincount(group, weights=column, minlength=len(window)) / count
+
+    water = pairs.metocean
+    return Pairs(
+        time=(window * length + length // 2).astype("datetime64[us]"),
+        metocean=Metocean(
+            current_velocity=np.column_stack([mean(column) for column in water.current_velocity.T]),
+            hs=mean(water.hs),
+            wave_direction=np.column_stack([mean(column) for column in water.wave_direction.T]),
+        ),
+        value=mean(pairs.value),
+    )

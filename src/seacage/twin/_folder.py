@@ -1,0 +1,120 @@
+"""A twin's folder: settings as JSON, arrays as safetensors, and a manifest that seals both."""
+
+import hashlib
+import json
+import shutil
+from collections.abc import Mapping
+from pathlib import Path
+from typing import cast
+
+import numpy as np
+
+from seacage.conventions import ModelError
+
+SETTINGS = "model.json"
+ARRAYS = "arrays.safetensors"
+MANIFEST = "manifest.json"
+
+
+def write_folder(
+    folder: Path, settings: Mapping[str, object], arrays: Mapping[str, np.ndarray]
+) -> None:
+    """Write the three files beside the folder, then put them in its place.
+
+    Raises
+    ------
+    ModelError
+        The folder exists and is no twin's.
+    """
+    from safetensors.numpy import save
+
+    if folder.exists() and not (folder / MANIFEST).is_file() and any(folder.iterdir()):
+        raise ModelError(
+            f"{folder} is there and is not a twin's folder, so it is left alone. "
+            "Give an empty or a new folder."
+        )
+    contents = {
+        SETTINGS: _json(settings),
+        ARRAYS: save({name: np.ascontiguousarray(values) for name, values in arrays.items()}),
+    }
+    contents[MANIFEST] = _json({name: _sha256(content) for name, content in contents.items()})
+    fresh, old = (folder.with_name(f".{folder.name}.{part}") for part in ("new", "old"))
+    for leftover in (fresh, old):
+        shutil.rmtree(leftover, ignore_errors=True)
+    fresh.mkdir(parents=True)
+    for name, content in contents.items():
+        (fresh / name).write_bytes(content)
+    if folder.exists():
+        folder.rename(old)
+    fresh.rename(folder)
+    shutil.rmtree(old, ignore_errors=True)
+
+
+def read_folder(folder: Path) -> tuple[dict[str, object], dict[str, np.ndarray]]:
+    """Read settings and arrays, once every byte is what the manifest says.
+
+    Raises
+    ------
+    ModelError
+        A file is missing, foreign or changed, or an array is not plain numbers.
+    """
+    contents = _sealed(folder)
+    settings = _parsed(contents[SETTINGS], folder / SETTINGS)
+    return settings, _arrays(contents[ARRAYS], folder / ARRAYS)
+
+
+def _sealed(folder: Path) -> dict[str, bytes]:
+    expected = {SETTINGS, ARRAYS, MANIFEST}
+    found = {path.name for path in folder.iterdir()} if folder.is_dir() else set[str]()
+    if found != expected:
+        odd = ", ".join(sorted(found ^ expected))
+        raise ModelError(
+            f"{folder} is not a whole twin's folder: {odd} is missing or does not belong there. "
+            f"It holds {', '.join(sorted(expected))} and nothing else."
+        )
+    try:
+        contents = {name: (folder / name).read_bytes() for name in expected}
+    except OSError as error:
+        raise ModelError(f"{folder} cannot be read: {error}.") from error
+    seal = {name: _sha256(contents[name]) for name in (SETTINGS, ARRAYS)}
+    # Compared as bytes, so that a changed blank in the manifest counts too.
+    if contents[MANIFEST] != _json(seal):
+        raise ModelError(
+            f"{folder}: its files are not those that its manifest was written for, so at least "
+            "one byte has changed. Copy the twin again, or train it anew."
+        )
+    return contents
+
+
+def _arrays(content: bytes, path: Path) -> dict[str, np.ndarray]:
+    from safetensors import SafetensorError
+    from safetensors.numpy import load
+
+    try:
+        arrays = load(content)
+    except (SafetensorError, KeyError, ValueError) as error:
+        raise ModelError(f"{path} is not a safetensors file ({error}).") from error
+    for name, values in arrays.items():
+        if values.dtype != np.float64 or not np.isfinite(values).all():
+            raise ModelError(
+                f"{path}: {name} is {values.dtype}; expected finite float64. Train the twin anew."
+            )
+    return arrays
+
+
+def _parsed(content: bytes, path: Path) -> dict[str, object]:
+    try:
+        settings = json.loads(content)
+    except ValueError as error:
+        raise ModelError(f"{path} is not JSON ({error}).") from error
+    if not isinstance(settings, dict):
+        raise ModelError(f"{path} holds no settings.")
+    return cast("dict[str, object]", settings)
+
+
+def _json(settings: Mapping[str, object]) -> bytes:
+    return (json.dumps(settings, indent=1, sort_keys=True, allow_nan=False) + "\n").encode()
+
+
+def _sha256(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()

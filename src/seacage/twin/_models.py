@@ -1,0 +1,230 @@
+"""The models of every level, and the answer they make of known water."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Self
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from seacage.cage import Cage
+from seacage.surrogates import (
+    Domain,
+    FittedGaussianProcess,
+    FittedNARGP,
+    FittedShapeGP,
+    Prediction,
+    Predicts,
+)
+from seacage.twin._answer import Answer
+from seacage.twin._metocean import Input, Metocean
+
+BLOCK = 512
+"""Rows answered at once: the shapes of more would crowd a small computer's memory."""
+
+ROUNDING = 1e-9
+"""What sines and cosines may add to a speed [m/s]."""
+
+Features = Float[np.ndarray, "case feature"]
+Numbers = dict[str, Float[np.ndarray, "case *rest"]]
+"""By quantity; a mean and its standard deviation side by side."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Depth:
+    """Level 1 of a depth sensor: how deep its node of the shape lies.
+
+    Parameters
+    ----------
+    height
+        Of the node, upwards [m].
+    """
+
+    height: Predicts
+
+    def predict(self, x: Features, /) -> Prediction:
+        """Answer at each row of features [m]."""
+        height = self.height.predict(x)
+        return Prediction(mean=-height.mean, std=height.std)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Models:
+    """Level 1 of loads and shape, and level 2 of each sensor that has taught.
+
+    Parameters
+    ----------
+    cage
+        As it was simulated; says where the sensors are.
+    inputs
+        What the models are asked with.
+    domain
+        Of the features that level 1 was trained on.
+    edge
+        The largest current speed [m/s] and wave height [m] among them, rounded up to 0.01.
+    still_volume
+        Of the shape in still water [m3].
+    bridles
+        Level 1 of all bridle tensions [N].
+    shape
+        Level 1 of the node positions [m].
+    upper
+        Level 2 by sensor, of its readings [N] or [m].
+    """
+
+    cage: Cage
+    inputs: tuple[Input, ...]
+    domain: Domain
+    edge: tuple[float, float]
+    still_volume: float
+    bridles: FittedGaussianProcess
+    shape: FittedShapeGP
+    upper: Mapping[str, FittedNARGP] = field(default_factory=dict[str, FittedNARGP])
+
+    def lower(self, sensor: str) -> Predicts:
+        """Level 1 of one sensor [N] or [m]."""
+        nodes = {one.name: one.node for one in self.cage.depth_sensors}
+        if sensor in nodes:
+            return Depth(height=self.shape.coordinate(nodes[sensor], 2))
+        return self.bridles.output(self._lines()[sensor])
+
+    def taught(self, sensor: str, model: FittedNARGP) -> Self:
+        """Return a copy that has level 2 of one more sensor."""
+        return replace(self, upper={**self.upper, sensor: model})
+
+    def answer(self, water: Metocean, trouble: Sequence[str]) -> Answer:
+        """Answer each row of water, with no number where there is trouble with it.
+
+        Outside the domain the variance grows by the square of how far the mean has moved from
+        the nearest milder water inside: what the models say about the way beyond the edge is
+        not to be relied on.
+        """
+        valid = np.array([not one for one in trouble], dtype=bool)
+        rows = np.flatnonzero(valid)
+        inside = self._inside(water.rows(rows))
+        blocks = [
+            self._numbers(water.rows(rows[block]), inside[block])
+            for block in np.array_split(np.arange(len(rows)), 1 + len(rows) // BLOCK)
+        ]
+
+        def whole(name: str) -> Float[np.ndarray, "case *rest"]:
+            values = np.concatenate([block[name] for block in blocks])
+            scattered = np.full((len(valid), *values.shape[1:]), np.nan)
+            scattered[rows] = values
+            return scattered
+
+        def both(name: str) -> Prediction:
+            return Prediction(mean=whole(f"{name}_mean"), std=whole(f"{name}_std"))
+
+        in_domain = valid.copy()
+        in_domain[rows] = inside
+        beyond = self._beyond()
+        return Answer(
+            valid=valid,
+            in_domain=in_domain,
+            reason=tuple(
+                one or ("" if here else beyond)
+                for one, here in zip(trouble, in_domain, strict=True)
+            ),
+            bridle_names=self.cage.bridle_names,
+            bridle_tension=both("bridle"),
+            bridle_low=whole("bridle_low_mean"),
+            bridle_level=self._bridle_level(),
+            sensor_names=self.cage.sensor_names,
+            sensor_units=self._sensor_units(),
+            sensor=both("sensor"),
+            sensor_low=both("sensor_low"),
+            sensor_level=np.array([self._level(name) for name in self.cage.sensor_names]),
+            node_position=whole("node_position"),
+            node_sigma=whole("node_sigma"),
+            shape_level=1,
+            volume_fraction=whole("volume_fraction"),
+        )
+
+    def _inside(self, water: Metocean) -> Bool[np.ndarray, " case"]:
+        # The box of features leaves a margin, and its corners are faster than any current.
+        speed = np.linalg.norm(water.current_velocity, axis=1)
+        trained = self.domain.contains(water.features(self.inputs))
+        return trained & (speed <= self.edge[0] + ROUNDING)
+
+    def _numbers(self, water: Metocean, inside: Bool[np.ndarray, " case"]) -> Numbers:
+        said = self._said(water.features(self.inputs))
+        if not inside.all():
+            speed, hs = self.edge
+            milder = water.rows(~inside).limited(current_speed=speed, hs=hs)
+            edge = self._said(milder.features(self.inputs))
+            said = {name: _widened(one, edge[name], ~inside) for name, one in said.items()}
+        shape = said.pop("shape")
+        numbers = {f"{name}_mean": one.mean for name, one in said.items()}
+        numbers |= {f"{name}_std": one.std for name, one in said.items()}
+        # A rope never pushes, whatever a Gaussian says.
+        for name in ("bridle_mean", "bridle_low_mean"):
+            numbers[name] = np.maximum(numbers[name], 0.0)
+        return numbers | {
+            "node_position": shape.mean,
+            "node_sigma": shape.std.max(axis=2),
+            "volume_fraction": self.cage.volume(shape.mean) / self.still_volume,
+        }
+
+    def _said(self, x: Features) -> dict[str, Prediction]:
+        bridle, shape = self.bridles.predict(x), self.shape.predict(x)
+        said = {"bridle_low": bridle, "shape": shape, "sensor_low": self._seen(bridle, shape)}
+        return said | self._corrected(x, bridle, said["sensor_low"])
+
+    def _seen(self, bridle: Prediction, shape: Prediction) -> Prediction:
+        nodes = [one.node for one in self.cage.depth_sensors]
+        lines = [one.bridle for one in self.cage.shackles]
+        return Prediction(
+            mean=np.hstack([-shape.mean[:, nodes, 2], bridle.mean[:, lines]]),
+            std=np.hstack([shape.std[:, nodes, 2], bridle.std[:, lines]]),
+        )
+
+    def _corrected(
+        self, x: Features, bridle_low: Prediction, sensor_low: Prediction
+    ) -> dict[str, Prediction]:
+        bridle, sensor = _copied(bridle_low), _copied(sensor_low)
+        for column, name in enumerate(self.cage.sensor_names):
+            if name in self.upper:
+                reading = self.upper[name].predict(x, noisy=True)
+                sensor.mean[:, column], sensor.std[:, column] = reading.mean, reading.std
+        for shackle in self.cage.shackles:
+            if shackle.name in self.upper:
+                # The rope is meant, not the instrument: without the scatter of its readings.
+                rope = self.upper[shackle.name].predict(x)
+                line = shackle.bridle
+                bridle.mean[:, line], bridle.std[:, line] = rope.mean, rope.std
+        return {"bridle": bridle, "sensor": sensor}
+
+    def _lines(self) -> dict[str, int]:
+        return {one.name: one.bridle for one in self.cage.shackles}
+
+    def _level(self, sensor: str) -> int:
+        return 2 if sensor in self.upper else 1
+
+    def _bridle_level(self) -> Int[np.ndarray, " line"]:
+        level = np.ones(self.cage.bridle_count, dtype=int)
+        for name, line in self._lines().items():
+            level[line] = self._level(name)
+        return level
+
+    def _sensor_units(self) -> tuple[str, ...]:
+        return tuple("N" if name in self._lines() else "m" for name in self.cage.sensor_names)
+
+    def _beyond(self) -> str:
+        speed, hs = self.edge
+        waves = f" and waves up to {hs:.2f} m" if "waves" in self.inputs else ""
+        return (
+            f"Extrapolating: level 1 was trained on currents up to {speed:.2f} m/s{waves}; "
+            "the spread is widened."
+        )
+
+
+def _widened(here: Prediction, edge: Prediction, beyond: Bool[np.ndarray, " case"]) -> Prediction:
+    """Add in quadrature how far the mean moved between the edge and the rows beyond it."""
+    std = here.std.copy()
+    std[beyond] = np.hypot(std[beyond], here.mean[beyond] - edge.mean)
+    return Prediction(mean=here.mean, std=std)
+
+
+def _copied(prediction: Prediction) -> Prediction:
+    return Prediction(mean=prediction.mean.copy(), std=prediction.std.copy())

@@ -1,0 +1,141 @@
+"""A twin as settings that JSON can hold and arrays by name, and back."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+import numpy as np
+
+from seacage.cage import Cage
+from seacage.conventions import ModelError, SeacageError
+from seacage.surrogates import (
+    Domain,
+    Fitted,
+    FittedGaussianProcess,
+    FittedNARGP,
+    FittedShapeGP,
+    Predicts,
+    decode,
+    encode,
+)
+from seacage.twin._metocean import Input
+from seacage.twin._models import Models
+from seacage.twin._provenance import Provenance
+from seacage.twin._state import Watch
+
+FORMAT = "seacage twin"
+VERSION = 1
+
+UPPER = "upper/"
+"""Before the sensor's name, in the names of level 2's parts."""
+
+Kind = TypeVar("Kind", FittedGaussianProcess, FittedNARGP, FittedShapeGP)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Header:
+    """All of a twin but its fitted models."""
+
+    format: str
+    version: int
+    cage_toml: str
+    inputs: tuple[Input, ...]
+    domain: tuple[tuple[float, ...], tuple[float, ...]]
+    edge: tuple[float, float]
+    still_volume: float
+    buoy: str
+    watch: Watch
+    provenance: Provenance
+
+
+def saved(
+    models: Models, provenance: Provenance, buoy: str, watch: Watch
+) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
+    """Return a twin's settings and arrays."""
+    from pydantic import TypeAdapter
+
+    header = Header(
+        format=FORMAT,
+        version=VERSION,
+        cage_toml=models.cage.to_toml(),
+        inputs=models.inputs,
+        domain=(tuple(models.domain.lower.tolist()), tuple(models.domain.upper.tolist())),
+        edge=models.edge,
+        still_volume=models.still_volume,
+        buoy=buoy,
+        watch=watch,
+        provenance=provenance,
+    )
+    settings = TypeAdapter(Header).dump_python(header, mode="json")
+    parts: dict[str, Fitted] = {"bridles": models.bridles, "shape": models.shape}
+    parts |= {f"{UPPER}{name}": model for name, model in models.upper.items()}
+    encoded = {name: encode(part) for name, part in parts.items()}
+    settings["models"] = {name: part for name, (part, _) in encoded.items()}
+    arrays = {
+        f"{name}:{key}": values
+        for name, (_, arrays) in encoded.items()
+        for key, values in arrays.items()
+    }
+    return settings, arrays
+
+
+def restored(
+    settings: Mapping[str, Any], arrays: Mapping[str, np.ndarray], *, source: str
+) -> dict[str, Any]:
+    """Return the parts of the twin that ``saved`` described.
+
+    Raises
+    ------
+    ModelError
+        Another format or version, or parts that do not fit together.
+    """
+    from pydantic import TypeAdapter, ValidationError
+
+    if (settings.get("format"), settings.get("version")) != (FORMAT, VERSION):
+        raise ModelError(
+            f"{source} is a {settings.get('format')!r} of version {settings.get('version')!r}; "
+            f"this seacage reads {FORMAT!r} of version {VERSION}. Train the twin anew."
+        )
+    try:
+        header = TypeAdapter(Header).validate_python(dict(settings))
+        models = _models(header, settings["models"], arrays)
+    except (KeyError, TypeError, ValidationError, SeacageError) as error:
+        raise ModelError(
+            f"{source}: its parts do not fit together ({error}). Train the twin anew."
+        ) from error
+    return {
+        "models": models,
+        "provenance": header.provenance,
+        "buoy": header.buoy,
+        "watch": header.watch,
+    }
+
+
+def _models(
+    header: Header, settings: Mapping[str, Any], arrays: Mapping[str, np.ndarray]
+) -> Models:
+    def part(name: str, kind: type[Kind], **given: Predicts) -> Kind:
+        own = {
+            key.removeprefix(f"{name}:"): values
+            for key, values in arrays.items()
+            if key.startswith(f"{name}:")
+        }
+        model = decode(settings[name], own, **given)
+        if not isinstance(model, kind):
+            raise ModelError(f"{name} is a {type(model).__name__}, not a {kind.__name__}.")
+        return model
+
+    models = Models(
+        cage=Cage.from_toml(header.cage_toml),
+        inputs=header.inputs,
+        domain=Domain(lower=np.array(header.domain[0]), upper=np.array(header.domain[1])),
+        edge=header.edge,
+        still_volume=header.still_volume,
+        bridles=part("bridles", FittedGaussianProcess),
+        shape=part("shape", FittedShapeGP),
+    )
+    for name in settings:
+        if name.startswith(UPPER):
+            sensor = name.removeprefix(UPPER)
+            models = models.taught(sensor, part(name, FittedNARGP, lower=models.lower(sensor)))
+    return models

@@ -1,0 +1,177 @@
+"""The trained twin: its models, where they come from, and the live loop around them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from datetime import datetime
+from pathlib import Path
+from typing import Self
+
+import numpy as np
+
+from seacage.cage import Cage
+from seacage.conventions import InputError, Origin
+from seacage.ocean import SeaState
+from seacage.records import Record, Sample
+from seacage.twin._answer import Answer
+from seacage.twin._events import Answered, Event
+from seacage.twin._folder import read_folder, write_folder
+from seacage.twin._metocean import INPUT_KEYS, Metocean
+from seacage.twin._models import Models
+from seacage.twin._provenance import Provenance
+from seacage.twin._saving import restored, saved
+from seacage.twin._state import TwinState, Watch
+from seacage.twin._step import failed, held_reading, listened
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Twin:
+    """A cage's digital twin.
+
+    ``train`` makes one, ``Twin.read("twin/")`` takes a saved one.
+
+    Parameters
+    ----------
+    models
+        Of every level, and the cage they are of.
+    provenance
+        What they were learned from.
+    buoy
+        The stream that the inputs come from.
+    watch
+        How long streams may be quiet, late or ahead.
+    """
+
+    models: Models
+    provenance: Provenance
+    buoy: str = "buoy-1"
+    watch: Watch = field(default_factory=Watch)
+
+    @classmethod
+    def read(cls, folder: str | Path) -> Self:
+        """Read a twin that ``write`` saved.
+
+        Raises
+        ------
+        ModelError
+            A file is missing, foreign, of another version, or changed by as little as a byte.
+        """
+        return cls(**restored(*read_folder(Path(folder)), source=str(folder)))
+
+    def write(self, folder: str | Path) -> None:
+        """Save as a folder of JSON and safetensors, sealed by a manifest of SHA-256 sums.
+
+        An earlier twin there is replaced.
+
+        Raises
+        ------
+        ModelError
+            The folder holds something else.
+        """
+        write_folder(Path(folder), *saved(self.models, self.provenance, self.buoy, self.watch))
+
+    @property
+    def cage(self) -> Cage:
+        """As it was simulated."""
+        return self.models.cage
+
+    @property
+    def origin(self) -> Origin:
+        """Where the sensors' lessons came from; "computed" where no sensor taught."""
+        return self.provenance.origin
+
+    @property
+    def sensor_names(self) -> tuple[str, ...]:
+        """Streams of the depth sensors, then of the shackles."""
+        return self.cage.sensor_names
+
+    @property
+    def bridle_names(self) -> tuple[str, ...]:
+        """As in the cage."""
+        return self.cage.bridle_names
+
+    def predict(self, metocean: SeaState | Sequence[SeaState] | Metocean) -> Answer:
+        """Answer for each row of water; a row with an unknown input is not valid.
+
+        Parameters
+        ----------
+        metocean
+            One sea state, several, or vectors; outside what level 1 was trained on the spread
+            is widened, and ``in_domain`` is False.
+        """
+        water = metocean if isinstance(metocean, Metocean) else Metocean.of(metocean)
+        return self.models.answer(
+            water,
+            [
+                "" if one else "A number of the input is not known."
+                for one in water.known(self.models.inputs)
+            ],
+        )
+
+    def predict_record(self, buoy: Record) -> Answer:
+        """Answer for each row of a buoy's record; a row that failed its checks is not valid.
+
+        These are the answers that ``step`` gives to the record's samples, made in blocks and
+        so faster.
+        """
+        keys = self._keys()
+        absent = [key for key in keys if key not in buoy.values]
+        if absent:
+            raise InputError(
+                f"{buoy.stream}: the record has no {absent[0]}. This twin was trained with "
+                f"{', '.join(keys)}; give a record that has them all."
+            )
+        trouble = [""] * len(buoy)
+        for key in keys:
+            for row in np.flatnonzero(~buoy.usable(key)):
+                trouble[row] = trouble[row] or failed(buoy.stream, key, buoy.flags[key][row])
+        return self.models.answer(Metocean.of_record(buoy), trouble)
+
+    def start(self) -> TwinState:
+        """Return the state before the first step."""
+        return TwinState()
+
+    def step(
+        self, state: TwinState, sample: Sample | None, now: datetime
+    ) -> tuple[TwinState, tuple[Event, ...]]:
+        """Take one sample in, or let the clock tick.
+
+        Nothing is read but the arguments: the same samples and clock give the same events.
+        A tick is always answered, and so is a sample that changes the buoy's last word.
+
+        Parameters
+        ----------
+        state
+            From ``start`` or from the last step.
+        sample
+            None for a tick.
+        now
+            The clock, with its zone; in a replay it is the record's own.
+
+        Returns
+        -------
+        state, events
+            Silence and return of streams first, then what was wrong with the sample, then
+            the answer.
+        """
+        before = state.latest(self.buoy)
+        state, notices = listened(state, sample, now, patience=self._patience(), watch=self.watch)
+        if sample is None or state.latest(self.buoy) != before:
+            return state, (*notices, self._answered(state, now))
+        return state, notices
+
+    def _answered(self, state: TwinState, now: datetime) -> Answered:
+        stale_after_s = self.watch.stale_after_s
+        reading = held_reading(
+            state, now, buoy=self.buoy, keys=self._keys(), stale_after_s=stale_after_s
+        )
+        unknown = Metocean.from_columns({}, 1)
+        water = unknown if reading.metocean is None else reading.metocean
+        answer = self.models.answer(water, [reading.trouble])
+        return Answered(t=now, answer=answer, metocean=reading.metocean, input_age_s=reading.age_s)
+
+    def _keys(self) -> list[str]:
+        return [key for name in self.models.inputs for key in INPUT_KEYS[name]]
+
+    def _patience(self) -> dict[str, float]:
+        sensors = dict.fromkeys(self.sensor_names, self.watch.sensor_silent_after_s)
+        return {self.buoy: self.watch.stale_after_s, **sensors}

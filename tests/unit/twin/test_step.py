@@ -1,0 +1,195 @@
+from datetime import UTC, datetime, timedelta
+
+import numpy as np
+import pytest
+
+from seacage.conventions import Flag, InputError
+from seacage.records import Sample
+from seacage.testing import stand_in_twin
+from seacage.twin import Answered, Flagged, StreamBack, StreamSilent, TwinState, replay
+
+NOON = datetime(2020, 2, 1, 12, tzinfo=UTC)
+
+
+def buoy(minutes=0.0, speed=0.4, to=90.0, **rest):
+    return Sample(
+        stream="buoy-1",
+        t=NOON + timedelta(minutes=minutes),
+        values={"current_speed_m_s": speed, "current_to_deg": to},
+        **rest,
+    )
+
+
+def depth(minutes=0.0, metres=14.0, stream="depth-2"):
+    return Sample(stream=stream, t=NOON + timedelta(minutes=minutes), values={"depth_m": metres})
+
+
+def played(*samples, ticks=()):
+    """Steps through samples, each at its own time, then ticks at minutes after noon."""
+    twin = stand_in_twin()
+    state, told = twin.start(), []
+    for sample in samples:
+        now = max(sample.t, state.clock or sample.t)
+        state, events = twin.step(state, sample, now)
+        told += events
+    for minutes in ticks:
+        state, events = twin.step(state, None, NOON + timedelta(minutes=minutes))
+        told += events
+    return state, told
+
+
+def only(events, kind):
+    return [event for event in events if isinstance(event, kind)]
+
+
+def test_a_buoy_sample_is_answered_at_once():
+    _, (event,) = played(buoy())
+    assert isinstance(event, Answered)
+    assert event.t == NOON
+    assert event.input_age_s == 0.0
+    assert event.answer.valid.tolist() == [True]
+    assert event.metocean.current_velocity[0] == pytest.approx([0.4, 0.0])
+
+
+def test_a_cage_sensors_sample_is_remembered_and_not_answered():
+    state, events = played(depth())
+    assert events == []
+    assert state.latest("depth-2").values == {"depth_m": 14.0}
+    assert state.latest("depth-2").flags == {"depth_m": Flag.GOOD}
+
+
+def test_before_the_first_reading_there_is_no_number():
+    _, (event,) = played(ticks=[0])
+    assert event.answer.valid.tolist() == [False]
+    assert np.isnan(event.answer.bridle_tension.mean).all()
+    assert event.answer.reason == ("buoy-1 has not said current_speed_m_s yet.",)
+    assert event.metocean is None
+    assert event.input_age_s is None
+
+
+def test_a_buoys_value_is_held_until_it_is_stale():
+    _, events = played(buoy(), ticks=[179, 181])
+    at_once, held, stale = only(events, Answered)
+    assert held.input_age_s == 179 * 60
+    assert held.answer.sensor.mean == pytest.approx(at_once.answer.sensor.mean)
+    assert stale.answer.valid.tolist() == [False]
+    assert "10860 s old" in stale.answer.reason[0]
+
+
+@pytest.mark.parametrize(
+    ("speed", "to", "key"),
+    [
+        (0.4, 412.0, "current_to_deg"),
+        (-0.1, 90.0, "current_speed_m_s"),
+        (float("nan"), 90.0, "current_speed_m_s"),
+        (float("inf"), 90.0, "current_speed_m_s"),
+        (400.0, 90.0, "current_speed_m_s"),
+    ],
+)
+def test_a_bad_reading_never_reaches_a_model(speed, to, key):
+    state, events = played(buoy(), buoy(12, speed, to), ticks=[13])
+    (flagged,) = only(events, Flagged)
+    assert flagged.used
+    assert key in flagged.reason
+    good, bad, tick = only(events, Answered)
+    assert good.answer.valid.all()
+    for event in (bad, tick):
+        assert not event.answer.valid.any()
+        assert np.isnan(event.answer.node_position).all()
+        assert key in event.answer.reason[0]
+    raw = state.latest("buoy-1").values[key]
+    assert raw == (speed if key == "current_speed_m_s" else to) or np.isnan(raw)
+
+
+def test_the_next_good_reading_ends_the_outage():
+    _, events = played(buoy(), buoy(12, to=412.0), buoy(24))
+    assert [event.answer.valid[0] for event in only(events, Answered)] == [True, False, True]
+
+
+def test_an_older_buoy_sample_never_overrides_a_newer_one():
+    state, events = played(buoy(5, speed=0.6), buoy(0, speed=0.2), ticks=[6])
+    first, tick = only(events, Answered)
+    assert tick.metocean.current_velocity[0, 0] == pytest.approx(0.6)
+    assert tick.answer.sensor.mean == pytest.approx(first.answer.sensor.mean)
+    assert state.latest("buoy-1").t == NOON + timedelta(minutes=5)
+
+
+def test_a_repeated_sample_changes_nothing_and_says_nothing():
+    before, _ = played(buoy(), depth())
+    after, events = played(buoy(), depth(), buoy(), depth())
+    assert after == before
+    assert len(events) == 1
+
+
+def test_a_sample_later_than_the_disorder_allowed_is_set_aside():
+    state, events = played(buoy(30), buoy(0))
+    (late,) = only(events, Flagged)
+    assert not late.used
+    assert "more than 600 s after a later one" in late.reason
+    assert state == played(buoy(30))[0]
+
+
+def test_a_sample_from_the_future_is_quarantined_and_its_clock_named():
+    twin = stand_in_twin()
+    state, (event,) = twin.step(twin.start(), buoy(minutes=2), NOON)
+    assert isinstance(event, Flagged)
+    assert not event.used
+    assert event.reason.startswith("buoy-1: set aside, its time is 120 s ahead of the clock")
+    assert state.latest("buoy-1") is None
+
+
+def test_a_sample_a_minute_ahead_is_taken():
+    twin = stand_in_twin()
+    _, (event,) = twin.step(twin.start(), buoy(minutes=1), NOON)
+    assert isinstance(event, Answered)
+    assert event.input_age_s == 0.0
+
+
+def test_a_stream_that_this_cage_does_not_have_is_named():
+    state, (event,) = played(depth(stream="depth-77"))
+    assert isinstance(event, Flagged)
+    assert not event.used
+    assert "no stream 'depth-77' here; there are buoy-1, depth-1" in event.reason
+    assert state.streams == {}
+
+
+def test_silence_and_return_are_said_once_each():
+    state, events = played(depth(), ticks=[14, 16, 17])
+    assert only(events, StreamSilent) == [StreamSilent(stream="depth-2", since=NOON)]
+    assert state.silent == {"depth-2"}
+    _, events = played(depth(), depth(20), depth(21))
+    assert events == []
+    _, events = stand_in_twin().step(state, depth(20), NOON + timedelta(minutes=20))
+    assert events == (StreamBack(stream="depth-2", t=NOON + timedelta(minutes=20)),)
+
+
+def test_a_late_delivery_of_old_words_does_not_end_a_silence():
+    state, _ = played(depth(), ticks=[30])
+    state, events = stand_in_twin().step(state, depth(5), NOON + timedelta(minutes=31))
+    assert events == ()
+    assert state.silent == {"depth-2"}
+
+
+def test_a_flat_line_of_a_cage_sensor_is_flagged_and_said():
+    _, events = played(*(depth(minutes, 14.0) for minutes in range(0, 121, 10)))
+    flags = [event.sample.flags["depth_m"] for event in only(events, Flagged)]
+    assert Flag.SUSPECT in flags
+    assert flags[-1] == Flag.FAIL
+
+
+def test_a_clock_without_a_zone_is_refused():
+    twin = stand_in_twin()
+    with pytest.raises(InputError, match="does not say its zone"):
+        twin.step(twin.start(), None, datetime(2020, 2, 1))  # noqa: DTZ001
+
+
+def test_a_replay_runs_on_the_samples_own_clock():
+    events = list(replay(stand_in_twin(), [buoy(0), depth(1), buoy(12)]))
+    assert [event.t for event in events] == [NOON, NOON + timedelta(minutes=12)]
+
+
+def test_a_step_leaves_the_state_it_was_given_alone():
+    twin = stand_in_twin()
+    state = TwinState()
+    twin.step(state, buoy(), NOON)
+    assert state == TwinState()
