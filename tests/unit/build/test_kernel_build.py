@@ -1,0 +1,102 @@
+"""The build hook makes libraries that load anywhere and leave their process alone."""
+
+import ctypes
+import importlib.util
+import math
+import subprocess
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+from hatchling.build import get_requires_for_build_editable, get_requires_for_build_wheel
+
+KERNEL = """
+#include <math.h>
+double norm(double x, double y) { return sqrt(x * x + y * y); }
+int is_infinite(double x) { return isinf(x) != 0; }
+"""
+
+
+@pytest.fixture(scope="module")
+def build(request: pytest.FixtureRequest) -> ModuleType:
+    """The hook's own file, which lies beside `pyproject.toml`."""
+    place = request.config.rootpath / "hatch_build.py"
+    spec = importlib.util.spec_from_file_location("hatch_build", place)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture
+def library(build: ModuleType, tmp_path: Path) -> Path:
+    """A small kernel, built for the plainest machine."""
+    compiler = build.system_compiler()
+    if compiler is None:
+        pytest.skip("needs a C compiler")
+    source = tmp_path / "_kernel.c"
+    source.write_text(KERNEL)
+    return build.build(compiler, source, build.TARGETS[0])
+
+
+@pytest.fixture
+def no_compiler(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """A machine where PATH and CC name no compiler."""
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.delenv("CC", raising=False)
+
+
+def test_a_built_library_computes(library: Path) -> None:
+    norm = ctypes.CDLL(str(library)).norm
+    norm.restype, norm.argtypes = ctypes.c_double, (ctypes.c_double, ctypes.c_double)
+    assert norm(3.0, 4.0) == 5.0
+
+
+def test_a_built_library_still_knows_what_is_infinite(library: Path) -> None:
+    is_infinite = ctypes.CDLL(str(library)).is_infinite
+    is_infinite.argtypes = (ctypes.c_double,)
+    assert is_infinite(math.inf)
+    assert not is_infinite(1e300)
+
+
+def test_loading_a_library_keeps_denormals_in_the_rest_of_the_process(library: Path) -> None:
+    halve = f"import ctypes; ctypes.CDLL({str(library)!r}); print(float('1e-320') * 0.5)"
+    told = subprocess.run([sys.executable, "-c", halve], check=True, capture_output=True, text=True)
+    assert float(told.stdout) > 0.0
+
+
+def test_a_build_leaves_nothing_but_the_library(library: Path) -> None:
+    assert {path.name for path in library.parent.iterdir()} == {"_kernel.c", library.name}
+
+
+def test_a_kernel_that_does_not_compile_is_refused_with_the_words_of_the_compiler(
+    build: ModuleType, library: Path
+) -> None:
+    source = library.with_name("_kernel.c")
+    source.write_text("not C")
+    with pytest.raises(build.CompileError, match=r"failed with code 1[\s\S]*error"):
+        build.build(build.system_compiler(), source, build.TARGETS[0])
+
+
+@pytest.mark.usefixtures("no_compiler")
+@pytest.mark.parametrize(
+    "requires", [get_requires_for_build_wheel, get_requires_for_build_editable]
+)
+def test_a_machine_without_a_compiler_gets_one_from_pypi(
+    requires, build: ModuleType, monkeypatch: pytest.MonkeyPatch, pytestconfig: pytest.Config
+) -> None:
+    monkeypatch.chdir(pytestconfig.rootpath)
+    assert build.ZIGLANG in requires()
+
+
+def test_a_compiler_named_in_cc_is_taken_at_its_word(
+    build: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("CC", "ccache clang")
+    assert build.system_compiler() == ["ccache", "clang"]
+
+
+def test_zig_is_told_the_instruction_set_in_its_own_spelling(build: ModuleType) -> None:
+    assert build.instruction_set(["gcc"], "x86-64-v3") == ["-march=x86-64-v3"]
+    zig = [sys.executable, "-m", "ziglang", "cc"]
+    assert build.instruction_set(zig, "x86-64-v3") == ["-mcpu=x86_64_v3"]
