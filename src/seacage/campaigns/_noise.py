@@ -29,6 +29,8 @@ def wandering(
     kept = np.exp(-step_s / memory_s)
     shocks = rng.normal(scale=sd * np.sqrt(1.0 - kept**2), size=(steps, 2))
     shocks[0] = rng.normal(scale=sd, size=2)
-    walk = accumulate((shocks @ np.array([1.0, 1.0j])).tolist(), lambda last, shock: kept * last + shock)
-    both = np.array(list(walk))
+    walk = accumulate(
+        (shocks @ np.array([1.0, 1.0j])).tolist(), lambda last, shock: kept * last + shock
+    )
+    both = np.array(list(walk), dtype=np.complex128)
     return np.column_stack([both.real, both.imag])

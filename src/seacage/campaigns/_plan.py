@@ -60,10 +60,7 @@ class Plan:
             raise InputError(
                 f"Plan: duration = {self.duration:g} s is not a positive number of seconds."
             )
-        if self.seed < 0:
-            raise InputError(
-                f"Plan: seed = {self.seed} is negative. Give a whole number from 0 on."
-            )
+        _check_seed(self.seed)
 
     def __len__(self) -> int:
         return len(self.seas)
@@ -110,6 +107,7 @@ class Plan:
         ----------
         Sobol (1967); scrambling after Owen (1998), as ``scipy.stats.qmc.Sobol`` does it.
         """
+        _check_seed(seed)
         if cases < 1:
             raise InputError(f"Plan.sample: cases = {cases}. Draw at least one sea state.")
         ranges = {
@@ -206,6 +204,11 @@ class Plan:
 
 def _inside(case: Mapping[str, Any]) -> dict[str, float]:
     return {_DOOR[key]: value for key, value in case.items()}
+
+
+def _check_seed(seed: int) -> None:
+    if seed < 0:
+        raise InputError(f"Plan: seed = {seed} is negative. Give a whole number from 0 on.")
 
 
 def _range(name: str, given: Sequence[float], unit: str, top: float = math.inf) -> Range:

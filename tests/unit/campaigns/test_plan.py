@@ -1,0 +1,134 @@
+"""Plans: which sea states a campaign visits."""
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from seacage.campaigns import Plan
+from seacage.conventions import InputError
+from seacage.ocean import SeaState
+
+
+def columns(plan: Plan) -> np.ndarray:
+    return np.array([(s.current_speed, s.current_to, s.hs, s.tp, s.wave_from) for s in plan.seas])
+
+
+def test_a_sample_fills_the_papers_ranges() -> None:
+    speed, to, hs, tp, wave_from = columns(Plan.sample(1, 1000)).T
+    for values, top in ((speed, 1.0), (to, 360.0), (hs, 3.0), (wave_from, 360.0)):
+        assert values.min() >= 0.0
+        assert values.max() <= top
+        # A low-discrepancy sequence leaves no tenth of the range emptier than this.
+        counts, _ = np.histogram(values, 10, (0.0, top))
+        assert counts.min() >= 95
+        assert counts.max() <= 105
+    np.testing.assert_allclose(tp, 5.0 * np.sqrt(hs), rtol=1e-12)
+    assert tp.max() < 8.67
+
+
+def test_the_seed_decides_and_a_longer_draw_begins_like_a_shorter_one() -> None:
+    assert Plan.sample(1, 100) == Plan.sample(1, 100)
+    assert Plan.sample(1, 100).seas == Plan.sample(1, 300).seas[:100]
+    assert Plan.sample(1, 100).seas != Plan.sample(2, 100).seas
+
+
+def test_a_range_that_is_a_point_leaves_the_other_draws_alone() -> None:
+    still, waves = Plan.sample(3, 50, hs=(0.0, 0.0)), Plan.sample(3, 50)
+    assert {sea.hs for sea in still.seas} == {0.0}
+    assert [s.current_speed for s in still.seas] == [s.current_speed for s in waves.seas]
+
+
+def test_the_default_plan_leaves_the_papers_curve_of_periods() -> None:
+    plan = Plan.named("default", 1, 500)
+    _, _, hs, tp, _ = columns(plan).T
+    ratio = tp / (5.0 * np.sqrt(hs))
+    assert 0.8 <= ratio.min() < 0.82
+    assert 2.18 < ratio.max() <= 2.2
+    assert plan.name == "default"
+    assert Plan.named("current", 1, 500).seas == Plan.sample(1, 500, hs=(0.0, 0.0)).seas
+
+
+def test_a_grid_holds_every_combination() -> None:
+    plan = Plan.grid(current_speed=(0.2, 0.4), current_to=(0.0, 90.0, 180.0), hs=(1.0,))
+    assert [(s.current_speed, s.current_to) for s in plan.seas] == [
+        (0.2, 0.0), (0.2, 90.0), (0.2, 180.0), (0.4, 0.0), (0.4, 90.0), (0.4, 180.0),
+    ]  # fmt: skip
+    assert {s.tp for s in plan.seas} == {5.0}
+
+
+def test_a_plan_survives_its_file(tmp_path: Path) -> None:
+    plan = Plan.sample(7, 20, duration=600.0, period_ratio=(0.8, 2.2))
+    plan.write(tmp_path / "plan.json")
+    again = Plan.read(tmp_path / "plan.json")
+    assert again == plan
+    assert again.sha256 == plan.sha256
+    assert "current_speed_m_s" in json.loads(plan.to_json())["cases"][0]
+
+
+def test_the_hash_knows_every_part() -> None:
+    plan = Plan.sample(7, 20)
+    others = [
+        Plan.sample(7, 21),
+        Plan.sample(8, 20),
+        Plan.sample(7, 20, duration=60.0),
+        Plan.sample(7, 20, name="mine"),
+    ]
+    assert len({plan.sha256, *(other.sha256 for other in others)}) == 5
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        ({"cases": 0}, "cases = 0"),
+        ({"seed": -1}, "seed = -1 is negative"),
+        ({"duration": 0.0}, "duration = 0 s"),
+        ({"duration": math.nan}, "duration = nan s"),
+        ({"current_speed": (0.5, 0.2)}, r"current_speed = \(0.5, 0.2\) m/s is no range"),
+        ({"current_speed": (0.0, 50.0)}, "3 at most"),
+        ({"current_to": (0.0, 400.0)}, "current_to"),
+        ({"hs": (-1.0, 2.0)}, "hs"),
+        ({"hs": (0.0, math.inf)}, "hs"),
+        ({"period_ratio": (0.2, 1.0)}, "steepness"),
+    ],
+)
+def test_an_impossible_sample_is_refused(options: dict[str, object], says: str) -> None:
+    with pytest.raises(InputError, match=says):
+        Plan.sample(**{"seed": 1, "cases": 8, **options})  # type: ignore[arg-type]
+
+
+def test_a_name_that_no_plan_has_is_answered_with_those_there_are() -> None:
+    with pytest.raises(InputError, match="there are: paper, default, current"):
+        Plan.named("papper", 1, 10)
+
+
+def test_an_empty_plan_is_refused() -> None:
+    with pytest.raises(InputError, match="no sea states"):
+        Plan.listed([])
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "not json",
+        "[]",
+        '{"name": "a", "duration_s": 1, "seed": 0}',
+        '{"name": "a", "duration_s": 1, "seed": 0, "cases": [{"current_speed": 1}]}',
+    ],
+)
+def test_a_file_that_is_no_plan_is_refused(text: str) -> None:
+    with pytest.raises(InputError, match="this is no plan"):
+        Plan.from_json(text)
+
+
+def test_a_bad_sea_state_in_a_file_is_refused_as_anywhere() -> None:
+    text = Plan.listed([SeaState(current_speed=0.5, current_to=90.0)]).to_json()
+    with pytest.raises(InputError, match="412 deg"):
+        Plan.from_json(text.replace("90.0", "412.0"))
+
+
+def test_a_file_that_is_not_there_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"cannot read .*plan\.json"):
+        Plan.read(tmp_path / "plan.json")

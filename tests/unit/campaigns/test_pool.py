@@ -1,0 +1,97 @@
+"""The pool of processes."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+
+from seacage.campaigns._pool import mapped
+from seacage.conventions import SeacageError
+
+UNGUARDED = """
+from seacage.campaigns._pool import mapped
+print("script")
+print(sorted(answer for _, answer in mapped(abs, [-1, -2, -3], workers=2)))
+"""
+
+LONG = """
+import time
+from seacage.campaigns._pool import mapped
+for task, answer in mapped(time.sleep, [0.1, 600, 600], workers=2):
+    print("going", flush=True)
+"""
+
+
+def test_answers_come_with_their_tasks() -> None:
+    tasks = [-3, 4, -5]
+    assert sorted(mapped(abs, tasks, workers=1)) == [(-5, 5), (-3, 3), (4, 4)]
+    assert sorted(mapped(abs, tasks, workers=2)) == [(-5, 5), (-3, 3), (4, 4)]
+
+
+def test_one_task_stays_in_this_process() -> None:
+    assert list(mapped(_own_id, [0], workers=8)) == [(0, os.getpid())]
+
+
+def test_workers_compute_on_one_thread_and_this_process_is_left_as_it_was(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv("OMP_NUM_THREADS", "5")
+    main = sys.modules["__main__"]
+    told = dict(mapped(os.getenv, ["OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"], workers=2))
+    assert set(told.values()) == {"1"}
+    assert os.environ["OMP_NUM_THREADS"] == "5"
+    assert sys.modules["__main__"] is main
+
+
+def test_a_script_without_a_guard_runs_once(tmp_path: Path) -> None:
+    script = tmp_path / "script.py"
+    script.write_text(UNGUARDED)
+    told = subprocess.run([sys.executable, script], capture_output=True, text=True, check=True)
+    assert told.stdout.splitlines() == ["script", "[1, 2, 3]"]
+
+
+def test_closing_early_drops_what_has_not_begun() -> None:
+    began = time.monotonic()
+    with closing(mapped(time.sleep, [0.01, 0.01, *[0.5] * 200], workers=2)) as finished:
+        next(finished)
+    # A few naps may have begun; the other hundred seconds have not.
+    assert time.monotonic() - began < 20.0
+
+
+def test_a_worker_that_dies_is_told_in_one_sentence() -> None:
+    with pytest.raises(SeacageError, match="ended from outside"):
+        list(mapped(os._exit, [1, 1], workers=2))
+
+
+@pytest.mark.skipif(not Path("/proc").is_dir(), reason="reads /proc")
+def test_workers_leave_when_their_parent_is_killed() -> None:
+    with subprocess.Popen([sys.executable, "-c", LONG], stdout=subprocess.PIPE) as parent:
+        assert parent.stdout is not None
+        parent.stdout.readline()
+        workers = _children(parent.pid)
+        assert len(workers) >= 2
+        parent.send_signal(signal.SIGKILL)
+    deadline = time.monotonic() + 20.0
+    while any(_alive(worker) for worker in workers) and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert not [worker for worker in workers if _alive(worker)]
+
+
+def _own_id(_: int) -> int:
+    return os.getpid()
+
+
+def _children(pid: int) -> list[int]:
+    return [int(child) for child in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
+
+
+def _alive(pid: int) -> bool:
+    try:
+        return " Z " not in Path(f"/proc/{pid}/stat").read_text()
+    except FileNotFoundError:
+        return False
