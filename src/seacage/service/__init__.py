@@ -1,3 +1,5 @@
 """Wires: command line, HTTP, WebSocket, clock and settings."""
 
-__all__: list[str] = []
+from seacage.service._cli import main
+
+__all__ = ["main"]

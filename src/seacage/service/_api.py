@@ -1,0 +1,118 @@
+"""The service as one ASGI application: its cages, its doors and its page."""
+
+import asyncio
+from collections.abc import AsyncGenerator, Callable, Coroutine, Mapping, Sequence
+from contextlib import asynccontextmanager
+from importlib.metadata import version
+from pathlib import Path
+
+import structlog
+from fastapi import FastAPI, Request
+from fastapi.responses import FileResponse, JSONResponse
+from fastapi.staticfiles import StaticFiles
+
+from seacage.conventions import InputError
+from seacage.service._guard import Shield
+from seacage.service._live import LiveCage
+from seacage.service._metrics import Metrics
+from seacage.service._routes import around, cages
+from seacage.service._stream import sockets
+from seacage.service._store import Store, StoreError
+from seacage.service._tokens import Tokens
+
+_PAGE = Path(__file__).parent / "page"
+_log = structlog.get_logger()
+
+
+class Service:
+    """What the doors open to, and the work that goes on behind them.
+
+    Parameters
+    ----------
+    cages
+        By name.
+    store, tokens, metrics
+        Shared by all cages.
+    feeds
+        What runs beside the cages, such as a replay.
+    """
+
+    def __init__(
+        self,
+        *,
+        cages: Mapping[str, LiveCage],
+        store: Store,
+        tokens: Tokens,
+        metrics: Metrics,
+        feeds: Sequence[Callable[[], Coroutine[None, None, None]]] = (),
+    ) -> None:
+        self.cages, self.store, self.tokens, self.metrics = cages, store, tokens, metrics
+        self._feeds = feeds
+        self._tasks: list[asyncio.Task[None]] = []
+
+    def begin(self) -> None:
+        """Set every cage and feed to work."""
+        work = {**{f"cage {name}": one.run() for name, one in self.cages.items()}}
+        work |= {f"feed {number}": feed() for number, feed in enumerate(self._feeds, start=1)}
+        for name, task in work.items():
+            self._tasks.append(asyncio.create_task(task, name=name))
+            self._tasks[-1].add_done_callback(_mourn)
+
+    async def end(self) -> None:
+        """Stop the work and close the store."""
+        for task in self._tasks:
+            task.cancel()
+        await asyncio.gather(*self._tasks, return_exceptions=True)
+        await asyncio.to_thread(self.store.close)
+
+    def trouble(self) -> str | None:
+        """Say why the service cannot do its work; None while it can."""
+        stopped = [task.get_name() for task in self._tasks if task.done()]
+        if stopped:
+            return f"{stopped[0]} has stopped; see the log and start the service anew."
+        return self.store.fault
+
+
+def _mourn(task: asyncio.Task[None]) -> None:
+    if not task.cancelled() and (error := task.exception()):
+        _log.error("stopped", task=task.get_name(), exc_info=error)
+
+
+def create_app(service: Service) -> FastAPI:
+    """Build the application that uvicorn runs."""
+
+    @asynccontextmanager
+    async def lifespan(_: FastAPI) -> AsyncGenerator[None]:
+        service.begin()
+        yield
+        await service.end()
+
+    app = FastAPI(
+        title="seacage",
+        version=version("seacage"),
+        summary="Loads and shape of net cages, live, with their uncertainty.",
+        lifespan=lifespan,
+        docs_url=None,  # their pages load scripts from elsewhere
+        redoc_url=None,
+    )
+    app.state.service = service
+    app.add_middleware(Shield)
+    app.add_exception_handler(StoreError, _unavailable)
+    app.add_exception_handler(InputError, _refused)
+    for router in (around, cages, sockets):
+        app.include_router(router)
+    app.mount("/page", StaticFiles(directory=_PAGE), name="page")
+
+    @app.get("/", include_in_schema=False)
+    def page() -> FileResponse:  # pyright: ignore[reportUnusedFunction]
+        return FileResponse(_PAGE / "index.html")
+
+    return app
+
+
+def _unavailable(_: Request, error: Exception) -> JSONResponse:
+    return JSONResponse({"detail": str(error)}, status_code=503, headers={"Retry-After": "5"})
+
+
+def _refused(_: Request, error: Exception) -> JSONResponse:
+    return JSONResponse({"detail": str(error)}, status_code=422)

@@ -1,0 +1,140 @@
+"""What every command shares: exit codes, one-sentence errors, output and progress."""
+
+import functools
+import json
+import sys
+import time
+from collections.abc import Callable, Generator, Mapping, Sequence
+from contextlib import contextmanager
+from enum import IntEnum
+from typing import TYPE_CHECKING, Annotated, ParamSpec, TypeVar
+
+import typer
+
+if TYPE_CHECKING:
+    from seacage.conventions import Progress
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+Json = Annotated[
+    bool,
+    typer.Option("--json", help="Print one JSON object on stdout, for programs."),
+]
+
+
+class Exit(IntEnum):
+    """How a command ended."""
+
+    OK = 0
+    REFUSED = 1
+    USAGE = 2
+    FAILED = 3
+    INTERRUPTED = 130
+
+
+EXIT_CODES = (
+    "Exit codes: 0 done; 1 the input was refused; 2 the command line was not understood; "
+    "3 the work failed; 130 interrupted."
+)
+
+
+def guarded(command: Callable[P, R]) -> Callable[P, R]:
+    """Let a command end with one sentence on stderr and an exit code, never a traceback."""
+
+    @functools.wraps(command)
+    def run(*args: P.args, **kwargs: P.kwargs) -> R:
+        from seacage.conventions import InputError, ModelError, SeacageError
+
+        try:
+            return command(*args, **kwargs)
+        except (InputError, ModelError) as error:
+            raise stopped(str(error), Exit.REFUSED) from error
+        except (SeacageError, OSError) as error:
+            raise stopped(str(error), Exit.FAILED) from error
+        except KeyboardInterrupt as error:
+            raise stopped("Interrupted; run it again to go on.", Exit.INTERRUPTED) from error
+
+    return run
+
+
+def stopped(sentence: str, code: Exit) -> typer.Exit:
+    """Say a sentence on stderr and return the exit to raise."""
+    typer.echo(f"seacage: {sentence}", err=True)
+    return typer.Exit(code)
+
+
+def tell(
+    answer: Mapping[str, object], *, as_json: bool, rows: Sequence[tuple[str, str]] = ()
+) -> None:
+    """Print a command's answer.
+
+    Parameters
+    ----------
+    answer
+        What a program gets with ``--json``; NaN becomes null.
+    as_json
+        Whether ``--json`` was given.
+    rows
+        What a person gets: names and values, in two columns.
+    """
+    if as_json:
+        typer.echo(json.dumps(without_nan(answer), default=str))
+        return
+    width = max((len(name) for name, _ in rows), default=0)
+    for name, value in rows:
+        typer.echo(f"{name:<{width}}  {value}")
+
+
+def without_nan(value: object) -> object:
+    """Turn numbers that JSON does not have into null, at any depth."""
+    if isinstance(value, float):
+        return value if abs(value) < float("inf") else None
+    if isinstance(value, Mapping):
+        return {str(key): without_nan(item) for key, item in value.items()}  # pyright: ignore[reportUnknownVariableType, reportUnknownArgumentType]
+    if isinstance(value, list | tuple):
+        return [without_nan(item) for item in value]  # pyright: ignore[reportUnknownVariableType]
+    return value
+
+
+@contextmanager
+def progress_bar() -> "Generator[Progress]":
+    """Show stages with the time left on stderr: a bar for a person, lines for a log."""
+    if not sys.stderr.isatty():
+        yield _Lines()
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextColumn
+    from rich.progress import TimeElapsedColumn as Elapsed
+    from rich.progress import TimeRemainingColumn as Remaining
+
+    tasks: dict[str, TaskID] = {}
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), Elapsed())
+    with Progress(*columns, Remaining(), console=Console(stderr=True)) as bar:
+
+        def show(stage: str, done: int, total: int) -> None:
+            if stage not in tasks:
+                tasks[stage] = bar.add_task(stage, total=total)
+            bar.update(tasks[stage], completed=done, total=total)
+
+        yield show
+
+
+class _Lines:
+    """Progress for a log: a line when a stage begins, ends, and now and then between."""
+
+    def __init__(self, *, every_s: float = 5.0) -> None:
+        self._every_s = every_s
+        self._began: dict[str, float] = {}
+        self._said = 0.0
+
+    def __call__(self, stage: str, done: int, total: int) -> None:
+        now = time.monotonic()
+        began = self._began.get(stage)
+        if began is None:
+            self._began[stage] = began = now
+        elif done < total and now - self._said < self._every_s:
+            return
+        self._said = now
+        left = f", {(now - began) / done * (total - done):.0f} s left" if 0 < done < total else ""
+        typer.echo(f"{stage}: {done} of {total}{left}", err=True)

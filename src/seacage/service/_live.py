@@ -1,0 +1,213 @@
+"""One cage, live: samples are read, checked, stored and stepped by one path."""
+
+import asyncio
+from collections import deque
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cached_property
+from typing import assert_never
+
+import structlog
+
+from seacage.records import QualityState, Sample, check_sample
+from seacage.service._answers import frame_of, state_of, topology_of
+from seacage.service._clock import Clock
+from seacage.service._mailbox import Mailbox
+from seacage.service._metrics import Metrics
+from seacage.service._past import answered_in, latest_of, state_at, streams_of
+from seacage.service._samples import BUOY_KEYS
+from seacage.service._schemas import State, Topology
+from seacage.service._store import Store
+from seacage.twin import Answered, Event, Flagged, StreamBack, StreamSilent, Twin
+
+_log = structlog.get_logger()
+
+
+# No slots here: the frame is made once, and only where somebody watches.
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Snapshot:
+    """What a cage says now."""
+
+    answered: Answered
+    state: State
+
+    @cached_property
+    def frame(self) -> str:
+        """The same as one message to the page."""
+        return frame_of(self.state, self.answered).model_dump_json()
+
+
+class LiveCage:
+    """A twin that listens.
+
+    ``take`` is the only way in: it checks, stores and queues samples, and returns once they are
+    on disk. ``run`` steps the twin with what was queued and with the ticks of the clock.
+
+    Parameters
+    ----------
+    name
+        Under which the cage is served.
+    twin, store, clock
+        What answers, what keeps, and what time it is.
+    metrics
+        Where steps and samples are counted.
+    tick_s
+        Longest pause between two looks at the clock [s of the wall].
+    """
+
+    def __init__(
+        self,
+        *,
+        name: str,
+        twin: Twin,
+        store: Store,
+        clock: Clock,
+        metrics: Metrics,
+        tick_s: float = 2.0,
+    ) -> None:
+        self.name, self.twin, self.store, self.clock = name, twin, store, clock
+        self._metrics, self._tick_s = metrics, tick_s
+        self._streams = _quantities(twin)
+        self._quality: dict[str, QualityState] = {}
+        self._pending: deque[Sample] = deque()
+        self._arrived = asyncio.Event()
+        self._stepping = asyncio.Lock()
+        self._mailboxes: set[Mailbox[Snapshot]] = set()
+        self._topology: Topology | None = None
+        self._state, answered = state_at(twin, store, name, clock.now())
+        self.snapshot = self._shown(answered)
+
+    @property
+    def streams(self) -> Mapping[str, tuple[str, ...]]:
+        """The streams listened to, and the quantities that each carries."""
+        return self._streams
+
+    @property
+    def topology(self) -> Topology:
+        """What of the cage does not change."""
+        if self._topology is None:
+            self._topology = topology_of(self.name, self.twin, speed=self.clock.speed)
+        return self._topology
+
+    async def take(self, samples: Sequence[Sample]) -> tuple[bool, ...]:
+        """Check, store and queue samples; returns after the commit.
+
+        Returns
+        -------
+        new
+            For each sample whether it was not known before.
+
+        Raises
+        ------
+        StoreError
+            The disk did not take them; then none of them counts.
+        """
+        new = await self._stored(samples)
+        self._pending.extend(s for s, fresh in zip(samples, new, strict=True) if fresh)
+        self._arrived.set()
+        return new
+
+    async def begin(self, backlog: Sequence[Sample]) -> None:
+        """Forget everything and stand where a backlog ends, as a replay does at its start."""
+        async with self._stepping:
+            await asyncio.to_thread(self.store.forget, self.name)
+            self._quality.clear()
+            self._pending.clear()
+            await self._stored(backlog)
+            now = self.clock.now()
+            self._state, answered = await asyncio.to_thread(
+                state_at, self.twin, self.store, self.name, now
+            )
+            self._publish(answered)
+
+    async def run(self) -> None:
+        """Step the twin for ever."""
+        while True:
+            try:
+                await asyncio.wait_for(self._arrived.wait(), self._tick_s)
+            except TimeoutError:
+                pass
+            self._arrived.clear()
+            async with self._stepping:
+                samples = list(self._pending)
+                self._pending.clear()
+                answered, events = await asyncio.to_thread(self._stepped, samples)
+                self._note(events)
+                self._publish(answered)
+
+    @contextmanager
+    def watched(self) -> Iterator[Mailbox[Snapshot]]:
+        """Lend a mailbox that gets every snapshot, the present one first."""
+        mailbox = Mailbox[Snapshot]()
+        mailbox.put(self.snapshot)
+        self._mailboxes.add(mailbox)
+        self._metrics.clients.labels(self.name).inc()
+        try:
+            yield mailbox
+        finally:
+            self._mailboxes.discard(mailbox)
+            self._metrics.clients.labels(self.name).dec()
+
+    async def _stored(self, samples: Sequence[Sample]) -> tuple[bool, ...]:
+        checked = [self._checked(sample) for sample in samples]
+        appended = self.store.append(self.name, checked, ingested=self.clock.now())
+        return await asyncio.wrap_future(appended)
+
+    def _checked(self, sample: Sample) -> Sample:
+        before = self._quality.get(sample.stream, QualityState())
+        self._quality[sample.stream], checked = check_sample(before, sample)
+        return checked
+
+    def _stepped(self, samples: Sequence[Sample]) -> tuple[Answered, list[Event]]:
+        """Step through the samples, then tick: the newest answer is as old as this call."""
+        noticed: list[Event] = []
+        timer = self._metrics.steps.labels(self.name)
+        for sample in (*samples, None):
+            with timer.time():
+                self._state, events = self.twin.step(self._state, sample, self.clock.now())
+            noticed += [event for event in events if not isinstance(event, Answered)]
+        answered = answered_in(events)
+        assert answered is not None  # a tick is always answered
+        return answered, noticed
+
+    def _note(self, events: Sequence[Event]) -> None:
+        for event in events:
+            self._metrics.notices.labels(self.name, type(event).__name__).inc()
+            match event:
+                case Flagged():
+                    _log.warning("flagged", cage=self.name, reason=event.reason)
+                case StreamSilent():
+                    _log.warning("stream silent", cage=self.name, stream=event.stream)
+                case StreamBack():
+                    _log.info("stream back", cage=self.name, stream=event.stream)
+                case Answered():
+                    pass
+                case _:
+                    assert_never(event)
+
+    def _publish(self, answered: Answered) -> None:
+        self.snapshot = self._shown(answered)
+        self._metrics.valid.labels(self.name).set(float(self.snapshot.state.valid))
+        self._metrics.input_age.labels(self.name).set(self.snapshot.state.age_s or 0.0)
+        for mailbox in self._mailboxes:
+            mailbox.put(self.snapshot)
+
+    def _shown(self, answered: Answered) -> Snapshot:
+        latest = latest_of(self.twin, self._state)
+        state = state_of(
+            self.name, self.twin, answered, latest=latest, silent=self._state.silent
+        )
+        return Snapshot(answered=answered, state=state)
+
+
+def _quantities(twin: Twin) -> dict[str, tuple[str, ...]]:
+    shackles = {shackle.name for shackle in twin.cage.shackles}
+    return {
+        stream: BUOY_KEYS
+        if stream == twin.buoy
+        else ("tension_kn",)
+        if stream in shackles
+        else ("depth_m",)
+        for stream in streams_of(twin)
+    }

@@ -1,0 +1,93 @@
+"""The twin in the past: its states are not stored but folded again from the samples."""
+
+from collections.abc import Mapping, Sequence
+from datetime import datetime, timedelta
+
+import numpy as np
+
+from seacage.conventions import Flag, Origin
+from seacage.records import Record, Sample, instant
+from seacage.service._answers import history_of
+from seacage.service._schemas import History
+from seacage.service._store import Store
+from seacage.twin import Answered, Event, Twin, TwinState
+
+_CONTEXT = 4  # samples of a stream: the newest governs, the checks look a little further back
+_MEASURED_LIMIT = 50_000
+
+
+def streams_of(twin: Twin) -> tuple[str, ...]:
+    """Name the streams that a twin listens to, the buoy first."""
+    return (twin.buoy, *twin.sensor_names)
+
+
+def latest_of(twin: Twin, state: TwinState) -> Mapping[str, Sample]:
+    """The newest sample of each stream that has spoken."""
+    latest = {stream: state.latest(stream) for stream in streams_of(twin)}
+    return {stream: sample for stream, sample in latest.items() if sample is not None}
+
+
+def answered_in(events: Sequence[Event]) -> Answered | None:
+    """The last answer among the events of a step."""
+    return next((event for event in reversed(events) if isinstance(event, Answered)), None)
+
+
+def state_at(twin: Twin, store: Store, cage: str, at: datetime) -> tuple[TwinState, Answered]:
+    """Fold a twin's state and answer at a time from what had been measured until then."""
+    end = at + timedelta(microseconds=1)
+    recent = [
+        sample
+        for stream in streams_of(twin)
+        for sample in store.samples(cage, stream=stream, end=end, limit=_CONTEXT, newest=True)
+    ]
+    state = twin.start()
+    for sample in sorted(recent, key=lambda sample: sample.t):
+        state, _ = twin.step(state, sample, sample.t)
+    state, events = twin.step(state, None, at)
+    answered = answered_in(events)
+    assert answered is not None  # a tick is always answered
+    return state, answered
+
+
+def history_between(
+    twin: Twin,
+    store: Store,
+    cage: str,
+    *,
+    start: datetime | None,
+    end: datetime | None,
+    limit: int,
+) -> History:
+    """Answer to the last of a buoy's readings in a span, and show what the sensors read."""
+    said = store.samples(
+        cage, stream=twin.buoy, start=start, end=end, limit=limit, newest=True
+    )
+    buoy = record_of(twin.buoy, said, twin.origin)
+    since = said[0].t if said else start
+    measured = {
+        sensor: store.samples(
+            cage, stream=sensor, start=since, end=end, limit=_MEASURED_LIMIT, newest=True
+        )
+        for sensor in twin.sensor_names
+    }
+    return history_of(buoy, twin.predict_record(buoy), measured, points=limit)
+
+
+def record_of(stream: str, samples: Sequence[Sample], origin: Origin) -> Record:
+    """Put the samples of one stream, in time order, into a record.
+
+    A quantity that a sample lacks is missing there; of several samples of one time the last
+    counts.
+    """
+    kept = list({sample.t: sample for sample in samples}.values())
+    keys = sorted({key for sample in kept for key in sample.values})
+    return Record(
+        stream=stream,
+        time=np.array([instant(sample.t) for sample in kept], dtype="datetime64[us]"),
+        values={key: np.array([one.values.get(key, np.nan) for one in kept]) for key in keys},
+        flags={
+            key: np.array([one.flags.get(key, Flag.MISSING) for one in kept], dtype=np.uint8)
+            for key in keys
+        },
+        origin=origin,
+    )

@@ -1,0 +1,255 @@
+"""The JSON of the doors: what is asked and what is answered, with the unit in each key."""
+
+from datetime import datetime
+from typing import Annotated, Literal
+
+from pydantic import AwareDatetime, BaseModel, ConfigDict, Field, JsonValue
+
+Name = Annotated[str, Field(min_length=1, max_length=64)]
+"""Of a cage, a stream, a sensor."""
+
+BATCH_LIMIT = 1000
+"""Samples in one request."""
+
+
+class _Asked(BaseModel):
+    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
+
+
+class _Answered(BaseModel):
+    model_config = ConfigDict(frozen=True)
+
+
+class SampleIn(_Asked):
+    """One reading of one stream.
+
+    ``values`` are numbers by quantity, or null where the source has none. A number that cannot
+    be true is stored with its flag; anything but a number has the sample rejected.
+    """
+
+    stream: Name
+    t: Annotated[AwareDatetime, Field(strict=False, description="Of the source, UTC.")]
+    seq: Annotated[int | None, Field(ge=0, lt=2**63)] = None
+    values: Annotated[dict[str, JsonValue], Field(min_length=1, max_length=16)]
+
+
+class SamplesIn(_Asked):
+    """Readings of one cage, in any order."""
+
+    samples: Annotated[list[SampleIn], Field(min_length=1, max_length=BATCH_LIMIT)]
+
+
+class Rejection(_Answered):
+    """A sample that was not stored, by its place in the request."""
+
+    index: int
+    reason: str
+
+
+class Receipt(_Answered):
+    """What became of the samples; those accepted are on disk."""
+
+    accepted: int
+    duplicates: int
+    rejected: list[Rejection]
+
+
+class SampleOut(_Answered):
+    """A stored sample; flags are 1 good, 2 not evaluated, 3 suspect, 4 fail, 9 missing."""
+
+    stream: str
+    t: datetime
+    seq: int | None
+    values: dict[str, float | None]
+    flags: dict[str, int]
+
+
+class SamplesOut(_Answered):
+    """Stored samples in time order."""
+
+    samples: list[SampleOut]
+
+
+class Interval(_Answered):
+    """Mean and 95 % interval; null without valid input."""
+
+    mean: float | None
+    lower: float | None
+    upper: float | None
+
+
+class BridleState(_Answered):
+    """A bridle's load now.
+
+    ``level`` is the fidelity of the answer: 2 where a shackle has taught it, else 1;
+    ``utilisation`` is the mean over the line's capacity.
+    """
+
+    name: str
+    level: int
+    tension_kn: Interval
+    low_fidelity_kn: float | None
+    utilisation: float | None
+
+
+class SensorState(_Answered):
+    """What a sensor should read now, by simulation alone and as taught, and what it does read."""
+
+    name: str
+    unit: str
+    level: int
+    low_fidelity: float | None
+    mean: float | None
+    lower: float | None
+    upper: float | None
+    measured: float | None
+    measured_age_s: float | None
+
+
+class Water(_Answered):
+    """The reading that the answer rests on."""
+
+    current_speed_m_s: float | None
+    current_to_deg: float | None
+    hs_m: float | None
+    wave_from_deg: float | None
+
+
+class State(_Answered):
+    """A cage at one time.
+
+    Without valid input ``valid`` is false, ``reason`` says why, and every computed number is
+    null. ``in_domain`` false means extrapolating beyond what was learned. ``age_s`` is the age
+    of the input. ``origin`` says how the sensors' numbers were made.
+    """
+
+    cage: str
+    t: datetime
+    age_s: float | None
+    valid: bool
+    in_domain: bool
+    reason: str
+    origin: str
+    water: Water | None
+    bridles: list[BridleState]
+    sensors: list[SensorState]
+    shape_level: int
+    volume_fraction: float | None
+    silent: list[str]
+
+
+class Shape(_Answered):
+    """The net at one time: x east, y north, z up; empty without valid input."""
+
+    t: datetime
+    valid: bool
+    level: int
+    node_position_m: list[list[float]]
+    sigma_m: list[float]
+
+
+class Series(_Answered):
+    """A quantity over the history's times."""
+
+    unit: str
+    level: int
+    low_fidelity: list[float | None]
+    mean: list[float | None]
+    lower: list[float | None]
+    upper: list[float | None]
+
+
+class Measured(_Answered):
+    """What a sensor read, at its own times; values that failed their checks are left out."""
+
+    t: list[datetime]
+    value: list[float]
+
+
+class History(_Answered):
+    """The answers to the buoy's readings, one per reading, and what the sensors read."""
+
+    t: list[datetime]
+    valid: list[bool]
+    in_domain: list[bool]
+    current_speed_m_s: list[float | None]
+    current_to_deg: list[float | None]
+    bridles: dict[str, Series]
+    sensors: dict[str, Series]
+    measured: dict[str, Measured]
+    volume_fraction: list[float | None]
+
+
+class Position(_Answered):
+    """A named place on the net."""
+
+    name: str
+    node: int
+
+
+class ShacklePlace(_Answered):
+    """A shackle and the index of its bridle, from 0."""
+
+    name: str
+    bridle: int
+
+
+class Topology(_Answered):
+    """What does not change: the graph of the net, its mooring, sensors and limits.
+
+    Edges join nodes; a bridle runs from a frame corner to a collar node. Positions are x east,
+    y north, z up, and ``rest_position_m`` is the shape in still water.
+    """
+
+    kind: Literal["topology"] = "topology"
+    cage: str
+    origin: str
+    spokes: int
+    rings: int
+    edges: list[list[int]]
+    rest_position_m: list[list[float]]
+    corner_position_m: list[list[float]]
+    bridle_names: list[str]
+    bridle_nodes: list[int]
+    bridle_corners: list[int]
+    bridle_capacity_kn: list[float]
+    depth_sensors: list[Position]
+    shackles: list[ShacklePlace]
+    stale_after_s: float
+    speed: Annotated[float, Field(description="Seconds at the cage per second here.")]
+
+
+class Frame(_Answered):
+    """What changes on the page: x, y and z of each node in turn, null without valid input."""
+
+    kind: Literal["state"] = "state"
+    state: State
+    position_mm: list[int] | None
+    sigma_mm: list[int] | None
+
+
+class CageSummary(_Answered):
+    """A cage of this service, and whether it answers."""
+
+    name: str
+    origin: str
+    valid: bool
+    t: datetime | None
+
+
+class Cages(_Answered):
+    """The cages of this service."""
+
+    cages: list[CageSummary]
+
+
+class Problem(_Answered):
+    """Why a request was refused, in one sentence."""
+
+    detail: str
+
+
+class Health(_Answered):
+    """Whether the service lives, and whether it can do its work."""
+
+    status: str

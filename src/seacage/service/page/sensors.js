@@ -1,0 +1,106 @@
+// The sensors: what each should read, what it does read, and the last day of both.
+
+import { Chart } from "./chart.js";
+import { make } from "./dom.js";
+import { day, fixed, half, time } from "./format.js";
+
+const SPAN = 24 * 3600e3;
+const STEP = 60e3; // the newest points of a curve are at least so far apart
+
+export class Sensors {
+  constructor({ grid, legend }) {
+    this.grid = grid;
+    legend.append(
+      make("span", { className: "key curve" }), "twin",
+      make("span", { className: "key band" }), "95 % interval",
+      make("span", { className: "key low" }), "simulation alone",
+      make("span", { className: "key dot" }), "measured",
+    );
+  }
+
+  topology({ depth_sensors: depths, shackles, rest_position_m: rest }) {
+    const places = [
+      ...depths.map(({ name, node }) => [name, `hangs at ${fixed(-rest[node][2])} m at rest`, true]),
+      ...shackles.map(({ name, bridle }) => [name, `on bridle ${bridle + 1}`, false]),
+    ];
+    this.cards = new Map(places.map(([name, place, deep]) => [name, this.card(name, place, deep)]));
+    this.grid.replaceChildren(...[...this.cards.values()].map(({ card }) => card));
+  }
+
+  card(name, place, downwards) {
+    const [now, read, when] = ["now", "read", "when"].map((kind) =>
+      make("p", { className: kind }));
+    const canvas = make("canvas", { role: "img" });
+    const head = make("h3", {}, name.replace("-", " "), make("small", {}, place));
+    const card = make("article", { className: "sensor" }, head, now, read, canvas, when);
+    const chart = new Chart(canvas, { downwards, read: (point) => this.hover(name, point) });
+    return { card, now, read, when, canvas, chart, twin: [], measured: [], unit: "" };
+  }
+
+  /** Take the past, in place of what was there. */
+  history({ t, sensors, measured }) {
+    const times = t.map(Date.parse);
+    for (const [name, one] of this.cards) {
+      const series = sensors[name];
+      one.twin = times.map((when, k) => ({
+        t: when, low: series.low_fidelity[k], mean: series.mean[k],
+        lower: series.lower[k], upper: series.upper[k],
+      }));
+      const seen = measured[name];
+      one.measured = seen.t.map((when, k) => ({ t: Date.parse(when), value: seen.value[k] }));
+      this.trim(one, times.at(-1) ?? 0);
+    }
+  }
+
+  show(state) {
+    const now = Date.parse(state.t);
+    for (const sensor of state.sensors) {
+      const one = this.cards.get(sensor.name);
+      const { low_fidelity: low, mean, lower, upper, measured } = sensor;
+      append(one.twin, { t: now, low, mean, lower, upper });
+      if (measured !== null) append(one.measured, { t: now, value: measured });
+      this.trim(one, now);
+      Object.assign(one, { sensor });
+      this.write(one);
+      one.chart.show({ twin: one.twin, measured: one.measured, start: now - SPAN, end: now });
+    }
+  }
+
+  trim(one, now) {
+    const recent = ({ t }) => t >= now - SPAN && t <= now;
+    one.twin = one.twin.filter(recent);
+    one.measured = one.measured.filter(recent);
+  }
+
+  write({ sensor, now, read, canvas, card, level }) {
+    const { mean, lower, upper, measured, unit, name } = sensor;
+    const decimals = unit === "m" ? 2 : 1;
+    now.replaceChildren(
+      make("b", {}, fixed(mean, decimals)),
+      make("span", { className: "pm" }, `${half(sensor, decimals)} ${mean === null ? "" : unit}`));
+    const inside = measured !== null && mean !== null && measured >= lower && measured <= upper;
+    const verdict = mean === null ? "" : inside ? ", as expected" : ", outside the interval";
+    read.textContent = measured === null ? "no reading now" : `reads ${fixed(measured, decimals)}${verdict}`;
+    read.classList.toggle("outside", measured !== null && mean !== null && !inside);
+    card.classList.toggle("level-1", sensor.level === 1);
+    canvas.setAttribute("aria-label", `${name}, last 24 hours: twin ${fixed(mean, decimals)} ` +
+      `${half(sensor, decimals)} ${unit}, ${read.textContent}. Arrow keys read the curve.`);
+  }
+
+  hover(name, point) {
+    const { when, sensor } = this.cards.get(name);
+    const decimals = sensor?.unit === "m" ? 2 : 1;
+    when.textContent = point
+      ? `${day(point.t).slice(0, -5)} ${time(point.t)}: ${fixed(point.mean, decimals)} ` +
+        `${half(point, decimals)}, simulation ${fixed(point.low, decimals)}` +
+        (point.measured === null ? "" : `, measured ${fixed(point.measured, decimals)}`)
+      : "";
+  }
+}
+
+/** Add a point, in place of the last one where that is not old enough to be kept. */
+function append(points, point) {
+  const before = points.at(-2);
+  if (before && points.at(-1).fresh && point.t - before.t < STEP) points.pop();
+  points.push({ ...point, fresh: true });
+}
