@@ -125,7 +125,7 @@ def surface_elevation(
     time
         Broadcast against the positions: ``time[:, None]`` gives all points at all times [s].
     """
-    return np.cos(_angle(waves, position, time)) @ waves.amplitude
+    return np.asarray(np.cos(_angle(waves, position, time)) @ waves.amplitude)
 
 
 def water_motion(
@@ -158,7 +158,7 @@ def water_motion(
     """
     angle = _angle(waves, position[..., :2], time)
     cosine, sine = np.cos(angle), np.sin(angle)
-    elevation = cosine @ waves.amplitude
+    elevation = np.asarray(cosine @ waves.amplitude)
     wet = position[..., 2] <= elevation
     height = _stretched(position[..., 2], elevation, waves.depth)
     along, up = _decay(waves.wavenumber, height, waves.depth)
@@ -180,7 +180,7 @@ def _stretched(
     z: Float[np.ndarray, "*#n"], elevation: Float[np.ndarray, "*n"], depth: float
 ) -> Float[np.ndarray, "*n"]:
     # Points above the surface are zeroed later; the clip keeps their exponentials finite.
-    return np.clip((z - elevation) * depth / (depth + elevation), -depth, 0.0)
+    return np.asarray(np.clip((z - elevation) * depth / (depth + elevation), -depth, 0.0))
 
 
 def _decay(
