@@ -128,7 +128,7 @@ class FittedShapeGP:
         """
         score = self.scores.predict(x, noisy=noisy)
         mean, std = self.basis.decode(score.mean), self.basis.std(score.std)
-        shape = (len(mean), -1, 3)
+        shape = (len(mean), mean.shape[1] // 3, 3)  # not -1: there may be no rows
         return Prediction(mean=mean.reshape(shape), std=std.reshape(shape))
 
     def coordinate(self, node: int, axis: int) -> "FittedCoordinate":
