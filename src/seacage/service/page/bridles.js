@@ -1,6 +1,6 @@
 // The loads of the bridles: one row each, grouped by the corner they come from.
 
-import { make } from "./dom.js";
+import { explain, make } from "./dom.js";
 import { fixed, half, percent, ticks } from "./format.js";
 import { loadColour } from "./net.js";
 
@@ -11,13 +11,10 @@ export class Bridles {
   constructor({ table, capacity, legend }) {
     this.body = table.tBodies[0];
     this.capacity = capacity;
-    legend.append(
-      make("span", { className: "key bar" }), "twin",
-      make("span", { className: "key band" }), "95 % interval",
-      make("span", { className: "key tick" }), "simulation alone",
-      make("span", { className: "key dot" }), "measured",
-      make("span", { className: "key taught" }), "taught by a shackle",
-    );
+    explain(legend, {
+      bar: "twin", band: "95 % interval", tick: "simulation alone", dot: "measured",
+      taught: "taught by a shackle",
+    });
   }
 
   topology({ bridle_names: names, bridle_corners: corners, bridle_capacity_kn: limits, shackles }) {

@@ -11,6 +11,12 @@ export function make(tag, properties = {}, ...children) {
   return element;
 }
 
+/** A legend: what each key stands for. */
+export function explain(holder, items) {
+  holder.replaceChildren(...Object.entries(items).map(([key, words]) =>
+    make("span", { className: "item" }, make("span", { className: `key ${key}` }), words)));
+}
+
 /** The element with an id. */
 export const byId = (id) => document.getElementById(id);
 

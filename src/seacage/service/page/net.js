@@ -1,6 +1,6 @@
 // The net, from the side and from above: where it is, against where it hangs in still water.
 
-import { cleared, make, mixed, still, styled } from "./dom.js";
+import { cleared, explain, make, mixed, still, styled } from "./dom.js";
 import { bearing, compass, fixed } from "./format.js";
 
 const LEVELS = 10;
@@ -105,7 +105,7 @@ export class NetViews {
     this.lift = this.displacements();
     this.drawSide();
     this.drawPlan();
-    this.explain();
+    this.inWords();
   }
 
   displacements() {
@@ -284,7 +284,7 @@ export class NetViews {
     else this.net(context, this.rest, project, { ghost: true, flat: true });
     this.ropes(context, project);
     this.numbers(context, project);
-    this.currentAbove(context, project, reach);
+    this.currentAbove(context, project);
     context.fillStyle = this.ink.muted;
     context.font = `600 11px ${styled("--font")}`;
     context.textAlign = "center";
@@ -307,19 +307,20 @@ export class NetViews {
     });
   }
 
-  currentAbove(context, project, reach) {
+  currentAbove(context, project) {
     const water = this.state?.water;
     if (!this.valid || !(water?.current_speed_m_s > SLACK_WATER)) return;
     const turn = (water.current_to_deg * Math.PI) / 180;
     const [x, y] = [Math.sin(turn), Math.cos(turn)];
-    const [outer, inner] = [reach - 3, reach - 8 - 12 * Math.min(1, water.current_speed_m_s)];
-    arrow(context, ...project(-outer * x, -outer * y).slice(0, 2),
-      ...project(-inner * x, -inner * y).slice(0, 2), styled("--water"));
+    const half = 7 + 12 * Math.min(1, water.current_speed_m_s);
+    const ends = [...project(-half * x, -half * y), ...project(half * x, half * y)];
+    arrow(context, ends[0], ends[1], ends[3], ends[4], this.ink.card, 7);
+    arrow(context, ends[0], ends[1], ends[3], ends[4], styled("--water"), 2.5);
   }
 
   // --- in words ---
 
-  explain() {
+  inWords() {
     const water = this.state?.water;
     const going = water?.current_speed_m_s > SLACK_WATER
       ? `${fixed(water.current_speed_m_s, 2)} m/s towards ${bearing(water.current_to_deg)} ` +
@@ -332,24 +333,24 @@ export class NetViews {
     this.side.setAttribute("aria-label", this.valid
       ? `Side view: ${going}; the bottom has moved ${fixed(bottom)} m from rest.`
       : "Side view of the net in still water; there is no valid input.");
-    this.legend.replaceChildren(
-      make("span", { className: "key ramp" }), `moved 0 to ${this.range} m from rest`,
-      make("span", { className: "key ghost" }), "still water",
-      make("span", { className: "key mark" }), "depth sensor, twin",
-      make("span", { className: "key dash" }), "measured",
-    );
+    explain(this.legend, {
+      ramp: `moved 0 to ${this.range} m from rest`,
+      ghost: "still water",
+      mark: "depth sensor, by simulation",
+      dash: "measured",
+    });
   }
 }
 
-function arrow(context, x, y, u, v, colour) {
+function arrow(context, x, y, u, v, colour, width = 2) {
   const [length, turn] = [Math.hypot(u - x, v - y), Math.atan2(v - y, u - x)];
-  const head = Math.min(9, 0.6 * length);
+  const head = Math.min(7 + 1.5 * width, 0.6 * length);
   context.save();
   context.translate(x, y);
   context.rotate(turn);
   context.strokeStyle = context.fillStyle = colour;
-  context.lineWidth = 2;
-  context.lineCap = "round";
+  context.lineWidth = width;
+  context.lineCap = context.lineJoin = "round";
   context.beginPath();
   context.moveTo(0, 0);
   context.lineTo(length - head, 0);
@@ -358,6 +359,9 @@ function arrow(context, x, y, u, v, colour) {
   context.moveTo(length, 0);
   context.lineTo(length - head, 0.5 * head);
   context.lineTo(length - head, -0.5 * head);
+  context.closePath();
   context.fill();
+  context.lineWidth = 0.6 * width;
+  context.stroke();
   context.restore();
 }

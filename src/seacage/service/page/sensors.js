@@ -1,8 +1,8 @@
 // The sensors: what each should read, what it does read, and the last day of both.
 
 import { Chart } from "./chart.js";
-import { make } from "./dom.js";
-import { day, fixed, half, time } from "./format.js";
+import { explain, make } from "./dom.js";
+import { fixed, half, time } from "./format.js";
 
 const SPAN = 24 * 3600e3;
 const STEP = 60e3; // the newest points of a curve are at least so far apart
@@ -10,17 +10,14 @@ const STEP = 60e3; // the newest points of a curve are at least so far apart
 export class Sensors {
   constructor({ grid, legend }) {
     this.grid = grid;
-    legend.append(
-      make("span", { className: "key curve" }), "twin",
-      make("span", { className: "key band" }), "95 % interval",
-      make("span", { className: "key low" }), "simulation alone",
-      make("span", { className: "key dot" }), "measured",
-    );
+    explain(legend, {
+      curve: "twin", band: "95 % interval", low: "simulation alone", dot: "measured",
+    });
   }
 
   topology({ depth_sensors: depths, shackles, rest_position_m: rest }) {
     const places = [
-      ...depths.map(({ name, node }) => [name, `hangs at ${fixed(-rest[node][2])} m at rest`, true]),
+      ...depths.map(({ name, node }) => [name, `rests at ${fixed(-rest[node][2])} m`, true]),
       ...shackles.map(({ name, bridle }) => [name, `on bridle ${bridle + 1}`, false]),
     ];
     this.cards = new Map(places.map(([name, place, deep]) => [name, this.card(name, place, deep)]));
@@ -28,13 +25,12 @@ export class Sensors {
   }
 
   card(name, place, downwards) {
-    const [now, read, when] = ["now", "read", "when"].map((kind) =>
-      make("p", { className: kind }));
+    const [now, read] = ["now", "read"].map((kind) => make("p", { className: kind }));
     const canvas = make("canvas", { role: "img" });
     const head = make("h3", {}, name.replace("-", " "), make("small", {}, place));
-    const card = make("article", { className: "sensor" }, head, now, read, canvas, when);
+    const card = make("article", { className: "sensor" }, head, now, read, canvas);
     const chart = new Chart(canvas, { downwards, read: (point) => this.hover(name, point) });
-    return { card, now, read, when, canvas, chart, twin: [], measured: [], unit: "" };
+    return { card, now, read, canvas, chart, twin: [], measured: [] };
   }
 
   /** Take the past, in place of what was there. */
@@ -72,7 +68,7 @@ export class Sensors {
     one.measured = one.measured.filter(recent);
   }
 
-  write({ sensor, now, read, canvas, card, level }) {
+  write({ sensor, now, read, canvas, card }) {
     const { mean, lower, upper, measured, unit, name } = sensor;
     const decimals = unit === "m" ? 2 : 1;
     now.replaceChildren(
@@ -80,21 +76,27 @@ export class Sensors {
       make("span", { className: "pm" }, `${half(sensor, decimals)} ${mean === null ? "" : unit}`));
     const inside = measured !== null && mean !== null && measured >= lower && measured <= upper;
     const verdict = mean === null ? "" : inside ? ", as expected" : ", outside the interval";
-    read.textContent = measured === null ? "no reading now" : `reads ${fixed(measured, decimals)}${verdict}`;
+    const words = measured === null ? "no reading now" : `reads ${fixed(measured, decimals)}${verdict}`;
+    if (!read.dataset.pointed) read.textContent = words;
     read.classList.toggle("outside", measured !== null && mean !== null && !inside);
     card.classList.toggle("level-1", sensor.level === 1);
     canvas.setAttribute("aria-label", `${name}, last 24 hours: twin ${fixed(mean, decimals)} ` +
-      `${half(sensor, decimals)} ${unit}, ${read.textContent}. Arrow keys read the curve.`);
+      `${half(sensor, decimals)} ${unit}, ${words}. Arrow keys read the curve.`);
   }
 
+  /** Say what the curve says where the reader points. */
   hover(name, point) {
-    const { when, sensor } = this.cards.get(name);
+    const { read, sensor } = this.cards.get(name);
     const decimals = sensor?.unit === "m" ? 2 : 1;
-    when.textContent = point
-      ? `${day(point.t).slice(0, -5)} ${time(point.t)}: ${fixed(point.mean, decimals)} ` +
+    if (point) {
+      read.dataset.pointed = true;
+      read.textContent = `${time(point.t)}: twin ${fixed(point.mean, decimals)} ` +
         `${half(point, decimals)}, simulation ${fixed(point.low, decimals)}` +
-        (point.measured === null ? "" : `, measured ${fixed(point.measured, decimals)}`)
-      : "";
+        (point.measured === null ? "" : `, measured ${fixed(point.measured, decimals)}`);
+    } else if (sensor) {
+      delete read.dataset.pointed;
+      this.write(this.cards.get(name));
+    }
   }
 }
 

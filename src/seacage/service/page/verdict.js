@@ -19,17 +19,21 @@ export class Verdict {
     this.holder.dataset.kind = kind;
     this.holder.replaceChildren(
       make("div", { className: "headline" }, make("h2", {}, headline), make("p", {}, detail)),
-      current(state), highest(state), volume(state), this.bottom(position, sigma),
+      current(state), highest(state), volume(state), this.bottom(state, position, sigma),
     );
   }
 
-  bottom(position, sigma) {
+  /** How deep the net hangs: as a sensor there has taught, else as simulated. */
+  bottom({ sensors, valid }, position, sigma) {
+    if (!valid) return figure("Net bottom", "–", "", "");
     const node = this.graph.rest_position_m.length - 1;
-    if (!position) return figure("Net bottom", "–", "", "");
-    const [depth, rest] = [-position[3 * node + 2] / 1000, -this.graph.rest_position_m[node][2]];
-    const spread = `± ${((1.96 * sigma[node]) / 1000).toFixed(1)} m, simulation alone`;
-    return figure("Net bottom", fixed(depth), "m",
-      `${fixed(Math.abs(rest - depth))} m ${depth <= rest ? "above" : "below"} rest, ${spread}`);
+    const there = this.graph.depth_sensors.find((sensor) => sensor.node === node)?.name;
+    const [depth, spread] = [-position[3 * node + 2], 1.96 * sigma[node]].map((mm) => mm / 1000);
+    const { mean, lower, upper } = sensors.find(({ name }) => name === there) ??
+      { mean: depth, lower: depth - spread, upper: depth + spread };
+    const lift = -this.graph.rest_position_m[node][2] - mean;
+    return figure("Net bottom", fixed(mean), "m",
+      `${fixed(Math.abs(lift))} m ${lift >= 0 ? "above" : "below"} rest, ${half({ lower, upper }, 2)}`);
   }
 }
 
