@@ -40,7 +40,7 @@ def final(samples):
     return twin.step(state, None, NOON + timedelta(hours=1))
 
 
-@settings(max_examples=40)
+@settings(max_examples=25)
 @given(samples=readings(), data=st.data())
 def test_duplicates_and_disorder_within_ten_minutes_change_nothing(samples, data):
     late = data.draw(

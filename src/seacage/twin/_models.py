@@ -49,6 +49,17 @@ class Depth:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Said:
+    """What a level has answered already, so that many sensors ask it once."""
+
+    prediction: Prediction
+
+    def predict(self, _: Features, /) -> Prediction:
+        """Answer as it did."""
+        return self.prediction
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Models:
     """Level 1 of loads and shape, and level 2 of each sensor that has taught.
 
@@ -182,17 +193,22 @@ class Models:
     def _corrected(
         self, x: Features, bridle_low: Prediction, sensor_low: Prediction
     ) -> dict[str, Prediction]:
+        """Return best tensions, and readings: what lies behind them and their scatter.
+
+        The bridle that a shackle taught has no scatter: the rope is meant, not the instrument.
+        """
         bridle, sensor = _copied(bridle_low), _copied(sensor_low)
+        lines = self._lines()
         for column, name in enumerate(self.cage.sensor_names):
             if name in self.upper:
-                reading = self.upper[name].predict(x, noisy=True)
-                sensor.mean[:, column], sensor.std[:, column] = reading.mean, reading.std
-        for shackle in self.cage.shackles:
-            if shackle.name in self.upper:
-                # The rope is meant, not the instrument: without the scatter of its readings.
-                rope = self.upper[shackle.name].predict(x)
-                line = shackle.bridle
-                bridle.mean[:, line], bridle.std[:, line] = rope.mean, rope.std
+                model = self.upper[name]
+                low = Prediction(mean=sensor_low.mean[:, column], std=sensor_low.std[:, column])
+                behind = replace(model, lent=Said(prediction=low)).predict(x)
+                sensor.mean[:, column] = behind.mean
+                sensor.std[:, column] = np.sqrt(behind.std**2 + model.upper[-1].noise[0])
+                if name in lines:
+                    bridle.mean[:, lines[name]] = behind.mean
+                    bridle.std[:, lines[name]] = behind.std
         return {"bridle": bridle, "sensor": sensor}
 
     def _lines(self) -> dict[str, int]:
