@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from jaxtyping import Float, Shaped
+from jaxtyping import Bool, Float, Shaped
 
 from seacage.conventions import InputError, Origin
 from seacage.figures._style import (
@@ -99,19 +99,28 @@ def density_figure(comparison: Comparison) -> "Figure":
 def series_figure(comparison: Comparison, *, start: np.datetime64, end: np.datetime64) -> "Figure":
     """The sensor, low fidelity and multifidelity with its 95 % band, from start to end [UTC]."""
     shown = (comparison.time >= start) & (comparison.time < end)
-    time = comparison.time[shown]
-    mean, half = comparison.multi[shown], _BAND * comparison.multi_std[shown]
+    time, reading = comparison.time[shown], comparison.reading[shown]
+    low, mean = comparison.low[shown], comparison.multi[shown]
+    half = _BAND * comparison.multi_std[shown]
+    # An answer holds until the buoy's next word, so only the changes need drawing.
+    word = _changes(low, mean, half)
     with style():
         figure = blank_figure(10.0, 2.55)
         axes = figure.subplots()
         axes.fill_between(
-            time, mean - half, mean + half, color=MULTI, alpha=0.16, lw=0, label="95 % interval"
+            time[word],
+            (mean - half)[word],
+            (mean + half)[word],
+            step="post",
+            color=MULTI,
+            alpha=0.16,
+            lw=0,
+            label="95 % interval",
         )
-        axes.plot(
-            time, comparison.reading[shown], color=SENSOR, lw=0.55, label=f"{comparison.sensor}"
-        )
-        axes.plot(time, comparison.low[shown], color=LOW, lw=1.1, label="Low fidelity")
-        axes.plot(time, mean, color=MULTI, lw=1.1, label="Multifidelity")
+        axes.plot(time, reading, color=SENSOR, lw=0.5, label=comparison.sensor)
+        held = {"drawstyle": "steps-post", "lw": 1.1}
+        axes.plot(time[word], low[word], color=LOW, label="Low fidelity", **held)
+        axes.plot(time[word], mean[word], color=MULTI, label="Multifidelity", **held)
         axes.set_ylabel(f"{comparison.quantity} [{comparison.unit}]")
         axes.margins(x=0.0)
         if comparison.quantity == "Depth":
@@ -168,6 +177,13 @@ def _share_counts(panels: "list[PolyCollection]") -> None:
     highest = max(float(np.max(np.asarray(panel.get_array()))) for panel in panels)
     for panel in panels:
         panel.set_clim(1.0, max(highest, 2.0))
+
+
+def _changes(*series: Float[np.ndarray, " t"]) -> Bool[np.ndarray, " t"]:
+    """Where any of the series is not what it was just before; the ends always."""
+    changed = np.ones(len(series[0]), dtype=bool)
+    changed[1:-1] = np.any([one[1:-1] != one[:-2] for one in series], axis=0)
+    return changed
 
 
 def _date_axis(axes: "Axes", start: np.datetime64) -> None:

@@ -85,5 +85,17 @@ def test_constant_readings_still_have_limits(comparison):
 
 
 def test_a_sensor_without_readings_is_refused(comparison):
+    none = {
+        part: getattr(comparison, part)[:0]
+        for part in ("time", "reading", "low", "multi", "multi_std")
+    }
     with pytest.raises(InputError, match="shackle-1 has no reading"):
-        replace(comparison, time=comparison.time[:0])
+        replace(comparison, **none)
+
+
+def test_an_answer_that_holds_is_drawn_once_until_it_changes(comparison):
+    held = replace(comparison, low=np.full(400, 3.0), multi=np.full(400, 4.0))
+    (axes,) = series_figure(held, start=START, end=START + np.timedelta64(2, "h")).axes
+    reading, low, multi = axes.lines
+    assert len(reading.get_xdata()) == 120
+    assert len(low.get_xdata()) == len(multi.get_xdata()) == 2, "its first and last moment"

@@ -4,7 +4,7 @@ import xml.etree.ElementTree as ET
 
 import matplotlib as mpl
 import numpy as np
-from matplotlib import pyplot
+from matplotlib import pyplot as plt
 
 from seacage.figures import shape_error_figure, svg_text, write_figure
 
@@ -28,4 +28,4 @@ def test_drawing_leaves_the_callers_settings_and_pyplot_alone():
     before = mpl.rcParams.copy()
     svg_text(figure())
     assert mpl.rcParams.copy() == before
-    assert not pyplot.get_fignums()
+    assert not plt.get_fignums()

@@ -1,0 +1,66 @@
+"""The demonstration: a twin of cage ``ace`` that anyone can make and watch within minutes."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from seacage.cage import Cage
+from seacage.conventions import Progress
+from seacage.records import FieldRecord, Record
+from seacage.studies._chain import Chain, Recipe
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Demonstration:
+    """What a demonstration shows.
+
+    Parameters
+    ----------
+    cage
+        The cage.
+    twin_folder
+        Of its trained twin.
+    buoy
+        What drives the twin: the record given, or a generated one.
+    field
+        The buoy and the virtual sensors beside it.
+    """
+
+    cage: Cage
+    twin_folder: Path
+    buoy: Record
+    field: FieldRecord
+
+
+def prepare_demonstration(
+    folder: str | Path,
+    *,
+    record: Record | None = None,
+    workers: int | None = None,
+    progress: Progress | None = None,
+) -> Demonstration:
+    """Make the demonstration twin, or find it made: campaign, virtual field, training.
+
+    The twin learns from a generated current record. Another buoy's record may drive the show
+    instead: the twin stays the same, and the sensors beside that record are virtual too.
+
+    Parameters
+    ----------
+    folder
+        Keeps the stages; after a stop the work goes on where it was.
+    record
+        Of a real buoy; None for the generated one.
+    workers
+        Processes for simulations; None for one per core.
+    progress
+        Called as (stage, done, total).
+    """
+    chain = Chain(
+        folder=Path(folder),
+        cage=Cage.named("ace"),
+        recipe=Recipe(),
+        workers=workers,
+        progress=progress,
+    )
+    twin_folder = chain.twin_folder
+    field = chain.field if record is None else chain.driven_by(record)
+    return Demonstration(cage=chain.cage, twin_folder=twin_folder, buoy=field.buoy, field=field)

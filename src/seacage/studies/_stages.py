@@ -1,0 +1,85 @@
+"""Work in stages: each is made once for its settings, and a stop in between loses nothing."""
+
+import hashlib
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from importlib import resources
+from importlib.metadata import version
+from pathlib import Path
+
+from seacage.conventions import RecordError
+
+MANIFEST = "stage.json"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stages:
+    """A folder of finished stages, ``<stage>-<key>``, and of those begun, ``.<stage>-<key>``.
+
+    The key is a hash of the stage's settings and of the code that makes it. A finished stage
+    is never written to again, so that whoever finds it can trust it.
+    """
+
+    folder: Path
+
+    def made(
+        self,
+        stage: str,
+        settings: Mapping[str, object],
+        make: Callable[[Path], None],
+        *,
+        rooms: tuple[str, ...],
+    ) -> Path:
+        """The folder of a stage, made now unless it is there.
+
+        Parameters
+        ----------
+        stage
+            Its name.
+        settings
+            All that the result depends on, as JSON takes it.
+        make
+            Fills the folder it is given. After a stop it gets that folder again with what it
+            had put there, and may go on from it.
+        rooms
+            The rooms of seacage whose code makes the stage.
+        """
+        manifest = {
+            "stage": stage,
+            "seacage": version("seacage"),
+            "code_sha256": code_sha256(rooms),
+            "settings": dict(settings),
+        }
+        text = json.dumps(manifest, indent=2, sort_keys=True) + "\n"
+        key = hashlib.sha256(text.encode()).hexdigest()[:10]
+        finished = self.folder / f"{stage}-{key}"
+        if finished.exists():
+            _check(finished, text)
+            return finished
+        begun = self.folder / f".{stage}-{key}"
+        begun.mkdir(parents=True, exist_ok=True)
+        make(begun)
+        (begun / MANIFEST).write_text(text, encoding="utf-8")
+        return begun.rename(finished)
+
+
+def code_sha256(rooms: tuple[str, ...]) -> str:
+    """Hash of the source files of some rooms: the same version may be at work on itself."""
+    digest = hashlib.sha256()
+    for room in rooms:
+        root = Path(str(resources.files("seacage") / room))
+        for path in sorted(root.rglob("*")):
+            if path.suffix in {".py", ".c", ".toml"}:
+                digest.update(path.relative_to(root).as_posix().encode() + b"\0")
+                digest.update(path.read_bytes() + b"\0")
+    return digest.hexdigest()
+
+
+def _check(finished: Path, text: str) -> None:
+    manifest = finished / MANIFEST
+    if not manifest.is_file() or manifest.read_text("utf-8") != text:
+        raise RecordError(
+            f"{finished} is not the stage that its name says; something changed in it. "
+            "Delete this folder; it will be made again."
+        )

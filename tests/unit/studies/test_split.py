@@ -1,0 +1,72 @@
+"""Days that teach and days that judge."""
+
+import numpy as np
+import pytest
+
+from seacage.conventions import InputError, Origin
+from seacage.records import FieldRecord, Record
+from seacage.studies._split import split
+
+START = np.datetime64("2020-01-18T06:00", "us")
+
+
+def record(stream: str, key: str, hours: np.ndarray) -> Record:
+    return Record(
+        stream=stream,
+        time=START + (hours * 3.6e9).astype("timedelta64[us]"),
+        values={key: np.ones(len(hours))},
+        origin=Origin.VIRTUAL_FIELD,
+    )
+
+
+@pytest.fixture
+def field() -> FieldRecord:
+    buoy = record("buoy-1", "current_speed_m_s", np.arange(0.0, 240.0, 0.2))
+    return FieldRecord(
+        cage="ace",
+        buoy=Record(
+            stream="buoy-1",
+            time=buoy.time,
+            values={**buoy.values, "current_to_deg": np.zeros(len(buoy))},
+            origin=Origin.VIRTUAL_FIELD,
+        ),
+        sensors={
+            "depth-1": record("depth-1", "depth_m", np.arange(0.0, 240.0, 0.5)),
+            "shackle-1": record(
+                "shackle-1",
+                "tension_kn",
+                np.concatenate([np.arange(24.0, 36.0, 0.5), np.arange(160.0, 184.0, 0.5)]),
+            ),
+        },
+        origin=Origin.VIRTUAL_FIELD,
+    )
+
+
+def days(sensor: Record) -> set[np.datetime64]:
+    return set(sensor.time.astype("datetime64[D]"))
+
+
+def test_no_day_of_any_sensor_is_in_both_parts(field):
+    teaching, judging = split(field, teaching_days=5)
+    for name in field.sensors:
+        assert not days(teaching.sensors[name]) & days(judging.sensors[name])
+
+
+def test_the_days_that_teach_come_first_and_every_reading_is_in_one_part(field):
+    teaching, judging = split(field, teaching_days=5)
+    for name, whole in field.sensors.items():
+        parts = [teaching.sensors[name].time, judging.sensors[name].time]
+        np.testing.assert_array_equal(np.concatenate(parts), whole.time)
+    assert max(days(teaching.sensors["depth-1"])) == np.datetime64("2020-01-22")
+
+
+def test_a_shackle_teaches_with_its_first_window_and_is_judged_on_its_second(field):
+    teaching, judging = split(field, teaching_days=5)
+    assert len(teaching.sensors["shackle-1"]) == 24
+    assert len(judging.sensors["shackle-1"]) == 48
+
+
+@pytest.mark.parametrize("teaching_days", [1, 9])
+def test_a_sensor_with_nothing_to_teach_or_to_judge_is_refused(field, teaching_days):
+    with pytest.raises(InputError, match="shackle-1 has"):
+        split(field, teaching_days=teaching_days)
