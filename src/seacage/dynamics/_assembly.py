@@ -1,0 +1,288 @@
+"""A cage as the solver sees it: nodes, bars, bends, panels, cylinders, floats and springs."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from seacage.cage import Cage
+from seacage.conventions import GRAVITY, WATER_DENSITY, InputError
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Bars:
+    """Straight elastic members; those that cannot be pushed go slack."""
+
+    ends: Int[np.ndarray, "bar 2"]
+    length: Float[np.ndarray, " bar"]  # unstretched [m]
+    stiffness: Float[np.ndarray, " bar"]  # EA [N]
+    pushed: Bool[np.ndarray, " bar"]  # carries compression too
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Bends:
+    """Joints of a pipe that resist being bent."""
+
+    nodes: Int[np.ndarray, "bend 3"]
+    stiffness: Float[np.ndarray, " bend"]  # EI over the joint's share of length [N m]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Panels:
+    """Pieces of netting that the water loads."""
+
+    corners: Int[np.ndarray, "panel 4"]
+    share: Float[np.ndarray, "panel 4"]  # of the panel's load that each corner takes [-]
+    solidity: Float[np.ndarray, " panel"]
+    twine_diameter: Float[np.ndarray, " panel"]  # grown [m]
+    outward: Float[np.ndarray, "panel 2"]  # horizontal, of the design shape [-]
+    half_width: Float[np.ndarray, " panel"]  # half the angle a panel spans round the cage [rad]
+    depth: Float[np.ndarray, " panel"]  # of the design shape [m]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Cylinders:
+    """Pipes that the water drags across."""
+
+    ends: Int[np.ndarray, "cylinder 2"]
+    drag_width: Float[np.ndarray, " cylinder"]  # drag coefficient × diameter [m]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Floats:
+    """Nodes that the water carries, as boxes of equal waterplane and volume."""
+
+    nodes: Int[np.ndarray, " float"]
+    stiffness: Float[np.ndarray, " float"]  # waterplane [N/m]
+    draft: Float[np.ndarray, " float"]  # with the node at z = 0 [m]
+    height: Float[np.ndarray, " float"]  # of the box [m]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Springs:
+    """Nodes held to the ground: the frame corners."""
+
+    nodes: Int[np.ndarray, " spring"]
+    stiffness: Float[np.ndarray, "spring 3"]  # [N/m]
+    preload: Float[np.ndarray, "spring 3"]  # force with the node in its design place [N]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Assembly:
+    """All of a cage that carries load; the frame corners follow the net's nodes."""
+
+    cage_nodes: int
+    position: Float[np.ndarray, "node 3"]  # design [m]
+    weight: Float[np.ndarray, " node"]  # submerged, upwards negative [N]
+    bars: Bars
+    bridles: slice  # which bars are the bridles
+    bends: Bends
+    panels: Panels
+    cylinders: Cylinders
+    floats: Floats
+    springs: Springs
+
+    @classmethod
+    def of(cls, cage: Cage) -> "Assembly":
+        """Put a cage together.
+
+        Raises
+        ------
+        InputError
+            A cage that cannot float.
+        """
+        position = np.vstack([cage.design_position, cage.corner_position])
+        panels = _panels(cage)
+        bars, bridles = _bars(cage, position)
+        springs = _springs(cage, position, bars, bridles)
+        weight = _weight(cage, position, panels)
+        pulled = float(np.sum(springs.preload[:, 2]))  # what the corners take, the collar bears
+        return cls(
+            cage_nodes=cage.node_count,
+            position=position,
+            weight=weight,
+            bars=bars,
+            bridles=bridles,
+            bends=_bends(cage),
+            panels=panels,
+            cylinders=_cylinders(cage),
+            floats=_floats(cage, -float(np.sum(weight)) + pulled),
+            springs=springs,
+        )
+
+
+def _bars(cage: Cage, position: Float[np.ndarray, "node 3"]) -> tuple[Bars, slice]:
+    net = _net_bars(cage)
+    hoops = [
+        _hoop(cage, 0, cage.collar.pipes * cage.collar.pipe_axial_stiffness),
+        _hoop(cage, cage.tube_ring, cage.sinker_tube.axial_stiffness),
+    ]
+    bridles = _bridle_bars(cage, position)
+    parts = [net, *hoops, bridles]
+    first = sum(len(part.length) for part in parts[:-1])
+    joined = Bars(
+        ends=np.concatenate([part.ends for part in parts]),
+        length=np.concatenate([part.length for part in parts]),
+        stiffness=np.concatenate([part.stiffness for part in parts]),
+        pushed=np.concatenate([part.pushed for part in parts]),
+    )
+    return joined, slice(first, first + len(bridles.length))
+
+
+def _net_bars(cage: Cage) -> Bars:
+    """Netting lumped into its edges: each stands for the width of net beside it."""
+    p, spokes = cage.design_position, cage.spokes
+    length = np.linalg.norm(p[cage.edges[:, 1]] - p[cage.edges[:, 0]], axis=1)
+    around = length[: cage.rings * spokes].reshape(cage.rings, spokes)
+    down = length[cage.rings * spokes :].reshape(cage.rings, spokes)  # the apex edges last
+    above = np.vstack([np.zeros((1, spokes)), down[:-1]])
+    ring_width = (above + down) / 2.0
+    below = np.vstack([around[1:], np.zeros((1, spokes))])
+    meridian_width = (around + below) / 2.0
+    netting = cage.netting.stiffness * np.concatenate([ring_width.ravel(), meridian_width.ravel()])
+    netting[cage.rings * spokes :] += cage.ropes.axial_stiffness
+    return Bars(
+        ends=cage.edges,
+        length=length,
+        stiffness=netting,
+        pushed=np.zeros(len(length), dtype=bool),
+    )
+
+
+def _hoop(cage: Cage, ring: int, stiffness: float) -> Bars:
+    ends = _around(cage, ring)
+    length = np.linalg.norm(np.diff(cage.design_position[ends], axis=1)[:, 0], axis=1)
+    count = len(length)
+    return Bars(
+        ends=ends,
+        length=length,
+        stiffness=np.full(count, stiffness),
+        pushed=np.ones(count, dtype=bool),
+    )
+
+
+def _bridle_bars(cage: Cage, position: Float[np.ndarray, "node 3"]) -> Bars:
+    """Rope and chain as one spring in series, cut so that the pretension is met at rest."""
+    line = cage.bridles
+    ends = np.column_stack([cage.node_count + cage.bridle_corner, cage.bridle_nodes])
+    span = np.linalg.norm(position[ends[:, 1]] - position[ends[:, 0]], axis=1)
+    if np.any(span <= line.chain_length):
+        raise InputError(
+            f"Cage {cage.name}: chain_length_m = {line.chain_length:g} is longer than the "
+            f"shortest bridle ({span.min():.3g} m)."
+        )
+    give = (span - line.chain_length) / line.rope_axial_stiffness
+    stiffness = span / (give + line.chain_length / line.chain_axial_stiffness)
+    length = span / (1.0 + line.pretension / stiffness) + np.array(line.length_offset)
+    return Bars(
+        ends=ends, length=length, stiffness=stiffness, pushed=np.zeros(len(span), dtype=bool)
+    )
+
+
+def _bends(cage: Cage) -> Bends:
+    collar = cage.collar.pipes * cage.collar.pipe_bending_stiffness
+    rings = ((0, collar), (cage.tube_ring, cage.sinker_tube.bending_stiffness))
+    nodes, stiffness = [], []
+    for ring, bending in rings:
+        around = cage.ring_nodes(ring)
+        nodes.append(np.column_stack([np.roll(around, 1), around, np.roll(around, -1)]))
+        stiffness.append(np.full(cage.spokes, bending / _chord(cage, ring)))
+    return Bends(nodes=np.concatenate(nodes), stiffness=np.concatenate(stiffness))
+
+
+def _panels(cage: Cage) -> Panels:
+    corners = cage.panels
+    triangle = corners[:, 2] == corners[:, 3]
+    share = np.where(triangle[:, None], [1 / 3, 1 / 3, 1 / 6, 1 / 6], [1 / 4, 1 / 4, 1 / 4, 1 / 4])
+    centre = np.einsum("pc,pcx->px", share, cage.design_position[corners])
+    solidity = np.array([cage.netting.solidity_at(-z) for z in centre[:, 2]])
+    return Panels(
+        corners=corners,
+        share=share,
+        solidity=solidity,
+        # the twine that alone would give the grown solidity, from Sn = 2d/l − (d/l)²
+        twine_diameter=cage.netting.half_mesh * (1.0 - np.sqrt(1.0 - solidity)),
+        outward=centre[:, :2] / np.linalg.norm(centre[:, :2], axis=1, keepdims=True),
+        half_width=np.full(len(corners), np.pi / cage.spokes),
+        depth=-centre[:, 2],
+    )
+
+
+def _cylinders(cage: Cage) -> Cylinders:
+    collar, tube = cage.collar, cage.sinker_tube
+    wetted = collar.pipes * collar.pipe_diameter * collar.submerged_fraction
+    widths = (collar.drag_coefficient * wetted, tube.drag_coefficient * tube.diameter)
+    return Cylinders(
+        ends=np.concatenate([_around(cage, 0), _around(cage, cage.tube_ring)]),
+        drag_width=np.repeat(widths, cage.spokes),
+    )
+
+
+def _weight(
+    cage: Cage, position: Float[np.ndarray, "node 3"], panels: Panels
+) -> Float[np.ndarray, " node"]:
+    weight = np.zeros(len(position))
+    a, b, c, d = np.moveaxis(position[panels.corners], 1, 0)
+    area = np.linalg.norm(np.cross(c - a, d - b), axis=1) / 2.0
+    submerged = (cage.netting.mass - cage.netting.displaced) * GRAVITY
+    np.add.at(weight, panels.corners, -submerged * area[:, None] * panels.share)
+    weight[cage.ring_nodes(cage.tube_ring)] -= cage.sinker_tube.weight * _arc(cage, cage.tube_ring)
+    weight[cage.ring_nodes(0)] -= cage.collar.pipes * cage.collar.pipe_mass * GRAVITY * _arc(cage, 0)
+    weight[cage.bottom_node] -= cage.tip.weight
+    return weight
+
+
+def _floats(cage: Cage, carried: float) -> Floats:
+    """The collar's buoyancy, its draft such that it carries all that hangs on it."""
+    collar = cage.collar
+    width = collar.pipes * collar.pipe_diameter
+    height = collar.pipes * collar.pipe_displaced / width
+    stiffness = WATER_DENSITY * GRAVITY * width * _arc(cage, 0)
+    draft = carried / (stiffness * cage.spokes)
+    if draft >= height:
+        raise InputError(
+            f"Cage {cage.name}: the collar cannot float. It carries {carried / 1e3:.0f} kN and "
+            f"displaces at most {stiffness * cage.spokes * height / 1e3:.0f} kN. "
+            "Check the weights of tube, tip and netting, and the pipes' volume."
+        )
+    count = cage.spokes
+    return Floats(
+        nodes=cage.ring_nodes(0),
+        stiffness=np.full(count, stiffness),
+        draft=np.full(count, draft),
+        height=np.full(count, height),
+    )
+
+
+def _springs(
+    cage: Cage, position: Float[np.ndarray, "node 3"], bars: Bars, bridles: slice
+) -> Springs:
+    """The corners' springs, loaded so that the pretensioned bridles keep them in place."""
+    ends = bars.ends[bridles]
+    along = position[ends[:, 1]] - position[ends[:, 0]]
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    preload = np.zeros((len(cage.corner_position), 3))
+    np.add.at(preload, cage.bridle_corner, -cage.bridles.pretension * along)
+    frame = cage.frame
+    horizontal, vertical = frame.corner_stiffness_horizontal, frame.corner_stiffness_vertical
+    return Springs(
+        nodes=cage.node_count + np.arange(len(preload)),
+        stiffness=np.tile([horizontal, horizontal, vertical], (len(preload), 1)),
+        preload=preload,
+    )
+
+
+def _around(cage: Cage, ring: int) -> Int[np.ndarray, "spoke 2"]:
+    nodes = cage.ring_nodes(ring)
+    return np.column_stack([nodes, np.roll(nodes, -1)])
+
+
+def _chord(cage: Cage, ring: int) -> float:
+    first, second = cage.design_position[cage.ring_nodes(ring)[:2]]
+    return float(np.linalg.norm(second - first))
+
+
+def _arc(cage: Cage, ring: int) -> float:
+    """True length of ring for each node [m]."""
+    radius = np.linalg.norm(cage.design_position[cage.node(ring, 0), :2])
+    return float(2.0 * np.pi * radius / cage.spokes)

@@ -1,0 +1,81 @@
+"""From a sea state to the steady flow on each panel: wake, law and mean effect of waves."""
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.dynamics._assembly import Assembly, Panels
+from seacage.dynamics._loads import DYNAMIC, SteadyFlow
+from seacage.dynamics._screens import Law, Screen, cylinder_drag, facing
+
+
+def steady_flow(
+    assembly: Assembly,
+    current_velocity: Float[np.ndarray, "case 2"],
+    *,
+    law: Law,
+    wake: bool = True,
+    pipe_drag: bool = True,
+    wave_variance: Float[np.ndarray, "case panel"] | None = None,
+) -> SteadyFlow:
+    """What a uniform current (and, if given, waves) does to each panel.
+
+    Parameters
+    ----------
+    current_velocity
+        East and north [m/s].
+    law
+        The screen law.
+    wake
+        Whether the down-stream half of the net meets slower water.
+    pipe_drag
+        Whether the current drags on collar and sinker tube.
+    wave_variance
+        Of the waves' horizontal velocity at each panel [m2/s2]. Their mean effect on a
+        net that stands still is taken as stochastic linearisation gives it, with
+        |u| raised to sqrt(|u|² + 8σ²/π). A net that follows the water feels less.
+
+    References
+    ----------
+    Borgman (1967) for the linearised drag of a Gaussian sea.
+    """
+    screen = Screen.of(law, assembly.panels.solidity, assembly.panels.twine_diameter)
+    speed = np.linalg.norm(current_velocity, axis=1)
+    unit = current_velocity / np.where(speed > 0.0, speed, 1.0)[:, None]
+    direction = np.column_stack([unit, np.zeros(len(speed))])
+    panel_speed = np.tile(speed[:, None], (1, len(screen.solidity)))
+    if wake:
+        slowed = np.stack([screen.wake(value) for value in speed])
+        panel_speed *= 1.0 - (1.0 - slowed) * _downstream(assembly.panels, unit)
+    variance = 0.0 if wave_variance is None else wave_variance
+    felt = np.sqrt(panel_speed**2 + 8.0 / np.pi * variance)
+    return SteadyFlow(
+        direction=direction,
+        pressure=DYNAMIC * felt * panel_speed,
+        pipe_pressure=DYNAMIC * speed**2 * float(pipe_drag),
+        **_coefficients(screen, felt),
+    )
+
+
+def _coefficients(
+    screen: Screen, speed: Float[np.ndarray, "case panel"]
+) -> dict[str, Float[np.ndarray, "case panel"]]:
+    """The law's numbers at a known speed, in the form that ``SteadyFlow`` names."""
+    like = np.ones_like(speed)
+    if screen.law == "kristiansen-faltinsen":
+        cd0, cl0 = facing(screen.solidity, cylinder_drag(screen.twine_reynolds * speed))
+        values = (0.0 * like, 0.9 * cd0, 0.1 * cd0, cl0, 0.2 * like)
+    else:
+        values = (0.04 * like, screen.slope * like, 0.0 * like, screen.lift * like, 0.0 * like)
+    return dict(zip(("constant", "slope", "third", "lift", "lift_second"), values, strict=True))
+
+
+def _downstream(
+    panels: Panels, unit: Float[np.ndarray, "case 2"]
+) -> Float[np.ndarray, "case panel"]:
+    """Share of each panel on the down-stream half of the design shape, 0 to 1.
+
+    The half's edge cuts a panel where it falls, so that turning the current moves the
+    loads without a jump.
+    """
+    across = np.arcsin(np.clip(unit @ panels.outward.T, -1.0, 1.0))
+    return np.clip(0.5 + across / (2.0 * panels.half_width), 0.0, 1.0)

@@ -1,0 +1,287 @@
+"""The compiled kernel, loaded and fed by ctypes."""
+
+import ctypes
+import platform
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from seacage.conventions import SeacageError
+from seacage.dynamics._assembly import Assembly
+from seacage.dynamics._loads import SteadyFlow
+
+SUFFIX = {"Darwin": ".dylib", "Windows": ".dll"}.get(platform.system(), ".so")
+
+_Doubles = ctypes.POINTER(ctypes.c_double)
+_Integers = ctypes.POINTER(ctypes.c_int32)
+
+
+class _Struct(ctypes.Structure):
+    """A C struct that keeps the arrays it points to alive."""
+
+    @classmethod
+    def filled(cls, *values: Any) -> "_Struct":
+        arrays = [np.ascontiguousarray(v) for v in values if isinstance(v, np.ndarray)]
+        kept = iter(arrays)
+        struct = cls(
+            *(_pointer(next(kept)) if isinstance(v, np.ndarray) else v for v in values)
+        )
+        struct.kept = arrays
+        return struct
+
+
+def _pointer(array: np.ndarray) -> Any:
+    kind = _Integers if array.dtype == np.int32 else _Doubles
+    return array.ctypes.data_as(kind)
+
+
+class _Assembly(_Struct):
+    _fields_ = [
+        *((name, ctypes.c_int32) for name in ("nodes", "bars", "bends", "panels")),
+        *((name, ctypes.c_int32) for name in ("cylinders", "floats", "springs")),
+        *((name, _Integers) for name in ("bar_ends", "bend_nodes", "panel_corners")),
+        *((name, _Integers) for name in ("cylinder_ends", "float_nodes", "spring_nodes")),
+        *((name, _Doubles) for name in ("weight", "bar_length", "bar_stiffness", "bar_least")),
+        *((name, _Doubles) for name in ("bend_stiffness", "panel_share", "cylinder_width")),
+        *((name, _Doubles) for name in ("float_stiffness", "float_draft", "float_height")),
+        *((name, _Doubles) for name in ("spring_place", "spring_stiffness", "spring_preload")),
+    ]
+
+
+class _Flow(_Struct):
+    _fields_ = [(name, _Doubles) for name in ("direction", "panel", "pipe_pressure")]
+
+
+class _Relaxation(_Struct):
+    _fields_ = [
+        *((name, _Doubles) for name in ("inverse_mass", "soft_rate", "true_rate")),
+        *((name, ctypes.c_double) for name in ("tolerance", "progress", "most_damping")),
+        *((name, ctypes.c_int32) for name in ("patience", "steps", "rounds")),
+    ]
+
+
+class _Relaxing(_Struct):
+    _fields_ = [
+        (name, _Doubles)
+        for name in ("position", "velocity", "carried")
+        + ("damping", "best", "stalled", "rounds", "residual")
+    ]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Relaxation:
+    """How cases are brought to rest; ``seacage_relax`` in the kernel says what it does.
+
+    Attributes
+    ----------
+    inverse_mass
+        Fictitious, of each node; 0 holds it [1/kg].
+    soft_rate
+        Spring rate of each bar while relaxing [N/m].
+    tolerance
+        Largest force left on a node of a case that is done [N].
+    progress, patience, most_damping
+        After ``patience`` rounds without a residual below ``progress`` times the best, a
+        case loses more of its velocity in each step, up to ``most_damping``.
+    steps
+        Steps of a round.
+    """
+
+    inverse_mass: Float[np.ndarray, " node"]
+    soft_rate: Float[np.ndarray, " bar"]
+    tolerance: float
+    progress: float
+    patience: int
+    most_damping: float
+    steps: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Relaxing:
+    """Cases on their way to rest. A copy can go on later, beside other cases.
+
+    ``best``, ``stalled`` and ``rounds`` are the kernel's own account of each case.
+    """
+
+    position: Float[np.ndarray, "case node 3"]
+    velocity: Float[np.ndarray, "case node 3"]
+    carried: Float[np.ndarray, "case bar"]
+    damping: Float[np.ndarray, " case"]
+    best: Float[np.ndarray, " case"]
+    stalled: Float[np.ndarray, " case"]
+    rounds: Float[np.ndarray, " case"]
+    residual: Float[np.ndarray, " case"]
+
+    @classmethod
+    def begun(
+        cls, position: Float[np.ndarray, "case node 3"], bars: int, damping: Float[np.ndarray, " case"]
+    ) -> "Relaxing":
+        """Cases at rest in a first shape."""
+        zero, much = np.zeros(len(damping)), np.full(len(damping), 1e11)
+        return cls(
+            position=position,
+            velocity=np.zeros_like(position),
+            carried=np.zeros((len(damping), bars)),
+            damping=damping,
+            best=much,
+            stalled=zero,
+            rounds=zero.copy(),
+            residual=much.copy(),
+        )
+
+    def cases(self, some: Int[np.ndarray, " some"]) -> "Relaxing":
+        """Copies of some of the cases."""
+        return Relaxing(**{name: getattr(self, name)[some] for name in self.__slots__})
+
+    def take(self, some: Int[np.ndarray, " some"], other: "Relaxing") -> None:
+        """Take the state of some cases from elsewhere."""
+        for name in self.__slots__:
+            getattr(self, name)[some] = getattr(other, name)
+
+
+class Kernel:
+    """One loaded library; a call releases the interpreter, so threads run side by side."""
+
+    def __init__(self, path: Path) -> None:
+        self.library = ctypes.CDLL(str(path))
+        self.lanes: int = self.library.seacage_lanes()
+        self.library.seacage_forces.restype = None
+        self.library.seacage_relax.restype = None
+
+    def forces(
+        self, assembly: Assembly, flow: SteadyFlow, position: Float[np.ndarray, "case node 3"]
+    ) -> Float[np.ndarray, "case node 3"]:
+        """All nodal forces, as ``nodal_force`` defines them, for at most ``lanes`` cases [N]."""
+        rate = assembly.bars.stiffness / assembly.bars.length
+        nothing = np.zeros((len(rate), self.lanes))
+        laned = self.laned(position)
+        force = np.zeros_like(laned)
+        self.library.seacage_forces(
+            ctypes.byref(_assembly(assembly)),
+            ctypes.byref(self.flow(flow)),
+            _pointer(rate),
+            _pointer(nothing),
+            _pointer(np.empty_like(nothing)),
+            _pointer(laned),
+            _pointer(force),
+        )
+        return np.moveaxis(force, -1, 0)[: len(position)]
+
+    def relaxed(
+        self,
+        assembly: Assembly,
+        flow: SteadyFlow,
+        state: Relaxing,
+        relaxation: Relaxation,
+        *,
+        rounds: int,
+    ) -> Relaxing:
+        """At most ``lanes`` cases, so many rounds nearer to rest."""
+        rate = assembly.bars.stiffness / assembly.bars.length
+        r = relaxation
+        laned = [self.laned(getattr(state, name)) for name in Relaxing.__slots__]
+        position = laned[0]
+        self.library.seacage_relax(
+            ctypes.byref(_assembly(assembly)),
+            ctypes.byref(self.flow(flow)),
+            ctypes.byref(
+                _Relaxation.filled(
+                    *(r.inverse_mass, r.soft_rate, rate, r.tolerance, r.progress),
+                    *(r.most_damping, r.patience, r.steps, rounds),
+                )
+            ),
+            ctypes.byref(_Relaxing.filled(*laned)),
+            _pointer(np.empty((len(rate), self.lanes))),
+            _pointer(np.empty_like(position)),
+        )
+        cases = len(state.damping)
+        return Relaxing(
+            **{
+                name: np.moveaxis(values, -1, 0)[:cases]
+                for name, values in zip(Relaxing.__slots__, laned, strict=True)
+            }
+        )
+
+    def flow(self, flow: SteadyFlow) -> _Struct:
+        """The flow as the kernel reads it."""
+        panel = np.stack(
+            [flow.pressure, flow.constant, flow.slope, flow.third, flow.lift, flow.lift_second],
+            axis=-1,
+        )
+        return _Flow.filled(*map(self.laned, (flow.direction, panel, flow.pipe_pressure)))
+
+    def laned(self, values: Float[np.ndarray, "case *shape"]) -> Float[np.ndarray, "*shape lane"]:
+        """Cases as the last axis, the lanes left over filled with the first case."""
+        spare = np.repeat(values[:1], self.lanes - len(values), axis=0)
+        return np.ascontiguousarray(np.moveaxis(np.concatenate([values, spare]), 0, -1))
+
+
+def _assembly(assembly: Assembly) -> _Struct:
+    a = assembly
+    counts = (
+        len(part)
+        for part in (
+            a.position,
+            a.bars.length,
+            a.bends.stiffness,
+            a.panels.solidity,
+            a.cylinders.drag_width,
+            a.floats.draft,
+            a.springs.nodes,
+        )
+    )
+    indices: Sequence[np.ndarray] = (
+        a.bars.ends,
+        a.bends.nodes,
+        a.panels.corners,
+        a.cylinders.ends,
+        a.floats.nodes,
+        a.springs.nodes,
+    )
+    least = np.where(a.bars.pushed, -np.inf, 0.0)
+    return _Assembly.filled(
+        *counts,
+        *(index.astype(np.int32) for index in indices),
+        a.weight,
+        a.bars.length,
+        a.bars.stiffness,
+        least,
+        a.bends.stiffness,
+        a.panels.share,
+        a.cylinders.drag_width,
+        a.floats.stiffness,
+        a.floats.draft,
+        a.floats.height,
+        a.position[a.springs.nodes],
+        a.springs.stiffness,
+        a.springs.preload,
+    )
+
+
+@lru_cache(maxsize=1)
+def kernel() -> Kernel:
+    """The best kernel built for this machine.
+
+    Raises
+    ------
+    SeacageError
+        Where none was built.
+    """
+    room = Path(__file__).parent
+    native = room / f"_kernel_native{SUFFIX}"
+    if native.exists():
+        return Kernel(native)
+    built = {level: room / f"_kernel_x86-64-v{level}{SUFFIX}" for level in (4, 3, 2)}
+    built = {level: path for level, path in built.items() if path.exists()}
+    if not built:
+        raise SeacageError(
+            "The compiled kernel is missing: seacage was not installed but copied. "
+            "Install it with pip (a C compiler is fetched where there is none)."
+        )
+    able = ctypes.CDLL(str(built[min(built)])).seacage_level()
+    return Kernel(next(path for level, path in built.items() if level <= able))
