@@ -72,14 +72,14 @@ def virtual_field(
     progress
         Called as ("virtual field", done, total) in equilibria.
     """
-    with nullcontext(responses) if responses else tempfile.TemporaryDirectory() as folder:
-        answers, error = true_responses(
-            cage, hidden, store=Path(folder), workers=workers, progress=progress
-        )
     rng, *sensor_rngs = np.random.default_rng(seed).spawn(1 + len(cage.sensor_names))
     time = np.arange(buoy.time[0], buoy.time[-1], np.timedelta64(round(every_s * 1e6), "us"))
     seconds = (time - buoy.time[0]) / np.timedelta64(1, "s")
     velocity = current_at_cage(buoy, seconds, hidden=hidden, rng=rng)
+    with nullcontext(responses) if responses else tempfile.TemporaryDirectory() as folder:
+        answers, error = true_responses(
+            cage, hidden, store=Path(folder), workers=workers, progress=progress
+        )
     exact = answers.at(velocity, hidden.fouling.grown(seconds / _DAY))
     sensors = _exact_sensors(cage, time, exact)
     truth = FieldRecord(

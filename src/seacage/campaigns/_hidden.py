@@ -6,13 +6,14 @@ import tomllib
 from dataclasses import dataclass, fields, is_dataclass
 from importlib import resources
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, Literal, Self, get_args, get_origin
 
 import numpy as np
 from jaxtyping import Float
 
 from seacage.cage import Cage
 from seacage.conventions import InputError
+from seacage.dynamics import Law
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -112,7 +113,7 @@ class Hidden:
     ``Hidden.read()`` is the one of cage ``ace``; its file says what each number means.
     """
 
-    law: str
+    law: Law
     netting: HiddenNetting
     fouling: HiddenFouling
     bridles: HiddenBridles
@@ -174,8 +175,12 @@ def _built(kind: Any, table: dict[str, Any], *, where: str) -> Any:
 def _value(kind: Any, value: Any, *, where: str) -> Any:
     if is_dataclass(kind):
         return _built(kind, value if isinstance(value, dict) else {}, where=where)
-    if kind is str:
-        return str(value)
+    if kind is str:  # the hash, which no file gives
+        return value
+    if get_origin(kind) is Literal:
+        if value not in get_args(kind):
+            raise InputError(f"{where}: {value!r} is none of {', '.join(get_args(kind))}.")
+        return value
     for number in value if isinstance(value, list) else [value]:
         if not (isinstance(number, int | float) and math.isfinite(number)):
             raise InputError(f"{where}: {number!r} is no finite number.")

@@ -13,7 +13,7 @@ from seacage.campaigns._run import campaign_key, run_campaign
 from seacage.conventions import Progress, Result, SeacageError
 from seacage.records import CampaignRecord
 
-_SPEEDS = (0.1, 0.2, 0.3, 0.4, 0.55, 0.7, 0.9, 1.15, 1.45, 1.75)
+_SPEEDS = (0.1, 0.2, 0.3, 0.42, 0.55, 0.7, 0.9, 1.1, 1.35, 1.6)
 _DIRECTIONS = tuple(22.5 * number for number in range(16))
 _GROWTHS = (0.0, 0.5, 1.0)
 _HELD_OUT_GROWTH = 0.25

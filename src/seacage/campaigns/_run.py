@@ -17,6 +17,7 @@ from seacage.cage import Cage
 from seacage.campaigns._plan import Plan
 from seacage.campaigns._pool import available_cores, mapped
 from seacage.conventions import InputError, Progress, Result
+from seacage.dynamics import Law
 from seacage.ocean import SeaState
 from seacage.records import (
     NOT_RUN,
@@ -46,7 +47,7 @@ def run_campaign(
     out: str | Path,
     *,
     workers: int | None = None,
-    law: str = "kristiansen-faltinsen",
+    law: Law = "kristiansen-faltinsen",
     progress: Progress | None = None,
 ) -> CampaignRecord:
     """Settle a cage in every sea state of a plan, into a Zarr store that outlives a kill.
@@ -99,7 +100,7 @@ def run_campaign(
     return read_campaign(store)
 
 
-def campaign_key(cage: Cage, plan: Plan, law: str) -> str:
+def campaign_key(cage: Cage, plan: Plan, law: Law) -> str:
     """A short name that only campaigns with the same numbers share."""
     attributes = _attributes(cage, plan, law)
     same = json.dumps([attributes[name] for name in _IDENTITY])
@@ -187,7 +188,7 @@ class _Block:
 
     first: int
     cage_toml: str
-    law: str
+    law: Law
     seas: tuple[SeaState, ...]
 
 
@@ -208,7 +209,7 @@ def _cage(toml: str) -> Cage:
     return Cage.from_toml(toml)
 
 
-def _attributes(cage: Cage, plan: Plan, law: str) -> dict[str, str | float]:
+def _attributes(cage: Cage, plan: Plan, law: Law) -> dict[str, str | float]:
     """Of the store: what was asked, by what, in the words of ACDD-1.3 where it has some."""
     number = version("seacage")
     return {
