@@ -112,9 +112,11 @@ class FieldRecord:
                 hidden_sha256=description["hidden_sha256"],
                 notes=tuple(description["notes"]),
             )
-        except (KeyError, TypeError) as error:
+        except InputError:
+            raise
+        except (KeyError, TypeError, ValueError) as error:
             raise RecordError(
-                f"{folder / _FILE}: the field record's {error} is missing or of another kind. "
+                f"{folder / _FILE}: an entry is missing or of another kind ({error}). "
                 "Write the field record anew."
             ) from error
 

@@ -42,8 +42,9 @@ class Record:
 
     stream: str
     time: Shaped[np.ndarray, " t"]
-    values: Mapping[str, Shaped[np.ndarray, " t"]]
-    flags: Mapping[str, Shaped[np.ndarray, " t"]] = field(default_factory=dict[str, np.ndarray])
+    # Lengths are compared below, with a sentence, so the types leave them open.
+    values: Mapping[str, Shaped[np.ndarray, " _"]]
+    flags: Mapping[str, Shaped[np.ndarray, " _"]] = field(default_factory=dict[str, np.ndarray])
     origin: Origin
     notes: tuple[str, ...] = ()
 

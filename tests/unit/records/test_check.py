@@ -1,0 +1,195 @@
+"""Each check, each flag, each sentence."""
+
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+
+import numpy as np
+import pytest
+
+from seacage.conventions import Flag, Origin
+from seacage.records import (
+    DEFAULT_LIMITS,
+    QualityState,
+    Record,
+    Sample,
+    check_record,
+    check_sample,
+    instant,
+)
+
+NOON = datetime(2018, 1, 26, 12, tzinfo=UTC)
+
+
+def record(*, every_s=720.0, **columns):
+    size = len(next(iter(columns.values())))
+    step = np.timedelta64(round(every_s * 1e6), "us")
+    return Record(
+        stream="buoy-1",
+        time=instant(NOON) + np.arange(size) * step,
+        values={key: np.array(values, dtype=float) for key, values in columns.items()},
+        origin=Origin.MEASURED,
+    )
+
+
+def flags(checked, key):
+    return [Flag(flag).name for flag in checked.flags[key]]
+
+
+def test_a_live_sample_fails_with_the_sentence_of_the_house():
+    sample = Sample(
+        stream="buoy-1", t=NOON, values={"current_speed_m_s": 0.5, "current_to_deg": 412.0}
+    )
+    _, checked = check_sample(QualityState(), sample)
+    assert checked.flags == {"current_speed_m_s": Flag.GOOD, "current_to_deg": Flag.FAIL}
+    assert checked.values == sample.values
+    (remark,) = checked.remarks
+    assert remark == (
+        "buoy-1: current_to_deg = 412 is outside [0, 360]. Flagged 4 (fail); the raw value is kept."
+    )
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "flag"),
+    [
+        ("current_speed_m_s", -0.01, "FAIL"),
+        ("current_speed_m_s", 0.0, "GOOD"),
+        ("current_speed_m_s", 2.5, "SUSPECT"),
+        ("current_speed_m_s", 50.0, "FAIL"),
+        ("current_to_deg", -1.0, "FAIL"),
+        ("wave_from_deg", 361.0, "FAIL"),
+        ("hs_m", -0.1, "FAIL"),
+        ("hs_m", 13.0, "SUSPECT"),
+        ("tp_s", 99.0, "FAIL"),
+        ("tension_kn", -0.4, "GOOD"),
+        ("tension_kn", 12000.0, "FAIL"),
+        ("depth_m", 7000.0, "FAIL"),
+        ("depth_m", float("nan"), "MISSING"),
+        ("depth_m", float("inf"), "FAIL"),
+    ],
+)
+def test_gross_range(key, value, flag):
+    assert flags(check_record(record(**{key: [value]})), key) == [flag]
+
+
+def test_a_sea_too_steep_to_stand_fails_height_and_period():
+    checked = check_record(record(hs_m=[3.0, 3.0], tp_s=[2.1, 8.7], wave_from_deg=[270.0, 270.0]))
+    assert flags(checked, "hs_m") == ["FAIL", "GOOD"]
+    assert flags(checked, "tp_s") == ["FAIL", "GOOD"]
+    assert flags(checked, "wave_from_deg") == ["GOOD", "GOOD"]
+    assert "steepness 0.44, above 0.067 (DNV-RP-C205)" in checked.notes[0]
+
+
+def test_a_calm_has_no_steepness():
+    assert flags(check_record(record(hs_m=[0.0], tp_s=[0.0])), "tp_s") == ["GOOD"]
+
+
+def test_a_height_without_a_period_is_judged_alone():
+    checked = check_record(record(hs_m=[1.0], tp_s=[np.nan]))
+    assert flags(checked, "hs_m") == ["GOOD"]
+    assert flags(checked, "tp_s") == ["MISSING"]
+
+
+def test_a_current_that_jumps_is_suspect_there_and_back():
+    checked = check_record(
+        record(current_speed_m_s=[0.3, 1.5, 0.3], current_to_deg=[90.0, 90.0, 90.0])
+    )
+    assert flags(checked, "current_speed_m_s") == ["GOOD", "SUSPECT", "SUSPECT"]
+    assert flags(checked, "current_to_deg") == ["GOOD", "SUSPECT", "SUSPECT"]
+    assert "changed by 1.2 in 720 s (limit 0.516)" in checked.notes[0]
+
+
+def test_a_current_that_turns_through_north_does_not_jump():
+    checked = check_record(record(current_speed_m_s=[0.9] * 2, current_to_deg=[359.0, 1.0]))
+    assert flags(checked, "current_to_deg") == ["GOOD", "GOOD"]
+
+
+def test_a_current_that_turns_back_at_once_jumps_though_its_speed_stays():
+    checked = check_record(record(current_speed_m_s=[0.9] * 2, current_to_deg=[0.0, 180.0]))
+    assert flags(checked, "current_speed_m_s") == ["GOOD", "SUSPECT"]
+
+
+def test_a_slack_current_may_turn_as_it_likes():
+    checked = check_record(record(current_speed_m_s=[0.02] * 2, current_to_deg=[0.0, 180.0]))
+    assert flags(checked, "current_to_deg") == ["GOOD", "GOOD"]
+
+
+def test_a_height_that_jumps_is_suspect_and_period_and_direction_may_jump():
+    checked = check_record(record(hs_m=[1.0, 5.0], tp_s=[14.0, 9.0], wave_from_deg=[10.0, 190.0]))
+    assert flags(checked, "hs_m") == ["GOOD", "SUSPECT"]
+    assert flags(checked, "tp_s") == flags(checked, "wave_from_deg") == ["GOOD", "GOOD"]
+
+
+def test_a_failed_value_is_nothing_to_compare_with():
+    checked = check_record(record(depth_m=[7.0, 5000.0, 7.1]))
+    assert flags(checked, "depth_m") == ["GOOD", "FAIL", "GOOD"]
+
+
+def test_the_first_value_after_a_silence_is_suspect_and_not_compared():
+    values = {"tension_kn": [10.0, 90.0, 90.5]}
+    quiet = record(every_s=3601.0, **values)
+    checked = check_record(replace(quiet, time=quiet.time + np.array([0, 0, -3600]) * 1_000_000))
+    assert flags(checked, "tension_kn") == ["GOOD", "SUSPECT", "GOOD"]
+    assert "comes after 1 h of silence (limit 1 h)" in checked.notes[0]
+
+
+def test_missing_values_are_a_silence_too():
+    checked = check_record(record(every_s=2400.0, depth_m=[7.0, np.nan, 7.0]))
+    assert flags(checked, "depth_m") == ["GOOD", "MISSING", "SUSPECT"]
+
+
+def test_a_current_that_stands_still_is_suspect_and_then_fails():
+    checked = check_record(record(current_speed_m_s=[0.3] * 17, current_to_deg=[40.0] * 17))
+    # 12-minute steps: an hour is 5 steps, three hours are 15
+    expected = ["GOOD"] * 5 + ["SUSPECT"] * 10 + ["FAIL"] * 2
+    assert flags(checked, "current_speed_m_s") == flags(checked, "current_to_deg") == expected
+
+
+def test_a_current_whose_direction_lives_does_not_stand_still():
+    to = 40.0 + np.arange(17) % 3
+    checked = check_record(record(current_speed_m_s=[0.3] * 17, current_to_deg=to))
+    assert flags(checked, "current_speed_m_s") == ["GOOD"] * 17
+
+
+def test_a_value_held_between_rare_readings_does_not_stand_still():
+    checked = check_record(
+        record(every_s=2.0, current_speed_m_s=[0.3] * 360, current_to_deg=[1] * 360)
+    )
+    assert set(flags(checked, "current_to_deg")) == {"GOOD"}
+
+
+def test_two_equal_readings_are_no_flat_line_however_far_apart():
+    checked = check_record(
+        record(every_s=3 * 3600.0, current_speed_m_s=[0.3, 0.3], current_to_deg=[1.0, 1.0])
+    )
+    assert flags(checked, "current_speed_m_s") == ["GOOD", "GOOD"]
+
+
+def test_a_late_sample_is_judged_alone_and_leaves_the_state():
+    def depth(minutes, value):
+        return Sample(
+            stream="depth-1", t=NOON + timedelta(minutes=minutes), values={"depth_m": value}
+        )
+
+    state, _ = check_sample(QualityState(), depth(0, 7.0))
+    state, _ = check_sample(state, depth(2, 7.0))
+    after, late = check_sample(state, depth(1, 25.0))
+    assert late.flags == {"depth_m": Flag.GOOD}
+    assert after == state
+    _, wrong = check_sample(state, depth(1, -25.0))
+    assert wrong.flags == {"depth_m": Flag.FAIL}
+
+
+def test_a_site_may_give_its_own_limits():
+    ranges = DEFAULT_LIMITS.ranges | {
+        "depth_m": replace(DEFAULT_LIMITS.ranges["depth_m"], fail=(0.0, 40.0))
+    }
+    limits = replace(DEFAULT_LIMITS, ranges=ranges)
+    assert flags(check_record(record(depth_m=[60.0]), limits), "depth_m") == ["FAIL"]
+    assert flags(check_record(record(depth_m=[60.0])), "depth_m") == ["GOOD"]
+
+
+def test_checking_twice_changes_nothing():
+    once = check_record(record(depth_m=[7.0, 5000.0, np.nan, 7.1]))
+    twice = check_record(once)
+    assert twice.notes == once.notes
+    assert flags(twice, "depth_m") == flags(once, "depth_m")
