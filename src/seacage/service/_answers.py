@@ -278,4 +278,3 @@ def _number(value: float | None, decimals: int = _DECIMALS) -> float | None:
 
 def _finite(value: float) -> float | None:
     return value if math.isfinite(value) else None
-

@@ -16,8 +16,8 @@ from seacage.service._guard import Shield
 from seacage.service._live import LiveCage
 from seacage.service._metrics import Metrics
 from seacage.service._routes import around, cages
-from seacage.service._stream import sockets
 from seacage.service._store import Store, StoreError
+from seacage.service._stream import sockets
 from seacage.service._tokens import Tokens
 
 _PAGE = Path(__file__).parent / "page"

@@ -1,8 +1,19 @@
-"""The command line: one group per file, each imported only for what it needs."""
+"""The command line: one file per group, each importing what it needs when it is called."""
 
 import typer
 
-from seacage.service._commands._serve import serve
+from seacage.service._commands import (
+    _campaign,
+    _doctor,
+    _field,
+    _replay,
+    _score,
+    _serve,
+    _settle,
+    _study,
+    _token,
+    _train,
+)
 from seacage.service._console import EXIT_CODES
 
 app = typer.Typer(
@@ -19,7 +30,16 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-app.command("serve")(serve)
+app.command()(_settle.settle)
+app.add_typer(_campaign.group, name="campaign")
+app.add_typer(_field.group, name="field")
+app.command()(_train.train)
+app.command()(_score.score)
+app.add_typer(_study.group, name="study")
+app.command()(_serve.serve)
+app.command()(_replay.replay)
+app.add_typer(_token.group, name="token")
+app.command()(_doctor.doctor)
 
 
 def main() -> None:

@@ -2,6 +2,7 @@
 
 import functools
 import json
+import re
 import sys
 import time
 from collections.abc import Callable, Generator, Mapping, Sequence
@@ -55,7 +56,13 @@ def guarded(command: Callable[P, R]) -> Callable[P, R]:
         except KeyboardInterrupt as error:
             raise stopped("Interrupted; run it again to go on.", Exit.INTERRUPTED) from error
 
+    run.__doc__ = _with_examples_kept(command.__doc__ or "")
     return run
+
+
+def _with_examples_kept(text: str) -> str:
+    # A backspace alone on a line tells typer not to rewrap the paragraph below it.
+    return re.sub(r"\n( *)Example", "\n\\1\b\n\\1Example", text, count=1)
 
 
 def stopped(sentence: str, code: Exit) -> typer.Exit:
@@ -93,7 +100,7 @@ def without_nan(value: object) -> object:
     if isinstance(value, Mapping):
         return {str(key): without_nan(item) for key, item in value.items()}  # pyright: ignore[reportUnknownVariableType, reportUnknownArgumentType]
     if isinstance(value, list | tuple):
-        return [without_nan(item) for item in value]  # pyright: ignore[reportUnknownVariableType]
+        return [without_nan(item) for item in value]  # pyright: ignore[reportUnknownVariableType, reportUnknownArgumentType]
     return value
 
 

@@ -97,7 +97,9 @@ class Shield:
             message = await receive()
             received += len(message.get("body", b""))
             if received > BODY_LIMIT:
-                raise HTTPException(413, f"A request may have {BODY_LIMIT} bytes. Send less at once.")
+                raise HTTPException(
+                    413, f"A request may have {BODY_LIMIT} bytes. Send less at once."
+                )
             return message
 
         async def ruled(message: Message) -> None:

@@ -2,8 +2,8 @@
 
 import asyncio
 from collections import deque
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Generator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import cached_property
 from typing import assert_never
@@ -124,10 +124,8 @@ class LiveCage:
     async def run(self) -> None:
         """Step the twin for ever."""
         while True:
-            try:
+            with suppress(TimeoutError):
                 await asyncio.wait_for(self._arrived.wait(), self._tick_s)
-            except TimeoutError:
-                pass
             self._arrived.clear()
             async with self._stepping:
                 samples = list(self._pending)
@@ -137,7 +135,7 @@ class LiveCage:
                 self._publish(answered)
 
     @contextmanager
-    def watched(self) -> Iterator[Mailbox[Snapshot]]:
+    def watched(self) -> Generator[Mailbox[Snapshot]]:
         """Lend a mailbox that gets every snapshot, the present one first."""
         mailbox = Mailbox[Snapshot]()
         mailbox.put(self.snapshot)
@@ -161,7 +159,7 @@ class LiveCage:
 
     def _stepped(self, samples: Sequence[Sample]) -> tuple[Answered, list[Event]]:
         """Step through the samples, then tick: the newest answer is as old as this call."""
-        noticed: list[Event] = []
+        noticed, events = list[Event](), tuple[Event, ...]()
         timer = self._metrics.steps.labels(self.name)
         for sample in (*samples, None):
             with timer.time():
@@ -195,9 +193,7 @@ class LiveCage:
 
     def _shown(self, answered: Answered) -> Snapshot:
         latest = latest_of(self.twin, self._state)
-        state = state_of(
-            self.name, self.twin, answered, latest=latest, silent=self._state.silent
-        )
+        state = state_of(self.name, self.twin, answered, latest=latest, silent=self._state.silent)
         return Snapshot(answered=answered, state=state)
 
 

@@ -59,9 +59,7 @@ def history_between(
     limit: int,
 ) -> History:
     """Answer to the last of a buoy's readings in a span, and show what the sensors read."""
-    said = store.samples(
-        cage, stream=twin.buoy, start=start, end=end, limit=limit, newest=True
-    )
+    said = store.samples(cage, stream=twin.buoy, start=start, end=end, limit=limit, newest=True)
     buoy = record_of(twin.buoy, said, twin.origin)
     since = said[0].t if said else start
     measured = {

@@ -64,9 +64,7 @@ To = Annotated[AwareDatetime | None, Query(alias="to", description="Last time, l
 Limit = Annotated[int, Query(ge=1, le=10_000, description="At most so many.")]
 Stream = Annotated[str | None, Query(max_length=64, description="All streams if left out.")]
 
-around = APIRouter(
-    dependencies=[Depends(Permit("read", open_to_loopback=True))], tags=["service"]
-)
+around = APIRouter(dependencies=[Depends(Permit("read", open_to_loopback=True))], tags=["service"])
 cages = APIRouter(prefix="/api/v1/cages", tags=["cages"])
 may_read, may_ingest = [Depends(Permit("read"))], [Depends(Permit("ingest"))]
 
@@ -160,9 +158,7 @@ def get_topology(live: Live) -> Topology:
 @cages.get("/{cage}/history", dependencies=may_read, responses=_READ)
 def get_history(live: Live, start: From = None, end: To = None, limit: Limit = 1000) -> History:
     """Answer to the last of the buoy's readings in a span, and show what the sensors read."""
-    return history_between(
-        live.twin, live.store, live.name, start=start, end=end, limit=limit
-    )
+    return history_between(live.twin, live.store, live.name, start=start, end=end, limit=limit)
 
 
 def _counted(request: Request, cage: str, receipt: Receipt) -> None:

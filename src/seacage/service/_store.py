@@ -4,7 +4,7 @@ import json
 import queue
 import sqlite3
 import threading
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Sequence
 from concurrent.futures import Future
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
@@ -159,14 +159,18 @@ class Store:
         self._connection.close()
 
     @contextmanager
-    def _reader(self) -> Iterator[sqlite3.Connection]:
+    def _reader(self) -> Generator[sqlite3.Connection]:
         try:
-            with closing(sqlite3.connect(f"{self._path.resolve().as_uri()}?mode=ro", uri=True)) as c:
+            with closing(
+                sqlite3.connect(f"{self._path.resolve().as_uri()}?mode=ro", uri=True)
+            ) as c:
                 yield c
         except sqlite3.Error as error:
             raise StoreError(f"{self._path} cannot be read ({error}).") from error
 
-    def _ask(self, statements: tuple[tuple[str, tuple[object, ...]], ...]) -> "Future[tuple[int, ...]]":
+    def _ask(
+        self, statements: tuple[tuple[str, tuple[object, ...]], ...]
+    ) -> "Future[tuple[int, ...]]":
         done: Future[tuple[int, ...]] = Future()
         self._work.put(_Work(statements, done))
         return done

@@ -53,7 +53,7 @@ async def _refusal(socket: WebSocket, cage: str) -> tuple[int, str] | None:
     token = await _token(socket)
     grant = tokens.grant(token) if token else None
     if grant is None:
-        return UNKNOWN_TOKEN, "The first message is {\"token\": …} with a token that is known."
+        return UNKNOWN_TOKEN, 'The first message is {"token": …} with a token that is known.'
     if not grant.allows("read", cage):
         return NO_SCOPE, "This token does not have the scope read."
     if cage not in socket.app.state.service.cages:

@@ -1,6 +1,16 @@
 """Whole experiments, from campaign to report."""
 
 from seacage.studies._demonstration import Demonstration, prepare_demonstration
+from seacage.studies._held_out import score_record
 from seacage.studies._paper import PaperStudy, paper_study
+from seacage.studies._scores import Errors, SensorScore
 
-__all__ = ["Demonstration", "PaperStudy", "paper_study", "prepare_demonstration"]
+__all__ = [
+    "Demonstration",
+    "Errors",
+    "PaperStudy",
+    "SensorScore",
+    "paper_study",
+    "prepare_demonstration",
+    "score_record",
+]

@@ -147,7 +147,7 @@ class PaperReport:
         return table(head, [_error_row(*row) for row in rows], caption=caption)
 
     def _sensor(self, score: SensorScore) -> Html:
-        comparison = _comparison(score, self.readings[score.sensor])
+        comparison = comparison_of(score, self.readings[score.sensor])
         start = comparison.time[0]
         density = picture(
             density_figure(comparison),
@@ -267,7 +267,8 @@ def _error_row(score: SensorScore, errors: Errors) -> tuple[str, ...]:
     )
 
 
-def _comparison(score: SensorScore, readings: Readings) -> Comparison:
+def comparison_of(score: SensorScore, readings: Readings) -> Comparison:
+    """What the figures show of one sensor."""
     return Comparison(
         sensor=score.sensor,
         quantity=_quantity(score),

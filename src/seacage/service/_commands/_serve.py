@@ -52,13 +52,12 @@ def serve(
     ] = False,
     as_json: Json = False,
 ) -> None:
-    """Serve a cage live: its page, its HTTP interface and its live connection.
+    """Serve a cage live: its page and its interface.
 
     Without --twin the demonstration twin of cage ace is served, and made first if there is
     none, which takes a few minutes. Samples then come by HTTP; with --demo or --record they
     are replayed on the record's own clock, from the beginning again at the end.
 
-    \b
     Example: watch a demonstration, a minute per second.
         seacage serve --data var --demo
     Example: let a logger send samples to your own twin.
@@ -143,7 +142,7 @@ def _assembled(
     from functools import partial
 
     from seacage.service._api import Service
-    from seacage.service._clock import ReplayClock, WallClock
+    from seacage.service._clock import Clock, ReplayClock, WallClock
     from seacage.service._live import LiveCage
     from seacage.service._metrics import Metrics
     from seacage.service._store import Store
@@ -151,23 +150,23 @@ def _assembled(
 
     # What is replayed lies apart: it is forgotten at each start, what was measured never is.
     store = Store(settings.data / ("replay.sqlite" if replay else "samples.sqlite"))
-    clock = ReplayClock(replay.start, speed=speed) if replay else WallClock()
-    metrics = Metrics()
-    cage = LiveCage(
-        name=name, twin=twin, store=store, clock=clock, metrics=metrics, tick_s=settings.tick_s
-    )
-    return Service(
-        cages={name: cage},
-        store=store,
-        tokens=Tokens(settings.data),
-        metrics=metrics,
-        feeds=[partial(replay.feed, cage, clock)] if isinstance(clock, ReplayClock) else [],
-    )
+    metrics, tokens, tick_s = Metrics(), Tokens(settings.data), settings.tick_s
+
+    def live(clock: Clock) -> LiveCage:
+        return LiveCage(
+            name=name, twin=twin, store=store, clock=clock, metrics=metrics, tick_s=tick_s
+        )
+
+    if replay is None:
+        cages = {name: live(WallClock())}
+        return Service(cages=cages, store=store, tokens=tokens, metrics=metrics)
+    clock = ReplayClock(replay.start, speed=speed)
+    cage = live(clock)
+    feeds = [partial(replay.feed, cage, clock)]
+    return Service(cages={name: cage}, store=store, tokens=tokens, metrics=metrics, feeds=feeds)
 
 
-def _greeting(
-    address: str, token: str, name: str, speed: float | None
-) -> list[tuple[str, str]]:
+def _greeting(address: str, token: str, name: str, speed: float | None) -> list[tuple[str, str]]:
     came = "samples by HTTP" if speed is None else f"a replay at {speed:g} × real time"
     return [
         ("Cage", f"{name}, fed by {came}"),

@@ -1,0 +1,182 @@
+"""``seacage field``: records of buoys and sensors."""
+
+from datetime import datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from seacage.service._commands._settle import CageName, read_cage
+from seacage.service._console import Json, guarded, progress_bar, tell
+
+if TYPE_CHECKING:
+    from seacage.records import Record
+
+group = typer.Typer(help="Records of buoys and sensors: make, read and check them.")
+
+_FLAG_WORDS = {1: "good", 2: "not evaluated", 3: "suspect", 4: "fail", 9: "missing"}
+
+
+@group.command()
+@guarded
+def virtual(
+    out: Annotated[Path, typer.Argument(file_okay=False, help="Folder of the field record.")],
+    *,
+    record: Annotated[
+        Path | None,
+        typer.Option(exists=True, dir_okay=False, help="A buoy's record; else one is generated."),
+    ] = None,
+    days: Annotated[float, typer.Option(min=1.0, max=400.0, help="Of a generated current.")] = 50.0,
+    start: Annotated[
+        datetime, typer.Option(formats=["%Y-%m-%d"], help="Of a generated current, UTC.")
+    ] = datetime(2020, 1, 18),  # noqa: DTZ001
+    seed: Annotated[int, typer.Option(min=0, help="Of current, noise and outages.")] = 0,
+    hidden: Annotated[
+        Path | None,
+        typer.Option(exists=True, dir_okay=False, help="Hidden parameters; else those shipped."),
+    ] = None,
+    cage: CageName = "ace",
+    workers: Annotated[
+        int | None, typer.Option(min=1, help="Processes. [default: one per core]")
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Make a virtual field: sensors on a cage that differs from its drawing.
+
+    What they say is marked "virtual field" wherever it goes. OUT gets the record, OUT/truth
+    the same sensors without error.
+
+    Example:
+        seacage field virtual field --seed 1
+    """
+    from datetime import UTC
+
+    from seacage.campaigns import Hidden, generated_current, virtual_field
+    from seacage.records import read_record
+
+    begin = start.replace(tzinfo=UTC)
+    buoy = read_record(record) if record else generated_current(seed, start=begin, days=days)
+    with progress_bar() as progress:
+        made = virtual_field(
+            read_cage(cage),
+            buoy,
+            hidden=Hidden.read(hidden),
+            seed=seed,
+            responses=out / "responses",
+            workers=workers,
+            progress=progress,
+        )
+    made.record.write(out)
+    made.truth.write(out / "truth")
+    streams = [made.record.buoy, *made.record.sensors.values()]
+    tell(
+        {"written": str(out), "origin": str(made.record.origin)}
+        | {"streams": {one.stream: len(one) for one in streams}},
+        as_json=as_json,
+        rows=[
+            ("Written", f"{out} (virtual field)"),
+            *((one.stream, f"{len(one)} readings") for one in streams),
+        ],
+    )
+
+
+@group.command("import")
+@guarded
+def import_(
+    path: Annotated[Path, typer.Argument(exists=True, dir_okay=False, help="A table of text.")],
+    out: Annotated[Path, typer.Argument(dir_okay=False, help="The CF-NetCDF file to write.")],
+    *,
+    columns: Annotated[
+        Path | None,
+        typer.Option(
+            exists=True, dir_okay=False, help="What the columns mean; else known by the header."
+        ),
+    ] = None,
+    stream: Annotated[str, typer.Option(help="What to call the stream.")] = "buoy-1",
+    as_json: Json = False,
+) -> None:
+    """Read a table in house units, check every value, and keep it as CF-NetCDF.
+
+    A column's unit and a direction's sense are declared in the TOML file of --columns, never
+    guessed. A bad value is flagged in its row and kept as it came.
+
+    Example:
+        seacage field import buoy.csv buoy-1.nc --columns columns.toml
+    """
+    from seacage.records import ColumnMap, read_record, write_record
+
+    record = read_record(path, columns=ColumnMap.read(columns) if columns else None, stream=stream)
+    write_record(record, out)
+    _tell([record], as_json=as_json, written=out)
+
+
+@group.command()
+@guarded
+def check(
+    path: Annotated[
+        Path, typer.Argument(exists=True, help="A record's file, or a field record's folder.")
+    ],
+    *,
+    as_json: Json = False,
+) -> None:
+    """Count what the quality checks say of a record, with the first of each kind.
+
+    Flags are those of QARTOD. Bad values do not fail the command; a file that cannot be
+    trusted at all does.
+
+    Example:
+        seacage field check buoy.csv
+    """
+    from seacage.records import FieldRecord, read_record
+
+    if path.is_dir():
+        field = FieldRecord.read(path)
+        _tell([field.buoy, *field.sensors.values()], as_json=as_json)
+    else:
+        _tell([read_record(path)], as_json=as_json)
+
+
+def _tell(records: "list[Record]", *, as_json: bool, written: Path | None = None) -> None:
+    rows: list[tuple[str, str]] = [("Written", str(written))] if written else []
+    for record in records:
+        rows.append((record.stream, _span(record)))
+        rows += [(f"  {key}", _counted(flags)) for key, flags in _flags(record).items()]
+        rows += [("  note", note) for note in record.notes]
+    tell(
+        {
+            "written": None if written is None else str(written),
+            "streams": {
+                one.stream: {
+                    "origin": str(one.origin),
+                    "rows": len(one),
+                    "flags": _flags(one),
+                    "notes": one.notes,
+                }
+                for one in records
+            },
+        },
+        as_json=as_json,
+        rows=rows,
+    )
+
+
+def _span(record: "Record") -> str:
+    if not len(record):
+        return f"no rows ({record.origin})"
+    first, last = (str(t)[:16].replace("T", " ") for t in record.time[[0, -1]])
+    return f"{len(record)} rows, {first} to {last} UTC ({record.origin})"
+
+
+def _flags(record: "Record") -> dict[str, dict[str, int]]:
+    return {
+        key: {
+            word: count
+            for flag, word in _FLAG_WORDS.items()
+            if (count := int((record.flags[key] == flag).sum()))
+        }
+        for key in record.values
+    }
+
+
+def _counted(flags: dict[str, int]) -> str:
+    return ", ".join(f"{count} {word}" for word, count in flags.items())

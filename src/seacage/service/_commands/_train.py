@@ -1,0 +1,86 @@
+"""``seacage train``: from simulations and sensors to a twin."""
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from seacage.service._commands._settle import read_cage
+from seacage.service._console import Json, guarded, progress_bar, tell
+
+
+@guarded
+def train(
+    *,
+    campaign: Annotated[
+        Path,
+        typer.Option(exists=True, file_okay=False, help="Simulations, as `campaign run` left."),
+    ],
+    field: Annotated[
+        Path | None,
+        typer.Option(exists=True, file_okay=False, help="A field record; else level 1 alone."),
+    ] = None,
+    out: Annotated[Path, typer.Option(file_okay=False, help="Folder of the twin.")],
+    cage: Annotated[
+        str | None,
+        typer.Option(help="Where sensors have moved: a TOML file. [default: as simulated]"),
+    ] = None,
+    inputs: Annotated[
+        Literal["current", "current,waves"], typer.Option(help="What the twin is asked with.")
+    ] = "current",
+    points: Annotated[
+        int, typer.Option(min=20, max=5000, help="Readings that each sensor teaches with.")
+    ] = 300,
+    choice: Annotated[
+        Literal["spread", "paper"],
+        typer.Option(help="spread over currents and time, or the first ones in a row."),
+    ] = "spread",
+    days: Annotated[
+        float, typer.Option(min=0.1, help="Longest that a sensor teaches; the rest can judge.")
+    ] = 25.0,
+    seed: Annotated[int, typer.Option(min=0, help="Of the choice and the searches.")] = 0,
+    as_json: Json = False,
+) -> None:
+    """Train a twin from simulations and sensors.
+
+    Simulations teach loads and shape; each sensor then corrects what it measures. The twin's
+    folder holds JSON and safetensors sealed by SHA-256 sums; reading it runs no code.
+
+    Example:
+        seacage train --campaign ace.zarr --field field --out twin
+    """
+    from seacage.cage import Cage
+    from seacage.records import FieldRecord, read_campaign
+    from seacage.twin import Training
+    from seacage.twin import train as trained
+
+    simulated = read_campaign(campaign)
+    training = Training(
+        inputs=("current", "waves") if inputs == "current,waves" else ("current",),
+        high_fidelity_points=points,
+        choice=choice,
+        days=days,
+        seed=seed,
+    )
+    with progress_bar() as progress:
+        twin = trained(
+            read_cage(cage) if cage else Cage.from_toml(simulated.cage_toml),
+            simulated,
+            FieldRecord.read(field) if field else None,
+            training=training,
+            progress=progress,
+        )
+    twin.write(out)
+    lessons = twin.provenance.lessons
+    levels = {name: 2 if name in lessons else 1 for name in twin.sensor_names}
+    taught = {name: lessons[name].points if name in lessons else 0 for name in levels}
+    tell(
+        {"written": str(out), "origin": str(twin.origin), "cases": twin.provenance.cases}
+        | {"level": levels, "points": taught},
+        as_json=as_json,
+        rows=[
+            ("Written", f"{out} ({twin.origin})"),
+            ("Level 1", f"{twin.provenance.cases} simulations, {twin.provenance.law}"),
+            *((name, f"level {level}, {taught[name]} readings") for name, level in levels.items()),
+        ],
+    )
