@@ -227,7 +227,9 @@ def _weight(
     submerged = (cage.netting.mass - cage.netting.displaced) * GRAVITY
     np.add.at(weight, panels.corners, -submerged * area[:, None] * panels.share)
     weight[cage.ring_nodes(cage.tube_ring)] -= cage.sinker_tube.weight * _arc(cage, cage.tube_ring)
-    weight[cage.ring_nodes(0)] -= cage.collar.pipes * cage.collar.pipe_mass * GRAVITY * _arc(cage, 0)
+    weight[cage.ring_nodes(0)] -= (
+        cage.collar.pipes * cage.collar.pipe_mass * GRAVITY * _arc(cage, 0)
+    )
     weight[cage.bottom_node] -= cage.tip.weight
     return weight
 

@@ -28,9 +28,7 @@ class _Struct(ctypes.Structure):
     def filled(cls, *values: Any) -> "_Struct":
         arrays = [np.ascontiguousarray(v) for v in values if isinstance(v, np.ndarray)]
         kept = iter(arrays)
-        struct = cls(
-            *(_pointer(next(kept)) if isinstance(v, np.ndarray) else v for v in values)
-        )
+        struct = cls(*(_pointer(next(kept)) if isinstance(v, np.ndarray) else v for v in values))
         struct.kept = arrays
         return struct
 
@@ -119,7 +117,10 @@ class Relaxing:
 
     @classmethod
     def begun(
-        cls, position: Float[np.ndarray, "case node 3"], bars: int, damping: Float[np.ndarray, " case"]
+        cls,
+        position: Float[np.ndarray, "case node 3"],
+        bars: int,
+        damping: Float[np.ndarray, " case"],
     ) -> "Relaxing":
         """Cases at rest in a first shape."""
         zero, much = np.zeros(len(damping)), np.full(len(damping), 1e11)

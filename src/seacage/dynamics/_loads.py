@@ -55,7 +55,7 @@ class SteadyFlow:
     lift_second: Float[np.ndarray, "case panel"]
     pipe_pressure: Float[np.ndarray, " case"]
 
-    def cases(self, some: slice) -> "SteadyFlow":
+    def cases(self, some: Int[np.ndarray, " some"]) -> "SteadyFlow":
         """The flow of some of the cases."""
         return SteadyFlow(**{name: getattr(self, name)[some] for name in self.__slots__})
 
@@ -163,9 +163,7 @@ def float_force(floats: Floats, position: Nodal) -> Nodal:
     return force
 
 
-def spring_force(
-    springs: Springs, design: Float[np.ndarray, "node 3"], position: Nodal
-) -> Nodal:
+def spring_force(springs: Springs, design: Float[np.ndarray, "node 3"], position: Nodal) -> Nodal:
     """Pull of the frame corners' springs [N]."""
     force = np.zeros_like(position)
     moved = position[:, springs.nodes] - design[springs.nodes]

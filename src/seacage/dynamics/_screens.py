@@ -177,9 +177,7 @@ class Screen:
             case "loland":
                 return loland(self.solidity, cos_theta)
             case "kristiansen-faltinsen":
-                return kristiansen_faltinsen(
-                    self.solidity, cos_theta, self.twine_reynolds * speed
-                )
+                return kristiansen_faltinsen(self.solidity, cos_theta, self.twine_reynolds * speed)
 
     def wake(self, speed: float) -> Float[np.ndarray, " panel"]:
         """Speed behind a panel that faces the flow, over the speed before it [-].

@@ -1,12 +1,12 @@
 """Equilibria of the cage in a steady current, many at once."""
 
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
 
 from seacage.cage import Cage
 from seacage.conventions import InputError, Result
@@ -14,14 +14,16 @@ from seacage.dynamics._assembly import Assembly
 from seacage.dynamics._flow import steady_flow
 from seacage.dynamics._kernel import Relaxation, Relaxing, kernel
 from seacage.dynamics._loads import SteadyFlow, bar_tension, total_net_force
+from seacage.dynamics._newton import sharpened
 from seacage.dynamics._screens import Law
 from seacage.ocean import SeaState, wave_velocity_variance
 
 TOLERANCE = 0.5
 """Largest force left on any node of a settled cage [N]."""
 
-STEPS, ROUNDS, STRETCH = 300, 600, 10
-"""Steps of a round of relaxation, rounds at most, rounds before the unfinished regroup."""
+STEPS, STRETCH, STRETCHES, ATTEMPTS = 300, 10, 10, 4
+"""Steps of a round of relaxation, rounds before the unfinished regroup, regroupings before
+Newton's method is tried on them, and how often all that is repeated."""
 
 SOFTNESS = 100.0
 """Soft spring rate of a twine over the rate with which the hung weight straightens it [-]."""
@@ -183,6 +185,26 @@ def _relaxed(
     damping = _damping(assembly, flow)
     start = np.repeat(assembly.position[None], len(damping), axis=0)
     state = Relaxing.begun(start, len(assembly.bars.length), damping)
+    with ThreadPoolExecutor(workers) as pool:
+        for _ in range(ATTEMPTS):
+            _relax(assembly, flow, state, relaxation, pool)
+            _sharpen(assembly, flow, state, relaxation.inverse_mass > 0.0, pool)
+    residual = state.residual
+    lost = ~(residual < LOST) | ~np.isfinite(state.position).all(axis=(1, 2))
+    state.position[lost] = np.nan
+    result = np.where(residual <= TOLERANCE, Result.CONVERGED, Result.NOT_CONVERGED)
+    return state.position, residual, np.where(lost, Result.DIVERGED, result).astype(np.int64)
+
+
+def _open(state: Relaxing) -> Int[np.ndarray, " some"]:
+    """The cases that are neither done nor lost."""
+    return np.flatnonzero((state.residual > TOLERANCE) & (state.residual < LOST))
+
+
+def _relax(
+    assembly: Assembly, flow: SteadyFlow, state: Relaxing, relaxation: Relaxation, pool: Executor
+) -> None:
+    """Relax the open cases. A done one leaves its lane to others; none sees who runs beside."""
     lanes = kernel().lanes
 
     def run(some: Int[np.ndarray, " some"]) -> None:
@@ -191,17 +213,32 @@ def _relaxed(
         )
         state.take(some, moved)
 
-    with ThreadPoolExecutor(workers) as pool:
-        for _ in range(ROUNDS // STRETCH):
-            # Cases that are done leave their lanes to others; none sees who runs beside it.
-            open_cases = np.flatnonzero((state.residual > TOLERANCE) & (state.residual < LOST))
-            groups = [open_cases[i : i + lanes] for i in range(0, len(open_cases), lanes)]
-            list(pool.map(run, groups))
-    residual = state.residual
-    lost = ~(residual < LOST) | ~np.isfinite(state.position).all(axis=(1, 2))
-    state.position[lost] = np.nan
-    result = np.where(residual <= TOLERANCE, Result.CONVERGED, Result.NOT_CONVERGED)
-    return state.position, residual, np.where(lost, Result.DIVERGED, result).astype(np.int64)
+    for _ in range(STRETCHES):
+        cases = _open(state)
+        list(pool.map(run, (cases[i : i + lanes] for i in range(0, len(cases), lanes))))
+
+
+def _sharpen(
+    assembly: Assembly,
+    flow: SteadyFlow,
+    state: Relaxing,
+    free: Bool[np.ndarray, " node"],
+    pool: Executor,
+) -> None:
+    """Try Newton's method on the open cases; one it does not finish stays as it was."""
+
+    def run(case: int) -> None:
+        position, residual = sharpened(
+            assembly,
+            flow.cases(np.array([case])),
+            state.position[case],
+            free=free,
+            tolerance=TOLERANCE,
+        )
+        if residual <= TOLERANCE:
+            state.position[case], state.residual[case] = position, residual
+
+    list(pool.map(run, _open(state).tolist()))
 
 
 def _relaxation(cage: Cage, assembly: Assembly, *, hold_collar: bool) -> Relaxation:
@@ -286,6 +323,4 @@ def _response(
 
 
 def _only_case(response: Response) -> Response:
-    return Response(
-        **{name: getattr(response, name)[0] for name in Response.__dataclass_fields__}
-    )
+    return Response(**{name: getattr(response, name)[0] for name in Response.__dataclass_fields__})
