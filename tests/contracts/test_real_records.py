@@ -1,0 +1,57 @@
+"""The public records that the project is tried on: read by shipped maps, and mostly good."""
+
+import numpy as np
+import pytest
+
+from seacage.conventions import Flag, Origin
+from seacage.records import read_record, shipped_maps
+
+
+def counted(record, key):
+    flags, counts = np.unique(record.flags[key], return_counts=True)
+    return {Flag(flag).name: int(count) for flag, count in zip(flags, counts, strict=True)}
+
+
+def test_the_winter_of_2018_is_read_whole_and_good(shared):
+    record = read_record(shared / "data" / "buoy_current_s08010_2018.csv")
+    assert counted(record, "current_speed_m_s") == {"GOOD": 3912}
+    assert counted(record, "current_to_deg") == {"GOOD": 3912}
+    assert record.origin is Origin.MEASURED
+    # said of the record: mean 0.50, maximum 1.33 (1.325) m/s; steps of 6 to 30 minutes, median 12
+    speed = record.values["current_speed_m_s"]
+    assert np.mean(speed) == pytest.approx(0.50, abs=0.005)
+    assert np.max(speed) == pytest.approx(1.325)
+    assert np.median(np.diff(record.time)) == np.timedelta64(12, "m")
+    assert np.max(record.values["current_to_deg"]) < 360.0
+
+
+def test_the_gaps_of_2016_are_said(shared):
+    record = read_record(shared / "data" / "buoy_current_s08010_2016.csv")
+    # of 429 rows the first after each of the 40 silences of more than 3 h
+    assert counted(record, "current_speed_m_s") == {"GOOD": 389, "SUSPECT": 40}
+    assert np.all(record.usable("current_speed_m_s"))
+    assert "comes after 5.3 h of silence" in record.notes[0]
+
+
+def test_the_waves_of_a_buoy_are_read_with_where_they_come_from(shared):
+    record = read_record(shared / "data" / "buoy_waves_ndbc46097_2019_08.csv")
+    assert counted(record, "hs_m") == {"GOOD": 744}
+    first = {key: values[0] for key, values in record.values.items()}
+    assert first == {"hs_m": 1.07, "tp_s": 8.3, "wave_from_deg": 295.0}
+
+
+def test_the_shelf_current_is_turned_from_where_it_comes_to_where_it_goes(shared):
+    path = shared / "data" / "shelf_current_profile_norkyst_2018q1.csv"
+    record = read_record(path)
+    assert record.origin is Origin.COMPUTED
+    # its first row: 0.03 m/s at 5 m, from 66.49 degrees
+    assert record.values["current_to_deg"][0] == pytest.approx(246.49)
+    assert "read at a depth of 5 m" in record.notes[0]
+    deep = read_record(path, columns=shipped_maps()["norkyst_current_profile"].taken_at(30.0))
+    assert deep.values["current_to_deg"][0] == pytest.approx(221.83)
+
+
+def test_a_hindcast_rounded_to_decimetres_is_suspect_only_where_it_stands_still(shared):
+    record = read_record(shared / "data" / "waves_nora10_1977_1979.csv")
+    assert counted(record, "hs_m") == {"GOOD": 4595, "SUSPECT": 21}
+    assert np.all(record.usable("tp_s"))
