@@ -89,9 +89,9 @@ def stand_in_twin() -> Twin:
     cage = Cage.named("ace").altered(mesh={"spokes": 8})
     return train(
         cage,
-        stand_in_campaign(cage, stand_in_seas(150)),
+        stand_in_campaign(cage, stand_in_seas(120)),
         stand_in_field(cage),
-        training=Training(high_fidelity_points=60, days=2.0),
+        training=Training(high_fidelity_points=60, days=2.0, restarts=0),
     )
 
 

@@ -101,7 +101,9 @@ def align(
     return pairs if mean_s is None else _averaged(pairs, mean_s)
 
 
-def teaching_window(record: Record, *, days: float, pause_s: float) -> tuple[datetime, datetime]:
+def teaching_window(
+    record: Record, *, days: float, pause_s: float
+) -> tuple[datetime, datetime] | None:
     """First window of a sensor's data: what may teach, so that the rest can judge.
 
     It ends at the first silence longer than ``pause_s`` [s] and is at most ``days`` long, so a
@@ -111,12 +113,13 @@ def teaching_window(record: Record, *, days: float, pause_s: float) -> tuple[dat
     Returns
     -------
     start, end
-        The first reading, and the first moment after the window.
+        The first reading, and the first moment after the window; None where no reading
+        passed its checks.
     """
     key = next(iter(record.values))
     time = record.time[record.usable(key)]
     if len(time) == 0:
-        raise InputError(f"{record.stream}: no reading passed its checks, so none can teach.")
+        return None
     pauses = np.flatnonzero(np.diff(time) > np.timedelta64(round(pause_s * 1e6), "us"))
     first, last = time[[0, -1 if len(pauses) == 0 else pauses[0]]].tolist()
     start, end = (one.replace(tzinfo=UTC) for one in (first, last))

@@ -142,4 +142,4 @@ def held_reading(
 def failed(buoy: str, key: str, flag: int) -> str:
     """Say why a value is no input."""
     word = Flag(flag).name.lower().replace("_", " ")
-    return f"{buoy}: {key} is flagged {int(flag)} ({word}); there is no valid input."
+    return f"{buoy}: {key} is flagged {flag:d} ({word}); there is no valid input."

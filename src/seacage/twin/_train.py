@@ -25,7 +25,7 @@ from seacage.twin._models import Models
 from seacage.twin._provenance import Lesson, Provenance
 from seacage.twin._twin import Twin
 
-CANDIDATES = (GaussianProcess(kernel="matern-5/2"), GaussianProcess(kernel="squared-exponential"))
+KERNELS = ("matern-5/2", "squared-exponential")
 """For the bridles: the one with kinks, as of lines going slack, and the smooth one."""
 
 LEAST_CASES = 20
@@ -52,6 +52,8 @@ class Training:
         A sensor silent for longer has taught enough: what follows judges the twin [s].
     mean_s
         Readings are averaged over so long, and the intervals are of such means [s].
+    restarts
+        Random starts of each search for hyperparameters, beside the deterministic one.
     seed
         Of the choice of readings and of the searches.
     """
@@ -62,6 +64,7 @@ class Training:
     days: float = 25.0
     pause_s: float = 86400.0
     mean_s: float = 60.0
+    restarts: int = 3
     seed: int = 0
 
 
@@ -102,10 +105,10 @@ def train(
     lessons: dict[str, Lesson] = {}
     for done, name in enumerate(sensors, start=3):
         assert field is not None
-        lesson, pairs = _lesson(field, name, training)
-        if lesson.points >= LEAST_PAIRS:
-            models = models.taught(name, _level_two(models, name, pairs, training))
-            lessons[name] = lesson
+        learned = _learned(models, field, name, training)
+        if learned is not None:
+            lessons[name], model = learned
+            models = models.taught(name, model)
         report(f"train {name}", done, total)
     provenance = Provenance(
         version=_version(),
@@ -138,9 +141,11 @@ def _level_one(
         )
     water = Metocean.of(campaign.seas).rows(rows)
     x = water.features(training.inputs)
-    bridles, kernel = _better_kernel(x, campaign.bridle_tension[rows], seed=training.seed)
+    bridles, kernel = _better_kernel(x, campaign.bridle_tension[rows], training)
     report("train bridles", 1, total)
-    shape = ShapeGP().fit(x, campaign.node_position[rows], seed=training.seed)
+    shape = ShapeGP(restarts=training.restarts).fit(
+        x, campaign.node_position[rows], seed=training.seed
+    )
     report("train shape", 2, total)
     still = shape.predict(np.zeros((1, x.shape[1])))
     models = Models(
@@ -162,35 +167,47 @@ def _edge(water: Metocean) -> tuple[float, float]:
 
 
 def _better_kernel(
-    x: Float[np.ndarray, "case feature"], y: Float[np.ndarray, "case line"], *, seed: int
+    x: Float[np.ndarray, "case feature"], y: Float[np.ndarray, "case line"], training: Training
 ) -> tuple[FittedGaussianProcess, str]:
     """Return the process with the higher leave-one-out density, and its kernel's name."""
     # Weighed by spread, as a line that carries little counts no less than one that carries much.
     spread = y.std(axis=0)
-    fitted = [candidate.fit(x, y, seed=seed) for candidate in CANDIDATES]
+    fitted = [
+        GaussianProcess(kernel=kernel, restarts=training.restarts).fit(x, y, seed=training.seed)
+        for kernel in KERNELS
+    ]
     left_out = [one.leave_one_out() for one in fitted]
     losses = [mnll(y / spread, one.mean / spread, one.std / spread) for one in left_out]
     best = int(np.argmin(losses))
-    return fitted[best], CANDIDATES[best].kernel
+    return fitted[best], KERNELS[best]
 
 
-def _lesson(field: FieldRecord, sensor: str, training: Training) -> tuple[Lesson, Pairs]:
-    start, end = teaching_window(
-        field.sensors[sensor], days=training.days, pause_s=training.pause_s
-    )
+def _learned(
+    models: Models, field: FieldRecord, sensor: str, training: Training
+) -> tuple[Lesson, FittedNARGP] | None:
+    """Return what a sensor taught, and level 2 of it; None where it has too little to say."""
+    window = teaching_window(field.sensors[sensor], days=training.days, pause_s=training.pause_s)
+    if window is None:
+        return None
+    start, end = window
     pairs = align(field, sensor, start=start, end=end, mean_s=training.mean_s)
     pairs = pairs.rows(pairs.metocean.known(training.inputs))
+    if len(pairs) < LEAST_PAIRS:
+        return None
+    pairs = _chosen(pairs, training)
+    model = NARGP(restarts=training.restarts).fit(
+        [(pairs.metocean.features(training.inputs), pairs.value)],
+        seed=training.seed,
+        lower=models.lower(sensor),
+    )
+    return Lesson(start=start, end=end, points=len(pairs)), model
+
+
+def _chosen(pairs: Pairs, training: Training) -> Pairs:
     count = training.high_fidelity_points
     if training.choice == "paper":
-        chosen = pairs.rows(np.arange(min(count, len(pairs))))
-    else:
-        chosen = spread_out(pairs, count, seed=training.seed)
-    return Lesson(start=start, end=end, points=len(chosen)), chosen
-
-
-def _level_two(models: Models, sensor: str, pairs: Pairs, training: Training) -> FittedNARGP:
-    x = pairs.metocean.features(training.inputs)
-    return NARGP().fit([(x, pairs.value)], seed=training.seed, lower=models.lower(sensor))
+        return pairs.rows(np.arange(min(count, len(pairs))))
+    return spread_out(pairs, count, seed=training.seed)
 
 
 def _version() -> str:

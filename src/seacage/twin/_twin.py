@@ -123,7 +123,7 @@ class Twin:
         trouble = [""] * len(buoy)
         for key in keys:
             for row in np.flatnonzero(~buoy.usable(key)):
-                trouble[row] = trouble[row] or failed(buoy.stream, key, buoy.flags[key][row])
+                trouble[row] = trouble[row] or failed(buoy.stream, key, int(buoy.flags[key][row]))
         return self.models.answer(Metocean.of_record(buoy), trouble)
 
     def start(self) -> TwinState:

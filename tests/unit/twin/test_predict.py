@@ -1,0 +1,170 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from seacage.conventions import Flag, InputError
+from seacage.ocean import SeaState
+from seacage.testing import stand_in_campaign, stand_in_field, stand_in_seas, stand_in_twin
+from seacage.twin import Answered, Metocean, replay
+
+
+def numbers(answer):
+    """Every number of an answer, by row."""
+    parts = (
+        answer.bridle_low,
+        answer.node_position,
+        answer.node_sigma,
+        answer.volume_fraction,
+        *(
+            getattr(said, part)
+            for said in (answer.bridle_tension, answer.sensor, answer.sensor_low)
+            for part in ("mean", "std")
+        ),
+    )
+    return np.hstack([part.reshape(len(answer), -1) for part in parts])
+
+
+def test_a_valid_row_has_every_number_and_an_invalid_one_has_none():
+    water = Metocean.of(stand_in_seas(4))
+    velocity = water.current_velocity.copy()
+    velocity[2] = np.nan
+    answer = stand_in_twin().predict(replace(water, current_velocity=velocity))
+    assert answer.valid.tolist() == [True, True, False, True]
+    assert np.isfinite(numbers(answer)[answer.valid]).all()
+    assert np.isnan(numbers(answer)[2]).all()
+    assert answer.reason[2] == "A number of the input is not known."
+    assert not answer.in_domain[2]
+
+
+def test_one_sea_state_is_one_row():
+    answer = stand_in_twin().predict(SeaState(current_speed=0.5, current_to=90.0))
+    assert len(answer) == 1
+    assert answer.node_position.shape == (1, 81, 3)
+    assert answer.reason == ("",)
+
+
+def test_rows_answer_alone_as_they_answer_together():
+    seas = stand_in_seas(7, seed=4, current_speed=1.3)
+    together = numbers(stand_in_twin().predict(seas))
+    alone = np.vstack([numbers(stand_in_twin().predict(sea)) for sea in seas])
+    # Matrix products of other sizes round differently.
+    np.testing.assert_allclose(together, alone, rtol=1e-6, atol=1e-6)
+
+
+def test_more_rows_than_a_block_answer_as_few_do():
+    seas = stand_in_seas(520, seed=4)
+    many, few = stand_in_twin().predict(seas), stand_in_twin().predict(seas[-3:])
+    np.testing.assert_allclose(many.sensor.mean[-3:], few.sensor.mean, rtol=1e-6)
+    np.testing.assert_allclose(many.node_sigma[-3:], few.node_sigma, rtol=1e-6, atol=1e-9)
+
+
+def test_no_rows_are_answered_with_no_rows():
+    answer = stand_in_twin().predict([])
+    assert len(answer) == 0
+    assert answer.node_position.shape == (0, 81, 3)
+
+
+def test_every_answer_says_its_level():
+    twin = stand_in_twin()
+    answer = twin.predict(SeaState(current_speed=0.5, current_to=90.0))
+    taught = {one.bridle for one in twin.cage.shackles}
+    assert answer.sensor_level.tolist() == [2] * 8
+    assert answer.bridle_level.tolist() == [2 if line in taught else 1 for line in range(12)]
+    assert answer.shape_level == 1
+    assert answer.sensor_units == ("m", "m", "m", "N", "N", "N", "N", "N")
+
+
+def test_an_uninstrumented_bridle_answers_what_the_simulations_say():
+    answer = stand_in_twin().predict(stand_in_seas(5))
+    plain = answer.bridle_level == 1
+    np.testing.assert_array_equal(answer.bridle_tension.mean[:, plain], answer.bridle_low[:, plain])
+
+
+def test_level_one_repeats_the_simulations():
+    cage, seas = stand_in_twin().cage, stand_in_seas(60, seed=8)
+    truth, answer = stand_in_campaign(cage, seas), stand_in_twin().predict(seas)
+    assert np.abs(answer.node_position - truth.node_position).max() < 0.15
+    spread = truth.bridle_tension.std()
+    assert np.abs(answer.bridle_low - truth.bridle_tension).max() < 0.1 * spread
+
+
+def test_a_reading_is_less_sure_than_the_rope_it_reads():
+    twin = stand_in_twin()
+    answer = twin.predict(stand_in_seas(5))
+    lines = [one.bridle for one in twin.cage.shackles]
+    np.testing.assert_allclose(answer.sensor.mean[:, 3:], answer.bridle_tension.mean[:, lines])
+    assert (answer.sensor.std[:, 3:] > answer.bridle_tension.std[:, lines]).all()
+
+
+def test_a_depth_sensors_level_one_is_its_node_of_the_shape():
+    twin = stand_in_twin()
+    answer = twin.predict(stand_in_seas(5))
+    nodes = [one.node for one in twin.cage.depth_sensors]
+    np.testing.assert_allclose(
+        answer.sensor_low.mean[:, :3], -answer.node_position[:, nodes, 2], atol=1e-9
+    )
+    assert (answer.node_sigma[:, nodes] >= answer.sensor_low.std[:, :3] - 1e-9).all()
+
+
+def test_still_water_leaves_the_whole_volume():
+    answer = stand_in_twin().predict(SeaState(current_speed=0.0, current_to=0.0))
+    assert answer.volume_fraction == pytest.approx([1.0])
+
+
+def test_a_rope_never_pushes():
+    answer = stand_in_twin().predict(stand_in_seas(40, seed=2, current_speed=2.0))
+    assert answer.bridle_tension.mean.min() >= 0.0
+    assert answer.bridle_interval()[0].min() >= 0.0
+    assert answer.bridle_low.min() >= 0.0
+
+
+def test_faster_water_than_was_trained_is_answered_and_said_to_be():
+    seas = [SeaState(current_speed=speed, current_to=40.0) for speed in (0.9, 1.0, 1.001, 1.3)]
+    answer = stand_in_twin().predict(seas)
+    assert answer.valid.all()
+    assert answer.in_domain.tolist() == [True, True, False, False]
+    assert answer.reason[1] == ""
+    assert "up to 1.00 m/s" in answer.reason[3]
+
+
+def test_beyond_the_edge_the_spread_holds_the_step_from_the_edge():
+    seas = [SeaState(current_speed=speed, current_to=40.0) for speed in (1.0, 1.4)]
+    answer = stand_in_twin().predict(seas)
+    for said in (answer.sensor, answer.sensor_low, answer.bridle_tension):
+        step = np.abs(said.mean[1] - said.mean[0])
+        assert (said.std[1] >= step * 0.999).all()
+        assert (said.std[1] > said.std[0]).all()
+    moved = np.abs(answer.node_position[1] - answer.node_position[0]).max(axis=1)
+    assert (answer.node_sigma[1] >= moved * 0.999).all()
+
+
+def test_a_record_is_answered_row_by_row_as_step_answers_it():
+    twin = stand_in_twin()
+    buoy = stand_in_field(twin.cage, days=0.5).buoy
+    batch = twin.predict_record(buoy)
+    events = [one for one in replay(twin, buoy.samples()) if isinstance(one, Answered)]
+    assert len(events) == len(buoy) == len(batch)
+    stepped = np.vstack([numbers(event.answer) for event in events])
+    np.testing.assert_allclose(numbers(batch), stepped, rtol=1e-6, atol=1e-6)
+
+
+def test_a_row_that_failed_its_checks_has_no_number_and_says_which_value_failed():
+    twin = stand_in_twin()
+    buoy = stand_in_field(twin.cage, days=0.2).buoy
+    flags = np.full(len(buoy), Flag.GOOD)
+    flags[[2, 5]] = Flag.FAIL, Flag.SUSPECT
+    answer = twin.predict_record(replace(buoy, flags={"current_to_deg": flags}))
+    assert np.flatnonzero(~answer.valid).tolist() == [2]
+    assert np.isnan(numbers(answer)[2]).all()
+    assert answer.reason[2] == (
+        "buoy-1: current_to_deg is flagged 4 (fail); there is no valid input."
+    )
+
+
+def test_a_record_without_an_input_of_the_twin_is_refused():
+    twin = stand_in_twin()
+    buoy = stand_in_field(twin.cage, days=0.2).buoy
+    speed = {"current_speed_m_s": buoy.values["current_speed_m_s"]}
+    with pytest.raises(InputError, match="has no current_to_deg"):
+        twin.predict_record(replace(buoy, values=speed))
