@@ -111,7 +111,7 @@ def test_a_buoy_without_a_current_is_refused(field):
         replace(field, buoy=waves)
 
 
-def test_a_sensor_under_anothers_name_is_refused(field):
+def test_a_sensor_under_the_name_of_another_is_refused(field):
     with pytest.raises(InputError, match="sensor 'depth-2' holds the stream 'depth-1'"):
         replace(field, sensors={"depth-2": field.sensors["depth-1"]})
 
