@@ -38,24 +38,29 @@ def listened(
         raise InputError(
             f"Twin.step: now = {now.isoformat()} does not say its zone. Give it in UTC."
         )
+    fallen = _silent(state, now, patience)
     notices: tuple[Notice, ...] = ()
+    before = state
     if sample is not None:
         state, notices = _taken(state, sample, now, known=patience, watch=watch)
-    silent = {
-        name
-        for name, stream in state.streams.items()
-        if (now - stream[-1].sample.t).total_seconds() > patience[name]
-    }
-    fallen = tuple(
-        StreamSilent(stream=name, since=state.streams[name][-1].sample.t)
-        for name in sorted(silent - state.silent)
+    silent = _silent(state, now, patience)
+    gone = tuple(
+        StreamSilent(stream=name, since=before.streams[name][-1].sample.t)
+        for name in sorted(fallen - before.silent)
     )
     back = tuple(
         StreamBack(stream=name, t=state.streams[name][-1].sample.t)
-        for name in sorted(state.silent - silent)
+        for name in sorted((fallen | before.silent) - silent)
     )
-    state = replace(state, clock=now, silent=frozenset(silent))
-    return state, (*fallen, *back, *notices)
+    return replace(state, clock=now, silent=silent), (*gone, *back, *notices)
+
+
+def _silent(state: TwinState, now: datetime, patience: Mapping[str, float]) -> frozenset[str]:
+    return frozenset(
+        name
+        for name, stream in state.streams.items()
+        if (now - stream[-1].sample.t).total_seconds() > patience[name]
+    )
 
 
 def _taken(

@@ -157,10 +157,16 @@ def test_silence_and_return_are_said_once_each():
     state, events = played(depth(), ticks=[14, 16, 17])
     assert only(events, StreamSilent) == [StreamSilent(stream="depth-2", since=NOON)]
     assert state.silent == {"depth-2"}
-    _, events = played(depth(), depth(20), depth(21))
-    assert events == []
     _, events = stand_in_twin().step(state, depth(20), NOON + timedelta(minutes=20))
     assert events == (StreamBack(stream="depth-2", t=NOON + timedelta(minutes=20)),)
+
+
+def test_a_sample_after_a_silence_that_no_tick_noticed_tells_of_both():
+    _, events = played(depth(), depth(20), depth(21))
+    assert events == [
+        StreamSilent(stream="depth-2", since=NOON),
+        StreamBack(stream="depth-2", t=NOON + timedelta(minutes=20)),
+    ]
 
 
 def test_a_late_delivery_of_old_words_does_not_end_a_silence():
