@@ -11,13 +11,14 @@ from seacage.campaigns._hidden import Hidden
 from seacage.campaigns._plan import Plan
 from seacage.campaigns._run import campaign_key, run_campaign
 from seacage.conventions import Progress, Result, SeacageError
+from seacage.ocean import SeaState
 from seacage.records import CampaignRecord
 
 _SPEEDS = (0.1, 0.2, 0.3, 0.42, 0.55, 0.7, 0.9, 1.1, 1.35, 1.6)
 _DIRECTIONS = tuple(22.5 * number for number in range(16))
 _GROWTHS = (0.0, 0.5, 1.0)
 _HELD_OUT_GROWTH = 0.25
-_HELD_OUT = 24
+_HELD_OUT = 31
 _WRAP = 4
 
 
@@ -117,11 +118,11 @@ def true_responses(
     error
         Interpolated less settled, at currents and a growth off the grid [m or kN].
     """
-    still = Plan.grid(current_speed=(0.0,), current_to=(0.0,))
-    moving = Plan.grid(current_speed=_SPEEDS, current_to=_DIRECTIONS)
-    grid = Plan.listed((*still.seas, *moving.seas), name="responses")
-    between = Plan.sample(0, _HELD_OUT, current_speed=(0.0, 1.2), hs=(0.0, 0.0), name="held out")
-    asked = [(growth, grid) for growth in _GROWTHS] + [(_HELD_OUT_GROWTH, between)]
+    grid = Plan.grid(current_speed=_SPEEDS, current_to=_DIRECTIONS, name="responses")
+    between = Plan.sample(0, _HELD_OUT, current_speed=(0.0, 1.2), hs=(0.0, 0.0))
+    still = SeaState(current_speed=0.0, current_to=0.0)  # the same however grown the net is
+    others = Plan.listed((still, *between.seas), name="still and held out")
+    asked = [(growth, grid) for growth in _GROWTHS] + [(_HELD_OUT_GROWTH, others)]
     total = sum(len(plan) for _, plan in asked)
     campaigns: list[CampaignRecord] = []
     for growth, plan in asked:
@@ -137,16 +138,17 @@ def true_responses(
                 progress=_part_of_whole(progress, before, total),
             )
         )
+    *moving, settled = [_readings(cage, campaign) for campaign in campaigns]
     responses = Responses(
         sensor_names=cage.sensor_names,
         speed=np.array([0.0, *_SPEEDS]),
         direction=np.deg2rad(_DIRECTIONS),
         growth=np.array(_GROWTHS),
-        value=np.stack([_on_grid(_readings(cage, campaign)) for campaign in campaigns[:-1]]),
+        value=np.stack([_on_grid(settled[0], readings) for readings in moving]),
     )
     velocity = np.array([sea.current_velocity for sea in between.seas])
     interpolated = responses.at(velocity, np.full(len(between), _HELD_OUT_GROWTH))
-    return responses, interpolated - _readings(cage, campaigns[-1])
+    return responses, interpolated - settled[1:]
 
 
 def _readings(cage: Cage, campaign: CampaignRecord) -> Float[np.ndarray, "case sensor"]:
@@ -164,13 +166,16 @@ def _readings(cage: Cage, campaign: CampaignRecord) -> Float[np.ndarray, "case s
 
 
 def _on_grid(
-    readings: Float[np.ndarray, "case sensor"],
+    still: Float[np.ndarray, " sensor"], moving: Float[np.ndarray, "case sensor"]
 ) -> Float[np.ndarray, "speed direction sensor"]:
     """Cases in the order of the grid's plan; still water looks the same in all directions."""
-    sensors = readings.shape[1]
-    still = np.broadcast_to(readings[0], (1, len(_DIRECTIONS), sensors))
-    moving = readings[1:].reshape(len(_SPEEDS), len(_DIRECTIONS), sensors)
-    return np.concatenate([still, moving])
+    sensors = len(still)
+    return np.concatenate(
+        [
+            np.broadcast_to(still, (1, len(_DIRECTIONS), sensors)),
+            moving.reshape(len(_SPEEDS), len(_DIRECTIONS), sensors),
+        ]
+    )
 
 
 def _lagrange(
