@@ -125,6 +125,11 @@ class Chain:
         )
         return FieldRecord.read(folder / "field")
 
+    def report(self, stage: str, done: int, total: int) -> None:
+        """Tell whoever listens how far a stage is."""
+        if self.progress is not None:
+            self.progress(stage, done, total)
+
     @property
     def _stages(self) -> Stages:
         return Stages(folder=self.folder)

@@ -111,6 +111,7 @@ def study_chain(chain: Chain, out: Path) -> PaperStudy:
         level_one=level_one,
         recipe=recipe,
         provenance=provenance,
+        progress=chain.report,
     ).html()
     scores = {
         "recipe": recipe,
@@ -137,8 +138,9 @@ def _scored(chain: Chain) -> tuple[dict[str, Readings], tuple[SensorScore, ...]]
     answer = chain.twin.predict_record(chain.field.buoy)
     readings = compared(answer, judging)
     truth = compared(answer, judging_truth)
-    sensors = []
+    sensors: list[SensorScore] = []
     for name in answer.sensor_names:
+        chain.report("score", len(sensors), len(answer.sensor_names))
         unit, _ = people_unit(answer, name)
         score = score_sensor(
             name,
@@ -150,6 +152,7 @@ def _scored(chain: Chain) -> tuple[dict[str, Readings], tuple[SensorScore, ...]]
             truth=truth[name],
         )
         sensors.append(score)
+    chain.report("score", len(sensors), len(sensors))
     return readings, tuple(sensors)
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from seacage.cage import Cage
-from seacage.conventions import Origin
+from seacage.conventions import Origin, Progress
 from seacage.figures import (
     Comparison,
     density_figure,
@@ -38,6 +38,8 @@ class PaperReport:
         Scores of level 1 on held-out simulations.
     recipe, provenance
         What was done and with what, as name and value.
+    progress
+        Called as ("draw", done, total) in sensors.
     """
 
     cage: Cage
@@ -48,6 +50,7 @@ class PaperReport:
     level_one: LevelOneScore
     recipe: Mapping[str, str]
     provenance: Mapping[str, str]
+    progress: Progress
 
     def html(self) -> str:
         """The whole page."""
@@ -56,7 +59,7 @@ class PaperReport:
             self._header(),
             *self._method(),
             *self._errors(),
-            *(self._sensor(score) for score in self.sensors),
+            *self._sensors(),
             *self._level_one(),
             *self._discussion(),
             *self._provenance(),
@@ -145,6 +148,14 @@ class PaperReport:
             "Origin",
         )
         return table(head, [_error_row(*row) for row in rows], caption=caption)
+
+    def _sensors(self) -> list[Html]:
+        sections: list[Html] = []
+        for score in self.sensors:
+            self.progress("draw", len(sections), len(self.sensors))
+            sections.append(self._sensor(score))
+        self.progress("draw", len(sections), len(sections))
+        return sections
 
     def _sensor(self, score: SensorScore) -> Html:
         comparison = comparison_of(score, self.readings[score.sensor])

@@ -266,8 +266,8 @@ def score_level_one(
         bridle_mae=np.mean(np.abs(answer.bridle_low - tension), axis=0),
         bridle_mean=np.mean(tension, axis=0),
         shapes=(
-            _shape_score("ShapeGP (the twin's)", answer.node_position, position),
-            _shape_score("PCA, 3 modes + GP", paper, position),
+            shape_score("ShapeGP (the twin's)", answer.node_position, position),
+            shape_score("PCA, 3 modes + GP", paper, position),
         ),
     )
 
@@ -324,7 +324,7 @@ def _features(campaign: CampaignRecord) -> Float[np.ndarray, "case 3"]:
     return current_features(np.array([sea.current_velocity for sea in campaign.seas]))
 
 
-def _shape_score(
+def shape_score(
     model: str,
     predicted: Float[np.ndarray, "case node 3"],
     computed: Float[np.ndarray, "case node 3"],

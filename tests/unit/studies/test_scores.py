@@ -1,0 +1,87 @@
+"""Scores of sensors and shapes."""
+
+import numpy as np
+import pytest
+
+from seacage.conventions import Origin
+from seacage.studies._scores import Readings, score_sensor, shape_score
+
+START = np.datetime64("2020-02-22T00:05", "us")
+
+
+def readings(count: int, **columns: np.ndarray) -> Readings:
+    rng = np.random.default_rng(0)
+    truth = 10.0 + 5.0 * np.sin(np.arange(count) / 100.0)
+    whole = {
+        "time": START + np.arange(count) * np.timedelta64(60, "s"),
+        "reading": truth + 0.5 * rng.standard_normal(count),
+        "low": 0.5 * truth,
+        "multi": truth,
+        "multi_std": np.full(count, 0.5),
+    }
+    return Readings(**{**whole, **columns})
+
+
+def scored(some: Readings, **options):
+    return score_sensor(
+        "shackle-1", some, unit="kN", origin=Origin.VIRTUAL_FIELD, block_h=3.0, seed=0, **options
+    )
+
+
+def test_a_better_prediction_is_called_better_and_a_worse_one_is_not():
+    good = readings(1440)
+    assert scored(good).raw.better
+    assert scored(good).raw.ratio < 0.15
+    swapped = readings(1440, low=good.multi, multi=good.low)
+    assert not scored(swapped).raw.better
+    assert scored(swapped).raw.gain == pytest.approx(-scored(good).raw.gain)
+
+
+def test_equal_predictions_show_no_gain():
+    good = readings(1440)
+    same = scored(readings(1440, low=good.multi))
+    assert not same.raw.better
+    assert same.raw.gain == 0.0
+
+
+def test_an_honest_spread_holds_its_share_of_readings():
+    assert scored(readings(1440)).raw.coverage == pytest.approx(0.95, abs=0.02)
+
+
+def test_means_begin_at_whole_ten_minutes_and_average_the_noise_away():
+    means = readings(1440).averaged(600.0)
+    assert means.time[0] == np.datetime64("2020-02-22T00:00")
+    assert means.time[1] - means.time[0] == np.timedelta64(600, "s")
+    first = readings(1440)
+    assert means.reading[0] == pytest.approx(first.reading[:5].mean()), "from 00:05 on"
+    assert scored(first).means.multi_mae < 0.5 * scored(first).raw.multi_mae
+
+
+def test_the_truth_is_taken_at_the_readings_times_alone():
+    some = readings(1440).at(np.arange(1440) < 700)
+    truth = readings(1440, reading=readings(1440).multi)
+    truth.low[700:] = np.nan  # would spoil the mean if it were taken
+    score = scored(some, truth=truth)
+    assert score.multi_truth_mae == 0.0
+    assert score.low_truth_mae == pytest.approx(np.mean(0.5 * truth.multi[:700]))
+
+
+def test_bias_is_prediction_less_reading():
+    score = scored(readings(1440))
+    assert score.raw.low_bias == pytest.approx(-5.0, rel=0.15)
+    assert abs(score.raw.multi_bias) < 0.05
+
+
+def test_the_best_fit_is_of_the_prediction_on_the_reading():
+    slope, intercept = scored(readings(1440, low=readings(1440).reading * 0.5 + 3.0)).low_line
+    assert (slope, intercept) == pytest.approx((0.5, 3.0))
+
+
+def test_a_shape_is_scored_by_axis_and_by_its_worst_node():
+    computed = np.zeros((2, 4, 3))
+    predicted = computed.copy()
+    predicted[1, 2] = [3.0, 4.0, 0.0]
+    score = shape_score("some model", predicted, computed)
+    assert score.axis_mae == pytest.approx((3.0 / 8.0, 4.0 / 8.0, 0.0))
+    assert score.worst == 5.0
+    np.testing.assert_allclose(score.case_mae, [0.0, 7.0 / 12.0])
