@@ -4,7 +4,7 @@ from datetime import UTC, datetime
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from seacage.conventions import Flag, Origin
@@ -49,6 +49,7 @@ def recorded(stream):
     return Record(stream="buoy-1", time=time, values=values, origin=Origin.MEASURED)
 
 
+@settings(max_examples=50)
 @given(streams())
 def test_samples_one_by_one_get_the_flags_of_the_record(stream):
     record = recorded(stream)
@@ -59,6 +60,7 @@ def test_samples_one_by_one_get_the_flags_of_the_record(stream):
         assert live.flags == {key: checked.flags[key][row] for key in record.values}
 
 
+@settings(max_examples=50)
 @given(streams())
 def test_what_is_usable_is_finite_and_a_remark_stands_for_all_else_that_is_not_good(stream):
     record = recorded(stream)
@@ -71,6 +73,7 @@ def test_what_is_usable_is_finite_and_a_remark_stands_for_all_else_that_is_not_g
             assert np.isfinite(live.values[key]) or flag in {Flag.FAIL, Flag.MISSING}
 
 
+@settings(max_examples=50)
 @given(streams())
 def test_checking_changes_no_value_and_no_time(stream):
     record = recorded(stream)

@@ -321,8 +321,11 @@ class ColumnMap:
         return time.astimezone(UTC)
 
     def _depths(self) -> str:
+        """What a refusal adds where the map holds a profile."""
         depths = sorted({c.depth_m for c in self.columns if c.depth_m is not None})
-        return f"; its profile has {', '.join(f'{depth:g}' for depth in depths)} m" * bool(depths)
+        if not depths:
+            return ""
+        return f"; its profile has {', '.join(f'{depth:g}' for depth in depths)} m"
 
 
 def _column(columns: Table, name: str, file: str) -> Column:
