@@ -15,9 +15,10 @@ from seacage.surrogates._regression import Posterior, learned
 from seacage.surrogates._scaling import Scaling
 
 MANY_OUTPUTS = 16
-"""More outputs than this teach the kernel through ``LEADING`` principal scores."""
+"""More outputs than this teach the kernel condensed."""
 
-LEADING = 8
+CONDENSED = 1e-6
+"""Share of the outputs' variance that may be left out where they are."""
 
 SHARED_POINTS = 5.0
 """Weight of the shared variance against each output's own roughness, in points."""
@@ -72,7 +73,7 @@ class GaussianProcess:
             kernel_named(self.kernel),
             x,
             table,
-            teachers=leading_scores(table) if table.shape[1] > MANY_OUTPUTS else table,
+            taught_by=teachers(table),
             restarts=self.restarts,
             seed=seed,
         )
@@ -212,11 +213,11 @@ def fitted_process(
     x: Float[np.ndarray, "n feature"],
     y: Float[np.ndarray, "n output"],
     *,
-    teachers: Float[np.ndarray, "n teacher"],
+    taught_by: Float[np.ndarray, "n teacher"],
     restarts: int,
     seed: int,
 ) -> FittedGaussianProcess:
-    """Learn the kernel from the teachers, then condition on the outputs.
+    """Learn the kernel from its teachers, then condition on the outputs.
 
     Parameters
     ----------
@@ -224,20 +225,14 @@ def fitted_process(
         That all outputs share.
     x, y
         Inputs and outputs in their own units.
-    teachers
-        Outputs, or combinations of them, that the hyperparameters are learned from.
+    taught_by
+        What the hyperparameters are learned from, of unit variance all in all.
     restarts, seed
         Of the search.
     """
     inputs, outputs = Scaling.of(x), Scaling.of(y)
     standardised = inputs.standardised(x)
-    log_parameters = learned(
-        kernel,
-        standardised,
-        Scaling.of(teachers).standardised(teachers),
-        restarts=restarts,
-        seed=seed,
-    )
+    log_parameters = learned(kernel, standardised, taught_by, restarts=restarts, seed=seed)
     posterior = Posterior.conditioned(kernel, log_parameters, standardised, y - outputs.centre)
     # Each output's own variance, held to the shared one by a few points' worth of belief
     # (the mean of the inverse-gamma posterior of a scale factor).
@@ -252,10 +247,23 @@ def fitted_process(
     )
 
 
-def leading_scores(y: Float[np.ndarray, "n output"]) -> Float[np.ndarray, "n teacher"]:
-    """Scores of the first principal components of the standardised outputs."""
-    left, size, _ = np.linalg.svd(Scaling.of(y).standardised(y), full_matrices=False)
-    return left[:, :LEADING] * size[:LEADING]
+def teachers(y: Float[np.ndarray, "n output"]) -> Float[np.ndarray, "n teacher"]:
+    """Standardised outputs for the hyperparameters to be learned from, all alike important."""
+    standardised = Scaling.of(y).standardised(y)
+    return standardised if y.shape[1] <= MANY_OUTPUTS else condensed(standardised)
+
+
+def condensed(y: Float[np.ndarray, "n output"]) -> Float[np.ndarray, "n teacher"]:
+    """Fewer outputs that teach a kernel the same.
+
+    The likelihood summed over outputs knows them only by their products between cases, Y Y',
+    which the principal scores keep; an output counts as much as it varies.
+    """
+    left, size, _ = np.linalg.svd(y - y.mean(axis=0), full_matrices=False)
+    left_out = 1.0 - np.cumsum(size**2) / max(float(np.sum(size**2)), np.finfo(float).tiny)
+    kept = 1 + int(np.argmax(left_out < CONDENSED))
+    scores = left[:, :kept] * size[:kept]
+    return scores / (np.sqrt(np.mean(scores**2)) or 1.0)
 
 
 def check_restarts(restarts: int) -> None:

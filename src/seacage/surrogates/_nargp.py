@@ -20,16 +20,13 @@ from seacage.surrogates._gaussian_process import (
     FittedGaussianProcess,
     check_restarts,
     fitted_process,
+    teachers,
 )
 from seacage.surrogates._kernels import AutoregressiveKernel, kernel_named
 from seacage.surrogates._prediction import Prediction, Predicts, checked_inputs, checked_outputs
-from seacage.surrogates._quadrature import carried, most_nodes
-from seacage.surrogates._regression import chunks
+from seacage.surrogates._quadrature import carried
 
 WHAT = "NARGP.fit"
-
-CHUNK = 2**18
-"""Quadrature nodes held at once while predicting."""
 
 Cases = tuple[Float[np.ndarray, "n feature"], Float[np.ndarray, " n"]]
 """Inputs and outputs of one fidelity."""
@@ -119,7 +116,7 @@ class NARGP:
             kernel_named("squared-exponential"),
             x,
             y[:, None],
-            teachers=y[:, None],
+            taught_by=teachers(y[:, None]),
             restarts=self.restarts,
             seed=seed,
         )
@@ -136,7 +133,7 @@ class NARGP:
             AutoregressiveKernel(linear=self.linear),
             np.column_stack([x, below]),
             y[:, None],
-            teachers=y[:, None],
+            taught_by=teachers(y[:, None]),
             restarts=self.restarts,
             seed=seed,
         )
@@ -199,15 +196,23 @@ class FittedNARGP:
                 f"{self.levels}."
             )
         if level == 1:
-            return self.lower.predict(x, noisy=noisy) if noisy else self.lower.predict(x)
+            return self._lowest(x, noisy=noisy)
         upper = self.upper[: level - 1]
-        steps = [_Step(process) for process in upper]
         x = checked_inputs(x, what="predict", width=len(upper[0].inputs.centre) - 1)
-        mean, variance = np.empty(len(x)), np.empty(len(x))
-        for rows in chunks(len(x), CHUNK // most_nodes(len(upper))):
-            below = self.lower.predict(x[rows])
-            mean[rows], variance[rows] = carried(steps, x[rows], below.mean, below.std**2)
-        return Prediction(mean=mean, std=np.sqrt(variance + noisy * float(upper[-1].noise[0])))
+        below = self.lower.predict(x)
+        steps = [_Step(process) for process in upper]
+        mean, variance = carried(steps, x, below.mean, below.std**2)
+        return Prediction(mean=mean, std=np.sqrt(variance + noisy * upper[-1].noise))
+
+    def _lowest(self, x: Float[np.ndarray, "row feature"], *, noisy: bool) -> Prediction:
+        if self.lent is None:
+            return self.own[0].predict(x, noisy=noisy)
+        if noisy:
+            raise InputError(
+                "predict: level 1 is lent, and its noise is not known here. "
+                "Ask the model that lent it."
+            )
+        return self.lent.predict(x)
 
     def to_arrays(self) -> tuple[Settings, Arrays]:
         """Everything that ``from_arrays`` needs; a lent level 1 is left out."""

@@ -21,6 +21,7 @@ from seacage.surrogates._gaussian_process import (
     FittedGaussianProcess,
     check_restarts,
     fitted_process,
+    teachers,
 )
 from seacage.surrogates._kernels import KernelName, kernel_named
 from seacage.surrogates._prediction import Prediction, checked_inputs, checked_outputs
@@ -46,6 +47,11 @@ class Modes:
     centre: Float[np.ndarray, " coordinate"]
     direction: Float[np.ndarray, "mode coordinate"]
     truncation: Float[np.ndarray, " coordinate"]
+
+    @property
+    def nodes(self) -> int:
+        """Of a shape."""
+        return len(self.centre) // 3
 
     def encode(self, shape: Float[np.ndarray, "row coordinate"]) -> Float[np.ndarray, "row mode"]:
         """Scores of each shape [m]."""
@@ -159,7 +165,7 @@ class PcaGP:
                 kernel_named(self.kernel),
                 x,
                 score[:, None],
-                teachers=score[:, None],
+                taught_by=teachers(score[:, None]),
                 restarts=self.restarts,
                 seed=seed + mode,
             )
@@ -207,11 +213,12 @@ class FittedPcaGP:
         self, node_position: Float[np.ndarray, "row node 3"]
     ) -> Float[np.ndarray, "row mode"]:
         """Scores of shapes [m]."""
-        return self.basis.encode(flattened(node_position, self.basis))
+        rows = np.reshape(node_position, (len(node_position), -1))
+        return self.basis.encode(checked_inputs(rows, what="encode", width=len(self.basis.centre)))
 
     def decode(self, score: Float[np.ndarray, "row mode"]) -> Float[np.ndarray, "row node 3"]:
         """Shapes of scores [m]."""
-        return self.basis.decode(score).reshape(len(score), -1, 3)
+        return self.basis.decode(score).reshape(len(score), self.basis.nodes, 3)
 
     def predict(self, x: Float[np.ndarray, "row feature"], *, noisy: bool = False) -> Prediction:
         """Shape at each row of features [m].
@@ -227,7 +234,7 @@ class FittedPcaGP:
         answers = [score.predict(x, noisy=noisy) for score in self.scores]
         mean = np.stack([answer.mean for answer in answers], axis=1)
         std = self.basis.std(np.stack([answer.std for answer in answers], axis=1))
-        return Prediction(mean=self.decode(mean), std=std.reshape(len(std), -1, 3))
+        return Prediction(mean=self.decode(mean), std=std.reshape(len(std), self.basis.nodes, 3))
 
     def to_arrays(self) -> tuple[Settings, Arrays]:
         """Everything that ``from_arrays`` needs, as plain values and float64 arrays."""
@@ -257,18 +264,6 @@ class FittedPcaGP:
             scores=scores,
             explained_variance=setting(settings, "explained_variance", float),
         )
-
-
-def flattened(
-    node_position: Float[np.ndarray, "row node 3"], modes: Modes
-) -> Float[np.ndarray, "row coordinate"]:
-    """Shapes as rows, checked against the nodes that were learned."""
-    rows = checked_inputs(
-        np.reshape(node_position, (len(node_position), -1)),
-        what="encode",
-        width=len(modes.centre),
-    )
-    return rows
 
 
 def modes_to_arrays(modes: Modes) -> Arrays:

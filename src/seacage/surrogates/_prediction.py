@@ -1,7 +1,7 @@
 """What every surrogate answers, and the checks of what it is asked."""
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float
@@ -24,6 +24,7 @@ class Prediction:
     std: Float[np.ndarray, "row *rest"]
 
 
+@runtime_checkable
 class Predicts(Protocol):
     """Anything fitted that answers with a mean and a standard deviation per row."""
 

@@ -2,10 +2,12 @@
 
 from collections.abc import Sequence
 from functools import cache
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float, Int
+
+from seacage.surrogates._regression import chunks
 
 RULES = ((0.1, 3), (0.25, 5), (0.45, 8), (0.8, 13), (1.8, 24), (3.2, 40), (np.inf, 64))
 """Nodes enough up to a ratio of the level below's sd to the length over which this one bends.
@@ -16,10 +18,14 @@ On random levels the mean is then within 0.005 sd and the sd within 0.5 % of a d
 GAUSS_HERMITE_UP_TO = 13
 """Above it even spacing needs fewer nodes: Gauss-Hermite puts many where there is no weight."""
 
+CHUNK = 2**18
+"""Nodes held at once by each level, whatever the number of rows."""
+
 REACH = 5.0
 """Of the evenly spaced nodes, in sd either way."""
 
 
+@runtime_checkable
 class Level(Protocol):
     """One level as a function of the inputs and of the value below."""
 
@@ -62,17 +68,13 @@ def carried(
     """
     top_mean, top_variance = np.empty(len(x)), np.empty(len(x))
     counts = _node_counts(_largest_ratio(levels, x, mean, variance))
-    for count in np.unique(counts):
-        rows = counts == count
-        top_mean[rows], top_variance[rows] = _with_rule(
-            int(count), levels, x[rows], mean[rows], variance[rows]
-        )
+    for count in np.unique(counts).tolist():
+        alike = np.flatnonzero(counts == count)
+        for rows in (alike[chunk] for chunk in chunks(len(alike), CHUNK // count)):
+            top_mean[rows], top_variance[rows] = _with_rule(
+                count, levels, x[rows], mean[rows], variance[rows]
+            )
     return top_mean, top_variance
-
-
-def most_nodes(levels: int) -> int:
-    """The most evaluations of the last level that one row can need."""
-    return RULES[-1][1] ** levels
 
 
 def _with_rule(

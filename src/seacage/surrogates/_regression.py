@@ -267,7 +267,8 @@ def _cholesky(covariance: Float[np.ndarray, "n n"], noise: float) -> Float[np.nd
 
 
 def _inverse(factor: Float[np.ndarray, "n n"]) -> Float[np.ndarray, "n n"]:
-    from scipy.linalg.lapack import dpotri
+    from scipy.linalg import get_lapack_funcs
 
-    lower = np.tril(dpotri(factor, lower=1)[0])
+    (potri,) = get_lapack_funcs(("potri",), (factor,))
+    lower = np.tril(potri(factor, lower=True)[0])
     return lower + np.tril(lower, -1).T

@@ -10,9 +10,9 @@ from jaxtyping import Float
 from seacage.conventions import InputError, ModelError
 from seacage.surrogates._arrays import Arrays, Settings, joined, sub_settings, within
 from seacage.surrogates._gaussian_process import (
-    LEADING,
     FittedGaussianProcess,
     check_restarts,
+    condensed,
     fitted_process,
 )
 from seacage.surrogates._kernels import KernelName, kernel_named
@@ -80,7 +80,7 @@ class ShapeGP:
             kernel_named(self.kernel),
             x,
             scores,
-            teachers=scores[:, :LEADING],
+            taught_by=condensed(scores),
             restarts=self.restarts,
             seed=seed,
         )
@@ -128,7 +128,7 @@ class FittedShapeGP:
         """
         score = self.scores.predict(x, noisy=noisy)
         mean, std = self.basis.decode(score.mean), self.basis.std(score.std)
-        shape = (len(mean), mean.shape[1] // 3, 3)  # not -1: there may be no rows
+        shape = (len(mean), self.basis.nodes, 3)
         return Prediction(mean=mean.reshape(shape), std=std.reshape(shape))
 
     def coordinate(self, node: int, axis: int) -> "FittedCoordinate":
@@ -141,7 +141,7 @@ class FittedShapeGP:
         axis
             0 east, 1 north, 2 up.
         """
-        nodes = len(self.basis.centre) // 3
+        nodes = self.basis.nodes
         if not (0 <= node < nodes and 0 <= axis < 3):
             raise InputError(
                 f"coordinate: node {node}, axis {axis} does not exist; this shape has {nodes} "

@@ -6,5 +6,13 @@ from seacage.testing._stand_ins import (
     stand_in_seas,
     stand_in_twin,
 )
+from seacage.testing._surrogates import FittedSurrogate, check_surrogate
 
-__all__ = ["stand_in_campaign", "stand_in_field", "stand_in_seas", "stand_in_twin"]
+__all__ = [
+    "FittedSurrogate",
+    "check_surrogate",
+    "stand_in_campaign",
+    "stand_in_field",
+    "stand_in_seas",
+    "stand_in_twin",
+]

@@ -1,0 +1,168 @@
+"""What every surrogate promises, whoever wrote it."""
+
+import json
+from collections.abc import Callable, Mapping
+from typing import Protocol, Self, runtime_checkable
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.conventions import InputError, ModelError
+from seacage.surrogates import Arrays, Prediction, Settings
+
+CASES, UNSEEN = 50, 20
+
+Inputs = Float[np.ndarray, "_ feature"]
+Outputs = Float[np.ndarray, "_ *output"]
+
+
+@runtime_checkable
+class FittedSurrogate(Protocol):
+    """What the suite needs of a fitted model."""
+
+    def predict(self, x: Inputs, *, noisy: bool = False) -> Prediction:
+        """Answer at each row of features."""
+        ...
+
+    def to_arrays(self) -> tuple[Settings, Arrays]:
+        """Describe the model by plain values and float64 arrays."""
+        ...
+
+    @classmethod
+    def from_arrays(cls, settings: Mapping[str, object], arrays: Mapping[str, np.ndarray]) -> Self:
+        """Make the model again."""
+        ...
+
+
+MakeFitted = Callable[[Inputs, Outputs, int], FittedSurrogate]
+"""Fits a surrogate to inputs (row, 2) and outputs (row, *output), from a seed."""
+
+
+def check_surrogate(make_fitted: MakeFitted, *, output_shape: tuple[int, ...] = ()) -> None:
+    """Hold a surrogate to what the twin relies on; an assertion names the first broken promise.
+
+    The problem is smooth, without noise, and of three modes, so that a model of the whole
+    shape may compress it.
+
+    Parameters
+    ----------
+    make_fitted
+        Fits the surrogate to x (row, 2) and y (row, *output_shape), from a seed.
+    output_shape
+        Of one case: () for a number, (5,) for five, (nodes, 3) for a shape.
+    """
+    x, y = _problem(CASES, output_shape, seed=1)
+    unseen, truth = _problem(UNSEEN, output_shape, seed=2)
+    fitted = make_fitted(x, y, 0)
+    _check_answers(fitted, unseen, output_shape)
+    _check_rows_are_independent(fitted, unseen)
+    _check_it_learns(fitted, x, y, unseen, truth)
+    _check_noise(fitted, unseen)
+    _check_seed(make_fitted, x, y, unseen)
+    _check_saving(fitted, unseen)
+    _check_refusals(fitted, make_fitted, x, y)
+
+
+def _problem(rows: int, output_shape: tuple[int, ...], *, seed: int) -> tuple[Inputs, Outputs]:
+    x = np.random.default_rng(seed).uniform(-1.0, 1.0, (rows, 2))
+    modes = np.stack([np.sin(2.0 * x[:, 0]), x[:, 0] * x[:, 1], np.cos(2.0 * x[:, 1])], axis=1)
+    mixing = np.random.default_rng(0).standard_normal((3, *output_shape))
+    return x, 4.0 + np.tensordot(modes, mixing, axes=1)
+
+
+def _check_answers(fitted: FittedSurrogate, unseen: Inputs, output_shape: tuple[int, ...]) -> None:
+    answer = fitted.predict(unseen)
+    for name, values in (("mean", answer.mean), ("std", answer.std)):
+        expected = (len(unseen), *output_shape)
+        assert values.shape == expected, f"{name} has shape {values.shape}, not {expected}"
+        assert values.dtype == np.float64, f"{name} is {values.dtype}, not float64"
+        assert np.isfinite(values).all(), f"{name} is not finite everywhere"
+    assert (answer.std >= 0.0).all(), "a standard deviation is negative"
+    assert fitted.predict(unseen[:0]).mean.shape == (0, *output_shape), "no rows, no answer"
+
+
+def _check_rows_are_independent(fitted: FittedSurrogate, unseen: Inputs) -> None:
+    together = fitted.predict(unseen)
+    alone = [fitted.predict(row[None]) for row in unseen]
+    for name in ("mean", "std"):
+        one_by_one = np.concatenate([getattr(answer, name) for answer in alone])
+        # Matrix products of other sizes round otherwise.
+        np.testing.assert_allclose(
+            one_by_one, getattr(together, name), rtol=1e-6, atol=1e-8, err_msg=f"{name} by row"
+        )
+
+
+def _check_it_learns(
+    fitted: FittedSurrogate, x: Inputs, y: Outputs, unseen: Inputs, truth: Outputs
+) -> None:
+    spread = y.std()
+    missed = np.max(np.abs(fitted.predict(x).mean - y)) / spread
+    assert missed < 1e-2, f"it misses noise-free training cases by {missed:.2g} of their spread"
+    error = np.sqrt(np.mean((fitted.predict(unseen).mean - truth) ** 2)) / spread
+    assert error < 0.05, f"it misses unseen cases by {error:.2g} of the spread"
+    near, far = fitted.predict(x).std.mean(), fitted.predict(x + 20.0).std.mean()
+    assert far > 3.0 * near, "it is as sure far from its cases as among them"
+
+
+def _check_noise(fitted: FittedSurrogate, unseen: Inputs) -> None:
+    quiet, noisy = fitted.predict(unseen), fitted.predict(unseen, noisy=True)
+    np.testing.assert_array_equal(noisy.mean, quiet.mean, err_msg="noise moves the mean")
+    assert (noisy.std >= quiet.std).all(), "noise narrows the answer"
+    assert (noisy.std > quiet.std).any(), "noise adds nothing anywhere"
+
+
+def _check_seed(make_fitted: MakeFitted, x: Inputs, y: Outputs, unseen: Inputs) -> None:
+    first, again = (make_fitted(x, y, 7).predict(unseen) for _ in range(2))
+    np.testing.assert_array_equal(again.mean, first.mean, err_msg="the seed does not fix the mean")
+    np.testing.assert_array_equal(again.std, first.std, err_msg="the seed does not fix the std")
+
+
+def _check_saving(fitted: FittedSurrogate, unseen: Inputs) -> None:
+    settings, arrays = fitted.to_arrays()
+    for name, values in arrays.items():
+        assert values.dtype == np.float64, f"array {name} is {values.dtype}, not float64"
+        assert values.flags.c_contiguous, f"array {name} is not in C order"
+    settings = json.loads(json.dumps(settings, allow_nan=False))
+    read = {
+        name: np.frombuffer(values.tobytes()).reshape(values.shape)
+        for name, values in arrays.items()
+    }
+    back = type(fitted).from_arrays(settings, read)
+    for noisy in (False, True):
+        before, after = fitted.predict(unseen, noisy=noisy), back.predict(unseen, noisy=noisy)
+        np.testing.assert_array_equal(after.mean, before.mean, err_msg="saving moves the mean")
+        np.testing.assert_array_equal(after.std, before.std, err_msg="saving moves the std")
+    for name, values in read.items():
+        lost = {other: kept for other, kept in read.items() if other != name}
+        unfinished = np.full_like(values, np.nan)
+        for damaged in (lost, lost | {name: values[None]}, lost | {name: unfinished}):
+            _check_refused(
+                lambda damaged=damaged: type(fitted).from_arrays(settings, damaged),
+                error=ModelError,
+                about=f"a damaged array {name}",
+            )
+
+
+def _check_refusals(
+    fitted: FittedSurrogate, make_fitted: MakeFitted, x: Inputs, y: Outputs
+) -> None:
+    missing = x.copy()
+    missing[3, 1] = np.nan
+    wide = np.column_stack([x, x])
+    _check_refused(lambda: fitted.predict(missing), error=InputError, about="NaN in x")
+    _check_refused(lambda: fitted.predict(wide), error=InputError, about="too many features")
+    _check_refused(lambda: make_fitted(missing, y, 0), error=InputError, about="NaN in x")
+    gap = y.copy()
+    gap[5] = np.inf
+    _check_refused(lambda: make_fitted(x, gap, 0), error=InputError, about="infinity in y")
+
+
+def _check_refused(call: Callable[[], object], *, error: type[Exception], about: str) -> None:
+    try:
+        call()
+    except error as refusal:
+        message = str(refusal)
+        assert "\n" not in message, f"refusing {about}, it says more than one line"
+        assert message.endswith("."), f"refusing {about}, it makes no sentence"
+        return
+    raise AssertionError(f"it accepts {about}")

@@ -1,0 +1,57 @@
+"""Every surrogate keeps the promises that the twin relies on."""
+
+import numpy as np
+import pytest
+
+from seacage.surrogates import (
+    NARGP,
+    FittedGaussianProcess,
+    FittedNARGP,
+    FittedPcaGP,
+    FittedShapeGP,
+    GaussianProcess,
+    PcaGP,
+    ShapeGP,
+)
+from seacage.testing import check_surrogate
+
+
+@pytest.mark.parametrize(
+    ("kernel", "outputs"),
+    [
+        ("squared-exponential", ()),
+        ("squared-exponential", (4,)),
+        ("matern-5/2", (1,)),
+        ("matern-5/2", (20,)),
+    ],
+)
+def test_a_gaussian_process_keeps_its_promises(kernel, outputs: tuple[int, ...]) -> None:
+    def fit(x: np.ndarray, y: np.ndarray, seed: int) -> FittedGaussianProcess:
+        return GaussianProcess(kernel=kernel, restarts=0).fit(x, y, seed=seed)
+
+    check_surrogate(fit, output_shape=outputs)
+
+
+@pytest.mark.parametrize(("linear", "levels"), [(True, 1), (True, 3), (False, 2)])
+def test_nargp_keeps_its_promises(linear: bool, levels: int) -> None:
+    def fit(x: np.ndarray, y: np.ndarray, seed: int) -> FittedNARGP:
+        # The level below bends what the level above has to find.
+        cases = [(x, np.hypot(y, step)) for step in range(levels)]
+        return NARGP(linear=linear, restarts=0).fit(cases[::-1], seed=seed)
+
+    check_surrogate(fit)
+
+
+@pytest.mark.parametrize("centred", [True, False])
+def test_pca_keeps_its_promises(centred: bool) -> None:
+    def fit(x: np.ndarray, y: np.ndarray, seed: int) -> FittedPcaGP:
+        return PcaGP(modes=4 - centred, centred=centred, restarts=0).fit(x, y, seed=seed)
+
+    check_surrogate(fit, output_shape=(6, 3))
+
+
+def test_the_shape_keeps_its_promises() -> None:
+    def fit(x: np.ndarray, y: np.ndarray, seed: int) -> FittedShapeGP:
+        return ShapeGP(restarts=0).fit(x, y, seed=seed)
+
+    check_surrogate(fit, output_shape=(6, 3))
