@@ -119,7 +119,7 @@ def net_force(panels: Panels, flow: SteadyFlow, position: Nodal) -> Nodal:
 
 
 def panel_load(
-    panels: Panels, flow: SteadyFlow, position: Nodal
+    panels: Panels, flow: SteadyFlow, position: Float[np.ndarray, "#case node 3"]
 ) -> Float[np.ndarray, "case panel 3"]:
     """Drag and lift of each panel: ½ρ C_D A|u|u and ½ρ C_L A|u|² along (u×n)×u [N].
 
@@ -172,7 +172,7 @@ def spring_force(springs: Springs, design: Float[np.ndarray, "node 3"], position
 
 
 def total_net_force(
-    panels: Panels, flow: SteadyFlow, position: Nodal
+    panels: Panels, flow: SteadyFlow, position: Float[np.ndarray, "#case node 3"]
 ) -> Float[np.ndarray, "case 3"]:
     """The water's load on the whole netting [N]."""
     return panel_load(panels, flow, position).sum(axis=1)

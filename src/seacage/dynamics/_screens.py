@@ -19,7 +19,7 @@ Goldstein (1965) as fitted by Kristiansen & Faltinsen (2012), for 10^1.5 <= Re <
 
 REYNOLDS_RANGE = (32.0, 1.0e4)
 
-Values = float | Float[np.ndarray, "*n"]
+Values = float | Float[np.ndarray, "*#n"]
 
 
 def aarsnes(solidity: Values, cos_theta: Values) -> tuple[Values, Values]:

@@ -303,7 +303,7 @@ def _response(
     cage: Cage,
     assembly: Assembly,
     flow: SteadyFlow,
-    position: Float[np.ndarray, "case node 3"],
+    position: Float[np.ndarray, "case node_and_corner 3"],
     residual: Float[np.ndarray, " case"],
     result: Int[np.ndarray, " case"],
     rest: Float[np.ndarray, "node 3"],
