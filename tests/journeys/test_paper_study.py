@@ -5,7 +5,7 @@ import json
 import pytest
 
 from seacage.cage import Cage
-from seacage.studies import PaperStudy
+from seacage.studies import PaperStudy, score_record
 from seacage.studies._chain import Chain, Recipe
 from seacage.studies._paper import study_chain
 
@@ -95,3 +95,11 @@ def test_virtual_sensors_follow_another_record_and_teach_nobody(study, folder):
     assert stages.driven_by(part).sensors.keys() == set(SMALL.sensor_names)
     assert len(list((folder / "stages").glob("twin-*"))) == 1
     assert len(list((folder / "stages").glob("display-*"))) == 1
+
+
+def test_a_twin_is_scored_alone_on_the_days_after_its_lessons(study, folder, tmp_path):
+    stages = chain(folder)
+    scores = score_record(stages.twin, stages.field, out=tmp_path, seed=RECIPE.seed)
+    assert [score.means for score in scores] == [score.means for score in study.sensors]
+    assert len(list(tmp_path.glob("*.svg"))) == 2 * len(scores)
+    assert len(json.loads((tmp_path / "scores.json").read_text())["sensors"]) == len(scores)

@@ -169,9 +169,13 @@ def _finish_top(
     axes.set_xlabel("x, east [m]")
     axes.set_ylabel("y, north [m]")
     if sea is not None and sea.current_speed > 0.0:
-        upstream = -cage.collar.radius * sea.current_velocity / sea.current_speed
-        arrow = {"arrowstyle": "-|>", "color": LOW, "lw": 1.6}
-        axes.annotate("", tuple(1.12 * upstream), tuple(1.62 * upstream), arrowprops=arrow)
+        along = sea.current_velocity / sea.current_speed
+        # Half way out on the frame's up-stream side, where no bridle is.
+        axis = int(np.argmax(np.abs(along)))
+        place = np.zeros(2)
+        place[axis] = -np.sign(along[axis]) * (cage.frame.side / 2.0 + cage.collar.radius) / 2.0
+        tail, tip = tuple(place - 6.0 * along), tuple(place + 6.0 * along)
+        axes.annotate("", tip, tail, arrowprops={"arrowstyle": "-|>", "color": LOW, "lw": 1.6})
     if tension is None:
         return
     ends = position[cage.bridle_nodes, :2]

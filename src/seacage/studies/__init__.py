@@ -2,14 +2,17 @@
 
 from seacage.studies._demonstration import Demonstration, prepare_demonstration
 from seacage.studies._held_out import score_record
+from seacage.studies._level_one import LevelOneScore, ShapeScore
 from seacage.studies._paper import PaperStudy, paper_study
-from seacage.studies._scores import Errors, SensorScore
+from seacage.studies._sensor_scores import Errors, SensorScore
 
 __all__ = [
     "Demonstration",
     "Errors",
+    "LevelOneScore",
     "PaperStudy",
     "SensorScore",
+    "ShapeScore",
     "paper_study",
     "prepare_demonstration",
     "score_record",

@@ -4,7 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from seacage.studies._scores import LevelOneScore, SensorScore
+from seacage.studies._level_one import LevelOneScore
+from seacage.studies._sensor_scores import SensorScore
 
 NOMINAL = 0.95
 

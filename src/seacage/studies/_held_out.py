@@ -1,95 +1,95 @@
-"""A trained twin against a record that did not teach it."""
+"""A twin judged on a field record: scores, and the figures that go with them."""
 
 import json
-from dataclasses import asdict, replace
-from datetime import UTC, datetime
+from collections.abc import Mapping, Sequence
+from dataclasses import fields, is_dataclass
 from pathlib import Path
 
 import numpy as np
 
-from seacage.conventions import InputError
-from seacage.figures import density_figure, series_figure, write_figure
-from seacage.records import FieldRecord, Record
-from seacage.studies._report import comparison_of
-from seacage.studies._scores import SensorScore, compared, people_unit, score_sensor
-from seacage.twin import Lesson, Twin
+from seacage.figures import Comparison, density_figure, series_figure, write_figure
+from seacage.records import FieldRecord
+from seacage.studies._sensor_scores import Readings, SensorScore, compared, score_sensor
+from seacage.studies._split import unseen
+from seacage.twin import Twin
 
-_ALWAYS = (datetime.min.replace(tzinfo=UTC), datetime.max.replace(tzinfo=UTC))
-_BLOCKS = 8
-_LONGEST_BLOCK_H = 24.0
+SHOWN_DAYS = 5
+"""A series shows so many unseen days; the scores take them all."""
 
 
 def score_record(
     twin: Twin, field: FieldRecord, *, out: str | Path | None = None, seed: int = 0
 ) -> tuple[SensorScore, ...]:
-    """Score a twin on what the sensors of a field record say.
-
-    Of a sensor that taught the twin only the readings after its lesson count, or before it
-    where there are none after.
+    """Score a twin on the days of a field record that did not teach it.
 
     Parameters
     ----------
-    twin, field
-        Who answers, and what is true.
+    twin
+        What its sensors taught, and when, is written in it.
+    field
+        The record that taught it, whose later days judge, or another.
     out
-        Folder for ``scores.json`` and the figures of each sensor; None writes nothing.
+        Folder for ``scores.json``, and per sensor a density scatter and a time series of both
+        fidelities (SVG); None writes nothing.
     seed
         Of the bootstrap.
 
     Raises
     ------
     InputError
-        A sensor of the record has no reading that did not teach.
+        A sensor of the record has no day that did not teach.
     """
-    unseen = replace(
-        field,
-        sensors={
-            name: _unseen(sensor, twin.provenance.lessons.get(name))
-            for name, sensor in field.sensors.items()
-            if name in twin.sensor_names
-        },
-    )
-    answer = twin.predict_record(field.buoy)
-    readings = compared(answer, unseen)
-    scores = tuple(
-        score_sensor(
-            name,
-            read,
-            unit=people_unit(answer, name)[0],
-            origin=field.sensors[name].origin,
-            block_h=_block_h(read.time),
-            seed=seed,
-        )
-        for name, read in readings.items()
-    )
+    judging = unseen(field, twin.provenance.lessons)
+    readings = compared(twin.predict_record(field.buoy), judging)
+    scores = tuple(score_sensor(one, seed=seed) for one in readings.values())
     if out is not None:
-        folder = Path(out)
-        folder.mkdir(parents=True, exist_ok=True)
-        text = json.dumps([asdict(score) for score in scores], indent=2)
-        (folder / "scores.json").write_text(text + "\n", encoding="utf-8")
-        for score in scores:
-            shown = comparison_of(score, readings[score.sensor])
-            start, end = shown.time[0], shown.time[-1] + np.timedelta64(1, "s")
-            write_figure(density_figure(shown), folder / f"{score.sensor}-density.svg")
-            series = series_figure(shown, start=start, end=end)
-            write_figure(series, folder / f"{score.sensor}-series.svg")
+        _write(Path(out), scores, readings)
     return scores
 
 
-def _unseen(sensor: Record, lesson: Lesson | None) -> Record:
-    if lesson is None:
-        return sensor
-    first, last = _ALWAYS
-    after, before = sensor.between(lesson.end, last), sensor.between(first, lesson.start)
-    if not len(after) and not len(before):
-        raise InputError(
-            f"{sensor.stream}: all its readings lie in the window that taught the twin. "
-            "Give a record that goes on after it."
-        )
-    return after if len(after) else before
+def comparison(score: SensorScore, readings: Readings) -> Comparison:
+    """A sensor's readings and scores, as its figures take them."""
+    return Comparison(
+        sensor=score.sensor,
+        quantity="Depth" if score.unit == "m" else "Tension",
+        unit=score.unit,
+        time=readings.time,
+        reading=readings.reading,
+        low=readings.low,
+        multi=readings.multi,
+        multi_std=readings.multi_std,
+        low_mae=score.raw.low_mae,
+        multi_mae=score.raw.multi_mae,
+        low_line=score.low_line,
+        multi_line=score.multi_line,
+        origin=score.origin,
+    )
 
 
-def _block_h(time: np.ndarray) -> float:
-    """A day, or an eighth of a record that is shorter than eight of them [h]."""
-    span_h = float((time[-1] - time[0]) / np.timedelta64(1, "h"))
-    return min(_LONGEST_BLOCK_H, max(span_h / _BLOCKS, 1.0))
+def shown(readings: Readings) -> tuple[np.datetime64, np.datetime64]:
+    """Start and end of the time that a series shows."""
+    return readings.time[0], readings.time[0] + np.timedelta64(SHOWN_DAYS, "D")
+
+
+def write_scores(path: Path, scores: Mapping[str, object]) -> None:
+    """Write scores and what belongs to them as JSON."""
+    path.write_text(json.dumps(scores, default=_plain, indent=2) + "\n", encoding="utf-8")
+
+
+def _write(out: Path, scores: Sequence[SensorScore], readings: Mapping[str, Readings]) -> None:
+    out.mkdir(parents=True, exist_ok=True)
+    write_scores(out / "scores.json", {"sensors": scores})
+    for score in scores:
+        drawn = comparison(score, readings[score.sensor])
+        start, end = shown(readings[score.sensor])
+        write_figure(density_figure(drawn), out / f"{score.sensor}-density.svg")
+        write_figure(series_figure(drawn, start=start, end=end), out / f"{score.sensor}-series.svg")
+
+
+def _plain(value: object) -> object:
+    """What JSON can hold, of what it cannot."""
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if is_dataclass(value) and not isinstance(value, type):
+        return {part.name: getattr(value, part.name) for part in fields(value)}
+    raise TypeError(f"{type(value)} has no place in a score file")

@@ -1,9 +1,8 @@
 """The paper's study: simulations, sensors and the twin between them, scored and told."""
 
 import hashlib
-import json
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -13,21 +12,12 @@ from seacage.conventions import Progress
 from seacage.ocean import SeaState
 from seacage.studies._chain import Chain, Recipe
 from seacage.studies._discussion import listed
+from seacage.studies._held_out import write_scores
+from seacage.studies._level_one import LevelOneScore, score_level_one
 from seacage.studies._report import PaperReport
-from seacage.studies._scores import (
-    LevelOneScore,
-    Readings,
-    SensorScore,
-    compared,
-    people_unit,
-    score_level_one,
-    score_sensor,
-)
+from seacage.studies._sensor_scores import Readings, SensorScore, compared, score_sensor
 from seacage.studies._split import split
 from seacage.twin import Lesson
-
-_BLOCK_H = {"m": 24.0, "kN": 3.0}
-"""Blocks of the bootstrap: a day, or an eighth of the one day that judges the shackles [h]."""
 
 _SHOWN_SPEED = 0.6
 """Of the current that the report draws the net in [m/s]."""
@@ -97,9 +87,7 @@ def paper_study(
 def study_chain(chain: Chain, out: Path) -> PaperStudy:
     """Score a chain and tell it, making what it still lacks."""
     readings, sensors = _scored(chain)
-    level_one = score_level_one(
-        chain.twin, chain.cage, chain.campaign, chain.held_out, seed=chain.recipe.seed
-    )
+    level_one = score_level_one(chain.twin, chain.campaign, chain.held_out, seed=chain.recipe.seed)
     sea = SeaState(current_speed=_SHOWN_SPEED, current_to=chain.cage.site.current_to)
     recipe, provenance = _recipe(chain, level_one), _provenance(chain)
     page = PaperReport(
@@ -125,7 +113,7 @@ def study_chain(chain: Chain, out: Path) -> PaperStudy:
         sensors=sensors,
         level_one=level_one,
     )
-    study.scores.write_text(json.dumps(scores, default=_plain, indent=2) + "\n", encoding="utf-8")
+    write_scores(study.scores, scores)
     study.report.write_text(page, encoding="utf-8")
     return study
 
@@ -138,22 +126,12 @@ def _scored(chain: Chain) -> tuple[dict[str, Readings], tuple[SensorScore, ...]]
     answer = chain.twin.predict_record(chain.field.buoy)
     readings = compared(answer, judging)
     truth = compared(answer, judging_truth)
-    sensors: list[SensorScore] = []
-    for name in answer.sensor_names:
-        chain.report("score", len(sensors), len(answer.sensor_names))
-        unit, _ = people_unit(answer, name)
-        score = score_sensor(
-            name,
-            readings[name],
-            unit=unit,
-            origin=judging.origin,
-            block_h=_BLOCK_H[unit],
-            seed=chain.recipe.seed,
-            truth=truth[name],
-        )
-        sensors.append(score)
-    chain.report("score", len(sensors), len(sensors))
-    return readings, tuple(sensors)
+    scores: list[SensorScore] = []
+    for name, one in readings.items():
+        chain.report("score", len(scores), len(readings))
+        scores.append(score_sensor(one, seed=chain.recipe.seed, truth=truth[name]))
+    chain.report("score", len(scores), len(scores))
+    return readings, tuple(scores)
 
 
 def _recipe(chain: Chain, level_one: LevelOneScore) -> dict[str, str]:
@@ -196,12 +174,3 @@ def _provenance(chain: Chain) -> dict[str, str]:
 
 def _sha256(text: str) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
-
-
-def _plain(value: object) -> object:
-    """What JSON can hold, of what it cannot."""
-    if isinstance(value, np.ndarray):
-        return value.tolist()
-    if is_dataclass(value) and not isinstance(value, type):
-        return {part.name: getattr(value, part.name) for part in fields(value)}
-    raise TypeError(f"{type(value)} has no place in a score file")

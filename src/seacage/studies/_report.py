@@ -8,7 +8,6 @@ import numpy as np
 from seacage.cage import Cage
 from seacage.conventions import Origin, Progress
 from seacage.figures import (
-    Comparison,
     density_figure,
     net_figure,
     series_figure,
@@ -16,12 +15,11 @@ from seacage.figures import (
 )
 from seacage.ocean import SeaState
 from seacage.studies._discussion import NOMINAL, findings, number, percent
+from seacage.studies._held_out import SHOWN_DAYS, comparison, shown
+from seacage.studies._level_one import LevelOneScore
 from seacage.studies._page import Html, bar, facts, page, picture, table, tag
-from seacage.studies._scores import Errors, LevelOneScore, Readings, SensorScore
+from seacage.studies._sensor_scores import Errors, Readings, SensorScore
 from seacage.twin import Answer
-
-_SHOWN_DAYS = 5
-"""A series shows so many unseen days; the scores take them all."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -158,10 +156,10 @@ class PaperReport:
         return sections
 
     def _sensor(self, score: SensorScore) -> Html:
-        comparison = comparison_of(score, self.readings[score.sensor])
-        start = comparison.time[0]
+        drawn = comparison(score, self.readings[score.sensor])
+        start, end = shown(self.readings[score.sensor])
         density = picture(
-            density_figure(comparison),
+            density_figure(drawn),
             caption=f"{score.sensor}, {score.origin}: against all {score.raw.readings:,}"
             f" readings of {score.span_h:,.0f} unseen hours. Dashed: y = x; red: best fit, of "
             f"slope {number(score.low_line[0])} at low fidelity and {number(score.multi_line[0])} "
@@ -170,8 +168,8 @@ class PaperReport:
             look="narrow",
         )
         series = picture(
-            series_figure(comparison, start=start, end=start + np.timedelta64(_SHOWN_DAYS, "D")),
-            caption=f"{score.sensor}, {score.origin}: {_shown(score)}.",
+            series_figure(drawn, start=start, end=end),
+            caption=f"{score.sensor}, {score.origin}: {_span(score)}.",
             alternative=f"Time series of {score.sensor}, low fidelity and multifidelity",
         )
         return tag("section", tag("h3", _titled(score)), density, series, look="sensor")
@@ -278,29 +276,6 @@ def _error_row(score: SensorScore, errors: Errors) -> tuple[str, ...]:
     )
 
 
-def comparison_of(score: SensorScore, readings: Readings) -> Comparison:
-    """What the figures show of one sensor."""
-    return Comparison(
-        sensor=score.sensor,
-        quantity=_quantity(score),
-        unit=score.unit,
-        time=readings.time,
-        reading=readings.reading,
-        low=readings.low,
-        multi=readings.multi,
-        multi_std=readings.multi_std,
-        low_mae=score.raw.low_mae,
-        multi_mae=score.raw.multi_mae,
-        low_line=score.low_line,
-        multi_line=score.multi_line,
-        origin=Origin(score.origin),
-    )
-
-
-def _quantity(score: SensorScore) -> str:
-    return "Depth" if score.unit == "m" else "Tension"
-
-
 def _titled(score: SensorScore) -> str:
     return (
         f"{score.sensor}: error {number(score.raw.low_mae)} → {number(score.raw.multi_mae)} "
@@ -308,7 +283,7 @@ def _titled(score: SensorScore) -> str:
     )
 
 
-def _shown(score: SensorScore) -> str:
-    if score.span_h > 24.0 * _SHOWN_DAYS:
-        return f"the first {_SHOWN_DAYS} unseen days"
+def _span(score: SensorScore) -> str:
+    if score.span_h > 24.0 * SHOWN_DAYS:
+        return f"the first {SHOWN_DAYS} unseen days"
     return f"all {score.span_h:.0f} unseen hours"

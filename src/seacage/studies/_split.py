@@ -1,10 +1,14 @@
-"""Which part of a field record may teach and which part judges: cut by day, never at random."""
+"""Which part of a field record teaches and which judges: cut by day, never at random."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 
 from seacage.conventions import InputError
-from seacage.records import FieldRecord, moment
+from seacage.records import FieldRecord, Record, moment
+from seacage.twin import Lesson
+
+_FIRST, _LAST = datetime.min.replace(tzinfo=UTC), datetime.max.replace(tzinfo=UTC)
 
 
 def split(field: FieldRecord, *, teaching_days: int) -> tuple[FieldRecord, FieldRecord]:
@@ -27,9 +31,8 @@ def split(field: FieldRecord, *, teaching_days: int) -> tuple[FieldRecord, Field
         A sensor would have nothing to teach or nothing to be judged on.
     """
     cut = moment(field.buoy.time[0].astype("datetime64[D]")) + timedelta(days=teaching_days)
-    first, last = datetime.min.replace(tzinfo=UTC), datetime.max.replace(tzinfo=UTC)
-    teaching = {name: sensor.between(first, cut) for name, sensor in field.sensors.items()}
-    judging = {name: sensor.between(cut, last) for name, sensor in field.sensors.items()}
+    teaching = {name: sensor.between(_FIRST, cut) for name, sensor in field.sensors.items()}
+    judging = {name: sensor.between(cut, _LAST) for name, sensor in field.sensors.items()}
     for name in field.sensors:
         if not len(teaching[name]) or not len(judging[name]):
             raise InputError(
@@ -38,3 +41,38 @@ def split(field: FieldRecord, *, teaching_days: int) -> tuple[FieldRecord, Field
                 f"Change teaching_days = {teaching_days}, or give a longer record."
             )
     return replace(field, sensors=teaching), replace(field, sensors=judging)
+
+
+def unseen(field: FieldRecord, lessons: Mapping[str, Lesson]) -> FieldRecord:
+    """The days of a field record that did not teach a twin.
+
+    Of a sensor that taught, the days after its lesson, or those before where none follow; all
+    of one that did not.
+
+    Raises
+    ------
+    InputError
+        A sensor has no such day.
+    """
+    return replace(
+        field,
+        sensors={
+            name: _unseen(sensor, lessons[name]) if name in lessons else sensor
+            for name, sensor in field.sensors.items()
+        },
+    )
+
+
+def _unseen(sensor: Record, lesson: Lesson) -> Record:
+    after = sensor.between(_midnight(lesson.end) + timedelta(days=1), _LAST)
+    before = sensor.between(_FIRST, _midnight(lesson.start))
+    if not len(after) and not len(before):
+        raise InputError(
+            f"{sensor.stream}: all its readings are of days that taught the twin. "
+            "Give a record that goes on after them."
+        )
+    return after if len(after) else before
+
+
+def _midnight(time: datetime) -> datetime:
+    return time.replace(hour=0, minute=0, second=0, microsecond=0)

@@ -7,7 +7,8 @@ import pytest
 
 from seacage.conventions import Origin
 from seacage.studies._discussion import findings, listed, number, percent
-from seacage.studies._scores import Errors, LevelOneScore, SensorScore, ShapeScore
+from seacage.studies._level_one import LevelOneScore, ShapeScore
+from seacage.studies._sensor_scores import Errors, SensorScore
 
 ERRORS = Errors(
     readings=1440,

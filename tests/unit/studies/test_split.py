@@ -1,11 +1,14 @@
 """Days that teach and days that judge."""
 
+from datetime import UTC, datetime
+
 import numpy as np
 import pytest
 
 from seacage.conventions import InputError, Origin
 from seacage.records import FieldRecord, Record
-from seacage.studies._split import split
+from seacage.studies._split import split, unseen
+from seacage.twin import Lesson
 
 START = np.datetime64("2020-01-18T06:00", "us")
 
@@ -70,3 +73,26 @@ def test_a_shackle_teaches_with_its_first_window_and_is_judged_on_its_second(fie
 def test_a_sensor_with_nothing_to_teach_or_to_judge_is_refused(field, teaching_days):
     with pytest.raises(InputError, match="shackle-1 has"):
         split(field, teaching_days=teaching_days)
+
+
+def lesson(first: datetime, last: datetime) -> Lesson:
+    return Lesson(start=first, end=last, points=300)
+
+
+def test_the_days_after_a_lesson_are_unseen_and_a_sensor_that_taught_nothing_is_whole(field):
+    taught = lesson(datetime(2020, 1, 18, 6, tzinfo=UTC), datetime(2020, 1, 22, 23, 59, tzinfo=UTC))
+    left = unseen(field, {"depth-1": taught})
+    assert min(days(left.sensors["depth-1"])) == np.datetime64("2020-01-23")
+    assert len(left.sensors["shackle-1"]) == len(field.sensors["shackle-1"])
+
+
+def test_the_days_before_a_late_lesson_are_unseen_too(field):
+    late = lesson(datetime(2020, 1, 25, 3, tzinfo=UTC), datetime(2020, 1, 29, tzinfo=UTC))
+    left = unseen(field, {"depth-1": late})
+    assert max(days(left.sensors["depth-1"])) == np.datetime64("2020-01-24")
+
+
+def test_a_record_of_lesson_days_alone_judges_nobody(field):
+    whole = lesson(datetime(2020, 1, 18, tzinfo=UTC), datetime(2020, 1, 29, tzinfo=UTC))
+    with pytest.raises(InputError, match="depth-1: all its readings are of days that taught"):
+        unseen(field, {"depth-1": whole})

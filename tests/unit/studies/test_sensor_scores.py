@@ -1,10 +1,10 @@
-"""Scores of sensors and shapes."""
+"""Scores of sensors."""
 
 import numpy as np
 import pytest
 
 from seacage.conventions import Origin
-from seacage.studies._scores import Readings, score_sensor, shape_score
+from seacage.studies._sensor_scores import Readings, score_sensor
 
 START = np.datetime64("2020-02-22T00:05", "us")
 
@@ -13,6 +13,9 @@ def readings(count: int, **columns: np.ndarray) -> Readings:
     rng = np.random.default_rng(0)
     truth = 10.0 + 5.0 * np.sin(np.arange(count) / 100.0)
     whole = {
+        "sensor": "shackle-1",
+        "unit": "kN",
+        "origin": Origin.VIRTUAL_FIELD,
         "time": START + np.arange(count) * np.timedelta64(60, "s"),
         "reading": truth + 0.5 * rng.standard_normal(count),
         "low": 0.5 * truth,
@@ -23,9 +26,7 @@ def readings(count: int, **columns: np.ndarray) -> Readings:
 
 
 def scored(some: Readings, **options):
-    return score_sensor(
-        "shackle-1", some, unit="kN", origin=Origin.VIRTUAL_FIELD, block_h=3.0, seed=0, **options
-    )
+    return score_sensor(some, seed=0, **options)
 
 
 def test_a_better_prediction_is_called_better_and_a_worse_one_is_not():
@@ -77,11 +78,6 @@ def test_the_best_fit_is_of_the_prediction_on_the_reading():
     assert (slope, intercept) == pytest.approx((0.5, 3.0))
 
 
-def test_a_shape_is_scored_by_axis_and_by_its_worst_node():
-    computed = np.zeros((2, 4, 3))
-    predicted = computed.copy()
-    predicted[1, 2] = [3.0, 4.0, 0.0]
-    score = shape_score("some model", predicted, computed)
-    assert score.axis_mae == pytest.approx((3.0 / 8.0, 4.0 / 8.0, 0.0))
-    assert score.worst == 5.0
-    np.testing.assert_allclose(score.case_mae, [0.0, 7.0 / 12.0])
+def test_blocks_are_a_day_or_an_eighth_of_a_shorter_span():
+    assert scored(readings(1441)).block_h == 3.0
+    assert scored(readings(12 * 1440 + 1)).block_h == 24.0

@@ -1,38 +1,46 @@
-"""How well a twin says what a sensor read, and what a simulation computed."""
+"""How well a twin says what a sensor reads."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
 from jaxtyping import Bool, Float, Shaped
 
-from seacage.cage import Cage
 from seacage.conventions import InputError, Origin
-from seacage.records import CampaignRecord, FieldRecord
-from seacage.surrogates import PcaGP, block_bootstrap, coverage, crps, current_features, mae
-from seacage.twin import Answer, Twin, align
+from seacage.records import FieldRecord
+from seacage.surrogates import block_bootstrap, coverage, crps, mae
+from seacage.twin import Answer, align
 
 MEAN_S = 600.0
 """Scores are given raw and on means of this length [s]."""
 
 _DRAWS = 1000
-_UNITS = {"m": ("m", 1.0), "N": ("kN", 1e-3)}
-"""A sensor's unit inside, and the one people read with what it is multiplied by."""
+_LEAST_READINGS = 100
+_LEAST_BLOCKS = 8
+_LONGEST_BLOCK_H = 24.0
+
+_PEOPLE = {"m": ("m", 1.0), "N": ("kN", 1e-3)}
+"""A sensor's unit inside, and the one that people read with what it is multiplied by."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Readings:
-    """What one sensor read, and what the twin had said, in the unit that people read.
+    """What one sensor read, and what the twin says it would, in the unit that people read.
 
     Parameters
     ----------
+    sensor, unit, origin
+        Its name, the unit of all values (m or kN), and how the readings were made.
     time
         UTC.
     reading, low, multi, multi_std
         The sensor, the low-fidelity mean, the multifidelity mean and the standard deviation
-        that it gives for a reading [m] or [kN].
+        that it gives for a reading [unit].
     """
 
+    sensor: str
+    unit: str
+    origin: Origin
     time: Shaped[np.ndarray, " t"]
     reading: Float[np.ndarray, " t"]
     low: Float[np.ndarray, " t"]
@@ -41,12 +49,19 @@ class Readings:
 
     def at(self, rows: Bool[np.ndarray, " t"]) -> Self:
         """Some of the readings."""
-        return type(self)(**{part.name: getattr(self, part.name)[rows] for part in fields(self)})
+        return replace(
+            self,
+            time=self.time[rows],
+            reading=self.reading[rows],
+            low=self.low[rows],
+            multi=self.multi[rows],
+            multi_std=self.multi_std[rows],
+        )
 
     def averaged(self, length: float) -> Self:
         """Means over windows that begin at whole multiples of a length [s] since 1970.
 
-        The standard deviation is averaged too: errors of a held input do not average out.
+        The standard deviation is averaged too: the error of a held input does not average out.
         """
         second = self.time.astype("datetime64[s]").astype(np.int64)
         window, group = np.unique(second // int(length), return_inverse=True)
@@ -55,7 +70,8 @@ class Readings:
         def mean(column: Float[np.ndarray, " t"]) -> Float[np.ndarray, " window"]:
             return np.bincount(group, weights=column) / count
 
-        return type(self)(
+        return replace(
+            self,
             time=(window * int(length)).astype("datetime64[s]"),
             reading=mean(self.reading),
             low=mean(self.low),
@@ -139,58 +155,11 @@ class SensorScore:
     multi_truth_mae: float | None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ShapeScore:
-    """One model of the whole shape against held-out simulations.
-
-    Parameters
-    ----------
-    model
-        Its name.
-    axis_mae
-        Mean absolute error along x, y and z [m].
-    p99, worst
-        Of the distance between the predicted and the computed node [m].
-    case_mae
-        Mean absolute error of each case, over nodes and axes [m].
-    """
-
-    model: str
-    axis_mae: tuple[float, float, float]
-    p99: float
-    worst: float
-    case_mae: Float[np.ndarray, " case"]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class LevelOneScore:
-    """Level 1 against simulations that it has not seen.
-
-    Parameters
-    ----------
-    cases
-        How many.
-    current_speed
-        Of each [m/s].
-    bridle_names, bridle_mae, bridle_mean
-        Mean absolute error and mean tension of each bridle [N].
-    shapes
-        The twin's model and the paper's three modes.
-    """
-
-    cases: int
-    current_speed: Float[np.ndarray, " case"]
-    bridle_names: tuple[str, ...]
-    bridle_mae: Float[np.ndarray, " line"]
-    bridle_mean: Float[np.ndarray, " line"]
-    shapes: tuple[ShapeScore, ...]
-
-
 def compared(answer: Answer, field: FieldRecord) -> dict[str, Readings]:
     """Every sound reading of a field record beside what a twin says about it.
 
     The buoy's last word holds until the next; where it was unsound or too old there is no
-    number, and the reading is not scored.
+    number, and the reading is not scored. Sensors that the twin does not know are left out.
 
     Parameters
     ----------
@@ -199,41 +168,38 @@ def compared(answer: Answer, field: FieldRecord) -> dict[str, Readings]:
     field
         Sensors and buoy.
     """
-    return {name: _compared(answer, field, name) for name in field.sensors}
+    known = [name for name in answer.sensor_names if name in field.sensors]
+    return {name: _compared(answer, field, name) for name in known}
 
 
-def score_sensor(
-    sensor: str,
-    readings: Readings,
-    *,
-    unit: str,
-    origin: Origin,
-    block_h: float,
-    seed: int,
-    truth: Readings | None = None,
-) -> SensorScore:
+def score_sensor(readings: Readings, *, seed: int, truth: Readings | None = None) -> SensorScore:
     """Score one sensor, raw and on 10-minute means.
+
+    The bootstrap's blocks are a day long, for errors resemble themselves from tide to tide,
+    or an eighth of the readings' span where that is less.
 
     Parameters
     ----------
-    block_h
-        Length of the bootstrap's blocks [h]: longer than errors resemble themselves, short
-        enough that the readings hold several.
+    readings
+        In order of time.
+    seed
+        Of the bootstrap.
     truth
         Predictions beside the noise-free truth, at the readings' times and perhaps at others.
     """
     if truth is not None:
         truth = truth.at(np.isin(truth.time, readings.time))
+    span_h = float((readings.time[-1] - readings.time[0]) / np.timedelta64(1, "h"))
+    block_h = min(_LONGEST_BLOCK_H, span_h / _LEAST_BLOCKS)
     means = readings.averaged(MEAN_S)
-    step_s = float(np.median(np.diff(readings.time)) / np.timedelta64(1, "s"))
     return SensorScore(
-        sensor=sensor,
-        unit=unit,
-        origin=origin,
-        span_h=float((readings.time[-1] - readings.time[0]) / np.timedelta64(1, "h")),
+        sensor=readings.sensor,
+        unit=readings.unit,
+        origin=readings.origin,
+        span_h=span_h,
         block_h=block_h,
-        raw=_errors(readings, block=round(3600.0 * block_h / step_s), seed=seed),
-        means=_errors(means, block=round(3600.0 * block_h / MEAN_S), seed=seed),
+        raw=_errors(readings, block_h=block_h, seed=seed),
+        means=_errors(means, block_h=block_h, seed=seed),
         low_line=_best_fit(readings.reading, readings.low),
         multi_line=_best_fit(readings.reading, readings.multi),
         low_truth_mae=None if truth is None else mae(truth.reading, truth.low),
@@ -241,47 +207,22 @@ def score_sensor(
     )
 
 
-def score_level_one(
-    twin: Twin, cage: Cage, campaign: CampaignRecord, held_out: CampaignRecord, *, seed: int
-) -> LevelOneScore:
-    """Score tensions and shapes of level 1 on simulations that it has not seen.
-
-    Beside the twin's own shape model stands the paper's: three PCA modes, each with a GP,
-    fitted to the same campaign.
-    """
-    seas = [sea for sea, good in zip(held_out.seas, held_out.converged, strict=True) if good]
-    tension = held_out.bridle_tension[held_out.converged]
-    position = held_out.node_position[held_out.converged]
-    answer = twin.predict(seas)
-    three_modes = PcaGP(modes=3).fit(
-        _features(campaign)[campaign.converged],
-        campaign.node_position[campaign.converged],
-        seed=seed,
-    )
-    paper = three_modes.predict(_features(held_out)[held_out.converged]).mean
-    return LevelOneScore(
-        cases=len(seas),
-        current_speed=np.array([sea.current_speed for sea in seas]),
-        bridle_names=cage.bridle_names,
-        bridle_mae=np.mean(np.abs(answer.bridle_low - tension), axis=0),
-        bridle_mean=np.mean(tension, axis=0),
-        shapes=(
-            shape_score("ShapeGP (the twin's)", answer.node_position, position),
-            shape_score("PCA, 3 modes + GP", paper, position),
-        ),
-    )
-
-
 def _compared(answer: Answer, field: FieldRecord, sensor: str) -> Readings:
     column = answer.sensor_names.index(sensor)
-    _, scale = people_unit(answer, sensor)
+    unit, scale = _PEOPLE[answer.sensor_units[column]]
     pairs = align(field, sensor)
     word = np.searchsorted(field.buoy.time, pairs.time, side="right") - 1
     valid = answer.valid[word]
-    if not np.any(valid):
-        raise InputError(f"{sensor}: the twin has no answer at any of its readings' times.")
+    if np.sum(valid) < _LEAST_READINGS:
+        raise InputError(
+            f"{sensor}: {np.sum(valid)} sound readings at times at which the twin has an answer; "
+            f"a score needs {_LEAST_READINGS}. Leave the sensor out, or give a longer record."
+        )
     row = word[valid]
     return Readings(
+        sensor=sensor,
+        unit=unit,
+        origin=field.origin,
         time=pairs.time[valid],
         reading=scale * pairs.value[valid],
         low=scale * answer.sensor_low.mean[row, column],
@@ -290,14 +231,11 @@ def _compared(answer: Answer, field: FieldRecord, sensor: str) -> Readings:
     )
 
 
-def people_unit(answer: Answer, sensor: str) -> tuple[str, float]:
-    """The unit that people read a sensor in, and what SI is multiplied by to get there."""
-    return _UNITS[answer.sensor_units[answer.sensor_names.index(sensor)]]
-
-
-def _errors(readings: Readings, *, block: int, seed: int) -> Errors:
+def _errors(readings: Readings, *, block_h: float, seed: int) -> Errors:
+    step_h = float(np.median(np.diff(readings.time)) / np.timedelta64(1, "h"))
     low_error, multi_error = readings.low - readings.reading, readings.multi - readings.reading
     low, multi = np.abs(low_error), np.abs(multi_error)
+    block = max(1, round(block_h / step_h))
     gain, gain_low, gain_high = block_bootstrap(low - multi, block=block, seed=seed, draws=_DRAWS)
     return Errors(
         readings=len(low),
@@ -318,24 +256,3 @@ def _best_fit(
 ) -> tuple[float, float]:
     slope, intercept = np.polyfit(reading, predicted, 1)
     return float(slope), float(intercept)
-
-
-def _features(campaign: CampaignRecord) -> Float[np.ndarray, "case 3"]:
-    return current_features(np.array([sea.current_velocity for sea in campaign.seas]))
-
-
-def shape_score(
-    model: str,
-    predicted: Float[np.ndarray, "case node 3"],
-    computed: Float[np.ndarray, "case node 3"],
-) -> ShapeScore:
-    error = np.abs(predicted - computed)
-    distance = np.linalg.norm(predicted - computed, axis=-1)
-    x, y, z = error.mean(axis=(0, 1))
-    return ShapeScore(
-        model=model,
-        axis_mae=(float(x), float(y), float(z)),
-        p99=float(np.quantile(distance, 0.99)),
-        worst=float(distance.max()),
-        case_mae=error.mean(axis=(1, 2)),
-    )
