@@ -8,6 +8,7 @@ import numpy as np
 from seacage.conventions import Flag, Origin
 from seacage.records import Record, Sample, instant
 from seacage.service._answers import history_of
+from seacage.service._samples import BUOY_KEYS
 from seacage.service._schemas import History
 from seacage.service._store import Store
 from seacage.twin import Answered, Event, Twin, TwinState
@@ -60,7 +61,7 @@ def history_between(
 ) -> History:
     """Answer to the last of a buoy's readings in a span, and show what the sensors read."""
     said = store.samples(cage, stream=twin.buoy, start=start, end=end, limit=limit, newest=True)
-    buoy = record_of(twin.buoy, said, twin.origin)
+    buoy = record_of(twin.buoy, said, keys=BUOY_KEYS, origin=twin.origin)
     since = said[0].t if said else start
     measured = {
         sensor: store.samples(
@@ -71,14 +72,15 @@ def history_between(
     return history_of(buoy, twin.predict_record(buoy), measured, points=limit)
 
 
-def record_of(stream: str, samples: Sequence[Sample], origin: Origin) -> Record:
+def record_of(
+    stream: str, samples: Sequence[Sample], *, keys: Sequence[str], origin: Origin
+) -> Record:
     """Put the samples of one stream, in time order, into a record.
 
     A quantity that a sample lacks is missing there; of several samples of one time the last
     counts.
     """
     kept = list({sample.t: sample for sample in samples}.values())
-    keys = sorted({key for sample in kept for key in sample.values})
     return Record(
         stream=stream,
         time=np.array([instant(sample.t) for sample in kept], dtype="datetime64[us]"),

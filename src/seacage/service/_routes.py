@@ -5,7 +5,6 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, HTTPException, Path, Query, Request, Response
 from fastapi.responses import JSONResponse
-from pydantic import AwareDatetime
 
 from seacage.service._answers import sample_of, shape_of, state_of
 from seacage.service._guard import Permit
@@ -23,6 +22,7 @@ from seacage.service._schemas import (
     SamplesOut,
     Shape,
     State,
+    Time,
     Topology,
 )
 
@@ -57,10 +57,10 @@ def _cage(request: Request, cage: Annotated[str, Path(max_length=64)]) -> LiveCa
 
 Live = Annotated[LiveCage, Depends(_cage)]
 At = Annotated[
-    AwareDatetime | None, Query(description="A time in the past, with its zone; now if left out.")
+    Time | None, Query(description="A time in the past, with its zone; now if left out.")
 ]
-From = Annotated[AwareDatetime | None, Query(alias="from", description="First time, included.")]
-To = Annotated[AwareDatetime | None, Query(alias="to", description="Last time, left out.")]
+From = Annotated[Time | None, Query(alias="from", description="First time, included.")]
+To = Annotated[Time | None, Query(alias="to", description="Last time, left out.")]
 Limit = Annotated[int, Query(ge=1, le=10_000, description="At most so many.")]
 Stream = Annotated[str | None, Query(max_length=64, description="All streams if left out.")]
 

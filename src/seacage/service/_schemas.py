@@ -3,10 +3,20 @@
 from datetime import datetime
 from typing import Annotated, Literal
 
-from pydantic import AwareDatetime, BaseModel, ConfigDict, Field, JsonValue
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, JsonValue
 
 Name = Annotated[str, Field(min_length=1, max_length=64)]
 """Of a cage, a stream, a sensor."""
+
+
+def _with_zone(t: datetime) -> datetime:
+    if t.tzinfo is None:
+        raise ValueError("a time says its zone, as in 2018-01-26T23:08:00Z")
+    return t
+
+
+Time = Annotated[datetime, AfterValidator(_with_zone)]
+"""With its zone."""
 
 BATCH_LIMIT = 1000
 """Samples in one request."""
@@ -28,7 +38,7 @@ class SampleIn(_Asked):
     """
 
     stream: Name
-    t: Annotated[AwareDatetime, Field(strict=False, description="Of the source, UTC.")]
+    t: Annotated[Time, Field(strict=False, description="Of the source, UTC.")]
     seq: Annotated[int | None, Field(ge=0, lt=2**63)] = None
     values: Annotated[dict[str, JsonValue], Field(min_length=1, max_length=16)]
 

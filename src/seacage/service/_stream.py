@@ -11,7 +11,7 @@ from seacage.service._tokens import Tokens
 
 _FIRST_MESSAGE_S = 5.0
 _FIRST_MESSAGE_BYTES = 1000
-UNKNOWN_TOKEN, NO_SCOPE, NO_CAGE, WRONG_ORIGIN = 4401, 4403, 4404, 4400
+UNKNOWN_TOKEN, NO_SCOPE, NO_CAGE = 4401, 4403, 4404
 """Codes of a closing: the page tells its reader which it was."""
 
 sockets = APIRouter()
@@ -23,6 +23,9 @@ async def live(socket: WebSocket, cage: str) -> None:
 
     The first message of the client is ``{"token": …}``: a URL would end up in logs.
     """
+    if not same_origin(socket.headers.get("origin"), socket.headers.get("host")):
+        await socket.close()  # before it is accepted: the browser gets a 403
+        return
     await socket.accept()
     refusal = await _refusal(socket, cage)
     if refusal is not None:
@@ -38,6 +41,7 @@ async def live(socket: WebSocket, cage: str) -> None:
         pass
     finally:
         sending.cancel()
+        await asyncio.gather(sending, return_exceptions=True)
 
 
 async def _send(socket: WebSocket, one: LiveCage) -> None:
@@ -47,8 +51,6 @@ async def _send(socket: WebSocket, one: LiveCage) -> None:
 
 
 async def _refusal(socket: WebSocket, cage: str) -> tuple[int, str] | None:
-    if not same_origin(socket.headers.get("origin"), socket.headers.get("host")):
-        return WRONG_ORIGIN, "This page may not open a live connection here."
     tokens: Tokens = socket.app.state.service.tokens
     token = await _token(socket)
     grant = tokens.grant(token) if token else None

@@ -128,13 +128,16 @@ export class NetViews {
   drawSide() {
     const { context, width, height } = cleared(this.side);
     const [above, below] = [4.5, this.depth + 3];
-    const scale = Math.min(height / (above + below), width / (2.6 * this.reach));
+    // Across the current the net leans to the right: that side gets the room.
+    const [left, right] = this.view === "across" ? [1.15, 1.75] : [1.45, 1.45];
+    const scale = Math.min(height / (above + below), width / ((left + right) * this.reach));
+    const centre = width * (left / (left + right));
     const surface = (height - scale * (above + below)) / 2 + above * scale;
     const turn = (this.angle * Math.PI) / 180;
     const [sin, cos] = [Math.sin(turn), Math.cos(turn)];
     // Right along the angle, up is up, and near is what comes out of the screen.
     this.across = (x, y, z) => [
-      width / 2 + scale * (x * sin + y * cos), surface - scale * z, x * cos - y * sin,
+      centre + scale * (x * sin + y * cos), surface - scale * z, x * cos - y * sin,
     ];
     this.water(context, width, height, surface, scale);
     this.net(context, this.rest, this.across, { ghost: true });

@@ -2,7 +2,7 @@
 
 const KEY = "seacage-token";
 const QUIET_MS = 10_000;
-const REFUSED = new Set([4400, 4401, 4403]);
+const REFUSED = new Set([4401, 4403]);
 
 /** Take the token from the address, where it is not sent anywhere, or from before. */
 export function token() {

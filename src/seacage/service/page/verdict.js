@@ -32,8 +32,8 @@ export class Verdict {
     const { mean, lower, upper } = sensors.find(({ name }) => name === there) ??
       { mean: depth, lower: depth - spread, upper: depth + spread };
     const lift = -this.graph.rest_position_m[node][2] - mean;
-    return figure("Net bottom", fixed(mean), "m",
-      `${fixed(Math.abs(lift))} m ${lift >= 0 ? "above" : "below"} rest, ${half({ lower, upper }, 2)}`);
+    return figure("Net bottom", fixed(mean), `${half({ lower, upper })} m deep`,
+      `${fixed(Math.abs(lift))} m ${lift >= 0 ? "above" : "below"} where it rests`);
   }
 }
 
@@ -67,8 +67,8 @@ function current({ water, valid }) {
 function highest({ bridles, valid }) {
   if (!valid) return figure("Highest load", "–", "", "");
   const top = bridles.reduce((a, b) => (b.utilisation > a.utilisation ? b : a));
-  return figure("Highest load", fixed(top.tension_kn.mean), "kN",
-    `${top.name.replace("-", " ")}, ${half(top.tension_kn)}, ${percent(top.utilisation)} of capacity`);
+  return figure("Highest load", fixed(top.tension_kn.mean), `${half(top.tension_kn)} kN`,
+    `${top.name.replace("-", " ")}, ${percent(top.utilisation)} of capacity`);
 }
 
 function volume({ volume_fraction: share }) {

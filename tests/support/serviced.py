@@ -1,0 +1,99 @@
+"""A running service with a small twin, and a clock that tests move."""
+
+import asyncio
+import socket
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import httpx
+import uvicorn
+
+from seacage.service._api import Service, create_app
+from seacage.service._live import LiveCage
+from seacage.service._metrics import Metrics
+from seacage.service._store import Store
+from seacage.service._tokens import Tokens
+from seacage.testing import stand_in_twin
+
+NOON = datetime(2020, 2, 1, 12, tzinfo=UTC)
+
+
+class HandClock:
+    """Stands still until a test moves it."""
+
+    speed = 1.0
+
+    def __init__(self) -> None:
+        self.at = NOON
+
+    def now(self) -> datetime:
+        return self.at
+
+
+@dataclass(frozen=True, kw_only=True)
+class Running:
+    """A service on a port of its own."""
+
+    address: str
+    clock: HandClock
+    service: Service
+    reader: httpx.Client
+    logger: httpx.Client
+
+    @property
+    def cage(self) -> LiveCage:
+        return self.service.cages["ace"]
+
+    def post(self, *samples, **how):
+        return self.logger.post("/api/v1/cages/ace/samples", json={"samples": samples}, **how)
+
+    def state(self, **params):
+        return self.reader.get("/api/v1/cages/ace/state", params=params).json()
+
+
+def buoy(minutes=0.0, speed=0.5, to=90.0, **rest):
+    values = {"current_speed_m_s": speed, "current_to_deg": to}
+    return {"stream": "buoy-1", "t": at(minutes), "values": values, **rest}
+
+
+def depth(minutes=0.0, metres=14.0, stream="depth-2"):
+    return {"stream": stream, "t": at(minutes), "values": {"depth_m": metres}}
+
+
+def at(minutes: float) -> str:
+    return (NOON + timedelta(minutes=minutes)).isoformat()
+
+
+@contextmanager
+def running(folder: Path) -> Iterator[Running]:
+    """Serve a cage until the block ends."""
+    clock, metrics = HandClock(), Metrics()
+    store, tokens = Store(folder / "samples.sqlite"), Tokens(folder)
+    cage = LiveCage(
+        name="ace", twin=stand_in_twin(), store=store, clock=clock, metrics=metrics, tick_s=0.3
+    )
+    service = Service(cages={"ace": cage}, store=store, tokens=tokens, metrics=metrics)
+    listener = socket.create_server(("127.0.0.1", 0))
+    config = uvicorn.Config(create_app(service), ws="websockets-sansio", log_config=None)
+    server = uvicorn.Server(config)
+    thread = threading.Thread(target=asyncio.run, args=(server.serve([listener]),))
+    thread.start()
+    address = f"http://127.0.0.1:{listener.getsockname()[1]}"
+    clients = [
+        httpx.Client(base_url=address, headers={"Authorization": f"Bearer {token}"})
+        for token in (tokens.mint(["read"], keep=False), tokens.mint(["ingest"], keep=False))
+    ]
+    try:
+        yield Running(
+            address=address, clock=clock, service=service, reader=clients[0], logger=clients[1]
+        )
+    finally:
+        for client in clients:
+            client.close()
+        server.should_exit = True
+        thread.join()
+        listener.close()

@@ -1,0 +1,91 @@
+import json
+import time
+
+import pytest
+from websockets.exceptions import ConnectionClosedError, InvalidStatus
+from websockets.sync.client import connect
+
+from serviced import Running, buoy
+
+
+def opened(live: Running, *, cage="ace", **how):
+    return connect(f"{live.address.replace('http', 'ws')}/api/v1/cages/{cage}/live", **how)
+
+
+def token(live: Running, *scopes):
+    return json.dumps({"token": live.service.tokens.mint(scopes, keep=False)})
+
+
+def received(socket):
+    return json.loads(socket.recv(timeout=5))
+
+
+def closed_with(socket):
+    with pytest.raises(ConnectionClosedError) as closed:
+        socket.recv(timeout=5)
+    return closed.value.rcvd.code
+
+
+def test_what_never_changes_comes_first_and_then_the_state(idle: Running):
+    with opened(idle) as socket:
+        socket.send(token(idle, "read"))
+        topology, frame = received(socket), received(socket)
+    assert topology["kind"] == "topology"
+    assert frame["kind"] == "state"
+    assert not frame["state"]["valid"]
+    assert frame["position_mm"] is None
+
+
+def test_a_reading_reaches_the_page(live: Running):
+    with opened(live) as socket:
+        socket.send(token(live, "read"))
+        topology = received(socket)
+        live.post(buoy())
+        end = time.monotonic() + 5
+        while not (frame := received(socket))["state"]["valid"]:
+            assert time.monotonic() < end
+    assert len(frame["position_mm"]) == 3 * len(topology["rest_position_m"])
+    assert len(frame["sigma_mm"]) == len(topology["rest_position_m"])
+
+
+def test_a_reader_that_lags_gets_the_newest_state_and_not_all_that_it_missed(live: Running):
+    with live.cage.watched() as mailbox:
+        time.sleep(0.5)  # ten ticks
+        held = mailbox._latest
+    assert held is live.cage.snapshot or held.answered.t == live.clock.now()
+
+
+@pytest.mark.parametrize("first", ['{"token": "guess"}', "{}", "no JSON", '"token"', "[1]"])
+def test_without_a_token_in_the_first_message_it_closes(idle: Running, first):
+    with opened(idle) as socket:
+        socket.send(first)
+        assert closed_with(socket) == 4401
+
+
+def test_a_token_that_may_not_read_is_told_so(idle: Running):
+    with opened(idle) as socket:
+        socket.send(token(idle, "ingest"))
+        assert closed_with(socket) == 4403
+
+
+def test_a_cage_that_is_not_there_is_told_so(idle: Running):
+    with opened(idle, cage="ice") as socket:
+        socket.send(token(idle, "read"))
+        assert closed_with(socket) == 4404
+
+
+def test_a_page_from_elsewhere_is_turned_away_at_the_door(idle: Running):
+    with pytest.raises(InvalidStatus, match="403"):
+        opened(idle, origin="https://elsewhere.example")
+
+
+def test_a_client_that_leaves_is_no_longer_counted(live: Running):
+    with opened(live) as socket:
+        socket.send(token(live, "read"))
+        received(socket)
+        received(socket)
+        assert len(live.cage._mailboxes) == 1
+    end = time.monotonic() + 5
+    while live.cage._mailboxes and time.monotonic() < end:
+        time.sleep(0.02)
+    assert not live.cage._mailboxes
