@@ -95,7 +95,10 @@ async function open() {
   connect(cage, {
     topology,
     state,
-    lost: (seconds) => phase("lost", `Connection lost; trying again in ${seconds} s`),
+    lost: (seconds) => {
+      phase("lost", `Connection lost; trying again in ${seconds} s`);
+      verdict.lost(`from ${byId("clock").textContent}`);
+    },
     refused: () => askForToken("This token is no longer good. Take the link that " +
       "`seacage serve` printed last."),
   });

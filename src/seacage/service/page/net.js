@@ -132,7 +132,7 @@ export class NetViews {
     const [left, right] = this.view === "across" ? [1.15, 1.75] : [1.45, 1.45];
     const scale = Math.min(height / (above + below), width / ((left + right) * this.reach));
     const centre = width * (left / (left + right));
-    const surface = (height - scale * (above + below)) / 2 + above * scale;
+    const surface = 0.25 * (height - scale * (above + below)) + above * scale;
     const turn = (this.angle * Math.PI) / 180;
     const [sin, cos] = [Math.sin(turn), Math.cos(turn)];
     // Right along the angle, up is up, and near is what comes out of the screen.
@@ -154,7 +154,7 @@ export class NetViews {
     context.fillStyle = sea;
     context.fillRect(0, surface, width, height - surface);
     context.font = `11px ${styled("--font")}`;
-    context.textAlign = "left";
+    context.textAlign = "right";
     context.lineWidth = 1;
     for (let depth = 0; depth <= this.depth; depth += 10) {
       const y = Math.round(surface + depth * scale) + 0.5;
@@ -164,7 +164,7 @@ export class NetViews {
       context.lineTo(width, y);
       context.stroke();
       context.fillStyle = this.ink.muted;
-      context.fillText(depth ? `${depth} m` : "surface", 8, y - 4);
+      context.fillText(depth ? `${depth} m` : "surface", width - 8, y - 4);
     }
   }
 
@@ -331,7 +331,8 @@ export class NetViews {
       : "slack water";
     const seen = { across: "Seen across the current", south: "Seen from south, east to the right",
       west: "Seen from west, south to the right" }[this.view];
-    this.caption.textContent = this.valid ? `${seen}: ${going}` : "The net in still water";
+    const guess = this.state?.in_domain ? "" : ", extrapolated";
+    this.caption.textContent = this.valid ? `${seen}: ${going}${guess}` : "The net in still water";
     const bottom = this.lift.at(-1);
     this.side.setAttribute("aria-label", this.valid
       ? `Side view: ${going}; the bottom has moved ${fixed(bottom)} m from rest.`

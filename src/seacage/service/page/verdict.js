@@ -15,12 +15,22 @@ export class Verdict {
   }
 
   show({ state, position_mm: position, sigma_mm: sigma }) {
-    const { kind, headline, detail } = judged(state);
-    this.holder.dataset.kind = kind;
     this.holder.replaceChildren(
-      make("div", { className: "headline" }, make("h2", {}, headline), make("p", {}, detail)),
+      make("div", { className: "headline" }),
       current(state), highest(state), volume(state), this.bottom(state, position, sigma),
     );
+    this.say(judged(state));
+  }
+
+  /** What is shown is no longer now. */
+  lost(when) {
+    this.say({ kind: "silent", headline: "Connection lost", detail: `What is shown is ${when}.` });
+  }
+
+  say({ kind, headline, detail }) {
+    this.holder.dataset.kind = kind;
+    this.holder.querySelector(".headline")
+      ?.replaceChildren(make("h2", {}, headline), make("p", {}, detail));
   }
 
   /** How deep the net hangs: as a sensor there has taught, else as simulated. */
