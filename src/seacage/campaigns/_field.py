@@ -73,7 +73,7 @@ def virtual_field(
         Called as ("virtual field", done, total) in equilibria.
     """
     rng, *sensor_rngs = np.random.default_rng(seed).spawn(1 + len(cage.sensor_names))
-    time = np.arange(buoy.time[0], buoy.time[-1], np.timedelta64(round(every_s * 1e6), "us"))
+    time = _times(buoy, every_s)
     seconds = (time - buoy.time[0]) / np.timedelta64(1, "s")
     velocity = current_at_cage(buoy, seconds, hidden=hidden, rng=rng)
     with nullcontext(responses) if responses else tempfile.TemporaryDirectory() as folder:
@@ -138,6 +138,17 @@ def current_at_cage(
         memory_s=way.residual_memory_s,
     )
     return _sheltered(arrived, way) + eddies
+
+
+def _times(buoy: Record, every_s: float) -> Shaped[np.ndarray, " t"]:
+    """Even times over a buoy's record."""
+    span = float((buoy.time[-1] - buoy.time[0]) / np.timedelta64(1, "s")) if len(buoy) else 0.0
+    if not 0.0 < every_s < span:
+        raise InputError(
+            f"virtual_field: {buoy.stream} spans {span:g} s, which holds no two readings "
+            f"every {every_s:g} s. Give a longer record or a shorter step."
+        )
+    return np.arange(buoy.time[0], buoy.time[-1], np.timedelta64(round(every_s * 1e6), "us"))
 
 
 def _reported(

@@ -81,8 +81,7 @@ class HiddenShackle:
     bias_kn: float
     noise_sd_kn: float
     spike_kn: float
-    window_start: list[float]
-    window_hours: list[float]
+    windows: tuple[tuple[float, float], ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -175,13 +174,10 @@ def _built(kind: Any, table: dict[str, Any], *, where: str) -> Any:
 def _value(kind: Any, value: Any, *, where: str) -> Any:
     if is_dataclass(kind):
         return _built(kind, value if isinstance(value, dict) else {}, where=where)
-    if kind is str:  # the hash, which no file gives
-        return value
-    if get_origin(kind) is Literal:
-        if value not in get_args(kind):
-            raise InputError(f"{where}: {value!r} is none of {', '.join(get_args(kind))}.")
-        return value
-    for number in value if isinstance(value, list) else [value]:
-        if not (isinstance(number, int | float) and math.isfinite(number)):
-            raise InputError(f"{where}: {number!r} is no finite number.")
+    if get_origin(kind) is tuple and isinstance(value, list):
+        return tuple(_value(get_args(kind)[0], item, where=where) for item in value)
+    if get_origin(kind) is Literal and value not in get_args(kind):
+        raise InputError(f"{where}: {value!r} is none of {', '.join(get_args(kind))}.")
+    if kind in (int, float) and not (type(value) in (int, float) and math.isfinite(value)):
+        raise InputError(f"{where}: {value!r} is no finite number.")
     return value

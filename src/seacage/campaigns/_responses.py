@@ -52,7 +52,7 @@ class Responses:
         """Answers to currents (east, north) [m/s] at given growths.
 
         Cubic in speed and direction, quadratic in growth. Speeds above the grid count as its
-        largest; tensions stay at or above zero.
+        largest. Nothing falls below zero: no line pushes, no sensor leaves the water.
         """
         speed = np.minimum(np.linalg.norm(velocity, axis=1), self.speed[-1])
         direction = np.arctan2(velocity[:, 0], velocity[:, 1]) % (2.0 * np.pi)

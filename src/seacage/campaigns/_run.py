@@ -12,12 +12,11 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Int
 
-from seacage import dynamics
 from seacage.cage import Cage
 from seacage.campaigns._plan import Plan
 from seacage.campaigns._pool import available_cores, mapped
-from seacage.conventions import InputError, Progress, Result
-from seacage.dynamics import Law
+from seacage.conventions import InputError, Origin, Progress, Result
+from seacage.dynamics import Law, settle
 from seacage.ocean import SeaState
 from seacage.records import (
     NOT_RUN,
@@ -80,10 +79,9 @@ def run_campaign(
     store = Path(out)
     attributes = _attributes(cage, plan, law)
     result, block = _begun(store, attributes, cases=len(plan))
+    toml = cage.to_toml()
     tasks = [
-        _Block(
-            first=first, cage_toml=cage.to_toml(), law=law, seas=plan.seas[first : first + block]
-        )
+        _Block(first=first, cage_toml=toml, law=law, seas=plan.seas[first : first + block])
         for first in range(0, len(plan), block)
         if result[first] == NOT_RUN
     ]
@@ -193,7 +191,7 @@ class _Block:
 
 
 def _settled(task: _Block) -> dict[str, np.ndarray]:
-    response = dynamics.settle(_cage(task.cage_toml), task.seas, law=task.law, mean_waves=True)
+    response = settle(_cage(task.cage_toml), task.seas, law=task.law, mean_waves=True)
     return {
         "node_position": response.node_position,
         "bridle_tension": response.bridle_tension,
@@ -218,7 +216,7 @@ def _attributes(cage: Cage, plan: Plan, law: Law) -> dict[str, str | float]:
         "keywords": "aquaculture, net cage, mooring, numerical simulation",
         "source": f"seacage {number}, settle, netting law {law}",
         "product_version": number,
-        "origin": "computed",
+        "origin": Origin.COMPUTED.value,
         "method": "settle",
         "cage": cage.to_toml(),
         "bridles": " ".join(cage.bridle_names),

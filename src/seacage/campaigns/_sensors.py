@@ -51,7 +51,7 @@ def _loaded(exact: Times, errors: HiddenShackle, rng: np.random.Generator) -> Ti
 
 def _in_windows(seconds: Times, errors: HiddenShackle) -> Bool[np.ndarray, " t"]:
     alive = np.zeros(len(seconds), bool)
-    for share, hours in zip(errors.window_start, errors.window_hours, strict=True):
+    for share, hours in errors.windows:
         start = share * seconds[-1]
         alive |= (seconds >= start) & (seconds < start + hours * _HOUR)
     return alive

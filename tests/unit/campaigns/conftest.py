@@ -17,5 +17,5 @@ def small_cage() -> Cage:
 def stand_in(monkeypatch: pytest.MonkeyPatch) -> StandIn:
     """The formula in place of the solver, in this process."""
     simulator = StandIn()
-    monkeypatch.setattr("seacage.dynamics.settle", simulator.settle)
+    monkeypatch.setattr("seacage.campaigns._run.settle", simulator.settle)
     return simulator

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 
 import numpy as np
 import pytest
@@ -37,7 +37,7 @@ def at_cage(buoy: Record, seconds: np.ndarray, hidden: Hidden = EXACT) -> np.nda
 @pytest.fixture(scope="module")
 def field(small_cage: Cage) -> Iterator[VirtualField]:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("seacage.dynamics.settle", StandIn().settle)
+        patch.setattr("seacage.campaigns._run.settle", StandIn().settle)
         yield virtual_field(small_cage, BUOY, hidden=HIDDEN, seed=1, workers=1, every_s=STEP)
 
 
@@ -140,7 +140,11 @@ def test_the_seed_changes_the_noise_and_not_the_cage(small_cage: Cage, stand_in:
     assert said[0] != said[1]
 
 
-def test_a_buoy_with_one_row_is_refused(small_cage: Cage, stand_in: StandIn) -> None:
-    one = BUOY.between(datetime(2020, 1, 18, tzinfo=UTC), datetime(2020, 1, 18, 0, 5, tzinfo=UTC))
-    with pytest.raises(InputError, match="1 usable currents in 1 rows"):
-        virtual_field(small_cage, one, hidden=HIDDEN, seed=1, workers=1)
+@pytest.mark.parametrize(("minutes", "every_s"), [(0, 60.0), (5, 60.0), (60, 0.0), (60, 3600.0)])
+def test_a_record_too_short_for_two_readings_is_refused(
+    small_cage: Cage, minutes: int, every_s: float
+) -> None:
+    start = datetime(2020, 1, 18, tzinfo=UTC)
+    short = BUOY.between(start, start + timedelta(minutes=minutes))
+    with pytest.raises(InputError, match="holds no two readings"):
+        virtual_field(small_cage, short, hidden=HIDDEN, seed=1, every_s=every_s)
