@@ -4,6 +4,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -159,12 +160,21 @@ class AutoregressiveKernel(AbstractKernel):
         straight = slope * below * below[:, 0]
         link = k_f + straight
 
-        def pullback(gradient: Float[np.ndarray, "n n"]) -> Float[np.ndarray, " parameter"]:
-            of_link = gradient * k_rho
-            parts = [pull_rho(gradient * link), pull_f(of_link), pull_delta(gradient)]
-            return np.concatenate(parts + [[np.sum(of_link * straight)]] * self.linear)
+        pulls = (pull_rho, pull_f, pull_delta)
+        return k_rho * link + k_delta, partial(self._pulled, k_rho, link, straight, pulls)
 
-        return k_rho * link + k_delta, pullback
+    def _pulled(
+        self,
+        k_rho: Float[np.ndarray, "n n"],
+        link: Float[np.ndarray, "n n"],
+        straight: Float[np.ndarray, "n n"],
+        pulls: tuple[Pullback, Pullback, Pullback],
+        adjoint: Float[np.ndarray, "n n"],
+    ) -> Float[np.ndarray, " parameter"]:
+        of_link = adjoint * k_rho
+        adjoints = (adjoint * link, of_link, adjoint)
+        parts = [pull(one) for pull, one in zip(pulls, adjoints, strict=True)]
+        return np.concatenate(parts + [[np.sum(of_link * straight)]] * self.linear)
 
     def link_length(self, log_parameters: Float[np.ndarray, " parameter"]) -> float:
         """Length over which the answer bends with f, in the unit of the standardised f."""
@@ -249,14 +259,18 @@ def _unit(
     x: Float[np.ndarray, "n feature"],
 ) -> tuple[Float[np.ndarray, "n n"], Pullback]:
     z = x / np.exp(log_length)
-    correlation, slope = _shape(name, _squared_distance(z, z))
+    correlation, decline = _shape(name, _squared_distance(z, z))
+    return correlation, partial(_pulled_lengths, z, decline)
 
-    def pullback(gradient: Float[np.ndarray, "n n"]) -> Float[np.ndarray, " parameter"]:
-        # Sum of w_ab (z_a - z_b)^2 over the pairs, without the n x n differences per feature.
-        weight = gradient * slope
-        return 2.0 * (weight.sum(axis=1) @ z**2 - np.sum(z * (weight @ z), axis=0))
 
-    return correlation, pullback
+def _pulled_lengths(
+    z: Float[np.ndarray, "n feature"],
+    decline: Float[np.ndarray, "n n"],
+    adjoint: Float[np.ndarray, "n n"],
+) -> Float[np.ndarray, " parameter"]:
+    # Sum of w_ab (z_a - z_b)^2 over the pairs, without the n x n differences per feature.
+    weight = adjoint * decline
+    return 2.0 * (weight.sum(axis=1) @ z**2 - np.sum(z * (weight @ z), axis=0))
 
 
 def _scaled(
@@ -264,12 +278,16 @@ def _scaled(
     log_parameters: Float[np.ndarray, " parameter"],
     x: Float[np.ndarray, "n feature"],
 ) -> tuple[Float[np.ndarray, "n n"], Pullback]:
-    variance = np.exp(log_parameters[0])
+    variance = float(np.exp(log_parameters[0]))
     correlation, pull_lengths = _unit(name, log_parameters[1:], x)
     covariance = variance * correlation
+    return covariance, partial(_pulled_scale, covariance, variance, pull_lengths)
 
-    def pullback(gradient: Float[np.ndarray, "n n"]) -> Float[np.ndarray, " parameter"]:
-        of_variance = np.sum(gradient * covariance)
-        return np.concatenate([[of_variance], variance * pull_lengths(gradient)])
 
-    return covariance, pullback
+def _pulled_scale(
+    covariance: Float[np.ndarray, "n n"],
+    variance: float,
+    pull_lengths: Pullback,
+    adjoint: Float[np.ndarray, "n n"],
+) -> Float[np.ndarray, " parameter"]:
+    return np.append(np.sum(adjoint * covariance), variance * pull_lengths(adjoint))

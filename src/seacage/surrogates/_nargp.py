@@ -28,8 +28,8 @@ from seacage.surrogates._quadrature import carried
 
 WHAT = "NARGP.fit"
 
-Cases = tuple[Float[np.ndarray, "n feature"], Float[np.ndarray, " n"]]
-"""Inputs and outputs of one fidelity."""
+Cases = tuple[Float[np.ndarray, "_ _"], Float[np.ndarray, " _"]]
+"""Inputs (n, features) and outputs (n,) of one fidelity."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -195,10 +195,10 @@ def loss(
     weights = inverse @ y
     value = 0.5 * np.sum(y * weights) + outputs * np.sum(np.log(np.diag(factor)))
 
-    slope = 0.5 * (outputs * inverse - weights @ weights.T)
-    of_noise = noise * np.trace(slope)
-    slope[np.diag_indices_from(slope)] *= 1.0 + JITTER
-    gradient = np.append(pullback(slope), of_noise)
+    adjoint = 0.5 * (outputs * inverse - weights @ weights.T)
+    of_noise = noise * np.trace(adjoint)
+    adjoint[np.diag_indices_from(adjoint)] *= 1.0 + JITTER
+    gradient = np.append(pullback(adjoint), of_noise)
 
     prior = kernel.prior(x.shape[1])
     mean = np.append(prior.mean, NOISE_PRIOR[0])
