@@ -11,12 +11,12 @@ from seacage.cage import Cage
 from seacage.surrogates import (
     Domain,
     FittedGaussianProcess,
-    FittedNARGP,
     FittedShapeGP,
     Prediction,
     Predicts,
 )
 from seacage.twin._answer import Answer
+from seacage.twin._correction import Correction
 from seacage.twin._metocean import Input, Metocean
 
 BLOCK = 512
@@ -46,17 +46,6 @@ class Depth:
         """Answer at each row of features [m]."""
         height = self.height.predict(x)
         return Prediction(mean=-height.mean, std=height.std)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Said:
-    """What a level has answered already, so that many sensors ask it once."""
-
-    prediction: Prediction
-
-    def predict(self, _: Features, /) -> Prediction:
-        """Answer as it did."""
-        return self.prediction
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -90,7 +79,7 @@ class Models:
     still_volume: float
     bridles: FittedGaussianProcess
     shape: FittedShapeGP
-    upper: Mapping[str, FittedNARGP] = field(default_factory=dict[str, FittedNARGP])
+    upper: Mapping[str, Correction] = field(default_factory=dict[str, Correction])
 
     def lower(self, sensor: str) -> Predicts:
         """Level 1 of one sensor [N] or [m]."""
@@ -99,7 +88,7 @@ class Models:
             return Depth(height=self.shape.coordinate(nodes[sensor], 2))
         return self.bridles.output(self._lines()[sensor])
 
-    def taught(self, sensor: str, model: FittedNARGP) -> Self:
+    def taught(self, sensor: str, model: Correction) -> Self:
         """Return a copy that has level 2 of one more sensor."""
         return replace(self, upper={**self.upper, sensor: model})
 
@@ -203,9 +192,9 @@ class Models:
             if name in self.upper:
                 model = self.upper[name]
                 low = Prediction(mean=sensor_low.mean[:, column], std=sensor_low.std[:, column])
-                behind = replace(model, lent=Said(prediction=low)).predict(x)
+                behind = model.behind(x, low)
                 sensor.mean[:, column] = behind.mean
-                sensor.std[:, column] = np.sqrt(behind.std**2 + model.upper[-1].noise[0])
+                sensor.std[:, column] = np.sqrt(behind.std**2 + model.noise)
                 if name in lines:
                     bridle.mean[:, lines[name]] = behind.mean
                     bridle.std[:, lines[name]] = behind.std

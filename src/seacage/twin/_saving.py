@@ -18,6 +18,7 @@ from seacage.surrogates import (
     decode,
     encode,
 )
+from seacage.twin._correction import Correction
 from seacage.twin._metocean import Input
 from seacage.twin._models import Models
 from seacage.twin._provenance import Provenance
@@ -43,6 +44,7 @@ class Header:
     domain: tuple[tuple[float, ...], tuple[float, ...]]
     edge: tuple[float, float]
     still_volume: float
+    gains: Mapping[str, float]
     buoy: str
     watch: Watch
     provenance: Provenance
@@ -62,13 +64,14 @@ def saved(
         domain=(tuple(models.domain.lower.tolist()), tuple(models.domain.upper.tolist())),
         edge=models.edge,
         still_volume=models.still_volume,
+        gains={name: model.gain for name, model in models.upper.items()},
         buoy=buoy,
         watch=watch,
         provenance=provenance,
     )
     settings = TypeAdapter(Header).dump_python(header, mode="json")
     parts: dict[str, Fitted] = {"bridles": models.bridles, "shape": models.shape}
-    parts |= {f"{UPPER}{name}": model for name, model in models.upper.items()}
+    parts |= {f"{UPPER}{name}": model.rest for name, model in models.upper.items()}
     encoded = {name: encode(part) for name, part in parts.items()}
     settings["models"] = {name: part for name, (part, _) in encoded.items()}
     arrays = {
@@ -134,8 +137,7 @@ def _models(
         bridles=part("bridles", FittedGaussianProcess),
         shape=part("shape", FittedShapeGP),
     )
-    for name in settings:
-        if name.startswith(UPPER):
-            sensor = name.removeprefix(UPPER)
-            models = models.taught(sensor, part(name, FittedNARGP, lower=models.lower(sensor)))
+    for sensor, gain in header.gains.items():
+        rest = part(f"{UPPER}{sensor}", FittedNARGP, lower=models.lower(sensor))
+        models = models.taught(sensor, Correction(gain=gain, rest=rest))
     return models

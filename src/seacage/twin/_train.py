@@ -11,15 +11,14 @@ from seacage.cage import Cage
 from seacage.conventions import InputError, Origin, Progress
 from seacage.records import CampaignRecord, FieldRecord
 from seacage.surrogates import (
-    NARGP,
     Domain,
     FittedGaussianProcess,
-    FittedNARGP,
     GaussianProcess,
     ShapeGP,
     mnll,
 )
 from seacage.twin._align import Pairs, align, spread_out, teaching_window
+from seacage.twin._correction import Correction
 from seacage.twin._metocean import Input, Metocean
 from seacage.twin._models import Models
 from seacage.twin._provenance import Lesson, Provenance
@@ -171,7 +170,7 @@ def _better_kernel(
 ) -> tuple[FittedGaussianProcess, str]:
     """Return the process with the higher leave-one-out density, and its kernel's name."""
     # Weighed by spread, as a line that carries little counts no less than one that carries much.
-    spread = y.std(axis=0)
+    spread = np.where(np.ptp(y, axis=0) > 0.0, y.std(axis=0), 1.0)
     fitted = [
         GaussianProcess(kernel=kernel, restarts=training.restarts).fit(x, y, seed=training.seed)
         for kernel in KERNELS
@@ -184,7 +183,7 @@ def _better_kernel(
 
 def _learned(
     models: Models, field: FieldRecord, sensor: str, training: Training
-) -> tuple[Lesson, FittedNARGP] | None:
+) -> tuple[Lesson, Correction] | None:
     """Return what a sensor taught, and level 2 of it; None where it has too little to say."""
     window = teaching_window(field.sensors[sensor], days=training.days, pause_s=training.pause_s)
     if window is None:
@@ -195,10 +194,12 @@ def _learned(
     if len(pairs) < LEAST_PAIRS:
         return None
     pairs = _chosen(pairs, training)
-    model = NARGP(restarts=training.restarts).fit(
-        [(pairs.metocean.features(training.inputs), pairs.value)],
+    model = Correction.learned(
+        pairs,
+        pairs.metocean.features(training.inputs),
+        models.lower(sensor),
+        restarts=training.restarts,
         seed=training.seed,
-        lower=models.lower(sensor),
     )
     return Lesson(start=start, end=end, points=len(pairs)), model
 

@@ -93,7 +93,8 @@ def test_a_reading_is_less_sure_than_the_rope_it_reads():
     twin = stand_in_twin()
     answer = twin.predict(stand_in_seas(5))
     lines = [one.bridle for one in twin.cage.shackles]
-    np.testing.assert_allclose(answer.sensor.mean[:, 3:], answer.bridle_tension.mean[:, lines])
+    pulling = np.maximum(answer.sensor.mean[:, 3:], 0.0)
+    np.testing.assert_allclose(pulling, answer.bridle_tension.mean[:, lines])
     assert (answer.sensor.std[:, 3:] > answer.bridle_tension.std[:, lines]).all()
 
 

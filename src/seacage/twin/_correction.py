@@ -1,0 +1,94 @@
+"""Level 2 of one sensor: a line through level 1, and a NARGP of what the line leaves."""
+
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+from jaxtyping import Float, Shaped
+
+from seacage.surrogates import NARGP, FittedNARGP, Prediction, Predicts
+from seacage.twin._align import Pairs
+
+GAIN_SD = 0.5
+"""How far from 1 a gain is expected: the simulations may be half wrong, seldom more."""
+
+Features = Float[np.ndarray, "case feature"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Said:
+    """What a level has answered already, so that many sensors ask it once."""
+
+    prediction: Prediction
+
+    def predict(self, _: Features, /) -> Prediction:
+        """Answer as it did."""
+        return self.prediction
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Correction:
+    """What a sensor reads, from the water and from what level 1 says of its place.
+
+    A NARGP alone returns to the mean of its lesson where the water was never like that during
+    the lesson. A shackle teaches for half a day, so its correction has to carry further: the
+    gain does, and the NARGP learns the rest.
+
+    Parameters
+    ----------
+    gain
+        Change of the reading per change of level 1 [-].
+    rest
+        Of the reading less gain times level 1 [N] or [m]; its own level 1 is lent.
+    """
+
+    gain: float
+    rest: FittedNARGP
+
+    @classmethod
+    def learned(
+        cls, pairs: Pairs, x: Features, lower: Predicts, *, restarts: int, seed: int
+    ) -> Self:
+        """Learn from readings and the features of the water at their times."""
+        low = lower.predict(x).mean
+        gain = fitted_gain(low, pairs.value, pairs.time)
+        rest = NARGP(restarts=restarts).fit([(x, pairs.value - gain * low)], seed=seed, lower=lower)
+        return cls(gain=gain, rest=rest)
+
+    @property
+    def noise(self) -> float:
+        """Variance of a reading about what lies behind it [N2] or [m2]."""
+        return float(self.rest.upper[-1].noise[0])
+
+    def behind(self, x: Features, low: Prediction) -> Prediction:
+        """Return what a reading scatters about, given what level 1 says there.
+
+        The line's and the rest's shares of level 1's small variance are taken as independent.
+        """
+        rest = replace(self.rest, lent=Said(prediction=low)).predict(x)
+        return Prediction(
+            mean=rest.mean + self.gain * low.mean, std=np.hypot(rest.std, self.gain * low.std)
+        )
+
+
+def fitted_gain(
+    low: Float[np.ndarray, " pair"],
+    value: Float[np.ndarray, " pair"],
+    time: Shaped[np.ndarray, " pair"],
+) -> float:
+    """Slope of readings over level 1, drawn towards 1 where the lesson says little of it.
+
+    Readings within an hour share their error, and weigh as one against the expectation.
+
+    References
+    ----------
+    Bayesian linear regression with a Gaussian prior, Rasmussen & Williams (2006), eq. (2.8).
+    """
+    variance = float(np.var(low))
+    if variance == 0.0:
+        return 1.0
+    above = value - low
+    slope = float(np.mean((low - low.mean()) * above)) / variance
+    left = float(np.var(above - slope * low))
+    hours = len(np.unique(time.astype("datetime64[h]").astype(np.int64)))
+    return 1.0 + slope * variance / (variance + left / (hours * GAIN_SD**2))

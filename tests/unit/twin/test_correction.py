@@ -1,0 +1,61 @@
+import numpy as np
+import pytest
+
+from seacage.surrogates import GaussianProcess
+from seacage.testing import stand_in_twin
+from seacage.twin import Metocean, Pairs
+from seacage.twin._correction import Correction, fitted_gain
+
+START = np.datetime64("2020-01-18T00:00", "us")
+
+
+def minutes(count):
+    return START + np.arange(count).astype("timedelta64[m]")
+
+
+def test_a_gain_that_the_readings_show_plainly_is_found():
+    low = np.sin(np.arange(600) / 100.0)
+    noise = 0.01 * np.random.default_rng(0).standard_normal(600)
+    assert fitted_gain(low, 1.7 * low + 3.0 + noise, minutes(600)) == pytest.approx(1.7, abs=0.01)
+
+
+def test_a_gain_that_the_readings_hardly_show_stays_near_one():
+    random = np.random.default_rng(0)
+    low = 0.01 * random.standard_normal(600)
+    wild = fitted_gain(low, -5.0 * low + random.standard_normal(600), minutes(600))
+    assert abs(wild - 1.0) < 0.1
+
+
+def test_a_level_one_that_never_moved_has_a_gain_of_one():
+    assert fitted_gain(np.ones(5), np.arange(5.0), minutes(5)) == 1.0
+
+
+def test_more_hours_of_the_same_readings_are_trusted_more():
+    random = np.random.default_rng(1)
+    low = random.standard_normal(60)
+    value = 2.0 * low + 3.0 * random.standard_normal(60)
+    hour = fitted_gain(low, value, minutes(60))
+    days = fitted_gain(low, value, START + np.arange(60).astype("timedelta64[h]"))
+    assert 1.0 < hour < days
+
+
+def test_a_correction_carries_to_water_that_its_lesson_never_saw():
+    x = np.linspace(0.0, 1.0, 60)[:, None]
+    lower = GaussianProcess().fit(x, 10.0 * x[:, 0] ** 2)
+    seen = x[:, 0] < 0.6
+    pairs = Pairs(
+        time=minutes(int(seen.sum())),
+        metocean=Metocean.from_columns({}, int(seen.sum())),
+        value=15.0 * x[seen, 0] ** 2 + 1.0,
+    )
+    model = Correction.learned(pairs, x[seen], lower, restarts=0, seed=0)
+    top = model.behind(x[-1:], lower.predict(x[-1:]))
+    assert top.mean == pytest.approx([16.0], abs=1.0)
+
+
+def test_an_answer_does_not_depend_on_who_asked_level_one():
+    twin = stand_in_twin()
+    model, lower = twin.models.upper["depth-2"], twin.models.lower("depth-2")
+    x = np.array([[0.5, 0.3, 0.4], [0.0, 0.0, 0.0]])
+    behind, rest = model.behind(x, lower.predict(x)), model.rest.predict(x)
+    np.testing.assert_allclose(behind.mean, rest.mean + model.gain * lower.predict(x).mean)
