@@ -152,7 +152,10 @@ def true_responses(
 
 
 def _readings(cage: Cage, campaign: CampaignRecord) -> Float[np.ndarray, "case sensor"]:
-    """Depths [m], then tensions [kN], as error-free sensors would read them."""
+    """Depths [m], then tensions [kN], as error-free sensors would read them.
+
+    A shape that was not quite at rest when the solver gave up stands for the one at rest.
+    """
     lost = np.flatnonzero(campaign.result == Result.DIVERGED)
     if lost.size:
         raise SeacageError(
