@@ -1,9 +1,10 @@
 """A moored net cage: its parts, and the graph of nodes that they span."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, fields, is_dataclass, replace
 from functools import cached_property
 from importlib import resources
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, Self
 
@@ -24,10 +25,10 @@ from seacage.cage._parts import (
     SinkerTube,
     Site,
     Tip,
-    altered,
+    check_bounds,
     quantity,
 )
-from seacage.cage._toml import parsed, written
+from seacage.cage._toml import altered, parsed, written
 from seacage.cage._volume import enclosed_volume
 from seacage.conventions import InputError, towards
 
@@ -74,6 +75,7 @@ class Cage:
     depth_sensor: tuple[DepthSensorEntry, ...]
 
     def __post_init__(self) -> None:
+        check_bounds(self, f"Cage {self.name}")
         names = self.sensor_names
         if len(set(names)) != len(names):
             raise InputError(f"Cage {self.name}: two sensors share a name in {list(names)}.")
@@ -127,11 +129,14 @@ class Cage:
 
         ``cage.altered(tip={"weight_n": 9800.0}, netting={"twine_diameter_m": 0.003})``
         """
-        parts = {p.name for p in fields(self) if "unit" not in p.metadata}
+        parts = {p.name: getattr(self, p.name) for p in fields(self) if is_dataclass(p.type)}
         for name in sections:
-            if name not in parts or isinstance(getattr(self, name), tuple):
-                raise InputError(f"Cage.altered: no section {name!r}; there are: {sorted(parts)}.")
-        changed = {n: altered(getattr(self, n), dict(keys)) for n, keys in sections.items()}
+            if name not in parts:
+                raise InputError(
+                    f"Cage.altered: no section {name!r}; there are: {', '.join(parts)}."
+                )
+        where = "Cage.altered"
+        changed = {n: altered(parts[n], keys, f"{where}, {n}") for n, keys in sections.items()}
         return replace(self, **changed)
 
     def fouled(self, *, shallow: float, deep: float, boundary_depth: float = 10.0) -> Self:
@@ -151,7 +156,7 @@ class Cage:
     def refined(self) -> Self:
         """A copy with twice the rings and spokes; every old node stays a node."""
         depths = (*self.mesh.ring_depths, self.mesh.tip_depth)
-        finer = [d for a, b in zip(depths, depths[1:], strict=False) for d in (a, (a + b) / 2.0)]
+        finer = [d for a, b in pairwise(depths) for d in (a, (a + b) / 2.0)]
         return self.altered(mesh={"ring_depths_m": finer, "spokes": 2 * self.mesh.spokes})
 
     # The graph
@@ -192,19 +197,23 @@ class Cage:
     @cached_property
     def design_position(self) -> Float[np.ndarray, "node 3"]:
         """The shape the net was cut to [m]; the rest shape hangs a little narrower."""
-        return _graph.node_positions(self.mesh, radius=self.collar.radius, heading=self.heading)
+        return _kept(
+            _graph.node_positions(self.mesh, radius=self.collar.radius, heading=self.heading)
+        )
 
     @cached_property
     def edges(self) -> Int[np.ndarray, "edge 2"]:
         """Pairs of neighbouring nodes: rings, meridians, apex."""
-        return _graph.edges(self.rings, self.spokes)
+        return _kept(_graph.edges(self.rings, self.spokes))
 
     @cached_property
     def panels(self) -> Int[np.ndarray, "panel 4"]:
         """Corners of each panel, counter-clockwise from outside; triangles repeat the last."""
-        return _graph.panels(self.rings, self.spokes)
+        return _kept(_graph.panels(self.rings, self.spokes))
 
-    def volume(self, node_position: Float[np.ndarray, "*case node 3"]) -> Float[np.ndarray, "*case"]:
+    def volume(
+        self, node_position: Float[np.ndarray, "*case node 3"]
+    ) -> Float[np.ndarray, "*case"]:
         """Volume that a shape of the net encloses, closed by the collar's polygon [m3]."""
         return enclosed_volume(node_position, self.panels, self.ring_nodes(0))
 
@@ -223,21 +232,21 @@ class Cage:
     @cached_property
     def bridle_nodes(self) -> Int[np.ndarray, " bridle"]:
         """The collar node that each bridle holds."""
-        return np.array([self._nearest_spoke(bearing) for bearing in self.bridles.bearings])
+        return _kept(np.array([self._nearest_spoke(b) for b in self.bridles.bearings]))
 
     @cached_property
     def corner_position(self) -> Float[np.ndarray, "corner 3"]:
         """Frame corners in still water: north-east, north-west, south-west, south-east [m]."""
         bearing = np.array([45.0, 315.0, 225.0, 135.0]) + self.heading
         horizontal = towards(np.full(4, self.frame.side / np.sqrt(2.0)), bearing)
-        return np.column_stack([horizontal, np.full(4, -self.frame.depth)])
+        return _kept(np.column_stack([horizontal, np.full(4, -self.frame.depth)]))
 
     @cached_property
     def bridle_corner(self) -> Int[np.ndarray, " bridle"]:
         """The frame corner that each bridle comes from: the nearest."""
         ends = self.design_position[self.bridle_nodes]
         distance = np.linalg.norm(ends[:, None] - self.corner_position, axis=-1)
-        return np.argmin(distance, axis=1)
+        return _kept(np.argmin(distance, axis=1))
 
     @property
     def bridle_capacity(self) -> Float[np.ndarray, " bridle"]:
@@ -273,3 +282,9 @@ class Cage:
         if ring == self.rings:
             return self.bottom_node
         return self.node(ring, self._nearest_spoke(entry.bearing))
+
+
+def _kept(array: np.ndarray) -> np.ndarray:
+    """An array that nobody can write into, for it is handed out more than once."""
+    array.setflags(write=False)
+    return array

@@ -6,9 +6,7 @@ from jaxtyping import Float, Int
 from seacage.cage._parts import Mesh
 
 
-def node_positions(
-    mesh: Mesh, *, radius: float, heading: float
-) -> Float[np.ndarray, "node 3"]:
+def node_positions(mesh: Mesh, *, radius: float, heading: float) -> Float[np.ndarray, "node 3"]:
     """Design shape: a cylinder over a cone, x east, y north, z up [m].
 
     Node = spokes · ring + spoke; spoke 0 is east at heading 0, the others follow

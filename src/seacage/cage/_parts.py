@@ -1,13 +1,16 @@
 """The parts of a cage, each with its parameters, units and bounds."""
 
 import math
-from dataclasses import Field, dataclass, field, fields, replace
+from dataclasses import Field, dataclass, field, fields
+from itertools import pairwise
 from typing import Any
 
 from seacage.conventions import InputError
 
 
-def quantity(unit: str, meaning: str, *, low: float = 0.0, above: bool = False, **default: Any) -> Any:
+def quantity(
+    unit: str, meaning: str, *, low: float = 0.0, above: bool = False, **default: Any
+) -> Any:
     """Declare a parameter: its unit (the suffix of its key in a file), meaning and bound.
 
     ``low`` is the least value allowed; with ``above`` the value must exceed it.
@@ -21,27 +24,32 @@ def key_of(parameter: Field[Any]) -> str:
     return f"{parameter.name}_{unit}" if unit else parameter.name
 
 
+def check_bounds(part: Any, where: str) -> None:
+    """Refuse a part with a number outside the bounds that it declares."""
+    for parameter in fields(part):
+        value = getattr(part, parameter.name)
+        for number in value if isinstance(value, tuple) else (value,):
+            if isinstance(number, int | float):
+                _check_bound(parameter, float(number), where)
+
+
+def _check_bound(parameter: Field[Any], number: float, where: str) -> None:
+    low, above = parameter.metadata["low"], parameter.metadata["above"]
+    if not math.isfinite(number) or number < low or (above and number == low):
+        bound = f"above {low:g}" if above else f"at least {low:g}"
+        raise InputError(
+            f"{where}: {key_of(parameter)} = {number:g} must be a finite number {bound}. "
+            f"It is: {parameter.metadata['meaning']}."
+        )
+
+
 class _Part:
     """A part checks its numbers against the bounds it declares."""
 
     __slots__ = ()
 
     def __post_init__(self) -> None:
-        for parameter in fields(self):  # type: ignore[arg-type]
-            value = getattr(self, parameter.name)
-            for number in value if isinstance(value, tuple) else (value,):
-                if isinstance(number, int | float):
-                    _check_bound(type(self).__name__, parameter, float(number))
-
-
-def _check_bound(part: str, parameter: Field[Any], number: float) -> None:
-    low, above = parameter.metadata.get("low", -math.inf), parameter.metadata.get("above", False)
-    if not math.isfinite(number) or number < low or (above and number == low):
-        bound = f"above {low:g}" if above else f"at least {low:g}"
-        raise InputError(
-            f"Cage, {part}: {key_of(parameter)} = {number:g} must be a finite number {bound}. "
-            f"It is: {parameter.metadata['meaning']}."
-        )
+        check_bounds(self, f"Cage, {type(self).__name__}")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,7 +64,7 @@ class Mesh(_Part):
     def __post_init__(self) -> None:
         super(Mesh, self).__post_init__()
         depths = (*self.ring_depths, self.tip_depth)
-        rising = all(a < b for a, b in zip(depths, depths[1:], strict=False))
+        rising = all(a < b for a, b in pairwise(depths))
         if len(depths) < 3 or depths[0] != 0.0 or not rising:
             raise InputError(
                 f"Cage, Mesh: ring_depths_m = {list(self.ring_depths)} with tip_depth_m = "
@@ -200,6 +208,8 @@ class Bridles(_Part):
 
     def __post_init__(self) -> None:
         super(Bridles, self).__post_init__()
+        if not self.bearings:
+            raise InputError("Cage, Bridles: bearings_deg is empty. Give at least one bridle.")
         if len(self.length_offset) != len(self.bearings):
             raise InputError(
                 f"Cage, Bridles: {len(self.bearings)} bearings_deg but "
@@ -230,20 +240,3 @@ class DepthSensorEntry(_Part):
     name: str = field(metadata={"meaning": "the name of its stream"})
     depth: float = quantity("m", "in the design shape")
     bearing: float = quantity("deg", "compass bearing on the net, heading 0")
-
-
-def altered(part: Any, changes: dict[str, Any]) -> Any:
-    """A copy of a part with the given file keys changed."""
-    names = {key_of(parameter): parameter.name for parameter in fields(part)}
-    unknown = sorted(set(changes) - set(names))
-    if unknown:
-        raise InputError(
-            f"Cage, {type(part).__name__}: no key {unknown[0]!r}. Its keys are: "
-            + ", ".join(names)
-            + "."
-        )
-    return replace(part, **{names[key]: _frozen(value) for key, value in changes.items()})
-
-
-def _frozen(value: Any) -> Any:
-    return tuple(value) if isinstance(value, list) else value

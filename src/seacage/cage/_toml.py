@@ -1,9 +1,11 @@
 """Cage files: TOML with the unit in every key, written with what each key means."""
 
 import difflib
+import json
 import tomllib
-import types
-from dataclasses import fields, is_dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import Field, fields, is_dataclass, replace
+from numbers import Integral, Real
 from typing import Any, get_args, get_origin
 
 from seacage.cage._parts import key_of
@@ -21,76 +23,102 @@ def parsed(kind: type, text: str, *, source: str) -> Any:
     try:
         table = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise InputError(f"{source}: this is not TOML ({error}). Mend the line it names.") from error
+        raise InputError(
+            f"{source}: this is not TOML ({error}). Mend the line it names."
+        ) from error
     return _built(kind, table, source)
 
 
 def _built(kind: type, table: dict[str, Any], where: str) -> Any:
-    known = {key_of(parameter): parameter for parameter in fields(kind)}
-    for key in table:
-        if key not in known:
-            close = difflib.get_close_matches(key, known, n=1)
-            hint = f"did you mean {close[0]!r}?" if close else f"known are: {', '.join(known)}."
-            raise InputError(f"{where}: unknown key {key!r}; {hint}")
+    known = _known(kind, table, where)
     missing = [key for key in known if key not in table]
     if missing:
         meaning = known[missing[0]].metadata.get("meaning", "a section of its own")
         raise InputError(f"{where}: the key {missing[0]!r} is missing ({meaning}). Add it.")
-    values = {
-        parameter.name: _value(parameter.type, table[key], f"{where}, {key}")
-        for key, parameter in known.items()
+    return kind(**_values(known, table, where))
+
+
+def altered(part: Any, changes: Mapping[str, Any], where: str) -> Any:
+    """A copy of a part with some keys changed, each refused as in a file."""
+    known = _known(type(part), changes, where)
+    return replace(part, **_values(known, changes, where))
+
+
+def _known(kind: type, keys: Iterable[str], where: str) -> dict[str, Field[Any]]:
+    """All parameters by their keys; none of the given keys is another."""
+    known = {key_of(parameter): parameter for parameter in fields(kind)}
+    for key in keys:
+        if key not in known:
+            close = difflib.get_close_matches(key, known, n=1)
+            hint = f"did you mean {close[0]!r}?" if close else f"known are: {', '.join(known)}."
+            raise InputError(f"{where}: unknown key {key!r}; {hint}")
+    return known
+
+
+def _values(
+    known: Mapping[str, Field[Any]], table: Mapping[str, Any], where: str
+) -> dict[str, Any]:
+    return {
+        known[key].name: _value(known[key].type, value, f"{where}, {key}")
+        for key, value in table.items()
     }
-    return kind(**values)
 
 
 def _value(kind: Any, value: Any, where: str) -> Any:
     if get_origin(kind) is tuple:
-        return tuple(_value(get_args(kind)[0], item, where) for item in _typed(list, value, where))
-    if is_dataclass(kind):
-        return _built(kind, _typed(dict, value, where), where)  # type: ignore[arg-type]
-    if kind is float and isinstance(value, int) and not isinstance(value, bool):
-        return float(value)
-    return _typed(kind, value, where)
+        items = value if isinstance(value, tuple) else _typed(list, value, where)
+        return tuple(_value(get_args(kind)[0], item, where) for item in items)
+    if isinstance(kind, type) and is_dataclass(kind):
+        return _built(kind, _typed(dict, value, where), where)
+    return kind(_typed(kind, value, where))
 
 
-def _typed(kind: Any, value: Any, where: str) -> Any:
-    if not isinstance(value, kind) or isinstance(value, bool):
-        expected = kind.__name__ if not isinstance(kind, types.UnionType) else str(kind)
-        raise InputError(f"{where}: {value!r} is a {type(value).__name__}; expected {expected}.")
+_KINDS: dict[type, tuple[type, str]] = {
+    dict: (Mapping, "a table"),
+    list: (list, "a list"),
+    str: (str, "text"),
+    int: (Integral, "a whole number"),
+    float: (Real, "a number"),
+}
+
+
+def _typed(kind: type, value: Any, where: str) -> Any:
+    accepted, meant = _KINDS[kind]
+    if not isinstance(value, accepted) or isinstance(value, bool):
+        raise InputError(f"{where}: must be {meant}, not {value!r}.")
     return value
 
 
 def written(cage: Any) -> str:
     """TOML text of a cage; ``parsed`` gives the same cage back."""
-    head = [f"{key} = {_literal(value)}" for key, value in _plain(cage)]
-    sections = [
-        _section(f"[[{key}]]" if isinstance(value, tuple) else f"[{key}]", part)
-        for key, value in _nested(cage)
-        for part in (value if isinstance(value, tuple) else (value,))
-    ]
+    entries = [(key_of(parameter), getattr(cage, parameter.name)) for parameter in fields(cage)]
+    head = [f"{key} = {_literal(value)}" for key, value in entries if not _parts(value)]
+    sections = [_section(key, value) for key, value in entries if _parts(value)]
     return "\n".join([*head, "", *sections])
 
 
-def _section(title: str, part: Any) -> str:
-    doc = (type(part).__doc__ or "").splitlines()[0]
-    lines = [
+def _parts(value: Any) -> tuple[Any, ...]:
+    """The part or parts that a section holds; an empty array of them has no section."""
+    several = value if isinstance(value, tuple) else (value,)
+    return tuple(part for part in several if is_dataclass(part))
+
+
+def _section(key: str, value: Any) -> str:
+    """A table, or an array of tables with what they are before the first."""
+    title = f"[[{key}]]" if isinstance(value, tuple) else f"[{key}]"
+    meaning = (type(_parts(value)[0]).__doc__ or "").splitlines()[0]
+    tables = ["\n".join([title, *_lines(part), ""]) for part in _parts(value)]
+    return "\n".join([f"# {meaning}", *tables])
+
+
+def _lines(part: Any) -> list[str]:
+    return [
         f"{f'{key_of(p)} = {_literal(getattr(part, p.name))}':<44} # {p.metadata['meaning']}"
         for p in fields(part)
     ]
-    return "\n".join([f"# {doc}", title, *lines, ""])
-
-
-def _plain(cage: Any) -> list[tuple[str, Any]]:
-    return [(key_of(p), getattr(cage, p.name)) for p in fields(cage) if "unit" in p.metadata]
-
-
-def _nested(cage: Any) -> list[tuple[str, Any]]:
-    return [(key_of(p), getattr(cage, p.name)) for p in fields(cage) if "unit" not in p.metadata]
 
 
 def _literal(value: Any) -> str:
     if isinstance(value, tuple):
         return "[" + ", ".join(_literal(item) for item in value) + "]"
-    if isinstance(value, str):
-        return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
-    return repr(value)
+    return json.dumps(value, ensure_ascii=False) if isinstance(value, str) else repr(value)

@@ -26,7 +26,9 @@ def enclosed_volume(
     # Measured from the collar's centre, the fan that closes the top spans no volume.
     centre = node_position[..., collar, :].mean(axis=-2, keepdims=True)
     a, b, c, d = np.moveaxis((node_position - centre)[..., panels, :], -2, 0)
-    splits = _tetrahedra(a, b, c) + _tetrahedra(a, c, d) + _tetrahedra(a, b, d) + _tetrahedra(b, c, d)
+    splits = (
+        _tetrahedra(a, b, c) + _tetrahedra(a, c, d) + _tetrahedra(a, b, d) + _tetrahedra(b, c, d)
+    )
     return np.asarray(splits.sum(axis=-1) / 2.0)
 
 
