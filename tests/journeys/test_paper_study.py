@@ -1,6 +1,7 @@
 """Sea states and a current become one page and its numbers, through every stage."""
 
 import json
+from dataclasses import replace
 
 import pytest
 
@@ -8,8 +9,10 @@ from seacage.cage import Cage
 from seacage.studies import PaperStudy, score_record
 from seacage.studies._chain import Chain, Recipe
 from seacage.studies._paper import study_chain
+from stand_in import StandIn
 
-SMALL = Cage.named("ace").altered(mesh={"ring_depths_m": [0.0, 7.0, 15.0, 23.0], "spokes": 16})
+COARSE = Cage.named("ace").altered(mesh={"ring_depths_m": [0.0, 7.0, 15.0, 23.0], "spokes": 16})
+SMALL = replace(COARSE, shackle=COARSE.shackle[:2], depth_sensor=COARSE.depth_sensor[1:2])
 RECIPE = Recipe(
     cases=60, held_out_cases=12, days=10.0, teaching_days=5, high_fidelity_points=60, seed=3
 )
@@ -22,6 +25,14 @@ def chain(folder, **options) -> Chain:
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     return tmp_path_factory.mktemp("study")
+
+
+@pytest.fixture(scope="module", autouse=True)
+def stand_in():
+    """Settle by a formula: the true simulator's journey is that of the campaign."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("seacage.campaigns._run.settle", StandIn().settle)
+        yield
 
 
 @pytest.fixture(scope="module")
@@ -40,12 +51,12 @@ def test_every_sensor_is_scored_on_days_that_it_did_not_teach(study):
 def test_level_one_is_close_to_simulations_that_it_has_not_seen(study):
     assert study.level_one.cases == 12
     share = study.level_one.bridle_mae / study.level_one.bridle_mean
-    assert share.max() < 0.05, "60 cases are few; 400 reach a tenth of this"
+    assert share.max() < 0.02
 
 
 def test_the_page_stands_alone_and_says_what_is_virtual(study):
     page = study.report.read_text("utf-8")
-    assert page.count("data:image/svg+xml") == 2 * 8 + 2
+    assert page.count("data:image/svg+xml") == 2 * 3 + 2
     for score in study.sensors:
         assert f"{score.sensor}, virtual field" in page
     assert "http" not in page

@@ -40,8 +40,11 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]], *, caption: str) -
 
 
 def facts(entries: Mapping[str, str]) -> Html:
-    """Names and what they are."""
-    pairs = (tag("dt", name) + tag("dd", value) for name, value in entries.items())
+    """Names and what they are, a line break for each line."""
+    pairs = (
+        tag("dt", name) + tag("dd", Html(text(value).replace("\n", "<br>")))
+        for name, value in entries.items()
+    )
     return tag("dl", *map(Html, pairs), look="facts")
 
 

@@ -168,7 +168,7 @@ def _provenance(chain: Chain) -> dict[str, str]:
         "Campaign": f"seed {provenance.campaign_seed}, sha256 {provenance.campaign_sha256}",
         "Hidden parameters": f"sha256 {provenance.hidden_sha256}",
         "Sensors": str(provenance.origin),
-        "Notes": " ".join(chain.field.notes),
+        "Notes": "\n".join(chain.field.notes),
     }
 
 

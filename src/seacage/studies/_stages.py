@@ -4,6 +4,7 @@ import hashlib
 import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cache
 from importlib import resources
 from importlib.metadata import version
 from pathlib import Path
@@ -64,8 +65,9 @@ class Stages:
         return begun.rename(finished)
 
 
+@cache  # what this process runs is what it has loaded, whatever is edited meanwhile
 def code_sha256(rooms: tuple[str, ...]) -> str:
-    """Hash of the source files of some rooms: the same version may be at work on itself."""
+    """Hash of the source files of some rooms: one version may have seen many changes."""
     digest = hashlib.sha256()
     for room in rooms:
         root = Path(str(resources.files("seacage") / room))
