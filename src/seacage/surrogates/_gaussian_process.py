@@ -15,10 +15,10 @@ from seacage.surrogates._regression import Posterior, learned
 from seacage.surrogates._scaling import Scaling
 
 MANY_OUTPUTS = 16
-"""More outputs than this teach the kernel condensed."""
+"""More outputs than this are condensed before they teach the kernel."""
 
 CONDENSED = 1e-6
-"""Share of the outputs' variance that may be left out where they are."""
+"""Share of the outputs' variance that condensing may leave out."""
 
 SHARED_POINTS = 5.0
 """Weight of the shared variance against each output's own roughness, in points."""
@@ -234,8 +234,8 @@ def fitted_process(
     standardised = inputs.standardised(x)
     log_parameters = learned(kernel, standardised, taught_by, restarts=restarts, seed=seed)
     posterior = Posterior.conditioned(kernel, log_parameters, standardised, y - outputs.centre)
-    # Each output's own variance, held to the shared one by a few points' worth of belief
-    # (the mean of the inverse-gamma posterior of a scale factor).
+    # Each output's own variance, held to the shared one by a few points' worth of belief:
+    # the scale of the conjugate posterior, a scaled inverse chi-squared.
     own = np.einsum("no,no->o", y - outputs.centre, posterior.weights)
     variance = (SHARED_POINTS * outputs.spread**2 + own) / (SHARED_POINTS + len(y))
     return FittedGaussianProcess(

@@ -87,11 +87,14 @@ class Posterior:
         from scipy.linalg import LinAlgError
 
         try:
-            factor = _factor(kernel, log_parameters, x)
-        except LinAlgError as error:
+            with np.errstate(over="ignore", invalid="ignore"):
+                factor = _factor(kernel, log_parameters, x)
+        except LinAlgError:
+            factor = np.full((len(x), len(x)), np.nan)
+        if not np.isfinite(factor).all():
             raise ModelError(
                 "The saved model's covariance is not positive definite. Train the model again."
-            ) from error
+            )
         return cls(
             kernel=kernel, log_parameters=log_parameters, x=x, weights=weights, factor=factor
         )

@@ -102,11 +102,12 @@ def test_arrays_that_do_not_fit_one_another_are_refused() -> None:
         decode(settings, arrays | {"inputs": arrays["inputs"][:24]})
 
 
-def test_a_covariance_that_no_model_has_is_refused() -> None:
+@pytest.mark.parametrize("size", [-800.0, 800.0])
+def test_a_covariance_that_no_model_has_is_refused(size: float) -> None:
     settings, arrays = encode(process())
-    nothing = np.array([-800.0, 0.0, 0.0, -800.0])
+    wild = np.array([size, 0.0, 0.0, -800.0])
     with pytest.raises(ModelError, match="covariance is not positive definite"):
-        decode(settings, arrays | {"log_parameters": nothing})
+        decode(settings, arrays | {"log_parameters": wild})
 
 
 def test_levels_that_do_not_stand_on_one_another_are_refused() -> None:
