@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -128,12 +129,14 @@ def test_the_truth_is_near_what_the_sensors_say(field: VirtualField) -> None:
         assert abs(np.median(error)) < (0.6 if key == "tension_kn" else 0.1)
 
 
-def test_the_seed_changes_the_noise_and_not_the_cage(small_cage: Cage, stand_in: StandIn) -> None:
-    quiet = replace(EXACT, outages=replace(EXACT.outages, spikes_per_week=0.0))
-    one, two = (
-        virtual_field(small_cage, BUOY, hidden=quiet, seed=seed, workers=1, every_s=600.0)
-        for seed in (1, 2)
-    )
+def test_the_seed_changes_the_noise_and_neither_the_cage_nor_its_responses(
+    small_cage: Cage, stand_in: StandIn, tmp_path: Path
+) -> None:
+    options = {"hidden": EXACT, "responses": tmp_path, "workers": 1, "every_s": 600.0}
+    one = virtual_field(small_cage, BUOY, seed=1, **options)
+    settled = len(stand_in.settled)
+    two = virtual_field(small_cage, BUOY, seed=2, **options)
+    assert len(stand_in.settled) == settled
     exact = [field.truth.sensors["depth-2"].values["depth_m"] for field in (one, two)]
     np.testing.assert_array_equal(*exact)
     said = [field.record.sensors["depth-2"].values["depth_m"][0] for field in (one, two)]
