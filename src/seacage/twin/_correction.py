@@ -12,6 +12,9 @@ from seacage.twin._align import Pairs
 GAIN_SD = 0.5
 """How far from 1 a gain is expected: the simulations may be half wrong, seldom more."""
 
+HOUR = 3_600_000_000
+"""[us]"""
+
 Features = Float[np.ndarray, "case feature"]
 
 
@@ -88,7 +91,7 @@ def fitted_gain(
     if variance == 0.0:
         return 1.0
     above = value - low
-    slope = float(np.mean((low - low.mean()) * above)) / variance
+    slope = float(np.mean((low - np.mean(low)) * above)) / variance
     left = float(np.var(above - slope * low))
-    hours = len(np.unique(time.astype("datetime64[h]").astype(np.int64)))
+    hours = len(np.unique(time.astype("datetime64[us]").astype(np.int64) // HOUR))
     return 1.0 + slope * variance / (variance + left / (hours * GAIN_SD**2))

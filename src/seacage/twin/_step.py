@@ -38,28 +38,32 @@ def listened(
         raise InputError(
             f"Twin.step: now = {now.isoformat()} does not say its zone. Give it in UTC."
         )
-    fallen = _silent(state, now, patience)
-    notices: tuple[Notice, ...] = ()
-    before = state
+    before, notices = state, ()
+    fallen = _silent(before, now, patience)
     if sample is not None:
         state, notices = _taken(state, sample, now, known=patience, watch=watch)
     silent = _silent(state, now, patience)
+    # Where only this sample reveals the silence that it ends, both are told.
     gone = tuple(
-        StreamSilent(stream=name, since=before.streams[name][-1].sample.t)
-        for name in sorted(fallen - before.silent)
+        StreamSilent(stream=name, since=_last(before if name in fallen else state, name))
+        for name in sorted((fallen | silent) - before.silent)
     )
     back = tuple(
-        StreamBack(stream=name, t=state.streams[name][-1].sample.t)
+        StreamBack(stream=name, t=_last(state, name))
         for name in sorted((fallen | before.silent) - silent)
     )
     return replace(state, clock=now, silent=silent), (*gone, *back, *notices)
 
 
+def _last(state: TwinState, stream: str) -> datetime:
+    return state.streams[stream][-1].sample.t
+
+
 def _silent(state: TwinState, now: datetime, patience: Mapping[str, float]) -> frozenset[str]:
     return frozenset(
         name
-        for name, stream in state.streams.items()
-        if (now - stream[-1].sample.t).total_seconds() > patience[name]
+        for name in state.streams
+        if (now - _last(state, name)).total_seconds() > patience[name]
     )
 
 
@@ -84,7 +88,9 @@ def _taken(
     if after is before:
         return state, ()
     state = replace(state, streams={**state.streams, sample.stream: after})
-    flagged = next(taken.sample for taken in after if taken.sample.t == sample.t)
+    moment = sample.t, sample.seq
+    seen = (taken.sample for taken in after if (taken.sample.t, taken.sample.seq) == moment)
+    flagged = next(seen, sample)
     if not troubled(flagged):
         return state, ()
     return state, (Flagged(sample=flagged, reason=" ".join(flagged.remarks), used=True),)

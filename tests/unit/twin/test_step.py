@@ -169,6 +169,13 @@ def test_a_sample_after_a_silence_that_no_tick_noticed_tells_of_both():
     ]
 
 
+def test_a_stream_whose_first_word_is_old_is_silent_at_once():
+    twin = stand_in_twin()
+    state, events = twin.step(twin.start(), depth(), NOON + timedelta(hours=1))
+    assert events == (StreamSilent(stream="depth-2", since=NOON),)
+    assert twin.step(state, None, NOON + timedelta(hours=2))[0].silent == {"depth-2"}
+
+
 def test_a_late_delivery_of_old_words_does_not_end_a_silence():
     state, _ = played(depth(), ticks=[30])
     state, events = stand_in_twin().step(state, depth(5), NOON + timedelta(minutes=31))
