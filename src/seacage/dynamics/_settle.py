@@ -323,4 +323,6 @@ def _response(
 
 
 def _only_case(response: Response) -> Response:
-    return Response(**{name: getattr(response, name)[0] for name in Response.__dataclass_fields__})
+    # asarray: one number of a case is still an array, of no axes.
+    fields = Response.__dataclass_fields__
+    return Response(**{name: np.asarray(getattr(response, name)[0]) for name in fields})
