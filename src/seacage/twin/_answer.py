@@ -37,7 +37,8 @@ class Answer:
     node_position, shape_level
         Of the whole net [m], x east, y north, z up.
     node_sigma
-        Standard deviation along the least known axis of each node [m].
+        Standard deviation along the least known axis of each node [m], of the surrogate about
+        the simulations: what these miss of the real net is not in it at level 1.
     volume_fraction
         Volume over the same model's volume in still water [-].
     """
