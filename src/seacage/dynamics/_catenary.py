@@ -79,7 +79,7 @@ def _solved(line: _Line) -> tuple[float, float]:
         reached = _reach(math.exp(unknown[0]) * scale, unknown[1] * scale, line)
         return (np.array(reached) - (x, z)) / length
 
-    for start in _starts(x, z, length, weight):
+    for start in _starts(x, z, length):
         found = root(miss, start, method="hybr", tol=1e-13)
         if np.max(np.abs(found.fun)) < 1e-9:
             return math.exp(found.x[0]) * scale, float(found.x[1]) * scale
@@ -114,7 +114,7 @@ def _lying(vertical: float, length: float, weight: float, friction: float | None
     return 0.0 if friction is None else max(length - vertical / weight, 0.0)
 
 
-def _starts(x: float, z: float, length: float, weight: float) -> list[tuple[float, float]]:
+def _starts(x: float, z: float, length: float) -> list[tuple[float, float]]:
     """First guesses of (log H, V), both over the line's weight: Jonkman's, then wider ones."""
     slack = (length**2 - z**2) / x**2 - 1.0
     sag = math.sqrt(3.0 * slack) if slack > 0.0 else 0.2

@@ -5,7 +5,7 @@ from jaxtyping import Float
 
 from seacage.dynamics._assembly import Assembly, Panels
 from seacage.dynamics._loads import DYNAMIC, SteadyFlow
-from seacage.dynamics._screens import Law, Screen, cylinder_drag, facing
+from seacage.dynamics._screens import Law, Screen
 
 
 def steady_flow(
@@ -38,35 +38,22 @@ def steady_flow(
     ----------
     Borgman (1967) for the linearised drag of a Gaussian sea.
     """
-    screen = Screen.of(law, assembly.panels.solidity, assembly.panels.twine_diameter)
+    panels = assembly.panels
+    screen = Screen(law=law, solidity=panels.solidity, twine_diameter=panels.twine_diameter)
     speed = np.linalg.norm(current_velocity, axis=1)
     unit = current_velocity / np.where(speed > 0.0, speed, 1.0)[:, None]
     direction = np.column_stack([unit, np.zeros(len(speed))])
     panel_speed = np.tile(speed[:, None], (1, len(screen.solidity)))
     if wake:
-        slowed = np.stack([screen.wake(value) for value in speed])
-        panel_speed *= 1.0 - (1.0 - slowed) * _downstream(assembly.panels, unit)
+        panel_speed *= 1.0 - (1.0 - screen.wake(panel_speed)) * _downstream(panels, unit)
     variance = 0.0 if wave_variance is None else wave_variance
     felt = np.sqrt(panel_speed**2 + 8.0 / np.pi * variance)
     return SteadyFlow(
         direction=direction,
         pressure=DYNAMIC * felt * panel_speed,
         pipe_pressure=DYNAMIC * speed**2 * float(pipe_drag),
-        **_coefficients(screen, felt),
+        **screen.terms(felt),
     )
-
-
-def _coefficients(
-    screen: Screen, speed: Float[np.ndarray, "case panel"]
-) -> dict[str, Float[np.ndarray, "case panel"]]:
-    """The law's numbers at a known speed, in the form that ``SteadyFlow`` names."""
-    like = np.ones_like(speed)
-    if screen.law == "kristiansen-faltinsen":
-        cd0, cl0 = facing(screen.solidity, cylinder_drag(screen.twine_reynolds * speed))
-        values = (0.0 * like, 0.9 * cd0, 0.1 * cd0, cl0, 0.2 * like)
-    else:
-        values = (0.04 * like, screen.slope * like, 0.0 * like, screen.lift * like, 0.0 * like)
-    return dict(zip(("constant", "slope", "third", "lift", "lift_second"), values, strict=True))
 
 
 def _downstream(

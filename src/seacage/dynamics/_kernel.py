@@ -66,8 +66,10 @@ class _Relaxation(_Struct):
 class _Relaxing(_Struct):
     _fields_ = [
         (name, _Doubles)
-        for name in ("position", "velocity", "carried")
-        + ("damping", "best", "stalled", "rounds", "residual")
+        for name in (
+            *("position", "velocity", "carried"),
+            *("damping", "best", "stalled", "rounds", "residual"),
+        )
     ]
 
 

@@ -22,6 +22,9 @@ from seacage.dynamics._assembly import (
 
 Nodal = Float[np.ndarray, "case node 3"]
 
+DYNAMIC = 0.5 * WATER_DENSITY
+"""½ρ [kg/m3]."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SteadyFlow:
@@ -183,9 +186,5 @@ def _gathered(
 ) -> Nodal:
     """Sum what each part puts on its nodes."""
     force = np.zeros_like(like)
-    np.add.at(force, (slice(None), nodes), shares)
+    np.add.at(force, (slice(None), nodes), shares)  # pyright: ignore[reportArgumentType]
     return force
-
-
-DYNAMIC = 0.5 * WATER_DENSITY
-"""½ρ [kg/m3]."""

@@ -121,11 +121,10 @@ def _sin_twice(cos_theta: Values) -> Values:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Screen:
-    """A screen law with the solidities of a net's panels put in.
+    """A screen law put to work on the panels of a net.
 
-    Every law has the form C_D = a + b cosθ, C_L = l sin2θ, with a, b and l fixed by the
-    solidity (Aarsnes, Løland) or moving with the Reynolds number (Kristiansen–Faltinsen,
-    with its higher harmonics). ``dynamics``' kernel takes these arrays as they are.
+    Every law has the form C_D = max(0, a + b cosθ + h cos3θ), C_L = l sin2θ (1 + e cos2θ).
+    The solidity fixes its numbers, and with Kristiansen and Faltinsen the speed too.
 
     Attributes
     ----------
@@ -135,57 +134,39 @@ class Screen:
         Of each panel [-].
     twine_diameter
         Of each panel, grown [m].
-    slope, lift
-        b and l of each panel [-]; zero where the law moves with the Reynolds number.
     """
 
     law: Law
     solidity: Float[np.ndarray, " panel"]
     twine_diameter: Float[np.ndarray, " panel"]
-    slope: Float[np.ndarray, " panel"]
-    lift: Float[np.ndarray, " panel"]
 
-    @classmethod
-    def of(
-        cls,
-        law: Law,
-        solidity: Float[np.ndarray, " panel"],
-        twine_diameter: Float[np.ndarray, " panel"],
-    ) -> "Screen":
-        """The law for panels of these solidities."""
-        if law not in LAWS:
-            raise InputError(f"settle: no law {law!r}; there are: {', '.join(LAWS)}.")
-        terms = {"aarsnes": _aarsnes_terms, "loland": _loland_terms}.get(law)
-        zero = np.zeros_like(solidity)
-        slope, lift = terms(solidity) if terms else (zero, zero)
-        return cls(
-            law=law, solidity=solidity, twine_diameter=twine_diameter, slope=slope, lift=lift
-        )
+    def __post_init__(self) -> None:
+        if self.law not in LAWS:
+            raise InputError(f"settle: no law {self.law!r}; there are: {', '.join(LAWS)}.")
 
-    @property
-    def twine_reynolds(self) -> Float[np.ndarray, " panel"]:
-        """Reynolds number of a twine per m/s of flow [s/m]."""
-        return self.twine_diameter / (WATER_VISCOSITY * (1.0 - self.solidity))
+    def terms(
+        self, speed: Float[np.ndarray, "case panel"]
+    ) -> dict[str, Float[np.ndarray, "case panel"]]:
+        """The law's a, b, h, l and e at known speeds [m/s], as ``SteadyFlow`` names them [-]."""
+        if self.law == "kristiansen-faltinsen":
+            twine_reynolds = self.twine_diameter / (WATER_VISCOSITY * (1.0 - self.solidity))
+            cd0, cl0 = facing(self.solidity, cylinder_drag(twine_reynolds * speed))
+            terms = (0.0, 0.9 * cd0, 0.1 * cd0, cl0, 0.2)
+        else:
+            fixed = _aarsnes_terms if self.law == "aarsnes" else _loland_terms
+            slope, lift = fixed(self.solidity)
+            terms = (0.04, slope, 0.0, lift, 0.0)
+        names = ("constant", "slope", "third", "lift", "lift_second")
+        like = np.ones_like(speed)
+        return {name: term * like for name, term in zip(names, terms, strict=True)}
 
-    def coefficients(
-        self, cos_theta: Float[np.ndarray, "*case panel"], speed: Float[np.ndarray, "*case panel"]
-    ) -> tuple[Float[np.ndarray, "*case panel"], Float[np.ndarray, "*case panel"]]:
-        """Drag and lift of each panel at its angle and relative speed [m/s]."""
-        match self.law:
-            case "aarsnes":
-                return aarsnes(self.solidity, cos_theta)
-            case "loland":
-                return loland(self.solidity, cos_theta)
-            case "kristiansen-faltinsen":
-                return kristiansen_faltinsen(self.solidity, cos_theta, self.twine_reynolds * speed)
-
-    def wake(self, speed: float) -> Float[np.ndarray, " panel"]:
+    def wake(self, speed: Float[np.ndarray, "case panel"]) -> Float[np.ndarray, "case panel"]:
         """Speed behind a panel that faces the flow, over the speed before it [-].
 
         References
         ----------
         Løland (1991): r = 1 − 0.46 C_D, here with the C_D of the law in use.
         """
-        full = np.ones_like(self.solidity)
-        cd, _ = self.coefficients(full, full * speed)
-        return np.maximum(1.0 - 0.46 * cd, 0.0)
+        terms = self.terms(speed)
+        facing_drag = terms["constant"] + terms["slope"] + terms["third"]
+        return np.maximum(1.0 - 0.46 * facing_drag, 0.0)
