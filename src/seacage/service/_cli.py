@@ -1,5 +1,7 @@
 """The command line: one file per group, each importing what it needs when it is called."""
 
+import os
+
 import typer
 
 from seacage.service._commands import (
@@ -44,4 +46,8 @@ app.command()(_doctor.doctor)
 
 def main() -> None:
     """Run the command line."""
+    # Matrices of a few hundred rows, and processes side by side: threads of linear algebra
+    # would cost more than they bring. Before NumPy is loaded, and only where nothing is said.
+    for library in ("OMP", "OPENBLAS", "MKL"):
+        os.environ.setdefault(f"{library}_NUM_THREADS", "1")
     app()

@@ -132,16 +132,15 @@ class _Lines:
 
     def __init__(self, *, every_s: float = 5.0) -> None:
         self._every_s = every_s
-        self._began: dict[str, float] = {}
+        self._began: dict[str, tuple[float, int]] = {}
         self._said = 0.0
 
     def __call__(self, stage: str, done: int, total: int) -> None:
         now = time.monotonic()
-        began = self._began.get(stage)
-        if began is None:
-            self._began[stage] = began = now
-        elif done < total and now - self._said < self._every_s:
+        if stage in self._began and done < total and now - self._said < self._every_s:
             return
+        began, first = self._began.setdefault(stage, (now, done))
         self._said = now
-        left = f", {(now - began) / done * (total - done):.0f} s left" if 0 < done < total else ""
+        pace_s = (now - began) / (done - first) if done > first else 0.0
+        left = f", {pace_s * (total - done):.0f} s left" if pace_s and done < total else ""
         typer.echo(f"{stage}: {done} of {total}{left}", err=True)

@@ -199,10 +199,12 @@ def _write_netcdf(replayed: Replayed, path: Path) -> None:
         **_buoy_variables(replayed.buoy),
         **_interval_variables("depth_low", "depth_sensor", answer.sensor_low, sensors["m"], "m"),
         **_interval_variables("depth", "depth_sensor", answer.sensor, sensors["m"], "m"),
-        **_interval_variables("shackle_low", "shackle", answer.sensor_low, sensors["N"], "kN"),
-        **_interval_variables("shackle", "shackle", answer.sensor, sensors["N"], "kN"),
-        **_interval_variables("bridle_low", "bridle", low, slice(None), "kN"),
-        **_interval_variables("bridle", "bridle", answer.bridle_tension, slice(None), "kN"),
+        **_interval_variables(
+            "shackle_tension_low", "shackle", answer.sensor_low, sensors["N"], "kN"
+        ),
+        **_interval_variables("shackle_tension", "shackle", answer.sensor, sensors["N"], "kN"),
+        **_interval_variables("bridle_tension_low", "bridle", low, slice(None), "kN"),
+        **_interval_variables("bridle_tension", "bridle", answer.bridle_tension, slice(None), "kN"),
         "depth_level": (("depth_sensor",), answer.sensor_level[sensors["m"]], _said("1", "level")),
         "shackle_level": (("shackle",), answer.sensor_level[sensors["N"]], _said("1", "level")),
         "bridle_level": (("bridle",), answer.bridle_level, _said("1", "level")),

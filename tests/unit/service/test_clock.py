@@ -1,0 +1,34 @@
+from datetime import UTC, datetime, timedelta
+
+import pytest
+
+from seacage.service._clock import ReplayClock, WallClock
+
+NOON = datetime(2020, 2, 1, 12, tzinfo=UTC)
+
+
+@pytest.fixture
+def monotonic(monkeypatch):
+    """The monotonic clock, in a test's hands."""
+    hand = [0.0]
+    monkeypatch.setattr("seacage.service._clock.time.monotonic", lambda: hand[0])
+    return hand
+
+
+def test_a_replay_runs_on_its_own_clock_and_fast(monotonic):
+    clock = ReplayClock(NOON, speed=60.0)
+    monotonic[0] = 10.0
+    assert clock.now() == NOON + timedelta(minutes=10)
+    assert clock.wait_s(NOON + timedelta(minutes=11)) == pytest.approx(1.0)
+    assert clock.wait_s(NOON) == 0.0
+
+
+def test_a_replay_can_begin_again(monotonic):
+    clock = ReplayClock(NOON, speed=60.0)
+    monotonic[0] = 10.0
+    clock.restart(NOON)
+    assert clock.now() == NOON
+
+
+def test_the_walls_clock_knows_its_zone():
+    assert WallClock().now().tzinfo is UTC

@@ -1,0 +1,271 @@
+import csv
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from seacage.cage import Cage
+from seacage.service._cli import app
+from seacage.testing import stand_in_campaign, stand_in_field, stand_in_seas, stand_in_twin
+
+COMMANDS = [
+    "settle",
+    "campaign run",
+    "campaign status",
+    "campaign export",
+    "field virtual",
+    "field import",
+    "field check",
+    "train",
+    "score",
+    "study paper",
+    "serve",
+    "replay",
+    "token new",
+    "doctor",
+]
+
+
+def run(*words):
+    return CliRunner().invoke(app, [str(word) for word in words], catch_exceptions=False)
+
+
+def answer(*words):
+    """What a program gets of a command that ends well."""
+    result = run(*words, "--json")
+    assert result.exit_code == 0, result.stderr
+    return json.loads(result.stdout)
+
+
+@pytest.fixture
+def small_cage(tmp_path):
+    path = tmp_path / "small.toml"
+    Cage.named("ace").altered(mesh={"spokes": 8}).write(path)
+    return path
+
+
+@pytest.fixture(scope="session")
+def twin(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("twin") / "twin"
+    stand_in_twin().write(folder)
+    return folder
+
+
+@pytest.fixture
+def buoy(tmp_path):
+    """Four rows: good, impossible, faster than was learned, and one whose direction is 360."""
+    path = tmp_path / "buoy.csv"
+    path.write_text(
+        "time,current_speed_m_s,current_to_deg\n"
+        "2020-03-01T00:00:00Z,0.4,80\n"
+        "2020-03-01T00:12:00Z,0.4,412\n"
+        "2020-03-01T00:24:00Z,1.3,80\n"
+        "2020-03-01T00:36:00Z,0.5,360\n"
+    )
+    return path
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_help_teaches_with_an_example_and_offers_json(command):
+    said = run(*command.split(), "--help").stdout
+    assert "Example" in said
+    assert f"seacage {command}" in said
+    assert "--json" in said
+
+
+def test_the_exit_codes_are_documented():
+    assert "1 the input was refused" in run("--help").stdout
+
+
+def test_a_word_that_is_not_understood_ends_with_2():
+    assert run("settle", "--speed", "1").exit_code == 2
+
+
+def test_a_sea_state_settles_into_a_summary_and_a_file(small_cage, tmp_path):
+    import xarray
+
+    out = tmp_path / "response.nc"
+    sea = ("--current-speed", 0.4, "--current-to", 90)
+    said = answer("settle", *sea, "--cage", small_cage, "--out", out)
+    assert said["result"] == 0
+    assert said["origin"] == "computed"
+    assert said["net_force_kn"][0] > 5.0
+    with xarray.open_dataset(out) as kept:
+        assert kept.bridle_tension.attrs["units"] == "N"
+        assert float(kept.bridle_tension[0]) == pytest.approx(
+            1000.0 * said["bridle_tension_kn"]["bridle-1"], abs=1.0
+        )
+
+
+def test_a_refused_sea_state_ends_with_1_and_one_sentence(small_cage):
+    result = run("settle", "--current-speed", 0.4, "--current-to", 412, "--cage", small_cage)
+    assert result.exit_code == 1
+    assert result.stdout == ""
+    assert result.stderr.count("\n") == 1
+    assert "412 deg is outside [0, 360]" in result.stderr
+
+
+def test_a_campaign_runs_tells_how_far_it_is_and_becomes_netcdf(small_cage, tmp_path):
+    store, out = tmp_path / "small.zarr", tmp_path / "small.nc"
+    said = answer(
+        "campaign", "run", store, "--cases", 3, "--cage", small_cage, "--workers", 1, "--seed", 1
+    )
+    assert (said["total"], said["done"]) == (3, 3)
+    assert answer("campaign", "status", store) == said
+    assert answer("campaign", "export", store, out) == {"written": str(out)}
+    assert out.stat().st_size > 1000
+
+
+def test_the_status_of_no_campaign_is_refused(tmp_path):
+    assert run("campaign", "status", tmp_path / "none.zarr").exit_code == 1
+
+
+def test_a_foreign_table_is_imported_and_its_bad_values_are_counted(buoy, tmp_path):
+    out = tmp_path / "buoy-1.nc"
+    said = answer("field", "import", buoy, out)
+    assert said["written"] == str(out)
+    assert said["streams"]["buoy-1"]["flags"]["current_to_deg"]["fail"] == 1
+    assert answer("field", "check", out)["streams"] == said["streams"]
+
+
+def test_a_field_record_is_checked_stream_by_stream(tmp_path):
+    stand_in_field(stand_in_twin().cage, days=1.0).write(tmp_path / "field")
+    streams = answer("field", "check", tmp_path / "field")["streams"]
+    assert streams.keys() == {"buoy-1", *stand_in_twin().sensor_names}
+    assert streams["depth-1"]["origin"] == "virtual field"
+
+
+def test_an_empty_file_is_refused_with_its_name(tmp_path):
+    (tmp_path / "empty.csv").write_text("")
+    result = run("field", "check", tmp_path / "empty.csv")
+    assert result.exit_code == 1
+    assert "empty.csv" in result.stderr
+
+
+def test_every_row_of_a_record_is_answered_or_says_why_not(buoy, twin, tmp_path):
+    out = tmp_path / "answers.csv"
+    said = answer("replay", buoy, "--twin", twin, "--out", out)
+    assert (said["rows"], said["valid"], said["extrapolating"]) == (4, 3, 1)
+    assert said["ticks_per_second"] > 0.0
+    with out.open() as file:
+        rows = list(csv.DictReader(file))
+    computed = [name for name in rows[0] if name.endswith(("_kn", "_m")) or "fraction" in name]
+    assert len(computed) > 8 * 6 + 12 * 6
+    for row in rows:
+        good = row["valid"] == "True"
+        assert all((row[name] != "") is good for name in computed)
+        assert {row[f"bridle-{k}_level"] for k in (1, 12)} == {"1"}
+        assert row["bridle-7_level"] == "2"
+    assert "flagged 4" in rows[1]["reason"]
+    assert rows[2]["extrapolating"] == "True"
+
+
+def test_step_by_step_and_in_blocks_are_the_same_answers(buoy, twin, tmp_path):
+    for name, how in (("steps", ()), ("blocks", ("--batched",))):
+        answer("replay", buoy, "--twin", twin, "--out", tmp_path / f"{name}.jsonl", *how)
+    steps, blocks = (
+        [json.loads(line) for line in (tmp_path / f"{name}.jsonl").read_text().splitlines()]
+        for name in ("steps", "blocks")
+    )
+    for one, other in zip(steps, blocks, strict=True):
+        assert one.keys() == other.keys()
+        for key, value in one.items():
+            # Sums over rows may be taken in another order.
+            close = pytest.approx(value, abs=2e-6) if isinstance(value, float) else value
+            assert other[key] == close
+
+
+def test_the_netcdf_file_holds_the_whole_shape_and_nothing_where_there_is_no_input(
+    buoy, twin, tmp_path
+):
+    import xarray
+
+    out = tmp_path / "answers.nc"
+    answer("replay", buoy, "--twin", twin, "--out", out)
+    with xarray.open_dataset(out) as kept:
+        assert kept.attrs["origin"] == "virtual field"
+        assert kept.sizes["node"] == stand_in_twin().cage.node_count
+        assert kept.valid.values.tolist() == [1, 0, 1, 1]
+        for name in ("node_position", "bridle_tension", "shackle_tension_low_upper", "depth"):
+            finite = np.isfinite(kept[name].values).reshape(4, -1)
+            assert finite.all(axis=1).tolist() == [True, False, True, True], name
+            assert not finite[1].any(), name
+
+
+@pytest.mark.parametrize(
+    "words",
+    [(), ("--twin", "TWIN"), ("--out", "a.csv"), ("--twin", "TWIN", "--out", "answers.xlsx")],
+)
+def test_a_replay_that_leads_nowhere_is_refused(buoy, twin, words):
+    result = run("replay", buoy, *(twin if word == "TWIN" else word for word in words))
+    assert result.exit_code == 1
+
+
+def test_a_damaged_twin_is_refused(buoy, twin, tmp_path):
+    damaged = tmp_path / "twin"
+    stand_in_twin().write(damaged)
+    model = damaged / "model.json"
+    model.write_bytes(model.read_bytes().replace(b"1", b"2", 1))
+    result = run("replay", buoy, "--twin", damaged, "--out", tmp_path / "a.csv")
+    assert result.exit_code == 1
+    assert not (tmp_path / "a.csv").exists()
+
+
+def test_a_twin_is_trained_and_scored_on_what_did_not_teach_it(tmp_path, monkeypatch):
+    cage = stand_in_twin().cage
+    campaign = stand_in_campaign(cage, stand_in_seas(60))
+    monkeypatch.setattr("seacage.records.read_campaign", lambda _: campaign)
+    whole = stand_in_field(cage)
+    two = {name: whole.sensors[name] for name in ("depth-1", "shackle-1")}
+    replace(whole, sensors=two).write(tmp_path / "field")
+    field, out = ("--field", tmp_path / "field"), ("--out", tmp_path / "twin")
+    said = answer("train", "--campaign", tmp_path, *field, *out, "--points", 30, "--days", 2)
+    assert [name for name, level in said["level"].items() if level == 2] == list(two)
+    scores = tmp_path / "scores"
+    scored = answer("score", "--twin", tmp_path / "twin", *field, "--out", scores)
+    assert [one["sensor"] for one in scored["sensors"]] == list(two)
+    assert {one["origin"] for one in scored["sensors"]} == {"virtual field"}
+    assert all(one["raw"]["multi_mae"] < one["raw"]["low_mae"] for one in scored["sensors"])
+    assert len(list(scores.glob("*.svg"))) == 4
+
+
+def test_a_new_token_stands_alone_on_the_last_line(tmp_path):
+    result = run("token", "new", "--data", tmp_path, "--scope", "ingest,read")
+    assert result.exit_code == 0
+    token = result.stdout.splitlines()[-1]
+    assert len(token) >= 43
+    assert token not in (tmp_path / "tokens.jsonl").read_text()
+
+
+def test_a_token_for_nothing_that_exists_is_refused(tmp_path):
+    result = run("token", "new", "--data", tmp_path, "--scope", "write")
+    assert result.exit_code == 1
+    assert "The scopes are" in result.stderr
+
+
+def test_the_doctor_finds_the_physics_sound(tmp_path):
+    said = answer("doctor", "--data", tmp_path)
+    assert said["ok"]
+    physics = next(one for one in said["findings"] if one["what"] == "Physics kernel")
+    assert physics["state"] == "ok"
+
+
+def test_serving_beyond_this_machine_takes_a_decision(tmp_path, twin):
+    result = run("serve", "--data", tmp_path, "--twin", twin, "--host", "0.0.0.0")
+    assert result.exit_code == 1
+    assert "--insecure-http" in result.stderr
+
+
+def test_a_port_that_is_taken_is_named_before_any_work(tmp_path, twin, idle):
+    port = idle.address.rsplit(":", 1)[1]
+    result = run("serve", "--data", tmp_path, "--twin", twin, "--port", port)
+    assert result.exit_code == 3
+    assert f"cannot listen on 127.0.0.1:{port}" in result.stderr
+
+
+@pytest.mark.parametrize("words", [("--port", "70000"), ("--demo", "--twin", "TWIN")])
+def test_settings_that_cannot_be_are_refused(tmp_path, twin, words):
+    words = [twin if word == "TWIN" else word for word in words]
+    assert run("serve", "--data", tmp_path, *words).exit_code == 1

@@ -1,0 +1,53 @@
+import math
+
+import pytest
+import typer
+
+from seacage.conventions import InputError, ModelError, SeacageError
+from seacage.service._console import Exit, guarded, progress_bar, without_nan
+
+
+@pytest.mark.parametrize(
+    ("error", "code"),
+    [
+        (InputError("no"), Exit.REFUSED),
+        (ModelError("no"), Exit.REFUSED),
+        (SeacageError("no"), Exit.FAILED),
+        (OSError("no"), Exit.FAILED),
+        (KeyboardInterrupt(), Exit.INTERRUPTED),
+    ],
+    ids=lambda one: type(one).__name__,
+)
+def test_an_error_becomes_one_sentence_and_a_code(error, code, capsys):
+    @guarded
+    def command():
+        raise error
+
+    with pytest.raises(typer.Exit) as ended:
+        command()
+    assert ended.value.exit_code == code
+    assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_a_fault_of_our_own_is_not_hidden():
+    @guarded
+    def command():
+        raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        command()
+
+
+def test_numbers_that_json_does_not_have_become_null():
+    assert without_nan({"a": [1.0, math.nan, (math.inf,)], "b": "nan"}) == {
+        "a": [1.0, None, [None]],
+        "b": "nan",
+    }
+
+
+def test_a_log_gets_the_first_and_the_last_line_of_a_stage(capsys):
+    with progress_bar() as progress:
+        for done in range(101):
+            progress("settle", done, 100)
+    said = capsys.readouterr().err.splitlines()
+    assert said == ["settle: 0 of 100", "settle: 100 of 100"]
