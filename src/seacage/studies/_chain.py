@@ -11,7 +11,7 @@ from seacage.campaigns import Hidden, Plan, generated_current, run_campaign, vir
 from seacage.conventions import Progress
 from seacage.records import CampaignRecord, FieldRecord, Record, read_campaign
 from seacage.studies._split import split
-from seacage.studies._stages import Stages
+from seacage.studies._stages import Stages, code_sha256
 from seacage.twin import Training, Twin, train
 
 _SIMULATION = ("conventions", "ocean", "cage", "dynamics", "campaigns")
@@ -175,7 +175,7 @@ class Chain:
             buoy,
             hidden=Hidden.read(),
             seed=self.recipe.seed,
-            responses=self.folder / "responses",
+            responses=self.folder / f"responses-{code_sha256(_SIMULATION)[:10]}",
             workers=self.workers,
             progress=self.progress,
         )

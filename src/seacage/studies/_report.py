@@ -7,12 +7,7 @@ import numpy as np
 
 from seacage.cage import Cage
 from seacage.conventions import Origin, Progress
-from seacage.figures import (
-    density_figure,
-    net_figure,
-    series_figure,
-    shape_error_figure,
-)
+from seacage.figures import density_figure, net_figure, series_figure, shape_error_figure
 from seacage.ocean import SeaState
 from seacage.studies._discussion import NOMINAL, findings, number, percent
 from seacage.studies._held_out import SHOWN_DAYS, comparison, shown
@@ -268,7 +263,7 @@ def _error_row(score: SensorScore, errors: Errors) -> tuple[str, ...]:
         tag(
             "span",
             f"{number(errors.gain)} [{interval}]",
-            look="better" if errors.better else "worse",
+            look="better" if errors.better else "unproven",
         ),
         percent(errors.coverage),
         number(errors.crps),

@@ -1,4 +1,4 @@
-"""Sea states and a current become one page and its numbers, through every stage."""
+"""Sea states and a current become a twin, a page and its numbers, through every stage."""
 
 import json
 from dataclasses import replace
@@ -6,9 +6,10 @@ from dataclasses import replace
 import pytest
 
 from seacage.cage import Cage
-from seacage.studies import PaperStudy, score_record
+from seacage.studies import PaperStudy, _demonstration, prepare_demonstration, score_record
 from seacage.studies._chain import Chain, Recipe
 from seacage.studies._paper import study_chain
+from seacage.twin import Twin
 from stand_in import StandIn
 
 COARSE = Cage.named("ace").altered(mesh={"ring_depths_m": [0.0, 7.0, 15.0, 23.0], "spokes": 16})
@@ -22,6 +23,10 @@ def chain(folder, **options) -> Chain:
     return Chain(folder=folder / "stages", cage=SMALL, recipe=RECIPE, workers=1, **options)
 
 
+def unheard(stage, done, total):
+    assert stage in {"score", "draw"}, f"{stage} was made again"
+
+
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     return tmp_path_factory.mktemp("study")
@@ -29,9 +34,14 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope="module", autouse=True)
 def stand_in():
-    """Settle by a formula: the true simulator's journey is that of the campaign."""
+    """Settle by a formula, and make the demonstration of what the study is made of.
+
+    The true simulator's journey is that of the campaign.
+    """
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("seacage.campaigns._run.settle", StandIn().settle)
+        patch.setattr(_demonstration, "Recipe", lambda: RECIPE)
+        patch.setattr(Cage, "named", lambda _: SMALL)
         yield
 
 
@@ -72,9 +82,6 @@ def test_the_numbers_behind_the_page_can_be_read_by_a_program(study):
 
 
 def test_a_second_study_makes_nothing_again_and_says_the_same(study, folder):
-    def unheard(stage, done, total):
-        assert stage in {"score", "draw"}, f"{stage} was made again"
-
     page = study.report.read_bytes()
     again = study_chain(chain(folder, progress=unheard), folder)
     assert again.report.read_bytes() == page
@@ -97,20 +104,27 @@ def test_a_stop_in_any_stage_loses_no_simulation(study, tmp_path):
     assert len(record) == RECIPE.cases
 
 
-def test_virtual_sensors_follow_another_record_and_teach_nobody(study, folder):
-    stages = chain(folder)
-    record = stages.field.buoy
-    part = record.between(RECIPE.start, RECIPE.start.replace(day=20))
-    shown = stages.driven_by(part)
-    assert len(shown.buoy) == len(part)
-    assert stages.driven_by(part).sensors.keys() == set(SMALL.sensor_names)
-    assert len(list((folder / "stages").glob("twin-*"))) == 1
-    assert len(list((folder / "stages").glob("display-*"))) == 1
-
-
 def test_a_twin_is_scored_alone_on_the_days_after_its_lessons(study, folder, tmp_path):
     stages = chain(folder)
     scores = score_record(stages.twin, stages.field, out=tmp_path, seed=RECIPE.seed)
     assert [score.means for score in scores] == [score.means for score in study.sensors]
     assert len(list(tmp_path.glob("*.svg"))) == 2 * len(scores)
     assert len(json.loads((tmp_path / "scores.json").read_text())["sensors"]) == len(scores)
+
+
+def test_a_demonstration_is_a_twin_a_buoy_and_virtual_sensors(study, folder):
+    made = prepare_demonstration(folder / "stages", workers=1, progress=unheard)
+    twin = Twin.read(made.twin_folder)
+    assert twin.sensor_names == made.cage.sensor_names == tuple(made.field.sensors)
+    assert made.buoy is made.field.buoy
+    assert {made.buoy.origin, made.field.origin, twin.origin} == {"virtual field"}
+
+
+def test_another_buoys_record_drives_the_show_and_teaches_nobody(study, folder):
+    made = prepare_demonstration(folder / "stages", workers=1)
+    part = made.buoy.between(RECIPE.start, RECIPE.start.replace(day=20))
+    shown = prepare_demonstration(folder / "stages", record=part, workers=1)
+    assert shown.twin_folder == made.twin_folder
+    assert len(shown.buoy) == len(part)
+    assert shown.field.hidden_sha256 == made.field.hidden_sha256
+    prepare_demonstration(folder / "stages", record=part, workers=1, progress=unheard)
