@@ -1,14 +1,13 @@
 """The elastic catenary: a mooring line between two points, with or without sea bed."""
 
 import math
+from collections.abc import Callable
+from dataclasses import dataclass
 
-import numpy as np
-from jaxtyping import Float
+from seacage.conventions import InputError
 
-from seacage.conventions import InputError, SeacageError
-
-SLACK_SHARE = 1e-9
-"""Least horizontal tension sought, over the line's weight: below it the line hangs plumb."""
+LEAST_SHARE = 1e-20
+"""Horizontal tension over the line's weight below which the line hangs plumb [-]."""
 
 
 def catenary(
@@ -47,99 +46,128 @@ def catenary(
     Raises
     ------
     InputError
-        Spans, lengths or properties that no line can have.
+        Spans, lengths or properties that no line can have, and a line so long that it hangs
+        plumb onto the sea bed.
 
     References
     ----------
     Irvine (1981), elastic catenary; Jonkman (2007), sea-bed contact with friction.
     """
-    _check(x_span, z_span, length, axial_stiffness, weight, seabed_friction)
-    line = (x_span, z_span, length, axial_stiffness, weight, seabed_friction)
+    line = _Line(
+        x_span=x_span,
+        z_span=z_span,
+        length=length,
+        stiffness=axial_stiffness,
+        weight=weight,
+        friction=seabed_friction,
+    )
+    _check(line)
     horizontal, vertical = _solved(line)
-    lying = _lying(vertical, length, weight, seabed_friction)
+    lying = _lying(line, vertical)
     if lying > 0.0:
-        held = max(horizontal - (seabed_friction or 0.0) * weight * lying, 0.0)
+        held = max(horizontal - (line.friction or 0.0) * weight * lying, 0.0)
         force_a = (held, 0.0)
     else:
         force_a = (horizontal, vertical - weight * length)
     return force_a, (-horizontal, -vertical)
 
 
-_Line = tuple[float, float, float, float, float, float | None]
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Line:
+    """What ``catenary`` was asked."""
+
+    x_span: float
+    z_span: float
+    length: float
+    stiffness: float
+    weight: float
+    friction: float | None
 
 
 def _solved(line: _Line) -> tuple[float, float]:
-    """Horizontal and vertical tension at B [N]."""
-    from scipy.optimize import root
+    """Horizontal and vertical tension at B [N].
 
-    x, z, length, _, weight, _ = line
-    scale = weight * length
+    B comes to lie the higher the more is pulled up, and the further off the more is pulled
+    sideways with its height kept. So one root inside another always finds the one answer,
+    for slack and for taut lines.
+    """
+    from scipy.optimize import root_scalar
 
-    def miss(unknown: Float[np.ndarray, "2"]) -> Float[np.ndarray, "2"]:
-        reached = _reach(math.exp(unknown[0]) * scale, unknown[1] * scale, line)
-        return (np.array(reached) - (x, z)) / length
+    def root_of(miss: Callable[[float], float], low: float, high: float) -> float:
+        return float(root_scalar(miss, bracket=(low, high), xtol=1e-15).root)
 
-    for start in _starts(x, z, length):
-        found = root(miss, start, method="hybr", tol=1e-13)
-        if np.max(np.abs(found.fun)) < 1e-9:
-            return math.exp(found.x[0]) * scale, float(found.x[1]) * scale
-    raise SeacageError(
-        f"catenary: no equilibrium found for a line of {length:g} m across {x:g} m and up {z:g} m. "
-        "Check the units of its weight and stiffness."
-    )
+    def vertical(horizontal: float) -> float:
+        low = line.weight * line.length / 2.0 if line.friction is None else 0.0
+        high = line.stiffness * line.z_span / line.length + line.weight * line.length
+        return root_of(lambda v: _up(line, horizontal, v) - line.z_span, low, high)
+
+    def miss(log_horizontal: float) -> float:
+        horizontal = math.exp(log_horizontal)
+        return _across(line, horizontal, vertical(horizontal)) - line.x_span
+
+    hung = math.log(line.weight * line.length)
+    least, low = hung + math.log(LEAST_SHARE), hung
+    while miss(low) > 0.0:
+        low -= 3.0
+        if low < least:
+            raise InputError(
+                f"catenary: {line.length:g} m of line across {line.x_span:g} m and up "
+                f"{line.z_span:g} m hangs plumb and lies loose on the sea bed, without "
+                "horizontal tension. Shorten the line."
+            )
+    most = line.stiffness * line.x_span / line.length
+    most += (line.friction or 0.0) * line.weight * line.length
+    horizontal = math.exp(root_of(miss, low, max(math.log(most), low) + 1.0))
+    return horizontal, vertical(horizontal)
 
 
-def _reach(horizontal: float, vertical: float, line: _Line) -> tuple[float, float]:
-    """Where B comes to lie, seen from A, under given tensions there [m]."""
-    _, _, length, stiffness, weight, friction = line
-    h, v = horizontal, vertical
-    top = v / h
-    lying = _lying(v, length, weight, friction)
+def _across(line: _Line, horizontal: float, vertical: float) -> float:
+    """How far B comes to lie beside A under given tensions there [m]."""
+    h, weight, stiffness = horizontal, line.weight, line.stiffness
+    stretch = h * line.length / stiffness
+    lying = _lying(line, vertical)
     if lying > 0.0:
-        x = lying + h / weight * math.asinh(top) + h * length / stiffness
-        if friction:
-            loose = lying - h / (friction * weight)
+        if line.friction:
+            loose = lying - h / (line.friction * weight)
             given = -(lying**2) + loose * max(loose, 0.0)
-            x += friction * weight / (2.0 * stiffness) * given
-        z = h / weight * (math.hypot(1.0, top) - 1.0) + v**2 / (2.0 * stiffness * weight)
-        return x, z
-    foot = (v - weight * length) / h
-    x = h / weight * (math.asinh(top) - math.asinh(foot)) + h * length / stiffness
-    z = h / weight * (math.hypot(1.0, top) - math.hypot(1.0, foot))
-    return x, z + (v * length - weight * length**2 / 2.0) / stiffness
+            stretch += line.friction * weight / (2.0 * stiffness) * given
+        return lying + h / weight * math.asinh(vertical / h) + stretch
+    foot = vertical - weight * line.length
+    if foot < 0.0:
+        return h / weight * (math.asinh(vertical / h) - math.asinh(foot / h)) + stretch
+    # the difference of two nearly equal asinh, without its cancellation
+    share = weight * line.length / (math.hypot(h, vertical) + math.hypot(h, foot))
+    return 2.0 * h / weight * math.atanh(share) + stretch
 
 
-def _lying(vertical: float, length: float, weight: float, friction: float | None) -> float:
+def _up(line: _Line, horizontal: float, vertical: float) -> float:
+    """How far B comes to lie above A under given tensions there [m]."""
+    h, v, weight, stiffness = horizontal, vertical, line.weight, line.stiffness
+    if _lying(line, v) > 0.0:
+        return v**2 / weight * (1.0 / (h + math.hypot(h, v)) + 0.5 / stiffness)
+    foot = v - weight * line.length
+    mean_tension = (math.hypot(h, v) + math.hypot(h, foot)) / 2.0
+    return (v + foot) / 2.0 * line.length * (1.0 / mean_tension + 1.0 / stiffness)
+
+
+def _lying(line: _Line, vertical: float) -> float:
     """Length of line on the sea bed [m]."""
-    return 0.0 if friction is None else max(length - vertical / weight, 0.0)
+    return 0.0 if line.friction is None else max(line.length - vertical / line.weight, 0.0)
 
 
-def _starts(x: float, z: float, length: float) -> list[tuple[float, float]]:
-    """First guesses of (log H, V), both over the line's weight: Jonkman's, then wider ones."""
-    slack = (length**2 - z**2) / x**2 - 1.0
-    sag = math.sqrt(3.0 * slack) if slack > 0.0 else 0.2
-    horizontal = max(x / (2.0 * sag * length), SLACK_SHARE)
-    vertical = 0.5 * (z / math.tanh(sag) + length) / length
-    guess = (math.log(horizontal), vertical)
-    return [guess] + [(guess[0] + shift, v) for shift in (-3.0, 3.0, 6.0) for v in (vertical, 0.6)]
-
-
-def _check(
-    x: float, z: float, length: float, stiffness: float, weight: float, friction: float | None
-) -> None:
-    above = {"x_span (m)": x, "length (m)": length, "axial_stiffness (N)": stiffness}
-    above["weight (N/m)"] = weight
+def _check(line: _Line) -> None:
+    above = {
+        "x_span (m)": line.x_span,
+        "length (m)": line.length,
+        "axial_stiffness (N)": line.stiffness,
+        "weight (N/m)": line.weight,
+    }
     for name, value in above.items():
         if not (math.isfinite(value) and value > 0.0):
             raise InputError(f"catenary: {name} = {value:g} must be above 0 and finite.")
-    if not (math.isfinite(z) and z >= 0.0):
+    if not (math.isfinite(line.z_span) and line.z_span >= 0.0):
         raise InputError(
-            f"catenary: z_span = {z:g} m must be at least 0. Take the lower end as end A."
+            f"catenary: z_span = {line.z_span:g} m must be at least 0. Take the lower end as end A."
         )
-    if friction is not None and not (math.isfinite(friction) and friction >= 0.0):
-        raise InputError(f"catenary: seabed_friction = {friction:g} must be at least 0.")
-    if friction is not None and length >= x + z:
-        raise InputError(
-            f"catenary: {length:g} m of line is at least x_span + z_span = {x + z:g} m: it hangs "
-            "plumb and lies loose on the sea bed, without horizontal tension."
-        )
+    if line.friction is not None and not (math.isfinite(line.friction) and line.friction >= 0.0):
+        raise InputError(f"catenary: seabed_friction = {line.friction:g} must be at least 0.")
