@@ -84,7 +84,7 @@ export class Chart {
     context.fillStyle = styled("--muted");
     context.strokeStyle = styled("--line");
     context.lineWidth = 1;
-    const { marks, decimals } = ticks(low, high, 3);
+    const { marks, decimals } = ticks(low, high, 4);
     context.textAlign = "right";
     for (const mark of marks) {
       const y = Math.round(this.y(mark)) + 0.5;
