@@ -1,6 +1,7 @@
 """From a logger's sample to the page's numbers, through the installed command alone."""
 
 import json
+import signal
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -42,7 +43,7 @@ def serving(data: Path, *words: object) -> Iterator[tuple[str, httpx.Client]]:
                 wait_for(lambda: client.get("/readyz").raise_for_status())
                 yield said["address"], client
         finally:
-            process.kill()
+            process.kill()  # nothing that was acknowledged may need a goodbye
 
 
 def told(*words: object) -> str:
@@ -76,6 +77,16 @@ def test_a_record_sent_by_http_outlives_a_kill_and_is_answered_in_its_past(twin,
         assert not client.get("/api/v1/cages/ace/state").json()["valid"], "the buoy is long stale"
         send = ("replay", field, "--to", address, "--token", token, "--json")
         assert json.loads(told(*send))["duplicates"] == receipt["sent"]
+
+
+def test_an_interrupt_stops_a_service_quietly(twin, tmp_path):
+    command = [*SEACAGE, "serve", "--data", tmp_path, "--port", "0", "--twin", twin, "--json"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        address = json.loads(process.stdout.readline())["address"]
+        wait_for(lambda: httpx.get(f"{address}readyz").raise_for_status())
+        process.send_signal(signal.SIGINT)
+        assert process.wait(timeout=20) == 0
+        assert process.stderr.read() == b""
 
 
 def test_a_buoys_record_is_replayed_on_its_own_clock(twin, field, tmp_path):

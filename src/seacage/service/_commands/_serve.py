@@ -1,6 +1,7 @@
 """``seacage serve``: the live service."""
 
 import socket
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -190,4 +191,5 @@ def _run(service: "Service", listener: socket.socket) -> None:
         server_header=False,
         timeout_graceful_shutdown=3,
     )
-    uvicorn.Server(config).run(sockets=[listener])
+    with suppress(KeyboardInterrupt):  # Ctrl-C is how a service is stopped
+        uvicorn.Server(config).run(sockets=[listener])
