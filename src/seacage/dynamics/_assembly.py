@@ -96,7 +96,8 @@ class Assembly:
         bars, bridles = _bars(cage, position)
         springs = _springs(cage, position, bars, bridles)
         weight = _weight(cage, position, panels)
-        pulled = float(np.sum(springs.preload[:, 2]))  # what the corners take, the collar bears
+        # the collar bears all weights, and the bridles' pull down to the corners
+        carried = -float(np.sum(weight) + np.sum(springs.preload[:, 2]))
         return cls(
             cage_nodes=cage.node_count,
             position=position,
@@ -106,7 +107,7 @@ class Assembly:
             bends=_bends(cage),
             panels=panels,
             cylinders=_cylinders(cage),
-            floats=_floats(cage, -float(np.sum(weight)) + pulled),
+            floats=_floats(cage, carried),
             springs=springs,
         )
 
