@@ -116,7 +116,9 @@ def settle(
     flow = steady_flow(
         assembly, velocity, law=law, wake=wake, pipe_drag=collar_drag, wave_variance=variance
     )
-    position, residual, result = _relaxed(cage, assembly, flow, hold_collar, workers)
+    position, residual, result = _relaxed(
+        cage, assembly, flow, hold_collar=hold_collar, workers=workers
+    )
     rest = rest_shape(cage, hold_collar=hold_collar)
     response = _response(cage, assembly, flow, position, residual, result, rest)
     return _only_case(response) if isinstance(sea, SeaState) else response
@@ -147,7 +149,7 @@ def rest_shape(cage: Cage, *, hold_collar: bool = False) -> Float[np.ndarray, "n
     """
     assembly = Assembly.of(cage)
     flow = steady_flow(assembly, np.zeros((1, 2)), law="loland")
-    position, residual, result = _relaxed(cage, assembly, flow, hold_collar, 1)
+    position, residual, result = _relaxed(cage, assembly, flow, hold_collar=hold_collar)
     if result[0] != Result.CONVERGED:
         raise InputError(
             f"Cage {cage.name}: it does not come to rest in still water (a node keeps "
@@ -178,7 +180,7 @@ def _wave_variance(
 
 
 def _relaxed(
-    cage: Cage, assembly: Assembly, flow: SteadyFlow, hold_collar: bool, workers: int
+    cage: Cage, assembly: Assembly, flow: SteadyFlow, *, hold_collar: bool, workers: int = 1
 ) -> tuple[Float[np.ndarray, "case node 3"], Float[np.ndarray, " case"], Int[np.ndarray, " case"]]:
     """Positions, residuals and result codes of all cases, a vector of lanes at a time."""
     relaxation = _relaxation(cage, assembly, hold_collar=hold_collar)
