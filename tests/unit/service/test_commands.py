@@ -39,6 +39,12 @@ def answer(*words):
     return json.loads(result.stdout)
 
 
+@pytest.fixture(autouse=True)
+def own_logs(monkeypatch):
+    """Commands keep their hands off the process's logs: their stream closes with the test."""
+    monkeypatch.setattr("seacage.service._logs.begin_logs", lambda _: None)
+
+
 @pytest.fixture
 def small_cage(tmp_path):
     path = tmp_path / "small.toml"
