@@ -80,8 +80,8 @@ def test_what_a_table_is_stands_once_before_an_array_of_them():
 
 
 def test_a_misspelt_key_is_refused_with_the_one_that_was_meant():
-    message = refusal(edited("weight_n = 980.0", "wieght_n = 980.0"))
-    assert message == "mine.toml, tip: unknown key 'wieght_n'; did you mean 'weight_n'?"
+    message = refusal(edited("weight_n = 980.0", "weight_nn = 980.0"))
+    assert message == "mine.toml, tip: unknown key 'weight_nn'; did you mean 'weight_n'?"
 
 
 def test_a_key_without_its_unit_is_refused_with_the_one_that_has_it():
