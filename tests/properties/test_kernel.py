@@ -1,0 +1,55 @@
+"""The compiled kernel computes what the readable definition says, for any cage and flow."""
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from seacage.cage import Cage
+from seacage.dynamics import LAWS
+from seacage.dynamics._assembly import Assembly
+from seacage.dynamics._flow import steady_flow
+from seacage.dynamics._kernel import kernel
+from seacage.dynamics._loads import nodal_force
+
+ACE = Cage.named("ace")
+
+
+@settings(max_examples=60)
+@given(
+    rings=st.integers(2, 6),
+    spokes=st.integers(3, 12),
+    cylinder=st.integers(1, 5),
+    law=st.sampled_from(LAWS),
+    wake=st.booleans(),
+    waves=st.booleans(),
+    pipe_drag=st.booleans(),
+    shaken=st.floats(0.0, 3.0),
+    cases=st.integers(1, 8),
+    seed=st.integers(0, 2**32 - 1),
+)
+def test_the_kernel_computes_the_definition(
+    rings, spokes, cylinder, law, wake, waves, pipe_drag, shaken, cases, seed
+):
+    rng = np.random.default_rng(seed)
+    depths = np.cumsum([0.0, *rng.uniform(1.0, 6.0, rings - 1)]).tolist()
+    cage = ACE.altered(
+        mesh={
+            "spokes": spokes,
+            "ring_depths_m": depths,
+            "cylinder_depth_m": depths[min(cylinder, rings - 1)],
+            "tip_depth_m": depths[-1] + 4.0,
+        }
+    ).fouled(shallow=rng.uniform(0.0, 0.1), deep=rng.uniform(0.0, 0.1))
+    assembly = Assembly.of(cage.rotated(rng.uniform(0.0, 360.0)))
+    velocity = rng.uniform(-1.5, 1.5, (cases, 2))
+    velocity[0] *= rng.integers(2)  # now and then still water
+    variance = rng.uniform(0.0, 0.5, (cases, len(assembly.panels.depth))) if waves else None
+    flow = steady_flow(
+        assembly, velocity, law=law, wake=wake, pipe_drag=pipe_drag, wave_variance=variance
+    )
+    position = assembly.position + rng.normal(scale=shaken, size=(cases, *assembly.position.shape))
+    defined = nodal_force(assembly, flow, position)
+    computed = kernel().forces(assembly, flow, position)
+    # the kernel sums in another order: 1e-9 of the largest force in each case
+    scale = np.abs(defined).max(axis=(1, 2), keepdims=True)
+    assert np.all(np.abs(computed - defined) <= 1e-9 * scale)
