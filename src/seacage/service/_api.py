@@ -21,7 +21,7 @@ from seacage.service._stream import sockets
 from seacage.service._tokens import Tokens
 
 _PAGE = Path(__file__).parent / "page"
-_log = structlog.get_logger()
+_log = structlog.get_logger(__name__)
 
 
 class Service:

@@ -21,7 +21,7 @@ from seacage.service._schemas import State, Topology
 from seacage.service._store import Store
 from seacage.twin import Answered, Event, Flagged, StreamBack, StreamSilent, Twin
 
-_log = structlog.get_logger()
+_log = structlog.get_logger(__name__)
 
 
 # No slots here: the frame is made once, and only where somebody watches.

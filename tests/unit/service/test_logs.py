@@ -1,0 +1,42 @@
+import io
+import json
+import logging
+
+import pytest
+import structlog
+
+from seacage.service._logs import begin_logs
+
+
+@pytest.fixture(autouse=True)
+def logging_as_it_was(monkeypatch):
+    """Afterwards the process's logs are as they were."""
+    monkeypatch.setattr(logging, "raiseExceptions", True)
+    root = logging.getLogger()
+    monkeypatch.setattr(root, "handlers", [])
+    yield
+    root.setLevel(logging.WARNING)
+    structlog.reset_defaults()
+
+
+def test_a_machine_gets_one_json_object_per_event(capsys):
+    begin_logs("json")
+    structlog.get_logger("seacage.test").info("stream back", cage="ace")
+    said = json.loads(capsys.readouterr().err)
+    assert (said["event"], said["cage"], said["level"]) == ("stream back", "ace", "info")
+    assert said["timestamp"].endswith("Z")
+
+
+def test_others_speak_the_same_way_and_only_where_something_is_wrong(capsys):
+    begin_logs("json")
+    logging.getLogger("uvicorn.error").info("started")
+    logging.getLogger("uvicorn.error").error("no socket")
+    assert json.loads(capsys.readouterr().err)["event"] == "no socket"
+
+
+def test_a_log_that_cannot_be_written_stops_nobody(monkeypatch):
+    closed = io.StringIO()
+    monkeypatch.setattr("sys.stderr", closed)
+    begin_logs("lines")
+    closed.close()
+    structlog.get_logger("seacage.test").warning("flagged")
