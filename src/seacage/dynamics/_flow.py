@@ -64,5 +64,7 @@ def _downstream(
     The half's edge cuts a panel where it falls, so that turning the current moves the
     loads without a jump.
     """
-    across = np.arcsin(np.clip(unit @ panels.outward.T, -1.0, 1.0))
+    # not a matrix product: its last bit would change with the number of cases
+    along = unit[:, :1] * panels.outward[:, 0] + unit[:, 1:] * panels.outward[:, 1]
+    across = np.arcsin(np.clip(along, -1.0, 1.0))
     return np.clip(0.5 + across / (2.0 * panels.half_width), 0.0, 1.0)
