@@ -1,4 +1,4 @@
-"""From a logger's sample to the page's numbers, through the installed command alone."""
+"""From a logger's sample to the page's numbers, by the commands that people use."""
 
 import json
 import signal
@@ -10,8 +10,10 @@ from pathlib import Path
 
 import httpx
 import pytest
+from typer.testing import CliRunner
 
 from outside import wait_for
+from seacage.service._cli import app
 from seacage.testing import stand_in_field, stand_in_twin
 
 SEACAGE = [sys.executable, "-c", "from seacage.service import main; main()"]
@@ -47,8 +49,9 @@ def serving(data: Path, *words: object) -> Iterator[tuple[str, httpx.Client]]:
 
 
 def told(*words: object) -> str:
-    command = [str(word) for word in (*SEACAGE, *words)]
-    return subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    result = CliRunner().invoke(app, [str(word) for word in words], catch_exceptions=False)
+    assert result.exit_code == 0, result.stderr
+    return result.stdout
 
 
 def until(ask, accept):

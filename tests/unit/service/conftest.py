@@ -13,8 +13,8 @@ def live(tmp_path: Path) -> Iterator[Running]:
         yield one
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def idle(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Running]:
-    """A service that all tests share, for those that change nothing."""
+    """A service that the tests of a file share, for those that change nothing."""
     with running(tmp_path_factory.mktemp("idle")) as one:
         yield one
