@@ -1,6 +1,6 @@
 """A cage as the solver sees it: nodes, bars, bends, panels, cylinders, floats and springs."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
@@ -111,6 +111,25 @@ class Assembly:
             springs=springs,
         )
 
+    def strung(
+        self,
+        position: Float[np.ndarray, "node 3"],
+        tension: float,
+        *,
+        softness: float = 1.0,
+        offset: tuple[float, ...] | float = 0.0,
+    ) -> "Assembly":
+        """A copy whose bridles bear a tension in a given shape [N].
+
+        Their stiffness is divided by ``softness``; ``offset`` then lengthens each [m].
+        """
+        bars, ends = self.bars, self.bars.ends[self.bridles]
+        span = np.linalg.norm(position[ends[:, 1]] - position[ends[:, 0]], axis=1)
+        stiffness, length = bars.stiffness.copy(), bars.length.copy()
+        stiffness[self.bridles] /= softness
+        length[self.bridles] = span / (1.0 + tension / stiffness[self.bridles]) + np.array(offset)
+        return replace(self, bars=replace(bars, stiffness=stiffness, length=length))
+
 
 def _bars(cage: Cage, position: Float[np.ndarray, "node 3"]) -> tuple[Bars, slice]:
     net = _net_bars(cage)
@@ -163,7 +182,7 @@ def _hoop(cage: Cage, ring: int, stiffness: float) -> Bars:
 
 
 def _bridle_bars(cage: Cage, position: Float[np.ndarray, "node 3"]) -> Bars:
-    """Rope and chain as one spring in series, cut so that the pretension is met at rest."""
+    """Rope and chain as one spring in series, with the pretension in the design shape."""
     line = cage.bridles
     ends = np.column_stack([cage.node_count + cage.bridle_corner, cage.bridle_nodes])
     span = np.linalg.norm(position[ends[:, 1]] - position[ends[:, 0]], axis=1)
@@ -174,7 +193,7 @@ def _bridle_bars(cage: Cage, position: Float[np.ndarray, "node 3"]) -> Bars:
         )
     give = (span - line.chain_length) / line.rope_axial_stiffness
     stiffness = span / (give + line.chain_length / line.chain_axial_stiffness)
-    length = span / (1.0 + line.pretension / stiffness) + np.array(line.length_offset)
+    length = span / (1.0 + line.pretension / stiffness)
     return Bars(
         ends=ends, length=length, stiffness=stiffness, pushed=np.zeros(len(span), dtype=bool)
     )

@@ -110,7 +110,7 @@ def settle(
     """
     seas = [sea] if isinstance(sea, SeaState) else list(sea)
     _check(seas, mean_waves=mean_waves)
-    assembly = Assembly.of(cage)
+    assembly = _assembled(cage)
     velocity = np.array([state.current_velocity for state in seas])
     variance = _wave_variance(cage, assembly, seas) if mean_waves else None
     flow = steady_flow(
@@ -133,7 +133,7 @@ def net_load(
     wake: bool = True,
 ) -> Float[np.ndarray, "3"]:
     """The current's load on the netting in a given shape, at rest [N]."""
-    assembly = Assembly.of(cage)
+    assembly = _assembled(cage)
     flow = steady_flow(assembly, sea.current_velocity[None], law=law, wake=wake)
     return total_net_force(assembly.panels, flow, node_position[None])[0]
 
@@ -147,7 +147,7 @@ def rest_shape(cage: Cage, *, hold_collar: bool = False) -> Float[np.ndarray, "n
     InputError
         A cage that has no rest: its parts cannot hang together.
     """
-    assembly = Assembly.of(cage)
+    assembly = _assembled(cage)
     flow = steady_flow(assembly, np.zeros((1, 2)), law="loland")
     position, residual, result = _relaxed(cage, assembly, flow, hold_collar=hold_collar)
     if result[0] != Result.CONVERGED:
@@ -158,6 +158,22 @@ def rest_shape(cage: Cage, *, hold_collar: bool = False) -> Float[np.ndarray, "n
     shape = position[0, : cage.node_count].copy()
     shape.setflags(write=False)
     return shape
+
+
+@lru_cache(maxsize=16)
+def _assembled(cage: Cage) -> Assembly:
+    """The cage put together, its bridles cut so that each bears the pretension at rest.
+
+    The collar gives to the bridles' pull by some decimetres. Its shape under that pull is found
+    with bridles so soft that they pull equally wherever it comes to lie.
+    """
+    designed, pretension = Assembly.of(cage), cage.bridles.pretension
+    still = steady_flow(designed, np.zeros((1, 2)), law="loland")
+    shape = designed.position
+    for _ in range(2):
+        soft = designed.strung(shape, pretension, softness=30.0)
+        shape = _relaxed(cage, soft, still, hold_collar=False)[0][0]
+    return designed.strung(shape, pretension, offset=cage.bridles.length_offset)
 
 
 def _check(seas: list[SeaState], *, mean_waves: bool) -> None:

@@ -24,12 +24,15 @@ def test_in_the_design_shape_every_bridle_bears_its_pretension():
     np.testing.assert_allclose(tension, 10e3)
 
 
-def test_a_longer_bridle_bears_less_and_a_shorter_one_more():
-    offset = [0.01, -0.01] + 10 * [0.0]
-    uneven = Assembly.of(ACE.altered(bridles={"length_offset_m": offset}))
-    tension = bar_tension(uneven.bars, uneven.position[None])[0, uneven.bridles]
-    assert tension[0] < 10e3 < tension[1]
-    np.testing.assert_allclose(tension[2:], 10e3)
+def test_strung_again_a_bridle_bears_what_it_is_told_but_for_its_offset():
+    rng = np.random.default_rng(0)
+    shape = PARTS.position + rng.normal(scale=0.3, size=PARTS.position.shape)
+    offset = (0.01, -0.01, *10 * [0.0])
+    for softness in (1.0, 30.0):
+        strung = PARTS.strung(shape, 7e3, softness=softness, offset=offset)
+        tension = bar_tension(strung.bars, shape[None])[0, strung.bridles]
+        assert tension[0] < 7e3 < tension[1]
+        np.testing.assert_allclose(tension[2:], 7e3)
 
 
 def test_a_row_of_netting_is_as_stiff_as_the_netting_is_wide():

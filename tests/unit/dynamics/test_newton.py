@@ -5,17 +5,17 @@ import pytest
 
 from seacage.cage import Cage
 from seacage.dynamics import LAWS, rest_shape
-from seacage.dynamics._assembly import Assembly
 from seacage.dynamics._flow import steady_flow
 from seacage.dynamics._loads import nodal_force
 from seacage.dynamics._newton import _tangent, sharpened
+from seacage.dynamics._settle import _assembled
 
 COARSE = Cage.named("ace").altered(
     mesh={"spokes": 16, "ring_depths_m": [0.0, 7.0, 15.0, 21.4, 27.8]},
     collar={"pipe_bending_stiffness_n_m2": 1e-6},  # its tangent leaves part of the bending out
     sinker_tube={"bending_stiffness_n_m2": 0.0},
 )
-PARTS = Assembly.of(COARSE)
+PARTS = _assembled(COARSE)
 
 
 @pytest.mark.parametrize("law", LAWS)
