@@ -74,8 +74,9 @@ def _coverage(sensors: Sequence[SensorScore]) -> str:
     share = [score.raw.coverage for score in sensors]
     narrow = [score.sensor for score in sensors if score.raw.coverage < NOMINAL - 0.05]
     verdict = (
-        f"They are too narrow for {listed(narrow)}: growth on the net, which level 2 does not "
-        "see, makes the days that judge unlike the days that taught."
+        f"They are too narrow for {listed(narrow)}. Two causes are likely and were not told "
+        "apart: growth on the net since the days that taught, which level 2 does not see, and "
+        "currents that those days did not have."
         if narrow
         else "None is too narrow by more than five points."
     )

@@ -66,7 +66,7 @@ class PaperReport:
         tally = {
             "Sensors improved": f"{better} of {len(self.sensors)}",
             "Median error ratio": number(ratio),
-            "Readings in 95 % interval": percent(held),
+            "Median coverage of 95 %": percent(held),
             "Shape emulator's error": f"{number(shape)} mm",
         }
         cells = (tag("div", tag("dt", name), tag("dd", value)) for name, value in tally.items())
