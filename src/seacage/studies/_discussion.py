@@ -41,16 +41,19 @@ def findings(sensors: Sequence[SensorScore], level_one: LevelOneScore) -> list[s
 
 def _gain(sensors: Sequence[SensorScore]) -> str:
     better = [score.sensor for score in sensors if score.means.better]
-    rest = [score.sensor for score in sensors if not score.means.better]
+    worse = [score.sensor for score in sensors if score.means.worse]
+    rest = [one.sensor for one in sensors if one.sensor not in {*better, *worse}]
     ranked = sorted(sensors, key=lambda score: score.means.ratio)
     first, last = ranked[0], ranked[-1]
     return (
         f"On days not trained on, multifidelity is better than low fidelity for {len(better)} of "
         f"{len(sensors)} sensors: the whole 95 % bootstrap interval of the gain lies above zero "
         "(10-minute means). "
-        + (f"For {listed(rest)} it does not, so no gain is shown there. " if rest else "")
-        + f"The error falls most at {first.sensor}, to {number(first.means.ratio)} of the "
-        f"low-fidelity error, and least at {last.sensor}, to {number(last.means.ratio)}."
+        + (f"It is worse for {listed(worse)}: the interval lies below zero. " if worse else "")
+        + (f"For {listed(rest)} the interval holds zero, so nothing is shown. " if rest else "")
+        + "The multifidelity error is the smallest share of the low-fidelity error at "
+        f"{first.sensor}, {number(first.means.ratio)}, and the largest at {last.sensor}, "
+        f"{number(last.means.ratio)}."
     )
 
 
@@ -117,5 +120,7 @@ def _shortest(sensors: Sequence[SensorScore]) -> str:
     return (
         f"The shortest trial is that of {shortest.sensor}: {shortest.span_h:.0f} hours, about "
         f"{shortest.span_h / shortest.block_h:.0f} blocks for the bootstrap. That is few tides, "
-        "so its interval says how sure the gain is in those hours, not in any others."
+        "so its interval says how sure the gain is in those hours, not in any others. All numbers "
+        "are of one draw of current, noise and outages: another seed gives other hours, and a "
+        "sensor that gains here may lose there."
     )

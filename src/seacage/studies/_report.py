@@ -254,17 +254,14 @@ class PaperReport:
 
 def _error_row(score: SensorScore, errors: Errors) -> tuple[str, ...]:
     interval = f"{number(errors.gain_low)} … {number(errors.gain_high)}"
+    verdict = "better" if errors.better else "worse" if errors.worse else "unproven"
     return (
         f"{score.sensor} [{score.unit}]",
         f"{errors.readings:,}",
         tag("span", number(errors.low_mae), look="low"),
         tag("span", number(errors.multi_mae), look="multi"),
         Html(bar(errors.ratio) + f"{errors.ratio:.2f}"),
-        tag(
-            "span",
-            f"{number(errors.gain)} [{interval}]",
-            look="better" if errors.better else "unproven",
-        ),
+        tag("span", f"{number(errors.gain)} [{interval}]", look=verdict),
         percent(errors.coverage),
         number(errors.crps),
         tag("small", score.origin),

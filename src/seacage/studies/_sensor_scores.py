@@ -123,6 +123,11 @@ class Errors:
         """Multifidelity is better, and not by chance: the gain's whole interval says so."""
         return self.gain_low > 0.0
 
+    @property
+    def worse(self) -> bool:
+        """Multifidelity is worse, and not by chance: the gain's whole interval is below 0."""
+        return self.gain_high < 0.0
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SensorScore:

@@ -62,11 +62,19 @@ def told(*sensors: SensorScore, **options: float) -> str:
 def test_a_sensor_without_a_proven_gain_is_named():
     text = told(sensor("shackle-1"), sensor("shackle-2", gain_low=-0.1))
     assert "better than low fidelity for 1 of 2 sensors" in text
-    assert "For shackle-2 it does not" in text
+    assert "For shackle-2 the interval holds zero" in text
+
+
+def test_a_sensor_that_multifidelity_makes_worse_is_said_to_be_worse():
+    text = told(sensor("shackle-1"), sensor("shackle-2", gain_low=-3.0, gain_high=-1.0))
+    assert "It is worse for shackle-2" in text
+    assert "holds zero" not in text
 
 
 def test_all_gains_proven_leave_nobody_out():
-    assert "it does not" not in told(sensor("shackle-1"), sensor("shackle-2"))
+    text = told(sensor("shackle-1"), sensor("shackle-2"))
+    assert "worse" not in text
+    assert "holds zero" not in text
 
 
 def test_too_deep_and_too_slack_are_both_underestimates():
