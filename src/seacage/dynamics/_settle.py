@@ -133,7 +133,7 @@ def net_load(
     wake: bool = True,
 ) -> Float[np.ndarray, "3"]:
     """The current's load on the netting in a given shape, at rest [N]."""
-    assembly = _assembled(cage)
+    assembly = Assembly.of(cage)  # the netting does not ask how the bridles are cut
     flow = steady_flow(assembly, sea.current_velocity[None], law=law, wake=wake)
     return total_net_force(assembly.panels, flow, node_position[None])[0]
 
