@@ -90,6 +90,9 @@ class Collar(_Part):
     pipe_axial_stiffness: float = quantity("n", "EA of a pipe", above=True)
     drag_coefficient: float = quantity("", "cross-flow drag of a pipe")
     submerged_fraction: float = quantity("", "share of the pipe's diameter that the current meets")
+    added_mass_coefficient: float = quantity(
+        "", "added mass over displaced mass of the pipe's wet share", default=1.0
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -152,6 +155,8 @@ class SinkerTube(_Part):
     bending_stiffness: float = quantity("n_m2", "EI")
     axial_stiffness: float = quantity("n", "EA")
     drag_coefficient: float = quantity("", "cross-flow drag")
+    displaced: float = quantity("m3_m", "volume", default=0.1257)
+    added_mass_coefficient: float = quantity("", "added mass over displaced mass", default=1.0)
     hung_below: float = quantity("m", "below the cylinder's edge, where it hangs on its own ropes")
 
 
@@ -173,6 +178,15 @@ class Frame(_Part):
     rope_diameter: float = quantity("m", "of the frame rope")
     rope_axial_stiffness: float = quantity("n", "EA of the frame rope")
     buoy_buoyancy: float = quantity("n", "net buoyancy of a corner buoy")
+    corner_mass: float = quantity(
+        "kg",
+        "buoy, plate and the lines' share that moves, with added mass",
+        above=True,
+        default=1e3,
+    )
+    corner_damping_ratio: float = quantity(
+        "", "of the corner on its springs, over critical", default=0.2
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

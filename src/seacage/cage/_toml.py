@@ -4,7 +4,7 @@ import difflib
 import json
 import tomllib
 from collections.abc import Iterable, Mapping
-from dataclasses import Field, fields, is_dataclass, replace
+from dataclasses import MISSING, Field, fields, is_dataclass, replace
 from numbers import Integral, Real
 from typing import Any, get_args, get_origin
 
@@ -31,7 +31,7 @@ def parsed(kind: type, text: str, *, source: str) -> Any:
 
 def _built(kind: type, table: dict[str, Any], where: str) -> Any:
     known = _known(kind, table, where)
-    missing = [key for key in known if key not in table]
+    missing = [key for key in known if key not in table and known[key].default is MISSING]
     if missing:
         meaning = known[missing[0]].metadata.get("meaning", "a section of its own")
         raise InputError(f"{where}: the key {missing[0]!r} is missing ({meaning}). Add it.")

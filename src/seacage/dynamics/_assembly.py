@@ -17,6 +17,7 @@ class Bars:
     length: Float[np.ndarray, " bar"]  # unstretched [m]
     stiffness: Float[np.ndarray, " bar"]  # EA [N]
     pushed: Bool[np.ndarray, " bar"]  # carries compression too
+    damping_ratio: Float[np.ndarray, " bar"]  # over pair-critical [-]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,6 +39,9 @@ class Panels:
     outward: Float[np.ndarray, "panel 2"]  # horizontal, of the design shape [-]
     half_width: Float[np.ndarray, " panel"]  # half the angle a panel spans round the cage [rad]
     depth: Float[np.ndarray, " panel"]  # of the design shape [m]
+    area: Float[np.ndarray, " panel"]  # of the design shape [m2]
+    twine_spacing: Float[np.ndarray, " panel"]  # half mesh [m]
+    diamond: Bool[np.ndarray, " panel"]  # twines run at 45 degrees to the panel's edges
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,6 +50,7 @@ class Cylinders:
 
     ends: Int[np.ndarray, "cylinder 2"]
     drag_width: Float[np.ndarray, " cylinder"]  # drag coefficient × diameter [m]
+    skin_width: Float[np.ndarray, " cylinder"]  # the same for flow along the pipe [m]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,6 +70,16 @@ class Springs:
     nodes: Int[np.ndarray, " spring"]
     stiffness: Float[np.ndarray, "spring 3"]  # [N/m]
     preload: Float[np.ndarray, "spring 3"]  # force with the node in its design place [N]
+    damping: Float[np.ndarray, "spring 3"]  # of the node's velocity [N s/m]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ground:
+    """Nodes that may come to lie on the sea bed."""
+
+    nodes: Int[np.ndarray, " ground"]
+    stiffness: Float[np.ndarray, " ground"]  # against sinking in [N/m]
+    level: float  # of the sea bed, z [m]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -74,13 +89,17 @@ class Assembly:
     cage_nodes: int
     position: Float[np.ndarray, "node 3"]  # design [m]
     weight: Float[np.ndarray, " node"]  # submerged, upwards negative [N]
+    mass: Float[np.ndarray, " node"]  # with the added mass of water [kg]
+    water_mass: Float[np.ndarray, " node"]  # displaced and added: what moving water pushes [kg]
+    fixed: Bool[np.ndarray, " node"]  # held in its place
     bars: Bars
-    bridles: slice  # which bars are the bridles
+    bridles: Int[np.ndarray, " bridle"]  # which bars are the bridles
     bends: Bends
     panels: Panels
     cylinders: Cylinders
     floats: Floats
     springs: Springs
+    ground: Ground
 
     @classmethod
     def of(cls, cage: Cage) -> "Assembly":
@@ -98,10 +117,14 @@ class Assembly:
         weight = _weight(cage, position, panels)
         # the collar bears all weights, and the bridles' pull down to the corners
         carried = -float(np.sum(weight) + np.sum(springs.preload[:, 2]))
+        mass, water_mass = _masses(cage, position, panels)
         return cls(
             cage_nodes=cage.node_count,
             position=position,
             weight=weight,
+            mass=mass,
+            water_mass=water_mass,
+            fixed=np.zeros(len(position), dtype=bool),
             bars=bars,
             bridles=bridles,
             bends=_bends(cage),
@@ -109,6 +132,11 @@ class Assembly:
             cylinders=_cylinders(cage),
             floats=_floats(cage, carried),
             springs=springs,
+            ground=Ground(
+                nodes=np.zeros(0, dtype=np.int64),
+                stiffness=np.zeros(0),
+                level=-cage.site.water_depth,
+            ),
         )
 
     def strung(
@@ -131,22 +159,25 @@ class Assembly:
         return replace(self, bars=replace(bars, stiffness=stiffness, length=length))
 
 
-def _bars(cage: Cage, position: Float[np.ndarray, "node 3"]) -> tuple[Bars, slice]:
-    net = _net_bars(cage)
-    hoops = [
+def _bars(
+    cage: Cage, position: Float[np.ndarray, "node 3"]
+) -> tuple[Bars, Int[np.ndarray, " bridle"]]:
+    bars = joined_bars(
+        _net_bars(cage),
         _hoop(cage, 0, cage.collar.pipes * cage.collar.pipe_axial_stiffness),
         _hoop(cage, cage.tube_ring, cage.sinker_tube.axial_stiffness),
-    ]
-    bridles = _bridle_bars(cage, position)
-    parts = [net, *hoops, bridles]
-    first = sum(len(part.length) for part in parts[:-1])
-    joined = Bars(
-        ends=np.concatenate([part.ends for part in parts]),
-        length=np.concatenate([part.length for part in parts]),
-        stiffness=np.concatenate([part.stiffness for part in parts]),
-        pushed=np.concatenate([part.pushed for part in parts]),
+        _bridle_bars(cage, position),
     )
-    return joined, slice(first, first + len(bridles.length))
+    count = len(bars.length)
+    return bars, np.arange(count - cage.bridle_count, count)
+
+
+def joined_bars(*several: Bars) -> Bars:
+    """All bars of several groups, in their order."""
+    names = Bars.__slots__
+    return Bars(
+        **{name: np.concatenate([getattr(bars, name) for bars in several]) for name in names}
+    )
 
 
 def _net_bars(cage: Cage) -> Bars:
@@ -166,6 +197,7 @@ def _net_bars(cage: Cage) -> Bars:
         length=length,
         stiffness=netting,
         pushed=np.zeros(len(length), dtype=bool),
+        damping_ratio=np.full(len(length), cage.netting.damping_ratio),
     )
 
 
@@ -178,6 +210,7 @@ def _hoop(cage: Cage, ring: int, stiffness: float) -> Bars:
         length=length,
         stiffness=np.full(count, stiffness),
         pushed=np.ones(count, dtype=bool),
+        damping_ratio=np.full(count, cage.netting.damping_ratio),
     )
 
 
@@ -195,7 +228,11 @@ def _bridle_bars(cage: Cage, position: Float[np.ndarray, "node 3"]) -> Bars:
     stiffness = span / (give + line.chain_length / line.chain_axial_stiffness)
     length = span / (1.0 + line.pretension / stiffness)
     return Bars(
-        ends=ends, length=length, stiffness=stiffness, pushed=np.zeros(len(span), dtype=bool)
+        ends=ends,
+        length=length,
+        stiffness=stiffness,
+        pushed=np.zeros(len(span), dtype=bool),
+        damping_ratio=np.full(len(span), cage.netting.damping_ratio),
     )
 
 
@@ -225,6 +262,9 @@ def _panels(cage: Cage) -> Panels:
         outward=centre[:, :2] / np.linalg.norm(centre[:, :2], axis=1, keepdims=True),
         half_width=np.full(len(corners), np.pi / cage.spokes),
         depth=-centre[:, 2],
+        area=_area(cage.design_position, corners),
+        twine_spacing=np.full(len(corners), cage.netting.half_mesh),
+        diamond=np.zeros(len(corners), dtype=bool),
     )
 
 
@@ -235,6 +275,7 @@ def _cylinders(cage: Cage) -> Cylinders:
     return Cylinders(
         ends=np.concatenate([_around(cage, 0), _around(cage, cage.tube_ring)]),
         drag_width=np.repeat(widths, cage.spokes),
+        skin_width=np.zeros(2 * cage.spokes),
     )
 
 
@@ -242,16 +283,64 @@ def _weight(
     cage: Cage, position: Float[np.ndarray, "node 3"], panels: Panels
 ) -> Float[np.ndarray, " node"]:
     weight = np.zeros(len(position))
-    a, b, c, d = np.moveaxis(position[panels.corners], 1, 0)
-    area = np.linalg.norm(np.cross(c - a, d - b), axis=1) / 2.0
     submerged = (cage.netting.mass - cage.netting.displaced) * GRAVITY
-    np.add.at(weight, panels.corners, -submerged * area[:, None] * panels.share)
+    np.add.at(weight, panels.corners, -submerged * panels.area[:, None] * panels.share)
     weight[cage.ring_nodes(cage.tube_ring)] -= cage.sinker_tube.weight * _arc(cage, cage.tube_ring)
     weight[cage.ring_nodes(0)] -= (
         cage.collar.pipes * cage.collar.pipe_mass * GRAVITY * _arc(cage, 0)
     )
     weight[cage.bottom_node] -= cage.tip.weight
     return weight
+
+
+def _masses(
+    cage: Cage, position: Float[np.ndarray, "node 3"], panels: Panels
+) -> tuple[Float[np.ndarray, " node"], Float[np.ndarray, " node"]]:
+    """Mass of each node with its added mass, and the water's share that follows the water [kg].
+
+    Ropes on the meridians weigh nothing in water, so their mass is that of the water they
+    displace. Added mass is the same in all directions, along a pipe too. The tip's weight is
+    taken as steel.
+    """
+    own, displaced, added = (np.zeros(len(position)) for _ in range(3))
+
+    def put(nodes: np.ndarray, mass: np.ndarray | float, water: np.ndarray | float, factor: float):
+        for total, share in ((own, mass), (displaced, water), (added, factor * np.asarray(water))):
+            np.add.at(total, nodes, share)
+
+    net, collar, tube = cage.netting, cage.collar, cage.sinker_tube
+    area = panels.area[:, None] * panels.share
+    put(panels.corners, net.mass * area, net.displaced * area, net.added_mass_coefficient)
+    meridians = cage.edges[cage.rings * cage.spokes :]
+    span = np.linalg.norm(position[meridians[:, 1]] - position[meridians[:, 0]], axis=1)
+    rope = WATER_DENSITY * np.pi / 4.0 * cage.ropes.diameter**2 * span[:, None] / 2.0
+    put(meridians, rope, rope, 1.0)
+    wet = WATER_DENSITY * collar.pipes * collar.pipe_displaced * collar.submerged_fraction
+    arc, low_arc = _arc(cage, 0), _arc(cage, cage.tube_ring)
+    put(
+        cage.ring_nodes(0),
+        collar.pipes * collar.pipe_mass * arc,
+        wet * arc,
+        collar.added_mass_coefficient,
+    )
+    put(
+        cage.ring_nodes(cage.tube_ring),
+        tube.mass * low_arc,
+        WATER_DENSITY * tube.displaced * low_arc,
+        tube.added_mass_coefficient,
+    )
+    steel = 7850.0
+    tip = cage.tip.weight / GRAVITY * steel / (steel - WATER_DENSITY)
+    put(np.array([cage.bottom_node]), tip, tip * WATER_DENSITY / steel, 0.5)
+    put(np.arange(cage.node_count, len(position)), cage.frame.corner_mass, 0.0, 0.0)
+    return own + added, displaced + added
+
+
+def _area(
+    position: Float[np.ndarray, "node 3"], corners: Int[np.ndarray, "panel 4"]
+) -> Float[np.ndarray, " panel"]:
+    a, b, c, d = np.moveaxis(position[corners], 1, 0)
+    return np.linalg.norm(np.cross(c - a, d - b), axis=1) / 2.0
 
 
 def _floats(cage: Cage, carried: float) -> Floats:
@@ -277,7 +366,10 @@ def _floats(cage: Cage, carried: float) -> Floats:
 
 
 def _springs(
-    cage: Cage, position: Float[np.ndarray, "node 3"], bars: Bars, bridles: slice
+    cage: Cage,
+    position: Float[np.ndarray, "node 3"],
+    bars: Bars,
+    bridles: Int[np.ndarray, " bridle"],
 ) -> Springs:
     """The corners' springs, loaded so that the pretensioned bridles keep them in place."""
     ends = bars.ends[bridles]
@@ -287,10 +379,13 @@ def _springs(
     np.add.at(preload, cage.bridle_corner, -cage.bridles.pretension * along)
     frame = cage.frame
     horizontal, vertical = frame.corner_stiffness_horizontal, frame.corner_stiffness_vertical
+    stiffness = np.array([horizontal, horizontal, vertical])
+    critical = 2.0 * np.sqrt(stiffness * frame.corner_mass)
     return Springs(
         nodes=cage.node_count + np.arange(len(preload)),
-        stiffness=np.tile([horizontal, horizontal, vertical], (len(preload), 1)),
+        stiffness=np.tile(stiffness, (len(preload), 1)),
         preload=preload,
+        damping=np.tile(frame.corner_damping_ratio * critical, (len(preload), 1)),
     )
 
 

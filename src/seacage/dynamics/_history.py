@@ -1,0 +1,78 @@
+"""What a simulation in time returns: series, and their statistics."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float, Int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Statistics:
+    """Of a quantity over the simulated time that counts.
+
+    Attributes
+    ----------
+    mean, std, minimum, maximum
+        In the quantity's own unit and shape.
+    quantile
+        At ``History.quantile_levels``, an axis before the quantity's own.
+    """
+
+    mean: Float[np.ndarray, "*shape"]
+    std: Float[np.ndarray, "*shape"]
+    minimum: Float[np.ndarray, "*shape"]
+    maximum: Float[np.ndarray, "*shape"]
+    quantile: Float[np.ndarray, "*quantile_shape"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class History:
+    """A cage in waves and current: one case without the leading axis, or several with it.
+
+    A case that diverged holds NaN from then on, and in all its statistics.
+
+    Attributes
+    ----------
+    time
+        Of the series, from the end of the spin-up; empty where none was asked for [s].
+    nodes
+        The nodes of ``node_position``.
+    node_position
+        Series of the chosen nodes [m].
+    bridle_tension
+        Series [N].
+    surface_elevation
+        Series at the origin [m].
+    node, bridle, net_force, volume
+        Statistics of all nodes' positions [m], the bridles' tensions [N], the water's load on
+        the netting [N] and the volume inside the net [m3].
+    node_displacement
+        Mean position less the rest shape [m].
+    volume_fraction
+        Mean volume over that in still water [-].
+    quantile_levels
+        Between 0 and 1 [-].
+    second_moment
+        Mean over time of the products of all coordinates, as displacements from the design
+        shape: (node and axis) × (node and axis) [m2]; of no rows where not asked for.
+    result
+        Of ``seacage.conventions.Result``.
+    diverged_at
+        Simulated time at which a case was given up, spin-up included; NaN for the others [s].
+    """
+
+    time: Float[np.ndarray, " t"]
+    nodes: Int[np.ndarray, " kept"]
+    node_position: Float[np.ndarray, "*case t kept 3"]
+    bridle_tension: Float[np.ndarray, "*case t bridle"]
+    surface_elevation: Float[np.ndarray, "*case t"]
+    node: Statistics
+    bridle: Statistics
+    net_force: Statistics
+    volume: Statistics
+    node_displacement: Float[np.ndarray, "*case node 3"]
+    volume_fraction: Float[np.ndarray, "*case"]
+    quantile_levels: Float[np.ndarray, " quantile"]
+    second_moment: Float[np.ndarray, "*case coordinate coordinate"]
+    result: Int[np.ndarray, "*case"]
+    diverged_at: Float[np.ndarray, "*case"]
