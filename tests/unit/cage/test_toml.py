@@ -65,7 +65,7 @@ def test_every_parameter_has_its_unit_and_meaning():
     for line in TEXT.splitlines():
         if " = " in line and not line.startswith(("name", "heading")):
             assert re.search(r"# \S+", line), line
-    units = {"m", "n", "deg", "pa", "m2", "m3"}
+    units = {"m", "n", "kg", "deg", "pa", "m2", "m3"}
     bare = {"spokes", "pipes", "drag_coefficient", "submerged_fraction", "added_mass_coefficient"}
     bare |= {"damping_ratio", "fouling_shallow", "fouling_deep", "per_corner", "material_factor"}
     for section in tomllib.loads(TEXT).values():
