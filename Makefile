@@ -14,7 +14,7 @@ BUILT := $(wildcard $(KERNEL)_*.so $(KERNEL)_*.dylib)
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help run test test-outside test-all lint check lock bench always
+.PHONY: help run test test-outside test-all lint check lock bench validate always
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 14
@@ -45,6 +45,9 @@ check: lint test ## lint, then the fast tests
 bench: .venv/.dev .venv/.project ## time what people wait for (ONCE=1: only see that it runs)
 	@set -e; for script in benchmarks/[a-z]*.py; do \
 	  echo "== $$script"; $(BIN)/python "$$script" $(if $(ONCE),--once); done
+
+validate: .venv/.project ## our physics against published numbers, as docs/validation.md
+	OMP_NUM_THREADS=1 $(BIN)/python -m validation --workers $(WORKERS)
 
 # The development lock repeats the versions of the first, so both fit in one environment.
 COMPILE := $(BIN)/uv pip compile pyproject.toml --universal --python-version 3.11 --upgrade --quiet \

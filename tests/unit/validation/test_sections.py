@@ -1,0 +1,41 @@
+"""The rows that need no minutes hold in every change, and the page in the docs is theirs."""
+
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+from validation._sections import MODULES, chosen, computed, rows_of, sections_of
+
+PAGE = Path(__file__).parents[3] / "docs" / "validation.md"
+QUICK = chosen(quick=True)
+SLOW = [job for job in chosen() if job not in QUICK]
+ALL = [*QUICK, *(pytest.param(*job, marks=pytest.mark.slow) for job in SLOW)]
+
+
+@pytest.mark.parametrize(("module", "index"), ALL)
+def test_all_rows_that_must_hold_do(module, index):
+    rows = rows_of(module, index)
+    assert rows
+    assert [row for row in rows if row.fails] == []
+    for row in rows:
+        assert row.reason
+        assert row.tolerance >= 0.0
+        if row.verdict != "yes":
+            assert row.note, f"{row.what}: the row does not hold and does not say why"
+
+
+def test_the_table_keeps_the_order_of_its_sections_and_tells_each():
+    jobs = chosen(quick=True, only=["screens", "catenaries"])
+    told = []
+    table = computed(jobs, workers=1, told=lambda *said: told.append(said))
+    assert list(table) == [sections_of(module)[index].title for module, index in jobs]
+    assert [done for _, done, _ in told] == list(range(1, len(jobs) + 1))
+    names = Counter(row.what for _, rows in table.values() for row in rows)
+    assert names.most_common(1)[0][1] == 1
+
+
+def test_every_module_of_rows_is_in_the_table():
+    here = Path(sections_of.__globals__["__file__"]).parent
+    written = {path.stem for path in here.glob("[a-z]*.py")}
+    assert written <= set(MODULES)

@@ -1,0 +1,131 @@
+"""The table as Markdown to read and as JSON or CSV to go on with."""
+
+import csv
+import io
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+
+from validation._row import Row, Section, Span, ends
+
+Table = Mapping[str, tuple[Section, Sequence[Row]]]
+"""Sections and their rows, by title."""
+
+HEAD = """# Validation
+
+Our physics against published numbers, closed forms and other programs. `make validate` computes
+this page; [validation/README.md](../validation/README.md) says how a row or a case is added.
+
+- *kind* says what stands behind a reference: **measured**, a **closed form**, a **published
+  model**, an **other program**, or **our own** answer to a question that must not change it (half
+  the time step, a mirrored sea).
+- A row *holds* when ours differs from the reference by no more than the tolerance. An interval in
+  *ours* is what an ensemble of plausible cages and laws spans, because the source does not print
+  the cage: it must contain the reference.
+- Rows marked **(may miss)** are published field or panel numbers whose conditions are not printed
+  whole. A miss is told, with the reason, and fails nothing. All others must hold.
+"""
+COLUMNS = ("quantity", "reference", "kind, source", "ours", "tolerance", "holds")
+
+
+def markdown(table: Table) -> str:
+    """The page for the docs."""
+    rows = [row for _, several in table.values() for row in several]
+    held = sum(row.holds for row in rows)
+    missed = [row for row in rows if row.verdict == "no"]
+    absent = sum(row.ours is None for row in rows)
+    told = f"{len(rows)} rows: {held} hold, {len(missed)} do not"
+    told += f", {absent} were not computed.\n" if absent else ".\n"
+    parts = [HEAD, told, *(_section(section, several) for section, several in table.values())]
+    return "\n".join(parts)
+
+
+def _section(section: Section, rows: Sequence[Row]) -> str:
+    lines = [f"## {section.title}", "", section.about, ""]
+    lines += [_line(COLUMNS), _line(["---"] * len(COLUMNS))]
+    lines += [_line(_cells(row)) for row in rows]
+    notes = [f"- *{row.what}*: {row.note}" for row in rows if row.note]
+    return "\n".join([*lines, "", *notes, ""] if notes else [*lines, ""])
+
+
+def _cells(row: Row) -> list[str]:
+    unit = "" if row.unit == "-" else f" {row.unit}"
+    ours = "–" if row.ours is None else f"{shown(row.ours)}{unit}"
+    tolerance = f"± {_number(row.tolerance, digits=2)}{unit}: {row.reason}"
+    verdict = f"**{row.verdict}**" if row.verdict == "no" else row.verdict
+    return [
+        row.what,
+        f"{shown(row.reference)}{unit}",
+        f"{row.kind}; {row.source}",
+        ours,
+        tolerance,
+        verdict if row.must_hold else f"{verdict} (may miss)",
+    ]
+
+
+def _line(cells: Sequence[str]) -> str:
+    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
+
+
+def shown(span: Span) -> str:
+    """A number to four digits, or an interval."""
+    low, high = ends(span)
+    if low == high:
+        return _number(low)
+    if math.isinf(low):
+        return f"≤ {_number(high)}"
+    if math.isinf(high):
+        return f"≥ {_number(low)}"
+    return f"{_number(low)} to {_number(high)}"
+
+
+def _number(value: float, *, digits: int = 4) -> str:
+    text = f"{value:.{digits}g}"
+    if "e" not in text:
+        return text.replace("-", "−")
+    mantissa, exponent = text.split("e")
+    if int(exponent) >= 0:
+        return f"{value:.0f}".replace("-", "−")
+    return f"{mantissa}·10^{int(exponent)}".replace("-", "−")
+
+
+def as_json(table: Table) -> str:
+    """All rows with their numbers unrounded; JSON has no infinity, so an open end is null."""
+    return json.dumps(
+        {title: [_record(row) for row in rows] for title, (_, rows) in table.items()},
+        ensure_ascii=False,
+        indent=1,
+    )
+
+
+def as_csv(table: Table) -> str:
+    """All rows, one a line."""
+    records = [
+        {"section": title, **_flat(row)} for title, (_, rows) in table.items() for row in rows
+    ]
+    text = io.StringIO()
+    writer = csv.DictWriter(text, fieldnames=list(records[0]) if records else ["section"])
+    writer.writeheader()
+    writer.writerows(records)
+    return text.getvalue()
+
+
+def _record(row: Row) -> dict[str, object]:
+    spans = {name: _ends_or_none(getattr(row, name)) for name in ("reference", "ours")}
+    return {**asdict(row), **spans, "holds": row.verdict}
+
+
+def _flat(row: Row) -> dict[str, object]:
+    record = _record(row)
+    for name in ("reference", "ours"):
+        low, high = record.pop(name) or (None, None)  # pyright: ignore[reportGeneralTypeIssues]
+        record |= {f"{name}_low": low, f"{name}_high": high}
+    return record
+
+
+def _ends_or_none(span: Span | None) -> tuple[float | None, float | None] | None:
+    if span is None:
+        return None
+    low, high = (value if math.isfinite(value) else None for value in ends(span))
+    return low, high
