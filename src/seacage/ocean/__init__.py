@@ -8,11 +8,13 @@ from seacage.ocean._kinematics import (
     wave_velocity_variance,
     wavenumber,
 )
+from seacage.ocean._profile import CurrentProfile
 from seacage.ocean._sea_state import MAX_CURRENT_SPEED, SeaState, steepness_limit
 from seacage.ocean._spectrum import peak_enhancement, spectrum
 
 __all__ = [
     "MAX_CURRENT_SPEED",
+    "CurrentProfile",
     "SeaState",
     "Waves",
     "peak_enhancement",
