@@ -1,12 +1,13 @@
 """Labelled measurements and simulations: their schemas, readers, checks and stores."""
 
-from seacage.records._campaign import (
+from seacage.records._campaign import CampaignRecord, export_campaign, read_campaign
+from seacage.records._campaign_store import (
     NOT_RUN,
-    CampaignRecord,
     campaign_results,
+    campaign_unsummed,
+    campaign_variable,
     create_campaign,
-    export_campaign,
-    read_campaign,
+    finish_campaign,
     write_cases,
 )
 from seacage.records._check import QualityState, check_record, check_sample
@@ -37,10 +38,13 @@ __all__ = [
     "Sample",
     "Steadiness",
     "campaign_results",
+    "campaign_unsummed",
+    "campaign_variable",
     "check_record",
     "check_sample",
     "create_campaign",
     "export_campaign",
+    "finish_campaign",
     "instant",
     "moment",
     "read_campaign",

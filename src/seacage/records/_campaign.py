@@ -1,94 +1,47 @@
-"""Campaigns on disk: one Zarr store of simulated cases, written block by block."""
+"""Campaigns as records: read from their stores, exported to NetCDF."""
 
-# xarray and zarr leave parts of their signatures untyped.
+# xarray leaves parts of its signatures untyped.
 # pyright: reportUnknownMemberType=false
 
 import hashlib
-import shutil
-import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from seacage.conventions import Origin, RecordError, Result
 from seacage.ocean import SeaState
+from seacage.records._campaign_store import MEAN, NOT_RUN, SEA, campaign_unsummed, not_a_campaign
 
 if TYPE_CHECKING:
     import xarray
 
-NOT_RUN = -1
-"""Stands in ``result`` for a case that has not been run yet."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Variable:
-    """A variable of the store: where it varies, its CF attributes and its type."""
-
-    dims: tuple[str, ...]
-    units: str
-    long_name: str
-    standard_name: str = ""
-    dtype: str = "float64"
-
-
-_SEA = {
-    "current_speed": _Variable(
-        dims=("case",),
-        units="m s-1",
-        long_name="speed of the current",
-        standard_name="sea_water_speed",
+_MAY_LACK = (
+    "residual",
+    "wave_seed",
+    "diverged_at",
+    "net_force_std",
+    "volume_std",
+    "quantile",
+    "second_moment",
+    *(
+        f"{name}_{statistic}"
+        for name in ("node_position", "bridle_tension")
+        for statistic in ("std", "minimum", "maximum", "quantile")
     ),
-    "current_to": _Variable(
-        dims=("case",),
-        units="degree",
-        long_name="where the current goes, clockwise from true north",
-        standard_name="sea_water_velocity_to_direction",
-    ),
-    "hs": _Variable(
-        dims=("case",),
-        units="m",
-        long_name="significant wave height",
-        standard_name="sea_surface_wave_significant_height",
-    ),
-    "tp": _Variable(
-        dims=("case",),
-        units="s",
-        long_name="peak period of the waves, 0 without waves",
-        standard_name="sea_surface_wave_period_at_variance_spectral_density_maximum",
-    ),
-    "wave_from": _Variable(
-        dims=("case",),
-        units="degree",
-        long_name="where the waves come from, clockwise from true north",
-        standard_name="sea_surface_wave_from_direction",
-    ),
-}
-
-_ANSWER = {
-    "node_position": _Variable(
-        dims=("case", "node", "axis"), units="m", long_name="mean position of the net's nodes"
-    ),
-    "bridle_tension": _Variable(
-        dims=("case", "line"), units="N", long_name="mean tension of the bridles"
-    ),
-    "net_force": _Variable(
-        dims=("case", "axis"), units="N", long_name="load of the water on the netting"
-    ),
-    "volume": _Variable(dims=("case",), units="m3", long_name="volume inside the net"),
-    "residual": _Variable(
-        dims=("case",), units="N", long_name="largest unbalanced force at a node"
-    ),
-    "result": _Variable(dims=("case",), units="1", long_name="how the case ended", dtype="int8"),
-}
+)
+"""Fields of a record that some campaigns have and others not."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class CampaignRecord:
     """One cage in many sea states, as a simulator answered them.
+
+    What a campaign does not have is None: one of equilibria has no statistics over time, one
+    in time no residual.
 
     Parameters
     ----------
@@ -114,6 +67,21 @@ class CampaignRecord:
         Of the plan that drew the sea states.
     version
         Of the seacage that computed the answers.
+    wave_seed
+        Of each case's waves.
+    diverged_at
+        Simulated time at which a case was given up, spin-up included; NaN for the others [s].
+    quantile
+        Probabilities of the quantiles [-].
+    node_position_std, node_position_minimum, node_position_maximum, node_position_quantile
+        Of the positions over time [m].
+    bridle_tension_std, bridle_tension_minimum, bridle_tension_maximum, bridle_tension_quantile
+        Of the tensions over time [N].
+    net_force_std, volume_std
+        Of the load [N] and of the volume [m3] over time.
+    second_moment
+        Mean over time and all converged cases of the products of all coordinates, as
+        displacements from the design shape: coordinate 3 n + a is axis a of node n [m2].
     """
 
     cage_toml: str
@@ -122,11 +90,25 @@ class CampaignRecord:
     bridle_tension: Float[np.ndarray, "case line"]
     net_force: Float[np.ndarray, "case 3"]
     volume: Float[np.ndarray, " case"]
-    residual: Float[np.ndarray, " case"]
+    residual: Float[np.ndarray, " case"] | None = None
     result: Int[np.ndarray, " case"]
     law: str
     seed: int
     version: str
+    wave_seed: Int[np.ndarray, " case"] | None = None
+    diverged_at: Float[np.ndarray, " case"] | None = None
+    quantile: Float[np.ndarray, " quantile"] | None = None
+    node_position_std: Float[np.ndarray, "case node 3"] | None = None
+    node_position_minimum: Float[np.ndarray, "case node 3"] | None = None
+    node_position_maximum: Float[np.ndarray, "case node 3"] | None = None
+    node_position_quantile: Float[np.ndarray, "case quantile node 3"] | None = None
+    bridle_tension_std: Float[np.ndarray, "case line"] | None = None
+    bridle_tension_minimum: Float[np.ndarray, "case line"] | None = None
+    bridle_tension_maximum: Float[np.ndarray, "case line"] | None = None
+    bridle_tension_quantile: Float[np.ndarray, "case quantile line"] | None = None
+    net_force_std: Float[np.ndarray, "case 3"] | None = None
+    volume_std: Float[np.ndarray, " case"] | None = None
+    second_moment: Float[np.ndarray, "coordinate coordinate"] | None = None
 
     def __len__(self) -> int:
         return len(self.seas)
@@ -147,92 +129,12 @@ class CampaignRecord:
         digest = hashlib.sha256(self.cage_toml.encode())
         for part in fields(self):
             value = getattr(self, part.name)
+            if value is None:
+                continue
             digest.update(
                 value.tobytes() if isinstance(value, np.ndarray) else repr(value).encode()
             )
         return digest.hexdigest()
-
-
-def create_campaign(
-    path: Path,
-    *,
-    seas: Sequence[SeaState],
-    nodes: int,
-    lines: int,
-    block: int,
-    attributes: Mapping[str, str | float],
-) -> None:
-    """Make the store of a campaign with its sea states and no answers yet.
-
-    It appears at ``path`` whole or not at all.
-
-    Parameters
-    ----------
-    path
-        Where; nothing may be there.
-    seas
-        The sea state of each case.
-    nodes, lines
-        Sizes of the cage.
-    block
-        Cases written at a time: the store's chunk along ``case``.
-    attributes
-        Of the whole store, beside those that every campaign carries.
-    """
-    import zarr
-
-    unborn = path.with_name(f".{path.name}.unborn")
-    shutil.rmtree(unborn, ignore_errors=True)
-    unborn.parent.mkdir(parents=True, exist_ok=True)
-    group = zarr.create_group(
-        unborn, zarr_format=3, attributes={"Conventions": "CF-1.11, ACDD-1.3", **attributes}
-    )
-    size = {"case": len(seas), "node": nodes, "axis": 3, "line": lines}
-    for name, variable in {**_SEA, **_ANSWER}.items():
-        shape = tuple(size[dim] for dim in variable.dims)
-        group.create_array(
-            name,
-            shape=shape,
-            chunks=(min(block, shape[0]), *shape[1:]),
-            dtype=variable.dtype,
-            fill_value=NOT_RUN if variable.dtype == "int8" else np.nan,
-            dimension_names=variable.dims,
-            attributes=_attributes(name, variable),
-        )
-    for name in _SEA:
-        _array(unborn, name)[:] = np.array([getattr(sea, name) for sea in seas])
-    with warnings.catch_warnings():  # zarr warns that other libraries may not look for this
-        warnings.simplefilter("ignore")
-        zarr.consolidate_metadata(unborn)
-    unborn.rename(path)
-
-
-def write_cases(path: Path, first: int, answers: Mapping[str, np.ndarray]) -> None:
-    """Write one block of answers, from case ``first`` on.
-
-    ``result`` goes last: a block whose results are there is there whole.
-    """
-    for name in _ANSWER:
-        values = answers[name]
-        _array(path, name)[first : first + len(values)] = values
-
-
-def campaign_results(path: Path) -> tuple[dict[str, Any], Int[np.ndarray, " case"], int]:
-    """Attributes, result of each case (``NOT_RUN`` where there is none) and block size.
-
-    Raises
-    ------
-    RecordError
-        There is no campaign at ``path``.
-    """
-    import zarr
-
-    try:
-        attributes = dict(zarr.open_group(path, mode="r").attrs)
-        result = _array(path, "result")
-    except (OSError, KeyError, ValueError) as error:
-        raise _not_a_campaign(path) from error
-    return attributes, np.asarray(result[:]), int(result.chunks[0])
 
 
 def read_campaign(path: str | Path) -> CampaignRecord:
@@ -243,8 +145,10 @@ def read_campaign(path: str | Path) -> CampaignRecord:
     RecordError
         No campaign is there, or some of its cases have not been run.
     """
-    with _opened(Path(path)) as dataset:
-        variables = {name: np.asarray(dataset[name].values) for name in {**_SEA, **_ANSWER}}
+    path = Path(path)
+    with _opened(path) as dataset:
+        names = [name for name in (*SEA, *MEAN, "result", *_MAY_LACK) if name in dataset.variables]
+        variables = {name: np.asarray(dataset[name].values) for name in names}
         attributes = dict(dataset.attrs)
     missing = int(np.sum(variables["result"] == NOT_RUN))
     if missing:
@@ -252,13 +156,18 @@ def read_campaign(path: str | Path) -> CampaignRecord:
             f"{path}: {missing} of {len(variables['result'])} cases of this campaign have not "
             "been run. Run the campaign again; it goes on where it stopped."
         )
+    if campaign_unsummed(path):
+        raise RecordError(
+            f"{path}: every case of this campaign has been run, but their second moment is not "
+            "summed yet. Say `seacage campaign finish` with this folder."
+        )
     return CampaignRecord(
         cage_toml=attributes["cage"],
-        seas=_seas(variables),
-        **{name: variables[name] for name in _ANSWER},
+        seas=_seas({name: variables.pop(name) for name in SEA}),
         law=attributes["law"],
         seed=int(attributes["seed"]),
         version=attributes["product_version"],
+        **variables,
     )
 
 
@@ -275,12 +184,6 @@ def export_campaign(store: str | Path, path: str | Path) -> None:
     unborn.replace(path)
 
 
-def _array(path: Path, name: str) -> Any:
-    import zarr
-
-    return zarr.open_array(path / name, mode="r+")
-
-
 def _opened(path: Path) -> "xarray.Dataset":
     import xarray
 
@@ -290,34 +193,13 @@ def _opened(path: Path) -> "xarray.Dataset":
         else:
             dataset = xarray.open_dataset(path, engine="h5netcdf")
     except (OSError, KeyError, ValueError) as error:
-        raise _not_a_campaign(path) from error
-    if not {*_SEA, *_ANSWER} <= {str(name) for name in dataset.variables}:
+        raise not_a_campaign(path) from error
+    if not {*SEA, *MEAN, "result"} <= {str(name) for name in dataset.variables}:
         dataset.close()
-        raise _not_a_campaign(path)
+        raise not_a_campaign(path)
     return dataset
 
 
-def _not_a_campaign(path: Path) -> RecordError:
-    return RecordError(
-        f"{path}: there is no campaign here. Give the folder that `seacage campaign run` "
-        "wrote, or a NetCDF file exported from it."
-    )
-
-
 def _seas(variables: Mapping[str, np.ndarray]) -> tuple[SeaState, ...]:
-    columns = zip(*(variables[name].tolist() for name in _SEA), strict=True)
-    return tuple(SeaState(**dict(zip(_SEA, row, strict=True))) for row in columns)
-
-
-def _attributes(name: str, variable: _Variable) -> dict[str, Any]:
-    attributes: dict[str, Any] = {"units": variable.units, "long_name": variable.long_name}
-    if variable.standard_name:
-        attributes["standard_name"] = variable.standard_name
-    if "axis" in variable.dims:
-        attributes["comment"] = "axis: x east, y north, z up; z = 0 at still water"
-    if name in _ANSWER:
-        attributes["coordinates"] = " ".join(_SEA)
-    if name == "result":
-        attributes["flag_values"] = [NOT_RUN, *(int(code) for code in Result)]
-        attributes["flag_meanings"] = " ".join(["not_run", *(code.name.lower() for code in Result)])
-    return attributes
+    columns = zip(*(variables[name].tolist() for name in SEA), strict=True)
+    return tuple(SeaState(**dict(zip(SEA, row, strict=True))) for row in columns)

@@ -1,0 +1,409 @@
+"""The Zarr store of a campaign: made once, written block by block, finished once."""
+
+# zarr leaves parts of its signatures untyped.
+# pyright: reportUnknownMemberType=false
+
+import shutil
+import uuid
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from glob import escape
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from seacage.conventions import RecordError, Result
+from seacage.ocean import SeaState
+
+NOT_RUN = -1
+"""Stands in ``result`` for a case that has not been run yet."""
+
+_BLOCKS = "blocks"
+"""Group of the second moments of single blocks, there until the campaign is finished."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Variable:
+    """A variable of the store: where it varies, its CF attributes and its type."""
+
+    dims: tuple[str, ...]
+    units: str
+    long_name: str
+    standard_name: str = ""
+    cell_methods: str = ""
+    comment: str = ""
+    dtype: str = "float64"
+
+
+SEA = {
+    "current_speed": _Variable(
+        dims=("case",),
+        units="m s-1",
+        long_name="speed of the current",
+        standard_name="sea_water_speed",
+    ),
+    "current_to": _Variable(
+        dims=("case",),
+        units="degree",
+        long_name="where the current goes, clockwise from true north",
+        standard_name="sea_water_velocity_to_direction",
+    ),
+    "hs": _Variable(
+        dims=("case",),
+        units="m",
+        long_name="significant wave height",
+        standard_name="sea_surface_wave_significant_height",
+    ),
+    "tp": _Variable(
+        dims=("case",),
+        units="s",
+        long_name="peak period of the waves, 0 without waves",
+        standard_name="sea_surface_wave_period_at_variance_spectral_density_maximum",
+    ),
+    "wave_from": _Variable(
+        dims=("case",),
+        units="degree",
+        long_name="where the waves come from, clockwise from true north",
+        standard_name="sea_surface_wave_from_direction",
+    ),
+}
+"""The sea state of each case, with the names of ``SeaState``."""
+
+MEAN = {
+    "node_position": _Variable(
+        dims=("case", "node", "axis"), units="m", long_name="mean position of the net's nodes"
+    ),
+    "bridle_tension": _Variable(
+        dims=("case", "line"), units="N", long_name="mean tension of the bridles"
+    ),
+    "net_force": _Variable(
+        dims=("case", "axis"), units="N", long_name="load of the water on the netting"
+    ),
+    "volume": _Variable(dims=("case",), units="m3", long_name="volume inside the net"),
+}
+"""What every campaign answers."""
+
+_RESULT = {
+    "result": _Variable(dims=("case",), units="1", long_name="how the case ended", dtype="int8"),
+}
+
+_RESIDUAL = {
+    "residual": _Variable(
+        dims=("case",), units="N", long_name="largest unbalanced force at a node"
+    ),
+}
+
+_WAVE_SEED = {
+    "wave_seed": _Variable(
+        dims=("case",),
+        units="1",
+        long_name="seed of the waves: a simulation with it repeats the case",
+        dtype="int64",
+    ),
+}
+
+_QUANTILE = {
+    "quantile": _Variable(dims=("quantile",), units="1", long_name="probability of not exceeding"),
+}
+
+_SECOND_MOMENT = {
+    "second_moment": _Variable(
+        dims=("coordinate", "other_coordinate"),
+        units="m2",
+        long_name="mean product of two coordinates' displacements from the design shape",
+        comment="coordinate 3 n + a is axis a of node n; over time and all converged cases",
+    ),
+}
+
+_CORE_SECONDS = {
+    "core_seconds": _Variable(
+        dims=("block",), units="s", long_name="processor time that a block of cases took"
+    ),
+}
+
+
+def _spread(name: str, statistic: str, method: str) -> _Variable:
+    """A statistic over time beside a mean; four bytes are finer than any sensor."""
+    whole = MEAN[name]
+    dims = (
+        ("case", "quantile", *whole.dims[1:])
+        if statistic == "quantile"
+        else ("case", *whole.dims[1:])
+    )
+    return _Variable(
+        dims=dims,
+        units=whole.units,
+        long_name=f"{statistic.replace('_', ' ')} of {name.replace('_', ' ')} over time",
+        cell_methods=method,
+        dtype="float32",
+    )
+
+
+_STATISTICS = {
+    "std": "time: standard_deviation",
+    "minimum": "time: minimum",
+    "maximum": "time: maximum",
+    "quantile": "",
+}
+
+SPREAD = {
+    **{
+        f"{name}_{statistic}": _spread(name, statistic, method)
+        for name in ("node_position", "bridle_tension")
+        for statistic, method in _STATISTICS.items()
+    },
+    **{f"{name}_std": _spread(name, "std", _STATISTICS["std"]) for name in ("net_force", "volume")},
+    "diverged_at": _Variable(
+        dims=("case",),
+        units="s",
+        long_name="simulated time at which the case was given up, spin-up included",
+    ),
+}
+"""What a campaign in time answers beside the means."""
+
+
+def create_campaign(
+    path: Path,
+    *,
+    seas: Sequence[SeaState],
+    nodes: int,
+    lines: int,
+    block: int,
+    attributes: Mapping[str, Any],
+    wave_seeds: Sequence[int] | None = None,
+    quantile_levels: Sequence[float] = (),
+    second_moment: bool = False,
+) -> None:
+    """Make the store of a campaign with its sea states and no answers yet.
+
+    It appears at ``path`` whole or not at all. If another process made it meanwhile, that one
+    stays.
+
+    Parameters
+    ----------
+    path
+        Where.
+    seas
+        The sea state of each case.
+    nodes, lines
+        Sizes of the cage.
+    block
+        Cases written at a time: the store's chunk along ``case``.
+    attributes
+        Of the whole store, beside those that every campaign carries.
+    wave_seeds
+        Of each case's waves; None for equilibria.
+    quantile_levels, second_moment
+        What a campaign in time keeps of its statistics.
+    """
+    import zarr
+
+    variables = _variables(
+        in_time=wave_seeds is not None, quantiles=bool(quantile_levels), moment=second_moment
+    )
+    size = {"case": len(seas), "block": -(-len(seas) // block)}
+    size |= {"node": nodes, "axis": 3, "line": lines, "quantile": len(quantile_levels)}
+    size |= {"coordinate": 3 * nodes, "other_coordinate": 3 * nodes}
+    chunk = {**size, "case": min(block, len(seas)), "block": 1}
+    given: dict[str, Any] = {name: [getattr(sea, name) for sea in seas] for name in SEA}
+    given |= {"wave_seed": wave_seeds, "quantile": quantile_levels}
+    unborn = path.with_name(f".{path.name}.{uuid.uuid4().hex[:8]}.unborn")
+    try:
+        unborn.mkdir(parents=True)
+        group = zarr.create_group(
+            unborn, zarr_format=3, attributes={"Conventions": "CF-1.11, ACDD-1.3", **attributes}
+        )
+        for name, variable in variables.items():
+            _create_array(group, name, variable, size, chunk)
+            if name in given:
+                _array(unborn, name)[:] = np.array(given[name])
+        with warnings.catch_warnings():  # zarr warns that other libraries may not look for this
+            warnings.simplefilter("ignore")
+            zarr.consolidate_metadata(unborn)
+        if second_moment:  # after the metadata was gathered, for it will go again
+            _create_block_moments(group, size["block"], size["coordinate"])
+        _moved(unborn, path)
+    finally:
+        shutil.rmtree(unborn, ignore_errors=True)
+
+
+def write_cases(
+    path: Path,
+    first: int,
+    answers: Mapping[str, np.ndarray],
+    *,
+    moment: Float[np.ndarray, "coordinate coordinate"] | None = None,
+    core_seconds: float = np.nan,
+) -> None:
+    """Write one block of answers, from case ``first`` on.
+
+    ``result`` goes last: a block whose results are there is there whole.
+
+    Parameters
+    ----------
+    answers
+        By the names of the store's variables.
+    moment
+        Sum of the second moments of the block's converged cases [m2].
+    core_seconds
+        What the block took.
+    """
+    number = first // int(_array(path, "result").chunks[0])
+    if moment is not None:
+        _array(path, f"{_BLOCKS}/moment")[number] = moment
+    if (path / "core_seconds").is_dir():  # the first campaigns had none
+        _array(path, "core_seconds")[number] = core_seconds
+    for name in (*MEAN, *_RESIDUAL, *SPREAD, *_RESULT):
+        if (path / name).is_dir():
+            values = answers[name]
+            _array(path, name)[first : first + len(values)] = values
+
+
+def campaign_results(path: Path) -> tuple[dict[str, Any], Int[np.ndarray, " case"], int]:
+    """Attributes, result of each case (``NOT_RUN`` where there is none) and block size.
+
+    Raises
+    ------
+    RecordError
+        There is no campaign at ``path``.
+    """
+    import zarr
+
+    try:
+        attributes = dict(zarr.open_group(path, mode="r").attrs)
+        result = _array(path, "result")
+    except (OSError, KeyError, ValueError) as error:
+        raise not_a_campaign(path) from error
+    return attributes, np.asarray(result[:]), int(result.chunks[0])
+
+
+def campaign_variable(path: Path, name: str) -> np.ndarray | None:
+    """One variable of a store, as far as it is written; None if this campaign has none."""
+    return np.asarray(_array(path, name)[:]) if (path / name).is_dir() else None
+
+
+def campaign_unsummed(path: Path) -> bool:
+    """Whether the blocks' second moments still wait to be summed."""
+    return (path / _BLOCKS).is_dir()
+
+
+def finish_campaign(path: Path) -> None:
+    """Sum the blocks' second moments, in their order, once every case has been run.
+
+    Before that, and a second time, it does nothing. Stopped on its way it begins anew; two
+    that finish the same campaign at once write the same bytes.
+    """
+    _, result, _ = campaign_results(path)
+    if not campaign_unsummed(path) or np.any(result == NOT_RUN):
+        return
+    try:
+        total = _summed(_array(path, f"{_BLOCKS}/moment"))
+    except FileNotFoundError:  # another process finished it meanwhile
+        return
+    if np.isnan(total).any():  # the same, a little later: missing blocks read as NaN
+        return
+    converged = int(np.sum(result == Result.CONVERGED))
+    _array(path, "second_moment")[:] = (
+        total / converged if converged else np.full_like(total, np.nan)
+    )
+    spent = path.with_name(f".{path.name}.{uuid.uuid4().hex[:8]}.spent")
+    try:
+        (path / _BLOCKS).rename(spent)  # at once: a half of it is no part of a store
+    except FileNotFoundError:
+        return
+    for left in path.parent.glob(f".{escape(path.name)}.*.spent"):
+        shutil.rmtree(left, ignore_errors=True)
+
+
+def not_a_campaign(path: Path) -> RecordError:
+    """The refusal of whatever else is there."""
+    return RecordError(
+        f"{path}: there is no campaign here. Give the folder that `seacage campaign run` "
+        "wrote, or a NetCDF file exported from it."
+    )
+
+
+def _array(path: Path, name: str) -> Any:
+    import zarr
+
+    return zarr.open_array(path / name, mode="r+")
+
+
+def _variables(*, in_time: bool, quantiles: bool, moment: bool) -> dict[str, _Variable]:
+    """Of a campaign of equilibria, or of one in time."""
+    variables = {**SEA, **MEAN, **_RESULT, **_CORE_SECONDS}
+    variables |= {**_WAVE_SEED, **_QUANTILE, **SPREAD} if in_time else _RESIDUAL
+    if moment:
+        variables |= _SECOND_MOMENT
+    return {
+        name: variable
+        for name, variable in variables.items()
+        if quantiles or "quantile" not in variable.dims
+    }
+
+
+def _create_array(
+    group: Any,
+    name: str,
+    variable: _Variable,
+    size: Mapping[str, int],
+    chunk: Mapping[str, int],
+) -> None:
+    empty: Mapping[str, float] = {"int8": NOT_RUN, "int64": 0}
+    group.create_array(
+        name,
+        shape=tuple(size[dim] for dim in variable.dims),
+        chunks=tuple(chunk[dim] for dim in variable.dims),
+        dtype=variable.dtype,
+        fill_value=empty.get(variable.dtype, np.nan),
+        dimension_names=variable.dims,
+        attributes=_attributes(name, variable),
+    )
+
+
+def _create_block_moments(group: Any, blocks: int, coordinates: int) -> None:
+    """Room for one matrix a block, NaN until written.
+
+    In single precision, whose rounding is far below the sampling error of half an hour.
+    """
+    group.create_group(_BLOCKS).create_array(
+        "moment",
+        shape=(blocks, coordinates, coordinates),
+        chunks=(1, coordinates, coordinates),
+        dtype="float32",
+        fill_value=np.nan,
+    )
+
+
+def _summed(moments: Any) -> Float[np.ndarray, "coordinate coordinate"]:
+    total = np.zeros(moments.shape[1:])
+    for number in range(moments.shape[0]):
+        total += moments[number]
+    return total
+
+
+def _moved(unborn: Path, path: Path) -> None:
+    """Give a store its name, unless another has it."""
+    try:
+        unborn.rename(path)
+    except OSError:
+        if not path.is_dir():
+            raise
+
+
+def _attributes(name: str, variable: _Variable) -> dict[str, Any]:
+    attributes: dict[str, Any] = {"units": variable.units, "long_name": variable.long_name}
+    for key in ("standard_name", "cell_methods", "comment"):
+        if getattr(variable, key):
+            attributes[key] = getattr(variable, key)
+    if "axis" in variable.dims:
+        attributes["comment"] = "axis: x east, y north, z up; z = 0 at still water"
+    if "case" in variable.dims and name not in SEA:
+        attributes["coordinates"] = " ".join(SEA)
+    if name == "result":
+        attributes["flag_values"] = [NOT_RUN, *(int(code) for code in Result)]
+        attributes["flag_meanings"] = " ".join(["not_run", *(code.name.lower() for code in Result)])
+    return attributes
