@@ -20,8 +20,10 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 ROOM = Path("src", "seacage", "dynamics")
 ZIGLANG = "ziglang>=0.13"
+# Kept out of -ffast-math: infinities, for they mark slack bars; and sums as they are written,
+# for compensated ones would be optimised away.
 FLAGS = (
-    "-std=c99 -O3 -ffast-math -fno-finite-math-only -fno-math-errno -fopenmp-simd -fPIC -Wall"
+    "-std=c99 -O3 -ffast-math -fno-finite-math-only -fno-associative-math -fopenmp-simd -fPIC -Wall"
 ).split()
 # Linked apart from -ffast-math, which would make older GCCs add start-up code that flushes
 # denormals to zero in the whole process, NumPy's too; and without the compiler's own runtime,
@@ -79,13 +81,15 @@ def system_compiler() -> list[str] | None:
 
 
 def build(compiler: list[str], source: Path, target: str) -> Path:
-    """One shared library beside its source; replaced at once, as a process may have it loaded."""
+    """One shared library of all C files beside the source; replaced at once, as a process may have it loaded."""
     library = source.with_name(f"_kernel_{target}{SUFFIX}")
     with tempfile.TemporaryDirectory(dir=source.parent, prefix=".build-") as folder:
-        compiled, linked = Path(folder, "kernel.o"), Path(folder, "kernel")
+        linked, objects = Path(folder, "kernel"), list[Path]()
         chosen = instruction_set(compiler, target)
-        run([*compiler, *FLAGS, *chosen, "-c", source, "-o", compiled], folder)
-        run([*compiler, compiled, "-o", linked, *LINK], folder)
+        for unit in sorted(source.parent.glob("*.c")):
+            objects.append(Path(folder, f"{unit.stem}.o"))
+            run([*compiler, *FLAGS, *chosen, "-c", unit, "-o", objects[-1]], folder)
+        run([*compiler, *objects, "-o", linked, *LINK], folder)
         linked.replace(library)
     return library
 

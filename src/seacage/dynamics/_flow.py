@@ -45,7 +45,7 @@ def steady_flow(
     direction = np.column_stack([unit, np.zeros(len(speed))])
     panel_speed = np.tile(speed[:, None], (1, len(screen.solidity)))
     if wake:
-        panel_speed *= 1.0 - (1.0 - screen.wake(panel_speed)) * _downstream(panels, unit)
+        panel_speed *= 1.0 - (1.0 - screen.wake(panel_speed)) * downstream(panels, unit[:, None])
     variance = 0.0 if wave_variance is None else wave_variance
     felt = np.sqrt(panel_speed**2 + 8.0 / np.pi * variance)
     return SteadyFlow(
@@ -56,8 +56,8 @@ def steady_flow(
     )
 
 
-def _downstream(
-    panels: Panels, unit: Float[np.ndarray, "case 2"]
+def downstream(
+    panels: Panels, unit: Float[np.ndarray, "case #panel 2"]
 ) -> Float[np.ndarray, "case panel"]:
     """Share of each panel on the down-stream half of the design shape, 0 to 1.
 
@@ -65,6 +65,6 @@ def _downstream(
     loads without a jump.
     """
     # not a matrix product: its last bit would change with the number of cases
-    along = unit[:, :1] * panels.outward[:, 0] + unit[:, 1:] * panels.outward[:, 1]
+    along = unit[..., 0] * panels.outward[:, 0] + unit[..., 1] * panels.outward[:, 1]
     across = np.arcsin(np.clip(along, -1.0, 1.0))
     return np.clip(0.5 + across / (2.0 * panels.half_width), 0.0, 1.0)

@@ -129,11 +129,20 @@ def panel_load(
     The normal is turned to the flow's side, so that it does not matter which face the
     water meets.
     """
+    return screen_load(panels, position, flow.direction[:, None], flow)
+
+
+def screen_load(
+    panels: Panels,
+    position: Float[np.ndarray, "#case node 3"],
+    u: Float[np.ndarray, "case #panel 3"],
+    flow: SteadyFlow,
+) -> Float[np.ndarray, "case panel 3"]:
+    """``panel_load`` with a direction of the flow for each panel."""
     a, b, c, d = np.moveaxis(position[:, panels.corners], 2, 0)
     area_vector = np.cross(c - a, d - b) / 2.0
     area = np.linalg.norm(area_vector, axis=-1)
     normal = area_vector / np.maximum(area, 1e-12)[..., None]
-    u = flow.direction[:, None]
     cosine = np.sum(normal * u, axis=-1)
     normal = normal * np.where(cosine < 0.0, -1.0, 1.0)[..., None]
     cosine = np.minimum(np.abs(cosine), 1.0)

@@ -1,0 +1,39 @@
+"""C structs filled from Python, which keep the arrays they point to alive."""
+
+import ctypes
+from typing import Any, Self
+
+import numpy as np
+
+KINDS: dict[Any, Any] = {
+    np.dtype(np.float32): ctypes.POINTER(ctypes.c_float),
+    np.dtype(np.float64): ctypes.POINTER(ctypes.c_double),
+    np.dtype(np.int32): ctypes.POINTER(ctypes.c_int32),
+    np.dtype(np.int64): ctypes.POINTER(ctypes.c_int64),
+}
+
+FLOATS, DOUBLES, INTEGERS, LONGS = KINDS.values()
+
+
+def pointer(array: np.ndarray) -> Any:
+    """To the first number of an array."""
+    return array.ctypes.data_as(KINDS[array.dtype])
+
+
+class Struct(ctypes.Structure):
+    """A C struct; ``_fields_`` names what is filled in, in order."""
+
+    @classmethod
+    def filled(cls, **values: Any) -> Self:
+        """Of numbers and arrays; an array that C will write into must be contiguous."""
+        types = {name: kind for name, kind, *_ in cls._fields_}
+        kept: list[np.ndarray] = []
+        struct = cls()
+        for name, value in values.items():
+            if isinstance(value, np.ndarray) and types[name] in KINDS.values():
+                kept.append(np.ascontiguousarray(value))
+                setattr(struct, name, pointer(kept[-1]))
+            else:
+                setattr(struct, name, value)
+        struct.kept = kept
+        return struct
