@@ -1,4 +1,4 @@
-"""The cage: collar, netting, sinker tube, bridles and their node graph."""
+"""The cage: collar, netting, sinker tube, bridles and their node graph; and any structure."""
 
 from seacage.cage._cage import Cage, DepthSensor, Shackle
 from seacage.cage._parts import (
@@ -13,19 +13,30 @@ from seacage.cage._parts import (
     Site,
     Tip,
 )
+from seacage.cage._structure import Structure
+from seacage.cage._structure_parts import Anchor, Line, Net, Point, Ring, Section, Tie, Twine
 
 __all__ = [
+    "Anchor",
     "AnchorLines",
     "Bridles",
     "Cage",
     "Collar",
     "DepthSensor",
     "Frame",
+    "Line",
     "Mesh",
+    "Net",
     "Netting",
+    "Point",
+    "Ring",
     "Ropes",
+    "Section",
     "Shackle",
     "SinkerTube",
     "Site",
+    "Structure",
+    "Tie",
     "Tip",
+    "Twine",
 ]

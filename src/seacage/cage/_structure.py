@@ -1,0 +1,365 @@
+"""A moored net structure of any topology: rings, nets, ties, points and lines."""
+
+import difflib
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Self, TypeVar
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from seacage.cage._parts import Site, check_bounds, quantity
+from seacage.cage._structure_parts import (
+    Anchor,
+    Line,
+    Named,
+    Net,
+    Point,
+    Ring,
+    Section,
+    Tie,
+    Twine,
+)
+from seacage.cage._toml import parsed, written
+from seacage.cage._volume import enclosed_volume
+from seacage.conventions import InputError
+
+_Part = TypeVar("_Part", bound=Named)
+
+
+# No slots here: what is derived from the parts is computed once and kept.
+@dataclass(frozen=True, kw_only=True)
+class Structure:
+    """A net cage of any topology, as its file describes it, with the nodes derived from it.
+
+    Where ``Cage`` is one kind of cage with many sizes, this is rings of nodes on common
+    spokes, nets and ties between them, points and lines. All rings are round the z axis.
+    Positions are x east, y north, z up [m] with z = 0 at still water; they are where a
+    solver starts, while lengths are given by the parts.
+
+    Nodes, in this order: the rings, ring by ring; the inner nodes of each net from its upper
+    edge inwards or downwards (a disc's centre last); of each tie, tie by tie; the points;
+    the anchors; the inner nodes of each line from its start.
+    """
+
+    name: str = field(metadata={"unit": "", "meaning": "the name of the structure"})
+    spokes: int = quantity("", "nodes of every ring, the first one east", low=3)
+    site: Site
+    section: tuple[Section, ...]
+    twine: tuple[Twine, ...] = ()
+    ring: tuple[Ring, ...]
+    net: tuple[Net, ...] = ()
+    tie: tuple[Tie, ...] = ()
+    point: tuple[Point, ...] = ()
+    anchor: tuple[Anchor, ...] = ()
+    line: tuple[Line, ...] = ()
+
+    def __post_init__(self) -> None:
+        check_bounds(self, f"Structure {self.name}")
+        if not self.ring:
+            raise InputError(f"Structure {self.name}: it has no ring. Add a [[ring]].")
+        places = (*self.ring, *self.point, *self.anchor)
+        for parts in (self.section, self.twine, self.net, self.tie, places, self.line):
+            _check_distinct(self.name, [part.name for part in parts])
+        self._check_references()
+        for place in (*self.point, *self.anchor):
+            if place.position[2] < -self.site.water_depth - 1e-6:
+                raise InputError(
+                    f"Structure {self.name}: {place.name!r} lies at z = {place.position[2]:g} m, "
+                    f"below the sea bed at {-self.site.water_depth:g} m."
+                )
+
+    def _check_references(self) -> None:
+        for net in self.net:
+            self.twine_of(net)
+            self._ring_index(net.upper, net.name)
+            if net.lower:
+                self._ring_index(net.lower, net.name)
+        for ring in self.ring:
+            if ring.section:
+                self.section_of(ring)
+        for tie in self.tie:
+            self.section_of(tie)
+            self._ring_index(tie.upper, tie.name)
+            self._ring_index(tie.lower, tie.name)
+        for line in self.line:
+            self.section_of(line)
+            start, end = (self._place(where, line.name) for where in (line.start, line.end))
+            if start == end:
+                raise InputError(
+                    f"Structure {self.name}: line {line.name!r} starts and ends at {line.start!r}."
+                )
+
+    # Doors
+
+    @classmethod
+    def read(cls, path: str | Path) -> Self:
+        """A structure from a TOML file, refused with the key's name where a key is wrong."""
+        try:
+            text = Path(path).read_text("utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            raise InputError(
+                f"Structure.read: cannot read {path} as UTF-8 text ({error})."
+            ) from error
+        return cls.from_toml(text, source=str(path))
+
+    @classmethod
+    def from_toml(cls, text: str, *, source: str = "structure") -> Self:
+        """A structure from TOML text; ``source`` names it in errors."""
+        return parsed(cls, text, source=source)
+
+    def to_toml(self) -> str:
+        """TOML text with the unit in every key and the meaning beside it."""
+        return written(self)
+
+    def write(self, path: str | Path) -> None:
+        """Write a TOML file that ``read`` takes back."""
+        Path(path).write_text(self.to_toml(), "utf-8")
+
+    # What a part is made of
+
+    def section_of(self, part: Ring | Tie | Line) -> Section:
+        """The cross-section of a ring, of a tie or of a line."""
+        return self._found(self.section, part.section, "section", part.name)
+
+    def twine_of(self, net: Net) -> Twine:
+        """The twine of a net."""
+        return self._found(self.twine, net.twine, "twine", net.name)
+
+    # Nodes
+
+    @property
+    def node_count(self) -> int:
+        """All nodes, those of the lines and the anchors included."""
+        return self._first_line_node + sum(line.segments - 1 for line in self.line)
+
+    @property
+    def point_nodes(self) -> Int[np.ndarray, " point"]:
+        """The nodes of the points."""
+        return self._first_point + np.arange(len(self.point))
+
+    @property
+    def anchor_nodes(self) -> Int[np.ndarray, " anchor"]:
+        """The nodes of the anchors."""
+        return self._first_point + len(self.point) + np.arange(len(self.anchor))
+
+    def ring_nodes(self, ring: int | str) -> Int[np.ndarray, " spoke"]:
+        """Nodes of a ring, by its name or number, counter-clockwise seen from above."""
+        index = ring if isinstance(ring, int) else self._ring_index(ring, "ring_nodes")
+        return self.spokes * index + np.arange(self.spokes)
+
+    def net_nodes(self, index: int) -> Int[np.ndarray, "level spoke"]:
+        """Nodes of a net, by its number, level by level from the upper edge.
+
+        The last level of a disc is its centre, as often as there are spokes.
+        """
+        net = self.net[index]
+        first = self._first_net_node + sum(_inner_nodes(n, self.spokes) for n in self.net[:index])
+        inner = first + np.arange((net.rows - 1) * self.spokes).reshape(-1, self.spokes)
+        last = (
+            self.ring_nodes(net.lower)
+            if net.lower
+            else np.full(self.spokes, first + (net.rows - 1) * self.spokes)
+        )
+        return np.vstack([self.ring_nodes(net.upper), inner, last])
+
+    def tie_nodes(self, index: int) -> Int[np.ndarray, "tie node"]:
+        """Nodes of each member of a tie, by its number, from the upper end."""
+        tie = self.tie[index]
+        first = self._first_tie_node + sum(
+            self._members(t) * (t.segments - 1) for t in self.tie[:index]
+        )
+        count, inner = self._members(tie), tie.segments - 1
+        upper, lower = (self.ring_nodes(ring)[:: tie.every] for ring in (tie.upper, tie.lower))
+        between = first + np.arange(count * inner).reshape(count, inner)
+        return np.column_stack([upper, between, lower])
+
+    def line_nodes(self, index: int) -> Int[np.ndarray, " node"]:
+        """Nodes of a line, by its number, from its start."""
+        line = self.line[index]
+        first = self._first_line_node + sum(n.segments - 1 for n in self.line[:index])
+        start, end = (self._place(where, line.name) for where in (line.start, line.end))
+        return np.concatenate([[start], first + np.arange(line.segments - 1), [end]])
+
+    @cached_property
+    def design_position(self) -> Float[np.ndarray, "node 3"]:
+        """Where the nodes are put together: straight between rings, points and anchors [m]."""
+        position = np.empty((self.node_count, 3))
+        angle = 2.0 * np.pi * np.arange(self.spokes) / self.spokes
+        for index, ring in enumerate(self.ring):
+            position[self.ring_nodes(index)] = np.column_stack(
+                [ring.radius * np.cos(angle), ring.radius * np.sin(angle), angle * 0 - ring.depth]
+            )
+        for nodes, places in ((self.point_nodes, self.point), (self.anchor_nodes, self.anchor)):
+            for node, place in zip(nodes, places, strict=True):
+                position[node] = place.position
+        for index, net in enumerate(self.net):
+            if not net.lower:
+                position[self.net_nodes(index)[-1, 0]] = [0.0, 0.0, position[self._edge(net), 2]]
+            _fill(position, self.net_nodes(index).T)
+        for index in range(len(self.tie)):
+            _fill(position, self.tie_nodes(index))
+        for index in range(len(self.line)):
+            _fill(position, self.line_nodes(index)[None])
+        position.setflags(write=False)
+        return position
+
+    # The netting and the lines, as figures and reports see them
+
+    @cached_property
+    def panels(self) -> Int[np.ndarray, "panel 4"]:
+        """Corners of each panel of netting, net by net, counter-clockwise from outside.
+
+        Triangles repeat their last node. A disc faces up unless it closes a lower edge.
+        """
+        several = [self.net_panels(index) for index in range(len(self.net))]
+        return np.concatenate([np.zeros((0, 4), dtype=np.int64), *several])
+
+    def net_panels(self, index: int) -> Int[np.ndarray, "panel 4"]:
+        """Corners of a net's panels, by its number, level by level."""
+        nodes = self.net_nodes(index)
+        beside = np.roll(nodes, -1, axis=1)
+        corners = np.stack([nodes[:-1], nodes[1:], beside[1:], beside[:-1]], axis=-1)
+        if not self.net[index].lower:
+            corners[-1, :, 2:] = beside[-2, :, None]  # upper, centre, beside, beside
+        if self._faces_up(self.net[index]):
+            corners[:, :, [1, 3]] = corners[:, :, [3, 1]]
+            if not self.net[index].lower:
+                corners[-1] = np.stack([nodes[-2], beside[-2], nodes[-1], nodes[-1]], axis=-1)
+        return corners.reshape(-1, 4)
+
+    @cached_property
+    def edges(self) -> Int[np.ndarray, "edge 2"]:
+        """Pairs of neighbouring nodes: rings, nets, ties, lines."""
+        around = [_closed(self.ring_nodes(index)) for index in range(len(self.ring))]
+        nets = [self._net_edges(index) for index in range(len(self.net))]
+        ties = [_chained(self.tie_nodes(index)) for index in range(len(self.tie))]
+        lines = [_chained(self.line_nodes(index)[None]) for index in range(len(self.line))]
+        return np.concatenate([*around, *nets, *ties, *lines])
+
+    @property
+    def line_names(self) -> tuple[str, ...]:
+        """The lines, in the order in which their tensions are reported."""
+        return tuple(line.name for line in self.line)
+
+    def volume(
+        self, node_position: Float[np.ndarray, "*case node 3"]
+    ) -> Float[np.ndarray, "*case"]:
+        """Volume that the nets enclose, closed by the polygon of their uppermost edge [m3]."""
+        if not self.net:
+            return np.zeros(node_position.shape[:-2])
+        top = min((self._ring_index(net.upper, net.name) for net in self.net), key=self._depth)
+        return enclosed_volume(node_position, self.panels, self.ring_nodes(top))
+
+    def knitted(self, index: int) -> tuple[float, Float[np.ndarray, " level"]]:
+        """A net as it was knitted, by its number.
+
+        Returns
+        -------
+        row
+            Length of a meridian from level to level [m].
+        chord
+            Width between two spokes at each level [m]; 0 at a disc's centre.
+        """
+        net, upper = self.net[index], self.ring[self._ring_index(self.net[index].upper, "")]
+        sector = 2.0 * np.sin(np.pi / self.spokes)
+        if not net.lower:
+            height = net.height or upper.radius
+            first, last = net.upper_width / self.spokes or sector * height, 0.0
+        else:
+            lower = self.ring[self._ring_index(net.lower, net.name)]
+            height = net.height or np.hypot(upper.radius - lower.radius, lower.depth - upper.depth)
+            first = net.upper_width / self.spokes or sector * upper.radius
+            last = net.lower_width / self.spokes or sector * lower.radius
+        return float(height / net.rows), np.linspace(first, last, net.rows + 1)
+
+    # Within
+
+    @property
+    def _first_net_node(self) -> int:
+        return self.spokes * len(self.ring)
+
+    @property
+    def _first_tie_node(self) -> int:
+        return self._first_net_node + sum(_inner_nodes(net, self.spokes) for net in self.net)
+
+    @property
+    def _first_point(self) -> int:
+        return self._first_tie_node + sum(
+            self._members(tie) * (tie.segments - 1) for tie in self.tie
+        )
+
+    @property
+    def _first_line_node(self) -> int:
+        return self._first_point + len(self.point) + len(self.anchor)
+
+    def _members(self, tie: Tie) -> int:
+        return -(-self.spokes // tie.every)
+
+    def _edge(self, net: Net) -> int:
+        return int(self.ring_nodes(net.upper)[0])
+
+    def _depth(self, ring: int) -> float:
+        return self.ring[ring].depth
+
+    def _faces_up(self, net: Net) -> bool:
+        return not net.lower and all(other.lower != net.upper for other in self.net)
+
+    def _net_edges(self, index: int) -> Int[np.ndarray, "edge 2"]:
+        nodes = self.net_nodes(index)
+        inner = [_closed(level) for level in nodes[1:-1]]
+        return np.concatenate([*inner, _chained(nodes.T)])
+
+    def _place(self, where: str, line: str) -> int:
+        """The node of a point, of an anchor or of a ring's spoke."""
+        ring, slash, spoke = where.rpartition("/")
+        if slash and spoke.isdigit() and int(spoke) < self.spokes:
+            return int(self.ring_nodes(self._ring_index(ring, line))[int(spoke)])
+        if slash and any(ring == r.name for r in self.ring):
+            raise InputError(
+                f"Structure {self.name}: line {line!r} ends at {where!r}, but spokes are numbered "
+                f"0 to {self.spokes - 1}."
+            )
+        places = (*self.point, *self.anchor)
+        found = self._found(places, where, "point, anchor or ring/spoke", line)
+        return self._first_point + places.index(found)
+
+    def _ring_index(self, name: str, part: str) -> int:
+        return self.ring.index(self._found(self.ring, name, "ring", part))
+
+    def _found(self, parts: tuple[_Part, ...], name: str, what: str, part: str) -> _Part:
+        known = {p.name: p for p in parts}
+        if name not in known:
+            close = difflib.get_close_matches(name, known, n=1)
+            hint = f"did you mean {close[0]!r}?" if close else f"known are: {', '.join(known)}."
+            raise InputError(
+                f"Structure {self.name}: {part!r} names the {what} {name!r}, which is not there; "
+                f"{hint}"
+            )
+        return known[name]
+
+
+def _inner_nodes(net: Net, spokes: int) -> int:
+    return (net.rows - 1) * spokes + (0 if net.lower else 1)
+
+
+def _fill(position: Float[np.ndarray, "node 3"], chains: Int[np.ndarray, "chain node"]) -> None:
+    """Put the inner nodes of chains straight between their ends."""
+    share = np.linspace(0.0, 1.0, chains.shape[1])[None, 1:-1, None]
+    first, last = position[chains[:, 0]][:, None], position[chains[:, -1]][:, None]
+    position[chains[:, 1:-1]] = first + share * (last - first)
+
+
+def _closed(nodes: Int[np.ndarray, " node"]) -> Int[np.ndarray, "edge 2"]:
+    return np.column_stack([nodes, np.roll(nodes, -1)])
+
+
+def _chained(chains: Int[np.ndarray, "chain node"]) -> Int[np.ndarray, "edge 2"]:
+    return np.stack([chains[:, :-1], chains[:, 1:]], axis=-1).reshape(-1, 2)
+
+
+def _check_distinct(structure: str, names: list[str]) -> None:
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError(f"Structure {structure}: two parts of a kind are named {name!r}.")
