@@ -7,7 +7,7 @@ from functools import lru_cache
 from typing import Any, Self
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Float
 
 from seacage.conventions import WATER_VISCOSITY
 from seacage.dynamics._assembly import Assembly
@@ -28,7 +28,7 @@ _SCREEN, _REYNOLDS_SCREEN, _TWINES = range(3)
 
 
 class _Body(Struct):
-    _fields_ = [
+    _fields_ = (
         *((n, ctypes.c_int32) for n in ("nodes", "bars", "bends", "panels", "cylinders")),
         *((n, ctypes.c_int32) for n in ("floats", "springs", "grounds", "bridles", "kind")),
         *((n, INTEGERS) for n in ("bar_ends", "bend_nodes", "panel_corners", "cylinder_ends")),
@@ -42,41 +42,41 @@ class _Body(Struct):
         *((n, FLOATS) for n in ("spring_damping", "ground_stiffness", "cylinder_series")),
         ("ground_level", ctypes.c_float),
         ("law", ctypes.c_float * 4),
-    ]
+    )
 
 
 class _Sea(Struct):
-    _fields_ = [
+    _fields_ = (
         *((n, ctypes.c_int32) for n in ("components", "levels")),
         *((n, DOUBLES) for n in ("turns", "turns_per_second")),
         *((n, FLOATS) for n in ("east", "north", "decay", "amplitude")),
         *((n, FLOATS) for n in ("along_x", "along_y", "up", "floor", "bounce")),
         *((n, FLOATS) for n in ("level_z", "current", "wake")),
         ("depth", ctypes.c_float),
-    ]
+    )
 
 
 class _Schedule(Struct):
-    _fields_ = [
+    _fields_ = (
         *((n, ctypes.c_double) for n in ("time_step", "ramp")),
         *((n, ctypes.c_int64) for n in ("first", "refreshes", "count_from", "sample_every")),
         ("steps", ctypes.c_int32),
-    ]
+    )
 
 
 class _State(Struct):
-    _fields_ = [
+    _fields_ = tuple(
         (n, FLOATS)
         for n in (
             *("position", "rest", "velocity", "water", "slope", "current", "relative"),
             *("force", "base", "drag", "elevation", "rise", "panel_current"),
             *("panel_drag", "panel_lift", "lost_at"),
         )
-    ]
+    )
 
 
 class _Record(Struct):
-    _fields_ = [
+    _fields_ = (
         *((n, DOUBLES) for n in ("node_sum", "node_square")),
         *((n, FLOATS) for n in ("node_least", "node_most")),
         *((n, DOUBLES) for n in ("bridle_sum", "bridle_square")),
@@ -85,7 +85,7 @@ class _Record(Struct):
         *((n, FLOATS) for n in ("load_least", "load_most")),
         *((n, LONGS) for n in ("counted", "sampled")),
         *((n, FLOATS) for n in ("positions", "tensions", "elevations", "loads")),
-    ]
+    )
 
 
 @lru_cache(maxsize=1)
@@ -249,9 +249,7 @@ def kernel_force(
     inertia = assembly.water_mass[:, None] * water.acceleration
     inertia[..., 2] += assembly.weight
     motion.arrays["base"][:] = laned(inertia)
-    still = Ocean(
-        waves=(), current=np.zeros((cases, 1, 2)), level_z=np.zeros(1), depth=1.0
-    )
+    still = Ocean(waves=(), current=np.zeros((cases, 1, 2)), level_z=np.zeros(1), depth=1.0)
     total = np.zeros((3, simulation_lanes()), np.float32)
     _library().seacage_march_forces(
         ctypes.byref(_body(assembly, law)),
@@ -318,18 +316,14 @@ def _motion(assembly: Assembly, position: Float[np.ndarray, "node 3 lane"]) -> _
         "panel_lift": (panels,),
     }
     arrays = {name: np.zeros((*shape, lanes), np.float32) for name, shape in shapes.items()}
-    return _Motion.of(
-        {"position": position, **arrays, "lost_at": np.full(lanes, -1.0, np.float32)}
-    )
+    return _Motion.of({"position": position, **arrays, "lost_at": np.full(lanes, -1.0, np.float32)})
 
 
 def _body(assembly: Assembly, law: NetLaw) -> _Body:
     a = assembly
-    order = np.argsort(a.floats.nodes)  # the kernel meets them in the order of the nodes
-    if not np.array_equal(order, np.arange(len(order))):
-        raise AssertionError("floats are not in the order of their nodes")
+    assert np.all(np.diff(a.floats.nodes) > 0), "the kernel meets floats in the nodes' order"
     kind, numbers, panel_law = _law(a, law)
-    indices: dict[str, Int[np.ndarray, "..."]] = {
+    indices = {
         "bar_ends": a.bars.ends,
         "bend_nodes": a.bends.nodes,
         "panel_corners": a.panels.corners,

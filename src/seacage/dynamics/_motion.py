@@ -136,9 +136,7 @@ def moving_net_load(
     if law.name == "morison":
         return twine_load(panels, law, position, past)
     speed = np.linalg.norm(past, axis=-1)
-    screen = Screen(
-        law=law.name, solidity=panels.solidity, twine_diameter=panels.twine_diameter
-    )
+    screen = Screen(law=law.name, solidity=panels.solidity, twine_diameter=panels.twine_diameter)
     unit = past / np.where(speed > 0.0, speed, 1.0)[..., None]
     flow = SteadyFlow(
         direction=unit[:, 0],
@@ -185,9 +183,7 @@ def twine_load(
     return load
 
 
-def bar_damping(
-    bars: Bars, mass: Float[np.ndarray, " node"]
-) -> Float[np.ndarray, " bar"]:
+def bar_damping(bars: Bars, mass: Float[np.ndarray, " node"]) -> Float[np.ndarray, " bar"]:
     """Of the rate of stretch: a share of what would be critical for the pair of ends [N s/m]."""
     i, j = bars.ends.T
     pair = mass[i] * mass[j] / (mass[i] + mass[j])

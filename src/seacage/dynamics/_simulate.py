@@ -1,0 +1,309 @@
+"""A cage in waves and current, in time, many cases at once."""
+
+import math
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from threading import Lock
+from typing import Literal
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from seacage.cage import Cage
+from seacage.conventions import InputError, Progress
+from seacage.dynamics._assembly import Assembly
+from seacage.dynamics._history import History
+from seacage.dynamics._march import REFRESH, March, Ocean, Steps, simulation_lanes
+from seacage.dynamics._motion import MOVING_LAWS, MovingLaw, NetLaw, wake_share
+from seacage.dynamics._reduction import Reduction, stacked
+from seacage.dynamics._settle import _assembled, rest_shape, settle
+from seacage.dynamics._stability import steadied
+from seacage.ocean import CurrentProfile, SeaState, Waves, sample_waves
+
+Mooring = Literal["springs", "catenary"]
+
+CHUNK = 100
+"""Refreshes between two reports of progress."""
+
+STATISTICS_EVERY = 1.0
+"""Between samples for quantiles and moments where no series is asked for [s]."""
+
+
+def simulate(
+    cage: Cage,
+    sea: SeaState | Sequence[SeaState],
+    *,
+    duration: float,
+    seed: int | Sequence[int] = 0,
+    law: MovingLaw = "kristiansen-faltinsen",
+    mooring: Mooring = "springs",
+    current_profile: CurrentProfile | None = None,
+    waves: Waves | Sequence[Waves] | None = None,
+    wake: bool = True,
+    hold_collar: bool = False,
+    collar_drag: bool = True,
+    ramp: float = 60.0,
+    spin_up: float = 300.0,
+    time_step: float = 0.004,
+    sample_every: float | None = 0.5,
+    series_nodes: Sequence[int] | None = None,
+    quantile_levels: Sequence[float] = (0.05, 0.5, 0.95),
+    second_moment: bool = False,
+    workers: int = 1,
+    progress: Progress | None = None,
+) -> History:
+    """The moored cage in each sea, in time.
+
+    Net loads by a screen law in relative flow or twine by twine, with the wake of the current on
+    the down-stream half; linear irregular waves, stretched to the moving surface; inertia with
+    added mass; damped, tension-only netting; elastic collar afloat, sinker tube on the
+    cylinder's edge, bridles on elastic frame corners or on a frame with buoys and anchor lines.
+    It starts from the equilibrium in the current; the waves rise over ``ramp``, and nothing
+    counts before ``spin_up``. Left out: waves made by the collar, second-order waves, the
+    netting's shelter from waves, wave loads on lines of the mooring above their drag and
+    inertia. A case's numbers do not depend on the cases beside it nor on ``workers``.
+
+    Parameters
+    ----------
+    sea
+        One sea state, or several: a leading case axis.
+    duration
+        That counts, after the spin-up [s].
+    seed
+        Of the waves: one for each case, or the first case's, from which the others count up.
+    law
+        "aarsnes", "loland", "kristiansen-faltinsen", or "morison": twine by twine.
+    mooring
+        "springs" under the frame corners, or "catenary": frame, buoys and anchor lines.
+    current_profile
+        How the current changes with depth; uniform without.
+    waves
+        Instead of drawing them from the sea's spectrum: one for all cases or one for each.
+    wake
+        Whether the down-stream half of the net meets slower water.
+    hold_collar
+        Keep the collar in its place, as in a tank.
+    collar_drag
+        Whether collar and sinker tube meet drag.
+    ramp
+        Over which the waves rise [s].
+    spin_up
+        Simulated before anything counts, the ramp included [s].
+    time_step
+        At most; a whole number of steps makes 0.1 s, in which the water's motion runs straight
+        [s]. Light nodes are lent mass where the step needs it.
+    sample_every
+        Of the series, in whole tenths of a second [s]; None for no series.
+    series_nodes
+        Nodes whose series are kept; None for all.
+    quantile_levels
+        Of positions and tensions; estimated from the samples, or without a series from one
+        sample a second.
+    second_moment
+        Whether to form the second moment of all coordinates.
+    workers
+        Threads to share the cases among.
+    progress
+        Called as ("simulate", done, total), in simulated seconds of all cases.
+
+    Raises
+    ------
+    InputError
+        No sea at all, times that make no sense, an unknown law or mooring, a time step too
+        long for the stiffest line, or a cage that cannot float.
+    """
+    seas = [sea] if isinstance(sea, SeaState) else list(sea)
+    _check(seas, law)
+    steps = _steps(duration, ramp, spin_up, time_step, sample_every)
+    assembly = _prepared(cage, mooring, hold_collar=hold_collar, collar_drag=collar_drag)
+    assembly, _ = steadied(assembly, steps.time_step)
+    depth = cage.site.water_depth
+    ocean = _ocean(seas, _waves(seas, waves, seed, depth), current_profile, depth)
+    lanes = simulation_lanes()
+    blocks = [slice(i, min(i + lanes, len(seas))) for i in range(0, len(seas), lanes)]
+    report = _Report(progress, (steps.spin_up + steps.counted) * len(seas))
+    reduction = Reduction(
+        cage=cage,
+        kept=_kept_nodes(cage, series_nodes),
+        series=sample_every is not None,
+        levels=_levels(quantile_levels),
+        second_moment=second_moment,
+        rest=rest_shape(cage, hold_collar=hold_collar),
+    )
+
+    def run(block: slice) -> list[History]:
+        some = replace(ocean, waves=ocean.waves[block], current=ocean.current[block])
+        net = NetLaw(name=law, wake=_wakes(assembly, law, some, wake=wake))
+        start = _start(cage, assembly, seas[block], law, wake=wake, hold_collar=hold_collar)
+        march = March(assembly, net, some, steps, start)
+        whole = steps.spin_up + steps.counted
+        for first in range(0, whole, CHUNK):
+            taken = min(CHUNK, whole - first)
+            march.go(taken)
+            report(taken * march.cases)
+        return reduction.histories(assembly, march)
+
+    with ThreadPoolExecutor(workers) as pool:
+        cases = [case for block in pool.map(run, blocks) for case in block]
+    return cases[0] if isinstance(sea, SeaState) else stacked(cases)
+
+
+def _check(seas: list[SeaState], law: MovingLaw) -> None:
+    if not seas:
+        raise InputError("simulate: no sea state given. Pass one or more.")
+    if law not in MOVING_LAWS:
+        raise InputError(f"simulate: no law {law!r}; there are: {', '.join(MOVING_LAWS)}.")
+
+
+def _steps(
+    duration: float, ramp: float, spin_up: float, time_step: float, sample_every: float | None
+) -> Steps:
+    """Times in whole refreshes; the last part of one is simulated too."""
+    for name, value, least in (
+        ("duration", duration, REFRESH),
+        ("ramp", ramp, 0.0),
+        ("spin_up", spin_up, ramp),
+        ("time_step", time_step, 1e-5),
+    ):
+        if not (math.isfinite(value) and value >= least):
+            what = "at least ramp" if name == "spin_up" else f"at least {least:g} s"
+            raise InputError(f"simulate: {name} = {value:g} s must be a finite time of {what}.")
+    every = STATISTICS_EVERY if sample_every is None else sample_every
+    samples = round(every / REFRESH)
+    if samples < 1 or not math.isclose(samples * REFRESH, every, rel_tol=1e-6):
+        raise InputError(
+            f"simulate: sample_every = {every:g} s is not a whole number of tenths of a second, "
+            "in which the water's motion is known. Give 0.1, 0.2, …"
+        )
+    each = math.ceil(REFRESH / time_step - 1e-9)
+    return Steps(
+        time_step=REFRESH / each,
+        each=each,
+        ramp=ramp,
+        spin_up=math.ceil(spin_up / REFRESH - 1e-9),
+        counted=math.ceil(duration / REFRESH - 1e-9),
+        sample_every=samples,
+    )
+
+
+def _levels(levels: Sequence[float]) -> Float[np.ndarray, " quantile"]:
+    wrong = [level for level in levels if not 0.0 <= level <= 1.0]
+    if wrong:
+        raise InputError(f"simulate: quantile level {wrong[0]:g} is outside [0, 1].")
+    return np.array(levels, dtype=np.float64)
+
+
+def _kept_nodes(cage: Cage, asked: Sequence[int] | None) -> Int[np.ndarray, " kept"]:
+    nodes = np.arange(cage.node_count) if asked is None else np.array(asked, dtype=np.int64)
+    if np.any((nodes < 0) | (nodes >= cage.node_count)):
+        raise InputError(
+            f"simulate: series_nodes = {nodes.tolist()} has a node outside "
+            f"0 … {cage.node_count - 1}."
+        )
+    return nodes
+
+
+def _prepared(cage: Cage, mooring: Mooring, *, hold_collar: bool, collar_drag: bool) -> Assembly:
+    if mooring not in ("springs", "catenary"):
+        raise InputError(f"simulate: no mooring {mooring!r}; there are: springs, catenary.")
+    assembly = _assembled(cage)
+    if hold_collar:
+        fixed = assembly.fixed.copy()
+        fixed[cage.ring_nodes(0)] = True
+        assembly = replace(assembly, fixed=fixed)
+    if not collar_drag:
+        nothing = np.zeros_like(assembly.cylinders.drag_width)
+        assembly = replace(assembly, cylinders=replace(assembly.cylinders, drag_width=nothing))
+    return assembly
+
+
+def _waves(
+    seas: list[SeaState],
+    given: Waves | Sequence[Waves] | None,
+    seed: int | Sequence[int],
+    depth: float,
+) -> list[Waves]:
+    """One realisation for each case."""
+    if given is not None:
+        waves = [given] * len(seas) if isinstance(given, Waves) else list(given)
+        if len(waves) != len(seas):
+            raise InputError(
+                f"simulate: {len(waves)} waves for {len(seas)} seas. Give one for each, or one."
+            )
+        return waves
+    seeds = [seed + i for i in range(len(seas))] if isinstance(seed, int) else list(seed)
+    if len(seeds) != len(seas):
+        raise InputError(
+            f"simulate: {len(seeds)} seeds for {len(seas)} seas. Give one for each, or one number."
+        )
+    return [sample_waves(s, seed=own, depth=depth) for s, own in zip(seas, seeds, strict=True)]
+
+
+def _ocean(
+    seas: list[SeaState], waves: list[Waves], profile: CurrentProfile | None, depth: float
+) -> Ocean:
+    surface = np.array([sea.current_velocity for sea in seas])
+    if profile is None:
+        return Ocean(waves=waves, current=surface[:, None], level_z=np.zeros(1), depth=depth)
+    return Ocean(
+        waves=waves,
+        current=profile.velocity(surface),
+        level_z=-np.array(profile.depth),
+        depth=depth,
+    )
+
+
+def _wakes(
+    assembly: Assembly, law: MovingLaw, ocean: Ocean, *, wake: bool
+) -> Float[np.ndarray, "case panel"]:
+    """By the current at each panel's depth in the design shape."""
+    depth = assembly.panels.depth
+    if not wake:
+        return np.ones((len(ocean.current), len(depth)))
+    at_panels = np.stack(
+        [
+            np.column_stack([np.interp(depth, -ocean.level_z, case[:, axis]) for axis in (0, 1)])
+            for case in ocean.current
+        ]
+    )
+    return wake_share(assembly, law, at_panels)
+
+
+def _start(
+    cage: Cage,
+    assembly: Assembly,
+    seas: list[SeaState],
+    law: MovingLaw,
+    *,
+    wake: bool,
+    hold_collar: bool,
+) -> Float[np.ndarray, "case node 3"]:
+    """Equilibria in the sea's surface current; it is only a start, so any will do."""
+    still = [SeaState(current_speed=s.current_speed, current_to=s.current_to) for s in seas]
+    settled = settle(
+        cage,
+        still,
+        law="loland" if law == "morison" else law,
+        wake=wake,
+        hold_collar=hold_collar,
+    ).node_position
+    known = np.isfinite(settled).all(axis=(1, 2), keepdims=True)
+    start = np.repeat(assembly.position[None], len(seas), axis=0)
+    net = np.where(known, settled, rest_shape(cage, hold_collar=hold_collar))
+    start[:, : cage.node_count] = net
+    return start
+
+
+class _Report:
+    """Adds up what the threads have simulated, and tells it one at a time."""
+
+    def __init__(self, progress: Progress | None, whole: int) -> None:
+        self._progress, self._whole, self._done, self._lock = progress, whole, 0, Lock()
+
+    def __call__(self, refreshes: int) -> None:
+        with self._lock:
+            self._done += refreshes
+            if self._progress is not None:
+                seconds = (round(count * REFRESH) for count in (self._done, self._whole))
+                self._progress("simulate", *seconds)
