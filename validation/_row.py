@@ -45,6 +45,8 @@ class Row:
     must_hold
         Whether a miss is a failure. Only for a published field envelope, or a number whose
         conditions are not published whole, it is not; ``note`` then says why we miss it.
+    detail
+        What each member of an ensemble gives.
     note
         What a reader must know to judge the row.
     """
@@ -58,6 +60,7 @@ class Row:
     tolerance: float
     reason: str
     must_hold: bool = True
+    detail: str = ""
     note: str = ""
 
     @property

@@ -42,25 +42,26 @@ def markdown(table: Table) -> str:
 
 
 def _section(section: Section, rows: Sequence[Row]) -> str:
+    notes = list(dict.fromkeys(row.note for row in rows if row.note))
     lines = [f"## {section.title}", "", section.about, ""]
     lines += [_line(COLUMNS), _line(["---"] * len(COLUMNS))]
-    lines += [_line(_cells(row)) for row in rows]
-    notes = [f"- *{row.what}*: {row.note}" for row in rows if row.note]
-    return "\n".join([*lines, "", *notes, ""] if notes else [*lines, ""])
+    lines += [_line(_cells(row, notes)) for row in rows]
+    told = [f"{number}. {note}" for number, note in enumerate(notes, 1)]
+    return "\n".join([*lines, "", *told, ""] if notes else [*lines, ""])
 
 
-def _cells(row: Row) -> list[str]:
+def _cells(row: Row, notes: Sequence[str]) -> list[str]:
     unit = "" if row.unit == "-" else f" {row.unit}"
     ours = "–" if row.ours is None else f"{shown(row.ours)}{unit}"
-    tolerance = f"± {_number(row.tolerance, digits=2)}{unit}: {row.reason}"
     verdict = f"**{row.verdict}**" if row.verdict == "no" else row.verdict
+    verdict = verdict if row.must_hold else f"{verdict} (may miss)"
     return [
         row.what,
         f"{shown(row.reference)}{unit}",
         f"{row.kind}; {row.source}",
-        ours,
-        tolerance,
-        verdict if row.must_hold else f"{verdict} (may miss)",
+        f"{ours} ({row.detail})" if row.detail else ours,
+        f"± {_number(row.tolerance, digits=2)}{unit}: {row.reason}",
+        f"{verdict}, note {notes.index(row.note) + 1}" if row.note else verdict,
     ]
 
 

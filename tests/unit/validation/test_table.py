@@ -42,13 +42,18 @@ def test_the_page_says_reference_source_ours_tolerance_and_verdict():
 
 def test_the_page_tells_a_miss_and_why():
     page = markdown(table(row(ours=3.0, must_hold=False, note="other gear")))
-    assert "| **no** (may miss) |" in page
-    assert "- *drag*: other gear" in page
+    assert "| **no** (may miss), note 1 |" in page
+    assert "\n\n1. other gear\n" in page
+
+
+def test_a_note_that_rows_share_is_told_once():
+    rows = [row(what=what, note="a pond") for what in ("drag", "lift")]
+    assert markdown(table(*rows)).count("a pond") == 1
 
 
 def test_a_row_that_was_not_computed_shows_no_number():
     page = markdown(table(row(ours=None, note="no file")))
-    assert "| – | ± 0.1 kN: 5 % | – |" in page
+    assert "| – | ± 0.1 kN: 5 % | –, note 1 |" in page
     assert "1 were not computed" in page
 
 
