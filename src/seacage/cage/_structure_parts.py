@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, field
+from typing import Any
 
 from seacage.cage._parts import check_bounds, quantity
 from seacage.conventions import WATER_DENSITY, InputError
@@ -11,11 +12,11 @@ ROPES, STRUTS, BRACES = "ropes", "struts", "braces"
 ALONG, DIAGONAL = "along", "diagonal"
 
 
-def _name(meaning: str) -> str:
+def _name(meaning: str) -> Any:
     return field(metadata={"meaning": meaning})
 
 
-def _choice(meaning: str, default: str) -> str:
+def _choice(meaning: str, default: str) -> Any:
     return field(metadata={"meaning": meaning}, default=default)
 
 
