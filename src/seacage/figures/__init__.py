@@ -1,16 +1,27 @@
 """Matplotlib figures of records, scores and states."""
 
+from seacage.figures._animation import Motion, write_animation
 from seacage.figures._comparison import Comparison, density_figure, series_figure
 from seacage.figures._net import net_figure
+from seacage.figures._rose import tension_rose_figure
 from seacage.figures._shape_error import shape_error_figure
+from seacage.figures._states import states_figure
 from seacage.figures._style import svg_text, write_figure
+from seacage.figures._volume import MEASURED_VOLUMES, VolumeMark, volume_figure
 
 __all__ = [
+    "MEASURED_VOLUMES",
     "Comparison",
+    "Motion",
+    "VolumeMark",
     "density_figure",
     "net_figure",
     "series_figure",
     "shape_error_figure",
+    "states_figure",
     "svg_text",
+    "tension_rose_figure",
+    "volume_figure",
+    "write_animation",
     "write_figure",
 ]

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.cm import ScalarMappable
     from matplotlib.figure import Figure
 
-_View = Float[np.ndarray, "2 3"]
+View = Float[np.ndarray, "2 3"]
 
 
 def net_figure(
@@ -65,9 +65,10 @@ def net_figure(
         figure = blank_figure(10.0, 3.9)
         left, right = figure.subplots(1, 2, width_ratios=[1.62, 1.0])
         for axes, view, toward in ((left, side, across), (right, top, np.array([0.0, 0.0, 1.0]))):
-            _draw_ghost(axes, cage, rest, view)
-            colours = _draw_net(axes, cage, node_position, moved, view=view, toward=toward)
-            _draw_mooring(axes, cage, node_position, view)
+            draw_ghost(axes, cage, rest, view)
+            colours = draw_net(axes, cage, node_position, moved, view=view, toward=toward)
+            draw_bridles(axes, cage, node_position, view)
+            _draw_frame(axes, cage, view)
             _draw_sensors(axes, cage, node_position, view)
             axes.set_aspect("equal")
             axes.grid(visible=False)
@@ -81,7 +82,7 @@ def net_figure(
     return figure
 
 
-def _draw_ghost(axes: "Axes", cage: Cage, rest: Float[np.ndarray, "node 3"], view: _View) -> None:
+def draw_ghost(axes: "Axes", cage: Cage, rest: Float[np.ndarray, "node 3"], view: View) -> None:
     """The rest shape as a faint net, so that the eye sees how far the net has gone."""
     from matplotlib.collections import LineCollection
 
@@ -89,16 +90,20 @@ def _draw_ghost(axes: "Axes", cage: Cage, rest: Float[np.ndarray, "node 3"], vie
     axes.add_collection(LineCollection(lines, colors="#b9c2ca", linewidths=0.35, zorder=1))
 
 
-def _draw_net(
+def draw_net(
     axes: "Axes",
     cage: Cage,
     position: Float[np.ndarray, "node 3"],
     moved: Float[np.ndarray, " node"],
     *,
-    view: _View,
+    view: View,
     toward: Float[np.ndarray, "3"],
+    largest: float | None = None,
 ) -> "ScalarMappable":
-    """Panels from the farthest to the nearest, so that near twines cover far ones."""
+    """Panels from the farthest to the nearest, so that near twines cover far ones.
+
+    Colours run up to the largest displacement [m], this shape's own if None.
+    """
     from matplotlib.collections import PolyCollection
 
     corners = position[cage.panels]
@@ -112,20 +117,24 @@ def _draw_net(
         alpha=0.82,
         zorder=2,
     )
-    patches.set_clim(0.0, max(float(moved.max()), 0.1))
+    patches.set_clim(0.0, max(float(moved.max()) if largest is None else largest, 0.1))
     axes.add_collection(patches)
     collar = (position @ view.T)[np.append(cage.ring_nodes(0), 0)]
     axes.plot(collar[:, 0], collar[:, 1], color=INK, lw=2.2, solid_joinstyle="round", zorder=4)
     return patches
 
 
-def _draw_mooring(
-    axes: "Axes", cage: Cage, position: Float[np.ndarray, "node 3"], view: _View
+def draw_bridles(
+    axes: "Axes", cage: Cage, position: Float[np.ndarray, "node 3"], view: View
 ) -> None:
+    """From the frame's corners, where they are in still water, to the collar."""
     from matplotlib.collections import LineCollection
 
     ends = np.stack([cage.corner_position[cage.bridle_corner], position[cage.bridle_nodes]], axis=1)
     axes.add_collection(LineCollection(list(ends @ view.T), colors=LOW, linewidths=0.9, zorder=3))
+
+
+def _draw_frame(axes: "Axes", cage: Cage, view: View) -> None:
     corner = cage.corner_position @ view.T
     frame = np.vstack([corner, corner[:1]])
     axes.plot(frame[:, 0], frame[:, 1], color=MUTED, lw=0.9, ls=(0, (4, 2)), zorder=1)
@@ -133,7 +142,7 @@ def _draw_mooring(
 
 
 def _draw_sensors(
-    axes: "Axes", cage: Cage, position: Float[np.ndarray, "node 3"], view: _View
+    axes: "Axes", cage: Cage, position: Float[np.ndarray, "node 3"], view: View
 ) -> None:
     """Depth sensors as discs on the net, shackles as diamonds where a bridle meets the collar."""
     depth = position[[sensor.node for sensor in cage.depth_sensors]] @ view.T

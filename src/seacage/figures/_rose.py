@@ -1,0 +1,133 @@
+"""What each bridle carries, drawn where it pulls."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.cage import Cage
+from seacage.conventions import InputError, Origin
+from seacage.figures._style import AMOUNT, FIT, INK, LOW, MUTED, blank_figure, style
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from matplotlib.projections.polar import PolarAxes
+
+_HOLE = 0.3
+"""Radius of the empty middle over that of the bars' longest, so that bars begin apart."""
+
+_FAN = 0.8
+"""Share of the least angle between bridles that the bars of one bridle take."""
+
+
+def tension_rose_figure(
+    cage: Cage,
+    current_speed: Float[np.ndarray, " case"],
+    bridle_tension: Float[np.ndarray, "case bridle"],
+    *,
+    current_to: float,
+    lowest: Float[np.ndarray, "case bridle"] | None = None,
+    highest: Float[np.ndarray, "case bridle"] | None = None,
+    origin: Origin = Origin.COMPUTED,
+) -> "Figure":
+    """Utilisation of every bridle at its compass bearing, north up, one bar for each current.
+
+    Parameters
+    ----------
+    current_speed
+        Of each case [m/s].
+    bridle_tension
+        Mean, or at rest [N].
+    current_to
+        Where every current goes, the arrow [deg].
+    lowest, highest
+        Ends of a thin line over each bar [N]; none without them.
+    origin
+        Where the tensions come from.
+    """
+    if not len(current_speed):
+        raise InputError("tension_rose_figure: there is no case to draw. Give one or more.")
+    with style():
+        figure = blank_figure(5.6, 4.7)
+        axes = _compass(figure)
+        bearing = np.deg2rad(np.array(cage.bridles.bearings) + cage.heading)
+        share = 100.0 / cage.bridle_capacity
+        offset, width = _fan(bearing, len(current_speed))
+        for case, (speed, colour) in enumerate(_coloured(current_speed)):
+            place, used = bearing + offset[case], share * bridle_tension[case]
+            axes.bar(place, used, width, color=colour, label=f"{speed:g} m/s", zorder=3)
+            if lowest is not None and highest is not None:
+                ends = share * lowest[case], share * highest[case]
+                axes.vlines(place, *ends, color=INK, lw=0.7, zorder=4)
+        most = bridle_tension if highest is None else highest
+        _finish(axes, cage, bearing, float((share * most).max()))
+        _arrow(axes, current_to)
+        axes.legend(loc="center left", bbox_to_anchor=(1.04, 0.5), title="Current")
+        axes.set_title("Bridles: share of capacity", pad=18.0)
+        axes.set_title(
+            str(origin), loc="right", pad=18.0, color=MUTED, fontsize=8.0, fontweight="normal"
+        )
+    return figure
+
+
+def _compass(figure: "Figure") -> "PolarAxes":
+    from matplotlib.projections.polar import PolarAxes
+
+    axes = figure.add_subplot(projection="polar")
+    assert isinstance(axes, PolarAxes)
+    axes.set_theta_zero_location("N")
+    axes.set_theta_direction(-1)
+    return axes
+
+
+def _coloured(speed: Float[np.ndarray, " case"]) -> "list[tuple[float, tuple[float, ...]]]":
+    from matplotlib import colormaps
+
+    shade = np.linspace(0.0, 0.9, len(speed)) if len(speed) > 1 else np.array([0.45])
+    return list(zip(speed.tolist(), colormaps[AMOUNT](shade), strict=True))
+
+
+def _fan(bearing: Float[np.ndarray, " bridle"], cases: int) -> tuple[np.ndarray, float]:
+    """Angle of each case's bar from its bridle, and the bars' width [rad]."""
+    around = np.sort(bearing % (2.0 * np.pi))
+    apart = np.diff(np.append(around, around[0] + 2.0 * np.pi))
+    width = _FAN * float(apart.min()) / cases
+    return width * (np.arange(cases) - (cases - 1) / 2.0), width
+
+
+def _finish(
+    axes: "PolarAxes", cage: Cage, bearing: Float[np.ndarray, " bridle"], largest: float
+) -> None:
+    """Bridles by number; the circle of full capacity where it is within reach."""
+    numbers = [name.removeprefix("bridle-") for name in cage.bridle_names]
+    axes.set_xticks(bearing, numbers)
+    reach = 1.12 * largest
+    axes.set_ylim(0.0, reach)
+    axes.set_rorigin(-_HOLE * reach)
+    if reach > 100.0:
+        around = np.linspace(0.0, 2.0 * np.pi, 181)
+        axes.plot(around, np.full(around.size, 100.0), color=FIT, lw=1.2, zorder=2)
+    axes.set_rlabel_position(0.0)
+    axes.yaxis.set_major_formatter(lambda value, _: f"{value:.0f} %" if value else "")
+    axes.tick_params(axis="y", labelsize=7.0)
+    axes.spines["polar"].set_visible(False)
+    kilonewtons = cage.bridle_capacity[0] / 1e3
+    axes.text(
+        0.5,
+        -0.09,
+        f"100 % is {kilonewtons:.0f} kN; bridles by number, north up",
+        transform=axes.transAxes,
+        ha="center",
+        color=MUTED,
+    )
+
+
+def _arrow(axes: "PolarAxes", current_to: float) -> None:
+    """The current, in the empty middle."""
+    angle = np.deg2rad(current_to)
+    half = 0.075 * np.array([np.sin(angle), np.cos(angle)])
+    look = {"arrowstyle": "-|>", "color": LOW, "lw": 1.8, "shrinkA": 0.0, "shrinkB": 0.0}
+    tip, tail = tuple(0.5 + half), tuple(0.5 - half)
+    axes.annotate(
+        "", tip, tail, xycoords="axes fraction", textcoords="axes fraction", arrowprops=look
+    )

@@ -1,0 +1,114 @@
+"""How much of its volume a net keeps in a current."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.conventions import Origin
+from seacage.figures._style import FIT, INK, LOW, MULTI, MUTED, blank_figure, head, style
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_LOOKS = ((MULTI, "-"), (LOW, "--"), ("#4f8a4c", "-."), ("#7d5ba6", ":"))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VolumeMark:
+    """A published volume of another cage.
+
+    Parameters
+    ----------
+    name
+        Where it was measured.
+    current_speed
+        [m/s].
+    fraction
+        Of the volume in still water [-].
+    at_least
+        The speed is known to be above ``current_speed`` alone.
+    source
+        Where it was published.
+    """
+
+    name: str
+    current_speed: float
+    fraction: float
+    at_least: bool = False
+    source: str
+
+
+MEASURED_VOLUMES = (
+    VolumeMark(
+        name="Varaldsøy", current_speed=0.13, fraction=0.80, source="Lader et al. (2008), abstract"
+    ),
+    VolumeMark(
+        name="Hestur", current_speed=0.35, fraction=0.60, source="Lader et al. (2008), abstract"
+    ),
+    VolumeMark(
+        name="Large circular cage",
+        current_speed=0.5,
+        fraction=0.60,
+        at_least=True,
+        source="Klebert et al. (2014), abstract",
+    ),
+)
+"""Measured on salmon farms of other sizes and with other weights, which their abstracts do not
+give: marks to look at, not curves to meet."""
+
+
+def volume_figure(
+    current_speed: Float[np.ndarray, " case"],
+    fraction: Mapping[str, Float[np.ndarray, " case"]],
+    *,
+    measured: Sequence[VolumeMark] = MEASURED_VOLUMES,
+    origin: Origin = Origin.COMPUTED,
+) -> "Figure":
+    """Volume over that in still water against the current.
+
+    Parameters
+    ----------
+    current_speed
+        [m/s].
+    fraction
+        By name of the line, such as a load law's [-].
+    measured
+        Published volumes of other cages, marked and named; none with ``()``.
+    origin
+        Where the lines come from.
+    """
+    with style():
+        figure = blank_figure(6.2, 3.5)
+        axes = figure.subplots()
+        for (colour, dash), (name, kept) in zip(_LOOKS, fraction.items(), strict=False):
+            axes.plot(current_speed, 100.0 * kept, color=colour, ls=dash, lw=1.7, label=name)
+        for mark in measured:
+            _draw_mark(axes, mark)
+        axes.set(xlim=(0.0, 1.02 * float(current_speed.max())), ylim=(0.0, 104.0))
+        axes.set_xlabel("Current speed [m/s]")
+        axes.set_ylabel("Volume [% of still water]")
+        if measured:
+            sources = "; ".join(dict.fromkeys(mark.source for mark in measured))
+            note = f"◆ measured on other cages with other gear:\n{sources}"
+            axes.text(
+                0.02, 0.03, note, transform=axes.transAxes, va="bottom", color=MUTED, fontsize=7.5
+            )
+        head(axes, "Volume of the net", origin=origin, legend=len(fraction))
+    return figure
+
+
+def _draw_mark(axes: "Axes", mark: VolumeMark) -> None:
+    place = (mark.current_speed, 100.0 * mark.fraction)
+    axes.plot(*place, "D", color=FIT, mec="white", mew=0.9, ms=6.5, zorder=4)
+    name = f"{mark.name}, > {mark.current_speed:g} m/s" if mark.at_least else mark.name
+    away = {"textcoords": "offset points", "va": "center", "fontsize": 7.5, "color": INK}
+    if mark.at_least:
+        look = {"arrowstyle": "-|>", "color": FIT, "lw": 1.2}
+        axes.annotate("", (place[0] + 0.09, place[1]), place, arrowprops=look)
+        axes.annotate(name, place, (8, -12), ha="right", **away)
+    else:
+        axes.annotate(name, place, (-7, -1), ha="right", **away)
