@@ -336,25 +336,27 @@ static void add_cylinders(const body *b, const state *s, const vec *restrict x)
         const int i = b->cylinder_ends[2 * n], j = b->cylinder_ends[2 * n + 1];
         const float width = b->cylinder_drag[n], skin = b->cylinder_skin[n];
         EACH_LANE {
-            float t[3], u[3], tt = 1e-12f, ut = 0.0f, aa = 1e-20f;
-            for (int a = 0; a < 3; a++) {
-                t[a] = x[j][a][k] - x[i][a][k];
-                u[a] = 0.5f * (w[i][a][k] + w[j][a][k] + current[i][a][k] + current[j][a][k]);
-                tt += t[a] * t[a];
-                ut += t[a] * u[a];
-            }
-            const float along = ut / tt;
-            for (int a = 0; a < 3; a++) {
-                u[a] -= along * t[a];
-                aa += u[a] * u[a];
-            }
-            const float length = sqrtf(tt), pressure = width * length * sqrtf(aa);
+            const float tx = x[j][0][k] - x[i][0][k];
+            const float ty = x[j][1][k] - x[i][1][k];
+            const float tz = x[j][2][k] - x[i][2][k];
+            const float ux = 0.5f * (w[i][0][k] + w[j][0][k] + current[i][0][k] + current[j][0][k]);
+            const float uy = 0.5f * (w[i][1][k] + w[j][1][k] + current[i][1][k] + current[j][1][k]);
+            const float uz = 0.5f * (w[i][2][k] + w[j][2][k] + current[i][2][k] + current[j][2][k]);
+            const float square = tx * tx + ty * ty + tz * tz;
+            const float tt = square > 1e-12f ? square : 1e-12f;
+            const float along = (ux * tx + uy * ty + uz * tz) / tt;
+            const float ax = ux - along * tx, ay = uy - along * ty, az = uz - along * tz;
+            const float pressure = width * sqrtf(tt * (ax * ax + ay * ay + az * az));
             const float rubbed = skin * tt * (along < 0.0f ? -along : along) * along;
-            for (int a = 0; a < 3; a++) {
-                const float load = pressure * u[a] + rubbed * t[a];
-                f[i][a][k] += load;
-                f[j][a][k] += load;
-            }
+            const float fx = pressure * ax + rubbed * tx;
+            const float fy = pressure * ay + rubbed * ty;
+            const float fz = pressure * az + rubbed * tz;
+            f[i][0][k] += fx;
+            f[i][1][k] += fy;
+            f[i][2][k] += fz;
+            f[j][0][k] += fx;
+            f[j][1][k] += fy;
+            f[j][2][k] += fz;
             drag[i][k] += 2.0f * pressure;
             drag[j][k] += 2.0f * pressure;
         }
