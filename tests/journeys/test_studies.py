@@ -39,7 +39,7 @@ def stand_in():
     The true simulator's journey is that of the campaign.
     """
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("seacage.campaigns._run.settle", StandIn().settle)
+        patch.setattr("seacage.campaigns._cases.settle", StandIn().settle)
         patch.setattr(_demonstration, "Recipe", lambda: RECIPE)
         patch.setattr(Cage, "named", lambda _: SMALL)
         yield

@@ -8,13 +8,14 @@ import numpy as np
 
 from seacage.cage import Cage
 from seacage.conventions import InputError, Result
+from seacage.dynamics import History, Statistics
 from seacage.ocean import SeaState
 
 
 class StandIn:
-    """Settles by a formula: the net leans with the current, the bridles up-stream pull.
+    """Answers by a formula: the net leans with the current, the bridles up-stream pull.
 
-    Cases faster than its reach diverge, those a little slower do not converge.
+    Cases faster than its reach diverge; settled, those a little slower do not converge.
     """
 
     def __init__(self) -> None:
@@ -50,3 +51,54 @@ class StandIn:
             residual=np.full(len(seas), 0.1),
             result=result,
         )
+
+    def simulate(
+        self,
+        cage: Cage,
+        sea: Sequence[SeaState],
+        *,
+        seed: Sequence[int],
+        quantile_levels: Sequence[float],
+        second_moment: bool,
+        law: str,
+        **_: object,
+    ) -> History:
+        """The settled cage, swaying by what the seed draws."""
+        settled = self.settle(cage, sea, law=law, mean_waves=True)
+        lost = settled.result == Result.DIVERGED
+        sway = np.array([np.random.default_rng(one).uniform(0.1, 1.0) for one in seed])
+        sway[lost] = np.nan
+        node = _swaying(settled.node_position, sway, quantile_levels)
+        away = (settled.node_position - cage.design_position).reshape(len(sea), -1)
+        moment = (
+            away[:, :, None] * away[:, None, :] if second_moment else np.empty((len(sea), 0, 0))
+        )
+        nobody = np.empty((len(sea), 0, 0))
+        return History(
+            time=np.empty(0),
+            nodes=np.empty(0, int),
+            node_position=np.empty((len(sea), 0, 0, 3)),
+            bridle_tension=nobody,
+            surface_elevation=np.empty((len(sea), 0)),
+            node=node,
+            bridle=_swaying(settled.bridle_tension, sway, quantile_levels),
+            net_force=_swaying(settled.net_force, sway, quantile_levels),
+            volume=_swaying(settled.volume, sway, quantile_levels),
+            node_displacement=settled.node_position - cage.design_position,
+            volume_fraction=np.ones(len(sea)),
+            quantile_levels=np.array(quantile_levels),
+            second_moment=moment,
+            result=np.where(lost, Result.DIVERGED, Result.CONVERGED),
+            diverged_at=np.where(lost, 12.5, np.nan),
+        )
+
+
+def _swaying(mean: np.ndarray, sway: np.ndarray, levels: Sequence[float]) -> Statistics:
+    each = sway.reshape(-1, *[1] * (mean.ndim - 1))
+    return Statistics(
+        mean=mean + 0.0 * each,
+        std=np.broadcast_to(each, mean.shape),
+        minimum=mean - 2.0 * each,
+        maximum=mean + 2.0 * each,
+        quantile=np.stack([mean + (4.0 * level - 2.0) * each for level in levels], axis=1),
+    )

@@ -1,5 +1,6 @@
 """Plans: which sea states a campaign visits."""
 
+import csv
 import hashlib
 import itertools
 import json
@@ -30,6 +31,8 @@ _DOOR = {
     "wave_from_deg": "wave_from",
 }
 
+_REQUIRED = ("current_speed_m_s", "current_to_deg")
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Plan:
@@ -45,7 +48,7 @@ class Plan:
         How long each sea state lasts [s]. Equilibria do not use it; the plan keeps it, so
         that the same plan can be simulated in time.
     seed
-        Of the draw; 0 for a plan that was not drawn.
+        Of the draw, if it was drawn, and of the waves.
     """
 
     name: str
@@ -123,15 +126,31 @@ class Plan:
         return cls(name=name, seas=seas, duration=duration, seed=seed)
 
     @classmethod
-    def named(cls, name: str, seed: int, cases: int, *, duration: float = 1800.0) -> Self:
+    def named(
+        cls,
+        name: str,
+        seed: int,
+        cases: int,
+        *,
+        duration: float = 1800.0,
+        ranges: Mapping[str, Range] | None = None,
+    ) -> Self:
         """Draw from ranges that have a name.
 
         ``paper``: the paper's, where Tp = 5 sqrt(Hs). ``default``: the same with
         Tp / (5 sqrt(Hs)) from 0.8 to 2.2, as real seas have it. ``current``: no waves.
+
+        Parameters
+        ----------
+        ranges
+            To take in place of the plan's own, by the names of ``Plan.sample``; the plan is
+            then called by them, too.
         """
         if name not in _RANGES:
             raise InputError(f"Plan.named: no plan {name!r}; there are: {', '.join(_RANGES)}.")
-        return cls.sample(seed, cases, duration=duration, name=name, **_RANGES[name])
+        own = {**_RANGES[name], **(ranges or {})}
+        called = f"{name}, other {' and '.join(ranges)}" if ranges else name
+        return cls.sample(seed, cases, duration=duration, name=called, **own)
 
     @classmethod
     def grid(
@@ -140,25 +159,46 @@ class Plan:
         current_speed: Iterable[float],
         current_to: Iterable[float],
         hs: Iterable[float] = (0.0,),
+        period_ratio: Iterable[float] = (1.0,),
         wave_from: Iterable[float] = (0.0,),
         duration: float = 1800.0,
+        seed: int = 0,
         name: str = "grid",
     ) -> Self:
-        """Every combination, the last named varying fastest; Tp = 5 sqrt(Hs)."""
-        seas = tuple(
-            SeaState(current_speed=speed, current_to=to, hs=height, wave_from=origin)
-            for speed, to, height, origin in itertools.product(
-                current_speed, current_to, hs, wave_from
-            )
-        )
-        return cls(name=name, seas=seas, duration=duration, seed=0)
+        """Every combination, the last named varying fastest; Tp = 5 ``period_ratio`` sqrt(Hs)."""
+        rows = itertools.product(current_speed, current_to, hs, period_ratio, wave_from)
+        return cls(name=name, seas=tuple(_sea(*row) for row in rows), duration=duration, seed=seed)
 
     @classmethod
     def listed(
-        cls, seas: Iterable[SeaState], *, duration: float = 1800.0, name: str = "listed"
+        cls,
+        seas: Iterable[SeaState],
+        *,
+        duration: float = 1800.0,
+        seed: int = 0,
+        name: str = "listed",
     ) -> Self:
         """The sea states given."""
-        return cls(name=name, seas=tuple(seas), duration=duration, seed=0)
+        return cls(name=name, seas=tuple(seas), duration=duration, seed=seed)
+
+    @classmethod
+    def table(
+        cls, path: str | Path, *, duration: float = 1800.0, seed: int = 0, name: str | None = None
+    ) -> Self:
+        """The sea states of a CSV file, one a row.
+
+        Its columns are current_speed_m_s and current_to_deg, and if it likes hs_m, tp_s and
+        wave_from_deg. An empty hs_m or wave_from_deg counts as 0, an empty tp_s as
+        5 sqrt(Hs).
+        """
+        path = Path(path)
+        try:
+            with path.open(encoding="utf-8-sig", newline="") as file:
+                rows = list(csv.reader(file))
+        except (OSError, UnicodeDecodeError, csv.Error) as error:
+            raise InputError(f"{path}: cannot be read as a CSV file ({error}).") from error
+        seas = _tabled(rows, str(path))
+        return cls(name=name or path.stem, seas=seas, duration=duration, seed=seed)
 
     @classmethod
     def read(cls, path: str | Path) -> Self:
@@ -177,7 +217,10 @@ class Plan:
         """A plan from JSON text."""
         try:
             table = json.loads(text)
-            seas = tuple(SeaState(**_inside(case)) for case in table["cases"])
+            seas = tuple(
+                _sea_of(_inside(case), f"Plan: case {number}")
+                for number, case in enumerate(table["cases"])
+            )
             return cls(
                 name=table["name"], seas=seas, duration=table["duration_s"], seed=table["seed"]
             )
@@ -204,6 +247,47 @@ class Plan:
 
 def _inside(case: Mapping[str, Any]) -> dict[str, float]:
     return {_DOOR[key]: value for key, value in case.items()}
+
+
+def _sea_of(case: Mapping[str, Any], where: str) -> SeaState:
+    try:
+        return SeaState(**case)
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from error
+
+
+def _tabled(rows: Sequence[Sequence[str]], path: str) -> tuple[SeaState, ...]:
+    """The sea states of a table, or the first row that is none, counted as an editor does."""
+    header = [name.strip() for name in rows[0]] if rows else []
+    missing = [name for name in _REQUIRED if name not in header]
+    if missing or set(header) - set(_DOOR) or len(set(header)) < len(header):
+        raise InputError(
+            f"{path}: its columns are {', '.join(header) or 'none'}. Expected {', '.join(_DOOR)}, "
+            f"each once, with at least {' and '.join(_REQUIRED)}."
+        )
+    seas: list[SeaState] = []
+    for number, row in enumerate(rows[1:], 2):
+        if not any(value.strip() for value in row):
+            continue
+        seas.append(_sea_of(_cells(header, row, where := f"{path}, row {number}"), where))
+    return tuple(seas)
+
+
+def _cells(header: Sequence[str], row: Sequence[str], where: str) -> dict[str, float]:
+    if len(row) != len(header):
+        raise InputError(f"{where}: {len(row)} values under {len(header)} columns.")
+    given = {key: text for key, text in zip(header, row, strict=True) if text.strip()}
+    empty = [key for key in _REQUIRED if key not in given]
+    if empty:
+        raise InputError(f"{where}: {' and '.join(empty)} must not be empty.")
+    return {_DOOR[key]: _number(text, key, where) for key, text in given.items()}
+
+
+def _number(text: str, key: str, where: str) -> float:
+    try:
+        return float(text)
+    except ValueError as error:
+        raise InputError(f"{where}: {key} = {text!r} is no number.") from error
 
 
 def _check_seed(seed: int) -> None:

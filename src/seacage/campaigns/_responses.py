@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.cage import Cage
+from seacage.campaigns._cases import Simulator
 from seacage.campaigns._hidden import Hidden
 from seacage.campaigns._plan import Plan
 from seacage.campaigns._run import campaign_key, run_campaign
@@ -125,6 +126,7 @@ def true_responses(
     asked = [(growth, grid) for growth in _GROWTHS] + [(_HELD_OUT_GROWTH, others)]
     total = sum(len(plan) for _, plan in asked)
     campaigns: list[CampaignRecord] = []
+    by = Simulator(method="settle", law=hidden.law)
     for growth, plan in asked:
         before = sum(map(len, campaigns))
         truth = hidden.true_cage(cage, growth)
@@ -132,9 +134,10 @@ def true_responses(
             run_campaign(
                 truth,
                 plan,
-                store / campaign_key(truth, plan, hidden.law),
+                store / campaign_key(truth, plan, by),
                 workers=workers,
-                law=hidden.law,
+                law=by.law,
+                method=by.method,
                 progress=_part_of_whole(progress, before, total),
             )
         )

@@ -2,33 +2,31 @@
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Generator, Mapping, Sequence
 from contextlib import closing
-from dataclasses import dataclass
-from functools import lru_cache
 from importlib.metadata import version
 from pathlib import Path
+from typing import Any, Literal
 
 import numpy as np
 from jaxtyping import Int
 
 from seacage.cage import Cage
+from seacage.campaigns._cases import Answers, Block, Simulator, answered
+from seacage.campaigns._cluster import mapped_on_cluster
 from seacage.campaigns._plan import Plan
 from seacage.campaigns._pool import available_cores, mapped
-from seacage.conventions import InputError, Origin, Progress, Result
-from seacage.dynamics import Law, settle
-from seacage.ocean import SeaState
+from seacage.conventions import InputError, Origin, Progress
+from seacage.dynamics import Mooring, MovingLaw
 from seacage.records import (
     NOT_RUN,
     CampaignRecord,
     campaign_results,
     create_campaign,
+    finish_campaign,
     read_campaign,
     write_cases,
 )
-
-_BLOCK = 32
-"""Cases settled and written at a time: enough to fill the kernel's lanes, few enough to lose."""
 
 _IDENTITY = {
     "cage": "cage",
@@ -36,6 +34,12 @@ _IDENTITY = {
     "law": "load law",
     "method": "method",
     "product_version": "version of seacage",
+    "mooring": "mooring",
+    "ramp_s": "ramp",
+    "spin_up_s": "spin-up",
+    "time_step_s": "time step",
+    "quantile_levels": "choice of quantiles",
+    "second_moment_kept": "choice about the second moment",
 }
 """Attributes that make two campaigns the same, and how people call them."""
 
@@ -46,28 +50,39 @@ def run_campaign(
     out: str | Path,
     *,
     workers: int | None = None,
-    law: Law = "kristiansen-faltinsen",
+    law: MovingLaw = "kristiansen-faltinsen",
+    method: Literal["simulate", "settle"] = "simulate",
+    mooring: Mooring = "springs",
+    ramp: float = 60.0,
+    spin_up: float = 300.0,
+    time_step: float = 0.004,
+    quantile_levels: Sequence[float] = (0.05, 0.5, 0.95),
+    second_moment: bool = True,
+    cluster: str | None = None,
     progress: Progress | None = None,
 ) -> CampaignRecord:
-    """Settle a cage in every sea state of a plan, into a Zarr store that outlives a kill.
+    """Simulate a cage in every sea state of a plan, into a Zarr store that outlives a kill.
 
     A block of cases is written when it is done; called again with the same cage, plan and
-    law it goes on where it stopped, and ends with the same numbers. A case that fails keeps
-    its result code and does not stop the rest. Waves enter by their mean loads.
+    settings it goes on where it stopped, and ends with the same numbers. A case that fails
+    keeps its result code and does not stop the rest.
 
     Parameters
     ----------
     cage
         The cage.
     plan
-        The sea states.
+        The sea states, how long each lasts, and the seed of their waves.
     out
         Folder of the store, made if it is not there.
     workers
         Processes; None for one per available core, 1 for none beside this one. The answers
         do not depend on it.
-    law
-        Load law of the netting.
+    law, method, mooring, ramp, spin_up, time_step, quantile_levels, second_moment
+        As in ``Simulator``; "settle" takes the equilibrium in each current instead.
+    cluster
+        Address of a Dask scheduler, ``tcp://host:8786``, whose workers take the place of the
+        processes. On processors of one kind the answers do not depend on it.
     progress
         Called as ("campaign", done, total) in cases, first with what was there already.
 
@@ -76,155 +91,171 @@ def run_campaign(
     InputError
         ``out`` holds another campaign.
     """
-    store = Path(out)
-    attributes = _attributes(cage, plan, law)
-    result, block = _begun(store, attributes, cases=len(plan))
-    toml = cage.to_toml()
-    tasks = [
-        _Block(first=first, cage_toml=toml, law=law, seas=plan.seas[first : first + block])
-        for first in range(0, len(plan), block)
-        if result[first] == NOT_RUN
-    ]
-    done = int(np.sum(result != NOT_RUN))
-    report = progress or _unheard
-    report("campaign", done, len(plan))
-    with closing(mapped(_settled, tasks, workers=workers or available_cores())) as finished:
-        for task, answers in finished:
-            if not store.exists():  # a cage or a law that cannot be settled leaves no store
-                _create(store, cage, plan, attributes)
-            write_cases(store, task.first, answers)
-            done += len(task.seas)
-            report("campaign", done, len(plan))
-    return read_campaign(store)
+    simulator = Simulator(
+        method=method,
+        law=law,
+        mooring=mooring,
+        ramp=ramp,
+        spin_up=spin_up,
+        time_step=time_step,
+        quantile_levels=tuple(quantile_levels),
+        second_moment=second_moment,
+    )
+    run_share(cage, plan, out, by=simulator, workers=workers, cluster=cluster, progress=progress)
+    return read_campaign(out)
 
 
-def campaign_key(cage: Cage, plan: Plan, law: Law) -> str:
-    """A short name that only campaigns with the same numbers share."""
-    attributes = _attributes(cage, plan, law)
-    same = json.dumps([attributes[name] for name in _IDENTITY])
-    return hashlib.sha256(same.encode()).hexdigest()[:16]
+def run_share(
+    cage: Cage,
+    plan: Plan,
+    out: str | Path,
+    *,
+    by: Simulator,
+    share: tuple[int, int] = (0, 1),
+    workers: int | None = None,
+    cluster: str | None = None,
+    progress: Progress | None = None,
+) -> None:
+    """Run every n-th block of a campaign, into a store that others may write to as well.
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CampaignStatus:
-    """How far a campaign is.
+    Whoever runs the last block sums up.
 
     Parameters
     ----------
-    plan
-        The plan's name.
-    law
-        Load law of the netting.
-    total
-        Cases planned.
-    converged, not_converged, diverged
-        Cases that ended so.
+    cage, plan, out, workers, cluster, progress
+        As for ``run_campaign``.
+    by
+        What answers the cases.
+    share
+        Which share, from 0, and of how many.
     """
+    store = Path(out)
+    attributes = _attributes(cage, plan, by)
+    result, size = _begun(store, attributes, cases=len(plan), block=by.block)
+    which, shares = _checked(share)
+    firsts = range(size * which, len(plan), size * shares)
+    cases = [case for first in firsts for case in range(len(plan))[first : first + size]]
+    done = sum(int(result[case]) != NOT_RUN for case in cases)
+    report = progress or _unheard
+    report("campaign", done, len(cases))
+    toml = cage.to_toml()
+    blocks = [
+        _block(plan, slice(first, first + size), toml, by)
+        for first in firsts
+        if result[first] == NOT_RUN
+    ]
+    with closing(_mapped(blocks, workers=workers, cluster=cluster)) as finished:
+        for block, answers in finished:
+            if not store.exists():  # a cage or a law that cannot be run leaves no store
+                _create(store, cage, plan, by, attributes)
+                _begun(store, attributes, cases=len(plan), block=by.block)
+            write_cases(
+                store,
+                block.first,
+                answers.values,
+                moment=answers.moment,
+                core_seconds=answers.core_seconds,
+            )
+            done += len(block.seas)
+            report("campaign", done, len(cases))
+    if store.exists():
+        finish_campaign(store)
 
-    plan: str
-    law: str
-    total: int
-    converged: int
-    not_converged: int
-    diverged: int
 
-    @property
-    def done(self) -> int:
-        """Cases that have been run, however they ended."""
-        return self.converged + self.not_converged + self.diverged
+def campaign_key(cage: Cage, plan: Plan, by: Simulator) -> str:
+    """A short name that only campaigns with the same numbers share."""
+    attributes = _attributes(cage, plan, by)
+    same = json.dumps([attributes[name] for name in _IDENTITY if name in attributes])
+    return hashlib.sha256(same.encode()).hexdigest()[:16]
 
 
-def campaign_status(out: str | Path) -> CampaignStatus:
-    """How far the campaign in a folder is, whether it is running or was stopped.
-
-    Raises
-    ------
-    RecordError
-        There is no campaign.
-    """
-    attributes, result, _ = campaign_results(Path(out))
-    return CampaignStatus(
-        plan=attributes["plan"],
-        law=attributes["law"],
-        total=len(result),
-        converged=int(np.sum(result == Result.CONVERGED)),
-        not_converged=int(np.sum(result == Result.NOT_CONVERGED)),
-        diverged=int(np.sum(result == Result.DIVERGED)),
-    )
+def _checked(share: tuple[int, int]) -> tuple[int, int]:
+    which, shares = share
+    if not 0 <= which < shares:
+        raise InputError(
+            f"Share {which} of {shares} does not exist. Shares count from 0: give 0/{shares} to "
+            f"{max(shares, 1) - 1}/{shares}."
+        )
+    return share
 
 
 def _begun(
-    store: Path, asked: Mapping[str, object], *, cases: int
+    store: Path, asked: Mapping[str, object], *, cases: int, block: int
 ) -> tuple[Int[np.ndarray, " case"], int]:
     """Results so far and the block size of a store, if it holds the campaign asked for."""
     if not store.exists():
-        return np.full(cases, NOT_RUN), _BLOCK
-    found, result, block = campaign_results(store)
-    other = [name for key, name in _IDENTITY.items() if found.get(key) != asked[key]]
+        return np.full(cases, NOT_RUN), block
+    found, result, size = campaign_results(store)
+    other = [name for key, name in _IDENTITY.items() if found.get(key) != asked.get(key)]
     if other:
         raise InputError(
             f"{store} holds a campaign with another {' and another '.join(other)}. "
             "Give another folder, or delete this one."
         )
-    return result, block
+    return result, size
 
 
-def _create(store: Path, cage: Cage, plan: Plan, attributes: Mapping[str, str | float]) -> None:
+def _block(plan: Plan, cases: slice, cage_toml: str, by: Simulator) -> Block:
+    return Block(
+        first=cases.start,
+        cage_toml=cage_toml,
+        seas=plan.seas[cases],
+        wave_seeds=tuple(_wave_seed(plan, case) for case in range(len(plan))[cases]),
+        duration=plan.duration,
+        simulator=by,
+        version=version("seacage"),
+    )
+
+
+def _wave_seed(plan: Plan, case: int) -> int:
+    """Of one case's waves: it knows the plan's seed and the case, and nothing of neighbours."""
+    return int(np.random.SeedSequence([plan.seed, case]).generate_state(1)[0])
+
+
+def _mapped(
+    blocks: Sequence[Block], *, workers: int | None, cluster: str | None
+) -> Generator[tuple[Block, Answers], None, None]:
+    if cluster is not None and blocks:
+        return mapped_on_cluster(answered, blocks, address=cluster)
+    return mapped(answered, blocks, workers=workers or available_cores())
+
+
+def _create(
+    store: Path, cage: Cage, plan: Plan, by: Simulator, attributes: Mapping[str, Any]
+) -> None:
     create_campaign(
         store,
         seas=plan.seas,
         nodes=cage.node_count,
         lines=cage.bridle_count,
-        block=_BLOCK,
+        block=by.block,
         attributes=attributes,
+        wave_seeds=[_wave_seed(plan, case) for case in range(len(plan))] if by.in_time else None,
+        quantile_levels=by.quantile_levels if by.in_time else (),
+        second_moment=by.in_time and by.second_moment,
     )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Block:
-    """Neighbouring cases, as they travel to a worker."""
-
-    first: int
-    cage_toml: str
-    law: Law
-    seas: tuple[SeaState, ...]
-
-
-def _settled(task: _Block) -> dict[str, np.ndarray]:
-    response = settle(_cage(task.cage_toml), task.seas, law=task.law, mean_waves=True)
-    return {
-        "node_position": response.node_position,
-        "bridle_tension": response.bridle_tension,
-        "net_force": response.net_force,
-        "volume": response.volume,
-        "residual": response.residual,
-        "result": response.result,
-    }
-
-
-@lru_cache(maxsize=4)
-def _cage(toml: str) -> Cage:
-    return Cage.from_toml(toml)
-
-
-def _attributes(cage: Cage, plan: Plan, law: Law) -> dict[str, str | float]:
+def _attributes(cage: Cage, plan: Plan, by: Simulator) -> dict[str, Any]:
     """Of the store: what was asked, by what, in the words of ACDD-1.3 where it has some."""
     number = version("seacage")
+    what = "Simulations in time" if by.in_time else "Equilibria"
     return {
         "title": f"Campaign {plan.name!r} of cage {cage.name!r}",
-        "summary": f"Equilibria of a moored net cage in {len(plan)} sea states.",
+        "summary": f"{what} of a moored net cage in {len(plan)} sea states.",
         "keywords": "aquaculture, net cage, mooring, numerical simulation",
-        "source": f"seacage {number}, settle, netting law {law}",
+        "source": f"seacage {number}, {by.method}, netting law {by.law}",
         "product_version": number,
         "origin": Origin.COMPUTED.value,
-        "method": "settle",
+        "method": by.method,
         "cage": cage.to_toml(),
         "bridles": " ".join(cage.bridle_names),
-        "law": law,
+        "law": by.law,
         "plan": plan.name,
         "plan_sha256": plan.sha256,
         "seed": plan.seed,
         "duration_s": plan.duration,
+        **by.attributes,
     }
 
 

@@ -157,6 +157,7 @@ class Chain:
                 self.cage,
                 plan,
                 begun / "campaign.zarr",
+                method="settle",
                 workers=self.workers,
                 progress=self.progress,
             )

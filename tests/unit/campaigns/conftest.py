@@ -17,5 +17,6 @@ def small_cage() -> Cage:
 def stand_in(monkeypatch: pytest.MonkeyPatch) -> StandIn:
     """The formula in place of the solver, in this process."""
     simulator = StandIn()
-    monkeypatch.setattr("seacage.campaigns._run.settle", simulator.settle)
+    monkeypatch.setattr("seacage.campaigns._cases.settle", simulator.settle)
+    monkeypatch.setattr("seacage.campaigns._cases.simulate", simulator.simulate)
     return simulator

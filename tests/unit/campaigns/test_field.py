@@ -38,7 +38,7 @@ def at_cage(buoy: Record, seconds: np.ndarray, hidden: Hidden = EXACT) -> np.nda
 @pytest.fixture(scope="module")
 def field(small_cage: Cage) -> Iterator[VirtualField]:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("seacage.campaigns._run.settle", StandIn().settle)
+        patch.setattr("seacage.campaigns._cases.settle", StandIn().settle)
         yield virtual_field(small_cage, BUOY, hidden=HIDDEN, seed=1, workers=1, every_s=STEP)
 
 

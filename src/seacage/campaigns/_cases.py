@@ -1,0 +1,194 @@
+"""How the cases of a campaign are answered, and the work of one block of them."""
+
+import time
+from dataclasses import dataclass
+from functools import lru_cache
+from importlib.metadata import version
+from typing import Any, Literal
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.cage import Cage
+from seacage.conventions import InputError, Result, SeacageError
+from seacage.dynamics import LAWS, History, Mooring, MovingLaw, settle, simulate
+from seacage.ocean import SeaState
+
+_BLOCK = {"simulate": 16, "settle": 32}
+"""Cases computed and written at a time: enough to fill the kernel's lanes, few enough to lose."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Simulator:
+    """What answers the cases of a campaign: all that their numbers depend on beside cage and sea.
+
+    Parameters
+    ----------
+    method
+        "simulate": each sea state in time, with irregular waves of its own seed. "settle": the
+        equilibrium in its current, with the waves' mean loads.
+    law
+        Load law of the netting; "morison", twine by twine, in time only.
+    mooring
+        "springs" at the frame's corners, or "catenary" for its buoys and anchor lines.
+    ramp, spin_up
+        Time over which the waves grow, and time before the statistics begin, the ramp
+        included [s].
+    time_step
+        [s].
+    quantile_levels
+        Of the quantiles over time [-].
+    second_moment
+        Whether to keep the second moment of all node coordinates over the campaign.
+    """
+
+    method: Literal["simulate", "settle"] = "simulate"
+    law: MovingLaw = "kristiansen-faltinsen"
+    mooring: Mooring = "springs"
+    ramp: float = 60.0
+    spin_up: float = 300.0
+    time_step: float = 0.004
+    quantile_levels: tuple[float, ...] = (0.05, 0.5, 0.95)
+    second_moment: bool = True
+
+    def __post_init__(self) -> None:
+        if self.method not in _BLOCK:
+            raise InputError(f"Simulator: method {self.method!r} is none of {', '.join(_BLOCK)}.")
+        if not self.in_time and self.law not in LAWS:
+            raise InputError(
+                f"Simulator: an equilibrium knows no law {self.law!r}; there are: "
+                f"{', '.join(LAWS)}. Or simulate in time."
+            )
+
+    @property
+    def in_time(self) -> bool:
+        """Whether cases are simulated in time, with waves."""
+        return self.method == "simulate"
+
+    @property
+    def block(self) -> int:
+        """Cases computed and written at a time."""
+        return _BLOCK[self.method]
+
+    @property
+    def attributes(self) -> dict[str, Any]:
+        """What to write into a store, with units, beside ``law`` and ``method``."""
+        if not self.in_time:
+            return {}
+        return {
+            "mooring": self.mooring,
+            "ramp_s": self.ramp,
+            "spin_up_s": self.spin_up,
+            "time_step_s": self.time_step,
+            "quantile_levels": list(self.quantile_levels),
+            "second_moment_kept": int(self.second_moment),
+        }
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Block:
+    """Neighbouring cases, as they travel to a worker."""
+
+    first: int
+    cage_toml: str
+    seas: tuple[SeaState, ...]
+    wave_seeds: tuple[int, ...]
+    duration: float
+    simulator: Simulator
+    version: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Answers:
+    """What a worker sends back: variables of the store, and what they cost.
+
+    Attributes
+    ----------
+    values
+        By the names of the store.
+    moment
+        Sum of the converged cases' second moments [m2].
+    core_seconds
+        Processor time [s].
+    """
+
+    values: dict[str, np.ndarray]
+    moment: Float[np.ndarray, "coordinate coordinate"] | None
+    core_seconds: float
+
+
+def answered(block: Block) -> Answers:
+    """Compute one block.
+
+    Raises
+    ------
+    SeacageError
+        The worker runs another version of seacage than who asks.
+    """
+    here = version("seacage")
+    if here != block.version:
+        raise SeacageError(
+            f"A worker runs seacage {here}, the campaign seacage {block.version}: their numbers "
+            "may differ. Install the same version on every worker."
+        )
+    began = time.process_time()
+    values, moment = (_simulated if block.simulator.in_time else _settled)(block)
+    return Answers(values=values, moment=moment, core_seconds=time.process_time() - began)
+
+
+def _settled(block: Block) -> tuple[dict[str, np.ndarray], None]:
+    law = block.simulator.law
+    assert law != "morison"  # the simulator refused it
+    response = settle(_cage(block.cage_toml), block.seas, law=law, mean_waves=True)
+    names = ("node_position", "bridle_tension", "net_force", "volume", "residual", "result")
+    return {name: getattr(response, name) for name in names}, None
+
+
+def _simulated(
+    block: Block,
+) -> tuple[dict[str, np.ndarray], Float[np.ndarray, "coordinate coordinate"] | None]:
+    by = block.simulator
+    history = simulate(
+        _cage(block.cage_toml),
+        block.seas,
+        duration=block.duration,
+        seed=block.wave_seeds,
+        law=by.law,
+        mooring=by.mooring,
+        ramp=by.ramp,
+        spin_up=by.spin_up,
+        time_step=by.time_step,
+        sample_every=None,
+        quantile_levels=by.quantile_levels,
+        second_moment=by.second_moment,
+    )
+    return _statistics(history), _moment(history) if by.second_moment else None
+
+
+def _statistics(history: History) -> dict[str, np.ndarray]:
+    values = {
+        "net_force": history.net_force.mean,
+        "net_force_std": history.net_force.std,
+        "volume": history.volume.mean,
+        "volume_std": history.volume.std,
+        "result": history.result,
+        "diverged_at": history.diverged_at,
+    }
+    for name, over_time in (("node_position", history.node), ("bridle_tension", history.bridle)):
+        values[name] = over_time.mean
+        for statistic in ("std", "minimum", "maximum", "quantile"):
+            values[f"{name}_{statistic}"] = getattr(over_time, statistic)
+    return values
+
+
+def _moment(history: History) -> Float[np.ndarray, "coordinate coordinate"]:
+    """Sum over the converged cases, one after the other: the order is part of the number."""
+    total = np.zeros(history.second_moment.shape[-2:])
+    for case in np.flatnonzero(history.result == Result.CONVERGED):
+        total += history.second_moment[case]
+    return total
+
+
+@lru_cache(maxsize=4)
+def _cage(toml: str) -> Cage:
+    return Cage.from_toml(toml)

@@ -1,0 +1,140 @@
+"""How far a campaign is, what failed in it, and what it cost."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from seacage.conventions import Result
+from seacage.records import (
+    NOT_RUN,
+    campaign_results,
+    campaign_unsummed,
+    campaign_variable,
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CampaignStatus:
+    """How far a campaign is.
+
+    Parameters
+    ----------
+    plan
+        The plan's name.
+    law
+        Load law of the netting.
+    method
+        "simulate" or "settle".
+    total
+        Cases planned.
+    converged, not_converged, diverged
+        Cases that ended so.
+    failures
+        Cases that did not converge, each with the reason.
+    simulated_s
+        Simulated time of the cases done, spin-up included; 0 for equilibria [s].
+    core_seconds
+        Processor time of the blocks done; NaN where it was not kept [s].
+    finished
+        Whether nothing is left to run or to sum.
+    """
+
+    plan: str
+    law: str
+    method: str
+    total: int
+    converged: int
+    not_converged: int
+    diverged: int
+    failures: dict[int, str]
+    simulated_s: float
+    core_seconds: float
+    finished: bool
+
+    @property
+    def done(self) -> int:
+        """Cases that have been run, however they ended."""
+        return self.converged + self.not_converged + self.diverged
+
+    @property
+    def pace(self) -> float:
+        """Simulated seconds per core-second; NaN where that means nothing."""
+        return self.simulated_s / self.core_seconds if self.simulated_s else np.nan
+
+
+def campaign_status(out: str | Path) -> CampaignStatus:
+    """How far the campaign in a folder is, whether it is running or was stopped.
+
+    Raises
+    ------
+    RecordError
+        There is no campaign.
+    """
+    store = Path(out)
+    attributes, result, block = campaign_results(store)
+    diverged_at = campaign_variable(store, "diverged_at")
+    simulated_s = 0.0 if diverged_at is None else _simulated_s(attributes, result, diverged_at)
+    return CampaignStatus(
+        plan=attributes["plan"],
+        law=attributes["law"],
+        method=attributes.get("method", "settle"),
+        total=len(result),
+        converged=int(np.sum(result == Result.CONVERGED)),
+        not_converged=int(np.sum(result == Result.NOT_CONVERGED)),
+        diverged=int(np.sum(result == Result.DIVERGED)),
+        failures=_failures(store, result),
+        simulated_s=simulated_s,
+        core_seconds=_core_seconds(store, result[::block]),
+        finished=not (campaign_unsummed(store) or np.any(result == NOT_RUN)),
+    )
+
+
+def _failures(store: Path, result: Int[np.ndarray, " case"]) -> dict[int, str]:
+    """Each case that did not converge: in which sea, and why."""
+    failed = np.flatnonzero((result != NOT_RUN) & (result != Result.CONVERGED)).tolist()
+    if not failed:
+        return {}
+    names = ("current_speed", "current_to", "hs", "tp", "wave_from", "residual", "diverged_at")
+    columns = {name: campaign_variable(store, name) for name in names}
+    said: dict[int, str] = {}
+    for case in failed:
+        row = {n: np.nan if c is None else float(c[case]) for n, c in columns.items()}
+        said[case] = f"{_sea(row)}: {_reason(Result(int(result[case])), row)}"
+    return said
+
+
+def _sea(row: Mapping[str, float]) -> str:
+    current = f"current {row['current_speed']:.2f} m/s to {row['current_to']:.0f}°"
+    if not row["hs"]:
+        return current
+    return f"{current}, Hs {row['hs']:.2f} m, Tp {row['tp']:.1f} s from {row['wave_from']:.0f}°"
+
+
+def _reason(result: Result, row: Mapping[str, float]) -> str:
+    if result is Result.NOT_CONVERGED:
+        left = row["residual"]
+        with_left = "" if np.isnan(left) else f" with {left:.3g} N left on a node"
+        return f"it did not come to rest; its last shape is kept{with_left}"
+    when = row["diverged_at"]
+    after = "" if np.isnan(when) else f" after {when:.4g} s of simulated time"
+    return f"its positions left the finite numbers{after}, so it carries no answer"
+
+
+def _simulated_s(
+    attributes: dict[str, Any],
+    result: Int[np.ndarray, " case"],
+    diverged_at: Float[np.ndarray, " case"],
+) -> float:
+    whole = float(attributes["spin_up_s"]) + float(attributes["duration_s"])
+    each = np.where(np.isnan(diverged_at), whole, diverged_at)
+    return float(np.sum(each[result != NOT_RUN]))
+
+
+def _core_seconds(store: Path, result: Int[np.ndarray, " block"]) -> float:
+    """Of the blocks that are done: one being written has its seconds before its results."""
+    taken = campaign_variable(store, "core_seconds")
+    return float("nan") if taken is None else float(np.sum(taken[result != NOT_RUN]))
