@@ -34,7 +34,7 @@ KEYS: dict[str, type] = {
     "tolerance": dict,
 }
 NEEDED = ("title", "kind", "source", "cage", "tolerance")
-CONDITIONS = ("current_speed_m_s", "current_to_deg", "law")
+CONDITIONS = ("current_speed_m_s", "current_to_deg", "law", "note")
 UNCERTAINTY = "uncertainty:"
 
 
@@ -51,12 +51,12 @@ class Tolerance:
 class Measured:
     """One number of the CSV and the water it was measured in."""
 
-    speed: float
     sea: SeaState
     law: Law | None  # None: the case's
     quantity: Quantity
     value: float
     uncertainty: float
+    note: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -236,12 +236,12 @@ def _numbers(
             continue
         spread = UNCERTAINTY + quantity.name
         yield Measured(
-            speed=speed,
             sea=SeaState(current_speed=speed, current_to=to),
             law=law,
             quantity=quantity,
             value=_number(line, quantity.name, where),
             uncertainty=_number(line, spread, where) if line.get(spread) else 0.0,
+            note=line.get("note") or "",
         )
 
 

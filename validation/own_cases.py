@@ -10,10 +10,10 @@ from seacage.conventions import Result
 from seacage.dynamics import Law, Response, settle
 from seacage.ocean import SeaState
 from validation._case import Case, Measured, read_cases
-from validation._row import Row, Section
+from validation._row import Row, Section, Span
 
-MANY = 40
-"""Equilibria that take a few seconds; a case with more is slow."""
+MANY = 16
+"""Equilibria that take a second or two; a case with more is slow."""
 
 Answers = dict[tuple[int, Law, SeaState], Response]
 
@@ -79,20 +79,28 @@ def _row(case: Case, measured: Measured, ours: list[float]) -> Row:
         conditions.append(f"to {measured.sea.current_to:g}°")
     if measured.law:
         conditions.append(measured.law)
-    spread = measured.uncertainty
-    value = measured.value
+    spread, value = measured.uncertainty, measured.value
+    settled = [number for number in ours if not np.isnan(number)]
+    unsettled = len(ours) - len(settled)
     return Row(
         what=f"{case.title}: {quantity.what}, {', '.join(conditions)}",
         unit=quantity.unit,
         reference=(value - spread, value + spread) if spread else value,
-        ours=ours[0] if len(ours) == 1 else (float(np.min(ours)), float(np.max(ours))),
+        ours=_span(settled),
         kind=case.kind,
         source=case.source,
         tolerance=tolerance.share * abs(value) + tolerance.fixed,
         reason=tolerance.reason,
         must_hold=case.must_hold,
-        note=case.note,
+        detail=f"{unsettled} of {len(ours)} did not settle" if unsettled else "",
+        note=measured.note or case.note,
     )
+
+
+def _span(numbers: list[float]) -> Span:
+    if len(numbers) > 1:
+        return min(numbers), max(numbers)
+    return numbers[0] if numbers else float("nan")
 
 
 def _section(case: Case) -> Section:
