@@ -3,8 +3,9 @@
 # distributed leaves its signatures untyped.
 # pyright: reportUnknownMemberType=false
 
+import asyncio
 from collections.abc import Callable, Generator, Sequence
-from concurrent.futures import CancelledError
+from concurrent.futures import CancelledError, ThreadPoolExecutor
 from typing import TYPE_CHECKING, TypeVar
 
 from seacage.conventions import SeacageError
@@ -12,7 +13,7 @@ from seacage.conventions import SeacageError
 if TYPE_CHECKING:
     from distributed import Client
 
-_CONNECT_S, _WORKER_S = 20.0, 60.0
+_CONNECT_S, _WORKER_S = 10.0, 60.0
 """How long a scheduler may take to answer, and how long it may be without a worker [s]."""
 
 Task = TypeVar("Task")
@@ -47,7 +48,7 @@ def mapped_on_cluster(
     with _connected(address) as client:
         futures = [client.submit(work, task, pure=False) for task in tasks]
         asked = {future.key: task for future, task in zip(futures, tasks, strict=True)}
-        futures_left = as_completed(futures)
+        futures_left = as_completed(futures, loop=client.loop)
         del futures  # an answer that was taken need not stay in the cluster
         try:
             for future in futures_left:
@@ -68,12 +69,14 @@ def _connected(address: str) -> "Client":
     from distributed import Client
 
     try:
-        client = Client(address, timeout=_CONNECT_S, set_as_default=False)
+        with ThreadPoolExecutor(1) as aside:  # a notebook's thread has a loop that is running
+            aside.submit(asyncio.run, _greeted(address)).result()
     except (OSError, ValueError) as error:
         raise SeacageError(
             f"{address}: no Dask scheduler answers ({error}). Start one with `dask scheduler`, and "
             "workers with `dask worker ADDRESS`; its address looks like tcp://host:8786."
         ) from error
+    client = Client(address, timeout=_CONNECT_S, set_as_default=False)
     try:
         client.wait_for_workers(1, timeout=_WORKER_S)
     except TimeoutError as error:
@@ -83,3 +86,11 @@ def _connected(address: str) -> "Client":
             f"Start some with `dask worker {address}`."
         ) from error
     return client
+
+
+async def _greeted(address: str) -> None:
+    """Connect once and leave: a client that cannot connect would go on trying for long."""
+    from distributed.comm import connect
+
+    comm = await connect(address, timeout=_CONNECT_S)
+    await comm.close()
