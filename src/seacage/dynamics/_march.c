@@ -59,13 +59,15 @@ typedef struct {
     int64_t count_from;       /* refreshes before it are not counted */
     int64_t sample_every;     /* refreshes between samples; 0 for none */
     int32_t steps;            /* of a refresh */
+    int32_t hold;             /* steps through which the water's load is held */
 } schedule;
 
 typedef struct {
     vec *position, *rest, *velocity; /* rest: what rounding cut off */
     vec *water, *slope;              /* wave velocity at the last refresh, and its change [1/s] */
     vec *current, *relative, *force, *base;
-    lane *drag;                      /* how much a node's force falls with its speed [N s/m] */
+    vec *held;                       /* base and the water's load, the latter as for no speed */
+    lane *drag;                      /* how much a node's load falls with its speed [N s/m] */
     lane *elevation, *rise;          /* at the floats: at the last refresh, and its change */
     vec *panel_current;
     lane *panel_drag, *panel_lift;   /* coefficients that the speed changes */
@@ -237,7 +239,7 @@ static void share_out(const int *n, const float *share, const lane *restrict loa
 }
 
 /* Screens: C_D = max(0, a + b cos + h cos3), C_L = l sin2 (1 + e cos2), b and h one number
- * times fixed shares. `falls` bounds how a load changes with speed, whatever the angle. */
+ * times fixed shares. `falls`: how the load changes with speed, the mean over directions. */
 static void add_screens(const body *b, const state *s, const vec *restrict x, lane *total)
 {
     const vec *restrict w = (const vec *)s->relative, *restrict carried = (const vec *)s->panel_current;
@@ -273,9 +275,9 @@ static void add_screens(const body *b, const state *s, const vec *restrict x, la
             load[0][k] = on_u * ux + on_n * nx;
             load[1][k] = on_u * uy + on_n * ny;
             load[2][k] = on_u * uz + on_n * nz;
-            falls[k] = 2.0f * pressure * uu * slow * (constant + facing[k]);
+            falls[k] = 1.4f * pressure * uu * slow * (cd + 0.2f * facing[k]);
         }
-        share_out(n, share, (const lane *)load, falls, s->force, s->drag, total);
+        share_out(n, share, (const lane *)load, falls, s->held, s->drag, total);
     }
 }
 
@@ -317,20 +319,20 @@ static void add_twines(const body *b, const state *s, const vec *restrict x, lan
                 const float skinned = skin * (along < 0.0f ? -along : along) * along * sqrtf(tt);
                 for (int a = 0; a < 3; a++)
                     on[a] += weight * (cn * speed * across[a] + skinned * t[a]);
-                fall += 2.0f * weight * cn * speed;
+                fall += weight * cn * speed;
             }
             for (int a = 0; a < 3; a++)
                 load[a][k] = on[a];
             falls[k] = fall;
         }
-        share_out(n, share, (const lane *)load, falls, s->force, s->drag, total);
+        share_out(n, share, (const lane *)load, falls, s->held, s->drag, total);
     }
 }
 
 static void add_cylinders(const body *b, const state *s, const vec *restrict x)
 {
     const vec *restrict w = (const vec *)s->relative, *restrict current = (const vec *)s->current;
-    vec *restrict f = s->force;
+    vec *restrict f = s->held;
     lane *restrict drag = s->drag;
     for (int n = 0; n < b->cylinders; n++) {
         const int i = b->cylinder_ends[2 * n], j = b->cylinder_ends[2 * n + 1];
@@ -357,8 +359,8 @@ static void add_cylinders(const body *b, const state *s, const vec *restrict x)
             f[j][0][k] += fx;
             f[j][1][k] += fy;
             f[j][2][k] += fz;
-            drag[i][k] += 2.0f * pressure;
-            drag[j][k] += 2.0f * pressure;
+            drag[i][k] += 1.4f * pressure;
+            drag[j][k] += 1.4f * pressure;
         }
     }
 }
@@ -404,20 +406,30 @@ static void add_supports(const body *b, const state *s, float since, const vec *
     }
 }
 
-/* All forces into s->force, which holds weight and inertia already; total: on the netting. */
-static void add_forces(const body *b, const state *s, float since, lane *total)
+/* Loads of the water into s->held; total: those on the netting. */
+static void hold_loads(const body *b, const state *s, lane *total)
 {
     const vec *restrict x = (const vec *)s->position, *restrict v = (const vec *)s->velocity;
     memset(s->drag, 0, sizeof(lane) * (size_t)b->nodes);
+    memcpy(s->held, s->base, sizeof(vec) * (size_t)b->nodes);
     for (int a = 0; a < 3; a++)
         EACH_LANE total[a][k] = 0.0f;
-    add_bars(b, x, v, s->force);
-    add_bends(b, x, s->force);
     if (b->kind == TWINES)
         add_twines(b, s, x, total);
     else
         add_screens(b, s, x, total);
     add_cylinders(b, s, x);
+    for (int i = 0; i < b->nodes; i++)
+        for (int a = 0; a < 3; a++)
+            EACH_LANE s->held[i][a][k] += s->drag[i][k] * v[i][a][k];
+}
+
+/* What springs back, into s->force, on top of what is held: held, it would stir motion up. */
+static void add_forces(const body *b, const state *s, float since)
+{
+    const vec *restrict x = (const vec *)s->position, *restrict v = (const vec *)s->velocity;
+    add_bars(b, x, v, s->force);
+    add_bends(b, x, s->force);
     add_supports(b, s, since, x, v);
 }
 
@@ -586,39 +598,32 @@ static void refresh_panels(const body *b, const sea *w, state *s)
 
 /* --- steps ------------------------------------------------------------------------------- */
 
-static void begin_forces(const body *b, state *s, float since)
+static void relative_flow(const body *b, state *s, float since)
 {
     for (int i = 0; i < b->nodes; i++)
         for (int a = 0; a < 3; a++)
-            EACH_LANE {
-                s->relative[i][a][k] = s->water[i][a][k] + since * s->slope[i][a][k]
-                                       - s->velocity[i][a][k];
-                s->force[i][a][k] = s->base[i][a][k];
-            }
+            EACH_LANE s->relative[i][a][k] = s->water[i][a][k] + since * s->slope[i][a][k]
+                                             - s->velocity[i][a][k];
 }
 
-/* Symplectic Euler; what drag takes away grows with the speed, and is taken at the new one. */
-static void move(const body *b, state *s, float step, float since)
+/* Symplectic Euler; drag falls with the speed, and is taken at the new one. */
+static void move(const body *b, state *s, float step)
 {
     for (int i = 0; i < b->nodes; i++) {
         const float mass = b->mass[i];
         vec *restrict x = s->position + i, *restrict rest = s->rest + i, *restrict v = s->velocity + i;
-        vec *restrict f = s->force + i, *restrict w = s->relative + i;
-        const vec *restrict u = (const vec *)s->water + i, *restrict slope = (const vec *)s->slope + i;
-        const vec *restrict base = (const vec *)s->base + i;
+        const vec *restrict f = (const vec *)s->force + i;
         const float *restrict drag = s->drag[i];
         lane share;
-        EACH_LANE share[k] = step / (mass + step * drag[k]);
+        EACH_LANE share[k] = 1.0f / (mass + step * drag[k]);
         for (int a = 0; a < 3; a++)
             EACH_LANE {
-                const float faster = (*v)[a][k] + share[k] * (*f)[a][k];
+                const float faster = share[k] * (mass * (*v)[a][k] + step * (*f)[a][k]);
                 const float old = (*x)[a][k], add = step * faster + (*rest)[a][k];
                 const float now = old + add;
                 (*v)[a][k] = faster;
                 (*rest)[a][k] = add - (now - old);
                 (*x)[a][k] = now;
-                (*w)[a][k] = (*u)[a][k] + since * (*slope)[a][k] - faster;
-                (*f)[a][k] = (*base)[a][k];
             }
     }
 }
@@ -726,13 +731,17 @@ static void give_up_lost(const body *b, state *s, double now)
 
 int32_t seacage_march_lanes(void) { return LANES; }
 
-/* All forces and drag slopes at a state, the water given at its nodes: for the tests. */
+/* All forces at a state, the water given at its nodes: for the tests. */
 void seacage_march_forces(const body *b, const sea *w, state *s, float *total)
 {
+    relative_flow(b, s, 0.0f);
     refresh_panels(b, w, s);
-    begin_forces(b, s, 0.0f);
-    refresh_panels(b, w, s); /* again, now that the speeds are known */
-    add_forces(b, s, 0.0f, (lane *)total);
+    hold_loads(b, s, (lane *)total);
+    for (int i = 0; i < b->nodes; i++)
+        for (int a = 0; a < 3; a++)
+            EACH_LANE s->force[i][a][k] = s->held[i][a][k]
+                                          - s->drag[i][k] * s->velocity[i][a][k];
+    add_forces(b, s, 0.0f);
 }
 
 /* Surface and wave velocity at places, the waves' ramp done: for the tests. */
@@ -753,11 +762,17 @@ void seacage_march(const body *b, const sea *w, const schedule *t, state *s, rec
     for (int64_t n = t->first; n < t->first + t->refreshes; n++) {
         const double now = interval * (double)n;
         refresh_water(b, w, t, s, now + interval, interval);
-        begin_forces(b, s, 0.0f);
-        refresh_panels(b, w, s);
         const int counts = n >= t->count_from;
         for (int32_t i = 0; i < t->steps; i++) {
-            add_forces(b, s, step * (float)i, (lane *)total);
+            const float since = step * (float)i;
+            if (i % t->hold == 0) {
+                relative_flow(b, s, since);
+                if (i == 0)
+                    refresh_panels(b, w, s);
+                hold_loads(b, s, (lane *)total);
+            }
+            memcpy(s->force, s->held, sizeof(vec) * (size_t)b->nodes);
+            add_forces(b, s, since);
             if (counts)
                 count_bridles(b, s, r);
             if (i == 0 && counts) {
@@ -767,7 +782,7 @@ void seacage_march(const body *b, const sea *w, const schedule *t, state *s, rec
                 if (t->sample_every > 0 && (n - t->count_from) % t->sample_every == 0)
                     sample(b, w, t, s, (const lane *)total, now, r);
             }
-            move(b, s, step, step * (float)(i + 1));
+            move(b, s, step);
         }
         give_up_lost(b, s, now + interval);
     }

@@ -7,10 +7,10 @@ from functools import lru_cache
 from typing import Any, Self
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
 from seacage.conventions import WATER_VISCOSITY
-from seacage.dynamics._assembly import Assembly
+from seacage.dynamics._assembly import Assembly, Bars
 from seacage.dynamics._kernel import kernel
 from seacage.dynamics._loads import DYNAMIC
 from seacage.dynamics._motion import NetLaw, Water, bar_damping
@@ -60,7 +60,7 @@ class _Schedule(Struct):
     _fields_ = (
         *((n, ctypes.c_double) for n in ("time_step", "ramp")),
         *((n, ctypes.c_int64) for n in ("first", "refreshes", "count_from", "sample_every")),
-        ("steps", ctypes.c_int32),
+        *((n, ctypes.c_int32) for n in ("steps", "hold")),
     )
 
 
@@ -69,7 +69,7 @@ class _State(Struct):
         (n, FLOATS)
         for n in (
             *("position", "rest", "velocity", "water", "slope", "current", "relative"),
-            *("force", "base", "drag", "elevation", "rise", "panel_current"),
+            *("force", "base", "held", "drag", "elevation", "rise", "panel_current"),
             *("panel_drag", "panel_lift", "lost_at"),
         )
     )
@@ -134,6 +134,8 @@ class Steps:
         [s].
     each
         Time steps between two looks at the water.
+    hold
+        Time steps through which the water's load is held, but for what drag changes.
     ramp
         Over which the waves rise [s].
     spin_up, counted
@@ -144,6 +146,7 @@ class Steps:
 
     time_step: float
     each: int
+    hold: int
     ramp: float
     spin_up: int
     counted: int
@@ -209,6 +212,7 @@ class March:
             count_from=steps.spin_up,
             sample_every=steps.sample_every,
             steps=steps.each,
+            hold=steps.hold,
         )
         _library().seacage_march(
             *map(ctypes.byref, (self._body, self._sea, schedule, self._motion, self._record))
@@ -306,7 +310,7 @@ class _Motion(_State):
 def _motion(assembly: Assembly, position: Float[np.ndarray, "node 3 lane"]) -> _Motion:
     lanes, nodes = simulation_lanes(), len(position)
     panels, floats = len(assembly.panels.area), len(assembly.floats.nodes)
-    nodal = ("rest", "velocity", "water", "slope", "current", "relative", "force", "base")
+    nodal = ("rest", "velocity", "water", "slope", "current", "relative", "force", "base", "held")
     shapes: dict[str, tuple[int, ...]] = dict.fromkeys(nodal, (nodes, 3)) | {
         "drag": (nodes,),
         "elevation": (floats,),
@@ -322,26 +326,27 @@ def _motion(assembly: Assembly, position: Float[np.ndarray, "node 3 lane"]) -> _
 def _body(assembly: Assembly, law: NetLaw) -> _Body:
     a = assembly
     assert np.all(np.diff(a.floats.nodes) > 0), "the kernel meets floats in the nodes' order"
+    bars, bridles = _in_node_order(a)
     kind, numbers, panel_law = _law(a, law)
     indices = {
-        "bar_ends": a.bars.ends,
+        "bar_ends": bars.ends,
         "bend_nodes": a.bends.nodes,
         "panel_corners": a.panels.corners,
         "cylinder_ends": a.cylinders.ends,
         "float_nodes": a.floats.nodes,
         "spring_nodes": a.springs.nodes,
         "ground_nodes": a.ground.nodes,
-        "bridle_bars": a.bridles,
+        "bridle_bars": bridles,
     }
     values = {
         "weight": a.weight,
         "mass": np.where(a.fixed, HELD, a.mass),
         "water_mass": a.water_mass,
         "place": a.position,
-        "bar_length": a.bars.length,
-        "bar_rate": a.bars.stiffness / a.bars.length,
-        "bar_damping": bar_damping(a.bars, a.mass),
-        "bar_least": np.where(a.bars.pushed, -np.inf, 0.0),
+        "bar_length": bars.length,
+        "bar_rate": bars.stiffness / bars.length,
+        "bar_damping": bar_damping(bars, a.mass),
+        "bar_least": np.where(bars.pushed, -np.inf, 0.0),
         "bend_stiffness": a.bends.stiffness,
         "panel_share": a.panels.share,
         "panel_law": panel_law,
@@ -359,7 +364,7 @@ def _body(assembly: Assembly, law: NetLaw) -> _Body:
     }
     return _Body.filled(
         nodes=len(a.position),
-        bars=len(a.bars.length),
+        bars=len(bars.length),
         bends=len(a.bends.stiffness),
         panels=len(a.panels.area),
         cylinders=len(a.cylinders.drag_width),
@@ -373,6 +378,15 @@ def _body(assembly: Assembly, law: NetLaw) -> _Body:
         **{name: array.astype(np.int32) for name, array in indices.items()},
         **{name: array.astype(np.float32) for name, array in values.items()},
     )
+
+
+def _in_node_order(assembly: Assembly) -> tuple[Bars, Int[np.ndarray, " bridle"]]:
+    """The bars as their nodes lie in memory, which saves waiting for it, and the bridles."""
+    bars = assembly.bars
+    order = np.argsort(bars.ends.min(axis=1), kind="stable")
+    place = np.argsort(order)
+    sorted_bars = Bars(**{name: getattr(bars, name)[order] for name in Bars.__slots__})
+    return sorted_bars, place[assembly.bridles]
 
 
 def _law(

@@ -23,6 +23,9 @@ from seacage.ocean import CurrentProfile, SeaState, Waves, sample_waves
 
 Mooring = Literal["springs", "catenary"]
 
+HOLD = 4
+"""Time steps through which the water's load is held."""
+
 CHUNK = 100
 """Refreshes between two reports of progress."""
 
@@ -45,7 +48,7 @@ def simulate(
     collar_drag: bool = True,
     ramp: float = 60.0,
     spin_up: float = 300.0,
-    time_step: float = 0.004,
+    time_step: float = 0.002,
     sample_every: float | None = 0.5,
     series_nodes: Sequence[int] | None = None,
     quantile_levels: Sequence[float] = (0.05, 0.5, 0.95),
@@ -180,6 +183,7 @@ def _steps(
     return Steps(
         time_step=REFRESH / each,
         each=each,
+        hold=HOLD,
         ramp=ramp,
         spin_up=math.ceil(spin_up / REFRESH - 1e-9),
         counted=math.ceil(duration / REFRESH - 1e-9),
