@@ -252,6 +252,11 @@ class Structure:
         top = min((self._ring_index(net.upper, net.name) for net in self.net), key=self._depth)
         return enclosed_volume(node_position, self.panels, self.ring_nodes(top))
 
+    def is_dry(self, net: Net) -> bool:
+        """Whether a net has no edge under still water: a roof, or a fence on the collar."""
+        edges = (net.upper, net.lower or net.upper)
+        return all(self._depth(self._ring_index(edge, net.name)) <= 0.0 for edge in edges)
+
     def knitted(self, index: int) -> tuple[float, Float[np.ndarray, " level"]]:
         """A net as it was knitted, by its number.
 

@@ -22,12 +22,16 @@ from seacage.dynamics._assembly import (
 SINKING = 0.01
 """How far a line's node sinks into the sea bed under its own weight [m]."""
 
+MOST_SOLIDITY = 0.9
+"""Beyond it a net is a wall, and no screen law is right [-]."""
+
 
 def rigged(structure: Structure) -> Assembly:
     """Put a structure together.
 
     Pipes float as boxes of their width and volume, centred on their nodes, and follow the
-    surface; ropes and nets count as always under water. Ties and lines are lumped into their
+    surface; ropes count as always under water, and so do nets but a roof at the water line,
+    which counts as always dry. Ties and lines are lumped into their
     segments' ends. ``bridles`` are the first bars of the lines, in the order of
     ``structure.line_names``. Friction on the sea bed is left out.
 
@@ -39,7 +43,8 @@ def rigged(structure: Structure) -> Assembly:
     """
     members = _members(structure)
     position = structure.design_position
-    panels = _joined_panels([_panels(structure, index) for index in range(len(structure.net))])
+    wet_nets = [index for index, net in enumerate(structure.net) if not structure.is_dry(net)]
+    panels = _joined_panels([_panels(structure, index) for index in wet_nets])
     bars = joined_bars(*_net_bars(structure), *(_bars(member) for member in members))
     lumps = _lumps(structure, members)
     _check_floats(structure, members)
@@ -205,79 +210,34 @@ def _bends(structure: Structure) -> Bends:
 
 
 def _panels(structure: Structure, index: int) -> Panels:
-    """A net's panels, and the twines that it has beyond a flat one's as bundles on the spokes.
+    """A net's panels, with all the twine that was knitted.
 
-    A net knitted wider than its rings hangs in folds. Round the cage its twines are then as
-    short as the rings are; down the spokes all of them are there. A panel carries as many
-    twines one way as the other; the surplus runs in bundles, panels of no area, along the
-    meridians. Screens see it as more solidity.
+    A net knitted wider than its rings hangs in folds: its twines are all there and all meet
+    the water, along the panel's edges, however short these are. Screens see them as solidity.
     """
     net, position = structure.net[index], structure.design_position
-    twine, nodes = structure.twine_of(net), structure.net_nodes(index)
+    twine, corners = structure.twine_of(net), structure.net_panels(index)
     row, chord = structure.knitted(index)
-    flat = _outlines(structure.net_panels(index), position)
     area = np.repeat((chord[:-1] + chord[1:]) / 2.0 * row, structure.spokes)
-    whole = np.minimum(area, flat)
-    surplus = area - whole if net.twines == "along" else np.zeros_like(area)
+    folds = np.maximum(area / _outlines(corners, position), 1.0)
     cover = twine.diameter / twine.half_mesh
-    folds = np.maximum(area / flat, 1.0) if net.lower else np.ones_like(area)
-    panels = _mesh(
-        structure, index, twine_area=whole, solidity=1.0 - (1.0 - cover) * (1.0 - cover * folds)
-    )
-    if not np.any(surplus > 1e-9 * area):
-        return panels
-    above, below = nodes[:-1].ravel(), nodes[1:].ravel()
-    bundle = np.column_stack([above, above, below, above])
-    beside = np.roll(surplus.reshape(net.rows, -1), 1, axis=1).ravel()
-    return _joined_panels([panels, _bundles(structure, panels, bundle, (surplus + beside) / 4.0)])
-
-
-def _mesh(
-    structure: Structure,
-    index: int,
-    *,
-    twine_area: Float[np.ndarray, " panel"],
-    solidity: Float[np.ndarray, " panel"],
-) -> Panels:
-    net, corners = structure.net[index], structure.net_panels(index)
-    twine = structure.twine_of(net)
+    solidity = np.minimum(1.0 - (1.0 - cover) * (1.0 - cover * folds), MOST_SOLIDITY)
     triangle = corners[:, 2] == corners[:, 3]
     share = np.where(triangle[:, None], [1 / 3, 1 / 3, 1 / 6, 1 / 6], [1 / 4, 1 / 4, 1 / 4, 1 / 4])
-    centre = np.einsum("pc,pcx->px", share, structure.design_position[corners])
+    centre = np.einsum("pc,pcx->px", share, position[corners])
+    away = np.linalg.norm(centre[:, :2], axis=1, keepdims=True)
     count = len(corners)
     return Panels(
         corners=corners,
         share=share,
-        solidity=np.minimum(solidity, 0.9),
+        solidity=solidity,
         twine_diameter=np.full(count, twine.diameter),
-        outward=_outward(centre),
+        outward=centre[:, :2] / np.maximum(away, 1e-9),
         half_width=np.full(count, np.pi / structure.spokes),
         depth=-centre[:, 2],
-        area=twine_area,
+        area=area,
         twine_spacing=np.full(count, twine.half_mesh),
         diamond=np.full(count, net.twines == "diagonal"),
-    )
-
-
-def _bundles(
-    structure: Structure,
-    like: Panels,
-    corners: Int[np.ndarray, "panel 4"],
-    area: Float[np.ndarray, " panel"],
-) -> Panels:
-    """Twines along meridians: both families of such a panel run from its first to third corner."""
-    centre = structure.design_position[corners[:, [0, 2]]].mean(axis=1)
-    return Panels(
-        corners=corners,
-        share=np.tile([1 / 6, 1 / 6, 1 / 2, 1 / 6], (len(corners), 1)),
-        solidity=like.solidity,
-        twine_diameter=like.twine_diameter,
-        outward=_outward(centre),
-        half_width=like.half_width,
-        depth=-centre[:, 2],
-        area=area,
-        twine_spacing=like.twine_spacing,
-        diamond=np.zeros(len(corners), dtype=bool),
     )
 
 
@@ -296,11 +256,6 @@ def _joined_panels(several: list[Panels]) -> Panels:
             for name in names
         }
     )
-
-
-def _outward(centre: Float[np.ndarray, "panel 3"]) -> Float[np.ndarray, "panel 2"]:
-    away = np.linalg.norm(centre[:, :2], axis=1, keepdims=True)
-    return centre[:, :2] / np.maximum(away, 1e-9)
 
 
 def _outlines(
@@ -400,7 +355,7 @@ def _put_net(structure: Structure, index: int, lumps: _Lumps) -> None:
     lumps.put(
         corners.ravel(),
         (twine.density * volume * share).ravel(),
-        (WATER_DENSITY * volume * share).ravel(),
+        (0.0 if structure.is_dry(net) else WATER_DENSITY) * (volume * share).ravel(),
         twine.added_mass_coefficient,
     )
 
