@@ -1,0 +1,163 @@
+"""Bare structures, marched by the compiled kernel: what closed forms can be held against."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.dynamics._assembly import (
+    Assembly,
+    Bars,
+    Bends,
+    Cylinders,
+    Floats,
+    Ground,
+    Panels,
+    Springs,
+)
+from seacage.dynamics._march import REFRESH, March, Ocean, Steps
+from seacage.dynamics._motion import NetLaw
+from seacage.ocean import Waves
+
+NONE = np.zeros(0)
+NO_INDEX = np.zeros(0, dtype=np.int64)
+
+
+def chain(
+    position: Float[np.ndarray, "node 3"],
+    *,
+    held: Sequence[int],
+    mass: Float[np.ndarray, " node"],
+    weight: Float[np.ndarray, " node"] | float = 0.0,
+    axial_stiffness: float = 0.0,
+    length: float = 1.0,
+    drag_width: float = 0.0,
+) -> Assembly:
+    """Nodes on a string of equal bars, without netting; no stiffness means no bars.
+
+    Parameters
+    ----------
+    held
+        Nodes that keep their place.
+    mass, weight
+        Of each node [kg], and submerged, upwards negative [N].
+    axial_stiffness, length
+        EA [N] and unstretched length [m] of all bars together.
+    drag_width
+        Drag coefficient × diameter of the string [m].
+    """
+    count = len(position) - 1
+    fixed = np.zeros(count + 1, dtype=bool)
+    fixed[list(held)] = True
+    ends = np.stack([np.arange(count), np.arange(count) + 1], axis=1)
+    bars = count if axial_stiffness else 0
+    return Assembly(
+        cage_nodes=count + 1,
+        position=position,
+        weight=np.zeros(count + 1) + weight,
+        mass=mass,
+        water_mass=np.zeros(count + 1),
+        fixed=fixed,
+        bars=Bars(
+            ends=ends[:bars],
+            length=np.full(bars, length / max(count, 1)),
+            stiffness=np.full(bars, axial_stiffness),
+            pushed=np.zeros(bars, dtype=bool),
+            damping_ratio=np.zeros(bars),
+        ),
+        bridles=NO_INDEX,
+        bends=Bends(nodes=np.zeros((0, 3), dtype=np.int64), stiffness=NONE),
+        panels=_no_panels(),
+        cylinders=Cylinders(
+            ends=ends if drag_width else ends[:0],
+            drag_width=np.full(count if drag_width else 0, drag_width),
+            skin_width=np.zeros(count if drag_width else 0),
+        ),
+        floats=Floats(nodes=NO_INDEX, stiffness=NONE, draft=NONE, height=NONE),
+        springs=Springs(
+            nodes=NO_INDEX,
+            stiffness=np.zeros((0, 3)),
+            preload=np.zeros((0, 3)),
+            damping=np.zeros((0, 3)),
+        ),
+        ground=Ground(nodes=NO_INDEX, stiffness=NONE, level=-1e4),
+    )
+
+
+def _no_panels() -> Panels:
+    return Panels(
+        corners=np.zeros((0, 4), dtype=np.int64),
+        share=np.zeros((0, 4)),
+        solidity=NONE,
+        twine_diameter=NONE,
+        outward=np.zeros((0, 2)),
+        half_width=NONE,
+        depth=NONE,
+        area=NONE,
+        twine_spacing=NONE,
+        diamond=np.zeros(0, dtype=bool),
+    )
+
+
+def afloat(mass: float, stiffness: float, *, draft: float) -> Assembly:
+    """One node that floats, its weight what it displaces in its design place."""
+    alone = chain(np.zeros((1, 3)), held=(), mass=np.array([mass]), weight=-stiffness * draft)
+    box = Floats(
+        nodes=np.array([0]),
+        stiffness=np.array([stiffness]),
+        draft=np.array([draft]),
+        height=np.array([10.0 * draft]),
+    )
+    return replace(alone, floats=box)
+
+
+def marched(
+    assembly: Assembly,
+    start: Float[np.ndarray, "node 3"],
+    *,
+    duration: float,
+    time_step: float = 0.002,
+    waves: Waves | None = None,
+) -> tuple[Float[np.ndarray, " t"], Float[np.ndarray, "t node 3"]]:
+    """A structure let go from a shape, in still water or in waves without a ramp.
+
+    Returns
+    -------
+    time
+        From the start, in tenths of a second [s].
+    position
+        At those times [m].
+    """
+    refreshes = round(duration / REFRESH)
+    steps = Steps(
+        time_step=time_step,
+        each=round(REFRESH / time_step),
+        hold=1,
+        ramp=0.0,
+        spin_up=0,
+        counted=refreshes,
+        sample_every=1,
+    )
+    depth = 500.0 if waves is None else waves.depth
+    ocean = Ocean(
+        waves=() if waves is None else (waves,),
+        current=np.zeros((1, 1, 2)),
+        level_z=np.zeros(1),
+        depth=depth,
+    )
+    law = NetLaw(name="morison", wake=np.ones((1, len(assembly.panels.area))))
+    march = March(assembly, law, ocean, steps, start[None])
+    shapes = [start]
+    for _ in range(refreshes):
+        march.go(1)
+        shapes.append(march.position[0])
+    return REFRESH * np.arange(refreshes + 1), np.array(shapes)
+
+
+def period(time: Float[np.ndarray, " t"], swing: Float[np.ndarray, " t"]) -> float:
+    """Mean period of a swing about 0, between its first and last upward crossing [s]."""
+    below, above = swing[:-1] < 0.0, swing[1:] >= 0.0
+    at = np.flatnonzero(below & above)
+    crossing = time[at] - swing[at] * (time[1] - time[0]) / (swing[at + 1] - swing[at])
+    return float((crossing[-1] - crossing[0]) / (len(crossing) - 1))
