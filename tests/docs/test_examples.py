@@ -8,11 +8,18 @@ import pytest
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("[0-9]*.py"))
 
+QUICK = {"02_simulate_a_cage.py": ["waves.gif", "6"], "03_figure_set.py": [".", "6"]}
+"""Arguments that make an example quick: seconds to simulate."""
+
 
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.name)
 def test_an_example_runs(example: Path, tmp_path: Path) -> None:
     run = subprocess.run(
-        [sys.executable, str(example)], cwd=tmp_path, capture_output=True, text=True, check=False
+        [sys.executable, str(example), *QUICK.get(example.name, [])],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert run.returncode == 0, run.stderr
     assert run.stdout.strip()

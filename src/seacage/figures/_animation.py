@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.cage import Cage
-from seacage.conventions import InputError, Origin, towards
+from seacage.conventions import InputError, Origin, Progress, towards
 from seacage.figures._gif import Gif
 from seacage.figures._style import FAINT, INK, MULTI, MUTED, style
 from seacage.ocean import SeaState, Waves, surface_elevation
@@ -28,9 +28,9 @@ _TILT = np.deg2rad(8.0)
 
 _WATER, _SURFACE, _CREST = "#f0f6fb", "#e0edf7", "#8fbce0"
 _NET = ("#2a5590", "#2f7fc1", "#37a0a6", "#9ccf5e", "#f7dd4a")
-_TWINE = "#16263b"
+_TWINE = "#1c3a5e"
 _TENSION = ("#a3b1bd", "#efb04c", "#d3222a")
-_NET_LEVELS, _TENSION_LEVELS = 10, 6
+_NET_LEVELS, _TENSION_LEVELS = 8, 5
 _MARGIN = 7.0
 """Water drawn outside the frame [m]."""
 
@@ -101,8 +101,9 @@ def write_animation(
     motion: Motion,
     *,
     bridle: int | None = None,
-    frames_per_second: float = 8.0,
-    width: int = 720,
+    frames_per_second: float = 6.25,
+    width: int = 640,
+    progress: Progress | None = None,
 ) -> Path:
     """Write a motion as a GIF that runs in real time and loops.
 
@@ -119,9 +120,11 @@ def write_animation(
     bridle
         Whose tension the trace shows, from 0; the fullest on average if None.
     frames_per_second
-        Eight follow waves of 5 s and longer; the file grows with it.
+        Six follow waves of 4 s and longer; the file grows with it.
     width
         Of the picture [pixel].
+    progress
+        Called as ("draw", done, total), in pictures.
 
     Raises
     ------
@@ -137,6 +140,8 @@ def write_animation(
         gif = Gif(colours=_colours(), seconds=1.0 / frames_per_second)
         for frame in range(len(shown.time)):
             gif.add(scene.picture(frame))
+            if progress is not None:
+                progress("draw", frame + 1, len(shown.time))
     gif.write(path)
     return path
 
@@ -225,10 +230,12 @@ class _Water:
         rows = [reach * far for far in (0.8, 0.0, -0.8)]
         self._place = np.array([[x * eye.along + y * eye.away for x in along] for y in rows])
         self._floor = 1.2 * float(motion.rest_position[:, 2].min()) - reach
-        (self._surface,) = axes.fill([], [], color=_SURFACE, lw=0, zorder=0)
-        (self._body,) = axes.fill([], [], color=_WATER, lw=0, zorder=0)
-        look = {"color": _CREST, "lw": 0.7, "antialiased": False}
-        self._crests = [axes.plot([], [], zorder=row, **look)[0] for row in (0.5, 0.5, 3.5)]
+        hard = {"lw": 0.7, "antialiased": False}
+        (self._surface,) = axes.fill([], [], facecolor=_SURFACE, zorder=0, **hard)
+        (self._body,) = axes.fill([], [], facecolor=_WATER, zorder=0, **hard)
+        self._crests = [
+            axes.plot([], [], color=_CREST, zorder=order, **hard)[0] for order in (0.5, 0.5, 3.5)
+        ]
 
     def show(self, frame: int) -> None:
         height = np.zeros(self._place.shape[:2])
@@ -264,9 +271,11 @@ def _net_artists(axes: "Axes", largest: float) -> "PolyCollection":
     from matplotlib.collections import PolyCollection
     from matplotlib.colors import BoundaryNorm
 
-    net = PolyCollection([], cmap=_ramp(_NET, _NET_LEVELS), zorder=2)
+    # Hard edges here and on what else is long and moves: each soft pixel costs the file more
+    # than it gives the eye.
+    net = PolyCollection([], cmap=_ramp(_NET, _NET_LEVELS), antialiaseds=False, zorder=2)
     net.set_norm(BoundaryNorm(np.linspace(0.0, max(largest, 0.1), _NET_LEVELS + 1), _NET_LEVELS))
-    net.set(edgecolors=_TWINE, linewidths=0.45)
+    net.set(edgecolors=_TWINE, linewidths=0.25)
     axes.add_collection(net)
     return net
 
@@ -275,7 +284,6 @@ def _line_artists(axes: "Axes", largest: float) -> "LineCollection":
     from matplotlib.collections import LineCollection
     from matplotlib.colors import BoundaryNorm
 
-    # Long slanted lines have hard edges: each soft pixel costs the file more than it gives.
     lines = LineCollection([], cmap=_ramp(_TENSION, _TENSION_LEVELS), antialiaseds=False)
     lines.set(linewidths=1.5, zorder=4)
     bounds = np.linspace(0.0, max(largest, 1.0), _TENSION_LEVELS + 1)
@@ -338,7 +346,7 @@ def _trace(figure: "Figure", cage: Cage, motion: Motion, bridle: int) -> "tuple[
     axes.plot(since, tension, color="#d5dbe0", lw=1.2)
     (past,) = axes.plot([], [], color=MULTI, lw=1.5)
     (now,) = axes.plot([], [], "o", color=MULTI, ms=5.5, mec="white", mew=0.8)
-    axes.set(xlim=(0.0, since[-1]), ylim=(0.0, 1.15 * tension.max()))
+    axes.set(xlim=(0.0, since[-1]), ylim=(0.0, max(1.15 * float(tension.max()), 1.0)))
     axes.set_ylabel(f"{cage.bridle_names[bridle]} [kN]")
     axes.annotate("s", (1.0, 0.0), (0, -10), xycoords="axes fraction", textcoords="offset points")
     return past, now

@@ -80,11 +80,13 @@ def _compass(figure: "Figure") -> "PolarAxes":
     return axes
 
 
-def _coloured(speed: Float[np.ndarray, " case"]) -> "list[tuple[float, tuple[float, ...]]]":
+def _coloured(speed: Float[np.ndarray, " case"]) -> list[tuple[float, str]]:
     from matplotlib import colormaps
+    from matplotlib.colors import to_hex
 
     shade = np.linspace(0.0, 0.9, len(speed)) if len(speed) > 1 else np.array([0.45])
-    return list(zip(speed.tolist(), colormaps[AMOUNT](shade), strict=True))
+    colours = [to_hex(colour) for colour in colormaps[AMOUNT](shade)]
+    return list(zip(speed.tolist(), colours, strict=True))
 
 
 def _fan(bearing: Float[np.ndarray, " bridle"], cases: int) -> tuple[np.ndarray, float]:
@@ -101,7 +103,7 @@ def _finish(
     """Bridles by number; the circle of full capacity where it is within reach."""
     numbers = [name.removeprefix("bridle-") for name in cage.bridle_names]
     axes.set_xticks(bearing, numbers)
-    reach = 1.12 * largest
+    reach = max(1.12 * largest, 1.0)
     axes.set_ylim(0.0, reach)
     axes.set_rorigin(-_HOLE * reach)
     if reach > 100.0:

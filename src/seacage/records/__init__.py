@@ -13,6 +13,12 @@ from seacage.records._campaign_store import (
 from seacage.records._check import QualityState, check_record, check_sample
 from seacage.records._columns import Column, ColumnMap
 from seacage.records._field import FieldRecord
+from seacage.records._history_file import (
+    STATISTICS,
+    HistoryRecord,
+    read_history,
+    write_history,
+)
 from seacage.records._keys import KEYS, Key
 from seacage.records._limits import DEFAULT_LIMITS, Limits, Range, Steadiness
 from seacage.records._netcdf import write_record
@@ -26,10 +32,12 @@ __all__ = [
     "DEFAULT_LIMITS",
     "KEYS",
     "NOT_RUN",
+    "STATISTICS",
     "CampaignRecord",
     "Column",
     "ColumnMap",
     "FieldRecord",
+    "HistoryRecord",
     "Key",
     "Limits",
     "QualityState",
@@ -48,8 +56,10 @@ __all__ = [
     "instant",
     "moment",
     "read_campaign",
+    "read_history",
     "read_record",
     "shipped_maps",
     "write_cases",
+    "write_history",
     "write_record",
 ]

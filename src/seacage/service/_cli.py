@@ -12,6 +12,7 @@ from seacage.service._commands import (
     _score,
     _serve,
     _settle,
+    _simulate,
     _study,
     _token,
     _train,
@@ -33,6 +34,7 @@ app = typer.Typer(
 )
 
 app.command()(_settle.settle)
+app.command()(_simulate.simulate)
 app.add_typer(_campaign.group, name="campaign")
 app.add_typer(_field.group, name="field")
 app.command()(_train.train)

@@ -12,6 +12,7 @@ from seacage.testing import stand_in_campaign, stand_in_field, stand_in_seas, st
 
 COMMANDS = [
     "settle",
+    "simulate",
     "campaign run",
     "campaign status",
     "campaign export",

@@ -1,0 +1,308 @@
+"""One simulation in time as a CF-NetCDF file that plain xarray opens."""
+
+# xarray leaves parts of its signatures untyped.
+# pyright: reportUnknownMemberType=false
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from seacage.conventions import Origin, RecordError, Result
+from seacage.ocean import SeaState
+
+if TYPE_CHECKING:
+    import xarray
+
+_SCHEMA = "seacage history 1"
+
+STATISTICS = ("mean", "std", "minimum", "maximum", "quantile")
+"""Of each quantity, as ``HistoryRecord`` and its file name them."""
+
+_CELL_METHODS = {
+    "mean": "time: mean",
+    "std": "time: standard_deviation",
+    "minimum": "time: minimum",
+    "maximum": "time: maximum",
+}
+"""By CF's words; it has none for quantiles but the median."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Quantity:
+    """What varies: its dimensions but time, its unit, and what it is."""
+
+    dims: tuple[str, ...]
+    units: str
+    long_name: str
+    standard_name: str = ""
+
+
+_QUANTITIES = {
+    "node_position": _Quantity(
+        dims=("node", "axis"), units="m", long_name="position of the net's nodes"
+    ),
+    "bridle_tension": _Quantity(dims=("bridle",), units="N", long_name="tension of the bridles"),
+    "net_force": _Quantity(dims=("axis",), units="N", long_name="load of the water on the netting"),
+    "volume": _Quantity(dims=(), units="m3", long_name="volume inside the net"),
+}
+
+_SERIES = {
+    "node_position": _Quantity(
+        dims=("time", "kept_node", "axis"),
+        units="m",
+        long_name="position of the nodes that the series kept",
+    ),
+    "bridle_tension": _Quantity(
+        dims=("time", "bridle"), units="N", long_name="tension of the bridles"
+    ),
+    "surface_elevation": _Quantity(
+        dims=("time",),
+        units="m",
+        long_name="height of the water's surface at the cage's centre",
+        standard_name="sea_surface_height_above_mean_sea_level",
+    ),
+}
+
+_SEA = {
+    "current_speed": ("m s-1", "sea_water_speed"),
+    "current_to": ("degree", "sea_water_velocity_to_direction"),
+    "hs": ("m", "sea_surface_wave_significant_height"),
+    "tp": ("s", "sea_surface_wave_period_at_variance_spectral_density_maximum"),
+    "wave_from": ("degree", "sea_surface_wave_from_direction"),
+}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class HistoryRecord:
+    """One cage in one sea state over time, as a simulator answered it.
+
+    Parameters
+    ----------
+    cage_name, cage_toml
+        The cage, the latter as its file.
+    bridle_names
+        In the order of the tensions.
+    sea
+        The sea state.
+    time
+        Of the series, from the end of the spin-up [s]; empty where none was kept.
+    kept_node
+        The nodes of the series.
+    node_position, bridle_tension, surface_elevation
+        Series: the kept nodes [m], the bridles [N], the water at the origin [m].
+    statistics
+        By name, such as ``bridle_tension_mean``: each of ``STATISTICS`` of the positions of all
+        nodes [m], the bridles' tensions [N], the load on the netting [N] and the volume [m3],
+        over the duration, not over the samples of the series alone.
+    quantile_level
+        Of the quantiles, their first axis [-].
+    node_displacement
+        Mean position less the rest shape [m].
+    volume_fraction
+        Mean volume over that in still water [-].
+    result
+        How the case ended, a ``Result``.
+    diverged_at
+        When it was given up, NaN where it was not [s].
+    settings
+        What the simulation was asked for, such as ``law``, ``mooring``, ``seed``,
+        ``duration_s``: an attribute each.
+    version
+        Of the seacage that computed it.
+    """
+
+    cage_name: str
+    cage_toml: str
+    bridle_names: tuple[str, ...]
+    sea: SeaState
+    time: Float[np.ndarray, " t"]
+    kept_node: Int[np.ndarray, " kept"]
+    node_position: Float[np.ndarray, "t kept 3"]
+    bridle_tension: Float[np.ndarray, "t bridle"]
+    surface_elevation: Float[np.ndarray, " t"]
+    statistics: Mapping[str, Float[np.ndarray, "..."]]
+    quantile_level: Float[np.ndarray, " quantile"]
+    node_displacement: Float[np.ndarray, "node 3"]
+    volume_fraction: float
+    result: int
+    diverged_at: float
+    settings: Mapping[str, str | int | float]
+    version: str
+
+    def __post_init__(self) -> None:
+        wanted = set(_statistic_names())
+        if set(self.statistics) != wanted:
+            missing = sorted(wanted - set(self.statistics)) or sorted(set(self.statistics) - wanted)
+            raise RecordError(
+                f"HistoryRecord: the statistics are not those of a history (first: {missing[0]}). "
+                f"Give {', '.join(STATISTICS)} of {', '.join(_QUANTITIES)}."
+            )
+
+    @property
+    def origin(self) -> Origin:
+        """A simulation is always computed."""
+        return Origin.COMPUTED
+
+
+def write_history(record: HistoryRecord, path: Path | str) -> None:
+    """Write one simulation as CF-NetCDF: series in single precision, statistics in double.
+
+    Parameters
+    ----------
+    record
+        What to write.
+    path
+        Ends in ``.nc``. What is there is replaced at once, by the whole file.
+    """
+    path = Path(path)
+    unborn = path.with_name(f".{path.name}.unborn")
+    packed = {"zlib": True, "complevel": 4, "shuffle": True, "dtype": "float32"}
+    encoding = {f"{name}_series": packed for name in _SERIES if len(record.time)}
+    _dataset(record).to_netcdf(unborn, engine="h5netcdf", encoding=encoding)
+    unborn.replace(path)
+
+
+def read_history(path: Path | str) -> HistoryRecord:
+    """Read back what ``write_history`` wrote.
+
+    Raises
+    ------
+    RecordError
+        No such file, no NetCDF, or one of another schema.
+    """
+    import xarray
+
+    try:
+        with xarray.open_dataset(path, engine="h5netcdf", decode_times=False) as dataset:
+            return _record(dataset)
+    except (OSError, KeyError, ValueError) as error:
+        raise RecordError(
+            f"{path}: this is no simulation that seacage wrote ({error}). Give a file written by "
+            "write_history or by `seacage simulate --out`."
+        ) from error
+
+
+def _statistic_names() -> list[str]:
+    return [f"{quantity}_{kind}" for quantity in _QUANTITIES for kind in STATISTICS]
+
+
+def _dataset(record: HistoryRecord) -> "xarray.Dataset":
+    import xarray
+
+    series = {
+        f"{name}_series": (known.dims, getattr(record, name), _said(known))
+        for name, known in _SERIES.items()
+    }
+    return xarray.Dataset(
+        {**series, **_statistics(record), **_scalars(record)},
+        coords={
+            "time": ("time", record.time, _time_attributes()),
+            "kept_node": ("kept_node", record.kept_node, {"long_name": "index of the node"}),
+            "node": ("node", np.arange(len(record.node_displacement)), {"long_name": "index"}),
+            "bridle": np.array(record.bridle_names, dtype=object),
+            "axis": np.array(["x", "y", "z"], dtype=object),
+            "quantile_level": ("quantile_level", record.quantile_level, {"units": "1"}),
+        },
+        attrs={
+            "Conventions": "CF-1.11, ACDD-1.3",
+            "title": f"The net cage {record.cage_name} in waves and current, {record.origin}",
+            "schema": _SCHEMA,
+            "source": f"seacage {record.version}",
+            "product_version": record.version,
+            "origin": str(record.origin),
+            "axes": "x east, y north, z up; z = 0 at still water",
+            "cage": record.cage_name,
+            "cage_toml": record.cage_toml,
+            "settings": json.dumps(dict(record.settings)),
+            **record.settings,
+        },
+    )
+
+
+def _statistics(record: HistoryRecord) -> dict[str, Any]:
+    variables: dict[str, Any] = {}
+    for quantity, known in _QUANTITIES.items():
+        for kind in STATISTICS:
+            attributes = {"units": known.units, "long_name": f"{kind} of the {known.long_name}"}
+            dims = known.dims
+            if kind == "quantile":
+                dims = ("quantile_level", *dims)
+            else:
+                attributes["cell_methods"] = _CELL_METHODS[kind]
+            name = f"{quantity}_{kind}"
+            variables[name] = (dims, record.statistics[name], attributes)
+    return variables
+
+
+def _scalars(record: HistoryRecord) -> dict[str, Any]:
+    variables: dict[str, Any] = {
+        "node_displacement": (
+            ("node", "axis"),
+            record.node_displacement,
+            {"units": "m", "long_name": "mean position less the shape in still water"},
+        ),
+        "volume_fraction": (
+            (),
+            record.volume_fraction,
+            {"units": "1", "long_name": "mean volume over that in still water"},
+        ),
+        "result": (
+            (),
+            np.int8(record.result),
+            {
+                "long_name": "how the case ended",
+                "flag_values": np.array(list(Result), dtype=np.int8),
+                "flag_meanings": " ".join(code.name.lower() for code in Result),
+            },
+        ),
+        "diverged_at": (
+            (),
+            record.diverged_at,
+            {"units": "s", "long_name": "when the case was given up, from the start"},
+        ),
+    }
+    for name, (units, standard_name) in _SEA.items():
+        value = float(getattr(record.sea, name))
+        variables[name] = ((), value, {"units": units, "standard_name": standard_name})
+    return variables
+
+
+def _said(known: _Quantity) -> dict[str, str]:
+    attributes = {"units": known.units, "long_name": known.long_name}
+    if known.standard_name:
+        attributes["standard_name"] = known.standard_name
+    return attributes
+
+
+def _time_attributes() -> dict[str, str]:
+    # No date: CF's standard name "time" would ask for one.
+    return {"units": "s", "long_name": "time from the end of the spin-up", "axis": "T"}
+
+
+def _record(dataset: "xarray.Dataset") -> HistoryRecord:
+    attributes = dataset.attrs
+    if attributes.get("schema") != _SCHEMA:
+        raise ValueError(f"its schema is {attributes.get('schema')!r}, not {_SCHEMA!r}")
+    values = {str(name): np.asarray(dataset[name].values) for name in dataset.variables}
+    return HistoryRecord(
+        cage_name=str(attributes["cage"]),
+        cage_toml=str(attributes["cage_toml"]),
+        bridle_names=tuple(str(name) for name in values["bridle"]),
+        sea=SeaState(**{name: float(values[name]) for name in _SEA}),
+        time=values["time"].astype(np.float64),
+        kept_node=values["kept_node"].astype(np.int64),
+        **{name: values[f"{name}_series"] for name in _SERIES},
+        statistics={name: values[name] for name in _statistic_names()},
+        quantile_level=values["quantile_level"],
+        node_displacement=values["node_displacement"],
+        volume_fraction=float(values["volume_fraction"]),
+        result=int(values["result"]),
+        diverged_at=float(values["diverged_at"]),
+        settings=json.loads(str(attributes["settings"])),
+        version=str(attributes["product_version"]),
+    )
