@@ -2,6 +2,7 @@
 
 from seacage.ocean._kinematics import (
     Waves,
+    regular_wave,
     sample_waves,
     surface_elevation,
     water_motion,
@@ -18,6 +19,7 @@ __all__ = [
     "SeaState",
     "Waves",
     "peak_enhancement",
+    "regular_wave",
     "sample_waves",
     "spectrum",
     "steepness_limit",

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from seacage.conventions import GRAVITY
+from seacage.conventions import GRAVITY, InputError, folded, towards
 from seacage.ocean._sea_state import SeaState
 from seacage.ocean._spectrum import spectrum
 
@@ -99,6 +99,59 @@ def sample_waves(sea: SeaState, *, seed: int, components: int = 30, depth: float
         wavenumber=wavenumber(frequency, depth=depth),
         phase=random.uniform(0.0, 2.0 * math.pi, components),
         direction=np.tile(sea.wave_direction, (components, 1)),
+        depth=depth,
+    )
+
+
+def regular_wave(*, height: float, period: float, wave_from: float, depth: float = 191.0) -> Waves:
+    """One long-crested linear wave that does not change.
+
+    Its crest passes the origin at time 0.
+
+    Parameters
+    ----------
+    height
+        Crest to trough [m].
+    period
+        [s].
+    wave_from
+        Where it comes from, clockwise from true north [deg].
+    depth
+        Of the water [m].
+
+    Raises
+    ------
+    InputError
+        A height, period or depth that is no positive number, or a wave that breaks.
+
+    References
+    ----------
+    Miche (1944): a wave breaks above H = 0.142 L tanh(k depth).
+    """
+    for name, value, unit in (
+        ("height", height, "m"),
+        ("period", period, "s"),
+        ("depth", depth, "m"),
+    ):
+        if not (math.isfinite(value) and value > 0.0):
+            raise InputError(
+                f"regular_wave: {name} = {value:g} {unit} is not a positive, finite number."
+            )
+    omega = np.array([2.0 * math.pi / period])
+    k = wavenumber(omega, depth=depth)
+    highest = 0.142 * 2.0 * math.pi / k[0] * math.tanh(k[0] * depth)
+    if height > highest:
+        raise InputError(
+            f"regular_wave: height = {height:g} m with period = {period:g} s breaks above "
+            f"{highest:.2g} m in {depth:g} m of water. Check that period is in s, not in Hz."
+        )
+    origin = np.array(folded(wave_from, what="regular_wave: wave_from"))
+    return Waves(
+        amplitude=np.array([height / 2.0]),
+        angular_frequency=omega,
+        wavenumber=k,
+        phase=np.zeros(1),
+        direction=-towards(np.ones(1), origin[None]),
         depth=depth,
     )
 

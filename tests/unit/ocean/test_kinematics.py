@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 
+from seacage.conventions import InputError
 from seacage.ocean import (
     SeaState,
+    regular_wave,
     sample_waves,
     surface_elevation,
     water_motion,
@@ -154,3 +156,26 @@ def test_near_the_bottom_the_water_moves_along_it():
     along, up = wave_velocity_variance(long_swell, np.array([-20.0]), depth=20.0)[0]
     assert along > 0.01
     assert up == pytest.approx(0.0, abs=1e-20)
+
+
+def test_a_regular_wave_has_its_height_and_comes_from_where_it_is_said_to():
+    wave = regular_wave(height=2.0, period=6.0, wave_from=270.0)
+    time = np.linspace(0.0, 6.0, 601)
+    elevation = surface_elevation(wave, np.zeros((1, 2)), time)
+    assert elevation.max() == pytest.approx(1.0)
+    assert elevation.min() == pytest.approx(-1.0, abs=1e-4)  # the trough falls between samples
+    np.testing.assert_allclose(wave.direction, [[1.0, 0.0]], atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "told"),
+    [
+        ({"height": 9.0}, "breaks above"),
+        ({"height": 0.0}, "height = 0 m is not a positive"),
+        ({"period": float("nan")}, "period = nan s"),
+        ({"wave_from": 412.0}, r"outside \[0, 360\]"),
+    ],
+)
+def test_a_wave_that_cannot_be_is_refused(wrong, told):
+    with pytest.raises(InputError, match=told):
+        regular_wave(**{"height": 1.0, "period": 5.0, "wave_from": 0.0} | wrong)
