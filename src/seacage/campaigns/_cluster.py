@@ -90,7 +90,7 @@ def _connected(address: str) -> "Client":
 
 async def _greeted(address: str) -> None:
     """Connect once and leave: a client that cannot connect would go on trying for long."""
-    from distributed.comm import connect
+    from distributed.comm.core import connect
 
     comm = await connect(address, timeout=_CONNECT_S)
     await comm.close()

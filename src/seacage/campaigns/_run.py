@@ -134,6 +134,11 @@ def run_share(
     result, size = _begun(store, attributes, cases=len(plan), block=by.block)
     which, shares = _checked(share)
     firsts = range(size * which, len(plan), size * shares)
+    if not firsts:
+        raise InputError(
+            f"Share {which} of {shares} is empty: {len(plan)} cases make "
+            f"{-(-len(plan) // size)} blocks of {size}. Make no more shares than that."
+        )
     cases = [case for first in firsts for case in range(len(plan))[first : first + size]]
     done = sum(int(result[case]) != NOT_RUN for case in cases)
     report = progress or _unheard

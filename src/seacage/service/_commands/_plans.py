@@ -1,0 +1,185 @@
+"""Which sea states: the options of a shell turned into a plan."""
+
+from collections.abc import Iterable
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from seacage.campaigns import Plan
+
+_AXES = {
+    "current_speed_m_s": "current_speed",
+    "current_to_deg": "current_to",
+    "hs_m": "hs",
+    "period_ratio": "period_ratio",
+    "wave_from_deg": "wave_from",
+}
+"""What can have a range or stand on a grid, as people write it; the ratio is Tp / (5 √Hs)."""
+
+PlanName = Annotated[
+    str,
+    typer.Option(
+        help="paper: its ranges; default: also other periods than 5 √Hs; current: no waves; or "
+        "the path of a plan that was written, ending in .json."
+    ),
+]
+Ranges = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--range",
+        metavar="KEY=LEAST,MOST",
+        help=f"In place of the plan's, e.g. hs_m=0,2. Keys: {', '.join(_AXES)}.",
+    ),
+]
+Grid = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--grid",
+        metavar="KEY=VALUES",
+        help="Instead of a plan every combination, e.g. hs_m=0,1,2 or, 11 values from 0 to 1, "
+        "current_speed_m_s=0:1:11.",
+    ),
+]
+Listed = Annotated[
+    Path | None,
+    typer.Option(
+        "--list",
+        exists=True,
+        dir_okay=False,
+        help="Instead of a plan a CSV file of sea states: current_speed_m_s, current_to_deg and, "
+        "if there are waves, hs_m, tp_s, wave_from_deg.",
+    ),
+]
+Cases = Annotated[
+    int | None, typer.Option(min=1, help="Sea states to draw of a plan. [default: 1000]")
+]
+Duration = Annotated[
+    float | None, typer.Option(help="Of each sea state, s. [default: 1800, or as written]")
+]
+Seed = Annotated[
+    int | None,
+    typer.Option(min=0, help="Of the draw and of the waves. [default: 0, or as written]"),
+]
+
+
+def asked_plan(
+    *,
+    plan: str,
+    ranges: Iterable[str] | None,
+    grid: Iterable[str] | None,
+    listed: Path | None,
+    cases: int | None,
+    duration: float | None,
+    seed: int | None,
+) -> "Plan":
+    """The one plan that the options describe.
+
+    Raises
+    ------
+    InputError
+        Options that contradict each other or that no plan understands.
+    """
+    from seacage.campaigns import Plan
+
+    written = Path(plan) if plan.endswith(".json") else None
+    _check_alone(written=written, ranges=ranges, grid=grid, listed=listed, cases=cases)
+    lasting = 1800.0 if duration is None else duration
+    if written is not None:
+        return _changed(Plan.read(written), duration, seed)
+    if listed is not None:
+        return Plan.table(listed, duration=lasting, seed=seed or 0)
+    if grid:
+        return _gridded(_pairs("--grid", grid), lasting, seed or 0)
+    own = {
+        _AXES[key]: _least_and_most(key, values)
+        for key, values in _pairs("--range", ranges or ()).items()
+    }
+    return Plan.named(plan, seed or 0, cases or 1000, duration=lasting, ranges=own)
+
+
+def _check_alone(
+    *,
+    written: Path | None,
+    ranges: Iterable[str] | None,
+    grid: Iterable[str] | None,
+    listed: Path | None,
+    cases: int | None,
+) -> None:
+    from seacage.conventions import InputError
+
+    whole = {"--plan with a file": written, "--grid": grid, "--list": listed}
+    given = [name for name, value in whole.items() if value]
+    drawn = [name for name, value in {"--range": ranges, "--cases": cases}.items() if value]
+    if len(given) > 1 or (given and drawn):
+        raise InputError(
+            f"{' and '.join([*given, *drawn])} exclude each other: {given[0]} names every sea "
+            "state. Give one of them."
+        )
+
+
+def _changed(plan: "Plan", duration: float | None, seed: int | None) -> "Plan":
+    return replace(
+        plan,
+        duration=plan.duration if duration is None else duration,
+        seed=plan.seed if seed is None else seed,
+    )
+
+
+def _pairs(option: str, given: Iterable[str]) -> dict[str, str]:
+    """What stands before and after each equals sign."""
+    from seacage.conventions import InputError
+
+    pairs: dict[str, str] = {}
+    for text in given:
+        key, _, values = text.partition("=")
+        if key not in _AXES or not values or key in pairs:
+            raise InputError(
+                f"{option} {text}: expected a key, = and numbers, each key once. Keys: "
+                f"{', '.join(_AXES)}."
+            )
+        pairs[key] = values
+    return pairs
+
+
+def _least_and_most(key: str, values: str) -> tuple[float, float]:
+    from seacage.conventions import InputError
+
+    numbers = _numbers(f"--range {key}", values.split(","))
+    if len(numbers) != 2:
+        raise InputError(f"--range {key}={values}: expected two numbers, the least and the most.")
+    return numbers[0], numbers[1]
+
+
+def _gridded(pairs: dict[str, str], duration: float, seed: int) -> "Plan":
+    from seacage.campaigns import Plan
+    from seacage.conventions import InputError
+
+    axes: dict[str, Any] = {_AXES[key]: _steps(key, values) for key, values in pairs.items()}
+    if not {"current_speed", "current_to"} <= axes.keys():
+        raise InputError("--grid: give at least current_speed_m_s and current_to_deg.")
+    return Plan.grid(**axes, duration=duration, seed=seed)
+
+
+def _steps(key: str, values: str) -> list[float]:
+    """Numbers as they stand, or first:last:count."""
+    if ":" not in values:
+        return _numbers(f"--grid {key}", values.split(","))
+    from seacage.conventions import InputError
+
+    numbers = _numbers(f"--grid {key}", values.split(":"))
+    if len(numbers) != 3 or numbers[2] < 2 or numbers[2] != int(numbers[2]):
+        raise InputError(f"--grid {key}={values}: expected first:last:count, the count 2 or more.")
+    first, last, count = numbers[0], numbers[1], int(numbers[2])
+    return [first + (last - first) * step / (count - 1) for step in range(count)]
+
+
+def _numbers(where: str, words: Iterable[str]) -> list[float]:
+    from seacage.conventions import InputError
+
+    try:
+        return [float(word) for word in words]
+    except ValueError as error:
+        raise InputError(f"{where}: {error}.") from error
