@@ -399,8 +399,8 @@ def _law(
         each[:, 0] = DYNAMIC * panels.twine_diameter * panels.area / panels.twine_spacing
         each[:, 1] = panels.twine_diameter / WATER_VISCOSITY
         each[:, 2] = panels.diamond
-        normal = -1.0 if law.normal_coefficient is None else law.normal_coefficient
-        return _TWINES, (normal, law.skin_coefficient, 0.0, 0.0), each
+        by_reynolds = (-1.0, 0.0)
+        return _TWINES, (*(law.twine_drag or by_reynolds), 0.0, 0.0), each
     screen = Screen(law=law.name, solidity=panels.solidity, twine_diameter=panels.twine_diameter)
     if law.name == "kristiansen-faltinsen":
         each[:, 0] = panels.twine_diameter / (WATER_VISCOSITY * (1.0 - panels.solidity))

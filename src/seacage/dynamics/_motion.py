@@ -60,17 +60,14 @@ class NetLaw:
         A screen law, or "morison" for twine by twine.
     wake
         Share of the current that each panel meets [-].
-    normal_coefficient
-        Of a twine across the flow; None takes that of a smooth cylinder at its Reynolds
-        number, after Choo and Casarella.
-    skin_coefficient
-        Of a twine along the flow [-].
+    twine_drag
+        Drag coefficients of a twine across and along the flow [-]; None takes that of a smooth
+        cylinder at its Reynolds number, after Choo and Casarella, and no skin friction.
     """
 
     name: MovingLaw
     wake: Float[np.ndarray, "case panel"]
-    normal_coefficient: float | None = None
-    skin_coefficient: float = 0.0
+    twine_drag: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
         if self.name not in MOVING_LAWS:
@@ -172,12 +169,13 @@ def twine_load(
         share = np.sum(past * direction, axis=-1, keepdims=True) / np.maximum(square, 1e-12)
         across = past - share * direction
         speed = np.linalg.norm(across, axis=-1, keepdims=True)
-        if law.normal_coefficient is None:
+        if law.twine_drag is None:
             reynolds = panels.twine_diameter[:, None] * speed / WATER_VISCOSITY
             normal = 1.1 + 4.0 / np.sqrt(np.maximum(reynolds, 30.0))
         else:
-            normal = np.full_like(speed, law.normal_coefficient)
-        skin = law.skin_coefficient * np.abs(share) * share * np.sqrt(square) * direction
+            normal = np.full_like(speed, law.twine_drag[0])
+        rough = 0.0 if law.twine_drag is None else law.twine_drag[1]
+        skin = rough * np.abs(share) * share * np.sqrt(square) * direction
         weight = DYNAMIC * (panels.twine_diameter * length)[:, None]
         load += weight * (normal * speed * across + skin)
     return load

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float, Int
 
-from seacage.cage import Cage
+from seacage.cage import Cage, Structure
 from seacage.conventions import Result
 from seacage.dynamics._assembly import Assembly
 from seacage.dynamics._history import History, Statistics
@@ -36,7 +36,7 @@ class Reduction:
         Shape in still water [m].
     """
 
-    cage: Cage
+    cage: Cage | Structure
     kept: Int[np.ndarray, " kept"]
     series: bool
     levels: Float[np.ndarray, " quantile"]

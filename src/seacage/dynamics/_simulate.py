@@ -10,13 +10,14 @@ from typing import Literal
 import numpy as np
 from jaxtyping import Float, Int
 
-from seacage.cage import Cage
+from seacage.cage import Cage, Structure
 from seacage.conventions import InputError, Progress
 from seacage.dynamics._assembly import Assembly
 from seacage.dynamics._history import History
 from seacage.dynamics._march import REFRESH, March, Ocean, Steps, simulation_lanes
 from seacage.dynamics._motion import MOVING_LAWS, MovingLaw, NetLaw, wake_share
 from seacage.dynamics._reduction import Reduction, stacked
+from seacage.dynamics._rigged import rigged
 from seacage.dynamics._settle import _assembled, rest_shape, settle
 from seacage.dynamics._stability import steadied
 from seacage.ocean import CurrentProfile, SeaState, Waves, sample_waves
@@ -34,12 +35,13 @@ STATISTICS_EVERY = 1.0
 
 
 def simulate(
-    cage: Cage,
+    cage: Cage | Structure,
     sea: SeaState | Sequence[SeaState],
     *,
     duration: float,
     seed: int | Sequence[int] = 0,
     law: MovingLaw = "kristiansen-faltinsen",
+    twine_drag: tuple[float, float] | None = None,
     mooring: Mooring = "springs",
     current_profile: CurrentProfile | None = None,
     waves: Waves | Sequence[Waves] | None = None,
@@ -69,6 +71,9 @@ def simulate(
 
     Parameters
     ----------
+    cage
+        A ``Structure`` starts as it was designed, in still water: give it a longer spin-up.
+        Its "bridles" are its lines, its displacement is from the design.
     sea
         One sea state, or several: a leading case axis.
     duration
@@ -77,8 +82,12 @@ def simulate(
         Of the waves: one for each case, or the first case's, from which the others count up.
     law
         "aarsnes", "loland", "kristiansen-faltinsen", or "morison": twine by twine.
+    twine_drag
+        With "morison": drag coefficients of a twine across and along the flow [-]. None takes
+        a smooth cylinder's by its Reynolds number, and no skin friction.
     mooring
-        "springs" under the frame corners, or "catenary": frame, buoys and anchor lines.
+        Of a ``Cage``, for a ``Structure`` has its own: "springs" under the frame corners, or
+        "catenary": frame, buoys and anchor lines.
     current_profile
         How the current changes with depth; uniform without.
     waves
@@ -132,12 +141,12 @@ def simulate(
         series=sample_every is not None,
         levels=_levels(quantile_levels),
         second_moment=second_moment,
-        rest=rest_shape(cage, hold_collar=hold_collar),
+        rest=_rest(cage, hold_collar=hold_collar),
     )
 
     def run(block: slice) -> list[History]:
         some = replace(ocean, waves=ocean.waves[block], current=ocean.current[block])
-        net = NetLaw(name=law, wake=_wakes(assembly, law, some, wake=wake))
+        net = NetLaw(name=law, wake=_wakes(assembly, law, some, wake=wake), twine_drag=twine_drag)
         start = _start(cage, assembly, seas[block], law, wake=wake, hold_collar=hold_collar)
         march = March(assembly, net, some, steps, start)
         whole = steps.spin_up + steps.counted
@@ -198,7 +207,7 @@ def _levels(levels: Sequence[float]) -> Float[np.ndarray, " quantile"]:
     return np.array(levels, dtype=np.float64)
 
 
-def _kept_nodes(cage: Cage, asked: Sequence[int] | None) -> Int[np.ndarray, " kept"]:
+def _kept_nodes(cage: Cage | Structure, asked: Sequence[int] | None) -> Int[np.ndarray, " kept"]:
     nodes = np.arange(cage.node_count) if asked is None else np.array(asked, dtype=np.int64)
     if np.any((nodes < 0) | (nodes >= cage.node_count)):
         raise InputError(
@@ -208,10 +217,12 @@ def _kept_nodes(cage: Cage, asked: Sequence[int] | None) -> Int[np.ndarray, " ke
     return nodes
 
 
-def _prepared(cage: Cage, mooring: Mooring, *, hold_collar: bool, collar_drag: bool) -> Assembly:
+def _prepared(
+    cage: Cage | Structure, mooring: Mooring, *, hold_collar: bool, collar_drag: bool
+) -> Assembly:
     if mooring not in ("springs", "catenary"):
         raise InputError(f"simulate: no mooring {mooring!r}; there are: springs, catenary.")
-    assembly = _assembled(cage)
+    assembly = rigged(cage) if isinstance(cage, Structure) else _assembled(cage)
     if hold_collar:
         fixed = assembly.fixed.copy()
         fixed[cage.ring_nodes(0)] = True
@@ -274,8 +285,14 @@ def _wakes(
     return wake_share(assembly, law, at_panels)
 
 
+def _rest(cage: Cage | Structure, *, hold_collar: bool) -> Float[np.ndarray, "node 3"]:
+    if isinstance(cage, Structure):
+        return cage.design_position
+    return rest_shape(cage, hold_collar=hold_collar)
+
+
 def _start(
-    cage: Cage,
+    cage: Cage | Structure,
     assembly: Assembly,
     seas: list[SeaState],
     law: MovingLaw,
@@ -284,6 +301,9 @@ def _start(
     hold_collar: bool,
 ) -> Float[np.ndarray, "case node 3"]:
     """Equilibria in the sea's surface current; it is only a start, so any will do."""
+    start = np.repeat(assembly.position[None], len(seas), axis=0)
+    if isinstance(cage, Structure):
+        return start
     still = [SeaState(current_speed=s.current_speed, current_to=s.current_to) for s in seas]
     settled = settle(
         cage,
@@ -293,7 +313,6 @@ def _start(
         hold_collar=hold_collar,
     ).node_position
     known = np.isfinite(settled).all(axis=(1, 2), keepdims=True)
-    start = np.repeat(assembly.position[None], len(seas), axis=0)
     net = np.where(known, settled, rest_shape(cage, hold_collar=hold_collar))
     start[:, : cage.node_count] = net
     return start
