@@ -177,6 +177,9 @@ class Frame(_Part):
     corner_stiffness_vertical: float = quantity("n_m", "spring in z: the buoy", above=True)
     rope_diameter: float = quantity("m", "of the frame rope")
     rope_axial_stiffness: float = quantity("n", "EA of the frame rope")
+    rope_slack: float = quantity(
+        "m", "how much longer it is than balance in still water asks for", low=-1.0, default=0.0
+    )
     buoy_buoyancy: float = quantity("n", "net buoyancy of a corner buoy")
     corner_mass: float = quantity(
         "kg",
