@@ -15,7 +15,9 @@ COMMANDS = [
     "simulate",
     "campaign run",
     "campaign status",
+    "campaign finish",
     "campaign export",
+    "campaign slurm",
     "field virtual",
     "field import",
     "field check",
@@ -116,11 +118,12 @@ def test_a_refused_sea_state_ends_with_1_and_one_sentence(small_cage):
 
 def test_a_campaign_runs_tells_how_far_it_is_and_becomes_netcdf(small_cage, tmp_path):
     store, out = tmp_path / "small.zarr", tmp_path / "small.nc"
-    said = answer(
-        "campaign", "run", store, "--cases", 3, "--cage", small_cage, "--workers", 1, "--seed", 1
-    )
-    assert (said["total"], said["done"]) == (3, 3)
+    short = ("--duration", 10, "--spin-up", 5, "--ramp", 5, "--cage", small_cage, "--workers", 1)
+    said = answer("campaign", "run", store, "--cases", 3, "--seed", 1, *short)
+    assert (said["total"], said["done"], said["plan"]) == (3, 3, "default")
+    assert said["simulated_s_per_core_second"] > 0.0
     assert answer("campaign", "status", store) == said
+    assert answer("campaign", "finish", store) == said
     assert answer("campaign", "export", store, out) == {"written": str(out)}
     assert out.stat().st_size > 1000
 

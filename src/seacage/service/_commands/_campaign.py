@@ -185,10 +185,12 @@ def export(
     tell({"written": str(out)}, as_json=as_json, rows=[("Written", str(out))])
 
 
-@group.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
+@group.command(context_settings={"ignore_unknown_options": True})
 @guarded
 def slurm(
-    context: typer.Context,
+    words: Annotated[
+        list[str], typer.Argument(metavar="STORE [OPTIONS]", help="As of `campaign run`.")
+    ],
     *,
     tasks: Annotated[int, typer.Option(min=1, help="Of the job array: one share each.")],
     as_json: Json = False,
@@ -202,7 +204,7 @@ def slurm(
     """
     from seacage.campaigns import Simulator
 
-    given = _understood(context)
+    given = _understood(words)
     if given["share"] or given["cluster"]:
         raise stopped(
             "campaign slurm: it makes the shares. Leave --share and --cluster out.", Exit.USAGE
@@ -218,7 +220,7 @@ def slurm(
         last=min(tasks, blocks) - 1,
         workers=given["workers"] or 1,
         store=shlex.quote(str(given["store"])),
-        command=shlex.join(["seacage", "campaign", "run", *context.args, *alone]),
+        command=shlex.join(["seacage", "campaign", "run", *words, *alone]),
     )
     if as_json:
         tell({"script": script}, as_json=True)
@@ -226,12 +228,10 @@ def slurm(
         typer.echo(script, nl=False)
 
 
-def _understood(context: typer.Context) -> dict[str, Any]:
+def _understood(words: list[str]) -> dict[str, Any]:
     """The options that `campaign run` would get of the words meant for it."""
-    assert context.parent is not None  # `slurm` is a command of the group
-    command: Any = context.parent.command
-    run_command = command.get_command(context.parent, "run")
-    with run_command.make_context("run", list(context.args), parent=context.parent) as asked:
+    command: Any = typer.main.get_command(group)
+    with command.commands["run"].make_context("seacage campaign run", [*words]) as asked:
         return dict(asked.params)
 
 
