@@ -61,6 +61,7 @@ def tension_rose_figure(
                 axes.vlines(place, *ends, color=INK, lw=0.7, zorder=4)
         most = bridle_tension if highest is None else highest
         _finish(axes, cage, bearing, float((share * most).max()))
+        _explain(axes, cage, ranges=highest is not None)
         _arrow(axes, current_to)
         axes.legend(loc="center left", bbox_to_anchor=(1.04, 0.5), title="Current")
         axes.set_title("Bridles: share of capacity", pad=18.0)
@@ -113,14 +114,14 @@ def _finish(
     axes.yaxis.set_major_formatter(lambda value, _: f"{value:.0f} %" if value else "")
     axes.tick_params(axis="y", labelsize=7.0)
     axes.spines["polar"].set_visible(False)
-    kilonewtons = cage.bridle_capacity[0] / 1e3
+
+
+def _explain(axes: "PolarAxes", cage: Cage, *, ranges: bool) -> None:
+    said = f"100 % is {cage.bridle_capacity[0] / 1e3:.0f} kN; bridles by number, north up"
+    if ranges:
+        said += "\nbars: mean; lines: least to most"
     axes.text(
-        0.5,
-        -0.09,
-        f"100 % is {kilonewtons:.0f} kN; bridles by number, north up",
-        transform=axes.transAxes,
-        ha="center",
-        color=MUTED,
+        0.5, -0.07, said, transform=axes.transAxes, ha="center", va="top", color=MUTED, fontsize=8.0
     )
 
 
