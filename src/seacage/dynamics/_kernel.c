@@ -265,7 +265,7 @@ void seacage_relax(const assembly *s, const flow *w, const relaxation *r, relaxi
     double *restrict carried = state->carried;
     const double *restrict damping = state->damping;
     for (int32_t round = 0; round < r->rounds; round++) {
-        double live[LANES], soft_residual[LANES];
+        double live[LANES], soft_residual[LANES], true_residual[LANES];
         int running = 0;
         for (int k = 0; k < LANES; k++) {
             live[k] = state->residual[k] > r->tolerance && state->residual[k] < LOST ? 1.0 : 0.0;
@@ -291,11 +291,11 @@ void seacage_relax(const assembly *s, const flow *w, const relaxation *r, relaxi
                                                            - carried[b * LANES + k]);
         /* with the true rate the law does not depend on what the bars carried */
         add_forces(s, w, r->true_rate, carried, tension, x, f);
-        residual_of(s, r->inverse_mass, f, tension);
+        residual_of(s, r->inverse_mass, f, true_residual);
         for (int k = 0; k < LANES; k++) {
             if (live[k] == 0.0)
                 continue;
-            state->residual[k] = tension[k];
+            state->residual[k] = true_residual[k];
             state->rounds[k] += 1.0;
             if (soft_residual[k] < r->progress * state->best[k]) {
                 state->best[k] = soft_residual[k];
