@@ -1,0 +1,114 @@
+"""One anchor line, rope over chain, hung from a frame corner to the sea bed."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.cage import AnchorLines, Cage
+from seacage.conventions import GRAVITY, WATER_DENSITY, InputError
+
+ROPE_SHARES = (1.0,) * 7 + (0.6, 0.4, 0.3, 0.2, 0.2)
+"""Lengths of a rope's segments from the corner down, over the longest."""
+
+CHAIN_SEGMENTS = 4
+"""Of an anchor line's bottom chain."""
+
+STIFFEST_CHAIN = 10.0
+"""EA of the chain over the rope's: beyond, it costs time steps and changes nothing [-]."""
+
+STEEL_DENSITY = 7850.0
+"""Of a chain [kg/m3]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LineShape:
+    """An anchor line in segments, from a corner down.
+
+    Attributes
+    ----------
+    position
+        Of its nodes, along it and up, the first at the origin [m].
+    tension
+        Of its segments [N].
+    """
+
+    position: Float[np.ndarray, "node 2"]
+    tension: Float[np.ndarray, " segment"]
+
+
+def segments(parts: AnchorLines) -> tuple[Float[np.ndarray, " s"], Float[np.ndarray, " s"]]:
+    """Unstretched length [m] and EA [N] of a line's segments from the corner down."""
+    shares = np.array(ROPE_SHARES) / sum(ROPE_SHARES)
+    chain = np.full(CHAIN_SEGMENTS, parts.chain_length / CHAIN_SEGMENTS)
+    length = np.concatenate([shares * parts.rope_length, chain])
+    stiff = min(parts.chain_axial_stiffness, STIFFEST_CHAIN * parts.rope_axial_stiffness)
+    stiffness = np.repeat([parts.rope_axial_stiffness, stiff], [len(shares), CHAIN_SEGMENTS])
+    return length[length > 0.0], stiffness[length > 0.0]
+
+
+def node_weight(parts: AnchorLines) -> Float[np.ndarray, " node"]:
+    """Submerged weight of a line's nodes from the corner down: the chain's alone [N]."""
+    length, _ = segments(parts)
+    chain = np.arange(len(length)) >= len(length) - CHAIN_SEGMENTS * (parts.chain_length > 0.0)
+    share = 1.0 - WATER_DENSITY / STEEL_DENSITY
+    half = length * chain * parts.chain_mass * share * GRAVITY / 2.0
+    return np.append(half, 0.0) + np.append(0.0, half)
+
+
+def hung(parts: AnchorLines, horizontal: float, vertical: float, bed: float) -> LineShape:
+    """A line hung from a corner that pulls it sideways and up by given forces [N].
+
+    ``bed`` is how far the sea bed lies below the corner [m]; what reaches it lies flat.
+    """
+    length, stiffness = segments(parts)
+    weight = node_weight(parts)
+    position, tension = [np.zeros(2)], []
+    up = vertical
+    for own, each, below in zip(length, stiffness, weight[1:], strict=True):
+        pull = float(np.hypot(horizontal, up))
+        step = own * (1.0 + pull / each) * np.array([horizontal, -up]) / pull
+        lies = position[-1][1] + step[1] < -bed and below > 0.0
+        new = position[-1] + step
+        if lies and up <= below:
+            new[1] = -bed
+        position.append(new)
+        tension.append(pull)
+        up = 0.0 if lies and up <= below else up - below
+    return LineShape(position=np.array(position), tension=np.array(tension))
+
+
+@lru_cache(maxsize=16)
+def resting_line(cage: Cage) -> LineShape:
+    """An anchor line in still water: its pretension at the corner, its end on the sea bed.
+
+    Raises
+    ------
+    InputError
+        A line too short to reach the sea bed.
+    """
+    from scipy.optimize import root_scalar
+
+    parts, bed = cage.anchor_lines, cage.site.water_depth - cage.frame.depth
+    length, _ = segments(parts)
+    if length.sum() <= bed:
+        raise InputError(
+            f"Cage {cage.name}: an anchor line of {length.sum():.0f} m does not reach the sea bed "
+            f"{bed:.0f} m below the frame. Lengthen rope_length_m or chain_length_m."
+        )
+
+    def shape(slope: float) -> LineShape:
+        tension = parts.pretension
+        return hung(parts, tension * np.cos(slope), tension * np.sin(slope), bed)
+
+    def miss(slope: float) -> float:
+        return float(shape(slope).position[-1, 1]) + bed
+
+    steepest = 0.5 * np.pi * (1.0 - 1e-6)
+    if miss(0.0) * miss(steepest) > 0.0:
+        raise InputError(
+            f"Cage {cage.name}: pretension_n = {parts.pretension:g} cannot lift the bottom chain "
+            "of an anchor line into any shape. Raise it, or shorten the chain."
+        )
+    return shape(float(root_scalar(miss, bracket=(0.0, steepest), xtol=1e-12).root))
