@@ -12,6 +12,7 @@ from jaxtyping import Float, Int
 
 from seacage.cage import Cage, Structure
 from seacage.conventions import InputError, Progress
+from seacage.dynamics._anchoring import anchored
 from seacage.dynamics._assembly import Assembly
 from seacage.dynamics._history import History
 from seacage.dynamics._march import REFRESH, March, Ocean, Steps, simulation_lanes
@@ -222,7 +223,10 @@ def _prepared(
 ) -> Assembly:
     if mooring not in ("springs", "catenary"):
         raise InputError(f"simulate: no mooring {mooring!r}; there are: springs, catenary.")
-    assembly = rigged(cage) if isinstance(cage, Structure) else _assembled(cage)
+    if isinstance(cage, Structure):
+        assembly = rigged(cage)
+    else:
+        assembly = anchored(cage) if mooring == "catenary" else _assembled(cage)
     if hold_collar:
         fixed = assembly.fixed.copy()
         fixed[cage.ring_nodes(0)] = True
