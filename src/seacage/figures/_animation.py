@@ -264,7 +264,7 @@ def _patches(cage: Cage) -> Int[np.ndarray, "patch corner"]:
     if cage.spokes % 2:
         return cage.panels
     left, right = cage.panels[0::2], cage.panels[1::2]
-    return np.column_stack([left[:, :3], right[:, 2:], left[:, 3]])
+    return np.column_stack([left[:, :2], right[:, 1:], left[:, 3]])
 
 
 def _net_artists(axes: "Axes", largest: float) -> "PolyCollection":

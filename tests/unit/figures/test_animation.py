@@ -9,6 +9,7 @@ from PIL import Image
 from seacage.cage import Cage
 from seacage.conventions import InputError
 from seacage.figures import Motion, write_animation
+from seacage.figures._animation import _patches
 from seacage.figures._gif import Gif
 from seacage.ocean import SeaState, sample_waves, surface_elevation
 
@@ -95,6 +96,19 @@ def test_odd_spokes_are_drawn_panel_by_panel(tmp_path, motion):
     position = np.repeat(odd.design_position[None], len(motion.time), axis=0)
     moved = replace(motion, node_position=position, rest_position=odd.design_position)
     assert write_animation(tmp_path / "a.gif", odd, moved, width=160).stat().st_size > 0
+
+
+def test_patches_cover_what_their_panels_cover(cage):
+    def area(corners):
+        x, y = np.moveaxis(cage.design_position[corners][..., :2], -1, 0)
+        return np.abs(np.sum(x * np.roll(y, -1, 1) - y * np.roll(x, -1, 1), axis=1)) / 2.0
+
+    patches = _patches(cage)
+    assert len(patches) == len(cage.panels) // 2
+    # Seen from above, the cone alone has an area; rounding of sums of squares of 25 m.
+    np.testing.assert_allclose(
+        area(patches), area(cage.panels).reshape(-1, 2).sum(axis=1), atol=1e-9
+    )
 
 
 def test_a_diverged_case_is_refused(motion):
