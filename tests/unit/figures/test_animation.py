@@ -56,6 +56,19 @@ def test_it_runs_in_real_time_and_loops_for_ever(picture):
     assert played == 16 * 200
 
 
+def test_it_tells_how_far_it_is(tmp_path, cage, motion):
+    told = []
+    write_animation(
+        tmp_path / "a.gif",
+        cage,
+        motion,
+        frames_per_second=2.0,
+        width=160,
+        progress=lambda *where: told.append(where),
+    )
+    assert told == [("draw", picture, 7) for picture in range(1, 8)]
+
+
 def test_it_is_as_wide_as_asked_and_light(picture):
     with Image.open(picture) as gif:
         assert gif.width == 320
