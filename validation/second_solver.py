@@ -1,0 +1,153 @@
+"""The whole moored cage that another program solved: three lines of two bridles each."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.cage import Structure
+from seacage.dynamics import History, simulate
+from seacage.ocean import SeaState, regular_wave
+from validation._row import Kind, Row, Section
+
+FILE = Path(__file__).with_name("second_solver.toml")
+
+SOURCE = "femnet (github dpriour/femnet, commit 12ffe21f), its case 10fish_cage, coarse mesh"
+
+SEA = SeaState(current_speed=0.1, current_to=70.0)
+"""Towards 20 degrees from x, which is east here."""
+
+WAVE_FROM = 230.0
+"""A wave that runs towards 40 degrees from x."""
+
+TWINE = (1.2, 0.08)
+"""Drag coefficients across and along a twine, its input."""
+
+LINES = {
+    "bridle-a1": 1944.7, "bridle-a2": 1949.5, "bridle-b1": 2424.0, "bridle-b2": 2402.3,
+    "bridle-c1": 2678.8, "bridle-c2": 2698.8, "outer-a": 3602.7, "outer-b": 4443.8,
+    "outer-c": 4932.2,
+}  # fmt: skip
+"""Its tensions [N]; lines b lie at 120 degrees from x, lines c at 240."""
+
+OFFSET = {"x": 2.10, "y": 0.83, "z": -9.64}
+"""Its bottom ring's centre less that of the inner collar ring [m]."""
+
+RANGES = {
+    "inner collar": {"x": 2.33, "y": 1.89, "z": 3.87},
+    "net bottom": {"x": 2.75, "y": 2.27, "z": 3.03},
+}
+"""Its rings' centres in waves, most less least [m]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Solved:
+    """The structure and what it does: the last half minute in the current, or in the wave."""
+
+    structure: Structure
+    history: History
+
+    @property
+    def tension(self) -> dict[str, float]:
+        """Mean, by the line's name [N]."""
+        names = self.structure.line_names
+        return dict(zip(names, self.history.bridle.mean.tolist(), strict=True))
+
+    def centre(self, ring: str) -> Float[np.ndarray, "t 3"]:
+        """Of a ring, in time [m]."""
+        return self.history.node_position[:, self.structure.ring_nodes(ring)].mean(axis=1)
+
+    def bridle_force(self) -> Float[np.ndarray, "3"]:
+        """Of all bridles on the collar [N]."""
+        force = np.zeros(3)
+        for index, line in enumerate(self.structure.line):
+            if line.name.startswith("bridle"):
+                start, end = self.history.node.mean[self.structure.line_nodes(index)[[0, -1]]]
+                along = (start - end) / np.linalg.norm(start - end)
+                force += self.tension[line.name] * along
+        return force
+
+
+def solved(*, in_waves: bool) -> Solved:
+    """Our own answer; the wave is at rest in a sea without waves."""
+    structure = Structure.read(FILE)
+    depth = structure.site.water_depth
+    wave = regular_wave(height=4.0, period=9.0, wave_from=WAVE_FROM, depth=depth)
+    history = simulate(
+        structure,
+        SEA,
+        law="morison",
+        twine_drag=TWINE,
+        wake=False,
+        waves=wave if in_waves else None,
+        spin_up=240.0,
+        duration=36.0,  # four periods of the wave
+        sample_every=0.1,
+    )
+    return Solved(structure=structure, history=history)
+
+
+def _row(what: str, unit: str, reference: float, ours: float, share: float, note: str = "") -> Row:
+    reason = {
+        0.10: "10 %: its own mesh error is 4–7 % on loads",
+        0.15: "15 %: its mesh error, and its nodes at the surface are partly dry",
+    }
+    return Row(
+        what=what,
+        unit=unit,
+        reference=reference,
+        ours=ours,
+        kind=Kind.OTHER_PROGRAM,
+        source=SOURCE,
+        tolerance=share * abs(reference),
+        reason=reason[share],
+        note=note,
+    )
+
+
+def _static() -> Iterator[Row]:
+    ours = solved(in_waves=False)
+    sea = "Second solver's cage, current 0.1 m/s"
+    yield _row(
+        f"{sea}: net drag along x",
+        "N",
+        976.0,
+        float(ours.history.net_force.mean[0]),
+        0.10,
+        note="It lets twines near the surface be partly dry, on elements of 2 to 4 m; plain "
+        "twine drag on its own solved shape is 1053 N.",
+    )
+    force = ours.bridle_force()
+    for axis, reference, found in zip("xy", (-1019.0, -402.0), force, strict=False):
+        yield _row(f"{sea}: sum of bridle forces, {axis}", "N", reference, float(found), 0.10)
+    for name, reference in LINES.items():
+        yield _row(f"{sea}: tension of {name}", "N", reference, ours.tension[name], 0.10)
+    offset = (ours.centre("net bottom") - ours.centre("inner collar")).mean(axis=0)
+    for (axis, reference), found in zip(OFFSET.items(), offset, strict=True):
+        what = f"{sea}: bottom ring less top ring, {axis}"
+        yield _row(what, "m", reference, float(found), 0.10)
+    yield _row(f"{sea}: volume", "m3", 753.0, float(ours.history.volume.mean), 0.10)
+
+
+def _in_waves() -> Iterator[Row]:
+    ours = solved(in_waves=True)
+    for ring, ranges in RANGES.items():
+        moved = np.ptp(ours.centre(ring), axis=0)
+        for (axis, reference), found in zip(ranges.items(), moved, strict=True):
+            what = (
+                f"Second solver's cage, wave of 4 m and 9 s: range of the {ring}'s centre, {axis}"
+            )
+            yield _row(what, "m", reference, float(found), 0.15)
+
+
+ABOUT = (
+    "A cage of other sizes and another mooring, twine by twine, against a second solver: "
+    "computed by another program, not measured."
+)
+
+SECTIONS = (
+    Section(title="A whole moored cage", about=ABOUT, rows=_static, slow=True),
+    Section(title="A whole moored cage", about=ABOUT, rows=_in_waves, slow=True),
+)
