@@ -281,48 +281,49 @@ static void add_screens(const body *b, const state *s, const vec *restrict x, la
     }
 }
 
-/* Twine by twine: two families, each a cylinder in cross flow with skin friction. panel_law:
- * 1/2 rho × diameter × twine length of a family, diameter / viscosity, whether the twines run
- * at 45 degrees to the panel's edges. law[0] < 0: Cn after Choo and Casarella. */
+/* One family of twines along t, in flow u: cross-flow drag and skin friction, added up. */
+#define FAMILY(tx, ty, tz)                                                                       \
+    do {                                                                                         \
+        const float square_ = (tx) * (tx) + (ty) * (ty) + (tz) * (tz);                           \
+        const float tt_ = square_ > 1e-12f ? square_ : 1e-12f;                                   \
+        const float along_ = (ux * (tx) + uy * (ty) + uz * (tz)) / tt_;                          \
+        const float cx_ = ux - along_ * (tx), cy_ = uy - along_ * (ty), cz_ = uz - along_ * (tz);\
+        const float speed_ = sqrtf(cx_ * cx_ + cy_ * cy_ + cz_ * cz_);                           \
+        const float number_ = reynolds * speed_ > 30.0f ? reynolds * speed_ : 30.0f;             \
+        const float cn_ = by_reynolds ? 1.1f + 4.0f / sqrtf(number_) : given;                    \
+        const float across_ = weight * cn_ * speed_;                                             \
+        const float rubbed_ = weight * skin * (along_ < 0.0f ? -along_ : along_) * along_        \
+                              * sqrtf(tt_);                                                      \
+        lx += across_ * cx_ + rubbed_ * (tx);                                                    \
+        ly += across_ * cy_ + rubbed_ * (ty);                                                    \
+        lz += across_ * cz_ + rubbed_ * (tz);                                                    \
+        fall += across_;                                                                         \
+    } while (0)
+
+/* Twine by twine. panel_law: 1/2 rho × diameter × twine length of a family, diameter /
+ * viscosity, whether the twines run at 45 degrees to the panel's edges. law: Cn, below zero
+ * after Choo and Casarella; Ct. */
 static void add_twines(const body *b, const state *s, const vec *restrict x, lane *total)
 {
     const vec *restrict w = (const vec *)s->relative, *restrict carried = (const vec *)s->panel_current;
     const float given = b->law[0], skin = b->law[1];
+    const int by_reynolds = given < 0.0f;
     for (int p = 0; p < b->panels; p++) {
         const int *n = b->panel_corners + 4 * p;
         const float *share = b->panel_share + 4 * p;
         const float weight = b->panel_law[4 * p], reynolds = b->panel_law[4 * p + 1];
-        const float turned = b->panel_law[4 * p + 2];
+        const float mix = 1.0f - b->panel_law[4 * p + 2]; /* edges are half sums of diagonals */
         vec load;
         lane falls;
         EACH_LANE {
             DIAGONALS;
-            /* twines along the edges: half sums of the diagonals; else along the diagonals */
-            const float mix = 1.0f - turned;
-            const float first[3] = {ax + mix * bx, ay + mix * by, az + mix * bz};
-            const float second[3] = {bx - mix * ax, by - mix * ay, bz - mix * az};
-            const float u[3] = {PAST(0), PAST(1), PAST(2)};
-            float on[3] = {0.0f, 0.0f, 0.0f}, fall = 0.0f;
-            for (int family = 0; family < 2; family++) {
-                const float *t = family ? second : first;
-                const float tt = t[0] * t[0] + t[1] * t[1] + t[2] * t[2];
-                const float along = (u[0] * t[0] + u[1] * t[1] + u[2] * t[2])
-                                    / (tt > 1e-12f ? tt : 1e-12f);
-                float across[3], aa = 1e-20f;
-                for (int a = 0; a < 3; a++) {
-                    across[a] = u[a] - along * t[a];
-                    aa += across[a] * across[a];
-                }
-                const float speed = sqrtf(aa);
-                const float number = reynolds * speed > 30.0f ? reynolds * speed : 30.0f;
-                const float cn = given < 0.0f ? 1.1f + 4.0f / sqrtf(number) : given;
-                const float skinned = skin * (along < 0.0f ? -along : along) * along * sqrtf(tt);
-                for (int a = 0; a < 3; a++)
-                    on[a] += weight * (cn * speed * across[a] + skinned * t[a]);
-                fall += weight * cn * speed;
-            }
-            for (int a = 0; a < 3; a++)
-                load[a][k] = on[a];
+            const float ux = PAST(0), uy = PAST(1), uz = PAST(2);
+            float lx = 0.0f, ly = 0.0f, lz = 0.0f, fall = 0.0f;
+            FAMILY(ax + mix * bx, ay + mix * by, az + mix * bz);
+            FAMILY(bx - mix * ax, by - mix * ay, bz - mix * az);
+            load[0][k] = lx;
+            load[1][k] = ly;
+            load[2][k] = lz;
             falls[k] = fall;
         }
         share_out(n, share, (const lane *)load, falls, s->held, s->drag, total);
