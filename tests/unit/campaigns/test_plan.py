@@ -59,6 +59,23 @@ def test_a_grid_holds_every_combination() -> None:
     assert {s.tp for s in plan.seas} == {5.0}
 
 
+def test_a_grid_may_leave_the_papers_curve_of_periods() -> None:
+    plan = Plan.grid(
+        current_speed=(0.2,), current_to=(0.0,), hs=(1.0, 4.0), period_ratio=(1.0, 1.5), seed=3
+    )
+    assert [(s.hs, s.tp) for s in plan.seas] == [(1.0, 5.0), (1.0, 7.5), (4.0, 10.0), (4.0, 15.0)]
+    assert plan.seed == 3
+
+
+def test_own_ranges_take_the_place_of_a_named_plans() -> None:
+    plan = Plan.named("default", 1, 50, ranges={"hs": (0.5, 1.0)})
+    _, _, hs, _, _ = columns(plan).T
+    assert 0.5 <= hs.min() < hs.max() <= 1.0
+    ranges = {"hs": (0.5, 1.0), "period_ratio": (0.8, 2.2)}
+    assert plan.seas == Plan.sample(1, 50, **ranges).seas
+    assert plan.name == "default, other hs"
+
+
 def test_a_plan_survives_its_file(tmp_path: Path) -> None:
     plan = Plan.sample(7, 20, duration=600.0, period_ratio=(0.8, 2.2))
     plan.write(tmp_path / "plan.json")
@@ -125,10 +142,60 @@ def test_a_file_that_is_no_plan_is_refused(text: str) -> None:
 
 def test_a_bad_sea_state_in_a_file_is_refused_as_anywhere() -> None:
     text = Plan.listed([SeaState(current_speed=0.5, current_to=90.0)]).to_json()
-    with pytest.raises(InputError, match="412 deg"):
+    with pytest.raises(InputError, match=r"case 0: .*412 deg"):
         Plan.from_json(text.replace("90.0", "412.0"))
 
 
 def test_a_file_that_is_not_there_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"cannot read .*plan\.json"):
         Plan.read(tmp_path / "plan.json")
+
+
+HEADER = "current_speed_m_s,current_to_deg,hs_m,tp_s,wave_from_deg\n"
+
+
+def table(tmp_path: Path, text: str) -> Path:
+    path = tmp_path / "seas.csv"
+    path.write_text(text, "utf-8")
+    return path
+
+
+def test_a_table_is_a_plan_of_its_rows(tmp_path: Path) -> None:
+    # With the mark that spreadsheets put first, spaces, an empty line and empty cells.
+    text = (
+        "\ufeff" + HEADER.replace(",", ", ") + "0.3, 90, 1.44, 6.5, 270\n\n0.5,360,1.0,,\n0,0,,,\n"
+    )
+    plan = Plan.table(table(tmp_path, text), seed=4, duration=60.0)
+    assert plan.seas == (
+        SeaState(current_speed=0.3, current_to=90.0, hs=1.44, tp=6.5, wave_from=270.0),
+        SeaState(current_speed=0.5, current_to=0.0, hs=1.0),
+        SeaState(current_speed=0.0, current_to=0.0),
+    )
+    assert (plan.name, plan.seed, plan.duration) == ("seas", 4, 60.0)
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("", "its columns are none"),
+        ("current_speed,current_to_deg\n", "its columns are current_speed, current_to_deg"),
+        ("current_speed_m_s,hs_m\n", "at least current_speed_m_s and current_to_deg"),
+        (HEADER.replace("tp_s", "hs_m"), "each once"),
+        (HEADER + "0.3,90,1,6.5\n", "row 2: 4 values under 5 columns"),
+        (HEADER + "0.3,90,1,6.5,0\n,90,1,6.5,0\n", "row 3: current_speed_m_s must not be empty"),
+        (HEADER + "0.3,north,1,6.5,0\n", "row 2: current_to_deg = 'north' is no number"),
+        (HEADER + "\n0.3,90,3,2.1,0\n", r"row 3: SeaState: hs = 3 m with tp = 2\.1 s has steep"),
+        (HEADER + "30,90,1,6.5,0\n", r"row 2: .* 30 m/s is above 3 m/s"),
+        (HEADER, "no sea states"),
+    ],
+)
+def test_a_table_that_is_no_plan_is_refused_with_its_row(
+    tmp_path: Path, text: str, says: str
+) -> None:
+    with pytest.raises(InputError, match=says):
+        Plan.table(table(tmp_path, text))
+
+
+def test_a_table_that_is_not_there_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"seas\.csv: cannot be read"):
+        Plan.table(tmp_path / "seas.csv")

@@ -1,5 +1,6 @@
 """Campaigns on disk."""
 
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,8 +13,11 @@ from seacage.ocean import SeaState
 from seacage.records import (
     CampaignRecord,
     campaign_results,
+    campaign_unsummed,
+    campaign_variable,
     create_campaign,
     export_campaign,
+    finish_campaign,
     read_campaign,
     write_cases,
 )
@@ -48,6 +52,126 @@ def finished(path: Path) -> Path:
     write_cases(path, 4, answers(4, 7))
     write_cases(path, 0, answers(0, 4))
     return path
+
+
+SPREADS = {"node_position": (5, 3), "bridle_tension": (3,)}
+
+
+def created_in_time(path: Path, *, seeds: list[int] | None = None) -> Path:
+    create_campaign(
+        path,
+        seas=SEAS,
+        nodes=5,
+        lines=3,
+        block=4,
+        attributes={**ATTRIBUTES, "quantile_levels": [0.1, 0.9]},
+        wave_seeds=seeds or list(range(7)),
+        quantile_levels=(0.1, 0.9),
+        second_moment=True,
+    )
+    return path
+
+
+def answers_in_time(first: int, last: int) -> dict[str, np.ndarray]:
+    rng = np.random.default_rng(first)
+    cases, values = last - first, answers(first, last)
+    del values["residual"]
+    for name, shape in SPREADS.items():
+        for statistic in ("std", "minimum", "maximum"):
+            values[f"{name}_{statistic}"] = rng.normal(size=(cases, *shape)).astype(np.float32)
+        values[f"{name}_quantile"] = rng.normal(size=(cases, 2, *shape)).astype(np.float32)
+    values["net_force_std"] = rng.normal(size=(cases, 3)).astype(np.float32)
+    values["volume_std"] = rng.normal(size=cases).astype(np.float32)
+    values["diverged_at"] = np.full(cases, np.nan)
+    values["result"][0], values["diverged_at"][0] = Result.DIVERGED, 12.5
+    return values
+
+
+def moment(first: int) -> np.ndarray:
+    return np.random.default_rng(first).normal(size=(15, 15)).astype(np.float32).astype(float)
+
+
+def written_in_time(path: Path) -> Path:
+    created_in_time(path)
+    for first, last in ((4, 7), (0, 4)):
+        values = answers_in_time(first, last)
+        write_cases(path, first, values, moment=moment(first), core_seconds=first + 1.0)
+    return path
+
+
+def test_a_campaign_in_time_is_read_with_all_its_statistics(tmp_path: Path) -> None:
+    path = written_in_time(tmp_path / "campaign")
+    finish_campaign(path)
+    record = read_campaign(path)
+    for name, first in answers_in_time(0, 4).items():
+        both = np.concatenate([first, answers_in_time(4, 7)[name]])
+        np.testing.assert_array_equal(getattr(record, name), both)
+    assert record.wave_seed.tolist() == list(range(7))
+    assert record.quantile.tolist() == [0.1, 0.9]
+    assert record.residual is None
+    assert campaign_variable(path, "core_seconds").tolist() == [1.0, 5.0]
+
+
+def test_the_second_moment_is_the_blocks_sum_over_the_converged_cases(tmp_path: Path) -> None:
+    path = written_in_time(tmp_path / "campaign")
+    with pytest.raises(RecordError, match="seacage campaign finish"):
+        read_campaign(path)
+    assert campaign_unsummed(path)
+    for _ in range(2):  # a second time changes nothing
+        finish_campaign(path)
+        assert not campaign_unsummed(path)
+        np.testing.assert_array_equal(
+            read_campaign(path).second_moment, (moment(0) + moment(4)) / 5.0
+        )
+    assert [one.name for one in tmp_path.iterdir()] == ["campaign"]
+
+
+def test_a_campaign_with_cases_left_is_not_summed(tmp_path: Path) -> None:
+    path = created_in_time(tmp_path / "campaign")
+    write_cases(path, 4, answers_in_time(4, 7), moment=moment(4))
+    finish_campaign(path)
+    assert campaign_unsummed(path)
+    assert np.isnan(campaign_variable(path, "second_moment")).all()
+
+
+@pytest.mark.parametrize("gone", ["blocks/moment/c/0", "blocks/moment"])
+def test_who_comes_second_to_the_sum_leaves_it_to_the_first(tmp_path: Path, gone: str) -> None:
+    path = written_in_time(tmp_path / "campaign")
+    shutil.rmtree(path / gone)  # as the first does, while the second adds up
+    finish_campaign(path)
+    assert np.isnan(campaign_variable(path, "second_moment")).all()
+
+
+def test_who_comes_second_to_the_creation_finds_what_the_first_made(tmp_path: Path) -> None:
+    path = written_in_time(tmp_path / "campaign")
+    created_in_time(path, seeds=[9] * 7)
+    finish_campaign(path)
+    assert read_campaign(path).wave_seed.tolist() == list(range(7))
+    assert [one.name for one in tmp_path.iterdir()] == ["campaign"]
+
+
+def test_a_campaign_without_an_attribute_of_later_versions_is_still_read(tmp_path: Path) -> None:
+    path = finished(tmp_path / "campaign")
+    shutil.rmtree(path / "core_seconds")
+    write_cases(path, 4, answers(4, 7))
+    assert read_campaign(path).second_moment is None
+    assert campaign_variable(path, "core_seconds") is None
+
+
+def test_statistics_over_time_say_so_in_the_words_of_cf(tmp_path: Path) -> None:
+    path = written_in_time(tmp_path / "campaign")
+    finish_campaign(path)
+    export_campaign(path, tmp_path / "campaign.nc")
+    with xarray.open_dataset(tmp_path / "campaign.nc") as dataset:
+        assert dataset.node_position_std.cell_methods == "time: standard_deviation"
+        assert dataset.bridle_tension_maximum.cell_methods == "time: maximum"
+        assert dataset.bridle_tension_quantile.sel(quantile=0.9).dims == ("case", "line")
+        assert dataset.node_position_std.dtype == np.float32
+        assert dataset.node_position.dtype == dataset.second_moment.dtype == np.float64
+        assert dataset.wave_seed.dtype == np.int64
+        for variable in dataset.variables.values():
+            assert {"units", "long_name"} <= variable.attrs.keys()
+    assert read_campaign(tmp_path / "campaign.nc").sha256 == read_campaign(path).sha256
 
 
 def test_what_was_written_is_read_whatever_the_order_of_the_blocks(tmp_path: Path) -> None:
@@ -145,5 +269,6 @@ def test_the_hash_knows_every_part(tmp_path: Path) -> None:
         replace(record, seed=5),
         replace(record, seas=record.seas[::-1]),
     ]
-    assert len({record.sha256, *(one.sha256 for one in changed)}) == 5
+    changed.append(replace(record, volume_std=np.ones(7)))
+    assert len({record.sha256, *(one.sha256 for one in changed)}) == 6
     assert replace(record).sha256 == record.sha256
