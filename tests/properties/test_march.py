@@ -1,0 +1,372 @@
+"""The compiled march computes what the readable definition says, step by step."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from seacage.cage import Cage
+from seacage.dynamics import MOVING_LAWS, simulation_lanes
+from seacage.dynamics._assembly import Assembly, Ground
+from seacage.dynamics._loads import DYNAMIC, _gathered, bend_force, spring_force
+from seacage.dynamics._march import March, Ocean, Steps, kernel_force, kernel_water
+from seacage.dynamics._motion import (
+    NetLaw,
+    Water,
+    _spring_damping,
+    _surface_force,
+    bar_damping,
+    damped_bar_force,
+    moving_cylinder_force,
+    moving_force,
+    moving_net_load,
+    past_panels,
+)
+from seacage.dynamics._screens import Screen
+from seacage.dynamics._stability import steadied
+from seacage.ocean import SeaState, Waves, sample_waves, surface_elevation, water_motion, wavenumber
+
+ACE = Cage.named("ace")
+LANES = simulation_lanes()
+
+FLOAT = 2.0**-24
+"""Share of a number that rounding it to single precision may cut off."""
+
+
+def single(values):
+    """As the kernel reads it, in double precision again: rounding the input is not an error."""
+    return np.asarray(values, dtype=np.float32).astype(np.float64)
+
+
+@st.composite
+def meshes(draw, most_rings=5, most_spokes=10):
+    """Of any small cage; what the checks of shapes draw at random must stay out of here."""
+    count, seed = draw(st.integers(2, most_rings)), draw(st.integers(0, 2**32 - 1))
+    depths = np.cumsum([0.0, *np.random.default_rng(seed).uniform(2.0, 6.0, count - 1)]).tolist()
+    return {
+        "spokes": draw(st.integers(3, most_spokes)),
+        "ring_depths_m": depths,
+        "cylinder_depth_m": depths[draw(st.integers(1, count - 1))],
+        "tip_depth_m": depths[-1] + 4.0,
+    }
+
+
+def caged(mesh, rng):
+    """With any growth and any heading."""
+    grown = ACE.altered(mesh=mesh).fouled(shallow=rng.uniform(0, 0.1), deep=rng.uniform(0, 0.1))
+    return grown.rotated(rng.uniform(0.0, 360.0))
+
+
+def varied(assembly, rng, softer):
+    """Every kind of part that a structure can have, stiff bars out of the way if softer."""
+    a, bottom = assembly, assembly.position[:, 2].min()
+    low = np.flatnonzero(a.position[:, 2] < bottom / 2.0)
+    panels = replace(
+        a.panels,
+        diamond=rng.random(len(a.panels.area)) < 0.5,
+        twine_spacing=rng.uniform(0.01, 0.04, len(a.panels.area)),
+    )
+    return replace(
+        a,
+        bars=replace(a.bars, stiffness=a.bars.stiffness * softer),
+        panels=panels,
+        cylinders=replace(a.cylinders, skin_width=rng.uniform(0.0, 0.1) * a.cylinders.drag_width),
+        ground=Ground(
+            nodes=low, stiffness=rng.uniform(1e2, 1e4, len(low)), level=0.9 * float(bottom)
+        ),
+    )
+
+
+def magnitudes(assembly, law, water, position, velocity):
+    """At each node the sum of what its forces are differences of [N]."""
+    a, bars = assembly, assembly.bars
+    i, j = bars.ends.T
+    along = np.linalg.norm(position[:, j] - position[:, i], axis=-1)
+    rate = np.linalg.norm(velocity[:, j] - velocity[:, i], axis=-1)
+    borne = bars.stiffness * (1.0 + along / bars.length) + bar_damping(bars, a.mass) * rate
+    size = np.zeros_like(position[..., 0])
+
+    def put(nodes, share):
+        for end in range(nodes.shape[1]):
+            np.add.at(size, (slice(None), nodes[:, end]), share)
+
+    put(bars.ends, borne)
+    before, middle, after = np.moveaxis(position[:, a.bends.nodes], 2, 0)
+    lengths = [np.linalg.norm(middle - before, axis=-1), np.linalg.norm(after - middle, axis=-1)]
+    cosine = np.sum((middle - before) * (after - middle), axis=-1) / (lengths[0] * lengths[1])
+    # the force grows without bound as a joint folds: its rounding does by one power more
+    bend = 8.0 * a.bends.stiffness / (np.minimum(*lengths) * (1.0 + cosine) ** 3)
+    put(a.bends.nodes, bend)
+    speed = np.linalg.norm(past_panels(a.panels, law, water, velocity), axis=-1)
+    speed += np.abs(velocity[:, a.panels.corners]).sum(axis=(2, 3))
+    diagonals = [
+        position[:, a.panels.corners[:, k + 2]] - position[:, a.panels.corners[:, k]]
+        for k in (0, 1)
+    ]
+    area = np.prod([np.linalg.norm(d, axis=-1) for d in diagonals], axis=0)
+    put(a.panels.corners, DYNAMIC * speed**2 * np.maximum(area, a.panels.area))
+    ends = a.cylinders.ends
+    length = np.linalg.norm(position[:, ends[:, 1]] - position[:, ends[:, 0]], axis=-1)
+    past = np.abs(water.velocity + water.current)[:, ends] + np.abs(velocity[:, ends])
+    put(ends, DYNAMIC * length * a.cylinders.drag_width * past.sum(axis=(2, 3)) ** 2)
+    heights = np.abs(position[:, a.floats.nodes, 2]) + np.abs(water.elevation[:, a.floats.nodes])
+    put(a.floats.nodes[:, None], a.floats.stiffness * (heights + a.floats.height))
+    place, springs = a.position[a.springs.nodes], a.springs
+    held = springs.stiffness * (np.abs(place) + np.abs(position[:, springs.nodes]))
+    held += springs.damping * np.abs(velocity[:, springs.nodes]) + np.abs(springs.preload)
+    put(springs.nodes[:, None], held.sum(axis=-1))
+    ground = a.ground
+    sunk = np.abs(position[:, ground.nodes, 2]) + np.linalg.norm(velocity[:, ground.nodes], axis=-1)
+    put(ground.nodes[:, None], (ground.stiffness + a.mass[ground.nodes]) * (sunk - ground.level))
+    size += np.abs(a.weight) + a.water_mass * np.abs(water.acceleration).sum(axis=-1)
+    return size
+
+
+@settings(max_examples=60)
+@given(
+    mesh=meshes(),
+    law=st.sampled_from(MOVING_LAWS),
+    twine_drag=st.none() | st.tuples(st.floats(0.5, 2.0), st.floats(0.0, 0.1)),
+    softer=st.sampled_from([1.0, 1e-6]),
+    shaken=st.floats(0.05, 1.0),  # at its own length a bar is slack or taut by a rounding
+    still=st.booleans(),
+    cases=st.integers(1, LANES),
+    seed=st.integers(0, 2**32 - 1),
+)
+def test_the_march_computes_the_definition_of_every_force(
+    mesh, law, twine_drag, softer, shaken, still, cases, seed
+):
+    rng = np.random.default_rng(seed)
+    assembly = varied(Assembly.of(caged(mesh, rng)), rng, softer)
+    shape = (cases, *assembly.position.shape)
+    position = single(assembly.position + rng.normal(scale=shaken, size=shape))
+    velocity = single(rng.normal(scale=0.5, size=shape)) * (not still)
+    water = Water(
+        velocity=single(rng.normal(size=shape)) * (not still),
+        acceleration=single(rng.normal(size=shape)),
+        elevation=single(rng.normal(size=shape[:2])),
+        current=single(rng.normal(size=shape)) * (not still),
+    )
+    wake = rng.uniform(0.5, 1.0, (cases, len(assembly.panels.area)))
+    net = NetLaw(name=law, wake=wake, twine_drag=twine_drag)
+    defined = moving_force(assembly, net, water, position, velocity)
+    computed = kernel_force(assembly, net, water, position, velocity)
+    size = magnitudes(assembly, net, water, position, velocity)
+    # a few roundings between parameters and force, most of them averaged out over its parts
+    assert np.all(np.abs(computed - defined) <= 8.0 * FLOAT * size[..., None])
+
+
+# Water
+
+
+def wave_train(rng, depth):
+    """Waves of any mixture of periods and headings that can stand."""
+    count = int(rng.integers(0, 40))
+    frequency = 2.0 * np.pi / rng.uniform(2.0, 20.0, count)
+    number = wavenumber(frequency, depth=depth)
+    amplitude = rng.uniform(0.0, 0.3, count) / max(1, count) * np.minimum(1.0 / number, depth)
+    heading = rng.uniform(0.0, 2.0 * np.pi, count)
+    return Waves(
+        amplitude=amplitude,
+        angular_frequency=frequency,
+        wavenumber=number,
+        phase=rng.uniform(0.0, 2.0 * np.pi, count),
+        direction=np.column_stack([np.cos(heading), np.sin(heading)]),
+        depth=depth,
+    )
+
+
+@settings(max_examples=100)
+@given(
+    depth=st.floats(3.0, 500.0),
+    cases=st.integers(1, LANES),
+    time=st.floats(0.0, 6.0 * 3600.0),
+    near=st.sampled_from([1.0, 0.05, 0.0]),
+    seed=st.integers(0, 2**32 - 1),
+)
+def test_the_march_moves_the_water_as_the_ocean_does(depth, cases, time, near, seed):
+    rng = np.random.default_rng(seed)
+    waves = [wave_train(rng, depth) for _ in range(cases)]
+    place = rng.uniform([-60.0, -60.0, -depth], [60.0, 60.0, 3.0], (cases, 3))
+    place = single(place * [1.0, 1.0, near])
+    elevation, velocity = kernel_water(waves, place, time)
+    for w, at, up, moved in zip(waves, place, elevation, velocity, strict=True):
+        surface = surface_elevation(w, at[:2], np.array(time))
+        # what rises above the surface meets the water there, where the ocean has air
+        wet = np.array([*at[:2], min(at[2], float(surface) - 1e-9)])
+        defined, _ = water_motion(w, wet, np.array(time))
+        most = np.sum(w.amplitude * w.angular_frequency / np.tanh(w.wavenumber * depth))
+        # rounded are phases, of up to 85 m over the shortest wave, and heights
+        rounded = 1.0 + np.max(w.wavenumber, initial=0.0) * (85.0 + abs(at[2]))
+        assert abs(up - surface) <= 4.0 * FLOAT * rounded * w.amplitude.sum()
+        assert np.all(np.abs(moved - defined) <= 4.0 * FLOAT * rounded * most + 1e-9)
+
+
+# Steps
+
+
+@dataclass
+class Stepper:
+    """The march as its comments describe it, in NumPy and double precision."""
+
+    assembly: Assembly
+    law: NetLaw
+    ocean: Ocean
+    steps: Steps
+    position: np.ndarray
+    velocity: np.ndarray
+    water: np.ndarray
+    slope: np.ndarray
+    surface: np.ndarray
+    rise: np.ndarray
+
+    @classmethod
+    def begun(cls, assembly, law, ocean, steps, position):
+        nothing = np.zeros_like(position)
+        flat = nothing[..., 0]
+        rest = {"velocity": nothing, "water": nothing, "slope": nothing}
+        return cls(assembly, law, ocean, steps, position, **rest, surface=flat, rise=flat)
+
+    def go(self, refreshes):
+        interval = self.steps.time_step * self.steps.each
+        for n in range(refreshes):
+            self.look(interval * (n + 1), interval)
+            for i in range(self.steps.each):
+                since = self.steps.time_step * i
+                if i % self.steps.hold == 0:
+                    self.hold(since)
+                self.step(since)
+
+    def look(self, end, interval):
+        """At the water at the end of a refresh, where the nodes will be then."""
+        ahead = self.position + interval * self.velocity
+        rising = 0.5 - 0.5 * np.cos(np.pi * end / self.steps.ramp) if end < self.steps.ramp else 1.0
+        moved, surface = np.empty_like(ahead), np.empty_like(self.surface)
+        for case, waves in enumerate(self.ocean.waves):
+            ramped = replace(waves, amplitude=rising * waves.amplitude)
+            surface[case] = surface_elevation(ramped, ahead[case, :, :2], np.array(end))
+            wet = ahead[case].copy()
+            wet[:, 2] = np.minimum(wet[:, 2], surface[case] - 1e-12)
+            moved[case], _ = water_motion(ramped, wet, np.array(end))
+        self.water = self.water + interval * self.slope
+        self.slope = (moved - self.water) / interval
+        self.surface = self.surface + interval * self.rise
+        self.rise = (surface - self.surface) / interval
+        self.current = np.zeros_like(ahead)
+        for case, axis in np.ndindex(len(ahead), 2):
+            at_levels = self.ocean.current[case, :, axis]
+            self.current[case, :, axis] = np.interp(
+                -ahead[case, :, 2], -self.ocean.level_z, at_levels
+            )
+
+    def present(self, since):
+        water = self.water + since * self.slope
+        elevation = self.surface + since * self.rise
+        return Water(
+            velocity=water, acceleration=self.slope, elevation=elevation, current=self.current
+        )
+
+    def hold(self, since):
+        """The water's load, as for no speed, and how it falls with the node's speed."""
+        a, water = self.assembly, self.present(since)
+        load = moving_net_load(a.panels, self.law, water, self.position, self.velocity)
+        corners, share = a.panels.corners, a.panels.share
+        self.load = _gathered(self.position, corners, load[:, :, None] * share[..., None])
+        self.load += moving_cylinder_force(a.cylinders, water, self.position, self.velocity)
+        self.load += a.water_mass[:, None] * water.acceleration
+        self.load[..., 2] += a.weight
+        self.drag = np.zeros_like(self.surface)
+        falls = self.falls(water)[..., None] * share
+        np.add.at(self.drag, (slice(None), corners), falls)
+        np.add.at(self.drag, (slice(None), a.cylinders.ends), self.cylinder_falls(water)[..., None])
+        self.load += self.drag[..., None] * self.velocity
+
+    def falls(self, water):
+        """Change of each panel's load with its speed, the mean over directions."""
+        panels = self.assembly.panels
+        past = past_panels(panels, self.law, water, self.velocity)
+        a, b, c, d = np.moveaxis(self.position[:, panels.corners], 2, 0)
+        if self.law.name == "morison":
+            length, total = panels.area / panels.twine_spacing, 0.0
+            edges = ~panels.diamond[:, None]
+            for twine in ((c - a) + edges * (d - b), (d - b) - edges * (c - a)):
+                unit = twine / np.linalg.norm(twine, axis=-1, keepdims=True)
+                across = past - np.sum(past * unit, axis=-1, keepdims=True) * unit
+                total = total + np.linalg.norm(across, axis=-1)
+            return DYNAMIC * panels.twine_diameter * length * self.law.twine_drag[0] * total
+        area = np.cross(c - a, d - b) / 2.0
+        size, speed = np.linalg.norm(area, axis=-1), np.linalg.norm(past, axis=-1)
+        cosine = np.abs(np.sum(area * past, axis=-1)) / np.maximum(size * speed, 1e-12)
+        screen = Screen(
+            law=self.law.name, solidity=panels.solidity, twine_diameter=panels.twine_diameter
+        ).terms(speed)
+        drag = screen["constant"] + screen["slope"] * cosine
+        return 1.4 * DYNAMIC * size * speed * (drag + 0.2 * screen["slope"])
+
+    def cylinder_falls(self, water):
+        cylinders, x = self.assembly.cylinders, self.position
+        along = x[:, cylinders.ends[:, 1]] - x[:, cylinders.ends[:, 0]]
+        length = np.linalg.norm(along, axis=-1, keepdims=True)
+        past = (water.velocity + water.current - self.velocity)[:, cylinders.ends].mean(axis=2)
+        unit = along / length
+        across = past - np.sum(past * unit, axis=-1, keepdims=True) * unit
+        speed = np.linalg.norm(across, axis=-1)
+        return 1.4 * DYNAMIC / 2.0 * cylinders.drag_width * length[..., 0] * speed
+
+    def step(self, since):
+        """Symplectic Euler, drag taken at the new speed."""
+        a, x, v, h = self.assembly, self.position, self.velocity, self.steps.time_step
+        force = self.load + damped_bar_force(a.bars, a.mass, x, v) + bend_force(a.bends, x)
+        force += _surface_force(a, self.present(since), x)
+        force += spring_force(a.springs, a.position, x) + _spring_damping(a.springs, v)
+        mass = a.mass[:, None]
+        self.velocity = (mass * v + h * force) / (mass + h * self.drag[..., None])
+        self.velocity[:, a.fixed] = 0.0
+        self.position = x + h * self.velocity
+
+
+@settings(max_examples=10)
+@given(
+    mesh=meshes(most_rings=4, most_spokes=8),
+    law=st.sampled_from(["aarsnes", "loland", "morison"]),
+    cases=st.integers(1, 4),
+    each=st.sampled_from([50, 63, 100]),
+    hold=st.sampled_from([1, 4]),
+    held=st.booleans(),
+    seed=st.integers(0, 2**32 - 1),
+)
+def test_the_march_steps_as_it_says(mesh, law, cases, each, hold, held, seed):
+    rng = np.random.default_rng(seed)
+    cage = caged(mesh, rng)
+    steps = Steps(
+        time_step=0.1 / each, each=each, hold=hold, ramp=0.15, spin_up=1, counted=2, sample_every=1
+    )
+    assembly = Assembly.of(cage)
+    if held:
+        assembly = replace(assembly, fixed=np.arange(len(assembly.position)) < cage.spokes)
+    assembly, _ = steadied(assembly, steps.time_step)
+    depth = 60.0
+    seas = [
+        SeaState(current_speed=0.0, current_to=0.0, hs=1.5, tp=5.0, wave_from=rng.uniform(0, 360))
+        for _ in range(cases)
+    ]
+    ocean = Ocean(
+        waves=[sample_waves(sea, seed=i, components=5, depth=depth) for i, sea in enumerate(seas)],
+        current=single(rng.uniform(-0.7, 0.7, (cases, 2, 2))),
+        level_z=np.array([-2.0, -15.0]),
+        depth=depth,
+    )
+    wake = single(rng.uniform(0.6, 1.0, (cases, len(assembly.panels.area))))
+    net = NetLaw(name=law, wake=wake, twine_drag=(1.2, 0.02))
+    start = single(np.repeat(assembly.position[None], cases, axis=0))
+    march = March(assembly, net, ocean, steps, start)
+    plain = Stepper.begun(assembly, net, ocean, steps, start)
+    march.go(3)
+    plain.go(3)
+    moved = np.abs(plain.position - start).max()
+    # rounding of the bars' lengths, which ring; drag of the cylinders taken at the old speed
+    # instead of the new, the smallest slip tried, changes both by 1e-3 and more
+    assert np.abs(march.position - plain.position).max() <= 2e-4 * moved
+    assert np.abs(march.velocity - plain.velocity).max() <= 1e-3 * np.abs(plain.velocity).max()
+    assert np.all(np.isnan(march.lost_at))
