@@ -349,7 +349,7 @@ def _inner_nodes(net: Net, spokes: int) -> int:
     return (net.rows - 1) * spokes + (0 if net.lower else 1)
 
 
-def _fill(position: Float[np.ndarray, "node 3"], chains: Int[np.ndarray, "chain node"]) -> None:
+def _fill(position: Float[np.ndarray, "node 3"], chains: Int[np.ndarray, "chain link"]) -> None:
     """Put the inner nodes of chains straight between their ends."""
     share = np.linspace(0.0, 1.0, chains.shape[1])[None, 1:-1, None]
     first, last = position[chains[:, 0]][:, None], position[chains[:, -1]][:, None]
@@ -360,7 +360,7 @@ def _closed(nodes: Int[np.ndarray, " node"]) -> Int[np.ndarray, "edge 2"]:
     return np.column_stack([nodes, np.roll(nodes, -1)])
 
 
-def _chained(chains: Int[np.ndarray, "chain node"]) -> Int[np.ndarray, "edge 2"]:
+def _chained(chains: Int[np.ndarray, "chain link"]) -> Int[np.ndarray, "edge 2"]:
     return np.stack([chains[:, :-1], chains[:, 1:]], axis=-1).reshape(-1, 2)
 
 
