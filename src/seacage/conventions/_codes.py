@@ -12,9 +12,9 @@ class Result(IntEnum):
 
 
 RESULTS: dict[Result, str] = {
-    Result.CONVERGED: "the residual force is below its limit at every node",
+    Result.CONVERGED: "it ended as it should: at rest within the limit at every node, or at the end of its time",
     Result.NOT_CONVERGED: "the iterations ran out before the residual fell below its limit",
-    Result.DIVERGED: "the positions left the finite numbers; the case carries no answer",
+    Result.DIVERGED: "the nodes left all bounds of speed or place; the case carries no answer",
 }
 
 
