@@ -10,6 +10,7 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.cage import Cage
+from seacage.campaigns._pool import one_thread
 from seacage.conventions import InputError, Result, SeacageError
 from seacage.dynamics import LAWS, History, Mooring, MovingLaw, settle, simulate
 from seacage.ocean import SeaState
@@ -132,7 +133,8 @@ def answered(block: Block) -> Answers:
             "may differ. Install the same version on every worker."
         )
     began = time.process_time()
-    values, moment = (_simulated if block.simulator.in_time else _settled)(block)
+    with one_thread():
+        values, moment = (_simulated if block.simulator.in_time else _settled)(block)
     return Answers(values=values, moment=moment, core_seconds=time.process_time() - began)
 
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from seacage.conventions import SeacageError
 
@@ -61,6 +61,39 @@ def mapped(
         ) from error
     finally:
         pool.shutdown(cancel_futures=True)
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """Linear algebra on one thread within, whatever the environment says.
+
+    How many threads share a product of matrices shows in its last bits. The limit is the
+    whole process's, so the last of several threads within lifts it.
+    """
+    from threadpoolctl import threadpool_limits
+
+    with _LIMITED.lock:
+        if not _LIMITED.inside:
+            _LIMITED.limits = threadpool_limits(1)
+        _LIMITED.inside += 1
+    try:
+        yield
+    finally:
+        with _LIMITED.lock:
+            _LIMITED.inside -= 1
+            if not _LIMITED.inside:
+                _LIMITED.limits.restore_original_limits()
+
+
+class _Limited:
+    """How many threads of this process are within ``one_thread``, and what it was before."""
+
+    def __init__(self) -> None:
+        self.lock, self.inside = threading.Lock(), 0
+        self.limits: Any = None
+
+
+_LIMITED = _Limited()
 
 
 @contextmanager

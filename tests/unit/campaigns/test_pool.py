@@ -8,9 +8,11 @@ import time
 from contextlib import closing
 from pathlib import Path
 
+import numpy as np  # noqa: F401  (brings the linear algebra whose threads are counted)
 import pytest
+from threadpoolctl import threadpool_info, threadpool_limits
 
-from seacage.campaigns._pool import mapped
+from seacage.campaigns._pool import mapped, one_thread
 from seacage.conventions import SeacageError
 
 UNGUARDED = """
@@ -79,6 +81,18 @@ def test_workers_leave_when_their_parent_is_killed() -> None:
     while any(_alive(worker) for worker in workers) and time.monotonic() < deadline:
         time.sleep(0.05)
     assert not [worker for worker in workers if _alive(worker)]
+
+
+def test_products_of_matrices_are_made_by_one_thread_and_then_by_as_many_as_before() -> None:
+    def threads() -> set[int]:
+        return {one["num_threads"] for one in threadpool_info() if one["user_api"] == "blas"}
+
+    with threadpool_limits(2):
+        with one_thread():
+            with one_thread():
+                assert threads() == {1}
+            assert threads() == {1}
+        assert threads() == {2}
 
 
 def _own_id(_: int) -> int:
