@@ -83,7 +83,7 @@ def _pull(x_span: float, z_span: float) -> Float[np.ndarray, "2"]:
 
     def miss(pull: Float[np.ndarray, "2"]) -> Float[np.ndarray, "2"]:
         across, down = pull.tolist()
-        return hung(ACE.anchor_lines, across, down, z_span).position[-1] - [x_span, -z_span]
+        return hung(ACE.anchor_lines, across, down).position[-1] - [x_span, -z_span]
 
     return root(miss, np.array(exact_line(x_span, z_span)), tol=1e-10).x
 

@@ -57,25 +57,19 @@ def node_weight(parts: AnchorLines) -> Float[np.ndarray, " node"]:
     return np.append(half, 0.0) + np.append(0.0, half)
 
 
-def hung(parts: AnchorLines, horizontal: float, vertical: float, bed: float) -> LineShape:
+def hung(parts: AnchorLines, horizontal: float, vertical: float) -> LineShape:
     """A line hung from a corner that pulls it sideways and up by given forces [N].
 
-    ``bed`` is how far the sea bed lies below the corner [m]; what reaches it lies flat.
+    From where nothing pulls it up any more the line lies flat: there is the sea bed.
     """
     length, stiffness = segments(parts)
-    weight = node_weight(parts)
-    position, tension = [np.zeros(2)], []
-    up = vertical
-    for own, each, below in zip(length, stiffness, weight[1:], strict=True):
+    position, tension, up = [np.zeros(2)], [], vertical
+    for own, each, below in zip(length, stiffness, node_weight(parts)[1:], strict=True):
         pull = float(np.hypot(horizontal, up))
         step = own * (1.0 + pull / each) * np.array([horizontal, -up]) / pull
-        lies = position[-1][1] + step[1] < -bed and below > 0.0
-        new = position[-1] + step
-        if lies and up <= below:
-            new[1] = -bed
-        position.append(new)
+        position.append(position[-1] + step)
         tension.append(pull)
-        up = 0.0 if lies and up <= below else up - below
+        up = max(up - below, 0.0)
     return LineShape(position=np.array(position), tension=np.array(tension))
 
 
@@ -86,7 +80,7 @@ def resting_line(cage: Cage) -> LineShape:
     Raises
     ------
     InputError
-        A line too short to reach the sea bed.
+        A line too short to reach the sea bed, or without pretension.
     """
     from scipy.optimize import root_scalar
 
@@ -98,17 +92,17 @@ def resting_line(cage: Cage) -> LineShape:
             f"{bed:.0f} m below the frame. Lengthen rope_length_m or chain_length_m."
         )
 
+    if parts.pretension == 0.0:
+        raise InputError(
+            f"Cage {cage.name}: an anchor line with pretension_n = 0 hangs plumb. Give it some."
+        )
+
     def shape(slope: float) -> LineShape:
         tension = parts.pretension
-        return hung(parts, tension * np.cos(slope), tension * np.sin(slope), bed)
+        return hung(parts, tension * np.cos(slope), tension * np.sin(slope))
 
     def miss(slope: float) -> float:
         return float(shape(slope).position[-1, 1]) + bed
 
     steepest = 0.5 * np.pi * (1.0 - 1e-6)
-    if miss(0.0) * miss(steepest) > 0.0:
-        raise InputError(
-            f"Cage {cage.name}: pretension_n = {parts.pretension:g} cannot lift the bottom chain "
-            "of an anchor line into any shape. Raise it, or shorten the chain."
-        )
     return shape(float(root_scalar(miss, bracket=(0.0, steepest), xtol=1e-12).root))
