@@ -17,7 +17,7 @@ from seacage.dynamics._assembly import (
     Springs,
 )
 from seacage.dynamics._march import REFRESH, March, Ocean, Steps
-from seacage.dynamics._motion import NetLaw
+from seacage.dynamics._motion import MovingLaw, NetLaw
 from seacage.ocean import Waves
 
 NONE = np.zeros(0)
@@ -119,15 +119,16 @@ def marched(
     duration: float,
     time_step: float = 0.002,
     waves: Waves | None = None,
-) -> tuple[Float[np.ndarray, " t"], Float[np.ndarray, "t node 3"]]:
+    law: MovingLaw = "morison",
+) -> tuple[Float[np.ndarray, " t"], Float[np.ndarray, "t node 3"], Float[np.ndarray, "t node 3"]]:
     """A structure let go from a shape, in still water or in waves without a ramp.
 
     Returns
     -------
     time
         From the start, in tenths of a second [s].
-    position
-        At those times [m].
+    position, velocity
+        At those times [m, m/s].
     """
     refreshes = round(duration / REFRESH)
     steps = Steps(
@@ -146,13 +147,40 @@ def marched(
         level_z=np.zeros(1),
         depth=depth,
     )
-    law = NetLaw(name="morison", wake=np.ones((1, len(assembly.panels.area))))
-    march = March(assembly, law, ocean, steps, start[None])
-    shapes = [start]
+    net = NetLaw(name=law, wake=np.ones((1, len(assembly.panels.area))))
+    march = March(assembly, net, ocean, steps, start[None])
+    states = [(start, np.zeros_like(start))]
     for _ in range(refreshes):
         march.go(1)
-        shapes.append(march.position[0])
-    return REFRESH * np.arange(refreshes + 1), np.array(shapes)
+        states.append((march.position[0], march.velocity[0]))
+    position, velocity = np.moveaxis(np.array(states), 1, 0)
+    return REFRESH * np.arange(refreshes + 1), position, velocity
+
+
+def energy(
+    assembly: Assembly,
+    position: Float[np.ndarray, "t node 3"],
+    velocity: Float[np.ndarray, "t node 3"],
+) -> Float[np.ndarray, " t"]:
+    """Of motion, stretch, bending, height, floating and springs, up to a constant [J]."""
+    total = 0.5 * np.einsum("n,tnx,tnx->t", assembly.mass, velocity, velocity)
+    total -= position[:, :, 2] @ assembly.weight
+    bars = assembly.bars
+    along = np.diff(position[:, bars.ends], axis=2)[:, :, 0]
+    stretch = np.linalg.norm(along, axis=-1) - bars.length
+    stretch = np.where(bars.pushed, stretch, np.maximum(stretch, 0.0))
+    total += 0.5 * stretch**2 @ (bars.stiffness / bars.length)
+    first, second = np.moveaxis(np.diff(position[:, assembly.bends.nodes], axis=2), 2, 0)
+    cosine = np.sum(first * second, axis=-1)
+    cosine /= np.linalg.norm(first, axis=-1) * np.linalg.norm(second, axis=-1)
+    total += 2.0 * ((1.0 - cosine) / (1.0 + cosine)) @ assembly.bends.stiffness
+    floats, springs = assembly.floats, assembly.springs
+    draft = np.maximum(floats.draft - position[:, floats.nodes, 2], 0.0)
+    drowned = np.maximum(draft - floats.height, 0.0)
+    total += 0.5 * (draft**2 - drowned**2) @ floats.stiffness
+    moved = position[:, springs.nodes] - assembly.position[springs.nodes]
+    work = 0.5 * springs.stiffness * moved**2 - springs.preload * moved
+    return total + work.sum(axis=(1, 2))
 
 
 def period(time: Float[np.ndarray, " t"], swing: Float[np.ndarray, " t"]) -> float:

@@ -31,14 +31,41 @@ COLUMNS = ("quantity", "reference", "kind, source", "ours", "tolerance", "holds"
 
 def markdown(table: Table) -> str:
     """The page for the docs."""
-    rows = [row for _, several in table.values() for row in several]
-    held = sum(row.holds for row in rows)
-    missed = [row for row in rows if row.verdict == "no"]
-    absent = sum(row.ours is None for row in rows)
-    told = f"{len(rows)} rows: {held} hold, {len(missed)} do not"
-    told += f", {absent} were not computed.\n" if absent else ".\n"
-    parts = [HEAD, told, *(_section(section, several) for section, several in table.values())]
-    return "\n".join(parts)
+    parts = [HEAD, _summary(table), _misses(table)]
+    return "\n".join([*parts, *(_section(section, rows) for section, rows in table.values())])
+
+
+def _summary(table: Table) -> str:
+    lines = [_line(("section", "rows", "hold", "missed", "not computed")), _line(["---"] * 5)]
+    counts = [_counts(rows) for _, rows in table.values()]
+    for title, count in zip(table, counts, strict=True):
+        lines.append(_line((f"[{title}](#{_anchor(title)})", *map(str, count))))
+    whole = [sum(column) for column in zip(*counts, strict=True)]
+    return "\n".join([*lines, _line(("**all**", *map(str, whole))), ""])
+
+
+def _counts(rows: Sequence[Row]) -> list[int]:
+    verdicts = [row.verdict for row in rows]
+    return [len(rows), *(verdicts.count(verdict) for verdict in ("yes", "no", "–"))]
+
+
+def _anchor(title: str) -> str:
+    """As Markdown makes it: lower case, hyphens for spaces, no commas."""
+    return "".join(c for c in title.lower().replace(" ", "-") if c.isalnum() or c == "-")
+
+
+def _misses(table: Table) -> str:
+    """Why numbers are missed, each reason once, with the rows it stands for."""
+    reasons: dict[str, list[Row]] = {}
+    for row in (row for _, rows in table.values() for row in rows if row.verdict == "no"):
+        reasons.setdefault(row.note, []).append(row)
+    if not reasons:
+        return ""
+    lines = ["## What we miss", ""]
+    for note, rows in reasons.items():
+        several = f"{rows[0].what}, and {len(rows) - 1} more" if len(rows) > 1 else rows[0].what
+        lines.append(f"- *{several}.* {note or 'It must hold: mend it.'}")
+    return "\n".join([*lines, ""])
 
 
 def _section(section: Section, rows: Sequence[Row]) -> str:

@@ -37,7 +37,8 @@ def test_the_page_says_reference_source_ours_tolerance_and_verdict():
     page = markdown(table(row()))
     assert "## Loads\n\nWhat pulls.\n" in page
     assert "| drag | 2 kN | measured; a tank | 2.04 kN | ± 0.1 kN: 5 % | yes |" in page
-    assert "1 rows: 1 hold, 0 do not.\n" in page
+    assert "| [Loads](#loads) | 1 | 1 | 0 | 0 |" in page
+    assert "What we miss" not in page
 
 
 def test_the_page_tells_a_miss_and_why():
@@ -51,10 +52,17 @@ def test_a_note_that_rows_share_is_told_once():
     assert markdown(table(*rows)).count("a pond") == 1
 
 
+def test_the_page_begins_with_what_is_missed_and_why():
+    rows = [row(what=what, ours=9.0, must_hold=False, note="a pond") for what in ("drag", "lift")]
+    page = markdown(table(row(what="weight"), *rows))
+    assert "- *drag, and 1 more.* a pond" in page
+    assert page.index("What we miss") < page.index("## Loads")
+
+
 def test_a_row_that_was_not_computed_shows_no_number():
     page = markdown(table(row(ours=None, note="no file")))
     assert "| – | ± 0.1 kN: 5 % | –, note 1 |" in page
-    assert "1 were not computed" in page
+    assert "| [Loads](#loads) | 1 | 0 | 0 | 1 |" in page
 
 
 def test_only_rows_that_must_hold_fail():
