@@ -10,6 +10,7 @@ from seacage.dynamics._assembly import Assembly
 from seacage.dynamics._flow import steady_flow
 from seacage.dynamics._kernel import kernel
 from seacage.dynamics._loads import nodal_force
+from seacage.dynamics._newton import Balance, Balancing, nearer
 
 ACE = Cage.named("ace")
 
@@ -31,15 +32,8 @@ def test_the_kernel_computes_the_definition(
     rings, spokes, cylinder, law, wake, waves, pipe_drag, shaken, cases, seed
 ):
     rng = np.random.default_rng(seed)
-    depths = np.cumsum([0.0, *rng.uniform(1.0, 6.0, rings - 1)]).tolist()
-    cage = ACE.altered(
-        mesh={
-            "spokes": spokes,
-            "ring_depths_m": depths,
-            "cylinder_depth_m": depths[min(cylinder, rings - 1)],
-            "tip_depth_m": depths[-1] + 4.0,
-        }
-    ).fouled(shallow=rng.uniform(0.0, 0.1), deep=rng.uniform(0.0, 0.1))
+    cage = some_cage(rng, rings, spokes, cylinder)
+    cage = cage.fouled(shallow=rng.uniform(0.0, 0.1), deep=rng.uniform(0.0, 0.1))
     assembly = Assembly.of(cage.rotated(rng.uniform(0.0, 360.0)))
     velocity = rng.uniform(-1.5, 1.5, (cases, 2))
     velocity[0] *= rng.integers(2)  # now and then still water
@@ -53,3 +47,57 @@ def test_the_kernel_computes_the_definition(
     # the kernel sums in another order: 1e-9 of the largest force in each case
     scale = np.abs(defined).max(axis=(1, 2), keepdims=True)
     assert np.all(np.abs(computed - defined) <= 1e-9 * scale)
+
+
+def some_cage(rng, rings, spokes, cylinder):
+    depths = np.cumsum([0.0, *rng.uniform(1.0, 6.0, rings - 1)]).tolist()
+    return ACE.altered(
+        mesh={
+            "spokes": spokes,
+            "ring_depths_m": depths,
+            "cylinder_depth_m": depths[min(cylinder, rings - 1)],
+            "tip_depth_m": depths[-1] + 4.0,
+        }
+    )
+
+
+@settings(max_examples=30)
+@given(
+    rings=st.integers(2, 5),
+    spokes=st.integers(3, 10),
+    cylinder=st.integers(1, 4),
+    law=st.sampled_from(LAWS),
+    held=st.booleans(),
+    shaken=st.floats(0.0, 1.0),
+    moved=st.sampled_from([1e-3, 1e3]),
+    barrier=st.sampled_from([1e-6, 1.0, 1e4]),
+    cases=st.integers(1, 8),
+    seed=st.integers(0, 2**32 - 1),
+)
+def test_the_kernel_takes_the_defined_step_towards_balance(
+    rings, spokes, cylinder, law, held, shaken, moved, barrier, cases, seed
+):
+    rng = np.random.default_rng(seed)
+    cage = some_cage(rng, rings, spokes, cylinder)
+    assembly = Assembly.of(cage)
+    flow = steady_flow(assembly, rng.uniform(-1.0, 1.0, (cases, 2)), law=law)
+    position = assembly.position + rng.normal(scale=shaken, size=(cases, *assembly.position.shape))
+    tension = rng.uniform(0.1, 1e4, (cases, len(assembly.bars.length)))
+    # a shift beyond all that the water can turn: else a chance zero root would part the two
+    begun = Balancing.begun(position, tension, barrier=barrier, shift=1e6)
+    begun.moved[:] = moved
+    free = np.ones(len(assembly.position), dtype=bool)
+    free[cage.ring_nodes(0)] = not held
+    balance = Balance(
+        free=free, tolerance=1e-3, reach=0.5, least_barrier=1e-7, least_shift=0.1, most_shift=1e7
+    )
+    computed = kernel().balanced(assembly, flow, begun, balance, iterations=1)
+    for case in range(cases):
+        one = np.array([case])
+        defined = nearer(assembly, flow.cases(one), begun.cases(one), balance)
+        for name in Balancing.__slots__:
+            wanted, found = getattr(defined, name)[0], getattr(computed, name)[case]
+            # rounding of forces up to 1e8 N in a matrix of entries up to 1e8 N/m
+            np.testing.assert_allclose(
+                found, wanted, rtol=1e-6, atol=1e-7 * np.abs(wanted).max(), err_msg=name
+            )

@@ -14,6 +14,8 @@ from jaxtyping import Float, Int
 from seacage.conventions import SeacageError
 from seacage.dynamics._assembly import Assembly
 from seacage.dynamics._loads import SteadyFlow
+from seacage.dynamics._newton import Balance, Balancing
+from seacage.dynamics._pattern import Pattern
 
 SUFFIX = {"Darwin": ".dylib", "Windows": ".dll"}.get(platform.system(), ".so")
 
@@ -70,6 +72,37 @@ class _Relaxing(_Struct):
             *("position", "velocity", "carried"),
             *("damping", "best", "stalled", "rounds", "residual"),
         )
+    ]
+
+
+class _Pattern(_Struct):
+    _fields_ = [
+        (name, _Integers)
+        for name in (
+            *("row", "diagonal", "column", "order"),
+            *("bars", "bends", "panels", "floats", "springs"),
+        )
+    ]
+
+
+class _Balance(_Struct):
+    _fields_ = [
+        *((name, _Doubles) for name in ("free", "true_rate")),
+        *((name, ctypes.c_double) for name in ("tolerance", "reach", "least_barrier")),
+        *((name, ctypes.c_double) for name in ("least_shift", "most_shift")),
+        ("iterations", ctypes.c_int32),
+    ]
+
+
+class _Balancing(_Struct):
+    _fields_ = [(name, _Doubles) for name in Balancing.__slots__]
+
+
+class _Bench(_Struct):
+    _fields_ = [
+        *((name, _Doubles) for name in ("truth", "force", "step")),
+        *((name, _Doubles) for name in ("zero", "tension", "bar", "blocks")),
+        ("place", _Integers),
     ]
 
 
@@ -155,6 +188,7 @@ class Kernel:
         self.lanes: int = self.library.seacage_lanes()
         self.library.seacage_forces.restype = None
         self.library.seacage_relax.restype = None
+        self.library.seacage_balance.restype = None
 
     def forces(
         self, assembly: Assembly, flow: SteadyFlow, position: Float[np.ndarray, "case node 3"]
@@ -208,6 +242,52 @@ class Kernel:
                 name: np.moveaxis(values, -1, 0)[:cases]
                 for name, values in zip(Relaxing.__slots__, laned, strict=True)
             }
+        )
+
+    def balanced(
+        self,
+        assembly: Assembly,
+        flow: SteadyFlow,
+        state: Balancing,
+        balance: Balance,
+        *,
+        iterations: int,
+    ) -> Balancing:
+        """At most ``lanes`` cases, so many iterations of ``nearer`` further on."""
+        bars = assembly.bars
+        pattern = Pattern.of(assembly)
+        laned = [self.laned(getattr(state, name)) for name in Balancing.__slots__]
+        self.library.seacage_balance(
+            ctypes.byref(_assembly(assembly)),
+            ctypes.byref(self.flow(flow)),
+            ctypes.byref(_Pattern.filled(*(getattr(pattern, n) for n in Pattern.__slots__))),
+            ctypes.byref(
+                _Balance.filled(
+                    *(balance.free.astype(np.float64), bars.stiffness / bars.length),
+                    *(balance.tolerance, balance.reach, balance.least_barrier),
+                    *(balance.least_shift, balance.most_shift, iterations),
+                )
+            ),
+            ctypes.byref(_Balancing.filled(*laned)),
+            ctypes.byref(self._bench(len(assembly.position), len(bars.length), pattern)),
+        )
+        cases = len(state.residual)
+        return Balancing(
+            **{
+                name: np.moveaxis(values, -1, 0)[:cases]
+                for name, values in zip(Balancing.__slots__, laned, strict=True)
+            }
+        )
+
+    def _bench(self, nodes: int, bars: int, pattern: Pattern) -> _Struct:
+        """Room for the kernel to work in."""
+        return _Bench.filled(
+            *(np.empty((nodes, 3, self.lanes)) for _ in range(3)),
+            np.zeros((bars, self.lanes)),
+            np.empty((bars, self.lanes)),
+            np.empty((bars, 5, self.lanes)),
+            np.empty((len(pattern.column), 9, self.lanes)),
+            np.empty(nodes, dtype=np.int32),
         )
 
     def flow(self, flow: SteadyFlow) -> _Struct:

@@ -1,96 +1,254 @@
-"""The last steps to an equilibrium for cases that relaxation leaves swaying."""
+"""Newton's method for equilibria: the readable definition, one case at a time."""
+
+from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Bool, Float
-from scipy.sparse import coo_array, csc_array, diags_array
-from scipy.sparse.linalg import splu
+from jaxtyping import Bool, Float, Int
 
 from seacage.dynamics._assembly import Assembly, Bars, Bends
-from seacage.dynamics._loads import SteadyFlow, nodal_force
+from seacage.dynamics._loads import SteadyFlow, bar_force, nodal_force
 
 Block = Float[np.ndarray, "part 3 3"]
-Entries = tuple[np.ndarray, np.ndarray, Block]
+Entries = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
-def sharpened(
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Balance:
+    """How equilibria are sought; ``nearer`` says what is done with it.
+
+    Attributes
+    ----------
+    free
+        Nodes that may move.
+    tolerance
+        Largest force left on a node of a case that is done [N].
+    reach
+        The farthest that a node goes along an axis in one iteration [m].
+    least_barrier
+        At which the barrier stops falling [N2].
+    least_shift, most_shift
+        Between which the shift stays [N/m].
+    """
+
+    free: Bool[np.ndarray, " node"]
+    tolerance: float
+    reach: float
+    least_barrier: float
+    least_shift: float
+    most_shift: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Balancing:
+    """Cases on their way to balance. A copy can go on later, beside other cases.
+
+    Attributes
+    ----------
+    position
+        Of the nodes [m].
+    tension
+        That each bar is taken to bear; above zero in those that go slack [N].
+    barrier
+        Product of a slack bar's tension and the force that its slack is worth [N2].
+    shift
+        Added to the tangent's diagonal [N/m].
+    moved
+        The farthest step that the last iteration asked for, along an axis [m].
+    sign
+        Of the tangent's determinant, of a case that is done where it ended [-].
+    iterations
+        Done so far.
+    residual
+        Largest force left on a free node [N].
+    """
+
+    position: Float[np.ndarray, "case node 3"]
+    tension: Float[np.ndarray, "case bar"]
+    barrier: Float[np.ndarray, " case"]
+    shift: Float[np.ndarray, " case"]
+    moved: Float[np.ndarray, " case"]
+    sign: Float[np.ndarray, " case"]
+    iterations: Float[np.ndarray, " case"]
+    residual: Float[np.ndarray, " case"]
+
+    @classmethod
+    def begun(
+        cls,
+        position: Float[np.ndarray, "case node 3"],
+        tension: Float[np.ndarray, "case bar"],
+        *,
+        barrier: float,
+        shift: float,
+    ) -> "Balancing":
+        """Cases in a first shape."""
+        every = np.ones(len(position))
+        return cls(
+            position=position,
+            tension=tension,
+            barrier=barrier * every,
+            shift=shift * every,
+            moved=1e11 * every,
+            sign=every.copy(),
+            iterations=0.0 * every,
+            residual=1e11 * every,
+        )
+
+    def cases(self, some: Int[np.ndarray, " some"]) -> "Balancing":
+        """Copies of some of the cases."""
+        return Balancing(**{name: getattr(self, name)[some] for name in self.__slots__})
+
+    def take(self, some: Int[np.ndarray, " some"], other: "Balancing") -> None:
+        """Take the state of some cases from elsewhere."""
+        for name in self.__slots__:
+            getattr(self, name)[some] = getattr(other, name)
+
+
+def nearer(assembly: Assembly, flow: SteadyFlow, state: Balancing, balance: Balance) -> Balancing:
+    """One case after one iteration; one that is done, or lost, stays as it is.
+
+    Bars are some thousand times stiffer along than across and go slack and taut, which a
+    Newton step in the positions alone cannot foresee: a node that swings aside by a degree
+    would find its bars loaded with tons. So the bars' tensions T are unknowns of their own.
+    A bar of spring rate k and stretch e obeys T = k e where it can be pushed, and
+    k e − T + m/T = 0 where it goes slack: a smooth law that turns into max(k e, 0) as the
+    barrier m falls (interior point). Both are linearised in positions and tensions together;
+    with the tensions eliminated,
+
+        (K(x, T) + s) dx = f(x, T + lack),  dT = lack + k' u·(dx_j − dx_i),
+
+    in which k' = k/(1 + m/T²) is the bar's rate by that law, and ``lack`` what the tension
+    lacks to meet it at x. The shift s [N/m] falls while steps stay within ``reach`` and
+    rises where one has to be shortened. In a step a tension falls to no less than a
+    twentieth, and once steps are short that of a stretched bar is at least √m, from where it
+    finds its place at once. Left out of K: the drag on pipes, part of their bending.
+
+    References
+    ----------
+    Garcea et al. (1998) on tensions as unknowns; Nocedal & Wright (2006), chapter 19, on
+    interior points.
+    """
+    residual = _residual(assembly, flow, state, balance)
+    if not balance.tolerance < residual[0] < np.inf:
+        return replace(state, residual=residual)
+    bars, x = assembly.bars, state.position[0]
+    law = _linear_law(bars, state, balance)
+    force = nodal_force(assembly, flow, state.position)[0] - bar_force(bars, x[None])[0]
+    pull = (law.tension + law.lack)[:, None] * law.unit
+    np.add.at(force, bars.ends, np.stack([pull, -pull], axis=1))
+    slope = _slope(assembly, flow, state, balance, law)
+    step = np.zeros_like(x)
+    step[balance.free] = np.linalg.solve(slope, force[balance.free].ravel()).reshape(-1, 3)
+    farthest = float(np.abs(step).max())
+    share = min(1.0, balance.reach / farthest)
+    stretching = np.sum(law.unit * (step[bars.ends[:, 1]] - step[bars.ends[:, 0]]), axis=1)
+    told = law.tension + share * (law.lack + law.rate * stretching)
+    shift = state.shift * (0.3 if share == 1.0 else 1.5)
+    barrier = state.barrier * (0.3 if share > 0.5 else 0.7)
+    taken = Balancing(
+        position=state.position + share * step,
+        tension=np.where(bars.pushed, told, np.maximum(told, 0.05 * law.tension))[None],
+        barrier=np.maximum(barrier, balance.least_barrier),
+        shift=np.clip(shift, balance.least_shift, balance.most_shift),
+        moved=np.array([farthest]),
+        sign=_sign(slope),
+        iterations=state.iterations + 1.0,
+        residual=residual,
+    )
+    taken = replace(taken, residual=_residual(assembly, flow, taken, balance))
+    if not taken.residual[0] <= balance.tolerance:
+        return taken
+    law = _linear_law(bars, taken, balance)
+    return replace(taken, sign=_sign(_slope(assembly, flow, taken, balance, law)))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _LinearLaw:
+    """Bars about the shape and the tensions at hand."""
+
+    unit: Float[np.ndarray, "bar 3"]  # along the bar, from its first end
+    tension: Float[np.ndarray, " bar"]  # [N]
+    rate: Float[np.ndarray, " bar"]  # by the smooth law [N/m]
+    lack: Float[np.ndarray, " bar"]  # what the tension lacks to meet that law [N]
+
+
+def _linear_law(bars: Bars, state: Balancing, balance: Balance) -> _LinearLaw:
+    unit, length = _directions(bars, state.position[0])
+    tension, barrier = state.tension[0], state.barrier[0]
+    if state.moved[0] < balance.reach / 30.0:  # else stretched bars would chatter
+        taut = ~bars.pushed & (length > bars.length)
+        tension = np.where(taut, np.maximum(tension, np.sqrt(barrier)), tension)
+    rate = bars.stiffness / bars.length
+    divisor = np.where(bars.pushed, 1.0, tension)
+    push = np.where(bars.pushed, 0.0, barrier / divisor)
+    share = 1.0 / (1.0 + push / divisor)
+    lack = share * (rate * (length - bars.length) - tension + push)
+    return _LinearLaw(unit=unit, tension=tension, rate=share * rate, lack=lack)
+
+
+def _slope(
+    assembly: Assembly, flow: SteadyFlow, state: Balancing, balance: Balance, law: _LinearLaw
+) -> Float[np.ndarray, "row row"]:
+    """The tangent, shifted, of the coordinates that may move [N/m]."""
+    x = state.position[0]
+    slope = dense(tangent(assembly, flow, x, rate=law.rate, tension=law.tension), len(x))
+    slope += state.shift[0] * np.eye(x.size)
+    moving = np.repeat(balance.free, 3)
+    return slope[np.ix_(moving, moving)]
+
+
+def _sign(slope: Float[np.ndarray, "row row"]) -> Float[np.ndarray, "1"]:
+    return np.array([np.linalg.slogdet(slope)[0]])
+
+
+def _residual(
+    assembly: Assembly, flow: SteadyFlow, state: Balancing, balance: Balance
+) -> Float[np.ndarray, "1"]:
+    """Largest force of the true law on a free node [N]."""
+    force = nodal_force(assembly, flow, state.position)[0]
+    return np.array([np.linalg.norm(force[balance.free], axis=1).max()])
+
+
+def _directions(
+    bars: Bars, position: Float[np.ndarray, "node 3"]
+) -> tuple[Float[np.ndarray, "bar 3"], Float[np.ndarray, " bar"]]:
+    along = position[bars.ends[:, 1]] - position[bars.ends[:, 0]]
+    length = np.linalg.norm(along, axis=1)
+    return along / length[:, None], length
+
+
+def hooke(
+    bars: Bars, position: Float[np.ndarray, "node 3"]
+) -> tuple[Float[np.ndarray, " bar"], Float[np.ndarray, " bar"]]:
+    """Spring rate [N/m] and tension [N] of each bar by the true law; a slack one has neither."""
+    rate = bars.stiffness / bars.length
+    tension = rate * (_directions(bars, position)[1] - bars.length)
+    taut = (tension > 0.0) | bars.pushed
+    return np.where(taut, rate, 0.0), np.where(taut, tension, 0.0)
+
+
+def tangent(
     assembly: Assembly,
     flow: SteadyFlow,
     position: Float[np.ndarray, "node 3"],
     *,
-    free: Bool[np.ndarray, " node"],
-    tolerance: float,
-    iterations: int = 25,
-) -> tuple[Float[np.ndarray, "node 3"], float]:
-    """Damped Newton iterations for one case: its shape, and the residual that is left [N].
-
-    Each step solves (K + s) dx = f with the exact tangent K of bars and panels, and goes
-    along dx as far as the residual falls; s [N/m] grows where it does not. An equilibrium
-    that a net in water would leave is found too.
-    """
-    shift = 100.0
-    force = _free_force(assembly, flow, position, free)
-    best = float(np.sum(force**2))
-    for _ in range(iterations):
-        if _largest(force) <= tolerance:
-            break
-        tangent = _tangent(assembly, flow, position)
-        held = np.where(np.repeat(free, 3), shift, 1e15)
-        step = splu(csc_array(tangent + diags_array(held))).solve(force.ravel()).reshape(-1, 3)
-        step *= min(1.0, 0.5 / max(float(np.abs(step).max()), 1e-12))
-        tried = [
-            (float(np.sum(new**2)), share, new)
-            for share in (1.0, 0.5, 0.25, 0.1, 0.03, 0.01)
-            for new in [_free_force(assembly, flow, position + share * step, free)]
-        ]
-        least, share, new = min(tried, key=lambda trial: trial[0])
-        if least < best:
-            position, force = position + share * step, new
-        shift = float(np.clip(shift * _caution(least / best), 0.1, 1e5))
-        best = min(best, least)
-    return position, _largest(force)
-
-
-def _free_force(
-    assembly: Assembly,
-    flow: SteadyFlow,
-    position: Float[np.ndarray, "node 3"],
-    free: Bool[np.ndarray, " node"],
-) -> Float[np.ndarray, "node 3"]:
-    return nodal_force(assembly, flow, position[None])[0] * free[:, None]
-
-
-def _caution(gain: float) -> float:
-    """How to scale the shift after a step that left this share of the residual squared."""
-    return 0.2 if gain < 0.5 else 0.7 if gain < 0.95 else 5.0
-
-
-def _largest(force: Float[np.ndarray, "node 3"]) -> float:
-    return float(np.linalg.norm(force, axis=1).max())
-
-
-def _tangent(
-    assembly: Assembly, flow: SteadyFlow, position: Float[np.ndarray, "node 3"]
-) -> csc_array:
-    """How the forces give way as the nodes move, −df/dx [N/m]."""
-    parts = [
-        *_bars(assembly.bars, position),
+    rate: Float[np.ndarray, " bar"],
+    tension: Float[np.ndarray, " bar"],
+) -> list[Entries]:
+    """How the forces give way as the nodes move, −df/dx, in blocks of two nodes [N/m]."""
+    return [
+        *_bars(assembly.bars, position, rate, tension),
         *_bends(assembly.bends, position),
         *_panels(assembly, flow, position),
         *_supports(assembly, position),
     ]
-    rows = np.concatenate(
-        [np.broadcast_to(_degrees(i)[:, :, None], b.shape).ravel() for i, _, b in parts]
-    )
-    columns = np.concatenate(
-        [np.broadcast_to(_degrees(j)[:, None, :], b.shape).ravel() for _, j, b in parts]
-    )
-    values = np.concatenate([block.ravel() for _, _, block in parts])
-    size = position.size
-    return csc_array(coo_array((values, (rows, columns)), shape=(size, size)))
 
 
-def _degrees(nodes: np.ndarray) -> np.ndarray:
-    return 3 * nodes[:, None] + np.arange(3)
+def dense(entries: list[Entries], nodes: int) -> Float[np.ndarray, "row column"]:
+    """Blocks gathered in one matrix, three rows for each node."""
+    matrix = np.zeros((nodes, nodes, 3, 3))
+    for i, j, block in entries:
+        np.add.at(matrix, (i, j), block)
+    return matrix.transpose(0, 2, 1, 3).reshape(3 * nodes, 3 * nodes)
 
 
 def _outer(a: np.ndarray, b: np.ndarray) -> Block:
@@ -102,19 +260,17 @@ def _between(i: np.ndarray, j: np.ndarray, block: Block) -> list[Entries]:
     return [(i, i, block), (j, j, block), (i, j, -block), (j, i, -block)]
 
 
-def _bars(bars: Bars, position: Float[np.ndarray, "node 3"]) -> list[Entries]:
-    i, j = bars.ends.T
-    along = position[j] - position[i]
-    length = np.linalg.norm(along, axis=1)
-    unit = along / length[:, None]
-    rate = bars.stiffness / bars.length
-    tension = rate * (length - bars.length)
-    taut = (tension > 0.0) | bars.pushed
-    across = np.where(taut, tension / length, 0.0)
-    axial = np.where(taut, rate, 0.0) - across
-    return _between(
-        i, j, axial[:, None, None] * _outer(unit, unit) + across[:, None, None] * np.eye(3)
-    )
+def _bars(
+    bars: Bars,
+    position: Float[np.ndarray, "node 3"],
+    rate: Float[np.ndarray, " bar"],
+    tension: Float[np.ndarray, " bar"],
+) -> list[Entries]:
+    unit, length = _directions(bars, position)
+    across = tension / length
+    axial = rate - across
+    block = axial[:, None, None] * _outer(unit, unit) + across[:, None, None] * np.eye(3)
+    return _between(bars.ends[:, 0], bars.ends[:, 1], block)
 
 
 def _bends(bends: Bends, position: Float[np.ndarray, "node 3"]) -> list[Entries]:

@@ -1,7 +1,6 @@
 """Equilibria of the cage in a steady current, many at once."""
 
 from collections.abc import Sequence
-from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -11,28 +10,11 @@ from jaxtyping import Bool, Float, Int
 from seacage.cage import Cage
 from seacage.conventions import InputError, Result
 from seacage.dynamics._assembly import Assembly
+from seacage.dynamics._equilibria import Equilibria, equilibria
 from seacage.dynamics._flow import steady_flow
-from seacage.dynamics._kernel import Relaxation, Relaxing, kernel
 from seacage.dynamics._loads import SteadyFlow, bar_tension, total_net_force
-from seacage.dynamics._newton import sharpened
 from seacage.dynamics._screens import Law
 from seacage.ocean import SeaState, wave_velocity_variance
-
-TOLERANCE = 0.5
-"""Largest force left on any node of a settled cage [N]."""
-
-STEPS, STRETCH, STRETCHES, ATTEMPTS = 300, 10, 10, 4
-"""Steps of a round of relaxation, rounds before the unfinished regroup, regroupings before
-Newton's method is tried on them, and how often all that is repeated."""
-
-SOFTNESS = 100.0
-"""Soft spring rate of a twine over the rate with which the hung weight straightens it [-]."""
-
-LOST = 1e12
-"""No cage bears such a force: the case has left the finite numbers [N]."""
-
-HOOP_SHARE = 0.25
-"""Soft spring rate of a pipe's hoop over its true one [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -54,6 +36,13 @@ class Response:
     result
         Of ``seacage.conventions.Result``: a case that did not converge carries its last
         shape, one that diverged NaN.
+    equilibria
+        How many different ones were found from the starts that were asked for.
+    equilibrium_spread
+        How far a node's places in two of them are apart at most; 0 where there is one [m].
+    unstable
+        Whether the cage would leave this equilibrium on its own, proved by the sign of the
+        stiffness matrix's determinant; False proves nothing.
     """
 
     node_position: Float[np.ndarray, "*case node 3"]
@@ -64,6 +53,9 @@ class Response:
     volume_fraction: Float[np.ndarray, "*case"]
     residual: Float[np.ndarray, "*case"]
     result: Int[np.ndarray, "*case"]
+    equilibria: Int[np.ndarray, "*case"]
+    equilibrium_spread: Float[np.ndarray, "*case"]
+    unstable: Bool[np.ndarray, "*case"]
 
 
 def settle(
@@ -75,6 +67,7 @@ def settle(
     wake: bool = True,
     hold_collar: bool = False,
     collar_drag: bool = True,
+    starts: int = 2,
     workers: int = 1,
 ) -> Response:
     """Equilibrium of the moored cage in each sea's current.
@@ -84,6 +77,11 @@ def settle(
     elastic frame corners. Left out: the change of the current with depth, and the motion
     of the water and the cage in waves (``simulate`` has it). A case's numbers do not
     depend on the cases beside it nor on ``workers``.
+
+    A cage may have several equilibria. They are sought from so many first shapes: the net
+    swung as the load asks, hanging straight (as in rising water), nearly flat (as in falling
+    water), then swung aside. The first found that is not proved unstable is the answer;
+    ``Response`` says how many others there are and how far apart.
 
     Parameters
     ----------
@@ -100,27 +98,29 @@ def settle(
         Keep the collar in its place, as in a tank.
     collar_drag
         Whether the current drags on collar and sinker tube.
+    starts
+        First shapes to seek equilibria from; 1 takes half the time of 2.
     workers
         Threads to share the cases among.
 
     Raises
     ------
     InputError
-        Waves without ``mean_waves``, no sea at all, or a cage that cannot float.
+        Waves without ``mean_waves``, no sea at all, no start, or a cage that cannot
+        float.
     """
     seas = [sea] if isinstance(sea, SeaState) else list(sea)
-    _check(seas, mean_waves=mean_waves)
+    _check(seas, mean_waves=mean_waves, starts=starts)
     assembly = _assembled(cage)
     velocity = np.array([state.current_velocity for state in seas])
     variance = _wave_variance(cage, assembly, seas) if mean_waves else None
     flow = steady_flow(
         assembly, velocity, law=law, wake=wake, pipe_drag=collar_drag, wave_variance=variance
     )
-    position, residual, result = _relaxed(
-        cage, assembly, flow, hold_collar=hold_collar, workers=workers
-    )
+    free = _free_nodes(cage, assembly, hold_collar=hold_collar)
+    found = equilibria(cage, assembly, flow, free=free, starts=starts, workers=workers)
     rest = rest_shape(cage, hold_collar=hold_collar)
-    response = _response(cage, assembly, flow, position, residual, result, rest)
+    response = _response(cage, assembly, flow, found, rest)
     return _only_case(response) if isinstance(sea, SeaState) else response
 
 
@@ -149,13 +149,14 @@ def rest_shape(cage: Cage, *, hold_collar: bool = False) -> Float[np.ndarray, "n
     """
     assembly = _assembled(cage)
     flow = steady_flow(assembly, np.zeros((1, 2)), law="loland")
-    position, residual, result = _relaxed(cage, assembly, flow, hold_collar=hold_collar)
-    if result[0] != Result.CONVERGED:
+    free = _free_nodes(cage, assembly, hold_collar=hold_collar)
+    found = equilibria(cage, assembly, flow, free=free)
+    if found.result[0] != Result.CONVERGED:
         raise InputError(
             f"Cage {cage.name}: it does not come to rest in still water (a node keeps "
-            f"{residual[0]:.3g} N). Check the bridles' pretension and the weights."
+            f"{found.residual[0]:.3g} N). Check the bridles' pretension and the weights."
         )
-    shape = position[0, : cage.node_count].copy()
+    shape = found.position[0, : cage.node_count].copy()
     shape.setflags(write=False)
     return shape
 
@@ -169,16 +170,20 @@ def _assembled(cage: Cage) -> Assembly:
     """
     designed, pretension = Assembly.of(cage), cage.bridles.pretension
     still = steady_flow(designed, np.zeros((1, 2)), law="loland")
-    shape = designed.position
+    shape, free = designed.position, _free_nodes(cage, designed, hold_collar=False)
     for _ in range(2):
         soft = designed.strung(shape, pretension, softness=30.0)
-        shape = _relaxed(cage, soft, still, hold_collar=False)[0][0]
+        shape = equilibria(cage, soft, still, free=free).position[0]
     return designed.strung(shape, pretension, offset=cage.bridles.length_offset)
 
 
-def _check(seas: list[SeaState], *, mean_waves: bool) -> None:
+def _check(seas: list[SeaState], *, mean_waves: bool, starts: int) -> None:
     if not seas:
         raise InputError("settle: no sea state given. Pass one or more.")
+    if starts < 1:
+        raise InputError(
+            f"settle: starts = {starts}; there is nothing to begin with. Pass 1 or more."
+        )
     wavy = next((state for state in seas if state.hs > 0.0), None)
     if wavy is not None and not mean_waves:
         raise InputError(
@@ -195,148 +200,34 @@ def _wave_variance(
     return np.array(along)[:, level]
 
 
-def _relaxed(
-    cage: Cage, assembly: Assembly, flow: SteadyFlow, *, hold_collar: bool, workers: int = 1
-) -> tuple[Float[np.ndarray, "case node 3"], Float[np.ndarray, " case"], Int[np.ndarray, " case"]]:
-    """Positions, residuals and result codes of all cases, a vector of lanes at a time."""
-    relaxation = _relaxation(cage, assembly, hold_collar=hold_collar)
-    damping = _damping(assembly, flow)
-    start = np.repeat(assembly.position[None], len(damping), axis=0)
-    state = Relaxing.begun(start, len(assembly.bars.length), damping)
-    with ThreadPoolExecutor(workers) as pool:
-        for _ in range(ATTEMPTS):
-            _relax(assembly, flow, state, relaxation, pool)
-            _sharpen(assembly, flow, state, relaxation.inverse_mass > 0.0, pool)
-    residual = state.residual
-    lost = ~(residual < LOST) | ~np.isfinite(state.position).all(axis=(1, 2))
-    state.position[lost] = np.nan
-    result = np.where(residual <= TOLERANCE, Result.CONVERGED, Result.NOT_CONVERGED)
-    return state.position, residual, np.where(lost, Result.DIVERGED, result).astype(np.int64)
-
-
-def _open(state: Relaxing) -> Int[np.ndarray, " some"]:
-    """The cases that are neither done nor lost."""
-    return np.flatnonzero((state.residual > TOLERANCE) & (state.residual < LOST))
-
-
-def _relax(
-    assembly: Assembly, flow: SteadyFlow, state: Relaxing, relaxation: Relaxation, pool: Executor
-) -> None:
-    """Relax the open cases. A done one leaves its lane to others; none sees who runs beside."""
-    lanes = kernel().lanes
-
-    def run(some: Int[np.ndarray, " some"]) -> None:
-        moved = kernel().relaxed(
-            assembly, flow.cases(some), state.cases(some), relaxation, rounds=STRETCH
-        )
-        state.take(some, moved)
-
-    for _ in range(STRETCHES):
-        cases = _open(state)
-        list(pool.map(run, (cases[i : i + lanes] for i in range(0, len(cases), lanes))))
-
-
-def _sharpen(
-    assembly: Assembly,
-    flow: SteadyFlow,
-    state: Relaxing,
-    free: Bool[np.ndarray, " node"],
-    pool: Executor,
-) -> None:
-    """Try Newton's method on the open cases; one it does not finish stays as it was."""
-
-    def run(case: int) -> None:
-        position, residual = sharpened(
-            assembly,
-            flow.cases(np.array([case])),
-            state.position[case],
-            free=free,
-            tolerance=TOLERANCE,
-        )
-        if residual <= TOLERANCE:
-            state.position[case], state.residual[case] = position, residual
-
-    list(pool.map(run, _open(state).tolist()))
-
-
-def _relaxation(cage: Cage, assembly: Assembly, *, hold_collar: bool) -> Relaxation:
-    soft = _soft_rates(cage, assembly)
-    inverse_mass = 1.0 / _fictitious_mass(assembly, soft)
+def _free_nodes(cage: Cage, assembly: Assembly, *, hold_collar: bool) -> Bool[np.ndarray, " node"]:
+    free = ~assembly.fixed
     if hold_collar:
-        inverse_mass[cage.ring_nodes(0)] = 0.0
-    return Relaxation(
-        inverse_mass=inverse_mass,
-        soft_rate=soft,
-        tolerance=TOLERANCE,
-        progress=0.9,
-        patience=6,
-        most_damping=0.15,
-        steps=STEPS,
-    )
-
-
-def _soft_rates(cage: Cage, assembly: Assembly) -> Float[np.ndarray, " bar"]:
-    """Spring rates to relax with: the net's no stiffer than the shape needs [N/m]."""
-    bars = assembly.bars
-    true = bars.stiffness / bars.length
-    hung = cage.sinker_tube.weight * 2.0 * np.pi * cage.collar.radius + cage.tip.weight
-    straightening = hung / cage.spokes / np.mean(bars.length[: len(cage.edges)])
-    soft = np.minimum(true, SOFTNESS * max(straightening, 1.0))
-    soft[bars.pushed] = HOOP_SHARE * true[bars.pushed]
-    soft[assembly.bridles] = true[assembly.bridles]
-    return soft
-
-
-def _fictitious_mass(
-    assembly: Assembly, rate: Float[np.ndarray, " bar"]
-) -> Float[np.ndarray, " node"]:
-    """Masses with which a step of 1 s is stable: 0.6 of the stiffness at the node [kg].
-
-    The highest frequency squared is at most twice the stiffness over the mass (Gershgorin),
-    and must stay below 4.
-    """
-    stiffness = np.zeros(len(assembly.position))
-    np.add.at(stiffness, assembly.bars.ends, rate[:, None])
-    bends = assembly.bends
-    span = np.linalg.norm(
-        assembly.position[bends.nodes[:, 1]] - assembly.position[bends.nodes[:, 0]], axis=1
-    )
-    np.add.at(stiffness, bends.nodes[:, 1], 16.0 * bends.stiffness / span**2)
-    stiffness[assembly.floats.nodes] += assembly.floats.stiffness
-    stiffness[assembly.springs.nodes] += assembly.springs.stiffness.max(axis=1)
-    return 0.6 * stiffness
-
-
-def _damping(assembly: Assembly, flow: SteadyFlow) -> Float[np.ndarray, " case"]:
-    """Share of velocity to lose in a step: more where the water outweighs the weights.
-
-    Tuned on the reference cage: the slowest swing is then near critical damping.
-    """
-    rigid = np.abs(total_net_force(assembly.panels, flow, assembly.position[None]))
-    load = np.linalg.norm(rigid, axis=1) / -np.sum(assembly.weight)
-    return np.minimum(0.01 + 0.05 * np.sqrt(load), 0.2)
+        free[cage.ring_nodes(0)] = False
+    return free
 
 
 def _response(
     cage: Cage,
     assembly: Assembly,
     flow: SteadyFlow,
-    position: Float[np.ndarray, "case node_and_corner 3"],
-    residual: Float[np.ndarray, " case"],
-    result: Int[np.ndarray, " case"],
+    found: Equilibria,
     rest: Float[np.ndarray, "node 3"],
 ) -> Response:
-    net = position[:, : cage.node_count]
+    net = found.position[:, : cage.node_count]
     volume = cage.volume(net)
     return Response(
         node_position=net,
         node_displacement=net - rest,
-        bridle_tension=bar_tension(assembly.bars, position)[:, assembly.bridles],
-        net_force=total_net_force(assembly.panels, flow, position),
+        bridle_tension=bar_tension(assembly.bars, found.position)[:, assembly.bridles],
+        net_force=total_net_force(assembly.panels, flow, found.position),
         volume=volume,
         volume_fraction=volume / cage.volume(rest),
-        residual=residual,
-        result=result,
+        residual=found.residual,
+        result=found.result,
+        equilibria=found.number,
+        equilibrium_spread=found.spread,
+        unstable=found.unstable,
     )
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from seacage.cage import Cage
 from seacage.conventions import InputError, Result, compass
-from seacage.dynamics import Response, _settle, rest_shape, settle
+from seacage.dynamics import Response, _equilibria, _relax, rest_shape, settle
 from seacage.dynamics._assembly import Assembly
 from seacage.ocean import SeaState
 
@@ -61,6 +61,9 @@ def test_several_seas_have_a_leading_axis_and_one_sea_has_none():
         "volume_fraction": (),
         "residual": (),
         "result": (),
+        "equilibria": (),
+        "equilibrium_spread": (),
+        "unstable": (),
     }
     assert shapes.keys() == Response.__dataclass_fields__.keys()
     for name, shape in shapes.items():
@@ -274,7 +277,8 @@ def test_99_percent_of_300_random_currents_settle():
 
 def test_a_case_that_runs_out_of_steps_says_so_and_keeps_its_last_shape(monkeypatch):
     rest_shape(COARSE)
-    monkeypatch.setattr(_settle, "ATTEMPTS", 0)
+    monkeypatch.setattr(_equilibria, "MOST_ITERATIONS", 0)
+    monkeypatch.setattr(_equilibria, "ATTEMPTS", 0)
     response = settle(COARSE, current(0.5, 0.0))
     assert response.result == Result.NOT_CONVERGED
     assert response.residual > 1.0
@@ -283,7 +287,8 @@ def test_a_case_that_runs_out_of_steps_says_so_and_keeps_its_last_shape(monkeypa
 
 def test_a_case_that_blows_up_says_so_and_carries_no_number(monkeypatch):
     rest_shape(COARSE)
-    monkeypatch.setattr(_settle, "_fictitious_mass", too_light)
+    monkeypatch.setattr(_equilibria, "MOST_ITERATIONS", 0)
+    monkeypatch.setattr(_relax, "_fictitious_mass", too_light)
     response = settle(COARSE, current(0.5, 0.0))
     assert response.result == Result.DIVERGED
     for name in ("node_position", "node_displacement", "bridle_tension", "volume"):
