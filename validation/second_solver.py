@@ -42,6 +42,10 @@ RANGES = {
 """Its rings' centres in waves, most less least [m]."""
 
 
+LEAN = {"level": 5.21, "down": -8.06}
+"""Its bottom ring's mean place in waves, from the collar's, over two periods [m]."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Solved:
     """The structure and what it does: the last half minute in the current, or in the wave."""
@@ -140,6 +144,11 @@ def _in_waves() -> Iterator[Row]:
                 f"Second solver's cage, wave of 4 m and 9 s: range of the {ring}'s centre, {axis}"
             )
             yield _row(what, "m", reference, float(found), 0.15)
+    lean = (ours.centre("net bottom") - ours.centre("inner collar")).mean(axis=0)
+    found = {"level": float(np.hypot(lean[0], lean[1])), "down": float(lean[2])}
+    for way, reference in LEAN.items():
+        what = f"Second solver's cage, that wave: bottom ring less top ring, mean, {way}"
+        yield _row(what, "m", reference, found[way], 0.15)
 
 
 ABOUT = (
