@@ -287,7 +287,7 @@ class Kernel:
             np.empty((bars, self.lanes)),
             np.empty((bars, 5, self.lanes)),
             np.empty((len(pattern.column), 9, self.lanes)),
-            np.empty(nodes, dtype=np.int32),
+            np.empty((2, nodes), dtype=np.int32),
         )
 
     def flow(self, flow: SteadyFlow) -> _Struct:

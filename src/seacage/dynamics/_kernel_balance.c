@@ -38,7 +38,7 @@ typedef struct {
     double *zero, *tension;    /* [bar][lane] */
     double *bar;               /* [bar][5][lane]: unit vector, rate, what the tension lacks */
     block *blocks;             /* [block] */
-    int32_t *place;            /* [node]: of the blocks of the row at hand */
+    int32_t *place;            /* [2][node]: of the blocks of the two rows at hand */
 } bench;
 
 /* What the bars' linear law adds to the forces of the true one, and to the tangent. */
@@ -278,25 +278,78 @@ static inline void take_product(vec *restrict c, const vec *restrict a, const ve
         }
 }
 
-/* LU in place, row by row; diagonal blocks are left inverted. */
-static void factorise(const assembly *s, const pattern *p, bench *w, double *sign)
+/* c ← c − a b for two rows that meet the same b, which is read once. */
+static inline void take_products(vec *restrict c, const vec *restrict a, vec *restrict d,
+                                 const vec *restrict e, const vec *restrict b)
+{
+    for (int j = 0; j < 3; j++)
+        EACH_LANE {
+            const double p = b[0][j][k], q = b[1][j][k], r = b[2][j][k];
+            c[0][j][k] -= a[0][0][k] * p + a[0][1][k] * q + a[0][2][k] * r;
+            c[1][j][k] -= a[1][0][k] * p + a[1][1][k] * q + a[1][2][k] * r;
+            c[2][j][k] -= a[2][0][k] * p + a[2][1][k] * q + a[2][2][k] * r;
+            d[0][j][k] -= e[0][0][k] * p + e[0][1][k] * q + e[0][2][k] * r;
+            d[1][j][k] -= e[1][0][k] * p + e[1][1][k] * q + e[1][2][k] * r;
+            d[2][j][k] -= e[2][0][k] * p + e[2][1][k] * q + e[2][2][k] * r;
+        }
+}
+
+/* Take from a row what stands above its block e, which becomes one of the factor L. */
+static void eliminate(const pattern *p, block *restrict blocks, const int32_t *restrict place, int e)
 {
     const int32_t *restrict column = p->column;
-    int32_t *restrict place = w->place;
-    block *restrict blocks = w->blocks;
+    const int above = column[e], last = p->row[above + 1];
+    block left; /* a copy, which the compiler may keep in registers */
+    multiply(blocks[e], blocks[p->diagonal[above]]);
+    memcpy(left, blocks[e], sizeof left);
+    for (int g = p->diagonal[above] + 1; g < last; g++)
+        take_product(blocks[place[column[g]]], left, blocks[g]);
+}
+
+/* The same for blocks of two rows in one column. */
+static void eliminate_both(const pattern *p, block *restrict blocks, const int32_t *restrict place,
+                           const int32_t *restrict next, int e, int f)
+{
+    const int32_t *restrict column = p->column;
+    const int above = column[e], last = p->row[above + 1];
+    block left, low;
+    multiply(blocks[e], blocks[p->diagonal[above]]);
+    multiply(blocks[f], blocks[p->diagonal[above]]);
+    memcpy(left, blocks[e], sizeof left);
+    memcpy(low, blocks[f], sizeof low);
+    for (int g = p->diagonal[above] + 1; g < last; g++)
+        take_products(blocks[place[column[g]]], left, blocks[next[column[g]]], low, blocks[g]);
+}
+
+/* LU in place, two rows at a time, as memory is what it waits for; diagonal blocks are left
+ * inverted. */
+static void factorise(const assembly *s, const pattern *p, bench *w, double *sign)
+{
+    int32_t *place = w->place, *next = w->place + s->nodes;
     EACH_LANE sign[k] = 1.0;
-    for (int i = 0; i < s->nodes; i++) {
-        for (int e = p->row[i]; e < p->row[i + 1]; e++)
-            place[column[e]] = e;
-        for (int e = p->row[i]; e < p->diagonal[i]; e++) {
-            const int above = column[e], last = p->row[above + 1];
-            block left; /* a copy, which the compiler may keep in registers */
-            multiply(blocks[e], blocks[p->diagonal[above]]);
-            memcpy(left, blocks[e], sizeof left);
-            for (int g = p->diagonal[above] + 1; g < last; g++)
-                take_product(blocks[place[column[g]]], left, blocks[g]);
+    for (int i = 0; i < s->nodes; i += 2) {
+        const int pair = i + 1 < s->nodes;
+        int e = p->row[i], f = pair ? p->row[i + 1] : 0;
+        const int end = p->diagonal[i], low_end = pair ? p->diagonal[i + 1] : 0;
+        for (int g = e; g < p->row[i + 1]; g++)
+            place[p->column[g]] = g;
+        for (int g = f; pair && g < p->row[i + 2]; g++)
+            next[p->column[g]] = g;
+        while (e < end || f < low_end) {
+            if (e == end && p->column[f] >= i)
+                break;
+            if (f == low_end || (e < end && p->column[e] < p->column[f]))
+                eliminate(p, w->blocks, place, e++);
+            else if (e == end || p->column[f] < p->column[e])
+                eliminate(p, w->blocks, next, f++);
+            else
+                eliminate_both(p, w->blocks, place, next, e++, f++);
         }
-        invert(blocks[p->diagonal[i]], sign);
+        invert(w->blocks[p->diagonal[i]], sign);
+        if (f < low_end)
+            eliminate(p, w->blocks, next, f);
+        if (pair)
+            invert(w->blocks[p->diagonal[i + 1]], sign);
     }
 }
 
