@@ -7,6 +7,7 @@ import shutil
 import uuid
 import warnings
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from glob import escape
 from pathlib import Path
@@ -210,7 +211,7 @@ def create_campaign(
     chunk = {**size, "case": min(block, len(seas)), "block": 1}
     given: dict[str, Any] = {name: [getattr(sea, name) for sea in seas] for name in SEA}
     given |= {"wave_seed": wave_seeds, "quantile": quantile_levels}
-    unborn = path.with_name(f".{path.name}.{uuid.uuid4().hex[:8]}.unborn")
+    unborn = _beside(path, "unborn")
     try:
         unborn.mkdir(parents=True)
         group = zarr.create_group(
@@ -291,31 +292,19 @@ def campaign_unsummed(path: Path) -> bool:
 
 
 def finish_campaign(path: Path) -> None:
-    """Sum the blocks' second moments, in their order, once every case has been run.
+    """Once every case has been run, sum the blocks' second moments and clear up.
 
-    Before that, and a second time, it does nothing. Stopped on its way it begins anew; two
+    Before that, and a second time, it changes nothing. Stopped on its way it begins anew; two
     that finish the same campaign at once write the same bytes.
     """
     _, result, _ = campaign_results(path)
-    if not campaign_unsummed(path) or np.any(result == NOT_RUN):
+    if np.any(result == NOT_RUN):
         return
-    try:
-        total = _summed(_array(path, f"{_BLOCKS}/moment"))
-    except FileNotFoundError:  # another process finished it meanwhile
-        return
-    if np.isnan(total).any():  # the same, a little later: missing blocks read as NaN
-        return
-    converged = int(np.sum(result == Result.CONVERGED))
-    _array(path, "second_moment")[:] = (
-        total / converged if converged else np.full_like(total, np.nan)
-    )
-    spent = path.with_name(f".{path.name}.{uuid.uuid4().hex[:8]}.spent")
-    try:
-        (path / _BLOCKS).rename(spent)  # at once: a half of it is no part of a store
-    except FileNotFoundError:
-        return
-    for left in path.parent.glob(f".{escape(path.name)}.*.spent"):
-        shutil.rmtree(left, ignore_errors=True)
+    if campaign_unsummed(path):
+        _sum_up(path, converged=int(np.sum(result == Result.CONVERGED)))
+    for kind in ("unborn", "spent"):  # what a kill left behind
+        for left in path.parent.glob(f".{escape(path.name)}.{'?' * 8}.{kind}"):
+            shutil.rmtree(left, ignore_errors=True)
 
 
 def not_a_campaign(path: Path) -> RecordError:
@@ -376,6 +365,25 @@ def _create_block_moments(group: Any, blocks: int, coordinates: int) -> None:
         dtype="float32",
         fill_value=np.nan,
     )
+
+
+def _sum_up(path: Path, *, converged: int) -> None:
+    """Write the second moment of all blocks, in their order, and put them away."""
+    try:
+        total = _summed(_array(path, f"{_BLOCKS}/moment"))
+    except FileNotFoundError:  # another process did it meanwhile
+        return
+    if np.isnan(total).any():  # the same, a little later: missing blocks read as NaN
+        return
+    mean = total / converged if converged else np.full_like(total, np.nan)
+    _array(path, "second_moment")[:] = mean
+    with suppress(FileNotFoundError):
+        (path / _BLOCKS).rename(_beside(path, "spent"))  # at once: a half would be in the way
+
+
+def _beside(path: Path, kind: str) -> Path:
+    """A hidden neighbour of a store, with a name that no other process has."""
+    return path.with_name(f".{path.name}.{uuid.uuid4().hex[:8]}.{kind}")
 
 
 def _summed(moments: Any) -> Float[np.ndarray, "coordinate coordinate"]:

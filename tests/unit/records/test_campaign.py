@@ -134,6 +134,18 @@ def test_a_campaign_with_cases_left_is_not_summed(tmp_path: Path) -> None:
     assert np.isnan(campaign_variable(path, "second_moment")).all()
 
 
+def test_what_kills_left_behind_is_cleared_up_at_the_end(tmp_path: Path) -> None:
+    path = written_in_time(tmp_path / "campaign")
+    for name in (".campaign.0123abcd.unborn", ".campaign.0123abcd.spent"):
+        (tmp_path / name / "deep").mkdir(parents=True)
+    (tmp_path / ".campaign.zarr.0123abcd.unborn").mkdir()  # of another campaign
+    finish_campaign(path)
+    assert {one.name for one in tmp_path.iterdir()} == {
+        "campaign",
+        ".campaign.zarr.0123abcd.unborn",
+    }
+
+
 @pytest.mark.parametrize("gone", ["blocks/moment/c/0", "blocks/moment"])
 def test_who_comes_second_to_the_sum_leaves_it_to_the_first(tmp_path: Path, gone: str) -> None:
     path = written_in_time(tmp_path / "campaign")
