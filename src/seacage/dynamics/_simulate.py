@@ -31,6 +31,9 @@ HOLD = 4
 CHUNK = 100
 """Refreshes between two reports of progress."""
 
+MOST_COMPONENTS = 1000
+"""Of the waves of a case: the kernel keeps their phases on a thread's stack."""
+
 STATISTICS_EVERY = 1.0
 """Between samples for quantiles and moments where no series is asked for [s]."""
 
@@ -124,10 +127,11 @@ def simulate(
     ------
     InputError
         No sea at all, times that make no sense, an unknown law or mooring, a time step too
-        long for the stiffest line, or a cage that cannot float.
+        long for the stiffest line, waves that are not finite, too high or of water of another
+        depth, or a cage that cannot float.
     """
     seas = [sea] if isinstance(sea, SeaState) else list(sea)
-    _check(seas, law)
+    _check(seas, law, workers)
     steps = _steps(duration, ramp, spin_up, time_step, sample_every)
     assembly = _prepared(cage, mooring, hold_collar=hold_collar, collar_drag=collar_drag)
     assembly, _ = steadied(assembly, steps.time_step)
@@ -162,9 +166,11 @@ def simulate(
     return cases[0] if isinstance(sea, SeaState) else stacked(cases)
 
 
-def _check(seas: list[SeaState], law: MovingLaw) -> None:
+def _check(seas: list[SeaState], law: MovingLaw, workers: int) -> None:
     if not seas:
         raise InputError("simulate: no sea state given. Pass one or more.")
+    if workers < 1:
+        raise InputError(f"simulate: workers = {workers} threads do no work. Give 1 or more.")
     if law not in MOVING_LAWS:
         raise InputError(f"simulate: no law {law!r}; there are: {', '.join(MOVING_LAWS)}.")
 
@@ -183,7 +189,7 @@ def _steps(
             what = "at least ramp" if name == "spin_up" else f"at least {least:g} s"
             raise InputError(f"simulate: {name} = {value:g} s must be a finite time of {what}.")
     every = STATISTICS_EVERY if sample_every is None else sample_every
-    samples = round(every / REFRESH)
+    samples = round(every / REFRESH) if math.isfinite(every) else 0
     if samples < 1 or not math.isclose(samples * REFRESH, every, rel_tol=1e-6):
         raise InputError(
             f"simulate: sample_every = {every:g} s is not a whole number of tenths of a second, "
@@ -204,7 +210,9 @@ def _steps(
 def _levels(levels: Sequence[float]) -> Float[np.ndarray, " quantile"]:
     wrong = [level for level in levels if not 0.0 <= level <= 1.0]
     if wrong:
-        raise InputError(f"simulate: quantile level {wrong[0]:g} is outside [0, 1].")
+        raise InputError(
+            f"simulate: quantile level {wrong[0]:g} is outside [0, 1]. Give shares, not per cent."
+        )
     return np.array(levels, dtype=np.float64)
 
 
@@ -212,8 +220,8 @@ def _kept_nodes(cage: Cage | Structure, asked: Sequence[int] | None) -> Int[np.n
     nodes = np.arange(cage.node_count) if asked is None else np.array(asked, dtype=np.int64)
     if np.any((nodes < 0) | (nodes >= cage.node_count)):
         raise InputError(
-            f"simulate: series_nodes = {nodes.tolist()} has a node outside "
-            f"0 … {cage.node_count - 1}."
+            f"simulate: series_nodes = {nodes.tolist()} has a node that the net has not. "
+            f"Give nodes from 0 … {cage.node_count - 1}."
         )
     return nodes
 
@@ -250,13 +258,48 @@ def _waves(
             raise InputError(
                 f"simulate: {len(waves)} waves for {len(seas)} seas. Give one for each, or one."
             )
-        return waves
-    seeds = [seed + i for i in range(len(seas))] if isinstance(seed, int) else list(seed)
+        return _checked_waves(waves, depth)
+    if isinstance(seed, (int, np.integer)):
+        seeds = [int(seed) + i for i in range(len(seas))]
+    else:
+        seeds = list(seed)
     if len(seeds) != len(seas):
         raise InputError(
             f"simulate: {len(seeds)} seeds for {len(seas)} seas. Give one for each, or one number."
         )
+    if min(seeds) < 0:
+        raise InputError(f"simulate: seed = {min(seeds)} is negative. Give 0, 1, 2, …")
     return [sample_waves(s, seed=own, depth=depth) for s, own in zip(seas, seeds, strict=True)]
+
+
+def _checked_waves(waves: list[Waves], depth: float) -> list[Waves]:
+    """Those that the kernel can march through."""
+    for case, one in enumerate(waves):
+        numbers = {name: getattr(one, name) for name in Waves.__slots__ if name != "depth"}
+        for name, values in numbers.items():
+            if not np.isfinite(values).all():
+                worst = values[~np.isfinite(values)][0]
+                raise InputError(
+                    f"simulate: the waves of case {case} have {name} = {worst:g}. Leave out "
+                    "components that are not finite."
+                )
+        if not math.isclose(one.depth, depth, rel_tol=1e-6):
+            raise InputError(
+                f"simulate: the waves of case {case} run in water of {one.depth:g} m, but the "
+                f"site is {depth:g} m deep. Draw them with depth={depth:g}."
+            )
+        if np.abs(one.amplitude).sum() >= depth:
+            raise InputError(
+                f"simulate: the waves of case {case} can add up to "
+                f"{np.abs(one.amplitude).sum():.3g} m, and their troughs would bare the bottom at "
+                f"{depth:g} m. Give amplitudes in m that are smaller."
+            )
+        if len(one.amplitude) > MOST_COMPONENTS:
+            raise InputError(
+                f"simulate: the waves of case {case} have {len(one.amplitude)} components, of "
+                f"which the kernel takes {MOST_COMPONENTS}. Draw fewer."
+            )
+    return waves
 
 
 def _ocean(
