@@ -68,7 +68,7 @@ def some_cage(rng, rings, spokes, cylinder):
     cylinder=st.integers(1, 4),
     law=st.sampled_from(LAWS),
     held=st.booleans(),
-    shaken=st.floats(0.0, 1.0),
+    shaken=st.floats(0.01, 1.0),  # a bar cut to its length is taut or slack by rounding alone
     moved=st.sampled_from([1e-3, 1e3]),
     barrier=st.sampled_from([1e-6, 1.0, 1e4]),
     cases=st.integers(1, 8),
