@@ -67,7 +67,14 @@ def test_every_parameter_has_its_unit_and_meaning():
             assert re.search(r"# \S+", line), line
     units = {"m", "n", "kg", "deg", "pa", "m2", "m3"}
     bare = {"spokes", "pipes", "drag_coefficient", "submerged_fraction", "added_mass_coefficient"}
-    bare |= {"damping_ratio", "fouling_shallow", "fouling_deep", "per_corner", "material_factor"}
+    bare |= {
+        "damping_ratio",
+        "corner_damping_ratio",
+        "fouling_shallow",
+        "fouling_deep",
+        "per_corner",
+        "material_factor",
+    }
     for section in tomllib.loads(TEXT).values():
         for key in section if isinstance(section, dict) else ():
             assert key in bare or key.rsplit("_", 1)[-1] in units, key
