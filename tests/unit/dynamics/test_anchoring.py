@@ -62,6 +62,25 @@ def test_lines_run_on_from_the_frame_s_sides_to_the_sea_bed():
     np.testing.assert_allclose(across, np.tile([42.5, 42.5 + reach], (8, 1)))
 
 
+def test_a_turned_cage_turns_its_mooring_with_it():
+    turned = anchored(ACE.rotated(30.0))
+    c, s = np.cos(np.deg2rad(30.0)), np.sin(np.deg2rad(30.0))
+    clockwise = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    np.testing.assert_allclose(turned.position, PARTS.position @ clockwise, atol=1e-9)
+    # the bridles are cut to a rest shape that is relaxed to half a newton
+    np.testing.assert_allclose(turned.bars.length, PARTS.bars.length, atol=1e-3)
+
+
+@pytest.mark.parametrize("per_corner", [1, 3])
+def test_any_number_of_lines_holds_a_corner(per_corner):
+    parts = anchored(ACE.altered(anchor_lines={"per_corner": per_corner}))
+    assert parts.fixed.sum() == 4 * per_corner
+    frame = parts.bridles[-1] + 1 + np.arange(4)
+    tension = bar_tension(parts.bars, parts.position[None])[0, frame]
+    np.testing.assert_allclose(tension, tension[0])
+    assert tension[0] > 0.0
+
+
 def test_nodes_are_the_cage_s_the_corners_then_the_lines():
     assert PARTS.cage_nodes == 321
     np.testing.assert_allclose(PARTS.position[CORNERS], ACE.corner_position)
