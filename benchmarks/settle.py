@@ -1,9 +1,6 @@
 """Equilibria of the reference cage: how many settle, how fast, and what the kernel is worth."""
 
 import time
-from dataclasses import replace
-from typing import Any
-from unittest import mock
 
 import numpy as np
 from _timing import ONCE, seconds, tell
@@ -11,11 +8,11 @@ from _timing import ONCE, seconds, tell
 from seacage.cage import Cage
 from seacage.conventions import Result
 from seacage.dynamics import rest_shape, settle
-from seacage.dynamics._assembly import Assembly
+from seacage.dynamics._equilibria import _balance, _begun, _first_shapes
 from seacage.dynamics._flow import steady_flow
-from seacage.dynamics._kernel import Kernel, Relaxing, kernel
-from seacage.dynamics._loads import nodal_force
-from seacage.dynamics._settle import STEPS, _relaxation
+from seacage.dynamics._kernel import kernel
+from seacage.dynamics._newton import nearer
+from seacage.dynamics._settle import _assembled
 from seacage.ocean import SeaState
 
 SEED = 2
@@ -34,43 +31,41 @@ def company(cases: int) -> None:
     tell(f"settle, per case of {cases}", {"all together": together, "one by one": alone})
 
 
-def reliability(cases: int) -> None:
+def reliability(cases: int, starts: int) -> None:
     rest_shape(CAGE)
-    taken: list[float] = []
-
-    def counted(self: Kernel, *args: Any, rounds: int) -> Relaxing:
-        moved = relaxed(self, *args, rounds=rounds)
-        taken.append(STEPS * float(np.sum(moved.rounds - args[2].rounds)))
-        return moved
-
-    relaxed = Kernel.relaxed
-    with mock.patch.object(Kernel, "relaxed", counted):
-        start = time.process_time()
-        response = settle(CAGE, random_currents(cases))
-        core = time.process_time() - start
+    seas = random_currents(cases)
+    begun, wall = time.process_time(), time.perf_counter()
+    response = settle(CAGE, seas, starts=starts, workers=2)
+    core, wall = time.process_time() - begun, time.perf_counter() - wall
     done = np.mean(response.result == Result.CONVERGED)
-    print(f"settle, {cases} random currents up to 1 m/s, seed {SEED}")
+    several = np.sum(response.equilibria > 1)
+    print(f"settle, {cases} random currents up to 1 m/s, seed {SEED}, from {starts} first shapes")
     print(f"  {100.0 * done:.1f} % settled, residuals up to {response.residual.max():.2g} N")
-    print(f"  {cases / core:.1f} cases per core-second, {sum(taken) / cases:.0f} steps per case")
+    print(f"  {several} with several equilibria, {np.sum(response.unstable)} proved unstable")
+    print(f"  {cases / core:.0f} cases per core-second; {wall:.1f} s with 2 workers")
 
 
-def step(rounds: int) -> None:
-    assembly, compiled = Assembly.of(CAGE), kernel()
+def iteration() -> None:
+    compiled, assembly = kernel(), _assembled(CAGE)
     cases = compiled.lanes
     velocity = np.array([sea.current_velocity for sea in random_currents(cases)])
     flow = steady_flow(assembly, velocity, law="kristiansen-faltinsen")
-    position = np.repeat(assembly.position[None], cases, axis=0)
-    state = Relaxing.begun(position, len(assembly.bars.length), np.full(cases, 0.05))
-    endless = replace(_relaxation(CAGE, assembly, hold_collar=False), tolerance=0.0)
-    compiled_step = seconds(
-        lambda: compiled.relaxed(assembly, flow, state, endless, rounds=rounds)
-    ) / (cases * rounds * endless.steps)
-    defined = seconds(lambda: nodal_force(assembly, flow, position)) / cases
-    print(f"one step of {CAGE.node_count} nodes, per case of {cases}")
-    print(f"  {1e6 * compiled_step:.1f} µs in the kernel, which also moves the nodes")
-    print(f"  {1e6 * defined:.0f} µs in the definition in NumPy: {defined / compiled_step:.0f} ×")
+    balance = _balance(CAGE, np.ones(len(assembly.position), dtype=bool))
+    state = _begun(CAGE, _first_shapes(assembly, flow, 1), assembly)
+    many, few = (
+        seconds(lambda n=n: compiled.balanced(assembly, flow, state, balance, iterations=n))
+        for n in (7, 2)
+    )
+    one = np.zeros(1, dtype=np.int64)
+    alone, water = state.cases(one), flow.cases(one)
+    defined = seconds(lambda: nearer(assembly, water, alone, balance))
+    computed = (many - few) / (5 * cases)
+    print(f"one Newton iteration of {CAGE.node_count} nodes, per case of {cases}")
+    print(f"  {1e3 * computed:.2f} ms in the kernel")
+    print(f"  {1e3 * defined:.0f} ms in the definition in NumPy: {defined / computed:.0f} ×")
 
 
 company(2 if ONCE else 16)
-reliability(4 if ONCE else 300)
-step(1 if ONCE else 10)
+for starts in (1, 2):
+    reliability(4 if ONCE else 1000, starts)
+iteration()
