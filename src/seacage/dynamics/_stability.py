@@ -41,9 +41,15 @@ def steadied(assembly: Assembly, time_step: float) -> tuple[Assembly, Float[np.n
         longest = time_step * np.sqrt((1.0 + MOST_ADDED) * assembly.mass[worst] / need[worst])
         raise InputError(
             f"simulate: time_step = {time_step:g} s is too long for the stiffest line, at node "
-            f"{worst} ({assembly.mass[worst]:.3g} kg). Give at most {longest:.2g} s."
+            f"{worst} ({assembly.mass[worst]:.3g} kg). Give at most {_below(longest):.2g} s."
         )
     return replace(assembly, mass=assembly.mass + lent), lent
+
+
+def _below(time: float) -> float:
+    """Two digits of a time, never more than it [s]."""
+    digit = 10.0 ** (np.floor(np.log10(time)) - 1.0)
+    return float(np.floor(time / digit) * digit)
 
 
 def _fastest(

@@ -42,8 +42,13 @@ class CurrentProfile:
                 f"CurrentProfile: {len(self.depth)} depths, {len(self.factor)} factors and "
                 f"{len(turned)} turns. Give one of each for every depth, and at least one."
             )
-        numbers = (*self.depth, *self.factor, *turned)
-        if not np.isfinite(numbers).all() or min((*self.depth, *self.factor)) < 0.0:
+        if not np.isfinite(turned).all():
+            raise InputError(
+                f"CurrentProfile: turned = {turned} deg must be finite. Leave it out where the "
+                "current does not turn."
+            )
+        numbers = (*self.depth, *self.factor)
+        if not np.isfinite(numbers).all() or min(numbers) < 0.0:
             raise InputError(
                 f"CurrentProfile: depth = {self.depth} m and factor = {self.factor} must be "
                 "finite and at least 0. A current that turns has its turn in `turned`."
