@@ -27,7 +27,7 @@ from seacage.campaigns import (
     virtual_field,
 )
 from seacage.conventions import SeacageError
-from seacage.dynamics import rest_shape
+from seacage.dynamics import rest_shape, simulate
 from seacage.ocean import SeaState
 from seacage.records import CampaignRecord, export_campaign, read_campaign
 
@@ -115,6 +115,20 @@ def test_sea_states_become_a_record_of_what_waves_do(whole: Path) -> None:
     # The mean square is the square of the mean and more.
     assert np.all(np.diag(record.second_moment) >= 0.999 * np.mean(away**2, axis=0))
     np.testing.assert_allclose(record.second_moment, record.second_moment.T, rtol=1e-4, atol=1e-4)
+
+
+def test_a_single_case_is_repeated_by_its_seed(whole: Path) -> None:
+    record, case = read_campaign(whole), 41
+    again = simulate(
+        SMALL,
+        record.seas[case],
+        seed=int(record.wave_seed[case]),
+        duration=PLAN.duration,
+        sample_every=None,
+        **SHORT,
+    )
+    np.testing.assert_array_equal(again.node.mean, record.node_position[case])
+    np.testing.assert_array_equal(again.bridle.maximum, record.bridle_tension_maximum[case])
 
 
 def test_equilibria_become_a_record_that_can_be_learned_from(settled: Path) -> None:

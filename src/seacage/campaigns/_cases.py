@@ -48,7 +48,7 @@ class Simulator:
     mooring: Mooring = "springs"
     ramp: float = 60.0
     spin_up: float = 300.0
-    time_step: float = 0.004
+    time_step: float = 0.002
     quantile_levels: tuple[float, ...] = (0.05, 0.5, 0.95)
     second_moment: bool = True
 
@@ -188,7 +188,7 @@ def _moment(history: History) -> Float[np.ndarray, "coordinate coordinate"]:
     total = np.zeros(history.second_moment.shape[-2:])
     for case in np.flatnonzero(history.result == Result.CONVERGED):
         total += history.second_moment[case]
-    return total
+    return total.astype(np.float32)
 
 
 @lru_cache(maxsize=4)

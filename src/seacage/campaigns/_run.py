@@ -55,7 +55,7 @@ def run_campaign(
     mooring: Mooring = "springs",
     ramp: float = 60.0,
     spin_up: float = 300.0,
-    time_step: float = 0.004,
+    time_step: float = 0.002,
     quantile_levels: Sequence[float] = (0.05, 0.5, 0.95),
     second_moment: bool = True,
     cluster: str | None = None,

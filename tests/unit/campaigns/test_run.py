@@ -1,5 +1,6 @@
 """Running a campaign, with a formula in the simulator's place."""
 
+import inspect
 from collections.abc import Callable
 from pathlib import Path
 
@@ -10,7 +11,9 @@ from seacage.cage import Cage
 from seacage.campaigns import Plan, Simulator, campaign_status, run_campaign, run_share
 from seacage.campaigns._cases import answered
 from seacage.conventions import InputError, RecordError, Result, SeacageError
+from seacage.dynamics import simulate
 from seacage.records import read_campaign
+from seacage.service._commands._campaign import run as run_command
 from stand_in import StandIn
 
 PLAN = Plan.sample(1, 100)
@@ -228,7 +231,7 @@ def test_a_folder_with_another_campaign_is_refused_in_one_sentence(
         ({"mooring": "catenary"}, "mooring"),
         ({"ramp": 30.0}, "ramp"),
         ({"spin_up": 600.0}, "spin-up"),
-        ({"time_step": 0.002}, "time step"),
+        ({"time_step": 0.001}, "time step"),
         ({"quantile_levels": (0.5,)}, "choice of quantiles"),
         ({"second_moment": False}, "choice about the second moment"),
         ({"method": "settle"}, "method and another mooring"),
@@ -284,3 +287,14 @@ def test_a_worker_with_another_version_refuses_to_answer(
     with pytest.raises(SeacageError, match=r"the campaign seacage 9\.9: their numbers"):
         run_campaign(small_cage, Plan.sample(1, 2), tmp_path / "c", workers=1)
     assert answered.__module__ == "seacage.campaigns._cases"  # by which name it travels
+
+
+@pytest.mark.parametrize("asks", [run_campaign, Simulator, run_command])
+def test_what_is_not_asked_for_is_as_in_a_single_simulation(asks: Callable[..., object]) -> None:
+    def defaults(of: Callable[..., object]) -> dict[str, object]:
+        return {name: one.default for name, one in inspect.signature(of).parameters.items()}
+
+    own, single = defaults(asks), defaults(simulate)
+    shared = {"law", "mooring", "ramp", "spin_up", "time_step"}
+    assert shared <= own.keys()
+    assert {name: own[name] for name in shared} == {name: single[name] for name in shared}

@@ -32,7 +32,7 @@ _SCRIPT = """\
 #SBATCH --array=0-{last}
 #SBATCH --ntasks=1
 #SBATCH --cpus-per-task={workers}
-#SBATCH --mem-per-cpu=2G
+#SBATCH --mem-per-cpu=1G
 set -euo pipefail
 export OMP_NUM_THREADS=1
 exec {command} --share "$SLURM_ARRAY_TASK_ID/{tasks}"
@@ -68,7 +68,7 @@ def run(
     spin_up: Annotated[
         float, typer.Option(help="Simulated first and thrown away, s; the waves rise in it.")
     ] = 300.0,
-    time_step: Annotated[float, typer.Option(help="s")] = 0.004,
+    time_step: Annotated[float, typer.Option(help="s")] = 0.002,
     second_moment: Annotated[
         bool, typer.Option(help="Keep the second moment of all node coordinates.")
     ] = True,
