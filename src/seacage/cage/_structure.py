@@ -246,9 +246,12 @@ class Structure:
     def volume(
         self, node_position: Float[np.ndarray, "*case node 3"]
     ) -> Float[np.ndarray, "*case"]:
-        """Volume that the nets enclose, closed by the polygon of their uppermost edge [m3]."""
+        """Volume that the nets enclose, closed by the polygon of their uppermost edge [m3].
+
+        NaN without a net.
+        """
         if not self.net:
-            return np.zeros(node_position.shape[:-2])
+            return np.full(node_position.shape[:-2], np.nan)
         top = min((self._ring_index(net.upper, net.name) for net in self.net), key=self._depth)
         return enclosed_volume(node_position, self.panels, self.ring_nodes(top))
 

@@ -22,6 +22,9 @@ from seacage.dynamics._assembly import (
 SINKING = 0.01
 """How far a line's node sinks into the sea bed under its own weight [m]."""
 
+MOST_STRAIN = 0.1
+"""Of a tie or a line as built: beyond, the start would be an explosion [-]."""
+
 MOST_SOLIDITY = 0.9
 """Beyond it a net is a wall, and no screen law is right [-]."""
 
@@ -31,16 +34,17 @@ def rigged(structure: Structure) -> Assembly:
 
     Pipes float as boxes of their width and volume, centred on their nodes, and follow the
     surface; ropes count as always under water, and so do nets but a roof at the water line,
-    which counts as always dry. Ties and lines are lumped into their
-    segments' ends. ``bridles`` are the first bars of the lines, in the order of
-    ``structure.line_names``. Friction on the sea bed is left out.
+    which counts as always dry. Ties and lines are lumped into their segments' ends. ``bridles``
+    are the first bars of the lines, in the order of ``structure.line_names``. Friction on the
+    sea bed is left out.
 
     Raises
     ------
     InputError
-        A structure whose pipes and buoys cannot carry its rings, nets and ties, and one with a
-        node that weighs nothing.
+        A structure whose pipes and buoys cannot carry its rings, nets and ties, one that is
+        built with a tie or line far too short, and one with a node that weighs nothing.
     """
+    _check_lengths(structure)
     members = _members(structure)
     position = structure.design_position
     wet_nets = [index for index, net in enumerate(structure.net) if not structure.is_dry(net)]
@@ -48,15 +52,8 @@ def rigged(structure: Structure) -> Assembly:
     bars = joined_bars(*_net_bars(structure), *(_bars(member) for member in members))
     lumps = _lumps(structure, members)
     _check_floats(structure, members)
-    weightless = np.flatnonzero(lumps.mass + lumps.added <= 0.0)
-    if len(weightless):
-        raise InputError(
-            f"Structure {structure.name}: node {weightless[0]} at "
-            f"{position[weightless[0]].tolist()} m has no mass. Give the ring a pipe or a net, "
-            "or the point a line."
-        )
-    first_of_line = len(bars.length) - sum(line.segments for line in structure.line)
-    segments = np.array([0, *(line.segments for line in structure.line)])
+    _check_masses(structure, lumps)
+    pieces = np.array([line.segments for line in structure.line], dtype=np.int64)
     fixed = np.zeros(len(position), dtype=bool)
     fixed[structure.anchor_nodes] = True
     return Assembly(
@@ -67,7 +64,7 @@ def rigged(structure: Structure) -> Assembly:
         water_mass=lumps.displaced + lumps.added,
         fixed=fixed,
         bars=bars,
-        bridles=first_of_line + np.cumsum(segments)[:-1],
+        bridles=len(bars.length) - np.cumsum(pieces[::-1])[::-1],
         bends=_bends(structure),
         panels=panels,
         cylinders=_cylinders(position, members),
@@ -386,6 +383,30 @@ def _ground(structure: Structure, mass: Float[np.ndarray, " node"]) -> Ground:
         stiffness=mass[nodes] * GRAVITY / SINKING,
         level=-structure.site.water_depth,
     )
+
+
+def _check_lengths(structure: Structure) -> None:
+    """Refuse a tie or a line whose ends lie too far apart for it."""
+    ties = [(tie, structure.tie_nodes(i)) for i, tie in enumerate(structure.tie)]
+    lines = [(line, structure.line_nodes(i)[None]) for i, line in enumerate(structure.line)]
+    for part, nodes in (*ties, *lines):
+        span = float(_span(structure, nodes[:, [0, -1]]).max())
+        if part.length > 0.0 and span > (1.0 + MOST_STRAIN) * part.length:
+            raise InputError(
+                f"Structure {structure.name}: {part.name!r} spans {span:.3g} m as built, but its "
+                f"length_m = {part.length:g}. Move its ends together, or lengthen it."
+            )
+
+
+def _check_masses(structure: Structure, lumps: _Lumps) -> None:
+    """Refuse a node that nothing weighs on: it could not be moved."""
+    weightless = np.flatnonzero(lumps.mass + lumps.added <= 0.0)
+    if len(weightless):
+        place = structure.design_position[weightless[0]].round(3).tolist()
+        raise InputError(
+            f"Structure {structure.name}: node {weightless[0]} at {place} m has no mass. Give "
+            "the ring a pipe or a net, or the point a line."
+        )
 
 
 def _check_floats(structure: Structure, members: list[_Member]) -> None:

@@ -161,6 +161,12 @@ def test_what_cannot_float_is_refused_with_its_weight():
         rigged(replace(DRUM, section=(lead, ROPE, HEAVY)))
 
 
+def test_a_line_much_shorter_than_its_span_is_refused_by_its_name():
+    short = replace(DRUM.line[0], length=6.0)
+    with pytest.raises(InputError, match=r"'bridle' spans 7 m as built, but its length_m = 6"):
+        rigged(replace(DRUM, line=(short, *DRUM.line[1:])))
+
+
 def test_a_node_without_mass_is_refused_by_its_place():
     bare = Ring(name="bare", radius=3.0, depth=2.0)
     with pytest.raises(InputError, match=r"node 16 at .*has no mass"):
@@ -185,3 +191,13 @@ def test_in_still_water_a_rigged_structure_comes_to_rest_in_balance():
     carried = down.sum() - PARTS.weight[~PARTS.fixed].sum()
     # a mean over 5 s of slow swings, from single precision
     np.testing.assert_allclose(lift, carried, rtol=2e-3)
+
+
+def test_a_ring_without_a_net_can_be_simulated_too():
+    bare = replace(DRUM, ring=(COLLAR,), net=(), twine=())
+    history = simulate(
+        bare, SeaState(current_speed=0.5, current_to=90.0), duration=2.0, spin_up=10.0, ramp=0.0
+    )
+    assert np.isnan(history.volume.mean)
+    np.testing.assert_array_equal(history.net_force.mean, 0.0)
+    assert history.node.mean[bare.ring_nodes(0), 0].mean() > 0.0
