@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from seacage.cage import AnchorLines, Cage
 from seacage.conventions import GRAVITY, WATER_DENSITY, InputError
@@ -41,19 +41,24 @@ class LineShape:
 def segments(parts: AnchorLines) -> tuple[Float[np.ndarray, " s"], Float[np.ndarray, " s"]]:
     """Unstretched length [m] and EA [N] of a line's segments from the corner down."""
     shares = np.array(ROPE_SHARES) / sum(ROPE_SHARES)
-    chain = np.full(CHAIN_SEGMENTS, parts.chain_length / CHAIN_SEGMENTS)
-    length = np.concatenate([shares * parts.rope_length, chain])
+    rope, chain = len(shares), CHAIN_SEGMENTS * (parts.chain_length > 0.0)
+    length = np.concatenate(
+        [shares * parts.rope_length, np.full(chain, parts.chain_length / CHAIN_SEGMENTS)]
+    )
     stiff = min(parts.chain_axial_stiffness, STIFFEST_CHAIN * parts.rope_axial_stiffness)
-    stiffness = np.repeat([parts.rope_axial_stiffness, stiff], [len(shares), CHAIN_SEGMENTS])
-    return length[length > 0.0], stiffness[length > 0.0]
+    return length, np.repeat([parts.rope_axial_stiffness, stiff], [rope, chain])
+
+
+def is_rope(parts: AnchorLines) -> Bool[np.ndarray, " s"]:
+    """Which segments are not chain."""
+    return np.arange(len(segments(parts)[0])) < len(ROPE_SHARES)
 
 
 def node_weight(parts: AnchorLines) -> Float[np.ndarray, " node"]:
     """Submerged weight of a line's nodes from the corner down: the chain's alone [N]."""
     length, _ = segments(parts)
-    chain = np.arange(len(length)) >= len(length) - CHAIN_SEGMENTS * (parts.chain_length > 0.0)
     share = 1.0 - WATER_DENSITY / STEEL_DENSITY
-    half = length * chain * parts.chain_mass * share * GRAVITY / 2.0
+    half = length * ~is_rope(parts) * parts.chain_mass * share * GRAVITY / 2.0
     return np.append(half, 0.0) + np.append(0.0, half)
 
 
@@ -80,21 +85,17 @@ def resting_line(cage: Cage) -> LineShape:
     Raises
     ------
     InputError
-        A line too short to reach the sea bed, or without pretension.
+        A line too short to reach the sea bed, or without what holds it.
     """
     from scipy.optimize import root_scalar
 
     parts, bed = cage.anchor_lines, cage.site.water_depth - cage.frame.depth
+    _check(cage.name, parts)
     length, _ = segments(parts)
     if length.sum() <= bed:
         raise InputError(
             f"Cage {cage.name}: an anchor line of {length.sum():.0f} m does not reach the sea bed "
             f"{bed:.0f} m below the frame. Lengthen rope_length_m or chain_length_m."
-        )
-
-    if parts.pretension == 0.0:
-        raise InputError(
-            f"Cage {cage.name}: an anchor line with pretension_n = 0 hangs plumb. Give it some."
         )
 
     def shape(slope: float) -> LineShape:
@@ -106,3 +107,24 @@ def resting_line(cage: Cage) -> LineShape:
 
     steepest = 0.5 * np.pi * (1.0 - 1e-6)
     return shape(float(root_scalar(miss, bracket=(0.0, steepest), xtol=1e-12).root))
+
+
+def _check(name: str, parts: AnchorLines) -> None:
+    """Refuse a line that has no length, stiffness, weight or tension."""
+    needed = {
+        "rope_length_m": parts.rope_length,
+        "rope_diameter_m": parts.rope_diameter,
+        "rope_axial_stiffness_n": parts.rope_axial_stiffness,
+        "pretension_n": parts.pretension,
+    }
+    if parts.chain_length > 0.0:
+        needed |= {
+            "chain_mass_kg_m": parts.chain_mass,
+            "chain_axial_stiffness_n": parts.chain_axial_stiffness,
+        }
+    for key, value in needed.items():
+        if value == 0.0:
+            raise InputError(
+                f"Cage {name}: anchor_lines, {key} = 0, but a line needs some. Give a number "
+                "above 0, or moor the cage on springs."
+            )

@@ -11,6 +11,7 @@ from seacage.conventions import GRAVITY, WATER_DENSITY, InputError
 from seacage.dynamics._anchor_line import (
     STEEL_DENSITY,
     LineShape,
+    is_rope,
     node_weight,
     resting_line,
     segments,
@@ -102,7 +103,7 @@ def _lines(cage: Cage, shape: LineShape) -> _Lines:
         position=position.reshape(-1, 3),
         anchors=np.tile(np.arange(each) == each - 1, count),
         bars=bars,
-        is_rope=np.tile(stiffness == cage.anchor_lines.rope_axial_stiffness, count),
+        is_rope=np.tile(is_rope(cage.anchor_lines), count),
     )
 
 
@@ -159,6 +160,11 @@ def _frame(cage: Cage, shape: LineShape, bridles: Float[np.ndarray, "corner 3"])
     needed = outward + bridles[:, :2]  # the frame's ropes must hold this back
     tension = np.sum((needed[ends[:, 1]] - needed[ends[:, 0]]) * unit, axis=1) / 2.0
     stiffness = cage.frame.rope_axial_stiffness
+    if stiffness == 0.0:
+        raise InputError(
+            f"Cage {cage.name}: frame, rope_axial_stiffness_n = 0, but free corners need ropes "
+            "between them. Give a number above 0, or moor the cage on springs."
+        )
     return Bars(
         ends=cage.node_count + ends,
         length=span / (1.0 + np.maximum(tension, 0.0) / stiffness) + cage.frame.rope_slack,

@@ -31,6 +31,12 @@ def test_the_segments_make_up_rope_and_chain():
     assert node_weight(ACE.anchor_lines).sum() == pytest.approx(36.0 * 24.34 * GRAVITY, rel=1e-3)
 
 
+def test_a_line_may_be_all_rope():
+    parts = anchored(ACE.altered(anchor_lines={"chain_length_m": 0.0}))
+    assert parts.weight[325:].sum() == 0.0
+    assert parts.mass.min() > 0.0
+
+
 def test_the_chain_hangs_as_a_catenary():
     joint, foot = LINE.position[-5], LINE.position[-1]
     _, stiffness = segments(ACE.anchor_lines)
@@ -135,7 +141,9 @@ def test_it_rests_with_the_tensions_of_the_file_and_its_corners_in_place():
     [
         ("anchor_lines", {"rope_length_m": 100.0}, "does not reach the sea bed 183 m"),
         ("anchor_lines", {"per_corner": 0}, "a frame needs anchor lines"),
-        ("anchor_lines", {"pretension_n": 0.0}, "hangs plumb"),
+        ("anchor_lines", {"pretension_n": 0.0}, "pretension_n = 0, but a line needs some"),
+        ("anchor_lines", {"chain_mass_kg_m": 0.0}, "chain_mass_kg_m = 0"),
+        ("frame", {"rope_axial_stiffness_n": 0.0}, "free corners need ropes"),
         ("frame", {"buoy_buoyancy_n": 5e3}, "cannot carry the 23"),
     ],
 )
