@@ -5,6 +5,7 @@ import os
 import sys
 from pathlib import Path
 
+from seacage.conventions import SeacageError
 from validation._sections import MODULES, chosen, computed, failures
 from validation._table import as_csv, as_json, markdown, shown
 
@@ -12,8 +13,15 @@ ROOT = Path(__file__).parents[1]
 
 
 def main() -> int:
-    """Write the table and say what fails."""
-    asked = _parser().parse_args()
+    """Compute and write the table: 0, 1 where a row fails, 2 where a case is wrong."""
+    try:
+        return _compute(_parser().parse_args())
+    except SeacageError as error:
+        print(error, file=sys.stderr)
+        return 2
+
+
+def _compute(asked: argparse.Namespace) -> int:
     jobs = chosen(quick=asked.quick, only=asked.only)
     whole = not (asked.quick or asked.only)
     table = computed(jobs, workers=asked.workers, told=_tell)

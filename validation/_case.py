@@ -1,4 +1,4 @@
-"""A case that a user adds: one TOML on the cage and its source, one CSV of what was measured."""
+"""A case that a user adds: one TOML on what was measured, one CSV with the numbers."""
 
 import csv
 import tomllib
@@ -9,32 +9,28 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-from seacage.cage import Cage
+from seacage.cage import Cage, Structure
 from seacage.conventions import InputError
-from seacage.dynamics import LAWS, Law
+from seacage.dynamics import LAWS, MOVING_LAWS, MovingLaw
 from seacage.ocean import SeaState
-from validation._quantities import Quantity, quantity_named
+from validation._answers import How
+from validation._panel import Panel, panel_of
+from validation._quantities import Conditions, Quantity, Subject, quantity_named
 from validation._row import Kind
 
 CASES = Path(__file__).parent / "cases"
-KEYS: dict[str, type] = {
-    "title": str,
-    "about": str,
-    "kind": str,
-    "source": str,
-    "cage": str,
-    "laws": list,
-    "collar": str,
-    "pipe_drag": bool,
-    "wake": bool,
-    "must_hold": bool,
+KEYS: dict[str, type | tuple[type, ...]] = {
+    **dict.fromkeys(("title", "about", "kind", "source", "cage", "structure", "collar"), str),
+    **dict.fromkeys(("laws", "twine_drag"), list),
+    **dict.fromkeys(("pipe_drag", "wake", "must_hold"), bool),
+    **dict.fromkeys(("spin_up_s", "duration_s", "time_step_s"), (int, float)),
     "note": str,
-    "changes": dict,
-    "ensemble": dict,
-    "tolerance": dict,
+    **dict.fromkeys(("panel", "changes", "ensemble", "tolerance"), dict),
 }
-NEEDED = ("title", "kind", "source", "cage", "tolerance")
-CONDITIONS = ("current_speed_m_s", "current_to_deg", "law", "note")
+NEEDED = ("title", "kind", "source", "tolerance")
+SUBJECTS = ("cage", "structure", "panel")
+OF_A_CAGE = ("current_to_deg", "hs_m", "tp_s", "wave_from_deg")
+OF_A_PANEL = ("angle_deg", "solidity")
 UNCERTAINTY = "uncertainty:"
 
 
@@ -49,10 +45,10 @@ class Tolerance:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Measured:
-    """One number of the CSV and the water it was measured in."""
+    """One number of the CSV, and the conditions it was measured in."""
 
-    sea: SeaState
-    law: Law | None  # None: the case's
+    at: Conditions
+    law: MovingLaw | None  # None: the case's
     quantity: Quantity
     value: float
     uncertainty: float
@@ -65,7 +61,7 @@ class Case:
 
     Attributes
     ----------
-    cages
+    subjects
         All that the ensemble spans; one where the cage is known.
     """
 
@@ -74,11 +70,9 @@ class Case:
     about: str
     kind: Kind
     source: str
-    cages: Sequence[Cage]
-    laws: Sequence[Law]
-    hold_collar: bool
-    pipe_drag: bool
-    wake: bool
+    subjects: Sequence[Subject]
+    laws: Sequence[MovingLaw]
+    how: How
     must_hold: bool
     note: str
     tolerance: Mapping[str, Tolerance]
@@ -100,10 +94,9 @@ def read_case(folder: Path) -> Case:
     """The case of one folder with ``case.toml`` and ``measured.csv``."""
     where = f"{folder.name}/case.toml"
     table = _table(folder / "case.toml", where)
-    cage = _cage(folder, table["cage"], where)
-    cage = cage.altered(**table.get("changes", {}))
+    subject = _subject(folder, table, where)
     tolerance = {key: _tolerance(key, entry, where) for key, entry in table["tolerance"].items()}
-    measured = list(_measured(folder, cage))
+    measured = list(_measured(folder, subject))
     for number in measured:
         if number.quantity.name not in tolerance:
             raise InputError(
@@ -111,19 +104,16 @@ def read_case(folder: Path) -> Case:
                 f'{number.quantity.name}"] is missing. Add it, with share, fixed or both, and '
                 "reason."
             )
+    usual = MOVING_LAWS if isinstance(subject, Panel) else LAWS
     return Case(
         name=folder.name,
         title=table["title"],
         about=table.get("about", ""),
-        kind=_one_of(table["kind"], [kind.value for kind in Kind], f"{where}: kind", Kind),
+        kind=Kind(_one_of(table["kind"], [kind.value for kind in Kind], f"{where}: kind")),
         source=table["source"],
-        cages=list(_ensemble(cage, table.get("ensemble", {}), where)),
-        laws=[_law(law, f"{where}: laws") for law in table.get("laws", LAWS)],
-        hold_collar=_one_of(
-            table.get("collar", "moored"), ["held", "moored"], f"{where}: collar", "held".__eq__
-        ),
-        pipe_drag=table.get("pipe_drag", True),
-        wake=table.get("wake", True),
+        subjects=list(_ensemble(subject, table.get("ensemble", {}), where)),
+        laws=[_law(law, f"{where}: laws") for law in table.get("laws", usual)],
+        how=_how(table, where),
         must_hold=table.get("must_hold", False),
         note=table.get("note", ""),
         tolerance=tolerance,
@@ -143,36 +133,52 @@ def _table(path: Path, where: str) -> dict[str, Any]:
             raise InputError(f"{where}: the key {key!r} is missing. Add it.")
     for key, value in table.items():
         _one_of(key, list(KEYS), f"{where}: key")
-        if not isinstance(value, KEYS[key]):
-            raise InputError(
-                f"{where}: {key} must be a {KEYS[key].__name__}, not {value!r}. Mend it."
-            )
+        kind = KEYS[key]
+        if not isinstance(value, kind) or (isinstance(value, bool) and kind is not bool):
+            name = "number" if isinstance(kind, tuple) else kind.__name__
+            raise InputError(f"{where}: {key} must be a {name}, not {value!r}. Mend it.")
     return table
 
 
-def _one_of(value: str, known: Sequence[str], where: str, made: Any = str) -> Any:
+def _one_of(value: Any, known: Sequence[str], where: str) -> str:
     if value not in known:
         close = get_close_matches(str(value), known, n=1)
         hint = f"did you mean {close[0]!r}?" if close else f"known are: {', '.join(known)}."
         raise InputError(f"{where} {value!r} is unknown; {hint}")
-    return made(value)
+    return value
 
 
-def _law(name: str, where: str) -> Law:
-    return _one_of(name, LAWS, where)
+def _law(name: str, where: str) -> MovingLaw:
+    return _one_of(name, MOVING_LAWS, where)  # pyright: ignore[reportReturnType]
 
 
-def _cage(folder: Path, name: str, where: str) -> Cage:
-    """A cage that comes with seacage, or a file beside the case."""
-    if not name.endswith(".toml"):
-        return Cage.named(name)
-    if not (folder / name).is_file():
-        raise InputError(f"{where}: there is no cage file {name} beside it. Put it there.")
-    return Cage.read(folder / name)
+def _subject(folder: Path, table: Mapping[str, Any], where: str) -> Subject:
+    """A cage that comes with seacage or lies beside the case, a structure, or a panel."""
+    named = [key for key in SUBJECTS if key in table]
+    if len(named) != 1:
+        raise InputError(
+            f"{where}: it must have one of cage, structure and [panel], not {len(named)}. Say "
+            "what was measured."
+        )
+    if named[0] == "panel":
+        return panel_of(table["panel"], where)
+    file = table[named[0]]
+    if named[0] == "cage" and not file.endswith(".toml"):
+        return Cage.named(file).altered(**table.get("changes", {}))
+    if not (folder / file).is_file():
+        raise InputError(f"{where}: there is no {named[0]} file {file} beside it. Put it there.")
+    if named[0] == "structure":
+        return Structure.read(folder / file)
+    return Cage.read(folder / file).altered(**table.get("changes", {}))
 
 
-def _ensemble(cage: Cage, choices: Mapping[str, Any], where: str) -> Iterator[Cage]:
+def _ensemble(subject: Subject, choices: Mapping[str, Any], where: str) -> Iterator[Subject]:
     """Each combination of the choices, as a changed cage."""
+    if not choices:
+        yield subject
+        return
+    if not isinstance(subject, Cage):
+        raise InputError(f"{where}: only a cage has an [ensemble]. Leave it out.")
     for key, values in choices.items():
         if key.count(".") != 1 or not isinstance(values, list) or not values:
             raise InputError(
@@ -184,7 +190,26 @@ def _ensemble(cage: Cage, choices: Mapping[str, Any], where: str) -> Iterator[Ca
         for key, value in zip(choices, combination, strict=True):
             section, parameter = key.split(".")
             changes.setdefault(section, {})[parameter] = value
-        yield cage.altered(**changes)
+        yield subject.altered(**changes)
+
+
+def _how(table: Mapping[str, Any], where: str) -> How:
+    twine = table.get("twine_drag")
+    if twine is not None and not (len(twine) == 2 and all(isinstance(c, float) for c in twine)):
+        raise InputError(
+            f"{where}: twine_drag = {twine!r} must be two numbers, across and along a twine: "
+            "[1.2, 0.08]."
+        )
+    collar = _one_of(table.get("collar", "moored"), ["held", "moored"], f"{where}: collar")
+    return How(
+        hold_collar=collar == "held",
+        pipe_drag=table.get("pipe_drag", True),
+        wake=table.get("wake", True),
+        twine_drag=(twine[0], twine[1]) if twine else None,
+        spin_up=float(table.get("spin_up_s", 300.0)),
+        duration=float(table.get("duration_s", 60.0)),
+        time_step=float(table.get("time_step_s", 0.002)),
+    )
 
 
 def _tolerance(key: str, entry: Any, where: str) -> Tolerance:
@@ -199,8 +224,8 @@ def _tolerance(key: str, entry: Any, where: str) -> Tolerance:
     return Tolerance(share=share, fixed=fixed, reason=entry["reason"])
 
 
-def _measured(folder: Path, cage: Cage) -> Iterator[Measured]:
-    path = folder / "measured.csv"
+def _measured(folder: Path, subject: Subject) -> Iterator[Measured]:
+    path, where = folder / "measured.csv", f"{folder.name}/measured.csv"
     if not path.is_file():
         raise InputError(f"{folder.name}: measured.csv is missing beside case.toml. Add it.")
     with path.open(encoding="utf-8", newline="") as file:
@@ -208,47 +233,79 @@ def _measured(folder: Path, cage: Cage) -> Iterator[Measured]:
         names = list(reader.fieldnames or ())
         if "current_speed_m_s" not in names:
             raise InputError(
-                f"{folder.name}/measured.csv: the column current_speed_m_s is missing. Add it: "
-                "each line is one current."
+                f"{where}: the column current_speed_m_s is missing. Add it: each line is one "
+                "current."
             )
-        where = f"{folder.name}/measured.csv"
-        quantities = [
-            quantity_named(name, cage, where)
-            for name in names
-            if name not in CONDITIONS and not name.startswith(UNCERTAINTY)
+        quantities = _quantities(names, subject, where)
+        several = [
+            number
+            for line in reader
+            for number in _numbers(line, quantities, f"{where}, line {reader.line_num}")
         ]
-        for name in names:
-            if name.startswith(UNCERTAINTY):
-                _one_of(name, [UNCERTAINTY + q.name for q in quantities], f"{where}: column")
-        for line in reader:
-            yield from _numbers(line, quantities, f"{where}, line {reader.line_num}")
+    if not several:
+        raise InputError(f"{where}: it holds no measured number. Add a line and a quantity.")
+    yield from several
+
+
+def _quantities(names: Sequence[str], subject: Subject, where: str) -> list[Quantity]:
+    own = OF_A_PANEL if isinstance(subject, Panel) else OF_A_CAGE
+    conditions = ("current_speed_m_s", "law", "note", *own)
+    quantities = [
+        quantity_named(name, subject, where)
+        for name in names
+        if name not in conditions and not name.startswith(UNCERTAINTY)
+    ]
+    for name in names:
+        if name.startswith(UNCERTAINTY):
+            _one_of(name, [UNCERTAINTY + q.name for q in quantities], f"{where}: column")
+    return quantities
 
 
 def _numbers(
     line: Mapping[str, str], quantities: Sequence[Quantity], where: str
 ) -> Iterator[Measured]:
     """The numbers of one line; an empty cell was not measured."""
-    speed = _number(line, "current_speed_m_s", where)
-    to = _number(line, "current_to_deg", where) if line.get("current_to_deg") else 0.0
     law = _law(line["law"], f"{where}: law") if line.get("law") else None
     for quantity in quantities:
-        if not line[quantity.name]:
+        value = _number(line, quantity.name, where)
+        if value is None:
             continue
-        spread = UNCERTAINTY + quantity.name
         yield Measured(
-            sea=SeaState(current_speed=speed, current_to=to),
+            at=_conditions(line, where),
             law=law,
             quantity=quantity,
-            value=_number(line, quantity.name, where),
-            uncertainty=_number(line, spread, where) if line.get(spread) else 0.0,
+            value=value,
+            uncertainty=_number(line, UNCERTAINTY + quantity.name, where) or 0.0,
             note=line.get("note") or "",
         )
 
 
-def _number(line: Mapping[str, str], name: str, where: str) -> float:
+def _conditions(line: Mapping[str, str], where: str) -> Conditions:
+    angle = _number(line, "angle_deg", where)
+    try:
+        sea = SeaState(
+            current_speed=_number(line, "current_speed_m_s", where) or 0.0,
+            current_to=_number(line, "current_to_deg", where) or 0.0,
+            hs=_number(line, "hs_m", where) or 0.0,
+            tp=_number(line, "tp_s", where),
+            wave_from=_number(line, "wave_from_deg", where) or 0.0,
+        )
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from error
+    return Conditions(
+        sea=sea,
+        angle=90.0 if angle is None else angle,
+        solidity=_number(line, "solidity", where),
+    )
+
+
+def _number(line: Mapping[str, str], name: str, where: str) -> float | None:
+    """A cell's number; None where it is empty or there is no such column."""
+    if not line.get(name):
+        return None
     try:
         return float(line[name])
-    except (TypeError, ValueError) as error:
+    except ValueError as error:
         raise InputError(
             f"{where}: {name} = {line[name]!r} is no number. Write it with a decimal point, or "
             "leave the cell empty."

@@ -33,7 +33,8 @@ def current(speed: float, to: float = 0.0) -> SeaState:
 
 
 def _sensitivities() -> Iterator[Row]:
-    cage = read_case(CASES / "held_collar_model").cages[0]
+    (cage,) = read_case(CASES / "held_collar_model").subjects
+    assert isinstance(cage, Cage)
     dense = 0.0255 * (1.0 - math.sqrt(1.0 - 0.32))
     for name, changed, wake, drag, lost in (
         ("solidity 0.32", cage.altered(netting={"twine_diameter_m": dense}), True, 92.0, 52.0),

@@ -1,97 +1,92 @@
 """The cases under ``cases/``: ours, and those that a user adds."""
 
 from collections.abc import Iterator
-from dataclasses import fields
 from functools import partial
+from typing import Any
 
-import numpy as np
-
-from seacage.conventions import Result
-from seacage.dynamics import Law, Response, settle
+from seacage.cage import Structure
+from seacage.dynamics import LAWS, MovingLaw
 from seacage.ocean import SeaState
+from validation._answers import answers
 from validation._case import Case, Measured, read_cases
+from validation._panel import PANEL_LAWS, Panel
 from validation._row import Row, Section, Span
 
-Answers = dict[tuple[int, Law, SeaState], Response]
+Found = dict[tuple[int, MovingLaw, SeaState], Any]
+"""What each member of the ensemble does, by each law, in each sea."""
 
 
 def rows_of_case(case: Case) -> Iterator[Row]:
     """Each measured number beside what the cage, or the span of an ensemble, gives."""
-    answers = _answers(case)
+    found = _found(case)
     for measured in case.measured:
-        ours = [
-            _read(measured, answers[cage, law, measured.sea])
-            for cage in range(len(case.cages))
+        several = [
+            found[number, law, measured.at.sea]
+            for number in range(len(case.subjects))
             for law in _laws(case, measured)
         ]
-        yield _row(case, measured, ours)
+        ours = [measured.quantity.read(one, measured.at) for one in several if one is not None]
+        yield _row(case, measured, ours, unsettled=len(several) - len(ours))
 
 
-def _answers(case: Case) -> Answers:
-    """Every cage of the case in every sea it was measured in, by every law asked for there."""
-    answers: Answers = {}
+def _found(case: Case) -> Found:
+    found: Found = {}
     for law, seas in _asked(case).items():
-        for number, cage in enumerate(case.cages):
-            response = settle(
-                cage,
-                seas,
-                law=law,
-                hold_collar=case.hold_collar,
-                collar_drag=case.pipe_drag,
-                wake=case.wake,
-            )
-            answers |= {(number, law, sea): _one(response, i) for i, sea in enumerate(seas)}
-    return answers
+        for number, subject in enumerate(case.subjects):
+            if isinstance(subject, Panel):
+                several: list[Any] = [PANEL_LAWS[law]] * len(seas)
+            else:
+                several = [*answers(subject, seas, law, case.how)]
+            found |= {(number, law, sea): one for sea, one in zip(seas, several, strict=True)}
+    return found
 
 
-def _asked(case: Case) -> dict[Law, list[SeaState]]:
-    asked: dict[Law, list[SeaState]] = {}
+def _asked(case: Case) -> dict[MovingLaw, list[SeaState]]:
+    asked: dict[MovingLaw, list[SeaState]] = {}
     for measured in case.measured:
         for law in _laws(case, measured):
-            if measured.sea not in asked.setdefault(law, []):
-                asked[law].append(measured.sea)
+            if measured.at.sea not in asked.setdefault(law, []):
+                asked[law].append(measured.at.sea)
     return asked
 
 
-def _laws(case: Case, measured: Measured) -> list[Law]:
+def _laws(case: Case, measured: Measured) -> list[MovingLaw]:
     """The law of the line, or all of the case's."""
     return [measured.law] if measured.law else list(case.laws)
 
 
-def _one(response: Response, case: int) -> Response:
-    values = {field.name: getattr(response, field.name) for field in fields(Response)}
-    return Response(**{name: np.asarray(value[case]) for name, value in values.items()})
-
-
-def _read(measured: Measured, response: Response) -> float:
-    if response.result != Result.CONVERGED:
-        return float("nan")  # a shape that is not at rest proves nothing
-    return measured.quantity.read(response, measured.sea)
-
-
-def _row(case: Case, measured: Measured, ours: list[float]) -> Row:
+def _row(case: Case, measured: Measured, ours: list[float], *, unsettled: int) -> Row:
     quantity, tolerance = measured.quantity, case.tolerance[measured.quantity.name]
-    conditions = [f"{measured.sea.current_speed:g} m/s"]
-    if measured.sea.current_to:
-        conditions.append(f"to {measured.sea.current_to:g}°")
-    if measured.law:
-        conditions.append(measured.law)
     spread, value = measured.uncertainty, measured.value
-    settled = [number for number in ours if not np.isnan(number)]
-    unsettled = len(ours) - len(settled)
+    whole = len(ours) + unsettled
     return Row(
-        what=f"{case.title}: {quantity.what}, {', '.join(conditions)}",
+        what=f"{case.title}: {quantity.what}, {', '.join(_conditions(measured))}",
         unit=quantity.unit,
         reference=(value - spread, value + spread) if spread else value,
-        ours=_span(settled),
+        ours=_span(ours),
         kind=case.kind,
         source=case.source,
         tolerance=tolerance.share * abs(value) + tolerance.fixed,
         reason=tolerance.reason,
         must_hold=case.must_hold,
-        detail=f"{unsettled} of {len(ours)} did not settle" if unsettled else "",
+        detail=f"{unsettled} of {whole} did not settle" if unsettled else "",
         note=measured.note or case.note,
     )
+
+
+def _conditions(measured: Measured) -> Iterator[str]:
+    at, sea = measured.at, measured.at.sea
+    yield f"{sea.current_speed:g} m/s"
+    if sea.current_to:
+        yield f"to {sea.current_to:g}°"
+    if sea.hs:
+        yield f"Hs {sea.hs:g} m and Tp {sea.tp:g} s from {sea.wave_from:g}°"
+    if at.angle != 90.0:
+        yield f"{at.angle:g}° to the flow"
+    if at.solidity is not None:
+        yield f"solidity {at.solidity:g}"
+    if measured.law:
+        yield measured.law
 
 
 def _span(numbers: list[float]) -> Span:
@@ -101,11 +96,15 @@ def _span(numbers: list[float]) -> Span:
 
 
 def _section(case: Case) -> Section:
+    laws = _asked(case)
+    simulated = any(law not in LAWS or any(sea.hs for sea in laws[law]) for law in laws)
+    of_panel = isinstance(case.subjects[0], Panel)
+    slow = simulated or isinstance(case.subjects[0], Structure) or len(case.subjects) > 1
     return Section(
         title=case.title,
         about=case.about or f"The case `validation/cases/{case.name}`.",
         rows=partial(rows_of_case, case),
-        slow=len(case.cages) > 1,  # far corners of an ensemble are slow to settle
+        slow=slow and not of_panel,
     )
 
 

@@ -1,14 +1,29 @@
 """A user's case: one TOML, one CSV, and a clear sentence where one of them is wrong."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
 from seacage.cage import Cage
 from seacage.conventions import InputError
-from seacage.dynamics import settle
+from seacage.dynamics import loland, rest_shape, settle
 from seacage.ocean import SeaState
 from validation import Kind
+from validation._answers import How, answers
 from validation._case import CASES, read_case, read_cases
+from validation._quantities import Conditions, quantity_named
 from validation.own_cases import rows_of_case
+
+HOW = How(
+    hold_collar=True,
+    pipe_drag=True,
+    wake=True,
+    twine_drag=None,
+    spin_up=300.0,
+    duration=60.0,
+    time_step=0.002,
+)
 
 TOML = """
 title = "A tank"
@@ -44,9 +59,11 @@ def folder(tmp_path):
 
 def test_a_case_says_which_cage_was_measured_and_what(folder):
     case = read_case(folder)
-    assert (case.title, case.kind, case.hold_collar) == ("A tank", Kind.MEASURED, True)
-    assert [cage.tip.weight for cage in case.cages] == [2000.0]
-    read = [(m.sea.current_speed, m.quantity.name, m.value, m.uncertainty) for m in case.measured]
+    assert (case.title, case.kind, case.how.hold_collar) == ("A tank", Kind.MEASURED, True)
+    assert [cage.tip.weight for cage in case.subjects] == [2000.0]
+    read = [
+        (m.at.sea.current_speed, m.quantity.name, m.value, m.uncertainty) for m in case.measured
+    ]
     assert read == [
         (0.2, "net_drag_kn", 12.0, 1.0),
         (0.3, "net_drag_kn", 25.0, 0.0),
@@ -72,7 +89,7 @@ def test_an_ensemble_spans_every_combination_and_law(folder):
     )
     (folder / "measured.csv").write_text("current_speed_m_s,net_drag_kn\n0.3,25\n")
     case = read_case(folder)
-    assert [cage.tip.weight for cage in case.cages] == [500.0, 5000.0]
+    assert [cage.tip.weight for cage in case.subjects] == [500.0, 5000.0]
     (row,) = rows_of_case(case)
     low, high = row.ours
     assert low < high
@@ -103,6 +120,10 @@ def test_the_cases_that_come_with_seacage_are_read():
         ('["loland"]', '["lolland"]', "laws 'lolland' is unknown; did you mean 'loland'?"),
         ('["loland"]', "3", "laws must be a list, not 3"),
         ('"ace"', '"mine.toml"', "there is no cage file mine.toml beside it"),
+        ('cage = "ace"', "", "must have one of cage, structure and [panel], not 0"),
+        ('cage = "ace"', 'structure = "a.toml"', "there is no structure file a.toml beside it"),
+        ('cage = "ace"', "[panel]", "[panel] key 'collar' is unknown"),
+        ('cage = "ace"', 'cage = "ace"\ntwine_drag = [1.2]', "twine_drag = [1.2] must be two"),
         ("weight_n = 2000.0", "weight = 2.0", "unknown key 'weight'; did you mean 'weight_n'?"),
         ("share = 0.1", "share = -0.1", "share = -0.1 must be a number of at least 0"),
         ("share = 0.1", "shares = 0.1", "key 'shares' is unknown; did you mean 'share'?"),
@@ -132,9 +153,13 @@ def test_a_wrong_toml_is_refused_in_one_sentence(folder, old, new, said):
         ("current_speed_m_s,net_drag_kn\n0.2,3\n0.3,x\n", "line 3: net_drag_kn = 'x' is no number"),
         ("current_speed_m_s,rise_m:top\n0.2,3\n", "'top' is no place of the cage. Write tip"),
         ("current_speed_m_s,depth_m:10:3\n0.2,3\n", "rings 0 to 9 and spokes 0 to 31"),
-        ("current_speed_m_s,bridle_tension_kn:13\n0.2,3\n", "the cage has bridles 1 to 12"),
+        ("current_speed_m_s,line_tension_kn:13\n0.2,3\n", "the cage has bridles 1 to 12"),
         ("current_speed_m_s,uncertainty:net_drag_kn\n0.2,3\n", "'uncertainty:net_drag_kn' is unk"),
-        ("current_speed_m_s,net_drag_kn\n9,3\n", "current_speed = 9 m/s is above 3 m/s"),
+        (
+            "current_speed_m_s,net_drag_kn\n9,3\n",
+            "line 2: SeaState: current_speed = 9 m/s is above",
+        ),
+        ("current_speed_m_s,net_drag_kn\n0.2,\n", "it holds no measured number"),
     ],
 )
 def test_a_wrong_csv_is_refused_in_one_sentence(folder, text, said):
@@ -153,6 +178,7 @@ def test_a_case_without_numbers_is_refused(folder):
 @pytest.mark.parametrize(
     ("column", "value"),
     [
+        ("net_drag_n", lambda r, _: r.net_force[1]),
         ("net_lift_kn", lambda r, _: r.net_force[2] / 1e3),
         ("volume_m3", lambda r, _: r.volume),
         ("volume_loss_percent", lambda r, _: 100.0 * (1.0 - r.volume_fraction)),
@@ -162,15 +188,152 @@ def test_a_case_without_numbers_is_refused(folder):
         ),
         ("depth_m:depth-2", lambda r, cage: -r.node_position[cage.depth_sensors[1].node, 2]),
         ("depth_m:5:24", lambda r, cage: -r.node_position[cage.node(5, 24), 2]),
+        ("rise_m:tip", lambda r, cage: r.node_displacement[cage.bottom_node, 2]),
         ("design_rise_m:tip", lambda r, cage: r.node_position[cage.bottom_node, 2] + 31.0),
-        ("bridle_tension_kn:7", lambda r, _: r.bridle_tension[6] / 1e3),
+        ("line_tension_kn:7", lambda r, _: r.bridle_tension[6] / 1e3),
     ],
 )
-def test_each_quantity_is_read_as_its_name_says(folder, column, value):
-    from validation._quantities import quantity_named
-
-    cage = Cage.named("ace")
-    sea = SeaState(current_speed=0.2, current_to=0.0)
-    response = settle(cage, sea, hold_collar=True)
-    found = quantity_named(column, cage, "here").read(response, sea)
+def test_each_quantity_is_read_as_its_name_says(column, value):
+    cage, sea = Cage.named("ace"), SeaState(current_speed=0.2, current_to=0.0)
+    (answer,) = answers(cage, [sea], "loland", HOW)
+    found = quantity_named(column, cage, "here").read(answer, Conditions(sea=sea))
+    response = settle(cage, sea, law="loland", hold_collar=True)
     assert found == pytest.approx(float(value(response, cage)))
+
+
+PANEL = """
+title = "A flume"
+kind = "measured"
+source = "a report"
+
+[panel]
+twine_diameter_m = 0.0028
+half_mesh_m = 0.029
+area_m2 = 2.0
+
+[tolerance]
+"""
+
+
+def test_a_panel_of_netting_is_a_case_too(tmp_path):
+    tolerances = "\n".join(
+        f'{name} = {{reason = "R"}}' for name in ("cd", "cl", "drag_n", "lift_n")
+    )
+    (tmp_path / "case.toml").write_text(PANEL + tolerances)
+    (tmp_path / "measured.csv").write_text(
+        "law,current_speed_m_s,angle_deg,solidity,cd,cl,drag_n,lift_n\n"
+        "loland,0.5,45,0.2,0.2,0.1,40,20\n"
+        ",0.5,90,,0.2,,,\n"
+    )
+    cd, cl, drag, lift, facing = rows_of_case(read_case(tmp_path))
+    assert (cd.ours, cl.ours) == pytest.approx(loland(0.2, np.sqrt(0.5)))
+    assert drag.ours == pytest.approx(cd.ours * 0.5 * 1000.0 * 0.25 * 2.0)
+    assert lift.ours == pytest.approx(cl.ours * 0.5 * 1000.0 * 0.25 * 2.0)
+    assert cd.what == "A flume: drag coefficient, 0.5 m/s, 45° to the flow, solidity 0.2, loland"
+    low, high = facing.ours  # of all four laws
+    assert low < high
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("half_mesh_m", "mesh_m", "[panel] key 'mesh_m' is unknown"),
+        ("half_mesh_m = 0.029", "", "[panel] key 'half_mesh_m' is missing"),
+        ("area_m2 = 2.0", "area_m2 = 0.0", "[panel] area_m2 = 0.0 must be a number above 0"),
+    ],
+)
+def test_a_wrong_panel_is_refused_in_one_sentence(tmp_path, old, new, said):
+    (tmp_path / "case.toml").write_text(PANEL.replace(old, new))
+    with pytest.raises(InputError) as caught:
+        read_case(tmp_path)
+    assert said in str(caught.value)
+
+
+TANK = """
+name = "tank"
+spokes = 8
+[site]
+water_depth_m = 5.0
+current_to_deg = 0.0
+[[section]]
+name = "hoop"
+kind = "pipe"
+diameter_m = 0.08
+mass_kg_m = 1.0
+axial_stiffness_n = 2e4
+bending_stiffness_n_m2 = 50.0
+[[section]]
+name = "weights"
+kind = "rope"
+diameter_m = 0.03
+mass_kg_m = 2.0
+axial_stiffness_n = 2e4
+[[twine]]
+name = "twine"
+diameter_m = 0.0018
+half_mesh_m = 0.016
+elastic_modulus_pa = 1e8
+density_kg_m3 = 1140.0
+[[ring]]
+name = "top"
+radius_m = 0.75
+depth_m = 0.0
+section = "hoop"
+[[ring]]
+name = "bottom"
+radius_m = 0.75
+depth_m = 1.4
+section = "weights"
+[[net]]
+name = "side"
+twine = "twine"
+upper = "top"
+lower = "bottom"
+rows = 3
+"""
+IN_TANK = """
+title = "A tank"
+kind = "measured"
+source = "a report"
+structure = "tank.toml"
+collar = "held"
+laws = ["loland", "morison"]
+spin_up_s = 30.0
+duration_s = 10.0
+[tolerance.net_drag_n]
+share = 0.1
+reason = "the tank's own"
+[tolerance."rise_m:bottom/6"]
+share = 0.1
+reason = "the ruler's"
+"""
+
+
+def test_a_structure_of_any_topology_is_a_case_too(tmp_path):
+    (tmp_path / "tank.toml").write_text(TANK)
+    (tmp_path / "case.toml").write_text(IN_TANK)
+    (tmp_path / "measured.csv").write_text(
+        "current_speed_m_s,net_drag_n,rise_m:bottom/6\n0.2,20,\n0.4,70,0.4\n"
+    )
+    slow, fast, rise = rows_of_case(read_case(tmp_path))
+    assert 0.0 < slow.ours[0] < slow.ours[1] < fast.ours[1] < 4.0 * slow.ours[1]
+    assert 0.0 < rise.ours[0] < rise.ours[1] < 1.4
+
+
+def test_a_place_that_a_structure_lacks_is_refused(tmp_path):
+    (tmp_path / "tank.toml").write_text(TANK)
+    (tmp_path / "case.toml").write_text(IN_TANK)
+    (tmp_path / "measured.csv").write_text("current_speed_m_s,rise_m:bottom/8\n0.2,1\n")
+    with pytest.raises(InputError, match="a spoke from 0 to 7 as top/0; rings are: top, bottom"):
+        read_case(tmp_path)
+
+
+def test_waves_are_simulated_and_their_means_taken():
+    cage = Cage.named("ace")
+    seas = [
+        SeaState(current_speed=0.2, current_to=0.0),
+        SeaState(current_speed=0.2, current_to=0.0, hs=1.0),
+    ]
+    calm, wavy = answers(cage, seas, "loland", replace(HOW, spin_up=10.0, duration=2.0))
+    assert wavy.net_force[1] > calm.net_force[1]
+    np.testing.assert_allclose(calm.rest, rest_shape(cage, hold_collar=True), atol=0.02)
