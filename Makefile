@@ -4,17 +4,18 @@
 PYTHON ?= python3
 WORKERS ?= 2
 RECORD ?=
+INPUTS ?= 3000
 
 BIN := .venv/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 PYTEST := $(BIN)/python -m pytest -n $(WORKERS)
 OUTSIDE := mosquitto,postgres,node,chromium
-KERNEL := src/seacage/dynamics/_kernel
-BUILT := $(wildcard $(KERNEL)_*.so $(KERNEL)_*.dylib)
+KERNEL := src/seacage/dynamics
+BUILT := $(wildcard $(KERNEL)/_kernel_*.so $(KERNEL)/_kernel_*.dylib)
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help run test test-outside test-all lint check lock bench validate always
+.PHONY: help run test test-outside test-all lint check lock bench sanitize validate always
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 14
@@ -45,6 +46,9 @@ check: lint test ## lint, then the fast tests
 bench: .venv/.dev .venv/.project ## time what people wait for (ONCE=1: only see that it runs)
 	@set -e; for script in benchmarks/[a-z]*.py; do \
 	  echo "== $$script"; $(BIN)/python "$$script" $(if $(ONCE),--once); done
+
+sanitize: .venv/.dev .venv/.project ## the kernel's tests and random INPUTS under sanitizers; needs gcc or clang
+	$(BIN)/python tools/sanitize.py --inputs $(INPUTS)
 
 validate: .venv/.project ## our physics against published numbers, as docs/validation.md
 	OMP_NUM_THREADS=1 $(BIN)/python -m validation --workers $(WORKERS)
@@ -77,7 +81,7 @@ $(BIN)/python:
 	@touch $@
 
 # A compiled kernel that went missing, after `git clean` say, is built again.
-.venv/.project: pyproject.toml hatch_build.py $(wildcard $(KERNEL)*.[ch]) $(if $(BUILT),,always) | .venv/.core
+.venv/.project: pyproject.toml hatch_build.py $(wildcard $(KERNEL)/*.[ch]) $(if $(BUILT),,always) | .venv/.core
 	@echo "Installing seacage and compiling its kernel …"
 	@$(PIP) install --no-deps --editable .
 	@touch $@

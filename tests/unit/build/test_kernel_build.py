@@ -15,6 +15,16 @@ KERNEL = """
 #include <math.h>
 double norm(double x, double y) { return sqrt(x * x + y * y); }
 int is_infinite(double x) { return isinf(x) != 0; }
+int is_below(float x, float y) { return x < y; }
+"""
+SECOND = """
+#include "_step.h"
+/* What rounding cut off a sum is kept: the optimiser may not say it is zero. */
+float cut_off(float sum, float add)
+{
+    const float now = sum + add;
+    return STEP * add - (now - sum);
+}
 """
 
 
@@ -36,6 +46,8 @@ def library(build: ModuleType, tmp_path: Path) -> Path:
         pytest.skip("needs a C compiler")
     source = tmp_path / "_kernel.c"
     source.write_text(KERNEL)
+    source.with_name("_second.c").write_text(SECOND)
+    source.with_name("_step.h").write_text("#define STEP 1.0f\n")
     return build.build(compiler, source, build.TARGETS[0])
 
 
@@ -59,6 +71,39 @@ def test_a_built_library_still_knows_what_is_infinite(library: Path) -> None:
     assert not is_infinite(1e300)
 
 
+def test_a_built_library_still_knows_what_is_no_number(library: Path) -> None:
+    is_below = ctypes.CDLL(str(library)).is_below
+    is_below.argtypes = (ctypes.c_float, ctypes.c_float)
+    assert is_below(1.0, 2.0)
+    assert not is_below(math.nan, 2.0)
+    assert not is_below(2.0, math.nan)
+
+
+def test_every_c_file_beside_the_source_is_in_the_library_and_sums_stay_as_written(
+    library: Path,
+) -> None:
+    cut_off = ctypes.CDLL(str(library)).cut_off
+    cut_off.restype, cut_off.argtypes = ctypes.c_float, (ctypes.c_float, ctypes.c_float)
+    assert cut_off(1.0, 2.0**-30) == 2.0**-30
+    assert cut_off(1.0, 0.5) == 0.0
+
+
+def test_a_change_in_any_source_of_the_kernel_builds_it_again(
+    pytestconfig: pytest.Config,
+) -> None:
+    root = pytestconfig.rootpath
+    rules = subprocess.run(
+        ["make", "-pn", "help"], cwd=root, check=True, capture_output=True, text=True
+    )
+    reads = next(
+        line for line in rules.stdout.splitlines() if line.startswith(".venv/.project: ")
+    ).split()
+    room = root / "src" / "seacage" / "dynamics"
+    sources = [p for p in room.iterdir() if p.suffix in {".c", ".h"}]
+    assert len(sources) > 1
+    assert {p.relative_to(root).as_posix() for p in sources} <= set(reads)
+
+
 def test_loading_a_library_keeps_denormals_in_the_rest_of_the_process(library: Path) -> None:
     halve = f"import ctypes; ctypes.CDLL({str(library)!r}); print(float('1e-320') * 0.5)"
     told = subprocess.run([sys.executable, "-c", halve], check=True, capture_output=True, text=True)
@@ -66,7 +111,10 @@ def test_loading_a_library_keeps_denormals_in_the_rest_of_the_process(library: P
 
 
 def test_a_build_leaves_nothing_but_the_library(library: Path) -> None:
-    assert {path.name for path in library.parent.iterdir()} == {"_kernel.c", library.name}
+    assert {path.name for path in library.parent.iterdir()} == {
+        *("_kernel.c", "_second.c", "_step.h"),
+        library.name,
+    }
 
 
 def test_a_kernel_that_does_not_compile_is_refused_with_the_words_of_the_compiler(

@@ -1,0 +1,231 @@
+"""Random inputs for every entry of the compiled kernel: valid indices, and any numbers at all."""
+
+import ctypes
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from seacage.dynamics import _kernel as k
+from seacage.dynamics import _march as m
+from seacage.dynamics._newton import Balancing
+from seacage.dynamics._pattern import Pattern, _pattern
+
+GRAPHS = 200
+"""So many structures, each met with many numbers: to plan an elimination takes long."""
+
+WILD = (np.nan, np.inf, -np.inf, 0.0, -0.0, 1e38, -1e38, 1e-38, 1e-45, 1e300, -1e300, 2.0**31)
+
+
+def numbers(rng: np.random.Generator, *shape: int, kind: Any = np.float32) -> np.ndarray:
+    """Of ordinary size, now and then with some or many that no cage should see."""
+    plain = rng.normal(size=shape) * 10.0 ** rng.uniform(-3.0, 4.0)
+    share = rng.choice([0.0, 0.0, 0.02, 0.5])
+    return np.where(rng.random(shape) < share, rng.choice(WILD, shape), plain).astype(kind)
+
+
+def indices(rng: np.random.Generator, nodes: int, count: int, ends: int) -> np.ndarray:
+    """Of nodes, repeated ones among them."""
+    return rng.integers(0, nodes, (count, ends), dtype=np.int32)
+
+
+def march(library: ctypes.CDLL, rng: np.random.Generator) -> None:
+    """Some steps through time, then the two entries that the tests use."""
+    lanes = int(library.seacage_march_lanes())
+    nodes = int(rng.integers(1, 7))
+    body, parts = a_body(rng, nodes)
+    sea = a_sea(rng, parts["panels"], lanes)
+    refreshes, every = int(rng.integers(0, 4)), int(rng.integers(0, 3))
+    schedule = m._Schedule.filled(
+        time_step=float(rng.choice([0.002, 0.1, 0.0, 1e30, np.nan])),
+        ramp=float(rng.choice([0.0, 0.1, 60.0])),
+        first=0,
+        refreshes=refreshes,
+        count_from=int(rng.integers(0, 2)),
+        sample_every=every,
+        steps=int(rng.integers(0, 6)),
+        hold=int(rng.integers(1, 5)),
+    )
+    state = a_state(rng, nodes, parts, lanes)
+    record = a_record(nodes, parts["bridles"], lanes, refreshes if every else 0)
+    library.seacage_march(*map(ctypes.byref, (body, sea, schedule, state, record)))
+    total, at = np.zeros((3, lanes), np.float32), numbers(rng, 3, lanes)
+    library.seacage_march_forces(*map(ctypes.byref, (body, sea, state)), m.pointer(total))
+    library.seacage_march_water(
+        ctypes.byref(sea),
+        m.pointer(at),
+        ctypes.c_double(float(numbers(rng, kind=np.float64))),
+        m.pointer(np.zeros(lanes, np.float32)),
+        m.pointer(total),
+    )
+
+
+def a_body(rng: np.random.Generator, nodes: int) -> tuple[Any, dict[str, int]]:
+    """A structure that no one would build."""
+    named = ("bars", "bends", "panels", "cylinders", "springs", "grounds")
+    parts = {name: int(rng.integers(0, 5)) for name in named}
+    floats = np.flatnonzero(rng.random(nodes) < 0.5).astype(np.int32)
+    bridles = rng.integers(0, max(1, parts["bars"]), int(rng.integers(0, 4)), dtype=np.int32)
+    bridles = bridles[: 4 if parts["bars"] else 0]
+    parts |= {"floats": len(floats), "bridles": len(bridles)}
+    shapes = {
+        **dict.fromkeys(("weight", "mass", "water_mass"), (nodes,)),
+        "place": (nodes, 3),
+        **dict.fromkeys(("bar_length", "bar_rate", "bar_damping"), (parts["bars"],)),
+        "bend_stiffness": (parts["bends"],),
+        **dict.fromkeys(("panel_share", "panel_law"), (parts["panels"], 4)),
+        **dict.fromkeys(("cylinder_drag", "cylinder_skin"), (parts["cylinders"],)),
+        **dict.fromkeys(("float_stiffness", "float_draft", "float_height"), (len(floats),)),
+        **dict.fromkeys(("spring_place", "spring_stiffness"), (parts["springs"], 3)),
+        **dict.fromkeys(("spring_preload", "spring_damping"), (parts["springs"], 3)),
+        "ground_stiffness": (parts["grounds"],),
+        "cylinder_series": (8,),
+    }
+    body = m._Body.filled(
+        nodes=nodes,
+        kind=int(rng.integers(0, 3)),
+        bar_ends=indices(rng, nodes, parts["bars"], 2),
+        bend_nodes=indices(rng, nodes, parts["bends"], 3),
+        panel_corners=indices(rng, nodes, parts["panels"], 4),
+        cylinder_ends=indices(rng, nodes, parts["cylinders"], 2),
+        spring_nodes=indices(rng, nodes, parts["springs"], 1),
+        ground_nodes=indices(rng, nodes, parts["grounds"], 1),
+        float_nodes=floats,
+        bridle_bars=bridles,
+        bar_least=rng.choice([0.0, -np.inf], parts["bars"]).astype(np.float32),
+        ground_level=float(numbers(rng)),
+        law=(ctypes.c_float * 4)(*numbers(rng, 4)),
+        **parts,
+        **{name: numbers(rng, *shape) for name, shape in shapes.items()},
+    )
+    return body, parts
+
+
+def a_sea(rng: np.random.Generator, panels: int, lanes: int) -> Any:
+    """Waves and currents of any size."""
+    components, levels = int(rng.integers(0, 5)), int(rng.integers(1, 4))
+    return m._Sea.filled(
+        components=components,
+        levels=levels,
+        depth=float(numbers(rng)),
+        level_z=numbers(rng, levels),
+        current=numbers(rng, levels, 2, lanes),
+        wake=numbers(rng, panels, lanes),
+        **{name: numbers(rng, components, lanes, kind=k) for name, k in m._WAVE_KINDS.items()},
+    )
+
+
+def a_state(rng: np.random.Generator, nodes: int, parts: dict[str, int], lanes: int) -> Any:
+    """Anywhere, at any speed."""
+    shapes = {
+        **dict.fromkeys((name for name, _ in m._State._fields_), (nodes, 3)),
+        "drag": (nodes,),
+        **dict.fromkeys(("elevation", "rise"), (parts["floats"],)),
+        "panel_current": (parts["panels"], 3),
+        **dict.fromkeys(("panel_drag", "panel_lift"), (parts["panels"],)),
+        "lost_at": (),
+    }
+    return m._State.filled(**{n: numbers(rng, *shape, lanes) for n, shape in shapes.items()})
+
+
+def a_record(nodes: int, bridles: int, lanes: int, samples: int) -> Any:
+    """Room for what a march keeps, and not a number more."""
+    sizes = {"node": 3 * nodes, "bridle": bridles, "load": 3}
+    kinds = {"sum": np.float64, "square": np.float64, "least": np.float32, "most": np.float32}
+    account = {
+        f"{what}_{how}": np.zeros((size, lanes), kind)
+        for what, size in sizes.items()
+        for how, kind in kinds.items()
+    }
+    shapes = {"positions": (nodes, 3), "tensions": (bridles,), "elevations": (), "loads": (3,)}
+    return m._Record.filled(
+        **account,
+        counted=np.zeros(1, np.int64),
+        sampled=np.zeros(1, np.int64),
+        **{n: np.zeros((samples, *shape, lanes), np.float32) for n, shape in shapes.items()},
+    )
+
+
+PARTS = {"bars": 2, "bends": 3, "panels": 4, "cylinders": 2, "floats": 1, "springs": 1}
+"""Nodes of each."""
+
+
+@lru_cache(maxsize=GRAPHS)
+def a_graph(seed: int) -> tuple[int, dict[str, np.ndarray], Pattern]:
+    """Nodes, the nodes of each part, and the places of its tangent."""
+    rng = np.random.default_rng(seed)
+    nodes = int(rng.integers(1, 9))
+    graph = {n: indices(rng, nodes, int(rng.integers(0, 6)), ends) for n, ends in PARTS.items()}
+    stiff = {name: part for name, part in graph.items() if name != "cylinders"}
+    ends = tuple(PARTS[name] for name in stiff)
+    pattern = _pattern(nodes, ends, tuple(part.tobytes() for part in stiff.values()))
+    return nodes, graph, pattern
+
+
+def settle(library: ctypes.CDLL, rng: np.random.Generator) -> None:
+    """Some rounds of the way to rest, and some of Newton's method."""
+    lanes = int(library.seacage_lanes())
+    nodes, graph, pattern = a_graph(int(rng.integers(GRAPHS)))
+    structure = a_structure(rng, nodes, graph)
+    panels, bars = len(graph["panels"]), len(graph["bars"])
+    flow = k._Flow.filled(
+        *(doubles(rng, *shape, lanes) for shape in ((3,), (panels, 6), ())),
+    )
+    relaxation = k._Relaxation.filled(
+        *(doubles(rng, size) for size in (nodes, bars, bars)),
+        *(0.5, 0.8, 0.9, *(int(n) for n in rng.integers((1, 0, 0), (3, 4, 4)))),
+    )
+    position, velocity = doubles(rng, nodes, 3, lanes), doubles(rng, nodes, 3, lanes)
+    relaxing = k._Relaxing.filled(
+        *(position, velocity, doubles(rng, bars, lanes)),
+        *(doubles(rng, lanes) for _ in range(4)),
+        an_open(rng, lanes),
+    )
+    library.seacage_relax(
+        *map(ctypes.byref, (structure, flow, relaxation, relaxing)),
+        *(k._pointer(room) for room in (np.empty((bars, lanes)), np.empty((nodes, 3, lanes)))),
+    )
+    balance = k._Balance.filled(
+        *(rng.choice([0.0, 1.0], nodes), doubles(rng, bars), 0.5, 1.0, 1e-6, 1e-3, 1e6),
+        int(rng.integers(0, 4)),
+    )
+    shapes = {"position": (nodes, 3), "tension": (bars,)}
+    balancing = k._Balancing.filled(
+        *(
+            an_open(rng, lanes)
+            if name == "residual"
+            else doubles(rng, *shapes.get(name, ()), lanes)
+            for name in Balancing.__slots__
+        )
+    )
+    plan = k._Pattern.filled(*(getattr(pattern, name) for name in Pattern.__slots__))
+    bench = k.kernel()._bench(nodes, bars, pattern)
+    library.seacage_balance(*map(ctypes.byref, (structure, flow, plan, balance, balancing, bench)))
+
+
+def doubles(rng: np.random.Generator, *shape: int) -> np.ndarray:
+    """See ``numbers``."""
+    return numbers(rng, *shape, kind=np.float64)
+
+
+def an_open(rng: np.random.Generator, lanes: int) -> np.ndarray:
+    """Residuals of which most say that there is something left to do."""
+    return np.where(rng.random(lanes) < 0.8, 1e3, doubles(rng, lanes))
+
+
+def a_structure(rng: np.random.Generator, nodes: int, graph: dict[str, np.ndarray]) -> Any:
+    """What the kernel of the equilibria needs to know."""
+
+    def of(part: str, *shape: int) -> np.ndarray:
+        return doubles(rng, len(graph[part]), *shape)
+
+    return k._Assembly.filled(
+        nodes,
+        *(len(part) for part in graph.values()),
+        *graph.values(),
+        doubles(rng, nodes),
+        *(of("bars"), of("bars"), rng.choice([0.0, -np.inf], len(graph["bars"]))),
+        *(of("bends"), of("panels", 4), of("cylinders")),
+        *(of("floats") for _ in range(3)),
+        *(of("springs", 3) for _ in range(3)),
+    )
