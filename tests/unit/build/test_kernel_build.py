@@ -93,7 +93,7 @@ def test_a_change_in_any_source_of_the_kernel_builds_it_again(
 ) -> None:
     root = pytestconfig.rootpath
     rules = subprocess.run(
-        ["make", "-pn", "help"], cwd=root, check=True, capture_output=True, text=True
+        ["make", "-p", "-n", "help"], cwd=root, check=True, capture_output=True, text=True
     )
     reads = next(
         line for line in rules.stdout.splitlines() if line.startswith(".venv/.project: ")
