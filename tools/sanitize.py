@@ -124,6 +124,7 @@ def run_tests(library: Path) -> int:
 
     # slower than elsewhere; uncaptured, for a report of the sanitizers ends the process
     options = ["-n", "0", "-q", "-s", "--timeout", "600", "-p", "no:cacheprovider"]
+    options += ["--hypothesis-seed", "0"]  # the same inputs each time, as everything here
     return int(pytest.main([*options, *TESTS], plugins=[Plugin(library)]))
 
 
