@@ -132,23 +132,12 @@ def run_share(
     store = Path(out)
     attributes = _attributes(cage, plan, by)
     result, size = _begun(store, attributes, cases=len(plan), block=by.block)
-    which, shares = _checked(share)
-    firsts = range(size * which, len(plan), size * shares)
-    if not firsts:
-        raise InputError(
-            f"Share {which} of {shares} is empty: {len(plan)} cases make "
-            f"{-(-len(plan) // size)} blocks of {size}. Make no more shares than that."
-        )
+    firsts = _firsts(share, cases=len(plan), size=size)
     cases = [case for first in firsts for case in range(len(plan))[first : first + size]]
+    blocks = _blocks(cage, plan, by, size, [at for at in firsts if result[at] == NOT_RUN])
     done = sum(int(result[case]) != NOT_RUN for case in cases)
     report = progress or _unheard
     report("campaign", done, len(cases))
-    toml = cage.to_toml()
-    blocks = [
-        _block(plan, slice(first, first + size), toml, by)
-        for first in firsts
-        if result[first] == NOT_RUN
-    ]
     with closing(_mapped(blocks, workers=workers, cluster=cluster)) as finished:
         for block, answers in finished:
             if not store.exists():  # a cage or a law that cannot be run leaves no store
@@ -174,14 +163,21 @@ def campaign_key(cage: Cage, plan: Plan, by: Simulator) -> str:
     return hashlib.sha256(same.encode()).hexdigest()[:16]
 
 
-def _checked(share: tuple[int, int]) -> tuple[int, int]:
+def _firsts(share: tuple[int, int], *, cases: int, size: int) -> range:
+    """First case of each block of a share."""
     which, shares = share
     if not 0 <= which < shares:
         raise InputError(
             f"Share {which} of {shares} does not exist. Shares count from 0: give 0/{shares} to "
             f"{max(shares, 1) - 1}/{shares}."
         )
-    return share
+    firsts = range(size * which, cases, size * shares)
+    if not firsts:
+        raise InputError(
+            f"Share {which} of {shares} is empty: {cases} cases make {-(-cases // size)} blocks "
+            f"of {size}. Make no more shares than that."
+        )
+    return firsts
 
 
 def _begun(
@@ -200,16 +196,21 @@ def _begun(
     return result, size
 
 
-def _block(plan: Plan, cases: slice, cage_toml: str, by: Simulator) -> Block:
-    return Block(
-        first=cases.start,
-        cage_toml=cage_toml,
-        seas=plan.seas[cases],
-        wave_seeds=tuple(_wave_seed(plan, case) for case in range(len(plan))[cases]),
-        duration=plan.duration,
-        simulator=by,
-        version=version("seacage"),
-    )
+def _blocks(cage: Cage, plan: Plan, by: Simulator, size: int, firsts: Sequence[int]) -> list[Block]:
+    toml, number = cage.to_toml(), version("seacage")
+    spans = [slice(first, first + size) for first in firsts]
+    return [
+        Block(
+            first=span.start,
+            cage_toml=toml,
+            seas=plan.seas[span],
+            wave_seeds=tuple(_wave_seed(plan, case) for case in range(len(plan))[span]),
+            duration=plan.duration,
+            simulator=by,
+            version=number,
+        )
+        for span in spans
+    ]
 
 
 def _wave_seed(plan: Plan, case: int) -> int:
