@@ -5,8 +5,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
-from seacage.conventions import WATER_VISCOSITY, InputError
+import numpy as np
+
+from seacage.conventions import WATER_DENSITY, WATER_VISCOSITY, InputError
 from seacage.dynamics import MovingLaw, aarsnes, kristiansen_faltinsen, loland
+from seacage.dynamics._assembly import Panels
+from seacage.dynamics._motion import NetLaw, twine_load
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -77,11 +81,28 @@ def _by_reynolds(
 def _twines(
     solidity: float, cosine: float, *, speed: float, half_mesh: float
 ) -> tuple[float, float]:
-    """Twine by twine: one family of twines stays across the flow, one turns with the panel."""
-    diameter = _diameter(solidity, half_mesh)
-    reynolds = max(diameter * speed / WATER_VISCOSITY, 30.0)
-    across = (1.1 + 4.0 / math.sqrt(reynolds)) * diameter / half_mesh
-    return across * (1.0 + cosine**3), across * cosine**2 * math.sqrt(max(1.0 - cosine**2, 0.0))
+    """Twine by twine, one family of twines across the flow and one turned with the panel."""
+    one, share = np.ones(1), np.full((1, 4), 0.25)
+    panels = Panels(
+        corners=np.array([[0, 1, 2, 3]]),
+        share=share,
+        solidity=solidity * one,
+        twine_diameter=_diameter(solidity, half_mesh) * one,
+        outward=np.array([[1.0, 0.0]]),
+        half_width=one,
+        depth=one,
+        area=one,
+        twine_spacing=half_mesh * one,
+        diamond=np.zeros(1, dtype=bool),
+    )
+    sine = math.sqrt(max(1.0 - cosine**2, 0.0))
+    # a square metre, its normal turned from the flow (x) upwards, by θ
+    corners = np.array([[0, 0, 0], [0, 1, 0], [-sine, 1, cosine], [-sine, 0, cosine]])
+    law = NetLaw(name="morison", wake=np.ones((1, 1)))
+    past = np.array([[[speed, 0.0, 0.0]]])
+    load = twine_load(panels, law, corners[None].astype(float), past)[0, 0]
+    drag, _, lift = load / (0.5 * WATER_DENSITY * max(speed, 1e-9) ** 2)
+    return float(drag), float(lift)
 
 
 PANEL_LAWS: dict[MovingLaw, PanelLaw] = {

@@ -37,8 +37,8 @@ TRAWL = (
     "our laws are of square knotless mesh."
 )
 FITTED = (
-    "The fit's net is not in the stored text, so only the ratio to its own C_D(0) is compared. Both "
-    "fits give more lift, over that drag, than any of our laws at a solidity of 0.20."
+    "The fit's net is not in the stored text, so only the ratio to its own C_D(0) is compared. "
+    "Both fits give more lift, over that drag, than any of our laws at a solidity of 0.20."
 )
 
 

@@ -113,9 +113,9 @@ def test_the_cases_that_come_with_seacage_are_read():
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        ("title =", "titel =", "key 'title' is missing"),
+        ("title =", "head =", "key 'title' is missing"),
         ('cage = "ace"', 'cage = "ace"\ncolour = 3', "key 'colour' is unknown"),
-        ('"measured"', '"mesured"', "kind 'mesured' is unknown; did you mean 'measured'?"),
+        ('"measured"', '"measure"', "kind 'measure' is unknown; did you mean 'measured'?"),
         ('"held"', '"hold"', "collar 'hold' is unknown; did you mean 'held'?"),
         ('["loland"]', '["lolland"]', "laws 'lolland' is unknown; did you mean 'loland'?"),
         ('["loland"]', "3", "laws must be a list, not 3"),
