@@ -73,6 +73,12 @@ class NetLaw:
         if self.name not in MOVING_LAWS:
             known = ", ".join(MOVING_LAWS)
             raise InputError(f"simulate: no law {self.name!r}; there are: {known}.")
+        drag = np.array(self.twine_drag or (0.0, 0.0))
+        if not (np.isfinite(drag).all() and np.all(drag >= 0.0)):
+            raise InputError(
+                f"simulate: twine_drag = {self.twine_drag} must be two finite numbers of at least "
+                "0, across and along the twine. Pass None for those of a smooth cylinder."
+            )
 
 
 def wake_share(

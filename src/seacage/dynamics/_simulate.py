@@ -128,10 +128,11 @@ def simulate(
     InputError
         No sea at all, times that make no sense, an unknown law or mooring, a time step too
         long for the stiffest line, waves that are not finite, too high or of water of another
-        depth, or a cage that cannot float.
+        depth, drag of twines for a law without, or a cage that cannot float or is deeper than
+        its site.
     """
     seas = [sea] if isinstance(sea, SeaState) else list(sea)
-    _check(seas, law, workers)
+    _check(seas, law, twine_drag, workers)
     steps = _steps(duration, ramp, spin_up, time_step, sample_every)
     assembly = _prepared(cage, mooring, hold_collar=hold_collar, collar_drag=collar_drag)
     assembly, _ = steadied(assembly, steps.time_step)
@@ -166,13 +167,23 @@ def simulate(
     return cases[0] if isinstance(sea, SeaState) else stacked(cases)
 
 
-def _check(seas: list[SeaState], law: MovingLaw, workers: int) -> None:
+def _check(
+    seas: list[SeaState],
+    law: MovingLaw,
+    twine_drag: tuple[float, float] | None,
+    workers: int,
+) -> None:
     if not seas:
         raise InputError("simulate: no sea state given. Pass one or more.")
     if workers < 1:
         raise InputError(f"simulate: workers = {workers} threads do no work. Give 1 or more.")
     if law not in MOVING_LAWS:
         raise InputError(f"simulate: no law {law!r}; there are: {', '.join(MOVING_LAWS)}.")
+    if twine_drag is not None and law != "morison":
+        raise InputError(
+            f"simulate: twine_drag = {twine_drag}, but law {law!r} knows no twines. "
+            "Leave it out, or pass law='morison'."
+        )
 
 
 def _steps(
@@ -234,6 +245,7 @@ def _prepared(
     if isinstance(cage, Structure):
         assembly = rigged(cage)
     else:
+        _check_depth(cage)
         assembly = anchored(cage) if mooring == "catenary" else _assembled(cage)
     if hold_collar:
         fixed = assembly.fixed.copy()
@@ -243,6 +255,15 @@ def _prepared(
         nothing = np.zeros_like(assembly.cylinders.drag_width)
         assembly = replace(assembly, cylinders=replace(assembly.cylinders, drag_width=nothing))
     return assembly
+
+
+def _check_depth(cage: Cage) -> None:
+    lowest, depth = -float(cage.design_position[:, 2].min()), cage.site.water_depth
+    if lowest >= depth:
+        raise InputError(
+            f"simulate: the net of cage {cage.name} hangs {lowest:g} m deep in water of {depth:g} "
+            "m, and no bed carries it. Check water_depth_m, tip_depth_m and ring_depths_m."
+        )
 
 
 def _waves(

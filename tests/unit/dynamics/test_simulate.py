@@ -473,6 +473,22 @@ REFUSED = {
         {"waves": sample_waves(SEA, seed=0, components=100_000, depth=DEPTH)},
         r"100000 components",
     ),
+    "drag of no twine": ((SMALL, SEA), {"twine_drag": (1.2, 0.0)}, r"knows no twines.*morison"),
+    "drag that pushes": (
+        (SMALL, SEA),
+        {"twine_drag": (-1.0, 0.0), "law": "morison"},
+        r"twine_drag = \(-1\.0, 0\.0\) must be .* at least 0",
+    ),
+    "drag of no number": (
+        (SMALL, SEA),
+        {"twine_drag": (1.2, np.nan), "law": "morison"},
+        r"twine_drag = .*nan",
+    ),
+    "a net below the sea bed": (
+        (SMALL.altered(site={"water_depth_m": 20.0}), SEA),
+        {},
+        r"hangs 21 m deep in water of 20 m.*water_depth_m",
+    ),
     "no worker": ((SMALL, SEA), {"workers": 0}, r"workers = 0"),
     "a cage that sinks": (
         (SMALL.altered(sinker_tube={"weight_n_m": 50_000.0}), SEA),
