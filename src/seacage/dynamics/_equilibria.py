@@ -23,14 +23,14 @@ AIM = 1e-3
 APART = 2e-3
 """Shapes in which no node is farther apart are one equilibrium, over the collar's radius [-]."""
 
-STRETCH, MOST_ITERATIONS = 6, 120
+STRETCH, MOST_ITERATIONS = 6, 240
 """Newton iterations before the unfinished regroup, and in all."""
 
 ATTEMPTS = 4
 """How often relaxation and Newton's method take turns on a case that the latter did not finish."""
 
 FLAT, ASIDE, GOLDEN = np.deg2rad([80.0, 45.0, 137.507764])
-"""Swings of first shapes: as by faster water, and by water from elsewhere [rad]."""
+"""Swings of first shapes: much faster water's, other water's, and how far on the next is [rad]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -77,8 +77,8 @@ def _first_shapes(
 ) -> Float[np.ndarray, "problem node 3"]:
     """The design shape with the net swung round the collar, case by case.
 
-    By the angle that the load asks for; not at all, as in rising water; nearly flat, as in
-    falling water; and then aside, each the golden angle on from the last.
+    By the angle that the load asks for; not at all; nearly flat; and then aside, each the
+    golden angle on from the last.
     """
     rigid = total_net_force(assembly.panels, flow, assembly.position[None])
     load = np.linalg.norm(rigid, axis=1) / -np.sum(assembly.weight)

@@ -285,7 +285,7 @@ class Kernel:
             *(np.empty((nodes, 3, self.lanes)) for _ in range(3)),
             np.zeros((bars, self.lanes)),
             np.empty((bars, self.lanes)),
-            np.empty((bars, 5, self.lanes)),
+            np.empty((bars, 6, self.lanes)),
             np.empty((len(pattern.column), 9, self.lanes)),
             np.empty((2, nodes), dtype=np.int32),
         )

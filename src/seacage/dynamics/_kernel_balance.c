@@ -36,14 +36,14 @@ typedef struct {
 typedef struct {
     vec *truth, *force, *step; /* [node]: forces of the true law, of the linear one, the answer */
     double *zero, *tension;    /* [bar][lane] */
-    double *bar;               /* [bar][5][lane]: unit vector, rate, what the tension lacks */
+    double *bar;               /* [bar][6][lane]: unit vector, rate, tension, what it lacks */
     block *blocks;             /* [block] */
     int32_t *place;            /* [2][node]: of the blocks of the two rows at hand */
 } bench;
 
 /* What the bars' linear law adds to the forces of the true one, and to the tangent. */
-static void linearise_bars(const assembly *s, const pattern *p, const balance *r, balancing *b,
-                           bench *w)
+static void linearise_bars(const assembly *s, const pattern *p, const balance *r,
+                           const balancing *b, bench *w)
 {
     const vec *restrict x = b->position;
     lane floor;
@@ -53,8 +53,8 @@ static void linearise_bars(const assembly *s, const pattern *p, const balance *r
         const double length = s->bar_length[q], rate = r->true_rate[q];
         const double slackens = s->bar_least[q] == 0.0 ? 1.0 : 0.0;
         const int32_t *to = p->bars + 4 * q;
-        double *restrict u = w->bar + 5 * LANES * q;
-        double *restrict tension = b->tension + LANES * q;
+        double *restrict u = w->bar + 6 * LANES * q;
+        const double *restrict tension = b->tension + LANES * q;
         lane axial, across, change;
         EACH_LANE {
             const double dx = x[j][0][k] - x[i][0][k];
@@ -73,8 +73,8 @@ static void linearise_bars(const assembly *s, const pattern *p, const balance *r
             u[LANES + k] = dy / now;
             u[2 * LANES + k] = dz / now;
             u[3 * LANES + k] = share * rate;
-            u[4 * LANES + k] = lacks;
-            tension[k] = bears;
+            u[4 * LANES + k] = bears;
+            u[5 * LANES + k] = lacks;
             change[k] = bears + lacks - truth;
             across[k] = bears / now;
             axial[k] = share * rate - across[k];
@@ -213,7 +213,7 @@ static void linearise_supports(const assembly *s, const pattern *p, const vec *r
 
 /* Forces, and the slope with which they fall as nodes move. */
 static void linearise(const assembly *s, const flow *f, const pattern *p, const balance *r,
-                      balancing *b, bench *w)
+                      const balancing *b, bench *w)
 {
     add_forces(s, f, r->true_rate, w->zero, w->tension, b->position, w->truth);
     memcpy(w->force, w->truth, s->nodes * sizeof(vec));
@@ -390,15 +390,15 @@ static void advance(const assembly *s, balancing *b, const bench *w, const doubl
     for (int q = 0; q < s->bars; q++) {
         const int i = s->bar_ends[2 * q], j = s->bar_ends[2 * q + 1];
         const int slackens = s->bar_least[q] == 0.0;
-        const double *restrict u = w->bar + 5 * LANES * q;
+        const double *restrict u = w->bar + 6 * LANES * q;
         double *restrict tension = b->tension + LANES * q;
         EACH_LANE {
             double stretch = 0.0;
             for (int a = 0; a < 3; a++)
                 stretch += u[a * LANES + k] * (w->step[j][a][k] - w->step[i][a][k]);
-            const double least = 0.05 * tension[k];
+            const double bears = u[4 * LANES + k], least = 0.05 * bears;
             const double next =
-                tension[k] + share[k] * (u[4 * LANES + k] + u[3 * LANES + k] * stretch);
+                bears + share[k] * (u[5 * LANES + k] + u[3 * LANES + k] * stretch);
             tension[k] = slackens && next < least ? least : next;
         }
     }

@@ -41,8 +41,9 @@ class Response:
     equilibrium_spread
         How far a node's places in two of them are apart at most; 0 where there is one [m].
     unstable
-        Whether the cage would leave this equilibrium on its own, proved by the sign of the
-        stiffness matrix's determinant; False proves nothing.
+        Whether the cage would creep away from this equilibrium on its own, proved by the
+        sign of the stiffness matrix's determinant. False proves nothing: a net may still
+        sway about it, and only ``simulate`` tells.
     """
 
     node_position: Float[np.ndarray, "*case node 3"]
@@ -74,14 +75,14 @@ def settle(
 
     Net loads by a screen law with a wake on the down-stream half, tension-only netting
     with its weight, elastic collar afloat, sinker tube on the cylinder's edge, bridles on
-    elastic frame corners. Left out: the change of the current with depth, and the motion
-    of the water and the cage in waves (``simulate`` has it). A case's numbers do not
-    depend on the cases beside it nor on ``workers``.
+    elastic frame corners. Left out: the change of the current with depth, that netting above
+    the surface is dry, and the motion of the water and the cage in waves (``simulate`` has
+    it). A case's numbers do not depend on the cases beside it nor on ``workers``.
 
     A cage may have several equilibria. They are sought from so many first shapes: the net
-    swung as the load asks, hanging straight (as in rising water), nearly flat (as in falling
-    water), then swung aside. The first found that is not proved unstable is the answer;
-    ``Response`` says how many others there are and how far apart.
+    swung as the load asks, hanging straight, nearly flat, then swung aside. The first found
+    that is not proved unstable is the answer; ``Response`` says how many there are and how
+    far apart.
 
     Parameters
     ----------
