@@ -1,10 +1,11 @@
-"""Chains of bars against the closed forms of a hanging line, brought to rest by the kernel."""
+"""Chains of bars against the closed forms of a hanging line, brought to rest in both ways."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from seacage.conventions import GRAVITY
 from seacage.dynamics import catenary
 from seacage.dynamics._assembly import (
     Assembly,
@@ -12,11 +13,13 @@ from seacage.dynamics._assembly import (
     Bends,
     Cylinders,
     Floats,
+    Ground,
     Panels,
     Springs,
 )
 from seacage.dynamics._kernel import Relaxation, Relaxing, kernel
 from seacage.dynamics._loads import SteadyFlow, bar_tension, nodal_force
+from seacage.dynamics._newton import Balance, Balancing
 
 NONE = np.zeros(0)
 NO_INDEX = np.zeros(0, dtype=np.int64)
@@ -37,13 +40,17 @@ def chain(position, *, length, axial_stiffness, weight):
         cage_nodes=count + 1,
         position=position,
         weight=nodal,
+        mass=-nodal / GRAVITY,
+        water_mass=np.zeros(count + 1),
+        fixed=np.zeros(count + 1, dtype=bool),
         bars=Bars(
             ends=np.stack([np.arange(count), np.arange(count) + 1], axis=1),
             length=np.full(count, length / count),
             stiffness=np.full(count, axial_stiffness),
             pushed=np.zeros(count, dtype=bool),
+            damping_ratio=np.zeros(count),
         ),
-        bridles=slice(0, 0),
+        bridles=NO_INDEX,
         bends=Bends(nodes=np.zeros((0, 3), dtype=np.int64), stiffness=NONE),
         panels=Panels(
             corners=np.zeros((0, 4), dtype=np.int64),
@@ -53,14 +60,25 @@ def chain(position, *, length, axial_stiffness, weight):
             outward=np.zeros((0, 2)),
             half_width=NONE,
             depth=NONE,
+            area=NONE,
+            twine_spacing=NONE,
+            diamond=np.zeros(0, dtype=bool),
         ),
-        cylinders=Cylinders(ends=np.zeros((0, 2), dtype=np.int64), drag_width=NONE),
+        cylinders=Cylinders(
+            ends=np.zeros((0, 2), dtype=np.int64), drag_width=NONE, skin_width=NONE
+        ),
         floats=Floats(nodes=NO_INDEX, stiffness=NONE, draft=NONE, height=NONE),
-        springs=Springs(nodes=NO_INDEX, stiffness=np.zeros((0, 3)), preload=np.zeros((0, 3))),
+        springs=Springs(
+            nodes=NO_INDEX,
+            stiffness=np.zeros((0, 3)),
+            preload=np.zeros((0, 3)),
+            damping=np.zeros((0, 3)),
+        ),
+        ground=Ground(nodes=NO_INDEX, stiffness=NONE, level=-1e3),
     )
 
 
-def settled(line, *, held, tolerance):
+def relaxed(line, *, held, tolerance):
     rate = line.bars.stiffness / line.bars.length
     inverse_mass = np.full(len(line.position), 1.0 / (0.6 * 2.0 * rate[0]))
     inverse_mass[held] = 0.0
@@ -74,12 +92,38 @@ def settled(line, *, held, tolerance):
         steps=300,
     )
     state = Relaxing.begun(line.position[None].copy(), len(rate), np.array([0.01]))
-    state = kernel().relaxed(line, STILL, state, relaxation, rounds=200)
-    assert state.residual[0] <= tolerance
-    return state.position
+    return kernel().relaxed(line, STILL, state, relaxation, rounds=200)
 
 
-def test_a_lone_hanging_chain_stretches_link_by_link_under_what_hangs_below():
+def balanced(line, *, held, tolerance):
+    free = np.ones(len(line.position), dtype=bool)
+    free[held] = False
+    balance = Balance(
+        free=free,
+        tolerance=tolerance,
+        reach=5.0,
+        least_barrier=1e-9,
+        least_shift=1e-6,
+        most_shift=1e4,
+    )
+    borne = np.full((1, len(line.bars.length)), 1000.0)
+    state = Balancing.begun(line.position[None].copy(), borne, barrier=1.0, shift=1.0)
+    return kernel().balanced(line, STILL, state, balance, iterations=100)
+
+
+@pytest.fixture(params=[relaxed, balanced])
+def settled(request):
+    """Either way to rest; it gives the nodes' places."""
+
+    def run(line, *, held, tolerance):
+        state = request.param(line, held=held, tolerance=tolerance)
+        assert state.residual[0] <= tolerance
+        return state.position
+
+    return run
+
+
+def test_a_lone_hanging_chain_stretches_link_by_link_under_what_hangs_below(settled):
     links, length, stiffness, weight, hung = 20, 30.0, 1e5, 120.0, 900.0
     straight = np.zeros((links + 1, 3))
     straight[:, 2] = -np.linspace(0.0, length, links + 1)
@@ -95,7 +139,7 @@ def test_a_lone_hanging_chain_stretches_link_by_link_under_what_hangs_below():
 
 
 @pytest.mark.parametrize(("x", "z", "length"), [(40.0, 0.0, 46.0), (40.0, 25.0, 52.0)])
-def test_a_chain_between_two_points_pulls_on_them_as_the_catenary_does(x, z, length):
+def test_a_chain_between_two_points_pulls_on_them_as_the_catenary_does(settled, x, z, length):
     links, stiffness, weight = 60, 2e5, 150.0
     straight = np.linspace([0.0, 0.0, 0.0], [x, 0.0, z], links + 1)
     line = chain(straight, length=length, axial_stiffness=stiffness, weight=weight)
@@ -106,7 +150,7 @@ def test_a_chain_between_two_points_pulls_on_them_as_the_catenary_does(x, z, len
     np.testing.assert_allclose(on_ends, expected, rtol=2e-3, atol=2.0)
 
 
-def test_a_finer_chain_comes_closer_to_the_catenary():
+def test_a_finer_chain_comes_closer_to_the_catenary(settled):
     (expected, _), _ = catenary(40.0, 0.0, 46.0, 2e5, 150.0)
     errors = []
     for links in (10, 20, 40):
