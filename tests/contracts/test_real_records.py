@@ -1,10 +1,12 @@
 """The public records that the project is tried on: read by shipped maps, and mostly good."""
 
+from datetime import UTC, datetime
+
 import numpy as np
 import pytest
 
-from seacage.conventions import Flag, Origin
-from seacage.records import read_record, shipped_maps
+from seacage.conventions import Flag, Origin, RecordError
+from seacage.records import Column, ColumnMap, NetcdfMap, read_record, shipped_maps
 
 
 def counted(record, key):
@@ -55,3 +57,60 @@ def test_a_hindcast_rounded_to_decimetres_is_suspect_only_where_it_stands_still(
     record = read_record(shared / "data" / "waves_nora10_1977_1979.csv")
     assert counted(record, "hs_m") == {"GOOD": 4595, "SUSPECT": 21}
     assert np.all(record.usable("tp_s"))
+
+
+def test_a_profilers_bin_is_read_once_its_zone_is_declared(shared):
+    pytest.importorskip("xarray")
+    path = shared / "data" / "adcp_awac_snippet.nc"
+    with pytest.raises(RecordError, match="an attribute says 'times PDT'"):
+        read_record(path, columns=NetcdfMap(origin=Origin.MEASURED, range_m=5.4))
+    choice = NetcdfMap(origin=Origin.MEASURED, range_m=5.4, time_zone="-07:00")
+    record = read_record(path, columns=choice)
+    assert len(record) == 100
+    assert str(record.time[0]) == "2012-06-12T19:00:00.000000"
+    # its first ping in that bin: 0.556 m/s to the west, 0.779 m/s to the south
+    assert record.values["current_speed_m_s"][0] == pytest.approx(np.hypot(0.556, 0.779), abs=1e-3)
+    assert record.values["current_to_deg"][0] == pytest.approx(180.0 + 35.5, abs=0.1)
+
+
+def test_the_same_day_has_the_same_vectors_whichever_way_its_file_points(shared, tmp_path):
+    """A FROM-file, and the same day written as TO, as components and in knots."""
+    path = shared / "data" / "shelf_current_profile_norkyst_2018q1.csv"
+    known = read_record(path).between(
+        datetime(2018, 1, 26, tzinfo=UTC), datetime(2018, 1, 27, tzinfo=UTC)
+    )
+    time = [f"{t}Z" for t in known.time.astype("datetime64[s]")]
+    speed, to = known.values["current_speed_m_s"], known.values["current_to_deg"]
+    east, north = speed * np.sin(np.radians(to)), speed * np.cos(np.radians(to))
+    files = {
+        "from": (speed / 0.01, (to + 180.0) % 360.0, "current_speed", "cm/s", "from"),
+        "to": (speed * 3600.0 / 1852.0, to, "current_speed", "knot", "towards"),
+        "components": (east / 0.001, north / 0.001, "current_east", "mm/s", ""),
+    }
+    assert len(known) == 12
+    for name, (first, second, quantity, unit, sense) in files.items():
+        rows = "".join(
+            f"{t},{a!r},{b!r}\n"
+            for t, a, b in zip(time, first.tolist(), second.tolist(), strict=True)
+        )
+        (tmp_path / f"{name}.csv").write_text(f"time,a,b\n{rows}")
+        other = (
+            Column(name="b", quantity="current_direction", unit="deg", sense=sense)
+            if sense
+            else Column(name="b", quantity="current_north", unit=unit)
+        )
+        columns = ColumnMap(
+            title=name,
+            origin=Origin.COMPUTED,
+            time_column="time",
+            time_format="iso",
+            time_zone="stated",
+            columns=(Column(name="a", quantity=quantity, unit=unit), other),
+        )
+        read = read_record(tmp_path / f"{name}.csv", columns=columns)
+        for got, want in ((np.sin, east), (np.cos, north)):
+            angle = np.radians(read.values["current_to_deg"])
+            # rounding of the units' conversion there and back
+            np.testing.assert_allclose(
+                read.values["current_speed_m_s"] * got(angle), want, atol=1e-12
+            )

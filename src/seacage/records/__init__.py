@@ -10,6 +10,7 @@ from seacage.records._campaign_store import (
     finish_campaign,
     write_cases,
 )
+from seacage.records._cf import NetcdfMap
 from seacage.records._check import QualityState, check_record, check_sample
 from seacage.records._columns import Column, ColumnMap
 from seacage.records._field import FieldRecord
@@ -19,8 +20,11 @@ from seacage.records._history_file import (
     read_history,
     write_history,
 )
+from seacage.records._inspect import Inspection, inspect_file
 from seacage.records._keys import KEYS, Key
 from seacage.records._limits import DEFAULT_LIMITS, Limits, Range, Steadiness
+from seacage.records._limits_file import read_limits
+from seacage.records._maps import read_map
 from seacage.records._netcdf import write_record
 from seacage.records._reader import read_record
 from seacage.records._record import Record
@@ -38,8 +42,10 @@ __all__ = [
     "ColumnMap",
     "FieldRecord",
     "HistoryRecord",
+    "Inspection",
     "Key",
     "Limits",
+    "NetcdfMap",
     "QualityState",
     "Range",
     "Record",
@@ -53,10 +59,13 @@ __all__ = [
     "create_campaign",
     "export_campaign",
     "finish_campaign",
+    "inspect_file",
     "instant",
     "moment",
     "read_campaign",
     "read_history",
+    "read_limits",
+    "read_map",
     "read_record",
     "shipped_maps",
     "write_cases",

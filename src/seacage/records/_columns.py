@@ -15,6 +15,7 @@ from jaxtyping import Float
 from seacage.conventions import Origin, RecordError
 from seacage.records._toml import (
     Table,
+    check_filled,
     check_names,
     number_of,
     numbers_of,
@@ -38,10 +39,17 @@ _LENGTH = {"m": 1.0, "cm": 0.01, "mm": 0.001, "ft": 0.3048}
 _PERIOD = {"s": 1.0}
 _FORCE = {"kN": 1.0, "N": 0.001, "MN": 1000.0, "kgf": 0.00980665, "tf": 9.80665}
 _ANGLE = {"deg": 1.0, "rad": 180.0 / np.pi}
+_COMPONENTS = ("current_east_m_s", "current_north_m_s")
+_CURRENT = ("current_speed_m_s", "current_to_deg")
+
+ENCODINGS = ("utf-8", "utf-16", "latin-1", "cp1252")
+"""Of text, as a column map may declare them."""
 
 _QUANTITIES: Mapping[str, _Quantity] = {
     "current_speed": _Quantity(key="current_speed_m_s", units=_SPEED),
     "current_direction": _Quantity(key="current_to_deg", units=_ANGLE, sense="towards"),
+    "current_east": _Quantity(key="current_east_m_s", units=_SPEED),
+    "current_north": _Quantity(key="current_north_m_s", units=_SPEED),
     "hs": _Quantity(key="hs_m", units=_LENGTH),
     "tp": _Quantity(key="tp_s", units=_PERIOD),
     "wave_direction": _Quantity(key="wave_from_deg", units=_ANGLE, sense="from"),
@@ -59,7 +67,8 @@ class Column:
     name
         As the file's header spells it.
     quantity
-        ``current_speed``, ``current_direction``, ``hs``, ``tp``, ``wave_direction``,
+        ``current_speed`` and ``current_direction``, or ``current_east`` and
+        ``current_north`` (where the water goes); ``hs``, ``tp``, ``wave_direction``,
         ``tension`` or ``depth``.
     unit
         Of the file's numbers; there is no default.
@@ -138,9 +147,9 @@ class ColumnMap:
     origin
         How its numbers were made.
     time_column
-        The column of times.
+        The column of times, or several whose texts are joined by blanks.
     time_format
-        ``iso``, or a format of ``datetime.strptime``.
+        ``iso``, ``unix`` (seconds since 1970), or a format of ``datetime.strptime``.
     time_zone
         Of times that do not say theirs: ``UTC``, an offset such as ``+01:00``, or ``stated``
         to refuse such times. No default, and no named zones: their autumn has an hour twice.
@@ -149,29 +158,40 @@ class ColumnMap:
     ignored
         Those that are known and not read.
     delimiter
-        Between cells.
+        Between cells: one character, or ``whitespace`` for any number of blanks.
     depth_m
         Which depth of a profile is read [m].
+    decimal
+        Between a number's whole and its part: ``.`` or ``,``.
+    encoding
+        Of the text: ``utf-8``, ``utf-16``, ``latin-1`` or ``cp1252``.
+    skip_lines
+        Lines before the header.
 
     Raises
     ------
     RecordError
-        A column or a quantity declared twice, nothing to read, an unknown time zone.
+        A column or a quantity declared twice, one component of the current without the other,
+        nothing to read, an unknown time zone, encoding, delimiter or decimal mark.
     """
 
     title: str
     origin: Origin
-    time_column: str
+    time_column: str | tuple[str, ...]
     time_format: str
     time_zone: str
     columns: tuple[Column, ...]
     ignored: tuple[str, ...] = ()
     delimiter: str = ","
     depth_m: float | None = None
+    decimal: str = "."
+    encoding: str = "utf-8"
+    skip_lines: int = 0
 
     def __post_init__(self) -> None:
-        _parsed_zone(self.time_zone)
-        names = (self.time_column, *(column.name for column in self.columns), *self.ignored)
+        parsed_zone(self.time_zone)
+        self._check_text()
+        names = (*self.time_columns, *(column.name for column in self.columns), *self.ignored)
         for what in (names, (column.key for column in self.taken)):
             twice = [one for one, count in Counter(what).items() if count > 1]
             if twice:
@@ -183,6 +203,7 @@ class ColumnMap:
             raise RecordError(
                 f"{self.title}: no column is read{self._depths()}. Map at least one quantity."
             )
+        check_components((column.key for column in self.taken), where=self.title)
 
     @classmethod
     def read(cls, path: Path | str) -> Self:
@@ -239,21 +260,30 @@ class ColumnMap:
             table = tomllib.loads(text)
         except tomllib.TOMLDecodeError as error:
             raise RecordError(f"{where}: the column map is no TOML ({error}).") from error
-        known = ("title", "origin", "time", "columns", "ignored", "delimiter", "depth_m")
+        check_filled(table, where=where)
+        of_text = ("delimiter", "decimal", "encoding", "skip_lines")
+        known = ("title", "origin", "time", "columns", "ignored", "depth_m", *of_text)
         check_names(table, known, where=where)
         columns = table_of(table, "columns", where=where)
         time, in_time = table_of(table, "time", where=where), f"{where}, [time]"
         check_names(time, ("column", "format", "zone"), where=in_time)
         return cls(
             title=text_of(table, "title", where=where),
-            origin=_origin(text_of(table, "origin", where=where), where),
-            time_column=text_of(time, "column", where=in_time),
+            origin=parsed_origin(text_of(table, "origin", where=where), where),
+            time_column=(
+                texts_of(time, "column", where=in_time)
+                if isinstance(time.get("column"), list)
+                else text_of(time, "column", where=in_time)
+            ),
             time_format=text_of(time, "format", where=in_time),
             time_zone=text_of(time, "zone", where=in_time),
-            columns=tuple(_column(columns, name, where) for name in columns),
+            columns=tuple(parsed_column(columns, name, where) for name in columns),
             ignored=texts_of(table, "ignored", where=where),
             delimiter=text_of(table, "delimiter", where=where, default=","),
             depth_m=number_of(table, "depth_m", where=where),
+            decimal=text_of(table, "decimal", where=where, default="."),
+            encoding=text_of(table, "encoding", where=where, default="utf-8"),
+            skip_lines=int(number_of(table, "skip_lines", where=where) or 0),
         )
 
     @classmethod
@@ -280,7 +310,12 @@ class ColumnMap:
     @property
     def names(self) -> frozenset[str]:
         """Of all columns that the file must have."""
-        return frozenset((self.time_column, *(c.name for c in self.columns), *self.ignored))
+        return frozenset((*self.time_columns, *(c.name for c in self.columns), *self.ignored))
+
+    @property
+    def time_columns(self) -> tuple[str, ...]:
+        """The columns whose texts, joined by blanks, are the times."""
+        return (self.time_column,) if isinstance(self.time_column, str) else self.time_column
 
     @property
     def taken(self) -> tuple[Column, ...]:
@@ -311,14 +346,39 @@ class ColumnMap:
         """
         if self.time_format == "iso":
             time = datetime.fromisoformat(text.strip())
+        elif self.time_format == "unix":
+            time = datetime.fromtimestamp(float(text), tz=UTC)
         else:
             time = datetime.strptime(text.strip(), self.time_format)  # noqa: DTZ007
         if time.tzinfo is None:
-            zone = _parsed_zone(self.time_zone)
+            zone = parsed_zone(self.time_zone)
             if zone is None:
                 raise ValueError("it does not say its zone")
             time = time.replace(tzinfo=zone)
         return time.astimezone(UTC)
+
+    def _check_text(self) -> None:
+        for name, value, known in (
+            ("decimal", self.decimal, (".", ",")),
+            ("encoding", self.encoding, ENCODINGS),
+        ):
+            if value not in known:
+                raise RecordError(
+                    f"{self.title}: {name} = {value!r} is unknown. Say one of "
+                    f"{', '.join(repr(one) for one in known)}."
+                )
+        one = len(self.delimiter) == 1 and self.delimiter not in '"\r\n'
+        if not one and self.delimiter != "whitespace":
+            raise RecordError(
+                f"{self.title}: delimiter = {self.delimiter!r} is neither one character nor "
+                '"whitespace". Declare what stands between the cells.'
+            )
+        if self.decimal == self.delimiter:
+            raise RecordError(
+                f"{self.title}: {self.decimal!r} parts cells and decimals. Declare another of them."
+            )
+        if not self.time_columns:
+            raise RecordError(f"{self.title}: no column holds the time. Name it under [time].")
 
     def _depths(self) -> str:
         """What a refusal adds where the map holds a profile."""
@@ -328,7 +388,14 @@ class ColumnMap:
         return f"; its profile has {', '.join(f'{depth:g}' for depth in depths)} m"
 
 
-def _column(columns: Table, name: str, file: str) -> Column:
+def parsed_column(columns: Table, name: str, file: str) -> Column:
+    """A column as its table in a map declares it.
+
+    Raises
+    ------
+    RecordError
+        A misspelt key or a refused value, said with the file's name.
+    """
     where = f"[columns.{name}]"
     table = table_of(columns, name, where=file)
     try:
@@ -345,7 +412,14 @@ def _column(columns: Table, name: str, file: str) -> Column:
         raise RecordError(f"{file}: {error}") from error
 
 
-def _origin(text: str, where: str) -> Origin:
+def parsed_origin(text: str, where: str) -> Origin:
+    """How numbers were made, as a map says it.
+
+    Raises
+    ------
+    RecordError
+        An unknown word.
+    """
     try:
         return Origin(text)
     except ValueError as error:
@@ -353,8 +427,14 @@ def _origin(text: str, where: str) -> Origin:
         raise RecordError(f"{where}: origin = {text!r} is unknown. Say one of {known}.") from error
 
 
-def _parsed_zone(text: str) -> timezone | None:
-    """A zone of fixed offset; None for ``stated``."""
+def parsed_zone(text: str) -> timezone | None:
+    """A zone of fixed offset; None for ``stated``.
+
+    Raises
+    ------
+    RecordError
+        Any other text, names of zones too.
+    """
     if text == "stated":
         return None
     if text == "UTC":
@@ -367,3 +447,32 @@ def _parsed_zone(text: str) -> timezone | None:
         )
     offset = timedelta(hours=int(match[2]), minutes=int(match[3]))
     return timezone(offset if match[1] == "+" else -offset)
+
+
+def check_components(keys: Iterable[str], *, where: str) -> None:
+    """Refuse half a vector, and a current that is declared in two ways.
+
+    Raises
+    ------
+    RecordError
+        One component without the other, or components beside speed or direction.
+    """
+    keys = set(keys)
+    components = keys & set(_COMPONENTS)
+    if components and (len(components) == 1 or keys & set(_CURRENT)):
+        raise RecordError(
+            f"{where}: a current is current_east with current_north, or current_speed with "
+            f"current_direction; here {', '.join(sorted(keys))}. Ignore the columns too many."
+        )
+
+
+def vectors_joined(
+    values: Mapping[str, Float[np.ndarray, " t"]],
+) -> dict[str, Float[np.ndarray, " t"]]:
+    """The components of a current, where there are any, as its speed and where it goes."""
+    joined = dict(values)
+    if joined.keys() >= set(_COMPONENTS):
+        east, north = (joined.pop(key) for key in _COMPONENTS)
+        joined["current_speed_m_s"] = np.hypot(east, north)
+        joined["current_to_deg"] = np.degrees(np.arctan2(east, north)) % 360.0
+    return joined

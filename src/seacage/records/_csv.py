@@ -1,131 +1,100 @@
-"""Tables of text: their rows, times and numbers, or one sentence on why not."""
+"""Tables: their times and numbers, or one sentence on why not."""
 
-import csv
-import io
 import math
-from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from seacage.conventions import RecordError
-from seacage.records._columns import Column, ColumnMap
+from seacage.conventions import Flag, Origin, RecordError
+from seacage.records._columns import Column, ColumnMap, vectors_joined
 from seacage.records._keys import KEYS
+from seacage.records._ndbc import is_ndbc, ndbc_table
 from seacage.records._record import Record
 from seacage.records._shipped import shipped_maps
+from seacage.records._table import Table, read_table, read_text
 from seacage.records._times import microseconds
 
 _NO_VALUE = frozenset({"", "nan", "na", "n/a", "null", "none", "mm", "-"})
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Table:
-    """Rows of cells with the lines that they end on."""
-
-    path: Path
-    header: tuple[str, ...]
-    lines: tuple[int, ...]
-    rows: tuple[tuple[str, ...], ...]
-
-    def column(self, name: str) -> list[str]:
-        at = self.header.index(name)
-        return [row[at] for row in self.rows]
-
-
 def read_csv(path: Path, columns: ColumnMap | None, *, stream: str) -> Record:
-    """Read a table of text, unchecked; see ``read_record``."""
-    table = _read_table(path, "," if columns is None else columns.delimiter)
-    if columns is None:
-        columns = _recognised(table)
-    else:
-        _check_header(table, columns)
+    """Read a table, unchecked but for what only its file shows; see ``read_record``."""
+    table, columns = _understood(path, columns)
     values: dict[str, np.ndarray] = {}
     notes: list[str] = []
     for column in columns.taken:
-        numbers, strange = _numbers(table, column)
+        numbers, strange = _numbers(table, column, columns.decimal)
         values[column.key] = column.converted(numbers)
         notes += strange
     if columns.depth_m is not None:
         notes.append(f"{columns.title}: read at a depth of {columns.depth_m:g} m.")
-    time = _times(table, columns)
-    order, kept = _order(time)
-    return Record(
-        stream=stream,
-        time=time[order],
-        values={key: column[order] for key, column in values.items()},
-        origin=columns.origin,
-        notes=(*notes, *kept),
+    record = in_order(
+        _times(table, columns), vectors_joined(values), stream=stream, origin=columns.origin
     )
+    if table.cut:
+        record = _last_row_doubted(record, table, columns)
+    return replace(record, notes=(*notes, *record.notes))
 
 
-def _read_table(path: Path, delimiter: str) -> _Table:
-    text = _read_text(path)
-    reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
-    lines: list[int] = []
-    rows: list[tuple[str, ...]] = []
-    try:
-        for row in reader:
-            if any(cell.strip() for cell in row):
-                lines.append(reader.line_num)
-                rows.append(tuple(row))
-    except csv.Error as error:
-        raise RecordError(
-            f"{path}, line {reader.line_num}: the row cannot be split into cells ({error}). "
-            "Mend it, or cut the file there."
-        ) from error
-    if not rows:
-        raise RecordError(f"{path}: the file is empty. Give one with a header and rows.")
-    header = tuple(cell.strip() for cell in rows[0])
-    twice = [name for name, count in Counter(header).items() if count > 1]
-    if twice:
-        raise RecordError(
-            f"{path}, line {lines[0]}: the header has the column {twice[0]!r} twice. "
-            "Rename or drop one."
-        )
-    for line, row in zip(lines, rows, strict=True):
-        if len(row) != len(header):
-            raise RecordError(
-                f"{path}, line {line}: {len(row)} cells under a header of {len(header)}. "
-                "Mend the row, or cut the file there; a shifted row is never guessed at."
-            )
-    if len(rows) == 1:
-        raise RecordError(f"{path}: there is a header and no row. Give a file with values.")
-    return _Table(path=path, header=header, lines=tuple(lines[1:]), rows=tuple(rows[1:]))
+def _understood(path: Path, columns: ColumnMap | None) -> tuple[Table, ColumnMap]:
+    if columns is None and path.suffix.lower() in {".csv", ".txt", ".dat", ""}:
+        text = read_text(path)
+        if is_ndbc(text):
+            return ndbc_table(path, text)
+    table = read_table(path, columns)
+    if columns is None:
+        return table, recognised(table)
+    _check_header(table, columns)
+    return table, columns
 
 
-def _read_text(path: Path) -> str:
-    try:
-        return path.read_bytes().decode("utf-8-sig")
-    except OSError as error:
-        raise RecordError(f"{path}: the file cannot be read ({error.strerror}).") from error
-    except UnicodeDecodeError as error:
-        line = error.object[: error.start].count(b"\n") + 1
-        raise RecordError(
-            f"{path}, line {line}: byte {error.start} is not UTF-8 text. "
-            "Save the table as UTF-8, and make sure that it is no archive or spreadsheet."
-        ) from error
+def _last_row_doubted(record: Record, table: Table, columns: ColumnMap) -> Record:
+    """Suspect the last row of a file that ends without a line end: a number may be cut there."""
+    last = _time(table.rows[-1], table.lines[-1], table, columns)
+    row = record.time == np.int64(last).view("datetime64[us]")
+    doubted = np.where(row, Flag.SUSPECT, Flag.NOT_EVALUATED).astype(np.uint8)
+    note = (
+        f"The file ends without a line end, on line {table.lines[-1]}: its last row may be cut "
+        "and is suspect."
+    )
+    return replace(record, flags=dict.fromkeys(record.values, doubted), notes=(*record.notes, note))
 
 
-def _recognised(table: _Table) -> ColumnMap:
+def recognised(table: Table) -> ColumnMap:
+    """Return the one shipped map, or the house's own, that a table's header fits.
+
+    Raises
+    ------
+    RecordError
+        None fits, or more than one.
+    """
     keys = [name for name in table.header if name != "time"]
     if "time" in table.header and KEYS.keys() >= set(keys):
         return ColumnMap.of_keys(keys)
     maps = shipped_maps()
     known = frozenset(table.header)
+    fitting = [name for name in maps if maps[name].names == known]
+    if len(fitting) == 1:
+        return maps[fitting[0]]
+    if fitting:
+        raise RecordError(
+            f"{table.path}: its header fits the column maps {' and '.join(fitting)}, and nothing "
+            "in the file says which. Name one: `--columns NAME`, or "
+            'columns=shipped_maps()["NAME"].'
+        )
     name = max(maps, key=lambda name: len(maps[name].names & known))
-    if maps[name].names == known:
-        return maps[name]
     shared = len(maps[name].names & known) > 1
     hint = f"The nearest, {name}, {_difference(table, maps[name])}. " if shared else ""
     raise RecordError(
-        f"{table.path}, line 1: no shipped column map has the columns {', '.join(table.header)}. "
-        f"{hint}Describe the file in a column map and pass it as columns=ColumnMap.read(…)."
+        f"{table.path}, line {table.header_line}: no shipped column map has the columns "
+        f"{', '.join(table.header)}. {hint}Describe the file in a column map (`seacage field "
+        "import FILE MAP --inspect` begins one) and pass it as columns=ColumnMap.read(…)."
     )
 
 
-def _check_header(table: _Table, columns: ColumnMap) -> None:
+def _check_header(table: Table, columns: ColumnMap) -> None:
     if columns.names != frozenset(table.header):
         raise RecordError(
             f"{table.path}, line 1: the map {columns.title!r} {_difference(table, columns)}. "
@@ -133,7 +102,7 @@ def _check_header(table: _Table, columns: ColumnMap) -> None:
         )
 
 
-def _difference(table: _Table, columns: ColumnMap) -> str:
+def _difference(table: Table, columns: ColumnMap) -> str:
     header = frozenset(table.header)
     parts = [
         f"{verb} {', '.join(repr(name) for name in sorted(names))}"
@@ -146,23 +115,33 @@ def _difference(table: _Table, columns: ColumnMap) -> str:
     return " and ".join(parts)
 
 
-def _times(table: _Table, columns: ColumnMap) -> np.ndarray:
-    times: list[int] = []
-    for line, text in zip(table.lines, table.column(columns.time_column), strict=True):
-        try:
-            times.append(microseconds(columns.parsed_time(text)))
-        except (ValueError, OverflowError) as error:
-            raise RecordError(
-                f"{table.path}, line {line}: {columns.time_column} = {text!r} is no time of the "
-                f"format {columns.time_format!r} ({error}). Declare the file's format and zone."
-            ) from error
+def _times(table: Table, columns: ColumnMap) -> np.ndarray:
+    times = [
+        _time(row, line, table, columns) for row, line in zip(table.rows, table.lines, strict=True)
+    ]
     return np.array(times, dtype=np.int64).view("datetime64[us]")
 
 
-def _numbers(table: _Table, column: Column) -> tuple[np.ndarray, list[str]]:
+def _time(row: tuple[str, ...], line: int, table: Table, columns: ColumnMap) -> int:
+    text = " ".join(row[table.header.index(name)] for name in columns.time_columns)
+    try:
+        return microseconds(columns.parsed_time(text))
+    except (ValueError, OverflowError, OSError) as error:
+        raise RecordError(
+            f"{table.path}, line {line}: {' '.join(columns.time_columns)} = {_short(text)} is no "
+            f"time of the format {columns.time_format!r} ({error}). Declare the file's format "
+            "and zone."
+        ) from error
+
+
+def _short(text: str) -> str:
+    return repr(text if len(text) <= 60 else text[:57] + "…")
+
+
+def _numbers(table: Table, column: Column, decimal: str) -> tuple[np.ndarray, list[str]]:
     """The column as numbers, NaN where there is none, and a note on text that is none."""
     cells = table.column(column.name)
-    numbers = [_number(cell) for cell in cells]
+    numbers = [number_in(cell, decimal) for cell in cells]
     strange = [
         (line, cell)
         for line, cell, number in zip(table.lines, cells, numbers, strict=True)
@@ -173,13 +152,16 @@ def _numbers(table: _Table, column: Column) -> tuple[np.ndarray, list[str]]:
         line, cell = strange[0]
         notes.append(
             f"{len(strange)} cells of {column.name} are no number and count as missing; "
-            f"first on line {line}: {cell!r}."
+            f"first on line {line}: {_short(cell)}."
         )
     return np.array([math.nan if n is None else n for n in numbers]), notes
 
 
-def _number(cell: str) -> float | None:
+def number_in(cell: str, decimal: str) -> float | None:
+    """Read a cell as a number, NaN where it holds none; None where it is other text."""
     text = cell.strip()
+    if decimal == ",":
+        text = text.replace(".", "x").replace(",", ".")  # 1.234,5 is no number of a sensor
     if text.lower() in _NO_VALUE:
         return math.nan
     if "_" in text:  # Python's float takes 1_0 for 10
@@ -190,8 +172,10 @@ def _number(cell: str) -> float | None:
         return None
 
 
-def _order(time: np.ndarray) -> tuple[np.ndarray, Sequence[str]]:
-    """Rows in order of time, the first of each time, and notes on what that changed."""
+def in_order(
+    time: np.ndarray, values: Mapping[str, np.ndarray], *, stream: str, origin: Origin
+) -> Record:
+    """Make a record of rows as they came: sorted, the first of each time, with notes on both."""
     order = np.argsort(time, kind="stable")
     first = np.ones(time.size, dtype=bool)
     first[1:] = np.diff(time[order]) > np.timedelta64(0, "us")
@@ -202,4 +186,11 @@ def _order(time: np.ndarray) -> tuple[np.ndarray, Sequence[str]]:
         notes.append(f"{late} of {time.size} rows were out of order and are sorted by time.")
     if twice:
         notes.append(f"{twice} of {time.size} rows repeat a time; the first of each is kept.")
-    return order[first], notes
+    kept = order[first]
+    return Record(
+        stream=stream,
+        time=time[kept],
+        values={key: column[kept] for key, column in values.items()},
+        origin=origin,
+        notes=tuple(notes),
+    )

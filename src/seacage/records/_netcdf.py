@@ -57,7 +57,8 @@ def read_netcdf(path: Path) -> Record:
     except (OSError, KeyError, ValueError) as error:
         raise RecordError(
             f"{path}: this is no stream that seacage wrote ({error}). Give a file written by "
-            "write_record, or a table of text with its column map."
+            "write_record, a table with its column map, or say of a foreign NetCDF file how its "
+            "numbers were made (origin, in a NetcdfMap)."
         ) from error
 
 

@@ -1,7 +1,12 @@
 """The one reader of files that hold a stream."""
 
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
+from seacage.conventions import Flag, RecordError
+from seacage.records._cf import NetcdfMap, is_netcdf, read_cf
 from seacage.records._check import check_record
 from seacage.records._columns import ColumnMap
 from seacage.records._csv import read_csv
@@ -13,27 +18,29 @@ from seacage.records._record import Record
 def read_record(
     path: Path | str,
     *,
-    columns: ColumnMap | None = None,
+    columns: ColumnMap | NetcdfMap | None = None,
     stream: str = "buoy-1",
     limits: Limits = DEFAULT_LIMITS,
 ) -> Record:
     """Read one stream from a file, in house units, and check it.
 
-    Tables of text need a column map, unless a shipped map knows their header or their columns
-    are ``time`` and door keys. Rows out of order are sorted, of rows that share a time the first
-    is kept, and the notes say so. A bad value stays in its row, flagged. NetCDF files are those
-    that ``write_record`` writes; they say their own stream and carry their flags.
+    Tables (text, Parquet, JSON of NOAA CO-OPS) need a column map, unless a shipped map knows
+    their header, their columns are ``time`` and door keys, or NDBC wrote them. Rows out of order
+    are sorted, of rows that share a time the first is kept, and the notes say so. A bad value
+    stays in its row, flagged; so does the last row of a text that ends without a line end.
+    NetCDF files are those that ``write_record`` wrote, which say their own stream and carry
+    their flags, or, with a ``NetcdfMap``, any that follow CF.
 
     Parameters
     ----------
     path
-        A table of text, or ``.nc``.
+        A table, or ``.nc``.
     columns
-        What the columns mean.
+        What the columns mean, or what a foreign NetCDF file leaves open.
     stream
-        What to call the stream of a table.
+        What to call the stream.
     limits
-        To check the values of a table against.
+        To check the values of a foreign file against.
 
     Raises
     ------
@@ -42,6 +49,23 @@ def read_record(
         not know or misses, a row of another length, a time that is none.
     """
     path = Path(path)
-    if path.suffix == ".nc":
-        return read_netcdf(path)
-    return check_record(read_csv(path, columns, stream=stream), limits)
+    if is_netcdf(path):
+        if columns is None:
+            return read_netcdf(path)
+        if isinstance(columns, ColumnMap):
+            raise RecordError(f"{path}: a table's map is no NetCDF file's. Give a NetcdfMap.")
+        return check_record(read_cf(path, columns, stream=stream), limits)
+    if isinstance(columns, NetcdfMap):
+        raise RecordError(f"{path}: a NetCDF file's map is no table's. Give a ColumnMap.")
+    return _checked(read_csv(path, columns, stream=stream), limits)
+
+
+def _checked(record: Record, limits: Limits) -> Record:
+    """Check the values, and keep what the reader doubted by its file alone."""
+    checked = check_record(record, limits)
+    flags = {
+        key: np.where(doubts == Flag.NOT_EVALUATED, flags, np.maximum(flags, doubts))
+        for key, doubts in record.flags.items()
+        for flags in (checked.flags[key],)
+    }
+    return replace(checked, flags=flags)

@@ -25,6 +25,24 @@ def check_names(table: Table, known: Iterable[str], *, where: str) -> None:
             raise RecordError(f"{where}: the key {name!r} is unknown. {hint}")
 
 
+def check_filled(table: Table, *, where: str) -> None:
+    """Refuse a map that still holds a question of the wizard's.
+
+    Raises
+    ------
+    RecordError
+        At the first value that is "?".
+    """
+    for name, value in table.items():
+        if isinstance(value, dict):
+            check_filled(cast("Table", value), where=f"{where}, [{name}]")
+        elif value == "?":
+            raise RecordError(
+                f'{where}: {name} is still "?". Fill in what you know of the file; it is never '
+                "guessed."
+            )
+
+
 def table_of(table: Table, name: str, *, where: str) -> Table:
     """A table in a table; refused where it is missing."""
     value = table.get(name)

@@ -2,7 +2,7 @@
 
 from datetime import datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -10,11 +10,19 @@ from seacage.service._commands._settle import CageName, read_cage
 from seacage.service._console import Json, guarded, progress_bar, tell
 
 if TYPE_CHECKING:
-    from seacage.records import Record
+    from seacage.records import ColumnMap, Limits, NetcdfMap, Record
 
 group = typer.Typer(help="Records of buoys and sensors: make, read and check them.")
 
 _FLAG_WORDS = {1: "good", 2: "not evaluated", 3: "suspect", 4: "fail", 9: "missing"}
+
+
+LimitsFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--limits", exists=True, dir_okay=False, help="The site's limits (TOML); else defaults."
+    ),
+]
 
 
 @group.command()
@@ -83,31 +91,113 @@ def virtual(
 @group.command("import")
 @guarded
 def import_(
-    path: Annotated[Path, typer.Argument(exists=True, dir_okay=False, help="A table of text.")],
-    out: Annotated[Path, typer.Argument(dir_okay=False, help="The CF-NetCDF file to write.")],
-    *,
-    columns: Annotated[
-        Path | None,
-        typer.Option(
-            exists=True, dir_okay=False, help="What the columns mean; else known by the header."
+    path: Annotated[
+        Path,
+        typer.Argument(
+            exists=True, dir_okay=False, help="A table (text, Parquet, CO-OPS, NDBC) or NetCDF."
         ),
+    ],
+    out: Annotated[
+        Path, typer.Argument(dir_okay=False, help="To write: CF-NetCDF, or with --inspect a map.")
+    ],
+    *,
+    inspect: Annotated[
+        bool, typer.Option("--inspect", help="Say what the file seems to be; begin its map.")
+    ] = False,
+    columns: Annotated[
+        str | None,
+        typer.Option(help="Map of the file: a TOML file or a shipped name; else by the header."),
     ] = None,
+    origin: Annotated[
+        str | None, typer.Option(help="Of a foreign NetCDF file: measured or computed.")
+    ] = None,
+    zone: Annotated[
+        str | None, typer.Option(help="Of a foreign NetCDF file's times, where it is in doubt.")
+    ] = None,
+    depth_m: Annotated[float | None, typer.Option(help="Which depth of a profile.")] = None,
+    range_m: Annotated[
+        float | None, typer.Option(help="Which bin of a profile, from the instrument.")
+    ] = None,
+    limits: LimitsFile = None,
     stream: Annotated[str, typer.Option(help="What to call the stream.")] = "buoy-1",
     as_json: Json = False,
 ) -> None:
-    """Read a table in house units, check every value, and keep it as CF-NetCDF.
+    """Read a file in house units, check every value, and keep it as CF-NetCDF.
 
-    A column's unit and a direction's sense are declared in the TOML file of --columns, never
-    guessed. A bad value is flagged in its row and kept as it came.
+    Units and a direction's sense are what the file or its map says, never guessed. A bad value
+    is flagged in its row and kept as it came. For a file that nobody knows yet, --inspect
+    writes a map to fill in.
 
     Example:
-        seacage field import buoy.csv buoy-1.nc --columns columns.toml
+        seacage field import logger.csv map.toml --inspect
+        seacage field import logger.csv buoy-1.nc --columns map.toml
     """
-    from seacage.records import ColumnMap, read_record, write_record
+    from seacage.records import read_record, write_record
 
-    record = read_record(path, columns=ColumnMap.read(columns) if columns else None, stream=stream)
+    if inspect:
+        _inspect(path, out, as_json=as_json)
+        return
+    choice = _choice(path, columns, origin=origin, zone=zone, depth_m=depth_m, range_m=range_m)
+    record = read_record(path, columns=choice, stream=stream, limits=_limits(limits))
     write_record(record, out)
     _tell([record], as_json=as_json, written=out)
+
+
+def _inspect(path: Path, out: Path, *, as_json: bool) -> None:
+    from seacage.conventions import InputError
+    from seacage.records import inspect_file
+
+    if out.exists():
+        raise InputError(f"{out}: the file is there already, and may hold your answers. Move it.")
+    found = inspect_file(path)
+    if found.map_text:
+        out.write_text(found.map_text, encoding="utf-8")
+    written = str(out) if found.map_text else None
+    tell(
+        {"findings": found.findings, "written": written, "to_fill_in": found.open_questions},
+        as_json=as_json,
+        rows=[
+            *(("", finding) for finding in found.findings),
+            ("", f'{out}: fill in {found.open_questions} "?"' if written else "No map is needed."),
+        ],
+    )
+
+
+def _choice(
+    path: Path,
+    columns: str | None,
+    *,
+    origin: str | None,
+    zone: str | None,
+    depth_m: float | None,
+    range_m: float | None,
+) -> "ColumnMap | NetcdfMap | None":
+    """The map that was named, with what the command line adds to it."""
+    from dataclasses import replace
+
+    from seacage.conventions import InputError, Origin
+    from seacage.records import NetcdfMap, read_map
+
+    said: dict[str, Any] = {"time_zone": zone, "depth_m": depth_m, "range_m": range_m}
+    given = {name: value for name, value in said.items() if value is not None}
+    if origin is not None:
+        if origin not in {str(Origin.MEASURED), str(Origin.COMPUTED)}:
+            raise InputError(f"--origin {origin!r} is unknown. Say measured or computed.")
+        given |= {"origin": Origin(origin)}
+    chosen = read_map(columns) if columns else None
+    if isinstance(chosen, NetcdfMap) or (chosen is None and given):
+        return replace(chosen or NetcdfMap(title=path.name), **given)
+    if chosen is not None and depth_m is not None and len(given) == 1:
+        return chosen.taken_at(depth_m)
+    if given:
+        raise InputError("--origin, --zone and --range-m are for NetCDF; a table's map says them.")
+    return chosen
+
+
+def _limits(path: Path | None) -> "Limits":
+    from seacage.records import DEFAULT_LIMITS, read_limits
+
+    return read_limits(path) if path else DEFAULT_LIMITS
 
 
 @group.command()

@@ -1,0 +1,106 @@
+"""What a foreign NetCDF file holds, and what it leaves open."""
+
+# xarray leaves parts of its signatures untyped.
+# pyright: reportUnknownMemberType=false
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, TypedDict
+
+import numpy as np
+
+from seacage.conventions import RecordError
+from seacage.records._cf import (
+    STANDARD_NAMES,
+    TROUBLE,
+    engine_of,
+    is_compass,
+    spoken_zone,
+    vertical_of,
+)
+
+if TYPE_CHECKING:
+    import xarray
+
+
+class Found(TypedDict):
+    """What becomes an inspection."""
+
+    findings: tuple[str, ...]
+    map_text: str
+
+
+def inspect_netcdf(path: Path) -> Found:
+    """Look at a NetCDF file's variables and begin its map.
+
+    Raises
+    ------
+    RecordError
+        No NetCDF file.
+    """
+    import xarray
+
+    if not path.is_file():
+        raise RecordError(f"{path}: there is no such file.")
+    try:
+        with xarray.open_dataset(path, engine=engine_of(path), decode_times=False) as dataset:
+            return _found(path, dataset)
+    except RecordError:
+        raise
+    except TROUBLE as error:
+        raise RecordError(
+            f"{path}: this NetCDF file cannot be read ({' '.join(str(error).split())[:200]}). "
+            "Load or write it anew."
+        ) from error
+
+
+def _found(path: Path, dataset: "xarray.Dataset") -> Found:
+    sizes = ", ".join(f"{name} {size}" for name, size in dataset.sizes.items())
+    findings = [f"{path.name} is a NetCDF file with the dimensions {sizes}."]
+    lines = [
+        'kind = "netcdf"',
+        f"title = {json.dumps(path.stem, ensure_ascii=False)}",
+        'origin = "?"  # "measured" or "computed"',
+    ]
+    if zone := spoken_zone(dataset):
+        findings.append(f"Suspicious: an attribute says {zone!r}, and CF's times are UTC.")
+        lines.append('time_zone = "?"  # "UTC", or an offset such as "-07:00"')
+    read = [name for name in map(str, dataset.data_vars) if _tells(dataset, name)]
+    findings += [_sentence(dataset, name) for name in map(str, dataset.data_vars)]
+    dims = {str(dim) for name in read for dim in dataset[name].dims}
+    at: list[str] = []
+    for dim in sorted(dims):
+        size = dataset.sizes[dim]
+        if size == 1 or dim == "time" or is_compass(dataset, dim):
+            continue
+        if kind := vertical_of(dataset, dim):
+            places = np.asarray(dataset[dim].values, dtype=np.float64)
+            lines.append(f'{kind}_m = "?"  # one of {", ".join(f"{p:g}" for p in places)}')
+        else:
+            at.append(f'{dim} = "?"  # an index, 0 to {size - 1}')
+    if at:
+        lines += ["", "[at]", *at]
+    if not read:
+        findings.append("No standard name tells what to read; declare variables in the map.")
+        lines += [
+            "",
+            '[columns."?"]  # a variable of the file',
+            'quantity = "?"  # current_east, current_north, hs, …',
+            'unit = "?"',
+        ]
+    return {"findings": tuple(findings), "map_text": "\n".join(lines) + "\n"}
+
+
+def _tells(dataset: "xarray.Dataset", name: str) -> bool:
+    array = dataset[name]
+    velocity = str(array.attrs.get("units", "")).startswith(("m s", "m/s", "cm s", "cm/s"))
+    split = any(is_compass(dataset, dim) for dim in array.dims)
+    return array.attrs.get("standard_name") in STANDARD_NAMES or (velocity and split)
+
+
+def _sentence(dataset: "xarray.Dataset", name: str) -> str:
+    attributes = dataset[name].attrs
+    said = attributes.get("standard_name") or attributes.get("long_name") or "no name"
+    units = attributes.get("units", "no units")
+    verdict = "is read" if _tells(dataset, name) else "is not read"
+    return f"{name!r} ({said}, {units}) {verdict}."

@@ -1,0 +1,93 @@
+"""A site's own limits, from TOML."""
+
+import tomllib
+from dataclasses import fields, replace
+from pathlib import Path
+
+from seacage.conventions import RecordError
+from seacage.records._limits import DEFAULT_LIMITS, Limits, Range, Steadiness
+from seacage.records._toml import Table, check_names, number_of, numbers_of, table_of
+
+
+def read_limits(path: Path | str) -> Limits:
+    """Read the limits that a site changes; all others are the defaults.
+
+    The file looks like this::
+
+        [ranges.hs_m]
+        fail = [0, 15]
+        suspect = [0, 9]
+
+        [steadiness.current]
+        jump = 0.4
+        gap_s = 7200
+
+    Raises
+    ------
+    RecordError
+        No TOML, an unknown quantity, group or limit, a value that is no number.
+    """
+    where = str(path)
+    try:
+        table = tomllib.loads(Path(path).read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise RecordError(f"{where}: the limits cannot be read ({error}).") from error
+    check_names(table, ("ranges", "steadiness"), where=where)
+    return replace(
+        DEFAULT_LIMITS,
+        ranges={**DEFAULT_LIMITS.ranges, **_ranges(_part(table, "ranges", where), where)},
+        steadiness={
+            **DEFAULT_LIMITS.steadiness,
+            **_steadiness(_part(table, "steadiness", where), where),
+        },
+    )
+
+
+def _part(table: Table, name: str, where: str) -> Table:
+    return table_of(table, name, where=where) if name in table else {}
+
+
+def _ranges(table: Table, where: str) -> dict[str, Range]:
+    check_names(table, DEFAULT_LIMITS.ranges, where=f"{where}, [ranges]")
+    return {
+        key: parsed_range(table_of(table, key, where=where), DEFAULT_LIMITS.ranges[key], where)
+        for key in table
+    }
+
+
+def parsed_range(table: Table, usual: Range, where: str) -> Range:
+    """Bounds of a table; those that it leaves out stay the usual ones.
+
+    Raises
+    ------
+    RecordError
+        Bounds that are not two ascending numbers.
+    """
+    check_names(table, ("fail", "suspect"), where=where)
+    return Range(
+        fail=_pair(table, "fail", where) or usual.fail,
+        suspect=_pair(table, "suspect", where) or usual.suspect,
+    )
+
+
+def _pair(table: Table, name: str, where: str) -> tuple[float, float] | None:
+    if name not in table:
+        return None
+    numbers = numbers_of(table, name, where=where)
+    if len(numbers) != 2 or not numbers[0] <= numbers[1]:
+        raise RecordError(f"{where}: {name} = {list(numbers)} is no range. Write [low, high].")
+    return numbers[0], numbers[1]
+
+
+def _steadiness(table: Table, where: str) -> dict[str, Steadiness]:
+    check_names(table, DEFAULT_LIMITS.steadiness, where=f"{where}, [steadiness]")
+    names = [one.name for one in fields(Steadiness)]
+    changed: dict[str, Steadiness] = {}
+    for group in table:
+        inside = f"{where}, [steadiness.{group}]"
+        given = table_of(table, group, where=where)
+        check_names(given, names, where=inside)
+        numbers = {name: number_of(given, name, where=inside) for name in given}
+        known = {name: number for name, number in numbers.items() if number is not None}
+        changed[group] = replace(DEFAULT_LIMITS.steadiness[group], **known)
+    return changed

@@ -1,0 +1,40 @@
+"""One door to maps: a file's, or one that is shipped."""
+
+import re
+from pathlib import Path
+
+from seacage.conventions import RecordError
+from seacage.records._cf import NetcdfMap
+from seacage.records._columns import ColumnMap
+from seacage.records._shipped import shipped_maps
+
+_NETCDF = re.compile(r'^\s*kind\s*=\s*"netcdf"', re.MULTILINE)
+
+
+def read_map(source: Path | str) -> ColumnMap | NetcdfMap:
+    """Read what a foreign file's columns or variables mean.
+
+    Parameters
+    ----------
+    source
+        A TOML file, with ``kind = "netcdf"`` where it is a ``NetcdfMap``'s; or the name of a
+        shipped column map.
+
+    Raises
+    ------
+    RecordError
+        No such file and no such name, or a map that is refused.
+    """
+    if str(source) in shipped_maps():
+        return shipped_maps()[str(source)]
+    path = Path(source)
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise RecordError(
+            f"{path}: the map cannot be read ({error}). Give a TOML file, or the name of a "
+            f"shipped map: {', '.join(shipped_maps())}."
+        ) from error
+    if _NETCDF.search(text):
+        return NetcdfMap.from_toml(text, where=str(path))
+    return ColumnMap.from_toml(text, where=str(path))

@@ -1,0 +1,245 @@
+"""Tables as they come, from text, Parquet or JSON: a header and rows of cells, or why not."""
+
+import csv
+import importlib
+import io
+import json
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+from seacage.conventions import RecordError
+
+if TYPE_CHECKING:
+    from seacage.records._columns import ColumnMap
+
+WHITESPACE = "whitespace"
+"""The delimiter of tables whose cells any number of blanks part."""
+
+_COOPS_NAMES = {"t": "Date Time", "s": "Speed", "d": "Direction", "b": "Bin"}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Table:
+    """Rows of cells with the lines that they end on.
+
+    Parameters
+    ----------
+    path
+        Of the file, for messages.
+    header
+        The columns' names, each once.
+    header_line
+        The line of the header.
+    lines
+        The line of each row; the row's number where the file has no lines.
+    rows
+        Cells, as many in each row as in the header.
+    cut
+        The file ends inside its last row, for all that can be seen: it has no line end.
+    """
+
+    path: Path
+    header: tuple[str, ...]
+    header_line: int = 1
+    lines: tuple[int, ...]
+    rows: tuple[tuple[str, ...], ...]
+    cut: bool = False
+
+    def column(self, name: str) -> list[str]:
+        """Return the cells under a name."""
+        at = self.header.index(name)
+        return [row[at] for row in self.rows]
+
+
+def read_table(path: Path, columns: "ColumnMap | None") -> Table:
+    """Read a table by its ending: ``.parquet``, ``.json`` (NOAA CO-OPS), else text.
+
+    Raises
+    ------
+    RecordError
+        No such file, no such format, rows of unequal length, a column twice, no rows.
+    """
+    if path.suffix.lower() == ".parquet":
+        return _read_parquet(path)
+    encoding = "utf-8" if columns is None else columns.encoding
+    text = read_text(path, encoding)
+    if path.suffix.lower() == ".json":
+        return _coops_table(path, text)
+    return text_table(
+        path,
+        text,
+        delimiter="," if columns is None else columns.delimiter,
+        skip_lines=0 if columns is None else columns.skip_lines,
+    )
+
+
+def read_text(path: Path, encoding: str = "utf-8") -> str:
+    """Read the text of a file, in one encoding and no other.
+
+    Raises
+    ------
+    RecordError
+        No such file, or bytes that are no text.
+    """
+    try:
+        text = path.read_bytes().decode("utf-8-sig" if encoding == "utf-8" else encoding)
+    except OSError as error:
+        raise RecordError(f"{path}: the file cannot be read ({error.strerror}).") from error
+    except UnicodeError as error:
+        place, what = "", "it"
+        if isinstance(error, UnicodeDecodeError):
+            before = error.object[: error.start]
+            place, what = f", line {before.count(10) + 1}", f"byte {error.start}"
+        raise RecordError(
+            f"{path}{place}: {what} is not {encoding.upper()} text. "
+            "Save the table as UTF-8, and make sure that it is no archive or spreadsheet."
+        ) from error
+    if "\0" in text:
+        line = text[: text.index("\0")].count("\n") + 1
+        raise RecordError(
+            f"{path}, line {line}: there is a NUL character, so this is no {encoding.upper()} "
+            "text. Save the table as UTF-8, or declare its encoding in the map."
+        )
+    return text
+
+
+def text_table(path: Path, text: str, *, delimiter: str, skip_lines: int = 0) -> Table:
+    """Split text into a table.
+
+    Raises
+    ------
+    RecordError
+        A row that cannot be split, or of another length than the header; no rows.
+    """
+    rows, lines = _split(path, text, delimiter, skip_lines)
+    if not rows:
+        raise RecordError(f"{path}: the file is empty. Give one with a header and rows.")
+    cut = bool(rows[1:]) and not text.endswith(("\n", "\r"))
+    return checked_table(path, rows, lines, cut=cut)
+
+
+def checked_table(
+    path: Path, rows: Sequence[tuple[str, ...]], lines: Sequence[int], *, cut: bool = False
+) -> Table:
+    """Make a table of rows whose first is the header.
+
+    Raises
+    ------
+    RecordError
+        As ``text_table``.
+    """
+    header = tuple(cell.strip() for cell in rows[0])
+    twice = [name for name, count in Counter(header).items() if count > 1]
+    if twice:
+        raise RecordError(
+            f"{path}, line {lines[0]}: the header has the column {twice[0]!r} twice. "
+            "Rename or drop one."
+        )
+    for line, row in zip(lines, rows, strict=True):
+        if len(row) != len(header):
+            raise RecordError(
+                f"{path}, line {line}: {len(row)} cells under a header of {len(header)}. "
+                "Mend the row, or cut the file there; a shifted row is never guessed at."
+            )
+    if len(rows) == 1:
+        raise RecordError(f"{path}: there is a header and no row. Give a file with values.")
+    return Table(
+        path=path,
+        header=header,
+        header_line=lines[0],
+        lines=tuple(lines[1:]),
+        rows=tuple(rows[1:]),
+        cut=cut,
+    )
+
+
+def _split(
+    path: Path, text: str, delimiter: str, skip_lines: int
+) -> tuple[list[tuple[str, ...]], list[int]]:
+    stream = io.StringIO(text, newline="")
+    for _ in range(skip_lines):
+        stream.readline()
+    lines: list[int] = []
+    rows: list[tuple[str, ...]] = []
+    if delimiter == WHITESPACE:
+        for number, line in enumerate(stream.read().splitlines(), start=skip_lines + 1):
+            if line.strip():
+                rows.append(tuple(line.split()))
+                lines.append(number)
+        return rows, lines
+    reader = csv.reader(stream, delimiter=delimiter, strict=True)
+    try:
+        for row in reader:
+            if any(cell.strip() for cell in row):
+                lines.append(skip_lines + reader.line_num)
+                rows.append(tuple(row))
+    except csv.Error as error:
+        raise RecordError(
+            f"{path}, line {skip_lines + reader.line_num}: the row cannot be split into cells "
+            f"({error}). Mend it, or cut the file there."
+        ) from error
+    return rows, lines
+
+
+def _read_parquet(path: Path) -> Table:
+    """Cells as text, which Python writes and reads back to the last bit."""
+    try:
+        parquet: Any = importlib.import_module("pyarrow.parquet")
+    except ModuleNotFoundError as error:
+        raise RecordError(
+            f"{path}: reading Parquet needs pyarrow, which is not installed. "
+            "Install it with: pip install 'seacage[archive]'."
+        ) from error
+    try:
+        content = parquet.read_table(path)
+        names: list[str] = content.column_names
+        columns: list[list[object]] = [column.to_pylist() for column in content.columns]
+    except (OSError, ValueError, TypeError, NotImplementedError, OverflowError) as error:
+        raise RecordError(
+            f"{path}: this is no Parquet file that can be read ({_one_line(error)}). "
+            "Write it anew, or give the table as text."
+        ) from error
+    rows = [tuple(_cell(value) for value in row) for row in zip(*columns, strict=True)]
+    return checked_table(path, [tuple(names), *rows], range(len(rows) + 1))
+
+
+def _cell(value: object) -> str:
+    from datetime import datetime
+
+    if value is None:
+        return ""
+    return value.isoformat() if isinstance(value, datetime) else str(value)
+
+
+def _coops_table(path: Path, text: str) -> Table:
+    """Read the JSON answer of NOAA's CO-OPS data service, under its CSV answer's names."""
+    try:
+        answer: object = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise RecordError(f"{path}: this is no JSON ({_one_line(error)}). Load it anew.") from error
+    entries: object = cast("dict[str, object]", answer).get("data") if _is_table(answer) else None
+    items = cast("list[dict[str, object]]", entries if isinstance(entries, list) else [None])
+    if not all(_is_table(one) for one in items):
+        raise RecordError(
+            f"{path}: this JSON is no answer of NOAA's CO-OPS data service, which has a list "
+            '"data". Give a table as text or Parquet with a column map.'
+        )
+    names = tuple(items[0]) if items else ()
+    if not items or any(tuple(one) != names for one in items):
+        raise RecordError(
+            f'{path}: the entries of "data" are none, or of unequal kinds. Load it anew.'
+        )
+    header = tuple(_COOPS_NAMES.get(name, name) for name in names)
+    rows = [tuple(str(value) for value in one.values()) for one in items]
+    return checked_table(path, [header, *rows], range(len(rows) + 1))
+
+
+def _is_table(value: object) -> bool:
+    return isinstance(value, dict)
+
+
+def _one_line(error: Exception) -> str:
+    return " ".join(str(error).split())[:200]
