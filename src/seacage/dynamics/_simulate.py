@@ -70,8 +70,8 @@ def simulate(
     cylinder's edge, bridles on elastic frame corners or on a frame with buoys and anchor lines.
     It starts from the equilibrium in the current; the waves rise over ``ramp``, and nothing
     counts before ``spin_up``. Left out: waves made by the collar, second-order waves, the
-    netting's shelter from waves, wave loads on lines of the mooring above their drag and
-    inertia. A case's numbers do not depend on the cases beside it nor on ``workers``.
+    netting's shelter from waves, and that netting above the surface is dry: it meets the water
+    at the surface. A case's numbers do not depend on the cases beside it nor on ``workers``.
 
     Parameters
     ----------
