@@ -10,7 +10,8 @@ from validation._sections import MODULES, chosen, computed, rows_of, sections_of
 PAGE = Path(__file__).parents[3] / "docs" / "validation.md"
 QUICK = chosen(quick=True)
 SLOW = [job for job in chosen() if job not in QUICK]
-ALL = [*QUICK, *(pytest.param(*job, marks=pytest.mark.slow) for job in SLOW)]
+MINUTES = (pytest.mark.slow, pytest.mark.timeout(900))
+ALL = [*QUICK, *(pytest.param(*job, marks=MINUTES) for job in SLOW)]
 
 
 @pytest.mark.parametrize(("module", "index"), ALL)
