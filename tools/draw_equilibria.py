@@ -63,9 +63,14 @@ def drawn(one, lifted, ruling):
             shape = shapes[at, : CAGE.node_count, 1:]
             side.plot(*shape[CAGE.edges].transpose(2, 1, 0), color=colour, linewidth=0.4)
             side.axhline(0.0, color=INK, linewidth=0.6)
-            side.set(ylabel="height [m]", xlim=(-22, 46), ylim=(-9, 4), aspect="equal")
+            side.set(
+                xlabel="down-stream [m]" if row else "",
+                ylabel="height [m]",
+                xlim=(-22, 46),
+                ylim=(-9, 4),
+                aspect="equal",
+            )
             head(side, f"{title}, {SHOWN:g} m/s to the right", origin=Origin.COMPUTED)
-        side.set_xlabel("down-stream [m]")
         return figure
 
 

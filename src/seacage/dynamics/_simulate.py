@@ -379,6 +379,7 @@ def _start(
         law="loland" if law == "morison" else law,
         wake=wake,
         hold_collar=hold_collar,
+        starts=1,
     ).node_position
     known = np.isfinite(settled).all(axis=(1, 2), keepdims=True)
     net = np.where(known, settled, rest_shape(cage, hold_collar=hold_collar))
