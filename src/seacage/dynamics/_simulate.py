@@ -34,6 +34,9 @@ CHUNK = 100
 MOST_COMPONENTS = 1000
 """Of the waves of a case: the kernel keeps their phases on a thread's stack."""
 
+MOST_ROOM = 16.0
+"""For the samples of the cases that travel together [GB]."""
+
 STATISTICS_EVERY = 1.0
 """Between samples for quantiles and moments where no series is asked for [s]."""
 
@@ -136,6 +139,7 @@ def simulate(
     steps = _steps(duration, ramp, spin_up, time_step, sample_every)
     assembly = _prepared(cage, mooring, hold_collar=hold_collar, collar_drag=collar_drag)
     assembly, _ = steadied(assembly, steps.time_step)
+    _check_room(steps, assembly)
     depth = cage.site.water_depth
     ocean = _ocean(seas, _waves(seas, waves, seed, depth), current_profile, depth)
     lanes = simulation_lanes()
@@ -216,6 +220,19 @@ def _steps(
         counted=math.ceil(duration / REFRESH - 1e-9),
         sample_every=samples,
     )
+
+
+def _check_room(steps: Steps, assembly: Assembly) -> None:
+    """Positions, tensions, net force and surface are kept in single precision to the end."""
+    sampled = 3 * len(assembly.position) + len(assembly.bridles) + 4
+    room = 4e-9 * steps.samples * simulation_lanes() * sampled
+    if room > MOST_ROOM:
+        duration, every = steps.counted * REFRESH, steps.sample_every * REFRESH
+        raise InputError(
+            f"simulate: duration = {duration:g} s, sampled every {every:g} s, asks for {room:.3g} "
+            f"GB of memory, more than {MOST_ROOM:g}. Sample less often, or simulate several "
+            "shorter pieces with other seeds."
+        )
 
 
 def _levels(levels: Sequence[float]) -> Float[np.ndarray, " quantile"]:

@@ -438,6 +438,11 @@ REFUSED = {
     "no duration": ((SMALL, SEA), {"duration": 0.0}, r"duration = 0 s .* at least 0\.1 s"),
     "an endless duration": ((SMALL, SEA), {"duration": np.inf}, r"duration = inf s"),
     "no number": ((SMALL, SEA), {"duration": np.nan}, r"duration = nan s"),
+    "a duration of years": (
+        (SMALL, SEA),
+        {"duration": 1e8},
+        r"duration = 1e\+08 s, sampled every 0\.5 s, asks for .* GB.*shorter pieces",
+    ),
     "a negative ramp": ((SMALL, SEA), {"ramp": -1.0}, r"ramp = -1 s .* at least 0 s"),
     "a ramp that counts": ((SMALL, SEA), {"ramp": 9.0}, r"spin_up = 1 s .* at least ramp"),
     "a step of nothing": ((SMALL, SEA), {"time_step": 0.0}, r"time_step = 0 s"),
