@@ -242,8 +242,9 @@ def _finer_mesh() -> Iterator[Row]:
         "as above",
         must_hold=False,
         note="Likely cause: waves shorter than two of the collar's chords (10 m, 2.5 s) load its "
-        "nodes one by one, where along a pipe they would cancel. In the paper's plan such seas have "
-        "an Hs below 0.25 m, and a bridle's standard deviation is of the order of 1 kN too large.",
+        "nodes one by one, where along a pipe they would cancel. In the paper's plan such seas "
+        "have an Hs below 0.25 m, and a bridle's standard deviation is of the order of 1 kN too "
+        "large.",
     )
 
 

@@ -233,7 +233,6 @@ SECTIONS = (
         title="Trends in tanks",
         about="What was measured on cages whose gear is not printed whole.",
         rows=lambda: [*_flume(), *_trends()],
-        slow=True,
     ),
     Section(
         title="The slower flow inside",

@@ -99,7 +99,7 @@ def _section(case: Case) -> Section:
     laws = _asked(case)
     simulated = any(law not in LAWS or any(sea.hs for sea in laws[law]) for law in laws)
     of_panel = isinstance(case.subjects[0], Panel)
-    slow = simulated or isinstance(case.subjects[0], Structure) or len(case.subjects) > 1
+    slow = simulated or isinstance(case.subjects[0], Structure)
     return Section(
         title=case.title,
         about=case.about or f"The case `validation/cases/{case.name}`.",
