@@ -107,9 +107,14 @@ def settle(
     Raises
     ------
     InputError
-        Waves without ``mean_waves``, no sea at all, no start, or a cage that cannot
-        float.
+        Waves without ``mean_waves``, no sea at all, no start, a ``Structure``, or a cage that
+        cannot float.
     """
+    if not isinstance(cage, Cage):
+        raise InputError(
+            f"settle: takes a Cage, not a {type(cage).__name__}. A structure comes to rest in "
+            "simulate, in a sea without waves and with a long spin-up."
+        )
     seas = [sea] if isinstance(sea, SeaState) else list(sea)
     _check(seas, mean_waves=mean_waves, starts=starts)
     assembly = _assembled(cage)
