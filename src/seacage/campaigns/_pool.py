@@ -48,6 +48,7 @@ def mapped(
         yield from ((task, work(task)) for task in tasks)
         return
     spawn = multiprocessing.get_context("spawn")
+    others = set(multiprocessing.active_children())
     pool = ProcessPoolExecutor(workers, mp_context=spawn, initializer=_leave_with_parent)
     try:
         with _clean_start():
@@ -55,6 +56,9 @@ def mapped(
         for future in as_completed(futures):
             yield futures[future], future.result()
     except BrokenProcessPool as error:
+        # A worker that began while the pool broke is waited for, but not ended, by the pool.
+        for worker in set(multiprocessing.active_children()) - others:
+            worker.kill()
         raise SeacageError(
             "A worker process was ended from outside, perhaps for want of memory. "
             "Run again with fewer workers; what is done is kept."

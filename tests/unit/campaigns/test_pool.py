@@ -1,9 +1,11 @@
 """The pool of processes."""
 
+import multiprocessing
 import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from contextlib import closing
 from pathlib import Path
@@ -67,6 +69,18 @@ def test_closing_early_drops_what_has_not_begun() -> None:
 def test_a_worker_that_dies_is_told_in_one_sentence() -> None:
     with pytest.raises(SeacageError, match="ended from outside"):
         list(mapped(os._exit, [1, 1], workers=2))
+
+
+@pytest.mark.parametrize("_time", range(4))  # a hang would need luck
+def test_a_worker_that_dies_as_it_begins_does_not_keep_the_others_waiting(_time: int) -> None:
+    def kill_first() -> None:
+        while not (workers := multiprocessing.active_children()):
+            time.sleep(0.005)
+        workers[0].kill()
+
+    threading.Thread(target=kill_first, daemon=True).start()
+    with pytest.raises(SeacageError, match="ended from outside"):
+        list(mapped(abs, [-1, -2, -3], workers=2))
 
 
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="reads /proc")
