@@ -3,6 +3,7 @@
 from seacage.figures._animation import Motion, write_animation
 from seacage.figures._comparison import Comparison, density_figure, series_figure
 from seacage.figures._net import net_figure
+from seacage.figures._quality import quality_figure
 from seacage.figures._rose import tension_rose_figure
 from seacage.figures._shape_error import shape_error_figure
 from seacage.figures._states import states_figure
@@ -16,6 +17,7 @@ __all__ = [
     "VolumeMark",
     "density_figure",
     "net_figure",
+    "quality_figure",
     "series_figure",
     "shape_error_figure",
     "states_figure",

@@ -11,7 +11,14 @@ from seacage.records._campaign_store import (
     write_cases,
 )
 from seacage.records._cf import NetcdfMap
-from seacage.records._check import QualityState, check_record, check_sample
+from seacage.records._check import (
+    Amendment,
+    QualityState,
+    Verdict,
+    check_record,
+    check_sample,
+    verdicts_on,
+)
 from seacage.records._columns import Column, ColumnMap
 from seacage.records._field import FieldRecord
 from seacage.records._history_file import (
@@ -22,7 +29,7 @@ from seacage.records._history_file import (
 )
 from seacage.records._inspect import Inspection, inspect_file
 from seacage.records._keys import KEYS, Key
-from seacage.records._limits import DEFAULT_LIMITS, Limits, Range, Steadiness
+from seacage.records._limits import DEFAULT_LIMITS, Limits, Range, Season, Steadiness
 from seacage.records._limits_file import read_limits
 from seacage.records._maps import read_map
 from seacage.records._netcdf import write_record
@@ -37,6 +44,7 @@ __all__ = [
     "KEYS",
     "NOT_RUN",
     "STATISTICS",
+    "Amendment",
     "CampaignRecord",
     "Column",
     "ColumnMap",
@@ -50,7 +58,9 @@ __all__ = [
     "Range",
     "Record",
     "Sample",
+    "Season",
     "Steadiness",
+    "Verdict",
     "campaign_results",
     "campaign_unsummed",
     "campaign_variable",
@@ -68,6 +78,7 @@ __all__ = [
     "read_map",
     "read_record",
     "shipped_maps",
+    "verdicts_on",
     "write_cases",
     "write_history",
     "write_record",

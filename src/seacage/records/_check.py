@@ -1,9 +1,11 @@
 """Quality control: one path for live samples and for archives."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from datetime import UTC, datetime, timedelta
 
 import numpy as np
+from jaxtyping import Int
 
 from seacage.conventions import Flag
 from seacage.records._limits import DEFAULT_LIMITS, GROUPS, Limits
@@ -12,12 +14,66 @@ from seacage.records._record import Record
 from seacage.records._sample import Sample
 from seacage.records._times import microseconds
 
+_EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Amendment:
+    """A flag that a sample gets when the next has come; it only ever grows worse by it.
+
+    Parameters
+    ----------
+    t
+        Of the sample that is meant, UTC.
+    key
+        Of the value.
+    flag
+        To be taken where it is worse than the value's own.
+    remark
+        Why: one sentence.
+    """
+
+    t: datetime
+    key: str
+    flag: Flag
+    remark: str
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class QualityState:
-    """What the checks remember of one stream; the first state is ``QualityState()``."""
+    """What the checks remember of one stream; the first state is ``QualityState()``.
+
+    Parameters
+    ----------
+    anchors
+        By group: the latest readings in range, to compare the next with.
+    amended
+        What the last sample taught of an earlier one: that it was a spike.
+    """
 
     anchors: Mapping[str, Anchor] = field(default_factory=dict[str, Anchor])
+    amended: tuple[Amendment, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Verdict:
+    """What one test found in one quantity of a record.
+
+    Parameters
+    ----------
+    key, test, flag
+        The quantity, the test's name, and the flag that it gave.
+    rows
+        Where, ascending.
+    example
+        Why, of the first row: one sentence.
+    """
+
+    key: str
+    test: str
+    flag: Flag
+    rows: Int[np.ndarray, " row"]
+    example: str
 
 
 def check_sample(
@@ -25,10 +81,11 @@ def check_sample(
 ) -> tuple[QualityState, Sample]:
     """Flag the values of one sample, given what its stream said before.
 
-    Range and presence are judged for each value alone; a sea too steep to stand fails its
-    height and its period. Rate of change and flat line compare with the latest reading of the
-    same instrument that was in range. A late sample, older than that reading, is judged alone
-    and leaves the state as it was.
+    Presence, range and climatology are judged for each value alone; a sea too steep to stand
+    fails its height and its period. Gap, rate of change, flat line and attenuated signal compare
+    with the readings of the same instrument before, those that were in range. That a reading was
+    a spike is known when the next has come: ``state.amended`` says it then. A late sample, older
+    than the latest reading, is judged alone and leaves the state as it was.
 
     Parameters
     ----------
@@ -53,59 +110,90 @@ def check_sample(
     time = microseconds(sample.t)
     anchors = dict(state.anchors)
     findings: list[Finding] = []
+    amended: list[Amendment] = []
     for group, keys in GROUPS.items():
         values = {key: sample.values[key] for key in keys if key in sample.values}
         if values:
-            anchor, found = judged(group, anchors.get(group), time, values, limits)
-            findings += found
-            if anchor is not None:
-                anchors[group] = anchor
+            before = anchors.get(group)
+            judgement = judged(group, before, time, values, limits)
+            findings += judgement.findings
+            if before is not None:
+                amended += _amendments(sample.stream, before, judgement.of_the_last)
+            if judgement.anchor is not None:
+                anchors[group] = judgement.anchor
     flags = dict.fromkeys(sample.values, Flag.GOOD)
     for finding in findings:
         flags[finding.key] = max(flags[finding.key], finding.flag)
     remarks = tuple(_sentence(sample.stream, sample.values, finding) for finding in findings)
-    return QualityState(anchors=anchors), replace(sample, flags=flags, remarks=remarks)
+    state = QualityState(anchors=anchors, amended=tuple(amended))
+    return state, replace(sample, flags=flags, remarks=remarks)
 
 
 def check_record(record: Record, limits: Limits = DEFAULT_LIMITS) -> Record:
-    """Flag every value of a record, as ``check_sample`` would one by one.
+    """Flag every value of a record, as ``check_sample`` would one by one, amendments made.
 
     Returns
     -------
     record
-        With flags, and with a note per quantity and flag: how many, and the first of them.
+        With flags, and with a note per quantity, test and flag: how many, and the first.
     """
+    flags = {key: np.full(len(record), Flag.GOOD, dtype=np.uint8) for key in record.values}
+    verdicts = verdicts_on(record, limits)
+    for one in verdicts:
+        flags[one.key][one.rows] = np.maximum(flags[one.key][one.rows], one.flag)
+    notes = tuple(
+        f"{one.example} The first of {len(one.rows)} such among {len(record)}, "
+        f"at {record.time[one.rows[0]].astype('datetime64[s]')}Z."
+        for one in verdicts
+    )
+    return replace(record, flags=flags, notes=tuple(dict.fromkeys(record.notes + notes)))
+
+
+def verdicts_on(record: Record, limits: Limits = DEFAULT_LIMITS) -> tuple[Verdict, ...]:
+    """Return what each test finds in a record, in the order of first finds."""
     times = record.time.astype(np.int64).tolist()
-    flags = {key: np.full(len(times), Flag.GOOD, dtype=np.uint8) for key in record.values}
-    tally: dict[tuple[str, Flag], tuple[int, int, str]] = {}
+    found: dict[tuple[str, str, Flag], tuple[list[int], str]] = {}
     for group, keys in GROUPS.items():
         columns = {key: record.values[key].tolist() for key in keys if key in record.values}
         for row, finding, values in _findings(group, times, columns, limits):
-            flags[finding.key][row] = max(flags[finding.key][row], finding.flag)
-            sentence = _sentence(record.stream, values, finding)
-            count, first, example = tally.get((finding.key, finding.flag), (0, row, sentence))
-            tally[finding.key, finding.flag] = (count + 1, first, example)
-    notes = tuple(
-        f"{example} The first of {count} such among {len(times)}, "
-        f"at {record.time[first].astype('datetime64[s]')}Z."
-        for count, first, example in tally.values()
+            name = (finding.key, finding.test, finding.flag)
+            if name not in found:
+                found[name] = ([], _sentence(record.stream, values, finding))
+            found[name][0].append(row)
+    return tuple(
+        Verdict(key=key, test=test, flag=flag, rows=np.unique(rows), example=example)
+        for (key, test, flag), (rows, example) in found.items()
     )
-    return replace(record, flags=flags, notes=tuple(dict.fromkeys(record.notes + notes)))
 
 
 def _findings(
     group: str, times: list[int], columns: Mapping[str, list[float]], limits: Limits
 ) -> Iterator[tuple[int, Finding, Mapping[str, float]]]:
     anchor: Anchor | None = None
+    last = 0  # the row of the anchor
     for row, numbers in enumerate(zip(*columns.values(), strict=True)):
         values = dict(zip(columns, numbers, strict=True))
-        anchor, findings = judged(group, anchor, times[row], values, limits)
+        before = anchor
+        anchor, findings, of_the_last = judged(group, before, times[row], values, limits)
         for finding in findings:
             yield row, finding, values
+        if before is not None:
+            for finding in of_the_last:
+                yield last, finding, before.values
+        if anchor is not before:
+            last = row
+
+
+def _amendments(stream: str, anchor: Anchor, found: Sequence[Finding]) -> list[Amendment]:
+    t = _EPOCH + timedelta(microseconds=anchor.time)
+    return [
+        Amendment(t=t, key=one.key, flag=one.flag, remark=_sentence(stream, anchor.values, one))
+        for one in found
+    ]
 
 
 def _sentence(stream: str, values: Mapping[str, float], finding: Finding) -> str:
-    key, flag, why = finding
+    key, flag, why, _ = finding
     if flag == Flag.MISSING:
         return f"{stream}: {key} {why}. Flagged {flag} ({_word(flag)})."
     return (

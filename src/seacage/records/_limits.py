@@ -2,10 +2,11 @@
 
 The kinds of test and their flags follow the QARTOD manuals of IOOS for real-time quality
 control of in-situ currents, of surface waves and of water levels: gross range (fail, suspect),
-time gap, rate of change and flat line. The manuals leave the numbers to the operator; these are
-for a moored cage, and a site may give its own.
+climatology, time gap, spike, rate of change, flat line and attenuated signal. The manuals leave
+the numbers to the operator; these are for a moored cage, and a site may give its own.
 """
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -52,6 +53,16 @@ class Steadiness:
     flat_suspect_s, flat_fail_s
         All values of the group have repeated themselves exactly for as long: SUSPECT, and
         FAIL where there are also at least 5 of them (3 for SUSPECT) [s].
+    spike_suspect, spike_fail
+        A reading that is farther than this from the one before and from the one after, and on
+        the same side of both, as a change is measured: SUSPECT, FAIL. It is only known when
+        the reading after has come.
+    attenuated_s
+        How long the attenuated signal's window is [s].
+    attenuated_suspect, attenuated_fail
+        Over the whole window, and in at least 5 of its 64 parts, the group has stayed within
+        a range smaller than this, of a current in east and in north, of waves in hs: SUSPECT,
+        FAIL.
     """
 
     jump: float
@@ -59,6 +70,27 @@ class Steadiness:
     gap_s: float
     flat_suspect_s: float
     flat_fail_s: float
+    spike_suspect: float = math.inf
+    spike_fail: float = math.inf
+    attenuated_s: float = math.inf
+    attenuated_suspect: float = 0.0
+    attenuated_fail: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Season:
+    """What a quantity is like in some months at one site.
+
+    Parameters
+    ----------
+    months
+        1 to 12, of the UTC time.
+    range
+        As of the gross range.
+    """
+
+    months: tuple[int, ...]
+    range: Range
 
 
 def _ranges() -> dict[str, Range]:
@@ -80,16 +112,52 @@ def _steadiness() -> dict[str, Steadiness]:
     hour = 3600.0
     return {
         "current": Steadiness(
-            jump=0.3, rate=3e-4, gap_s=3 * hour, flat_suspect_s=hour, flat_fail_s=3 * hour
+            jump=0.3,
+            rate=3e-4,
+            gap_s=3 * hour,
+            flat_suspect_s=hour,
+            flat_fail_s=3 * hour,
+            spike_suspect=0.8,
+            spike_fail=1.5,
+            attenuated_s=12 * hour,
+            attenuated_suspect=0.02,
+            attenuated_fail=0.005,
         ),
         "waves": Steadiness(
-            jump=1.0, rate=6e-4, gap_s=3 * hour, flat_suspect_s=12 * hour, flat_fail_s=36 * hour
+            jump=1.0,
+            rate=6e-4,
+            gap_s=3 * hour,
+            flat_suspect_s=12 * hour,
+            flat_fail_s=36 * hour,
+            spike_suspect=2.0,
+            spike_fail=5.0,
+            attenuated_s=72 * hour,
+            attenuated_suspect=0.05,
         ),
         "tension": Steadiness(
-            jump=15.0, rate=0.02, gap_s=hour, flat_suspect_s=0.5 * hour, flat_fail_s=2 * hour
+            jump=15.0,
+            rate=0.02,
+            gap_s=hour,
+            flat_suspect_s=0.5 * hour,
+            flat_fail_s=2 * hour,
+            # Waves load and slacken a bridle between two readings, so only the absurd fails.
+            spike_suspect=60.0,
+            spike_fail=200.0,
+            attenuated_s=2 * hour,
+            attenuated_suspect=0.01,
+            attenuated_fail=0.001,
         ),
         "depth": Steadiness(
-            jump=1.5, rate=0.01, gap_s=hour, flat_suspect_s=0.5 * hour, flat_fail_s=2 * hour
+            jump=1.5,
+            rate=0.01,
+            gap_s=hour,
+            flat_suspect_s=0.5 * hour,
+            flat_fail_s=2 * hour,
+            spike_suspect=4.0,
+            spike_fail=10.0,
+            attenuated_s=2 * hour,
+            attenuated_suspect=0.002,
+            attenuated_fail=0.0005,
         ),
     }
 
@@ -104,10 +172,16 @@ class Limits:
         By door key.
     steadiness
         By group: ``current``, ``waves``, ``tension``, ``depth``.
+    climatology
+        By door key: what is usual in the months of the year, where the site knows it; no
+        default.
     """
 
     ranges: Mapping[str, Range] = field(default_factory=_ranges)
     steadiness: Mapping[str, Steadiness] = field(default_factory=_steadiness)
+    climatology: Mapping[str, tuple[Season, ...]] = field(
+        default_factory=dict[str, tuple[Season, ...]]
+    )
 
 
 DEFAULT_LIMITS = Limits()

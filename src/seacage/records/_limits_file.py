@@ -1,12 +1,20 @@
 """A site's own limits, from TOML."""
 
+import math
 import tomllib
 from dataclasses import fields, replace
 from pathlib import Path
 
 from seacage.conventions import RecordError
-from seacage.records._limits import DEFAULT_LIMITS, Limits, Range, Steadiness
-from seacage.records._toml import Table, check_names, number_of, numbers_of, table_of
+from seacage.records._limits import DEFAULT_LIMITS, Limits, Range, Season, Steadiness
+from seacage.records._toml import (
+    Table,
+    check_names,
+    number_of,
+    numbers_of,
+    table_of,
+    tables_of,
+)
 
 
 def read_limits(path: Path | str) -> Limits:
@@ -22,6 +30,10 @@ def read_limits(path: Path | str) -> Limits:
         jump = 0.4
         gap_s = 7200
 
+        [[climatology.hs_m]]
+        months = [6, 7, 8]
+        suspect = [0, 4]
+
     Raises
     ------
     RecordError
@@ -32,7 +44,7 @@ def read_limits(path: Path | str) -> Limits:
         table = tomllib.loads(Path(path).read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise RecordError(f"{where}: the limits cannot be read ({error}).") from error
-    check_names(table, ("ranges", "steadiness"), where=where)
+    check_names(table, ("ranges", "steadiness", "climatology"), where=where)
     return replace(
         DEFAULT_LIMITS,
         ranges={**DEFAULT_LIMITS.ranges, **_ranges(_part(table, "ranges", where), where)},
@@ -40,6 +52,7 @@ def read_limits(path: Path | str) -> Limits:
             **DEFAULT_LIMITS.steadiness,
             **_steadiness(_part(table, "steadiness", where), where),
         },
+        climatology=_climatology(_part(table, "climatology", where), where),
     )
 
 
@@ -91,3 +104,31 @@ def _steadiness(table: Table, where: str) -> dict[str, Steadiness]:
         known = {name: number for name, number in numbers.items() if number is not None}
         changed[group] = replace(DEFAULT_LIMITS.steadiness[group], **known)
     return changed
+
+
+def _climatology(table: Table, where: str) -> dict[str, tuple[Season, ...]]:
+    check_names(table, DEFAULT_LIMITS.ranges, where=f"{where}, [climatology]")
+    everything = Range(fail=(-math.inf, math.inf), suspect=(-math.inf, math.inf))
+    seasons: dict[str, tuple[Season, ...]] = {}
+    for key in table:
+        inside = f"{where}, [[climatology.{key}]]"
+        given = tables_of(table, key, where=inside)
+        seasons[key] = tuple(
+            Season(
+                months=_months(one, inside),
+                range=parsed_range(
+                    {name: bounds for name, bounds in one.items() if name != "months"},
+                    everything,
+                    inside,
+                ),
+            )
+            for one in given
+        )
+    return seasons
+
+
+def _months(table: Table, where: str) -> tuple[int, ...]:
+    months = numbers_of(table, "months", where=where)
+    if not months or not set(months) <= set(range(1, 13)):
+        raise RecordError(f"{where}: months = {list(months)} are none. Write some of 1 to 12.")
+    return tuple(int(month) for month in months)

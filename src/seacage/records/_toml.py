@@ -51,6 +51,14 @@ def table_of(table: Table, name: str, *, where: str) -> Table:
     return cast("Table", value)
 
 
+def tables_of(table: Table, name: str, *, where: str) -> list[Table]:
+    """Return a list of tables; refused where an entry is none."""
+    items = _items(table, name, where)
+    if not all(isinstance(item, dict) for item in items):
+        raise RecordError(f"{where}: {name} is no list of tables. Write [[…{name}]].")
+    return [cast("Table", item) for item in items]
+
+
 def text_of(table: Table, name: str, *, where: str, default: str | None = None) -> str:
     """A text; refused where it is missing and there is no default."""
     value = table.get(name, default)

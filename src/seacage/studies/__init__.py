@@ -4,6 +4,7 @@ from seacage.studies._demonstration import Demonstration, prepare_demonstration
 from seacage.studies._held_out import score_record
 from seacage.studies._level_one import LevelOneScore, ShapeScore
 from seacage.studies._paper import PaperStudy, paper_study
+from seacage.studies._quality import quality_page
 from seacage.studies._sensor_scores import Errors, SensorScore
 
 __all__ = [
@@ -15,5 +16,6 @@ __all__ = [
     "ShapeScore",
     "paper_study",
     "prepare_demonstration",
+    "quality_page",
     "score_record",
 ]

@@ -10,11 +10,14 @@ from seacage.conventions import Flag, Origin
 from seacage.records import (
     DEFAULT_LIMITS,
     QualityState,
+    Range,
     Record,
     Sample,
+    Season,
     check_record,
     check_sample,
     instant,
+    verdicts_on,
 )
 
 NOON = datetime(2018, 1, 26, 12, tzinfo=UTC)
@@ -193,3 +196,84 @@ def test_checking_twice_changes_nothing():
     twice = check_record(once)
     assert twice.notes == once.notes
     assert flags(twice, "depth_m") == flags(once, "depth_m")
+
+
+def test_a_spike_fails_once_the_next_reading_has_come_and_its_neighbours_stay():
+    checked = check_record(record(every_s=60.0, depth_m=[7.0, 7.1, 30.0, 7.1, 7.0, 7.1]))
+    # the jump there and back is suspect by its rate as well
+    assert flags(checked, "depth_m") == ["GOOD", "GOOD", "FAIL", "SUSPECT", "GOOD", "GOOD"]
+    assert "depth_m = 30 stands out by 22.9 from its neighbours (limit 10)" in " ".join(
+        checked.notes
+    )
+
+
+def test_a_live_spike_is_amended_by_the_sample_after_it():
+    state = QualityState()
+    told = []
+    for minute, value in enumerate([7.0, 7.1, 30.0, 7.1]):
+        t = NOON + timedelta(minutes=minute)
+        state, _ = check_sample(state, Sample(stream="depth-1", t=t, values={"depth_m": value}))
+        told.append(state.amended)
+    assert told[:3] == [(), (), ()]
+    (amendment,) = told[3]
+    assert amendment.t == NOON + timedelta(minutes=2)
+    assert (amendment.key, amendment.flag) == ("depth_m", Flag.FAIL)
+    assert amendment.remark.endswith("Flagged 4 (fail); the raw value is kept.")
+
+
+def test_a_step_is_no_spike():
+    checked = check_record(record(every_s=60.0, depth_m=[7.0, 7.0, 30.0, 30.1, 30.0]))
+    assert flags(checked, "depth_m") == ["GOOD", "GOOD", "SUSPECT", "GOOD", "GOOD"]
+
+
+def test_a_current_that_turns_round_for_one_reading_is_a_spike_though_its_speed_stays():
+    checked = check_record(record(current_speed_m_s=[0.9] * 3, current_to_deg=[10.0, 190.0, 10.0]))
+    assert flags(checked, "current_speed_m_s") == ["GOOD", "FAIL", "SUSPECT"]
+
+
+def test_a_spike_over_a_gap_is_nothing_to_speak_of():
+    apart = record(every_s=4000.0, depth_m=[7.0, 7.1, 30.0, 7.1])
+    assert "stands out" not in " ".join(check_record(apart).notes)
+
+
+def test_a_signal_that_has_all_but_died_is_suspect_and_then_fails():
+    random = np.random.default_rng(0)
+    live = 7.0 + random.normal(scale=0.05, size=60)
+    faint = 7.0 + random.uniform(-0.0007, 0.0007, size=180)
+    dead = 7.0 + random.uniform(-0.0002, 0.0002, size=180)
+    checked = check_record(record(every_s=60.0, depth_m=np.concatenate([live, faint, dead])))
+    named = np.array(flags(checked, "depth_m"))
+    assert set(named[:179]) == {"GOOD"}  # until the last lively reading has left the 2 h
+    assert set(named[182:240]) == {"SUSPECT"}
+    assert set(named[-59:]) == {"FAIL"}
+    assert "for 2 h (limit 0.002)" in " ".join(checked.notes)
+
+
+def test_a_signal_begins_anew_after_a_gap():
+    values = 7.0 + np.random.default_rng(0).uniform(-1e-4, 1e-4, size=180)
+    quiet = record(every_s=60.0, depth_m=values)
+    time = quiet.time + np.where(np.arange(180) < 90, 0, 7200) * np.timedelta64(1, "s")
+    assert "FAIL" not in flags(check_record(replace(quiet, time=time)), "depth_m")
+
+
+def test_what_is_usual_in_winter_is_suspect_in_summer():
+    summer = Season(months=(6, 7, 8), range=Range(fail=(0.0, 9.0), suspect=(0.0, 4.0)))
+    limits = replace(DEFAULT_LIMITS, climatology={"hs_m": (summer,)})
+    winter = record(hs_m=[5.0, 5.1], tp_s=[11.0, 11.0])
+    july = replace(winter, time=winter.time + np.timedelta64(180, "D"))
+    assert flags(check_record(winter, limits), "hs_m") == ["GOOD", "GOOD"]
+    checked = check_record(july, limits)
+    assert flags(checked, "hs_m") == ["SUSPECT", "SUSPECT"]
+    assert flags(checked, "tp_s") == ["GOOD", "GOOD"]
+    assert "hs_m = 5 is outside [0, 4], usual in month 7." in checked.notes[0]
+
+
+def test_verdicts_say_which_test_found_what_and_where():
+    found = verdicts_on(record(every_s=60.0, depth_m=[7.0, 7.1, 30.0, np.nan, 700.0, 7.1]))
+    said = {(one.test, one.flag.name): one.rows.tolist() for one in found}
+    assert said == {
+        ("rate of change", "SUSPECT"): [2, 5],
+        ("missing value", "MISSING"): [3],
+        ("gross range", "FAIL"): [4],
+        ("spike", "FAIL"): [2],
+    }

@@ -373,6 +373,8 @@ def test_a_map_of_the_other_kind_is_refused(tmp_path):
         ("[steadiness.waves]\njmp = 1", "the key 'jmp' is unknown. Did you mean 'jump'"),
         ("[steadiness.waves]\njump = true", "jump = True is no number"),
         ("x", "the limits cannot be read"),
+        ("[[climatology.hs_m]]\nmonths = [0, 1]", r"months = \[0.0, 1.0\] are none"),
+        ("[climatology]\nhs_m = [1]", "hs_m is no list of tables"),
     ],
 )
 def test_limits_that_cannot_be_meant_are_refused(tmp_path, text, sentence):
@@ -381,9 +383,14 @@ def test_limits_that_cannot_be_meant_are_refused(tmp_path, text, sentence):
 
 
 def test_a_sites_limits_change_what_they_name_alone(tmp_path):
-    text = "[ranges.hs_m]\nsuspect = [0, 5]\n[steadiness.waves]\njump = 0.4\n"
+    text = (
+        "[ranges.hs_m]\nsuspect = [0, 5]\n[steadiness.waves]\njump = 0.4\n"
+        "[[climatology.hs_m]]\nmonths = [6, 7]\nsuspect = [0, 4]\n"
+    )
     limits = read_limits(written(tmp_path / "limits.toml", text))
     assert limits.ranges["hs_m"].suspect == (0.0, 5.0)
     assert limits.ranges["hs_m"].fail == (0.0, 20.0)
     assert limits.steadiness["waves"].jump == 0.4
     assert limits.steadiness["current"].jump == 0.3
+    (season,) = limits.climatology["hs_m"]
+    assert (season.months, season.range.suspect) == ((6, 7), (0.0, 4.0))

@@ -45,3 +45,14 @@ def test_options_of_netcdf_beside_a_tables_map_are_refused(tmp_path):
     words = ("field", "import", tmp_path / "t.csv", tmp_path / "o.nc", "--columns", "nora10_waves")
     assert "are for NetCDF" in run(*words, "--range-m", "5.4").stderr
     assert "no column is at a depth of 5 m" in run(*words, "--depth-m", "5").stderr
+
+
+def test_a_check_writes_its_page_and_obeys_the_sites_limits(tmp_path):
+    pytest.importorskip("matplotlib")
+    table, page, limits = tmp_path / "t.csv", tmp_path / "quality.html", tmp_path / "limits.toml"
+    table.write_text("time,hs_m\n2018-01-26T23:08:00Z,3.2\n2018-01-26T23:28:00Z,3.1\n")
+    limits.write_text("[ranges.hs_m]\nsuspect = [0, 3]\n")
+    assert "2 good" in run("field", "check", table).stdout
+    told = run("field", "check", table, "--report", page, "--limits", limits)
+    assert "2 suspect" in told.stdout
+    assert "hs_m = 3.2 is outside [0, 3]" in page.read_text()

@@ -207,23 +207,36 @@ def check(
         Path, typer.Argument(exists=True, help="A record's file, or a field record's folder.")
     ],
     *,
+    report: Annotated[
+        Path | None,
+        typer.Option(dir_okay=False, help="An HTML page to write: what, when, why, with figures."),
+    ] = None,
+    limits: LimitsFile = None,
     as_json: Json = False,
 ) -> None:
     """Count what the quality checks say of a record, with the first of each kind.
 
     Flags are those of QARTOD. Bad values do not fail the command; a file that cannot be
-    trusted at all does.
+    trusted at all does. With --limits a record is checked again by them.
 
     Example:
-        seacage field check buoy.csv
+        seacage field check buoy.csv --report quality.html
     """
-    from seacage.records import FieldRecord, read_record
+    from seacage.records import FieldRecord, check_record, read_record
 
+    used = _limits(limits)
     if path.is_dir():
         field = FieldRecord.read(path)
-        _tell([field.buoy, *field.sensors.values()], as_json=as_json)
+        records = [field.buoy, *field.sensors.values()]
     else:
-        _tell([read_record(path)], as_json=as_json)
+        records = [read_record(path, limits=used)]
+    if limits is not None:
+        records = [check_record(one, used) for one in records]
+    if report is not None:
+        from seacage.studies import quality_page
+
+        report.write_text(quality_page(records, used), encoding="utf-8")
+    _tell(records, as_json=as_json, written=report)
 
 
 def _tell(records: "list[Record]", *, as_json: bool, written: Path | None = None) -> None:

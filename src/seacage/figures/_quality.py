@@ -1,0 +1,143 @@
+"""A stream with what its quality checks flagged."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from jaxtyping import Bool, Float, Shaped
+
+from seacage.conventions import Flag
+from seacage.figures._style import FIT, SENSOR, blank_figure, head, style
+from seacage.records import KEYS, Record
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_SUSPECT = "#b8860b"
+_MISSING = "#2f74b5"
+_LABELS = {
+    "current_speed_m_s": "Current speed",
+    "current_to_deg": "Current to",
+    "hs_m": "Wave height",
+    "tp_s": "Peak period",
+    "wave_from_deg": "Waves from",
+    "tension_kn": "Tension",
+    "depth_m": "Depth",
+}
+_DRAWN = 4000
+"""Points of the line, at most about; of each kind of mark, half as many."""
+
+
+def quality_figure(record: Record) -> "Figure":
+    """Every quantity over time: what came, and where it is suspect, failed or missing.
+
+    The line breaks where the stream was silent for ten times its usual step. A failed value
+    outside the picture of the others stands at its edge. Where there are too many readings to
+    draw, the line goes through the least and the greatest of short spans.
+    """
+    keys = tuple(record.values)
+    with style():
+        figure = blank_figure(10.0, 0.6 + 1.9 * len(keys))
+        panels = figure.subplots(len(keys), 1, sharex=True, squeeze=False)[:, 0]
+        for axes, key in zip(panels, keys, strict=True):
+            _panel(axes, record, key)
+        head(panels[0], record.stream, origin=record.origin, legend=4)
+        _date_axis(panels[-1])
+    return figure
+
+
+def _panel(axes: "Axes", record: Record, key: str) -> None:
+    values, flags = record.values[key], record.flags[key]
+    kept = record.usable(key)
+    low, high = _limits(values[kept] if np.any(kept) else values[np.isfinite(values)], key)
+    time, line = _thinned(record.time[kept], values[kept])
+    turning = KEYS[key].unit == "deg"
+    axes.plot(
+        *(_broken(time, line) if not turning else (time, line)),
+        color=SENSOR,
+        lw=0.0 if turning else 0.7,
+        marker="." if turning else "",
+        ms=1.6,
+        label="Reading",
+    )
+    for flag, colour, marker, label in (
+        (Flag.SUSPECT, _SUSPECT, "^", "Suspect"),
+        (Flag.FAIL, FIT, "x", "Fail"),
+        (Flag.MISSING, _MISSING, "|", "Missing"),
+    ):
+        rows = _some(flags == flag)
+        shown = np.full(len(rows), low) if flag == Flag.MISSING else np.nan_to_num(values[rows])
+        axes.plot(
+            record.time[rows],
+            np.clip(shown, low, high),
+            color=colour,
+            marker=marker,
+            ms=6.0 if flag == Flag.MISSING else 4.2,
+            mew=1.1,
+            ls="",
+            label=label,
+            # An empty line that is not clipped lies in 1970, and the layout makes room for it.
+            clip_on=not len(rows),
+        )
+    axes.set_ylim(low, high)
+    axes.set_ylabel(f"{_LABELS[key]} [{KEYS[key].unit}]")
+    axes.margins(x=0.01)
+
+
+def _limits(values: Float[np.ndarray, " t"], key: str) -> tuple[float, float]:
+    if KEYS[key].unit == "deg":
+        return 0.0, 360.0
+    if not values.size:
+        return 0.0, 1.0
+    low, high = float(np.min(values)), float(np.max(values))
+    margin = 0.06 * (high - low) or 0.5
+    return low - margin, high + margin
+
+
+def _thinned(
+    time: Shaped[np.ndarray, " t"], values: Float[np.ndarray, " t"]
+) -> tuple[Shaped[np.ndarray, " s"], Float[np.ndarray, " s"]]:
+    """The least and the greatest of spans so short that few points are left."""
+    if len(values) <= _DRAWN:
+        return time, values
+    span = -(-2 * len(values) // _DRAWN)
+    starts = range(0, len(values), span)
+    rows = np.array(
+        [
+            start + extreme
+            for start in starts
+            for extreme in sorted(
+                {
+                    int(np.argmin(values[start : start + span])),
+                    int(np.argmax(values[start : start + span])),
+                }
+            )
+        ]
+    )
+    return time[rows], values[rows]
+
+
+def _broken(
+    time: Shaped[np.ndarray, " t"], values: Float[np.ndarray, " t"]
+) -> tuple[Shaped[np.ndarray, " s"], Float[np.ndarray, " s"]]:
+    if len(time) < 3:
+        return time, values
+    steps = np.diff(time)
+    silent = np.flatnonzero(steps > 10 * np.median(steps)) + 1
+    return np.insert(time, silent, time[silent]), np.insert(values, silent, np.nan)
+
+
+def _some(marked: Bool[np.ndarray, " t"]) -> Shaped[np.ndarray, " row"]:
+    """Marked rows: the first of each run, and of the others so many as can be drawn."""
+    rows = np.flatnonzero(marked)
+    begins = rows[np.diff(rows, prepend=-2) > 1]
+    return np.union1d(begins, rows[:: -(-2 * len(rows) // _DRAWN) or 1])
+
+
+def _date_axis(axes: "Axes") -> None:
+    from matplotlib.dates import AutoDateLocator, ConciseDateFormatter
+
+    locator = AutoDateLocator(minticks=4, maxticks=12)
+    axes.xaxis.set_major_locator(locator)
+    axes.xaxis.set_major_formatter(ConciseDateFormatter(locator))
+    axes.set_xlabel("Time [UTC]")
