@@ -120,7 +120,8 @@ def simulate(
         Of positions and tensions; estimated from the samples, or without a series from one
         sample a second.
     second_moment
-        Whether to form the second moment of all coordinates.
+        Whether to form the second moment of all coordinates. Its last bits depend on the
+        number of threads that products of matrices run on.
     workers
         Threads to share the cases among.
     progress
