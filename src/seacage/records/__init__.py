@@ -1,5 +1,6 @@
 """Labelled measurements and simulations: their schemas, readers, checks and stores."""
 
+from seacage.records._aligned import Clock, aligned
 from seacage.records._campaign import CampaignRecord, export_campaign, read_campaign
 from seacage.records._campaign_store import (
     NOT_RUN,
@@ -46,6 +47,7 @@ __all__ = [
     "STATISTICS",
     "Amendment",
     "CampaignRecord",
+    "Clock",
     "Column",
     "ColumnMap",
     "FieldRecord",
@@ -61,6 +63,7 @@ __all__ = [
     "Season",
     "Steadiness",
     "Verdict",
+    "aligned",
     "campaign_results",
     "campaign_unsummed",
     "campaign_variable",

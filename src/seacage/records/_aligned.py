@@ -1,0 +1,195 @@
+"""A stream brought to a clock: means over windows, of vectors where there are directions."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from datetime import datetime
+
+import numpy as np
+from jaxtyping import Bool, Float, Int, Shaped
+
+from seacage.conventions import Flag, InputError
+from seacage.records._limits import GROUPS
+from seacage.records._record import Record
+from seacage.records._times import instant
+
+_OPPOSED = 0.1
+"""Where the mean of unit vectors is shorter, they have no common direction [-]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Clock:
+    """Times that streams are brought to, and what counts at each.
+
+    Parameters
+    ----------
+    every_s
+        Between times, which are whole multiples of it since 1970 UTC [s].
+    window_s
+        How long the window is that is averaged over [s].
+    lag_s
+        How long before each time its window ends [s]; what the sea does at a buoy now and at
+        a cage later.
+    max_gap_s
+        A window with a longer stretch without a reading that can be used, its ends included,
+        has no mean [s].
+    suspect
+        Use suspect values too; their means are suspect.
+
+    Raises
+    ------
+    InputError
+        A length that is not above zero, a lag that is no number.
+    """
+
+    every_s: float
+    window_s: float
+    lag_s: float = 0.0
+    max_gap_s: float
+    suspect: bool = True
+
+    def __post_init__(self) -> None:
+        for name in ("every_s", "window_s", "max_gap_s"):
+            value = getattr(self, name)
+            if not 1e-3 <= value < 1e9:
+                raise InputError(f"Clock: {name} = {value:g} s is no length of time. Say more.")
+        if not abs(self.lag_s) < 1e9:
+            raise InputError(f"Clock: lag_s = {self.lag_s:g} s is no lag.")
+
+
+def aligned(
+    record: Record, clock: Clock, *, start: datetime | None = None, end: datetime | None = None
+) -> Record:
+    """Return a stream's means at the times of a clock; nothing is interpolated.
+
+    Each time t has the mean over t - lag - window < t' <= t - lag. Directions are averaged as
+    vectors: a current's with its speed, so that the speed is that of the mean vector, waves' as
+    unit vectors. A quantity whose window has a gap is missing there.
+
+    Parameters
+    ----------
+    record
+        Checked; failed and missing values are left out.
+    clock
+        The times, and what counts at each.
+    start, end
+        start <= t < end; where left out, the record's own.
+
+    Returns
+    -------
+    record
+        At every time of the clock, missing ones included; GOOD, SUSPECT where a suspect value
+        took part, MISSING where there is no mean.
+    """
+    times = _times(record, clock, start, end)
+    values: dict[str, np.ndarray] = {}
+    flags: dict[str, np.ndarray] = {}
+    for keys in GROUPS.values():
+        for part in _parts(tuple(key for key in keys if key in record.values)):
+            found, flag = _averaged(record, part, times, clock)
+            values |= found
+            flags |= dict.fromkeys(part, flag)
+    for key in values:
+        flags[key] = np.where(np.isnan(values[key]), Flag.MISSING, flags[key]).astype(np.uint8)
+    note = (
+        f"Means over {clock.window_s:g} s every {clock.every_s:g} s, lag {clock.lag_s:g} s; none "
+        f"where more than {clock.max_gap_s:g} s have no reading."
+    )
+    return replace(record, time=times, values=values, flags=flags, notes=(*record.notes, note))
+
+
+def _times(
+    record: Record, clock: Clock, start: datetime | None, end: datetime | None
+) -> Shaped[np.ndarray, " time"]:
+    every, lag = round(clock.every_s * 1e6), round(clock.lag_s * 1e6)
+    spoken = record.time.astype(np.int64)
+    if not len(record) and (start is None or end is None):
+        return np.array([], dtype="datetime64[us]")
+    first = int(spoken[0]) + lag if start is None else int(instant(start).astype(np.int64))
+    stop = int(spoken[-1]) + lag + every if end is None else int(instant(end).astype(np.int64))
+    return (np.arange(-(-first // every), -(-stop // every)) * every).view("datetime64[us]")
+
+
+def _parts(keys: tuple[str, ...]) -> tuple[tuple[str, ...], ...]:
+    """A current is averaged whole, all else key by key."""
+    if set(keys) >= {"current_speed_m_s", "current_to_deg"}:
+        return (keys,)
+    return tuple((key,) for key in keys)
+
+
+def _averaged(
+    record: Record, keys: tuple[str, ...], times: Shaped[np.ndarray, " time"], clock: Clock
+) -> tuple[dict[str, Float[np.ndarray, " time"]], Shaped[np.ndarray, " time"]]:
+    kept = np.logical_and.reduce([_usable(record, key, clock) for key in keys])
+    doubtful = np.logical_or.reduce([record.flags[key] == Flag.SUSPECT for key in keys])[kept]
+    first, last = _windows(record.time[kept], times, clock)
+    whole = _whole(record.time[kept], times, first, last, clock)
+    count = np.where(whole, last - first, 1)
+
+    def mean(column: Float[np.ndarray, " reading"]) -> Float[np.ndarray, " time"]:
+        total = np.concatenate([[0.0], np.cumsum(column)])
+        return np.where(whole, (total[last] - total[first]) / count, np.nan)
+
+    columns = {key: record.values[key][kept] for key in keys}
+    suspected = mean(doubtful.astype(np.float64)) > 0.0
+    return _means(columns, mean), np.where(suspected, Flag.SUSPECT, Flag.GOOD).astype(np.uint8)
+
+
+def _means(
+    columns: Mapping[str, np.ndarray], mean: Callable[[np.ndarray], np.ndarray]
+) -> dict[str, np.ndarray]:
+    if len(columns) == 1:
+        ((key, column),) = columns.items()
+        if not key.endswith("_deg"):
+            return {key: mean(column)}
+        east, north = (mean(part(np.radians(column))) for part in (np.sin, np.cos))
+        opposed = np.hypot(east, north) < _OPPOSED
+        return {key: np.where(opposed, np.nan, np.degrees(np.arctan2(east, north)) % 360.0)}
+    speed, angle = columns["current_speed_m_s"], np.radians(columns["current_to_deg"])
+    east, north = mean(speed * np.sin(angle)), mean(speed * np.cos(angle))
+    return {
+        "current_speed_m_s": np.hypot(east, north),
+        "current_to_deg": np.degrees(np.arctan2(east, north)) % 360.0,
+    }
+
+
+def _usable(record: Record, key: str, clock: Clock) -> Bool[np.ndarray, " t"]:
+    usable = record.usable(key)
+    return usable if clock.suspect else usable & (record.flags[key] != Flag.SUSPECT)
+
+
+def _windows(
+    spoken: Shaped[np.ndarray, " reading"], times: Shaped[np.ndarray, " time"], clock: Clock
+) -> tuple[Int[np.ndarray, " time"], Int[np.ndarray, " time"]]:
+    """First reading of each window, and the one after its last."""
+    close = times - _span(clock.lag_s)
+    open_ = close - _span(clock.window_s)
+    return (
+        np.searchsorted(spoken, open_, side="right"),
+        np.searchsorted(spoken, close, side="right"),
+    )
+
+
+def _whole(
+    spoken: Shaped[np.ndarray, " reading"],
+    times: Shaped[np.ndarray, " time"],
+    first: Int[np.ndarray, " time"],
+    last: Int[np.ndarray, " time"],
+    clock: Clock,
+) -> Bool[np.ndarray, " time"]:
+    """Which windows have readings throughout."""
+    if not len(spoken):
+        return np.zeros(len(times), dtype=bool)
+    longest = _span(clock.max_gap_s)
+    gaps = np.concatenate([[0, 0], np.cumsum(np.diff(spoken) > longest)])
+    close = times - _span(clock.lag_s)
+    inside = np.minimum(first, len(spoken) - 1), np.maximum(last - 1, 0)
+    return (
+        (last > first)
+        & (spoken[inside[0]] - (close - _span(clock.window_s)) <= longest)
+        & (close - spoken[inside[1]] <= longest)
+        & (gaps[inside[1] + 1] == gaps[inside[0] + 1])
+    )
+
+
+def _span(seconds: float) -> np.timedelta64:
+    return np.timedelta64(round(seconds * 1e6), "us")
