@@ -11,7 +11,8 @@ from seacage.cage import Cage
 from seacage.campaigns import Plan
 from seacage.dynamics import MovingLaw, rest_shape, simulate, simulation_lanes
 from seacage.dynamics._assembly import Assembly
-from seacage.dynamics._march import March, Ocean, Steps
+from seacage.dynamics._cargo import Ocean
+from seacage.dynamics._march import March, Steps
 from seacage.dynamics._motion import NetLaw, wake_share
 from seacage.dynamics._stability import steadied
 from seacage.ocean import sample_waves

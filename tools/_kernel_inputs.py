@@ -6,10 +6,12 @@ from typing import Any
 
 import numpy as np
 
+from seacage.dynamics import _cargo as c
 from seacage.dynamics import _kernel as k
 from seacage.dynamics import _march as m
 from seacage.dynamics._newton import Balancing
 from seacage.dynamics._pattern import Pattern, _pattern
+from seacage.dynamics._struct import pointer
 
 GRAPHS = 200
 """So many structures, each met with many numbers: to plan an elimination takes long."""
@@ -50,13 +52,13 @@ def march(library: ctypes.CDLL, rng: np.random.Generator) -> None:
     record = a_record(nodes, parts["bridles"], lanes, refreshes if every else 0)
     library.seacage_march(*map(ctypes.byref, (body, sea, schedule, state, record)))
     total, at = np.zeros((3, lanes), np.float32), numbers(rng, 3, lanes)
-    library.seacage_march_forces(*map(ctypes.byref, (body, sea, state)), m.pointer(total))
+    library.seacage_march_forces(*map(ctypes.byref, (body, sea, state)), pointer(total))
     library.seacage_march_water(
         ctypes.byref(sea),
-        m.pointer(at),
+        pointer(at),
         ctypes.c_double(float(numbers(rng, kind=np.float64))),
-        m.pointer(np.zeros(lanes, np.float32)),
-        m.pointer(total),
+        pointer(np.zeros(lanes, np.float32)),
+        pointer(total),
     )
 
 
@@ -81,7 +83,7 @@ def a_body(rng: np.random.Generator, nodes: int) -> tuple[Any, dict[str, int]]:
         "ground_stiffness": (parts["grounds"],),
         "cylinder_series": (8,),
     }
-    body = m._Body.filled(
+    body = c.Body.filled(
         nodes=nodes,
         kind=int(rng.integers(0, 3)),
         bar_ends=indices(rng, nodes, parts["bars"], 2),
@@ -104,14 +106,14 @@ def a_body(rng: np.random.Generator, nodes: int) -> tuple[Any, dict[str, int]]:
 def a_sea(rng: np.random.Generator, panels: int, lanes: int) -> Any:
     """Waves and currents of any size."""
     components, levels = int(rng.integers(0, 5)), int(rng.integers(1, 4))
-    return m._Sea.filled(
+    return c.SeaTables.filled(
         components=components,
         levels=levels,
         depth=float(numbers(rng)),
         level_z=numbers(rng, levels),
         current=numbers(rng, levels, 2, lanes),
         wake=numbers(rng, panels, lanes),
-        **{name: numbers(rng, components, lanes, kind=k) for name, k in m._WAVE_KINDS.items()},
+        **{name: numbers(rng, components, lanes, kind=k) for name, k in c._WAVE_KINDS.items()},
     )
 
 
@@ -183,7 +185,7 @@ def settle(library: ctypes.CDLL, rng: np.random.Generator) -> None:
     )
     library.seacage_relax(
         *map(ctypes.byref, (structure, flow, relaxation, relaxing)),
-        *(k._pointer(room) for room in (np.empty((bars, lanes)), np.empty((nodes, 3, lanes)))),
+        *(pointer(room) for room in (np.empty((bars, lanes)), np.empty((nodes, 3, lanes)))),
     )
     balance = k._Balance.filled(
         *(rng.choice([0.0, 1.0], nodes), doubles(rng, bars), 0.5, 1.0, 1e-6, 1e-3, 1e6),

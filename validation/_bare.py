@@ -16,7 +16,8 @@ from seacage.dynamics._assembly import (
     Panels,
     Springs,
 )
-from seacage.dynamics._march import REFRESH, March, Ocean, Steps
+from seacage.dynamics._cargo import Ocean
+from seacage.dynamics._march import REFRESH, March, Steps
 from seacage.dynamics._motion import MovingLaw, NetLaw
 from seacage.ocean import Waves
 

@@ -25,6 +25,7 @@ HOOP = Bars(
     length=np.full(NODES, CHORD),
     stiffness=np.full(NODES, AXIAL),
     pushed=np.ones(NODES, dtype=bool),
+    damping_ratio=np.zeros(NODES),
 )
 
 

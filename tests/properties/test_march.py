@@ -9,8 +9,9 @@ from hypothesis import strategies as st
 from seacage.cage import Cage
 from seacage.dynamics import MOVING_LAWS, simulation_lanes
 from seacage.dynamics._assembly import Assembly, Ground
+from seacage.dynamics._cargo import Ocean
 from seacage.dynamics._loads import DYNAMIC, _gathered, bend_force, spring_force
-from seacage.dynamics._march import March, Ocean, Steps, kernel_force, kernel_water
+from seacage.dynamics._march import March, Steps, kernel_force, kernel_water
 from seacage.dynamics._motion import (
     NetLaw,
     Water,

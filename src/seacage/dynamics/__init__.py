@@ -1,8 +1,8 @@
 """Loads on the cage in the sea, and the shapes and tensions that answer them."""
 
+from seacage.dynamics._cargo import simulation_lanes
 from seacage.dynamics._catenary import catenary
 from seacage.dynamics._history import History, Statistics
-from seacage.dynamics._march import simulation_lanes
 from seacage.dynamics._motion import MOVING_LAWS, MovingLaw
 from seacage.dynamics._screens import LAWS, Law, aarsnes, kristiansen_faltinsen, loland
 from seacage.dynamics._settle import Response, net_load, rest_shape, settle

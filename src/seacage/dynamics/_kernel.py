@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -16,94 +15,75 @@ from seacage.dynamics._assembly import Assembly
 from seacage.dynamics._loads import SteadyFlow
 from seacage.dynamics._newton import Balance, Balancing
 from seacage.dynamics._pattern import Pattern
+from seacage.dynamics._struct import DOUBLES, INTEGERS, Struct, pointer
 
 SUFFIX = {"Darwin": ".dylib", "Windows": ".dll"}.get(platform.system(), ".so")
 
-_Doubles = ctypes.POINTER(ctypes.c_double)
-_Integers = ctypes.POINTER(ctypes.c_int32)
 
-
-class _Struct(ctypes.Structure):
-    """A C struct that keeps the arrays it points to alive."""
-
-    @classmethod
-    def filled(cls, *values: Any) -> "_Struct":
-        arrays = [np.ascontiguousarray(v) for v in values if isinstance(v, np.ndarray)]
-        kept = iter(arrays)
-        struct = cls(*(_pointer(next(kept)) if isinstance(v, np.ndarray) else v for v in values))
-        struct.kept = arrays
-        return struct
-
-
-def _pointer(array: np.ndarray) -> Any:
-    kind = _Integers if array.dtype == np.int32 else _Doubles
-    return array.ctypes.data_as(kind)
-
-
-class _Assembly(_Struct):
-    _fields_ = [
+class _Assembly(Struct):
+    _fields_ = (
         *((name, ctypes.c_int32) for name in ("nodes", "bars", "bends", "panels")),
         *((name, ctypes.c_int32) for name in ("cylinders", "floats", "springs")),
-        *((name, _Integers) for name in ("bar_ends", "bend_nodes", "panel_corners")),
-        *((name, _Integers) for name in ("cylinder_ends", "float_nodes", "spring_nodes")),
-        *((name, _Doubles) for name in ("weight", "bar_length", "bar_stiffness", "bar_least")),
-        *((name, _Doubles) for name in ("bend_stiffness", "panel_share", "cylinder_width")),
-        *((name, _Doubles) for name in ("float_stiffness", "float_draft", "float_height")),
-        *((name, _Doubles) for name in ("spring_place", "spring_stiffness", "spring_preload")),
-    ]
+        *((name, INTEGERS) for name in ("bar_ends", "bend_nodes", "panel_corners")),
+        *((name, INTEGERS) for name in ("cylinder_ends", "float_nodes", "spring_nodes")),
+        *((name, DOUBLES) for name in ("weight", "bar_length", "bar_stiffness", "bar_least")),
+        *((name, DOUBLES) for name in ("bend_stiffness", "panel_share", "cylinder_width")),
+        *((name, DOUBLES) for name in ("float_stiffness", "float_draft", "float_height")),
+        *((name, DOUBLES) for name in ("spring_place", "spring_stiffness", "spring_preload")),
+    )
 
 
-class _Flow(_Struct):
-    _fields_ = [(name, _Doubles) for name in ("direction", "panel", "pipe_pressure")]
+class _Flow(Struct):
+    _fields_ = tuple((name, DOUBLES) for name in ("direction", "panel", "pipe_pressure"))
 
 
-class _Relaxation(_Struct):
-    _fields_ = [
-        *((name, _Doubles) for name in ("inverse_mass", "soft_rate", "true_rate")),
+class _Relaxation(Struct):
+    _fields_ = (
+        *((name, DOUBLES) for name in ("inverse_mass", "soft_rate", "true_rate")),
         *((name, ctypes.c_double) for name in ("tolerance", "progress", "most_damping")),
         *((name, ctypes.c_int32) for name in ("patience", "steps", "rounds")),
-    ]
+    )
 
 
-class _Relaxing(_Struct):
-    _fields_ = [
-        (name, _Doubles)
+class _Relaxing(Struct):
+    _fields_ = tuple(
+        (name, DOUBLES)
         for name in (
             *("position", "velocity", "carried"),
             *("damping", "best", "stalled", "rounds", "residual"),
         )
-    ]
+    )
 
 
-class _Pattern(_Struct):
-    _fields_ = [
-        (name, _Integers)
+class _Pattern(Struct):
+    _fields_ = tuple(
+        (name, INTEGERS)
         for name in (
             *("row", "diagonal", "column", "order"),
             *("bars", "bends", "panels", "floats", "springs"),
         )
-    ]
+    )
 
 
-class _Balance(_Struct):
-    _fields_ = [
-        *((name, _Doubles) for name in ("free", "true_rate")),
+class _Balance(Struct):
+    _fields_ = (
+        *((name, DOUBLES) for name in ("free", "true_rate")),
         *((name, ctypes.c_double) for name in ("tolerance", "reach", "least_barrier")),
         *((name, ctypes.c_double) for name in ("least_shift", "most_shift")),
         ("iterations", ctypes.c_int32),
-    ]
+    )
 
 
-class _Balancing(_Struct):
-    _fields_ = [(name, _Doubles) for name in Balancing.__slots__]
+class _Balancing(Struct):
+    _fields_ = tuple((name, DOUBLES) for name in Balancing.__slots__)
 
 
-class _Bench(_Struct):
-    _fields_ = [
-        *((name, _Doubles) for name in ("truth", "force", "step")),
-        *((name, _Doubles) for name in ("zero", "tension", "bar", "blocks")),
-        ("place", _Integers),
-    ]
+class _Bench(Struct):
+    _fields_ = (
+        *((name, DOUBLES) for name in ("truth", "force", "step")),
+        *((name, DOUBLES) for name in ("zero", "tension", "bar", "blocks")),
+        ("place", INTEGERS),
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -201,11 +181,11 @@ class Kernel:
         self.library.seacage_forces(
             ctypes.byref(_assembly(assembly)),
             ctypes.byref(self.flow(flow)),
-            _pointer(rate),
-            _pointer(nothing),
-            _pointer(np.empty_like(nothing)),
-            _pointer(laned),
-            _pointer(force),
+            pointer(rate),
+            pointer(nothing),
+            pointer(np.empty_like(nothing)),
+            pointer(laned),
+            pointer(force),
         )
         return np.moveaxis(force, -1, 0)[: len(position)]
 
@@ -233,8 +213,8 @@ class Kernel:
                 )
             ),
             ctypes.byref(_Relaxing.filled(*laned)),
-            _pointer(np.empty((len(rate), self.lanes))),
-            _pointer(np.empty_like(position)),
+            pointer(np.empty((len(rate), self.lanes))),
+            pointer(np.empty_like(position)),
         )
         cases = len(state.damping)
         return Relaxing(
@@ -279,7 +259,7 @@ class Kernel:
             }
         )
 
-    def _bench(self, nodes: int, bars: int, pattern: Pattern) -> _Struct:
+    def _bench(self, nodes: int, bars: int, pattern: Pattern) -> Struct:
         """Room for the kernel to work in."""
         return _Bench.filled(
             *(np.empty((nodes, 3, self.lanes)) for _ in range(3)),
@@ -290,7 +270,7 @@ class Kernel:
             np.empty((2, nodes), dtype=np.int32),
         )
 
-    def flow(self, flow: SteadyFlow) -> _Struct:
+    def flow(self, flow: SteadyFlow) -> Struct:
         """The flow as the kernel reads it."""
         panel = np.stack(
             [flow.pressure, flow.constant, flow.slope, flow.third, flow.lift, flow.lift_second],
@@ -304,7 +284,7 @@ class Kernel:
         return np.ascontiguousarray(np.moveaxis(np.concatenate([values, spare]), 0, -1))
 
 
-def _assembly(assembly: Assembly) -> _Struct:
+def _assembly(assembly: Assembly) -> Struct:
     a = assembly
     counts = (
         len(part)

@@ -13,7 +13,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#define LANES 16 /* one vector of AVX-512, two of AVX2; _march.py asks seacage_march_lanes() */
+#define LANES 16 /* one vector of AVX-512, two of AVX2; _cargo.py asks seacage_march_lanes() */
 #define EACH_LANE _Pragma("omp simd") for (int k = 0; k < LANES; k++)
 
 typedef float lane[LANES];

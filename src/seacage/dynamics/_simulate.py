@@ -14,14 +14,16 @@ from seacage.cage import Cage, Structure
 from seacage.conventions import InputError, Progress
 from seacage.dynamics._anchoring import anchored
 from seacage.dynamics._assembly import Assembly
+from seacage.dynamics._cargo import simulation_lanes
+from seacage.dynamics._forcing import drawn_waves, ocean_of, wakes
 from seacage.dynamics._history import History
-from seacage.dynamics._march import REFRESH, March, Ocean, Steps, simulation_lanes
-from seacage.dynamics._motion import MOVING_LAWS, MovingLaw, NetLaw, wake_share
+from seacage.dynamics._march import REFRESH, March, Steps
+from seacage.dynamics._motion import MOVING_LAWS, MovingLaw, NetLaw
 from seacage.dynamics._reduction import Reduction, stacked
 from seacage.dynamics._rigged import rigged
 from seacage.dynamics._settle import _assembled, rest_shape, settle
 from seacage.dynamics._stability import steadied
-from seacage.ocean import CurrentProfile, SeaState, Waves, sample_waves
+from seacage.ocean import CurrentProfile, SeaState, Waves
 
 Mooring = Literal["springs", "catenary"]
 
@@ -30,9 +32,6 @@ HOLD = 4
 
 CHUNK = 100
 """Refreshes between two reports of progress."""
-
-MOST_COMPONENTS = 1000
-"""Of the waves of a case: the kernel keeps their phases on a thread's stack."""
 
 MOST_ROOM = 16.0
 """For the samples of the cases that travel together [GB]."""
@@ -142,7 +141,7 @@ def simulate(
     assembly, _ = steadied(assembly, steps.time_step)
     _check_room(steps, assembly)
     depth = cage.site.water_depth
-    ocean = _ocean(seas, _waves(seas, waves, seed, depth), current_profile, depth)
+    ocean = ocean_of(seas, drawn_waves(seas, waves, seed, depth), current_profile, depth)
     lanes = simulation_lanes()
     blocks = [slice(i, min(i + lanes, len(seas))) for i in range(0, len(seas), lanes)]
     report = _Report(progress, (steps.spin_up + steps.counted) * len(seas))
@@ -157,7 +156,7 @@ def simulate(
 
     def run(block: slice) -> list[History]:
         some = replace(ocean, waves=ocean.waves[block], current=ocean.current[block])
-        net = NetLaw(name=law, wake=_wakes(assembly, law, some, wake=wake), twine_drag=twine_drag)
+        net = NetLaw(name=law, wake=wakes(assembly, law, some, wake=wake), twine_drag=twine_drag)
         start = _start(cage, assembly, seas[block], law, wake=wake, hold_collar=hold_collar)
         march = March(assembly, net, some, steps, start)
         whole = steps.spin_up + steps.counted
@@ -282,93 +281,6 @@ def _check_depth(cage: Cage) -> None:
             f"simulate: the net of cage {cage.name} hangs {lowest:g} m deep in water of {depth:g} "
             "m, and no bed carries it. Check water_depth_m, tip_depth_m and ring_depths_m."
         )
-
-
-def _waves(
-    seas: list[SeaState],
-    given: Waves | Sequence[Waves] | None,
-    seed: int | Sequence[int],
-    depth: float,
-) -> list[Waves]:
-    """One realisation for each case."""
-    if given is not None:
-        waves = [given] * len(seas) if isinstance(given, Waves) else list(given)
-        if len(waves) != len(seas):
-            raise InputError(
-                f"simulate: {len(waves)} waves for {len(seas)} seas. Give one for each, or one."
-            )
-        return _checked_waves(waves, depth)
-    if isinstance(seed, (int, np.integer)):
-        seeds = [int(seed) + i for i in range(len(seas))]
-    else:
-        seeds = list(seed)
-    if len(seeds) != len(seas):
-        raise InputError(
-            f"simulate: {len(seeds)} seeds for {len(seas)} seas. Give one for each, or one number."
-        )
-    if min(seeds) < 0:
-        raise InputError(f"simulate: seed = {min(seeds)} is negative. Give 0, 1, 2, …")
-    return [sample_waves(s, seed=own, depth=depth) for s, own in zip(seas, seeds, strict=True)]
-
-
-def _checked_waves(waves: list[Waves], depth: float) -> list[Waves]:
-    """Those that the kernel can march through."""
-    for case, one in enumerate(waves):
-        numbers = {name: getattr(one, name) for name in Waves.__slots__ if name != "depth"}
-        for name, values in numbers.items():
-            if not np.isfinite(values).all():
-                worst = values[~np.isfinite(values)][0]
-                raise InputError(
-                    f"simulate: the waves of case {case} have {name} = {worst:g}. Leave out "
-                    "components that are not finite."
-                )
-        if not math.isclose(one.depth, depth, rel_tol=1e-6):
-            raise InputError(
-                f"simulate: the waves of case {case} run in water of {one.depth:g} m, but the "
-                f"site is {depth:g} m deep. Draw them with depth={depth:g}."
-            )
-        if np.abs(one.amplitude).sum() >= depth:
-            raise InputError(
-                f"simulate: the waves of case {case} can add up to "
-                f"{np.abs(one.amplitude).sum():.3g} m, and their troughs would bare the bottom at "
-                f"{depth:g} m. Give amplitudes in m that are smaller."
-            )
-        if len(one.amplitude) > MOST_COMPONENTS:
-            raise InputError(
-                f"simulate: the waves of case {case} have {len(one.amplitude)} components, of "
-                f"which the kernel takes {MOST_COMPONENTS}. Draw fewer."
-            )
-    return waves
-
-
-def _ocean(
-    seas: list[SeaState], waves: list[Waves], profile: CurrentProfile | None, depth: float
-) -> Ocean:
-    surface = np.array([sea.current_velocity for sea in seas])
-    if profile is None:
-        return Ocean(waves=waves, current=surface[:, None], level_z=np.zeros(1), depth=depth)
-    return Ocean(
-        waves=waves,
-        current=profile.velocity(surface),
-        level_z=-np.array(profile.depth),
-        depth=depth,
-    )
-
-
-def _wakes(
-    assembly: Assembly, law: MovingLaw, ocean: Ocean, *, wake: bool
-) -> Float[np.ndarray, "case panel"]:
-    """By the current at each panel's depth in the design shape."""
-    depth = assembly.panels.depth
-    if not wake:
-        return np.ones((len(ocean.current), len(depth)))
-    at_panels = np.stack(
-        [
-            np.column_stack([np.interp(depth, -ocean.level_z, case[:, axis]) for axis in (0, 1)])
-            for case in ocean.current
-        ]
-    )
-    return wake_share(assembly, law, at_panels)
 
 
 def _rest(cage: Cage | Structure, *, hold_collar: bool) -> Float[np.ndarray, "node 3"]:

@@ -24,9 +24,13 @@ class Struct(ctypes.Structure):
     """A C struct; ``_fields_`` names what is filled in, in order."""
 
     @classmethod
-    def filled(cls, **values: Any) -> Self:
-        """Of numbers and arrays; an array that C will write into must be contiguous."""
+    def filled(cls, *in_order: Any, **values: Any) -> Self:
+        """Of numbers and arrays, in the fields' order or by name.
+
+        An array that C will write into must be contiguous, or C writes into a copy.
+        """
         types = {name: kind for name, kind, *_ in cls._fields_}
+        values |= zip(types, in_order, strict=False)
         kept: list[np.ndarray] = []
         struct = cls()
         for name, value in values.items():

@@ -107,6 +107,7 @@ def test_twines_go_slack_and_pipes_can_be_pushed():
         length=np.array([2.0, 2.0]),
         stiffness=np.array([100.0, 100.0]),
         pushed=np.array([False, True]),
+        damping_ratio=np.zeros(2),
     )
     ends = np.array([[[0.0, 0.0, 0.0], [0.0, 0.0, z]] for z in (3.0, 1.0)])
     np.testing.assert_allclose(bar_tension(bars, ends), [[50.0, 50.0], [0.0, -50.0]])

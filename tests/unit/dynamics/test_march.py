@@ -8,18 +8,16 @@ import pytest
 from seacage.cage import Cage
 from seacage.dynamics import simulation_lanes
 from seacage.dynamics._assembly import Assembly
-from seacage.dynamics._march import (
+from seacage.dynamics._cargo import (
     HELD,
-    March,
     Ocean,
-    Steps,
-    _body,
     _in_node_order,
     _wave_tables,
-    kernel_water,
+    body_of,
     laned,
     unlaned,
 )
+from seacage.dynamics._march import March, Steps, kernel_water
 from seacage.dynamics._motion import NetLaw
 from seacage.dynamics._stability import steadied
 from seacage.ocean import SeaState, sample_waves, surface_elevation
@@ -102,7 +100,7 @@ def test_a_held_node_is_too_heavy_to_move():
     fixed = np.arange(len(ASSEMBLY.position)) == 2
     held = replace(ASSEMBLY, fixed=fixed)
     law = NetLaw(name="loland", wake=np.ones((1, len(held.panels.area))))
-    body = _body(held, law)
+    body = body_of(held, law)
     assert body.mass[2] == np.float32(HELD)
     assert body.mass[1] == np.float32(held.mass[1])
     one = march(assembly=held)
