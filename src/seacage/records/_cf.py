@@ -24,6 +24,7 @@ from seacage.records._columns import (
     vectors_joined,
 )
 from seacage.records._csv import in_order
+from seacage.records._netcdf import NETCDF_TROUBLE
 from seacage.records._record import Record
 from seacage.records._toml import Table, check_filled, check_names, number_of, table_of, text_of
 
@@ -70,19 +71,6 @@ _SECONDS = {"microsecond": 1e-6, "millisecond": 1e-3, "second": 1.0, "sec": 1.0,
 _ZONED = re.compile(
     r"\b(times?|clock|zone)\b[^.;\n]{0,40}?\b([PMCE][DS]T|CES?T|BST|local|LST)\b", re.IGNORECASE
 )
-TROUBLE = (
-    OSError,
-    KeyError,
-    ValueError,
-    TypeError,
-    RuntimeError,
-    AttributeError,
-    IndexError,
-    OverflowError,
-    MemoryError,
-    NotImplementedError,
-)
-"""What the libraries raise at a damaged file."""
 
 
 class _Series(NamedTuple):
@@ -183,7 +171,7 @@ def read_cf(path: Path, choice: NetcdfMap, *, stream: str) -> Record:
             return _record(path, dataset, choice, stream=stream)
     except RecordError:
         raise
-    except TROUBLE as error:
+    except NETCDF_TROUBLE as error:
         raise RecordError(
             f"{path}: this NetCDF file cannot be read ({' '.join(str(error).split())[:200]}). "
             "Load or write it anew."

@@ -16,6 +16,9 @@ from seacage.records._shipped import shipped_maps
 from seacage.records._table import Table, read_table, read_text
 from seacage.records._times import microseconds
 
+_YEARS = range(1900, 2200)
+_CONSTANT = 12
+"""Equal values that make a column one that never changes."""
 _NO_VALUE = frozenset({"", "nan", "na", "n/a", "null", "none", "mm", "-"})
 
 
@@ -33,6 +36,7 @@ def read_csv(path: Path, columns: ColumnMap | None, *, stream: str) -> Record:
     record = in_order(
         _times(table, columns), vectors_joined(values), stream=stream, origin=columns.origin
     )
+    record = _constants_doubted(record)
     if table.cut:
         record = _last_row_doubted(record, table, columns)
     return replace(record, notes=(*notes, *record.notes))
@@ -50,16 +54,41 @@ def _understood(path: Path, columns: ColumnMap | None) -> tuple[Table, ColumnMap
     return table, columns
 
 
+def _constants_doubted(record: Record) -> Record:
+    """Suspect a column that never changes while another does: it may be another's."""
+    ranges = {
+        key: np.ptp(known) if (known := column[np.isfinite(column)]).size >= _CONSTANT else np.nan
+        for key, column in record.values.items()
+    }
+    still = [key for key, size in ranges.items() if size == 0.0]
+    if not still or not any(size > 0.0 for size in ranges.values()):
+        return record
+    doubted = np.full(len(record), Flag.SUSPECT, dtype=np.uint8)
+    notes = (
+        f"{key} is the same in all {len(record)} rows while others change, so it is suspect. "
+        "Make sure that it is the column that is meant."
+        for key in still
+    )
+    return replace(
+        record,
+        flags={**record.flags, **dict.fromkeys(still, doubted)},
+        notes=(*record.notes, *notes),
+    )
+
+
 def _last_row_doubted(record: Record, table: Table, columns: ColumnMap) -> Record:
     """Suspect the last row of a file that ends without a line end: a number may be cut there."""
     last = _time(table.rows[-1], table.lines[-1], table, columns)
     row = record.time == np.int64(last).view("datetime64[us]")
-    doubted = np.where(row, Flag.SUSPECT, Flag.NOT_EVALUATED).astype(np.uint8)
+    doubted = {
+        key: np.where(row, Flag.SUSPECT, flags).astype(np.uint8)
+        for key, flags in record.flags.items()
+    }
     note = (
         f"The file ends without a line end, on line {table.lines[-1]}: its last row may be cut "
         "and is suspect."
     )
-    return replace(record, flags=dict.fromkeys(record.values, doubted), notes=(*record.notes, note))
+    return replace(record, flags=doubted, notes=(*record.notes, note))
 
 
 def recognised(table: Table) -> ColumnMap:
@@ -125,7 +154,10 @@ def _times(table: Table, columns: ColumnMap) -> np.ndarray:
 def _time(row: tuple[str, ...], line: int, table: Table, columns: ColumnMap) -> int:
     text = " ".join(row[table.header.index(name)] for name in columns.time_columns)
     try:
-        return microseconds(columns.parsed_time(text))
+        time = columns.parsed_time(text)
+        if time.year not in _YEARS:
+            raise ValueError(f"no record is from the year {time.year}")
+        return microseconds(time)
     except (ValueError, OverflowError, OSError) as error:
         raise RecordError(
             f"{table.path}, line {line}: {' '.join(columns.time_columns)} = {_short(text)} is no "

@@ -12,12 +12,12 @@ import numpy as np
 from seacage.conventions import RecordError
 from seacage.records._cf import (
     STANDARD_NAMES,
-    TROUBLE,
     engine_of,
     is_compass,
     spoken_zone,
     vertical_of,
 )
+from seacage.records._netcdf import NETCDF_TROUBLE
 
 if TYPE_CHECKING:
     import xarray
@@ -47,7 +47,7 @@ def inspect_netcdf(path: Path) -> Found:
             return _found(path, dataset)
     except RecordError:
         raise
-    except TROUBLE as error:
+    except NETCDF_TROUBLE as error:
         raise RecordError(
             f"{path}: this NetCDF file cannot be read ({' '.join(str(error).split())[:200]}). "
             "Load or write it anew."

@@ -15,6 +15,9 @@ from seacage.records._columns import Column, ColumnMap
 from seacage.records._table import Table, checked_table
 
 _TIME = ("YY", "MM", "DD", "hh", "mm")
+_DOCUMENTED = re.compile(
+    r"WDIR|WD|WSPD|GST|WVHT|DPD|APD|MWD|PRES|BAR|ATMP|WTMP|DEWP|VIS|PTDY|TIDE|(DEP|DIR|SPD)\d\d"
+)
 _START = re.compile(r"\s*#?(YY|YYYY)\s+MM\s+DD\s+hh\s")
 
 
@@ -79,6 +82,12 @@ def _map(table: Table, units: dict[str, str] | None) -> ColumnMap:
         raise RecordError(
             f"{table.path}: this file of NDBC has neither waves (WVHT, DPD, MWD) nor currents "
             f"(DEP01, DIR01, SPD01), but {', '.join(table.header)}. Give one that has."
+        )
+    strange = [name for name in table.header[len(time) :] if not _DOCUMENTED.fullmatch(name)]
+    if table.header[: len(time)] != time or strange:
+        raise RecordError(
+            f"{table.path}, line 1: the columns {', '.join(strange or table.header)} are not as "
+            "NDBC documents them. Mend the header, or describe the file in a column map."
         )
     year = "%y" if len(table.column("YY")[0]) == 2 else "%Y"
     return ColumnMap(

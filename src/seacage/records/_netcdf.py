@@ -3,6 +3,7 @@
 # xarray leaves parts of its signatures untyped.
 # pyright: reportUnknownMemberType=false
 
+import hashlib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,8 +16,25 @@ from seacage.records._record import Record
 if TYPE_CHECKING:
     import xarray
 
+NETCDF_TROUBLE = (
+    OSError,
+    KeyError,
+    ValueError,
+    TypeError,
+    RuntimeError,
+    AttributeError,
+    IndexError,
+    OverflowError,
+    MemoryError,
+    NotImplementedError,
+)
+"""What the libraries raise at a damaged file."""
+
 _SCHEMA = "seacage stream 1"
 _FLAG = "_flag"
+_SEAL = b"seacage sha256:\n"
+_DIGEST = hashlib.sha256().digest_size
+_SEALED = -(len(_SEAL) + _DIGEST)
 _TIME = {
     "standard_name": "time",
     "long_name": "time of the source, UTC",
@@ -38,6 +56,7 @@ def write_record(record: Record, path: Path | str) -> None:
     path = Path(path)
     unborn = path.with_name(f".{path.name}.unborn")
     _dataset(record).to_netcdf(unborn, engine="h5netcdf")
+    _seal(unborn)
     unborn.replace(path)
 
 
@@ -52,14 +71,33 @@ def read_netcdf(path: Path) -> Record:
     import xarray
 
     try:
+        _check_seal(path)
         with xarray.open_dataset(path, engine="h5netcdf", decode_times=False) as dataset:
             return _record(dataset)
-    except (OSError, KeyError, ValueError) as error:
+    except NETCDF_TROUBLE as error:
         raise RecordError(
             f"{path}: this is no stream that seacage wrote ({error}). Give a file written by "
             "write_record, a table with its column map, or say of a foreign NetCDF file how its "
             "numbers were made (origin, in a NetcdfMap)."
         ) from error
+
+
+def _seal(path: Path) -> None:
+    """Append a checksum, after the end that HDF5 knows of, where every reader passes it by.
+
+    HDF5 has none over its own structure: a flipped bit there can give other numbers, or a
+    library that never returns.
+    """
+    with path.open("ab") as file:
+        file.write(_SEAL + hashlib.sha256(path.read_bytes()).digest())
+
+
+def _check_seal(path: Path) -> None:
+    """Refuse a sealed file that is not as it was written; one without a seal passes."""
+    content = path.read_bytes()
+    body, seal, digest = content[:_SEALED], content[_SEALED:-_DIGEST], content[-_DIGEST:]
+    if seal == _SEAL and hashlib.sha256(body).digest() != digest:
+        raise ValueError("its checksum is not that of its bytes, so it was damaged")
 
 
 def _dataset(record: Record) -> "xarray.Dataset":

@@ -116,7 +116,8 @@ def _steepness_findings(values: Mapping[str, float]) -> list[Finding]:
     hs, tp = values.get("hs_m", math.nan), values.get("tp_s", math.nan)
     if not (hs > 0.0 and 0.0 <= tp < math.inf):
         return []
-    steepness = 2.0 * math.pi * hs / (GRAVITY * tp**2) if tp > 0.0 else math.inf
+    square = tp * tp  # 0 or inf where tp is absurd, never an error
+    steepness = 2.0 * math.pi * hs / (GRAVITY * square) if square > 0.0 else math.inf
     limit = steepness_limit(tp)
     why = f"makes a sea of steepness {steepness:.2g}, above {limit:.3f} (DNV-RP-C205)"
     if steepness <= limit:

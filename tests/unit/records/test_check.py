@@ -277,3 +277,8 @@ def test_verdicts_say_which_test_found_what_and_where():
         ("gross range", "FAIL"): [4],
         ("spike", "FAIL"): [2],
     }
+
+
+@pytest.mark.parametrize("tp", [1e308, 1e-300, 5e-324])
+def test_an_absurd_period_is_judged_and_never_an_error(tp):
+    assert flags(check_record(record(hs_m=[1.0], tp_s=[tp])), "tp_s") == ["FAIL"]

@@ -70,6 +70,8 @@ def test_currents_of_ndbc_are_read_at_the_upper_bin_towards(tmp_path):
         ("     m   sec   sec degT", "    ft   sec   sec degT", "line 2: the unit of WVHT is 'ft'"),
         ("WVHT   DPD   APD MWD ", "FOO1   FOO   APD FOO3", "neither waves .WVHT, DPD, MWD. nor"),
         ("2014 09 11 17 50", "2014 13 11 17 50", "line 4: YY MM DD hh mm = '2014 13 11 17 50' is"),
+        ("hh mm WDIR", "hh mm' WDIR", "line 1: the columns mm' are not as NDBC documents them"),
+        ("GST  WVHT", "FOO  WVHT", "line 1: the columns FOO are not as NDBC documents them"),
         ("120  5.0  6.0    MM", "120  5.0  6.0", "line 4: 13 cells under a header of 14"),
     ],
 )
