@@ -81,7 +81,7 @@ def system_compiler() -> list[str] | None:
 
 
 def build(compiler: list[str], source: Path, target: str) -> Path:
-    """One shared library of all C files beside the source; replaced at once, as a process may have it loaded."""
+    """One library of all C files beside the source; replaced at once, as it may be in use."""
     library = source.with_name(f"_kernel_{target}{SUFFIX}")
     with tempfile.TemporaryDirectory(dir=source.parent, prefix=".build-") as folder:
         linked, objects = Path(folder, "kernel"), list[Path]()
