@@ -12,7 +12,7 @@ class Result(IntEnum):
 
 
 RESULTS: dict[Result, str] = {
-    Result.CONVERGED: "it ended as it should: every node at rest within the limit, or its time is over",
+    Result.CONVERGED: "it ended as it should: at rest within the limit, or at the end of its time",
     Result.NOT_CONVERGED: "the iterations ran out before the residual fell below its limit",
     Result.DIVERGED: "the nodes left all bounds of speed or place; the case carries no answer",
 }
