@@ -12,7 +12,7 @@ from seacage.dynamics._equilibria import _balance, _begun, _first_shapes
 from seacage.dynamics._flow import steady_flow
 from seacage.dynamics._kernel import kernel
 from seacage.dynamics._newton import nearer
-from seacage.dynamics._settle import _assembled
+from seacage.dynamics._settle import assembled
 from seacage.ocean import SeaState
 
 SEED = 2
@@ -46,7 +46,7 @@ def reliability(cases: int, starts: int) -> None:
 
 
 def iteration() -> None:
-    compiled, assembly = kernel(), _assembled(CAGE)
+    compiled, assembly = kernel(), assembled(CAGE)
     cases = compiled.lanes
     velocity = np.array([sea.current_velocity for sea in random_currents(cases)])
     flow = steady_flow(assembly, velocity, law="kristiansen-faltinsen")

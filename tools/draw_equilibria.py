@@ -15,7 +15,7 @@ from seacage.conventions import Origin
 from seacage.dynamics import rest_shape
 from seacage.dynamics._equilibria import _balance, _begun, _near, _seek
 from seacage.dynamics._flow import steady_flow
-from seacage.dynamics._settle import _assembled
+from seacage.dynamics._settle import assembled
 from seacage.figures._style import INK, LOW, MULTI, MUTED, blank_figure, head, style, write_figure
 
 CAGE = Cage.named("ace")
@@ -25,7 +25,7 @@ SHOWN = 1.3
 
 def followed(speeds, shape, law):
     """Shapes in currents towards the north: the first as settle seeks, then from the one before."""
-    assembly = _assembled(CAGE)
+    assembly = assembled(CAGE)
     balance = _balance(CAGE, ~assembly.fixed)
     shapes, state = [], _begun(CAGE, shape[None].copy(), assembly)
     with ThreadPoolExecutor(1) as pool:
@@ -76,7 +76,7 @@ def drawn(one, lifted, ruling):
 
 def main(path):
     """Follow, tell and draw."""
-    start = _assembled(CAGE).position
+    start = assembled(CAGE).position
     ruling = followed(SPEEDS, start, "kristiansen-faltinsen")
     one = followed(SPEEDS, start, "loland")
     other = followed(SPEEDS[::-1], start, "loland")[::-1]

@@ -18,7 +18,7 @@ from seacage.dynamics._anchor_line import (
 )
 from seacage.dynamics._assembly import Assembly, Bars, Cylinders, Floats, Ground, joined_bars
 from seacage.dynamics._rigged import SINKING, no_springs
-from seacage.dynamics._settle import _assembled
+from seacage.dynamics._settle import assembled
 
 ROPE_DRAG = 1.2
 """Cross-flow drag coefficient of a rope, a smooth cylinder's [-]."""
@@ -42,7 +42,7 @@ def anchored(cage: Cage) -> Assembly:
         A cage that cannot float, lines that do not reach the sea bed, and a buoy too small
         for what hangs on it.
     """
-    base = _assembled(cage)
+    base = assembled(cage)
     shape = resting_line(cage)
     lines = _lines(cage, shape)
     bridles = _bridle_pull(cage, base)

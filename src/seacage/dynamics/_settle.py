@@ -117,7 +117,7 @@ def settle(
         )
     seas = [sea] if isinstance(sea, SeaState) else list(sea)
     _check(seas, mean_waves=mean_waves, starts=starts)
-    assembly = _assembled(cage)
+    assembly = assembled(cage)
     velocity = np.array([state.current_velocity for state in seas])
     variance = _wave_variance(cage, assembly, seas) if mean_waves else None
     flow = steady_flow(
@@ -153,7 +153,7 @@ def rest_shape(cage: Cage, *, hold_collar: bool = False) -> Float[np.ndarray, "n
     InputError
         A cage that has no rest: its parts cannot hang together.
     """
-    assembly = _assembled(cage)
+    assembly = assembled(cage)
     flow = steady_flow(assembly, np.zeros((1, 2)), law="loland")
     free = _free_nodes(cage, assembly, hold_collar=hold_collar)
     found = equilibria(cage, assembly, flow, free=free)
@@ -168,7 +168,7 @@ def rest_shape(cage: Cage, *, hold_collar: bool = False) -> Float[np.ndarray, "n
 
 
 @lru_cache(maxsize=16)
-def _assembled(cage: Cage) -> Assembly:
+def assembled(cage: Cage) -> Assembly:
     """The cage put together, its bridles cut so that each bears the pretension at rest.
 
     The collar gives to the bridles' pull by some decimetres. Its shape under that pull is found

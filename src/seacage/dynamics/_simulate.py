@@ -21,7 +21,7 @@ from seacage.dynamics._march import REFRESH, March, Steps
 from seacage.dynamics._motion import MOVING_LAWS, MovingLaw, NetLaw
 from seacage.dynamics._reduction import Reduction, stacked
 from seacage.dynamics._rigged import rigged
-from seacage.dynamics._settle import _assembled, rest_shape, settle
+from seacage.dynamics._settle import assembled, rest_shape, settle
 from seacage.dynamics._stability import steadied
 from seacage.ocean import CurrentProfile, SeaState, Waves
 
@@ -260,10 +260,15 @@ def _prepared(
     if mooring not in ("springs", "catenary"):
         raise InputError(f"simulate: no mooring {mooring!r}; there are: springs, catenary.")
     if isinstance(cage, Structure):
+        if mooring != "springs":
+            raise InputError(
+                f"simulate: mooring = {mooring!r}, but structure {cage.name} has lines and anchors "
+                "of its own. Leave it out."
+            )
         assembly = rigged(cage)
     else:
         _check_depth(cage)
-        assembly = anchored(cage) if mooring == "catenary" else _assembled(cage)
+        assembly = anchored(cage) if mooring == "catenary" else assembled(cage)
     if hold_collar:
         fixed = assembly.fixed.copy()
         fixed[cage.ring_nodes(0)] = True

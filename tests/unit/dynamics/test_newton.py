@@ -11,14 +11,14 @@ from seacage.dynamics._flow import steady_flow
 from seacage.dynamics._kernel import kernel
 from seacage.dynamics._loads import nodal_force
 from seacage.dynamics._newton import Balance, Balancing, dense, hooke, nearer, tangent
-from seacage.dynamics._settle import _assembled
+from seacage.dynamics._settle import assembled
 
 COARSE = Cage.named("ace").altered(
     mesh={"spokes": 16, "ring_depths_m": [0.0, 7.0, 15.0, 21.4, 27.8]},
     collar={"pipe_bending_stiffness_n_m2": 1e-6},  # its tangent leaves part of the bending out
     sinker_tube={"bending_stiffness_n_m2": 0.0},
 )
-PARTS = _assembled(COARSE)
+PARTS = assembled(COARSE)
 FREE = np.ones(len(PARTS.position), dtype=bool)
 BALANCE = Balance(
     free=FREE, tolerance=1e-3, reach=1.5, least_barrier=1e-7, least_shift=0.1, most_shift=1e4

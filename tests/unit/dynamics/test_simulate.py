@@ -7,7 +7,7 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-from seacage.cage import Cage
+from seacage.cage import Cage, Structure
 from seacage.conventions import InputError, Result
 from seacage.dynamics import (
     MOVING_LAWS,
@@ -556,3 +556,11 @@ def test_waves_may_have_no_component_at_all():
     calm = SeaState(current_speed=0.4, current_to=33.0)
     with_none, drawn = quick(calm, waves=flat), quick(calm)
     assert_same(with_none, drawn)
+
+
+def test_a_structure_keeps_its_own_mooring(pytestconfig):
+    moored = Structure.read(pytestconfig.rootpath / "validation" / "second_solver.toml")
+    still = SeaState(current_speed=0.0, current_to=0.0)
+    with pytest.raises(InputError, match="has lines and anchors of its own. Leave it out"):
+        simulate(moored, still, **QUICK, mooring="catenary")
+    assert simulate(moored, still, **QUICK).result == Result.CONVERGED

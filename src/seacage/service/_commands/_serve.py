@@ -77,7 +77,7 @@ def serve(
     with _listening(settings.host, settings.port) as listener:
         trained, replay = _prepared(settings.data, twin=twin, demo=demo, record=record)
         name = cage or trained.cage.name
-        service = _assembled(settings, name, trained, replay, speed)
+        service = assembled(settings, name, trained, replay, speed)
         token = service.tokens.mint(["read"], keep=False)
         address = f"http://{settings.host}:{listener.getsockname()[1]}/"
         tell(
@@ -137,7 +137,7 @@ def _prepared(
     return Twin.read(made.twin_folder), replay_of(buoy) if buoy else None
 
 
-def _assembled(
+def assembled(
     settings: "Settings", name: str, twin: "Twin", replay: "Replay | None", speed: float
 ) -> "Service":
     from functools import partial
