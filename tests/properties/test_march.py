@@ -270,24 +270,27 @@ class Stepper:
 
     def hold(self, since):
         """The water's load, as for no speed, and how it falls with the node's speed."""
-        a, water = self.assembly, self.present(since)
-        load = moving_net_load(a.panels, self.law, water, self.position, self.velocity)
+        ahead = 0.5 * (self.steps.hold - 1) * self.steps.time_step
+        a, water, x = self.assembly, self.present(since + ahead), self.position
+        x = x + ahead * self.velocity
+        load = moving_net_load(a.panels, self.law, water, x, self.velocity)
         corners, share = a.panels.corners, a.panels.share
-        self.load = _gathered(self.position, corners, load[:, :, None] * share[..., None])
-        self.load += moving_cylinder_force(a.cylinders, water, self.position, self.velocity)
+        self.load = _gathered(x, corners, load[:, :, None] * share[..., None])
+        self.load += moving_cylinder_force(a.cylinders, water, x, self.velocity)
         self.load += a.water_mass[:, None] * water.acceleration
         self.load[..., 2] += a.weight
         self.drag = np.zeros_like(self.surface)
-        falls = self.falls(water)[..., None] * share
+        falls = self.falls(water, x)[..., None] * share
         np.add.at(self.drag, (slice(None), corners), falls)
-        np.add.at(self.drag, (slice(None), a.cylinders.ends), self.cylinder_falls(water)[..., None])
+        pipes = self.cylinder_falls(water, x)[..., None]
+        np.add.at(self.drag, (slice(None), a.cylinders.ends), pipes)
         self.load += self.drag[..., None] * self.velocity
 
-    def falls(self, water):
-        """Change of each panel's load with its speed, the mean over directions."""
+    def falls(self, water, x):
+        """Change of each panel's load with its speed."""
         panels = self.assembly.panels
         past = past_panels(panels, self.law, water, self.velocity)
-        a, b, c, d = np.moveaxis(self.position[:, panels.corners], 2, 0)
+        a, b, c, d = np.moveaxis(x[:, panels.corners], 2, 0)
         if self.law.name == "morison":
             length, total = panels.area / panels.twine_spacing, 0.0
             edges = ~panels.diamond[:, None]
@@ -303,10 +306,19 @@ class Stepper:
             law=self.law.name, solidity=panels.solidity, twine_diameter=panels.twine_diameter
         ).terms(speed)
         drag = screen["constant"] + screen["slope"] * cosine
-        return 1.4 * DYNAMIC * size * speed * (drag + 0.2 * screen["slope"])
+        pressure = DYNAMIC * size * speed
+        borne = 2.0 * self.panel_mass() / (self.steps.hold * self.steps.time_step)
+        return np.maximum(pressure * drag, 1.25 * pressure * (1.5 * screen["slope"] + drag) - borne)
 
-    def cylinder_falls(self, water):
-        cylinders, x = self.assembly.cylinders, self.position
+    def panel_mass(self):
+        """Of each panel by its lightest corner."""
+        panels = self.assembly.panels
+        netting = np.zeros(len(self.assembly.mass))
+        np.add.at(netting, panels.corners, panels.area[:, None] * panels.share)
+        return panels.area * (self.assembly.mass / np.maximum(netting, 1e-9))[panels.corners].min(1)
+
+    def cylinder_falls(self, water, x):
+        cylinders = self.assembly.cylinders
         along = x[:, cylinders.ends[:, 1]] - x[:, cylinders.ends[:, 0]]
         length = np.linalg.norm(along, axis=-1, keepdims=True)
         past = (water.velocity + water.current - self.velocity)[:, cylinders.ends].mean(axis=2)

@@ -180,6 +180,7 @@ def _law(
         each[:, 2] = panels.diamond
         by_reynolds = (-1.0, 0.0)
         return _TWINES, (*(law.twine_drag or by_reynolds), 0.0, 0.0), each
+    each[:, 3] = _panel_mass(assembly)
     screen = Screen(law=law.name, solidity=panels.solidity, twine_diameter=panels.twine_diameter)
     if law.name == "kristiansen-faltinsen":
         each[:, 0] = panels.twine_diameter / (WATER_VISCOSITY * (1.0 - panels.solidity))
@@ -189,6 +190,15 @@ def _law(
     terms = screen.terms(np.ones((1, len(panels.area))))
     each[:, 0], each[:, 1] = terms["slope"][0], terms["lift"][0]
     return _SCREEN, (float(terms["constant"][0, 0]), 0.0, 1.0, 0.0), each
+
+
+def _panel_mass(assembly: Assembly) -> Float[np.ndarray, " panel"]:
+    """Of its lightest corner, over the netting there, times its own [kg]."""
+    panels = assembly.panels
+    netting = np.zeros(len(assembly.position))
+    np.add.at(netting, panels.corners, panels.area[:, None] * panels.share)
+    corners = panels.corners
+    return panels.area * np.min(assembly.mass[corners] / netting[corners], axis=1)
 
 
 def _cylinder_series() -> Float[np.ndarray, " power"]:

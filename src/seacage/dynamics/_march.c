@@ -30,7 +30,8 @@ typedef struct {
     const float *bar_length, *bar_rate, *bar_damping, *bar_least; /* 0 or -infinity */
     const float *bend_stiffness;
     const float *panel_share;
-    const float *panel_law; /* [panel][4], by kind: below at `coefficients` and `add_twines` */
+    const float *panel_law; /* [panel][4]: by kind, at `refresh_panels` and `add_twines`; of a
+                               screen the last is its mass [kg] */
     const float *cylinder_drag, *cylinder_skin; /* 1/4 rho Cd D, for each end */
     const float *float_stiffness, *float_draft, *float_height;
     const float *spring_place, *spring_stiffness, *spring_preload, *spring_damping;
@@ -239,8 +240,12 @@ static void share_out(const int *n, const float *share, const lane *restrict loa
 }
 
 /* Screens: C_D = max(0, a + b cos + h cos3), C_L = l sin2 (1 + e cos2), b and h one number
- * times fixed shares. `falls`: how the load changes with speed, the mean over directions. */
-static void add_screens(const body *b, const state *s, const vec *restrict x, lane *total)
+ * times fixed shares. `falls`: how the load changes with speed. C_D serves most: more would act
+ * as mass that is not there. In fast water a light panel needs more, or holding its load
+ * through `span` would be unstable: the steepest slope less what the panel's mass bears.
+ */
+static void add_screens(const body *b, const state *s, const vec *restrict x, float span,
+                        lane *total)
 {
     const vec *restrict w = (const vec *)s->relative, *restrict carried = (const vec *)s->panel_current;
     const float constant = b->law[0], e = b->law[1], of_cos = b->law[2], of_cos3 = b->law[3];
@@ -248,6 +253,7 @@ static void add_screens(const body *b, const state *s, const vec *restrict x, la
         const int *n = b->panel_corners + 4 * p;
         const float *share = b->panel_share + 4 * p;
         const float *restrict facing = s->panel_drag[p], *restrict lifting = s->panel_lift[p];
+        const float borne = 2.0f * b->panel_law[4 * p + 3] / span;
         vec load;
         lane falls;
         EACH_LANE {
@@ -275,7 +281,8 @@ static void add_screens(const body *b, const state *s, const vec *restrict x, la
             load[0][k] = on_u * ux + on_n * nx;
             load[1][k] = on_u * uy + on_n * ny;
             load[2][k] = on_u * uz + on_n * nz;
-            falls[k] = 1.4f * pressure * uu * slow * (cd + 0.2f * facing[k]);
+            const float steep = 1.25f * (1.5f * facing[k] + cd) - borne / (pressure * uu * slow + 1e-6f);
+            falls[k] = pressure * uu * slow * (cd > steep ? cd : steep);
         }
         share_out(n, share, (const lane *)load, falls, s->held, s->drag, total);
     }
@@ -407,19 +414,25 @@ static void add_supports(const body *b, const state *s, float since, const vec *
     }
 }
 
-/* Loads of the water into s->held; total: those on the netting. */
-static void hold_loads(const body *b, const state *s, lane *total)
+/* Loads of the water into s->held, for where the nodes will be so many seconds ahead, in the
+ * middle of the time they are held: held from its beginning, they would lag. s->force is free
+ * to keep those places. total: the loads on the netting. */
+static void hold_loads(const body *b, const state *s, float ahead, float span, lane *total)
 {
-    const vec *restrict x = (const vec *)s->position, *restrict v = (const vec *)s->velocity;
+    const vec *restrict now = (const vec *)s->position, *restrict v = (const vec *)s->velocity;
+    vec *restrict x = s->force;
+    for (int i = 0; i < b->nodes; i++)
+        for (int a = 0; a < 3; a++)
+            EACH_LANE x[i][a][k] = now[i][a][k] + ahead * v[i][a][k];
     memset(s->drag, 0, sizeof(lane) * (size_t)b->nodes);
     memcpy(s->held, s->base, sizeof(vec) * (size_t)b->nodes);
     for (int a = 0; a < 3; a++)
         EACH_LANE total[a][k] = 0.0f;
     if (b->kind == TWINES)
-        add_twines(b, s, x, total);
+        add_twines(b, s, (const vec *)x, total);
     else
-        add_screens(b, s, x, total);
-    add_cylinders(b, s, x);
+        add_screens(b, s, (const vec *)x, span, total);
+    add_cylinders(b, s, (const vec *)x);
     for (int i = 0; i < b->nodes; i++)
         for (int a = 0; a < 3; a++)
             EACH_LANE s->held[i][a][k] += s->drag[i][k] * v[i][a][k];
@@ -737,7 +750,7 @@ void seacage_march_forces(const body *b, const sea *w, state *s, float *total)
 {
     relative_flow(b, s, 0.0f);
     refresh_panels(b, w, s);
-    hold_loads(b, s, (lane *)total);
+    hold_loads(b, s, 0.0f, 1.0f, (lane *)total);
     for (int i = 0; i < b->nodes; i++)
         for (int a = 0; a < 3; a++)
             EACH_LANE s->force[i][a][k] = s->held[i][a][k]
@@ -758,6 +771,7 @@ void seacage_march_water(const sea *w, const float *at, double now, float *eleva
 void seacage_march(const body *b, const sea *w, const schedule *t, state *s, record *r)
 {
     const float step = (float)t->time_step;
+    const float middle = 0.5f * step * (float)(t->hold - 1);
     const double interval = t->time_step * t->steps;
     vec total;
     for (int64_t n = t->first; n < t->first + t->refreshes; n++) {
@@ -767,10 +781,10 @@ void seacage_march(const body *b, const sea *w, const schedule *t, state *s, rec
         for (int32_t i = 0; i < t->steps; i++) {
             const float since = step * (float)i;
             if (i % t->hold == 0) {
-                relative_flow(b, s, since);
+                relative_flow(b, s, since + middle);
                 if (i == 0)
                     refresh_panels(b, w, s);
-                hold_loads(b, s, (lane *)total);
+                hold_loads(b, s, middle, step * (float)t->hold, (lane *)total);
             }
             memcpy(s->force, s->held, sizeof(vec) * (size_t)b->nodes);
             add_forces(b, s, since);
