@@ -36,7 +36,8 @@ def march(library: ctypes.CDLL, rng: np.random.Generator) -> None:
     lanes = int(library.seacage_march_lanes())
     nodes = int(rng.integers(1, 7))
     body, parts = a_body(rng, nodes)
-    sea = a_sea(rng, parts["panels"], lanes)
+    net = a_netting(rng, parts["panels"], lanes)
+    sea = a_sea(rng, lanes)
     refreshes, every = int(rng.integers(0, 4)), int(rng.integers(0, 3))
     schedule = m._Schedule.filled(
         time_step=float(rng.choice([0.002, 0.1, 0.0, 1e30, np.nan])),
@@ -50,9 +51,9 @@ def march(library: ctypes.CDLL, rng: np.random.Generator) -> None:
     )
     state = a_state(rng, nodes, parts, lanes)
     record = a_record(nodes, parts["bridles"], lanes, refreshes if every else 0)
-    library.seacage_march(*map(ctypes.byref, (body, sea, schedule, state, record)))
+    library.seacage_march(*map(ctypes.byref, (body, net, sea, schedule, state, record)))
     total, at = np.zeros((3, lanes), np.float32), numbers(rng, 3, lanes)
-    library.seacage_march_forces(*map(ctypes.byref, (body, sea, state)), pointer(total))
+    library.seacage_march_forces(*map(ctypes.byref, (body, net, state)), pointer(total))
     library.seacage_march_water(
         ctypes.byref(sea),
         pointer(at),
@@ -75,7 +76,8 @@ def a_body(rng: np.random.Generator, nodes: int) -> tuple[Any, dict[str, int]]:
         "place": (nodes, 3),
         **dict.fromkeys(("bar_length", "bar_rate", "bar_damping"), (parts["bars"],)),
         "bend_stiffness": (parts["bends"],),
-        **dict.fromkeys(("panel_share", "panel_law"), (parts["panels"], 4)),
+        "panel_share": (parts["panels"], 4),
+        "panel_mass": (parts["panels"],),
         **dict.fromkeys(("cylinder_drag", "cylinder_skin"), (parts["cylinders"],)),
         **dict.fromkeys(("float_stiffness", "float_draft", "float_height"), (len(floats),)),
         **dict.fromkeys(("spring_place", "spring_stiffness"), (parts["springs"], 3)),
@@ -85,7 +87,6 @@ def a_body(rng: np.random.Generator, nodes: int) -> tuple[Any, dict[str, int]]:
     }
     body = c.Body.filled(
         nodes=nodes,
-        kind=int(rng.integers(0, 3)),
         bar_ends=indices(rng, nodes, parts["bars"], 2),
         bend_nodes=indices(rng, nodes, parts["bends"], 3),
         panel_corners=indices(rng, nodes, parts["panels"], 4),
@@ -96,14 +97,24 @@ def a_body(rng: np.random.Generator, nodes: int) -> tuple[Any, dict[str, int]]:
         bridle_bars=bridles,
         bar_least=rng.choice([0.0, -np.inf], parts["bars"]).astype(np.float32),
         ground_level=float(numbers(rng)),
-        law=(ctypes.c_float * 4)(*numbers(rng, 4)),
         **parts,
         **{name: numbers(rng, *shape) for name, shape in shapes.items()},
     )
     return body, parts
 
 
-def a_sea(rng: np.random.Generator, panels: int, lanes: int) -> Any:
+def a_netting(rng: np.random.Generator, panels: int, lanes: int) -> Any:
+    """Under any law, and any growth."""
+    return c.Netting.filled(
+        kind=int(rng.integers(0, 3)),
+        law=numbers(rng, panels, 3, lanes),
+        drag_factor=numbers(rng, panels, lanes),
+        wake=numbers(rng, panels, lanes),
+        all=(ctypes.c_float * 4)(*numbers(rng, 4)),
+    )
+
+
+def a_sea(rng: np.random.Generator, lanes: int) -> Any:
     """Waves and currents of any size."""
     components, levels = int(rng.integers(0, 5)), int(rng.integers(1, 4))
     return c.SeaTables.filled(
@@ -112,7 +123,6 @@ def a_sea(rng: np.random.Generator, panels: int, lanes: int) -> Any:
         depth=float(numbers(rng)),
         level_z=numbers(rng, levels),
         current=numbers(rng, levels, 2, lanes),
-        wake=numbers(rng, panels, lanes),
         **{name: numbers(rng, components, lanes, kind=k) for name, k in c._WAVE_KINDS.items()},
     )
 

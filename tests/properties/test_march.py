@@ -79,6 +79,17 @@ def varied(assembly, rng, softer):
     )
 
 
+def grown(rng, law, cases, assembly, *, own, twine_drag):
+    """A law with any wake, and each case's own netting."""
+    shape = (cases, len(assembly.panels.area))
+    netting = {
+        "solidity": rng.uniform(0.05, 0.5, shape),
+        "drag_factor": rng.choice([0.0, 0.7, 1.0, 1.3], shape),
+    }
+    wake = rng.uniform(0.5, 1.0, shape)
+    return NetLaw(name=law, wake=wake, twine_drag=twine_drag, **(netting if own else {}))
+
+
 def magnitudes(assembly, law, water, position, velocity):
     """At each node the sum of what its forces are differences of [N]."""
     a, bars = assembly, assembly.bars
@@ -132,11 +143,12 @@ def magnitudes(assembly, law, water, position, velocity):
     softer=st.sampled_from([1.0, 1e-6]),
     shaken=st.floats(0.05, 1.0),  # at its own length a bar is slack or taut by a rounding
     still=st.booleans(),
+    own=st.booleans(),
     cases=st.integers(1, LANES),
     seed=st.integers(0, 2**32 - 1),
 )
 def test_the_march_computes_the_definition_of_every_force(
-    mesh, law, twine_drag, softer, shaken, still, cases, seed
+    mesh, law, twine_drag, softer, shaken, still, own, cases, seed
 ):
     rng = np.random.default_rng(seed)
     assembly = varied(Assembly.of(caged(mesh, rng)), rng, softer)
@@ -149,8 +161,7 @@ def test_the_march_computes_the_definition_of_every_force(
         elevation=single(rng.normal(size=shape[:2])),
         current=single(rng.normal(size=shape)) * (not still),
     )
-    wake = rng.uniform(0.5, 1.0, (cases, len(assembly.panels.area)))
-    net = NetLaw(name=law, wake=wake, twine_drag=twine_drag)
+    net = grown(rng, law, cases, assembly, own=own, twine_drag=twine_drag)
     defined = moving_force(assembly, net, water, position, velocity)
     computed = kernel_force(assembly, net, water, position, velocity)
     size = magnitudes(assembly, net, water, position, velocity)

@@ -1,6 +1,7 @@
 """A cage and its sea as the marching kernel reads them: arrays in single precision, lanes last."""
 
 import ctypes
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -65,7 +66,18 @@ def laned(
 ) -> Float[np.ndarray, "*shape lane"]:
     """Cases as the last axis, the lanes left over filled with the first case."""
     spare = np.repeat(values[:1], simulation_lanes() - len(values), axis=0)
-    return np.ascontiguousarray(np.moveaxis(np.concatenate([values, spare]), 0, -1), dtype=kind)
+    lanes = np.moveaxis(np.concatenate([values, spare]), 0, -1)
+    spread = aligned(lanes.shape, kind)
+    spread[...] = lanes
+    return spread
+
+
+def aligned(shape: tuple[int, ...], kind: Any = np.float32) -> np.ndarray:
+    """Zeros on whole lines of the cache, which a vector that lies across two reads slowly."""
+    line, size = 64, math.prod(shape) * np.dtype(kind).itemsize
+    room = np.zeros(size + line, np.uint8)
+    first = -room.ctypes.data % line
+    return room[first : first + size].view(kind).reshape(shape)
 
 
 def unlaned(values: np.ndarray) -> np.ndarray:
@@ -76,18 +88,25 @@ def unlaned(values: np.ndarray) -> np.ndarray:
 class Body(Struct):
     _fields_ = (
         *((n, ctypes.c_int32) for n in ("nodes", "bars", "bends", "panels", "cylinders")),
-        *((n, ctypes.c_int32) for n in ("floats", "springs", "grounds", "bridles", "kind")),
+        *((n, ctypes.c_int32) for n in ("floats", "springs", "grounds", "bridles")),
         *((n, INTEGERS) for n in ("bar_ends", "bend_nodes", "panel_corners", "cylinder_ends")),
         *((n, INTEGERS) for n in ("float_nodes", "spring_nodes", "ground_nodes", "bridle_bars")),
         *((n, FLOATS) for n in ("weight", "mass", "water_mass", "place")),
         *((n, FLOATS) for n in ("bar_length", "bar_rate", "bar_damping", "bar_least")),
-        *((n, FLOATS) for n in ("bend_stiffness", "panel_share", "panel_law")),
+        *((n, FLOATS) for n in ("bend_stiffness", "panel_share", "panel_mass")),
         *((n, FLOATS) for n in ("cylinder_drag", "cylinder_skin")),
         *((n, FLOATS) for n in ("float_stiffness", "float_draft", "float_height")),
         *((n, FLOATS) for n in ("spring_place", "spring_stiffness", "spring_preload")),
         *((n, FLOATS) for n in ("spring_damping", "ground_stiffness", "cylinder_series")),
         ("ground_level", ctypes.c_float),
-        ("law", ctypes.c_float * 4),
+    )
+
+
+class Netting(Struct):
+    _fields_ = (
+        ("kind", ctypes.c_int32),
+        *((n, FLOATS) for n in ("law", "drag_factor", "wake")),
+        ("all", ctypes.c_float * 4),
     )
 
 
@@ -97,16 +116,15 @@ class SeaTables(Struct):
         *((n, DOUBLES) for n in ("turns", "turns_per_second")),
         *((n, FLOATS) for n in ("east", "north", "decay", "amplitude")),
         *((n, FLOATS) for n in ("along_x", "along_y", "up", "floor", "bounce")),
-        *((n, FLOATS) for n in ("level_z", "current", "wake")),
+        *((n, FLOATS) for n in ("level_z", "current")),
         ("depth", ctypes.c_float),
     )
 
 
-def body_of(assembly: Assembly, law: NetLaw) -> Body:
+def body_of(assembly: Assembly) -> Body:
     a = assembly
     assert np.all(np.diff(a.floats.nodes) > 0), "the kernel meets floats in the nodes' order"
     bars, bridles = _in_node_order(a)
-    kind, numbers, panel_law = _law(a, law)
     indices = {
         "bar_ends": bars.ends,
         "bend_nodes": a.bends.nodes,
@@ -128,7 +146,7 @@ def body_of(assembly: Assembly, law: NetLaw) -> Body:
         "bar_least": np.where(bars.pushed, -np.inf, 0.0),
         "bend_stiffness": a.bends.stiffness,
         "panel_share": a.panels.share,
-        "panel_law": panel_law,
+        "panel_mass": _panel_mass(a),
         "cylinder_drag": DYNAMIC / 2.0 * a.cylinders.drag_width,
         "cylinder_skin": DYNAMIC / 2.0 * a.cylinders.skin_width,
         "float_stiffness": a.floats.stiffness,
@@ -151,9 +169,7 @@ def body_of(assembly: Assembly, law: NetLaw) -> Body:
         springs=len(a.springs.nodes),
         grounds=len(a.ground.nodes),
         bridles=len(a.bridles),
-        kind=kind,
         ground_level=a.ground.level,
-        law=(ctypes.c_float * 4)(*numbers),
         **{name: array.astype(np.int32) for name, array in indices.items()},
         **{name: array.astype(np.float32) for name, array in values.items()},
     )
@@ -168,27 +184,37 @@ def _in_node_order(assembly: Assembly) -> tuple[Bars, Int[np.ndarray, " bridle"]
     return sorted_bars, place[assembly.bridles]
 
 
+def netting_of(assembly: Assembly, law: NetLaw) -> Netting:
+    kind, numbers, each = _law(assembly, law)
+    shape = (*law.wake.shape, 3)
+    return Netting.filled(
+        kind=kind,
+        all=(ctypes.c_float * 4)(*numbers),
+        law=laned(np.broadcast_to(np.stack(np.broadcast_arrays(*each), axis=-1), shape)),
+        drag_factor=laned(law.factor),
+        wake=laned(law.wake),
+    )
+
+
 def _law(
     assembly: Assembly, law: NetLaw
-) -> tuple[int, tuple[float, ...], Float[np.ndarray, "panel 4"]]:
+) -> tuple[int, tuple[float, ...], tuple[Float[np.ndarray, "*#case panel"], ...]]:
     """Kind of the law, its numbers for all panels and for each, as ``_march.c`` names them."""
     panels = assembly.panels
-    each = np.zeros((len(panels.area), 4))
+    solidity, diameter = law.netting(panels)
     if law.name == "morison":
-        each[:, 0] = DYNAMIC * panels.twine_diameter * panels.area / panels.twine_spacing
-        each[:, 1] = panels.twine_diameter / WATER_VISCOSITY
-        each[:, 2] = panels.diamond
+        weight = DYNAMIC * diameter * panels.area / panels.twine_spacing
         by_reynolds = (-1.0, 0.0)
-        return _TWINES, (*(law.twine_drag or by_reynolds), 0.0, 0.0), each
-    each[:, 3] = _panel_mass(assembly)
-    screen = Screen(law=law.name, solidity=panels.solidity, twine_diameter=panels.twine_diameter)
+        numbers = (*(law.twine_drag or by_reynolds), 0.0, 0.0)
+        return _TWINES, numbers, (weight, diameter / WATER_VISCOSITY, panels.diamond.astype(float))
     if law.name == "kristiansen-faltinsen":
-        each[:, 0] = panels.twine_diameter / (WATER_VISCOSITY * (1.0 - panels.solidity))
-        each[:, 1] = facing(panels.solidity, 1.0)[0]
-        each[:, 2] = panels.solidity / (2.0 * (1.0 - panels.solidity) ** 2)
+        reynolds = diameter / (WATER_VISCOSITY * (1.0 - solidity))
+        normal = solidity / (2.0 * (1.0 - solidity) ** 2)
+        each = (reynolds, np.asarray(facing(solidity, 1.0)[0]), normal)
         return _REYNOLDS_SCREEN, (0.0, 0.2, 0.9, 0.1), each
-    terms = screen.terms(np.ones((1, len(panels.area))))
-    each[:, 0], each[:, 1] = terms["slope"][0], terms["lift"][0]
+    screen = Screen(law=law.name, solidity=solidity, twine_diameter=diameter)
+    terms = screen.terms(np.ones_like(law.wake))
+    each = (terms["slope"], terms["lift"], np.zeros_like(law.wake))
     return _SCREEN, (float(terms["constant"][0, 0]), 0.0, 1.0, 0.0), each
 
 
@@ -209,8 +235,10 @@ def _cylinder_series() -> Float[np.ndarray, " power"]:
     return Polynomial(CYLINDER)(Polynomial([9.0 * scale, scale])).coef
 
 
-def sea_tables(ocean: Ocean, law: NetLaw) -> SeaTables:
+def sea_tables(ocean: Ocean, *, now: float = 0.0) -> SeaTables:
+    """Of waves whose time 0 is ``now`` [s]."""
     tables = _wave_tables(ocean.waves)
+    tables["turns"] += now * tables["turns_per_second"]
     components = len(tables["turns"])
     return SeaTables.filled(
         components=components,
@@ -218,7 +246,6 @@ def sea_tables(ocean: Ocean, law: NetLaw) -> SeaTables:
         depth=ocean.depth,
         level_z=ocean.level_z.astype(np.float32),
         current=laned(ocean.current),
-        wake=laned(law.wake),
         **tables,
     )
 
@@ -247,7 +274,8 @@ _WAVE_KINDS: dict[str, Any] = {
 
 def _wave_table(waves: Waves) -> dict[str, np.ndarray]:
     turn = 2.0 * np.pi
-    speed = waves.amplitude * waves.angular_frequency
+    # as the water itself meets them: what passes a place may be carried by a current
+    speed = waves.amplitude * waves.intrinsic_frequency
     fading = np.exp(-2.0 * waves.wavenumber * waves.depth)
     return {
         "turns": waves.phase / turn,

@@ -23,23 +23,28 @@ typedef double wide[LANES];
 enum { SCREEN = 0, REYNOLDS_SCREEN = 1, TWINES = 2 }; /* kinds of law of the netting */
 
 typedef struct {
-    int32_t nodes, bars, bends, panels, cylinders, floats, springs, grounds, bridles, kind;
+    int32_t nodes, bars, bends, panels, cylinders, floats, springs, grounds, bridles;
     const int32_t *bar_ends, *bend_nodes, *panel_corners, *cylinder_ends, *float_nodes,
         *spring_nodes, *ground_nodes, *bridle_bars;
     const float *weight, *mass, *water_mass, *place;
     const float *bar_length, *bar_rate, *bar_damping, *bar_least; /* 0 or -infinity */
     const float *bend_stiffness;
-    const float *panel_share;
-    const float *panel_law; /* [panel][4]: by kind, at `refresh_panels` and `add_twines`; of a
-                               screen the last is its mass [kg] */
+    const float *panel_share, *panel_mass;
     const float *cylinder_drag, *cylinder_skin; /* 1/4 rho Cd D, for each end */
     const float *float_stiffness, *float_draft, *float_height;
     const float *spring_place, *spring_stiffness, *spring_preload, *spring_damping;
     const float *ground_stiffness;
     const float *cylinder_series; /* [8] of the twine's drag in powers of log2 Re - its middle */
     float ground_level;
-    float law[4]; /* SCREEN*: a, e of the law, share of cos and of cos3; TWINES: Cn, Ct */
 } body;
+
+typedef struct {
+    int32_t kind;
+    const float *law;         /* [panel][3][lane]: by kind, at `refresh_panels` and `add_twines` */
+    const float *drag_factor; /* [panel][lane] on drag and lift */
+    const float *wake;        /* [panel][lane] share of the current left */
+    float all[4]; /* SCREEN*: a, e of the law, share of cos and of cos3; TWINES: Cn, Ct */
+} netting;
 
 typedef struct {
     int32_t components, levels;
@@ -50,7 +55,6 @@ typedef struct {
     const float *floor, *bounce;                 /* of finite depth: 1/(1-e^-2kh), e^-2kh of it */
     const float *level_z;                        /* [level], downwards */
     const float *current;                        /* [level][2][lane] */
-    const float *wake;                           /* [panel][lane] share of the current left */
     float depth;
 } sea;
 
@@ -244,16 +248,17 @@ static void share_out(const int *n, const float *share, const lane *restrict loa
  * as mass that is not there. In fast water a light panel needs more, or holding its load
  * through `span` would be unstable: the steepest slope less what the panel's mass bears.
  */
-static void add_screens(const body *b, const state *s, const vec *restrict x, float span,
-                        lane *total)
+static void add_screens(const body *b, const netting *net, const state *s,
+                        const vec *restrict x, float span, lane *total)
 {
     const vec *restrict w = (const vec *)s->relative, *restrict carried = (const vec *)s->panel_current;
-    const float constant = b->law[0], e = b->law[1], of_cos = b->law[2], of_cos3 = b->law[3];
+    const float constant = net->all[0], e = net->all[1], of_cos = net->all[2], of_cos3 = net->all[3];
     for (int p = 0; p < b->panels; p++) {
         const int *n = b->panel_corners + 4 * p;
         const float *share = b->panel_share + 4 * p;
         const float *restrict facing = s->panel_drag[p], *restrict lifting = s->panel_lift[p];
-        const float borne = 2.0f * b->panel_law[4 * p + 3] / span;
+        const float *restrict factor = net->drag_factor + LANES * p;
+        const float borne = 2.0f * b->panel_mass[p] / span;
         vec load;
         lane falls;
         EACH_LANE {
@@ -272,7 +277,7 @@ static void add_screens(const body *b, const state *s, const vec *restrict x, fl
             c = c < 0.0f ? -c : c;
             c = c < 1.0f ? c : 1.0f;
             const float cc = c * c;
-            float cd = constant + facing[k] * c * (of_cos + of_cos3 * (4.0f * cc - 3.0f));
+            float cd = factor[k] * constant + facing[k] * c * (of_cos + of_cos3 * (4.0f * cc - 3.0f));
             cd = cd > 0.0f ? cd : 0.0f;
             const float cl = 2.0f * c * lifting[k] * (1.0f + e * (2.0f * cc - 1.0f));
             const float pressure = 512.5f * area;
@@ -307,23 +312,26 @@ static void add_screens(const body *b, const state *s, const vec *restrict x, fl
         fall += across_;                                                                         \
     } while (0)
 
-/* Twine by twine. panel_law: 1/2 rho × diameter × twine length of a family, diameter /
- * viscosity, whether the twines run at 45 degrees to the panel's edges. law: Cn, below zero
+/* Twine by twine. A panel's law: 1/2 rho × diameter × twine length of a family, diameter /
+ * viscosity, whether the twines run at 45 degrees to the panel's edges. For all: Cn, below zero
  * after Choo and Casarella; Ct. */
-static void add_twines(const body *b, const state *s, const vec *restrict x, lane *total)
+static void add_twines(const body *b, const netting *net, const state *s,
+                       const vec *restrict x, lane *total)
 {
     const vec *restrict w = (const vec *)s->relative, *restrict carried = (const vec *)s->panel_current;
-    const float given = b->law[0], skin = b->law[1];
+    const float given = net->all[0], skin = net->all[1];
     const int by_reynolds = given < 0.0f;
     for (int p = 0; p < b->panels; p++) {
         const int *n = b->panel_corners + 4 * p;
         const float *share = b->panel_share + 4 * p;
-        const float weight = b->panel_law[4 * p], reynolds = b->panel_law[4 * p + 1];
-        const float mix = 1.0f - b->panel_law[4 * p + 2]; /* edges are half sums of diagonals */
+        const lane *restrict law = (const lane *)net->law + 3 * p;
+        const float *restrict factor = net->drag_factor + LANES * p;
         vec load;
         lane falls;
         EACH_LANE {
             DIAGONALS;
+            const float weight = factor[k] * law[0][k], reynolds = law[1][k];
+            const float mix = 1.0f - law[2][k]; /* edges are half sums of diagonals */
             const float ux = PAST(0), uy = PAST(1), uz = PAST(2);
             float lx = 0.0f, ly = 0.0f, lz = 0.0f, fall = 0.0f;
             FAMILY(ax + mix * bx, ay + mix * by, az + mix * bz);
@@ -416,26 +424,36 @@ static void add_supports(const body *b, const state *s, float since, const vec *
 
 /* Loads of the water into s->held, for where the nodes will be so many seconds ahead, in the
  * middle of the time they are held: held from its beginning, they would lag. s->force is free
- * to keep those places. total: the loads on the netting. */
-static void hold_loads(const body *b, const state *s, float ahead, float span, lane *total)
+ * to keep those places, and is left with what is held. total: the loads on the netting. */
+static void hold_loads(const body *b, const netting *net, const state *s, float ahead,
+                       float span, lane *total)
 {
     const vec *restrict now = (const vec *)s->position, *restrict v = (const vec *)s->velocity;
-    vec *restrict x = s->force;
-    for (int i = 0; i < b->nodes; i++)
+    const vec *restrict base = (const vec *)s->base;
+    vec *restrict x = s->force, *restrict held = s->held;
+    lane *restrict drag = s->drag;
+    for (int i = 0; i < b->nodes; i++) {
         for (int a = 0; a < 3; a++)
-            EACH_LANE x[i][a][k] = now[i][a][k] + ahead * v[i][a][k];
-    memset(s->drag, 0, sizeof(lane) * (size_t)b->nodes);
-    memcpy(s->held, s->base, sizeof(vec) * (size_t)b->nodes);
+            EACH_LANE {
+                x[i][a][k] = now[i][a][k] + ahead * v[i][a][k];
+                held[i][a][k] = base[i][a][k];
+            }
+        EACH_LANE drag[i][k] = 0.0f;
+    }
     for (int a = 0; a < 3; a++)
         EACH_LANE total[a][k] = 0.0f;
-    if (b->kind == TWINES)
-        add_twines(b, s, (const vec *)x, total);
+    if (net->kind == TWINES)
+        add_twines(b, net, s, (const vec *)x, total);
     else
-        add_screens(b, s, (const vec *)x, span, total);
+        add_screens(b, net, s, (const vec *)x, span, total);
     add_cylinders(b, s, (const vec *)x);
     for (int i = 0; i < b->nodes; i++)
         for (int a = 0; a < 3; a++)
-            EACH_LANE s->held[i][a][k] += s->drag[i][k] * v[i][a][k];
+            EACH_LANE {
+                const float load = held[i][a][k] + drag[i][k] * v[i][a][k];
+                held[i][a][k] = load;
+                x[i][a][k] = load;
+            }
 }
 
 /* What springs back, into s->force, on top of what is held: held, it would stir motion up. */
@@ -562,15 +580,17 @@ static void refresh_water(const body *b, const sea *w, const schedule *t, state 
 }
 
 /* What each panel carries of the current, and its coefficients at the present speed.
- * panel_law of a screen: facing drag and lift. Of one with Reynolds number: that for 1 m/s,
+ * Law of a screen: facing drag and lift. Of one with Reynolds number: that for 1 m/s,
  * C_D0 and C_N45 for each unit of the twine's drag coefficient. */
-static void refresh_panels(const body *b, const sea *w, state *s)
+static void refresh_panels(const body *b, const netting *net, state *s)
 {
     const vec *restrict carried = (const vec *)s->panel_current;
     for (int p = 0; p < b->panels; p++) {
         const int *n = b->panel_corners + 4 * p;
-        const float *share = b->panel_share + 4 * p, *law = b->panel_law + 4 * p;
-        const float *restrict wake = w->wake + LANES * p;
+        const float *share = b->panel_share + 4 * p;
+        const lane *restrict law = (const lane *)net->law + 3 * p;
+        const float *restrict factor = net->drag_factor + LANES * p;
+        const float *restrict wake = net->wake + LANES * p;
         for (int a = 0; a < 3; a++)
             EACH_LANE {
                 float sum = 0.0f;
@@ -578,10 +598,10 @@ static void refresh_panels(const body *b, const sea *w, state *s)
                     sum += share[e] * s->current[n[e]][a][k];
                 s->panel_current[p][a][k] = wake[k] * sum;
             }
-        if (b->kind != REYNOLDS_SCREEN) {
+        if (net->kind != REYNOLDS_SCREEN) {
             EACH_LANE {
-                s->panel_drag[p][k] = law[0];
-                s->panel_lift[p][k] = law[1];
+                s->panel_drag[p][k] = factor[k] * law[0][k];
+                s->panel_lift[p][k] = factor[k] * law[1][k];
             }
             continue;
         }
@@ -595,17 +615,17 @@ static void refresh_panels(const body *b, const sea *w, state *s)
                     past += share[e] * w_[n[e]][a][k];
                 uu += past * past;
             }
-            float number = law[0] * sqrtf(uu);
+            float number = law[0][k] * sqrtf(uu);
             number = number > 32.0f ? number : 32.0f;
             number = number < 1e4f ? number : 1e4f;
             const float y = logarithm_2(number) - 9.0f;
             float c = series[7];
             for (int power = 6; power >= 0; power--)
                 c = c * y + series[power];
-            const float facing = c * law[1], normal = c * law[2];
-            s->panel_drag[p][k] = facing;
-            s->panel_lift[p][k] = (0.5f * facing - 3.14159265f * normal / (8.0f + normal))
-                                  * 0.707106781f;
+            const float facing = c * law[1][k], normal = c * law[2][k];
+            s->panel_drag[p][k] = factor[k] * facing;
+            s->panel_lift[p][k] = factor[k] * 0.707106781f
+                                  * (0.5f * facing - 3.14159265f * normal / (8.0f + normal));
         }
     }
 }
@@ -614,19 +634,23 @@ static void refresh_panels(const body *b, const sea *w, state *s)
 
 static void relative_flow(const body *b, state *s, float since)
 {
+    const vec *restrict water = (const vec *)s->water, *restrict slope = (const vec *)s->slope;
+    const vec *restrict v = (const vec *)s->velocity;
+    vec *restrict past = s->relative;
     for (int i = 0; i < b->nodes; i++)
         for (int a = 0; a < 3; a++)
-            EACH_LANE s->relative[i][a][k] = s->water[i][a][k] + since * s->slope[i][a][k]
-                                             - s->velocity[i][a][k];
+            EACH_LANE past[i][a][k] = water[i][a][k] + since * slope[i][a][k] - v[i][a][k];
 }
 
-/* Symplectic Euler; drag falls with the speed, and is taken at the new one. */
+/* Symplectic Euler; drag falls with the speed, and is taken at the new one. What is held begins
+ * the next step's force. */
 static void move(const body *b, state *s, float step)
 {
     for (int i = 0; i < b->nodes; i++) {
         const float mass = b->mass[i];
         vec *restrict x = s->position + i, *restrict rest = s->rest + i, *restrict v = s->velocity + i;
-        const vec *restrict f = (const vec *)s->force + i;
+        vec *restrict f = s->force + i;
+        const vec *restrict held = (const vec *)s->held + i;
         const float *restrict drag = s->drag[i];
         lane share;
         EACH_LANE share[k] = 1.0f / (mass + step * drag[k]);
@@ -638,6 +662,7 @@ static void move(const body *b, state *s, float step)
                 (*v)[a][k] = faster;
                 (*rest)[a][k] = add - (now - old);
                 (*x)[a][k] = now;
+                (*f)[a][k] = (*held)[a][k];
             }
     }
 }
@@ -746,15 +771,14 @@ static void give_up_lost(const body *b, state *s, double now)
 int32_t seacage_march_lanes(void) { return LANES; }
 
 /* All forces at a state, the water given at its nodes: for the tests. */
-void seacage_march_forces(const body *b, const sea *w, state *s, float *total)
+void seacage_march_forces(const body *b, const netting *net, state *s, float *total)
 {
     relative_flow(b, s, 0.0f);
-    refresh_panels(b, w, s);
-    hold_loads(b, s, 0.0f, 1.0f, (lane *)total);
+    refresh_panels(b, net, s);
+    hold_loads(b, net, s, 0.0f, 1.0f, (lane *)total);
     for (int i = 0; i < b->nodes; i++)
         for (int a = 0; a < 3; a++)
-            EACH_LANE s->force[i][a][k] = s->held[i][a][k]
-                                          - s->drag[i][k] * s->velocity[i][a][k];
+            EACH_LANE s->force[i][a][k] -= s->drag[i][k] * s->velocity[i][a][k];
     add_forces(b, s, 0.0f);
 }
 
@@ -767,8 +791,9 @@ void seacage_march_water(const sea *w, const float *at, double now, float *eleva
 }
 
 /* March through some refreshes. Called again with `first` moved on, the numbers are the same
- * as of one longer call. */
-void seacage_march(const body *b, const sea *w, const schedule *t, state *s, record *r)
+ * as of one longer call. Between calls netting and sea may change, and the body's parts. */
+void seacage_march(const body *b, const netting *net, const sea *w, const schedule *t, state *s,
+                   record *r)
 {
     const float step = (float)t->time_step;
     const float middle = 0.5f * step * (float)(t->hold - 1);
@@ -783,10 +808,9 @@ void seacage_march(const body *b, const sea *w, const schedule *t, state *s, rec
             if (i % t->hold == 0) {
                 relative_flow(b, s, since + middle);
                 if (i == 0)
-                    refresh_panels(b, w, s);
-                hold_loads(b, s, middle, step * (float)t->hold, (lane *)total);
+                    refresh_panels(b, net, s);
+                hold_loads(b, net, s, middle, step * (float)t->hold, (lane *)total);
             }
-            memcpy(s->force, s->held, sizeof(vec) * (size_t)b->nodes);
             add_forces(b, s, since);
             if (counts)
                 count_bridles(b, s, r);

@@ -2,23 +2,25 @@
 
 import ctypes
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Self
+from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
-from seacage.dynamics._assembly import Assembly
+from seacage.conventions import InputError
+from seacage.dynamics._assembly import Assembly, Bars
 from seacage.dynamics._cargo import (
     Ocean,
+    aligned,
     body_of,
     laned,
     marching,
+    netting_of,
     sea_tables,
     simulation_lanes,
     unlaned,
 )
-from seacage.dynamics._motion import NetLaw, Water
+from seacage.dynamics._motion import NetLaw, Water, damped_tension
 from seacage.dynamics._struct import DOUBLES, FLOATS, LONGS, Struct, pointer
 from seacage.ocean import Waves
 
@@ -95,7 +97,8 @@ class Steps:
 class March:
     """Cases on their way through time; ``go`` moves them all.
 
-    The arrays of ``account`` and ``samples`` have the lanes last.
+    Between two moves the water, the netting and the parts may change. The arrays of ``account``
+    and ``samples`` have the lanes last.
     """
 
     def __init__(
@@ -108,8 +111,10 @@ class March:
     ) -> None:
         self.steps, self.refreshed = steps, 0
         self.cases, nodes = position.shape[:2]
-        self._body = body_of(assembly, law)
-        self._sea = sea_tables(ocean, law)
+        self._assembly, self._ocean = assembly, ocean
+        self._body = body_of(assembly)
+        self._net = netting_of(assembly, law)
+        self._sea = sea_tables(ocean)
         self._motion = _motion(assembly, laned(position))
         lanes, bridles = simulation_lanes(), len(assembly.bridles)
         sizes = {"node": (3 * nodes, lanes), "bridle": (bridles, lanes), "load": (3, lanes)}
@@ -138,6 +143,8 @@ class March:
     def go(self, refreshes: int) -> None:
         """Move on by so many refreshes."""
         steps = self.steps
+        room = steps.spin_up + steps.counted - self.refreshed
+        assert not steps.sample_every or refreshes <= room, "samples would go beyond their room"
         schedule = _Schedule.filled(
             time_step=steps.time_step,
             ramp=steps.ramp,
@@ -149,9 +156,41 @@ class March:
             hold=steps.hold,
         )
         marching().seacage_march(
-            *map(ctypes.byref, (self._body, self._sea, schedule, self._motion, self._record))
+            *map(
+                ctypes.byref,
+                (self._body, self._net, self._sea, schedule, self._motion, self._record),
+            )
         )
         self.refreshed += refreshes
+
+    @property
+    def now(self) -> float:
+        """Simulated so far [s]."""
+        return self.refreshed * self.steps.each * self.steps.time_step
+
+    def set_current(self, current: Float[np.ndarray, "case level 2"]) -> None:
+        """From now on at each level [m/s]."""
+        self._ocean = replace(self._ocean, current=current)
+        self._sea.arrays["current"][:] = laned(current)
+
+    def set_waves(self, waves: Sequence[Waves]) -> None:
+        """From now on, which is their time 0; the water takes a refresh to come round to them."""
+        self._ocean = replace(self._ocean, waves=waves)
+        self._sea = sea_tables(self._ocean, now=self.now)
+
+    def set_net(self, law: NetLaw) -> None:
+        """From now on: law, wake and growth."""
+        self._net = netting_of(self._assembly, law)
+
+    def rebuild(self, assembly: Assembly) -> None:
+        """Go on as another assembly, of the same nodes, panels, floats and number of bridles."""
+        before, after = _counts(self._assembly), _counts(assembly)
+        if before != after:
+            raise InputError(
+                f"March: an assembly of {after} cannot go on from one of {before}. Change their "
+                "stiffness or the netting's drag, and let their numbers be."
+            )
+        self._assembly, self._body = assembly, body_of(assembly)
 
     @property
     def position(self) -> Float[np.ndarray, "case node 3"]:
@@ -163,11 +202,40 @@ class March:
         """How the nodes move now [m/s]."""
         return unlaned(self._motion.arrays["velocity"])[: self.cases].astype(np.float64)
 
+    def position_of(self, nodes: Int[np.ndarray, " kept"]) -> Float[np.ndarray, "case kept 3"]:
+        """Where some nodes are now [m]."""
+        return self._of("position", nodes)
+
+    def node_sum(self, nodes: Int[np.ndarray, " kept"]) -> Float[np.ndarray, "case kept 3"]:
+        """Displacements from the assembly's positions, over all counted refreshes [m]."""
+        lanes = simulation_lanes()
+        return unlaned(self.account["node_sum"].reshape(-1, 3, lanes)[nodes])[: self.cases]
+
+    @property
+    def tension(self) -> Float[np.ndarray, "case bridle"]:
+        """Of the bridles now [N]."""
+        assembly = self._assembly
+        some = {n: getattr(assembly.bars, n)[assembly.bridles] for n in Bars.__slots__}
+        nodes, ends = np.unique(some["ends"], return_inverse=True)
+        bridles = Bars(**some | {"ends": ends.reshape(-1, 2)})
+        at, moving = self._of("position", nodes), self._of("velocity", nodes)
+        return damped_tension(bridles, assembly.mass[nodes], at, moving)
+
+    def _of(self, name: str, nodes: Int[np.ndarray, " kept"]) -> Float[np.ndarray, "case kept 3"]:
+        return unlaned(self._motion.arrays[name][nodes])[: self.cases].astype(np.float64)
+
     @property
     def lost_at(self) -> Float[np.ndarray, " case"]:
         """Simulated time at which a case left the finite numbers, else NaN [s]."""
         at = self._motion.arrays["lost_at"][: self.cases].astype(np.float64)
         return np.where(at < 0.0, np.nan, at)
+
+
+def _counts(assembly: Assembly) -> str:
+    """Of what a march has numbers for."""
+    panels, floats = len(assembly.panels.area), len(assembly.floats.nodes)
+    nodes, bridles = len(assembly.position), len(assembly.bridles)
+    return f"{nodes} nodes, {panels} panels, {floats} floats and {bridles} bridles"
 
 
 def kernel_force(
@@ -187,12 +255,9 @@ def kernel_force(
     inertia = assembly.water_mass[:, None] * water.acceleration
     inertia[..., 2] += assembly.weight
     motion.arrays["base"][:] = laned(inertia)
-    still = Ocean(waves=(), current=np.zeros((cases, 1, 2)), level_z=np.zeros(1), depth=1.0)
     total = np.zeros((3, simulation_lanes()), np.float32)
     marching().seacage_march_forces(
-        ctypes.byref(body_of(assembly, law)),
-        ctypes.byref(sea_tables(still, law)),
-        ctypes.byref(motion),
+        *map(ctypes.byref, (body_of(assembly), netting_of(assembly, law), motion)),
         pointer(total),
     )
     return unlaned(motion.arrays["force"])[:cases].astype(np.float64)
@@ -203,13 +268,12 @@ def kernel_water(
 ) -> tuple[Float[np.ndarray, " case"], Float[np.ndarray, "case 3"]]:
     """Surface [m] and wave velocity [m/s] at one place for each case, as the kernel has them."""
     cases, lanes = len(waves), simulation_lanes()
-    law = NetLaw(name="loland", wake=np.ones((cases, 1)))
     ocean = Ocean(
         waves=waves, current=np.zeros((cases, 1, 2)), level_z=np.zeros(1), depth=waves[0].depth
     )
     elevation, velocity = np.zeros(lanes, np.float32), np.zeros((3, lanes), np.float32)
     marching().seacage_march_water(
-        ctypes.byref(sea_tables(ocean, law)),
+        ctypes.byref(sea_tables(ocean)),
         pointer(laned(position)),
         ctypes.c_double(time),
         pointer(elevation),
@@ -218,17 +282,7 @@ def kernel_water(
     return elevation[:cases].astype(np.float64), velocity.T[:cases].astype(np.float64)
 
 
-class _Motion(_State):
-    """The kernel's state; ``arrays`` are what it points to."""
-
-    @classmethod
-    def of(cls, arrays: dict[str, np.ndarray]) -> Self:
-        motion = cls.filled(**arrays)
-        motion.arrays = arrays
-        return motion
-
-
-def _motion(assembly: Assembly, position: Float[np.ndarray, "node 3 lane"]) -> _Motion:
+def _motion(assembly: Assembly, position: Float[np.ndarray, "node 3 lane"]) -> _State:
     lanes, nodes = simulation_lanes(), len(position)
     panels, floats = len(assembly.panels.area), len(assembly.floats.nodes)
     nodal = ("rest", "velocity", "water", "slope", "current", "relative", "force", "base", "held")
@@ -240,5 +294,6 @@ def _motion(assembly: Assembly, position: Float[np.ndarray, "node 3 lane"]) -> _
         "panel_drag": (panels,),
         "panel_lift": (panels,),
     }
-    arrays = {name: np.zeros((*shape, lanes), np.float32) for name, shape in shapes.items()}
-    return _Motion.of({"position": position, **arrays, "lost_at": np.full(lanes, -1.0, np.float32)})
+    arrays = {name: aligned((*shape, lanes)) for name, shape in shapes.items()}
+    lost_at = np.full(lanes, -1.0, np.float32)
+    return _State.filled(position=position, **arrays, lost_at=lost_at)

@@ -63,11 +63,18 @@ class NetLaw:
     twine_drag
         Drag coefficients of a twine across and along the flow [-]; None takes that of a smooth
         cylinder at its Reynolds number, after Choo and Casarella, and no skin friction.
+    solidity
+        Of each case's netting [-]; None for the assembly's.
+    drag_factor
+        On drag and lift of each case's netting, which soft growth loads less than a net as
+        solid [-]; None for 1. 0 is a hole.
     """
 
     name: MovingLaw
     wake: Float[np.ndarray, "case panel"]
     twine_drag: tuple[float, float] | None = None
+    solidity: Float[np.ndarray, "case panel"] | None = None
+    drag_factor: Float[np.ndarray, "case panel"] | None = None
 
     def __post_init__(self) -> None:
         if self.name not in MOVING_LAWS:
@@ -79,6 +86,31 @@ class NetLaw:
                 f"simulate: twine_drag = {self.twine_drag} must be two finite numbers of at least "
                 "0, across and along the twine. Pass None for those of a smooth cylinder."
             )
+        _check_range("solidity", self.solidity, 1.0)
+        _check_range("drag_factor", self.drag_factor, np.inf)
+
+    def netting(
+        self, panels: Panels
+    ) -> tuple[Float[np.ndarray, "*case panel"], Float[np.ndarray, "*case panel"]]:
+        """Solidity [-], and the twine's diameter [m] that alone gives it."""
+        if self.solidity is None:
+            return panels.solidity, panels.twine_diameter
+        # from Sn = 2d/l − (d/l)²
+        return self.solidity, panels.twine_spacing * (1.0 - np.sqrt(1.0 - self.solidity))
+
+    @property
+    def factor(self) -> Float[np.ndarray, "case panel"]:
+        """``drag_factor``, of clean netting too [-]."""
+        return np.ones_like(self.wake) if self.drag_factor is None else self.drag_factor
+
+
+def _check_range(name: str, values: Float[np.ndarray, "case panel"] | None, below: float) -> None:
+    if values is not None and not np.all((values >= 0.0) & (values < below)):
+        worst = values[~((values >= 0.0) & (values < below))][0]
+        raise InputError(
+            f"simulate: a panel's {name} = {worst:g} is outside [0, {below:g}). Give the share of "
+            "its area that twine covers, or what growth does to its drag."
+        )
 
 
 def wake_share(
@@ -139,7 +171,8 @@ def moving_net_load(
     if law.name == "morison":
         return twine_load(panels, law, position, past)
     speed = np.linalg.norm(past, axis=-1)
-    screen = Screen(law=law.name, solidity=panels.solidity, twine_diameter=panels.twine_diameter)
+    solidity, diameter = law.netting(panels)
+    screen = Screen(law=law.name, solidity=solidity, twine_diameter=diameter)
     unit = past / np.where(speed > 0.0, speed, 1.0)[..., None]
     flow = SteadyFlow(
         direction=unit[:, 0],
@@ -147,7 +180,7 @@ def moving_net_load(
         pipe_pressure=np.zeros(len(speed)),
         **screen.terms(speed),
     )
-    return screen_load(panels, position, unit, flow)
+    return law.factor[..., None] * screen_load(panels, position, unit, flow)
 
 
 def twine_load(
@@ -169,6 +202,8 @@ def twine_load(
     along_edges = ~panels.diamond[:, None]
     families = (first + along_edges * second, second - along_edges * first)
     length = panels.area / panels.twine_spacing
+    _, diameter = law.netting(panels)
+    weight = law.factor * DYNAMIC * diameter * length
     load = np.zeros_like(past)
     for direction in families:
         square = np.sum(direction**2, axis=-1, keepdims=True)
@@ -176,14 +211,13 @@ def twine_load(
         across = past - share * direction
         speed = np.linalg.norm(across, axis=-1, keepdims=True)
         if law.twine_drag is None:
-            reynolds = panels.twine_diameter[:, None] * speed / WATER_VISCOSITY
+            reynolds = diameter[..., None] * speed / WATER_VISCOSITY
             normal = 1.1 + 4.0 / np.sqrt(np.maximum(reynolds, 30.0))
         else:
             normal = np.full_like(speed, law.twine_drag[0])
         rough = 0.0 if law.twine_drag is None else law.twine_drag[1]
         skin = rough * np.abs(share) * share * np.sqrt(square) * direction
-        weight = DYNAMIC * (panels.twine_diameter * length)[:, None]
-        load += weight * (normal * speed * across + skin)
+        load += weight[..., None] * (normal * speed * across + skin)
     return load
 
 

@@ -137,8 +137,8 @@ class Screen:
     """
 
     law: Law
-    solidity: Float[np.ndarray, " panel"]
-    twine_diameter: Float[np.ndarray, " panel"]
+    solidity: Float[np.ndarray, "*case panel"]
+    twine_diameter: Float[np.ndarray, "*case panel"]
 
     def __post_init__(self) -> None:
         if self.law not in LAWS:

@@ -21,7 +21,9 @@ def pointer(array: np.ndarray) -> Any:
 
 
 class Struct(ctypes.Structure):
-    """A C struct; ``_fields_`` names what is filled in, in order."""
+    """A C struct; ``_fields_`` names what is filled in, in order, ``arrays`` what it points to."""
+
+    arrays: dict[str, np.ndarray]
 
     @classmethod
     def filled(cls, *in_order: Any, **values: Any) -> Self:
@@ -31,13 +33,12 @@ class Struct(ctypes.Structure):
         """
         types = {name: kind for name, kind, *_ in cls._fields_}
         values |= zip(types, in_order, strict=False)
-        kept: list[np.ndarray] = []
         struct = cls()
+        struct.arrays = dict[str, np.ndarray]()
         for name, value in values.items():
             if isinstance(value, np.ndarray) and types[name] in KINDS.values():
-                kept.append(np.ascontiguousarray(value))
-                setattr(struct, name, pointer(kept[-1]))
+                struct.arrays[name] = np.ascontiguousarray(value)
+                setattr(struct, name, pointer(struct.arrays[name]))
             else:
                 setattr(struct, name, value)
-        struct.kept = kept
         return struct

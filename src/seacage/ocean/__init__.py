@@ -2,6 +2,7 @@
 
 from seacage.ocean._kinematics import (
     Waves,
+    pressure_head,
     regular_wave,
     sample_waves,
     surface_elevation,
@@ -12,18 +13,24 @@ from seacage.ocean._kinematics import (
 from seacage.ocean._profile import CurrentProfile
 from seacage.ocean._sea_state import MAX_CURRENT_SPEED, SeaState, steepness_limit
 from seacage.ocean._spectrum import peak_enhancement, spectrum
+from seacage.ocean._spread import WaveDraw, carried, spread_angle, turned_by
 
 __all__ = [
     "MAX_CURRENT_SPEED",
     "CurrentProfile",
     "SeaState",
+    "WaveDraw",
     "Waves",
+    "carried",
     "peak_enhancement",
+    "pressure_head",
     "regular_wave",
     "sample_waves",
     "spectrum",
+    "spread_angle",
     "steepness_limit",
     "surface_elevation",
+    "turned_by",
     "water_motion",
     "wave_velocity_variance",
     "wavenumber",

@@ -10,7 +10,7 @@ from seacage.conventions import GRAVITY, InputError, folded, towards
 from seacage.ocean._sea_state import SeaState
 from seacage.ocean._spectrum import spectrum
 
-_BAND = (0.5, 4.0)
+BAND = (0.5, 4.0)
 """The components' frequencies, over the peak's: all but 0.5 % of the energy, and nearly all of
 the motion below the first metre."""
 
@@ -49,9 +49,9 @@ class Waves:
     amplitude
         [m].
     angular_frequency
-        [rad/s].
+        As seen from a fixed place [rad/s].
     wavenumber
-        [1/m].
+        [1/m]. It says how the water moves, also where a current carries the wave past faster.
     phase
         At the origin at time 0 [rad].
     direction
@@ -66,6 +66,12 @@ class Waves:
     phase: Float[np.ndarray, " wave"]
     direction: Float[np.ndarray, "wave 2"]
     depth: float
+
+    @property
+    def intrinsic_frequency(self) -> Float[np.ndarray, " wave"]:
+        """As seen by who drifts with the water, by the dispersion relation [rad/s]."""
+        k = self.wavenumber
+        return np.sqrt(GRAVITY * k * np.tanh(k * self.depth))
 
 
 def sample_waves(sea: SeaState, *, seed: int, components: int = 30, depth: float = 191.0) -> Waves:
@@ -90,9 +96,9 @@ def sample_waves(sea: SeaState, *, seed: int, components: int = 30, depth: float
     random = np.random.default_rng(seed)
     # A flat sea keeps its components, at frequencies that no amplitude needs.
     peak = 2.0 * math.pi / sea.peak_period if sea.hs > 0.0 else 1.0
-    edges = peak * np.linspace(*_BAND, components + 1)
+    edges = peak * np.linspace(*BAND, components + 1)
     frequency = edges[:-1] + random.random(components) * np.diff(edges)
-    energy = _bin_energy(sea, edges)
+    energy = bin_energy(sea, edges)
     return Waves(
         amplitude=np.sqrt(2.0 * energy),
         angular_frequency=frequency,
@@ -156,7 +162,7 @@ def regular_wave(*, height: float, period: float, wave_from: float, depth: float
     )
 
 
-def _bin_energy(sea: SeaState, edges: Float[np.ndarray, " edge"]) -> Float[np.ndarray, " bin"]:
+def bin_energy(sea: SeaState, edges: Float[np.ndarray, " edge"]) -> Float[np.ndarray, " bin"]:
     """Variance of each bin, scaled to Hs^2 / 16 in all [m2]."""
     fine = np.linspace(edges[:-1], edges[1:], 33)
     energy = np.trapezoid(spectrum(sea, fine.ravel()).reshape(fine.shape), fine, axis=0)
@@ -187,7 +193,8 @@ def water_motion(
     """Velocity and local acceleration of the water, from the waves alone.
 
     Wheeler's stretching carries the linear motion up to the moving surface; above it both are
-    zero. Left out: second-order waves and the convective acceleration.
+    zero. The acceleration is that at a fixed place. Left out: second-order waves and the
+    convective acceleration.
 
     Parameters
     ----------
@@ -216,7 +223,7 @@ def water_motion(
     height = _stretched(position[..., 2], elevation, waves.depth)
     along, up = _decay(waves.wavenumber, height, waves.depth)
     omega = waves.angular_frequency
-    speed = waves.amplitude * omega
+    speed = waves.amplitude * waves.intrinsic_frequency
     velocity = _oriented(waves, speed * along * cosine, speed * up * sine)
     acceleration = _oriented(waves, speed * omega * along * sine, -speed * omega * up * cosine)
     return velocity * wet[..., None], acceleration * wet[..., None]
@@ -227,6 +234,35 @@ def _angle(
 ) -> Float[np.ndarray, "*n wave"]:
     vector = waves.wavenumber[:, None] * waves.direction
     return position @ vector.T - time[..., None] * waves.angular_frequency + waves.phase
+
+
+def pressure_head(
+    waves: Waves, position: Float[np.ndarray, "*#n 3"], time: Float[np.ndarray, "*#n"]
+) -> Float[np.ndarray, "*n"]:
+    """What the waves add to the pressure in the water, as metres of it [m].
+
+    Below still water as in linear theory, above it as at still water.
+
+    Parameters
+    ----------
+    waves
+        The sea.
+    position
+        East, north, up from still water [m].
+    time
+        Broadcast against the positions [s].
+
+    References
+    ----------
+    Airy (1845), finite depth.
+    """
+    k, depth = waves.wavenumber, waves.depth
+    height = np.clip(position[..., 2], -depth, 0.0)[..., None]
+    bounce = np.exp(-2.0 * k * (height + depth))
+    # cosh k(z+h) / cosh kh, in exponentials that decay: cosh itself overflows in deep water.
+    share = np.exp(k * height) * (1.0 + bounce) / (1.0 + np.exp(-2.0 * k * depth))
+    cosine = np.cos(_angle(waves, position[..., :2], time))
+    return np.asarray((share * cosine) @ waves.amplitude)
 
 
 def _stretched(

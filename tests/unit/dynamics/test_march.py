@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from seacage.cage import Cage
+from seacage.conventions import InputError
 from seacage.dynamics import simulation_lanes
 from seacage.dynamics._assembly import Assembly
 from seacage.dynamics._cargo import (
@@ -36,15 +37,16 @@ ASSEMBLY, _ = steadied(Assembly.of(CAGE), STEPS.time_step)
 LANES = simulation_lanes()
 
 
-def march(cases=2, steps=STEPS, assembly=ASSEMBLY, start=None, seed=0):
-    waves = [sample_waves(SEA, seed=seed + i, depth=191.0) for i in range(cases)]
-    ocean = Ocean(
-        waves=waves,
-        current=np.tile(SEA.current_velocity, (cases, 1, 1)),
-        level_z=np.zeros(1),
-        depth=191.0,
-    )
-    law = NetLaw(name="loland", wake=np.ones((cases, len(assembly.panels.area))))
+def drawn(cases, seed=0):
+    return [sample_waves(SEA, seed=seed + i, depth=191.0) for i in range(cases)]
+
+
+def march(cases=2, steps=STEPS, assembly=ASSEMBLY, start=None, seed=0, current=None, law=None):
+    if current is None:
+        current = np.tile(SEA.current_velocity, (cases, 1, 1))
+    ocean = Ocean(waves=drawn(cases, seed), current=current, level_z=np.zeros(1), depth=191.0)
+    if law is None:
+        law = NetLaw(name="loland", wake=np.ones((cases, len(assembly.panels.area))))
     if start is None:
         start = np.repeat(assembly.position[None], cases, axis=0)
     return March(assembly, law, ocean, steps, start)
@@ -60,6 +62,14 @@ def test_the_lanes_left_over_carry_the_first_case():
     assert spread.dtype == np.float32
     np.testing.assert_array_equal(unlaned(spread)[:2], values)
     np.testing.assert_array_equal(unlaned(spread)[2:], np.repeat(values[:1], LANES - 2, axis=0))
+
+
+@pytest.mark.parametrize("shape", [(1,), (3,), (7, 3)])
+def test_what_the_kernel_reads_lies_on_whole_lines_of_the_cache(shape):
+    spread = laned(np.ones((2, *shape)))
+    assert spread.ctypes.data % 64 == 0
+    assert spread.flags.c_contiguous
+    np.testing.assert_array_equal(spread, 1.0)
 
 
 def test_a_case_with_fewer_waves_has_flat_ones():
@@ -99,8 +109,7 @@ def test_floats_out_of_the_order_of_nodes_are_a_mistake_of_ours():
 def test_a_held_node_is_too_heavy_to_move():
     fixed = np.arange(len(ASSEMBLY.position)) == 2
     held = replace(ASSEMBLY, fixed=fixed)
-    law = NetLaw(name="loland", wake=np.ones((1, len(held.panels.area))))
-    body = body_of(held, law)
+    body = body_of(held)
     assert body.mass[2] == np.float32(HELD)
     assert body.mass[1] == np.float32(held.mass[1])
     one = march(assembly=held)
@@ -148,6 +157,13 @@ def test_the_account_counts_every_refresh_and_samples_those_asked_for():
     np.testing.assert_array_equal(silent.account["node_sum"], one.account["node_sum"])
 
 
+def test_to_march_on_where_no_sample_has_room_is_a_mistake_of_ours():
+    one = march()
+    one.go(12)
+    with pytest.raises(AssertionError, match="room"):
+        one.go(1)
+
+
 def test_the_first_sample_is_where_the_spin_up_ended():
     one = march()
     one.go(STEPS.spin_up)
@@ -159,6 +175,123 @@ def test_the_first_sample_is_where_the_spin_up_ended():
     ramp = 0.5 - 0.5 * np.cos(np.pi * 0.3)
     expected = ramp * surface_elevation(waves, np.zeros(2), np.array(0.3))
     assert one.samples["elevations"][0, 1] == pytest.approx(float(expected), abs=1e-6)
+
+
+# What changes between moves
+
+
+CURRENT = np.array([[[0.5, -0.2]], [[-0.1, 0.4]]])
+NET = NetLaw(
+    name="loland",
+    wake=np.full((2, len(ASSEMBLY.panels.area)), 0.8),
+    solidity=np.repeat([[0.2], [0.3]], len(ASSEMBLY.panels.area), axis=1),
+    drag_factor=np.repeat([[1.0], [0.7]], len(ASSEMBLY.panels.area), axis=1),
+)
+
+
+def parted():
+    """The assembly, one of its bridles gone."""
+    stiffness = ASSEMBLY.bars.stiffness.copy()
+    stiffness[ASSEMBLY.bridles[3]] = 0.0
+    return replace(ASSEMBLY, bars=replace(ASSEMBLY.bars, stiffness=stiffness))
+
+
+@pytest.mark.parametrize(
+    ("change", "begun"),
+    [
+        (lambda one: one.set_current(CURRENT), {"current": CURRENT}),
+        (lambda one: one.set_waves(drawn(2, seed=7)), {"seed": 7}),
+        (lambda one: one.set_net(NET), {"law": NET}),
+        (lambda one: one.rebuild(parted()), {"assembly": parted()}),
+    ],
+)
+def test_what_is_changed_before_the_first_move_was_never_otherwise(change, begun):
+    changed, otherwise, unchanged = march(), march(**begun), march()
+    change(changed)
+    for one in (changed, otherwise, unchanged):
+        one.go(12)
+    np.testing.assert_array_equal(changed.position, otherwise.position)
+    assert np.abs(changed.position - unchanged.position).max() > 1e-5
+
+
+def test_cases_change_one_by_one():
+    one, unchanged = march(), march()
+    for each in (one, unchanged):
+        each.go(4)
+    one.set_current(np.stack([np.atleast_2d(SEA.current_velocity), CURRENT[1]]))
+    for each in (one, unchanged):
+        each.go(8)
+    np.testing.assert_array_equal(one.position[0], unchanged.position[0])
+    assert np.abs(one.position[1] - unchanged.position[1]).max() > 1e-5
+
+
+def test_waves_told_again_go_on_as_they_were():
+    whole, told = march(), march()
+    whole.go(12)
+    told.go(5)
+    assert told.now == pytest.approx(0.5)
+    told.set_current(np.tile(SEA.current_velocity, (2, 1, 1)))
+    told.set_waves([replace(w, phase=w.phase - 0.5 * w.angular_frequency) for w in drawn(2)])
+    told.go(7)
+    # a phase's last bits are lost with the turns that are taken off
+    np.testing.assert_allclose(told.position, whole.position, atol=1e-5)
+    assert np.abs(told.velocity).max() > 0.05
+
+
+def test_rebuilt_as_it_was_a_march_goes_on_as_before():
+    whole, rebuilt = march(), march()
+    whole.go(12)
+    rebuilt.go(7)
+    rebuilt.rebuild(ASSEMBLY)
+    rebuilt.go(5)
+    np.testing.assert_array_equal(rebuilt.velocity, whole.velocity)
+
+
+def test_an_assembly_of_other_parts_is_refused():
+    fewer = replace(ASSEMBLY, bridles=ASSEMBLY.bridles[1:])
+    with pytest.raises(InputError, match=r"11 bridles cannot go on from one of .* 12 bridles"):
+        march().rebuild(fewer)
+
+
+def test_a_wave_that_a_current_carries_moves_the_water_as_at_rest():
+    """Doppler's shift changes how fast it passes a place, and not its orbits."""
+    waves = sample_waves(SEA, seed=0, depth=191.0)
+    carried = replace(waves, angular_frequency=1.3 * waves.angular_frequency)
+    at = np.array([[3.0, 4.0, -2.0]])
+    np.testing.assert_array_equal(
+        kernel_water([carried], at, 0.0)[1], kernel_water([waves], at, 0.0)[1]
+    )
+    assert np.any(kernel_water([carried], at, 2.0)[1] != kernel_water([waves], at, 2.0)[1])
+
+
+# What is read between moves
+
+
+def test_some_nodes_are_where_all_nodes_are():
+    one = march()
+    one.go(3)
+    nodes = np.array([7, 0, 4])
+    np.testing.assert_array_equal(one.position_of(nodes), one.position[:, nodes])
+
+
+def test_the_bridles_bear_what_the_next_sample_says():
+    one = march(steps=replace(STEPS, sample_every=1))
+    one.go(6)
+    tension = one.tension
+    one.go(1)
+    sampled = unlaned(one.samples["tensions"][6 - STEPS.spin_up])[:2]
+    # the bar's stretch, a difference of lengths, in single precision
+    np.testing.assert_allclose(tension, sampled, rtol=1e-4, atol=5.0)
+    assert tension.min() > 1000.0
+
+
+def test_the_sum_of_displacements_is_of_the_refreshes_that_count():
+    one = march(steps=replace(STEPS, sample_every=1))
+    one.go(12)
+    nodes = np.array([2, 9])
+    sampled = np.moveaxis(one.samples["positions"][..., :2], -1, 0)[:, :, nodes]
+    summed = (sampled - ASSEMBLY.position[nodes]).sum(axis=1)
+    np.testing.assert_allclose(one.node_sum(nodes), summed, atol=1e-5)
 
 
 # Cases given up

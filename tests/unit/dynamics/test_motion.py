@@ -10,6 +10,7 @@ from seacage.conventions import WATER_DENSITY, WATER_VISCOSITY, InputError
 from seacage.dynamics import loland
 from seacage.dynamics._assembly import Assembly, Bars, Panels
 from seacage.dynamics._motion import (
+    MOVING_LAWS,
     NetLaw,
     Water,
     _surface_force,
@@ -99,6 +100,46 @@ def test_corners_count_by_their_shares():
     water.velocity[0, 2] = [0.0, 3.0, 0.0]
     past = past_panels(thirds, law("loland"), water, np.zeros_like(SQUARE))
     np.testing.assert_allclose(past[0, 0], [0.0, 1.0, 0.0])
+
+
+# Growth of each case
+
+
+EVERY_LAW = pytest.mark.parametrize("name", MOVING_LAWS)
+
+
+def load_of(name, panel=PANEL, **netting):
+    net = NetLaw(name=name, wake=np.ones((1, 1)), **netting)
+    return moving_net_load(panel, net, flow((0.3, 0.7, 0.1)), SQUARE, np.zeros_like(SQUARE))[0, 0]
+
+
+@EVERY_LAW
+def test_a_cases_own_solidity_is_that_of_a_net_of_thicker_twine(name):
+    twine = 0.02 * (1.0 - np.sqrt(0.7))
+    thicker = replace(PANEL, solidity=np.array([0.3]), twine_diameter=np.array([twine]))
+    own = load_of(name, solidity=np.array([[0.3]]))
+    np.testing.assert_allclose(own, load_of(name, panel=thicker), rtol=1e-12)
+    assert np.linalg.norm(own) > 1.1 * np.linalg.norm(load_of(name))
+
+
+@EVERY_LAW
+def test_a_drag_factor_is_on_the_whole_load(name):
+    half = load_of(name, drag_factor=np.array([[0.5]]))
+    np.testing.assert_allclose(half, 0.5 * load_of(name), rtol=1e-12)
+    hole = load_of(name, drag_factor=np.array([[0.0]]))
+    np.testing.assert_array_equal(hole, 0.0)
+
+
+@pytest.mark.parametrize("wrong", [-0.1, 1.0, np.nan])
+def test_a_net_that_is_no_net_is_refused(wrong):
+    with pytest.raises(InputError, match=r"solidity = .* is outside \[0, 1\)"):
+        NetLaw(name="loland", wake=np.ones((1, 1)), solidity=np.array([[wrong]]))
+
+
+@pytest.mark.parametrize("wrong", [-0.1, np.inf, np.nan])
+def test_a_drag_factor_that_is_no_share_is_refused(wrong):
+    with pytest.raises(InputError, match="drag_factor"):
+        NetLaw(name="loland", wake=np.ones((1, 1)), drag_factor=np.array([[wrong]]))
 
 
 # Twine by twine

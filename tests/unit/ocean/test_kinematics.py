@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from seacage.conventions import InputError
+from seacage.conventions import GRAVITY, InputError
 from seacage.ocean import (
     SeaState,
+    pressure_head,
     regular_wave,
     sample_waves,
     surface_elevation,
@@ -179,3 +180,39 @@ def test_a_regular_wave_has_its_height_and_comes_from_where_it_is_said_to():
 def test_a_wave_that_cannot_be_is_refused(wrong, told):
     with pytest.raises(InputError, match=told):
         regular_wave(**{"height": 1.0, "period": 5.0, "wave_from": 0.0} | wrong)
+
+
+def test_a_wave_on_no_current_has_the_frequency_of_its_length():
+    waves = sample_waves(SEA, seed=0, depth=20.0)
+    np.testing.assert_allclose(waves.intrinsic_frequency, waves.angular_frequency, rtol=1e-12)
+
+
+def test_the_pressure_at_the_surface_is_that_of_its_height_and_none_deep_down():
+    waves = sample_waves(SEA, seed=0)
+    time = np.linspace(0.0, 60.0, 61)
+    height = surface_elevation(waves, np.zeros(2), time)
+    for z in (0.0, 2.0):
+        np.testing.assert_allclose(pressure_head(waves, np.array([0.0, 0.0, z]), time), height)
+    deep = pressure_head(waves, np.array([0.0, 0.0, -191.0]), time)
+    np.testing.assert_allclose(deep, 0.0, atol=1e-3)
+
+
+def test_at_the_bottom_a_wave_presses_by_its_cosh():
+    wave = regular_wave(height=1.0, period=8.0, wave_from=0.0, depth=15.0)
+    head = pressure_head(wave, np.array([0.0, 0.0, -15.0]), np.array(0.0))
+    assert head == pytest.approx(0.5 / np.cosh(wave.wavenumber[0] * 15.0))
+
+
+def test_the_pressures_slope_is_what_speeds_up_the_water():
+    # A low sea, so that stretching plays no part: du/dt = -g d(head)/dx, Euler's equation.
+    low = SeaState(current_speed=0.0, current_to=0.0, hs=0.002, tp=7.0, wave_from=200.0)
+    waves = sample_waves(low, seed=0)
+    point, step = np.array([3.0, -4.0, -8.0]), 1e-3
+    time = np.linspace(0.0, 60.0, 61)
+    _, acceleration = water_motion(waves, point, time)
+    for axis in range(3):
+        ahead = step * np.eye(3)[axis]
+        after, before = (pressure_head(waves, point + side * ahead, time) for side in (1.0, -1.0))
+        force = -GRAVITY * (after - before) / (2.0 * step)
+        error = np.abs(force - acceleration[:, axis])
+        assert np.max(error) < 1e-3 * np.max(np.abs(acceleration))
