@@ -1,11 +1,12 @@
 """The page, opened in a real browser."""
 
+import json
 from pathlib import Path
 
 import pytest
 
 from browser import blank_page
-from serviced import Running, buoy, running
+from serviced import Running, at, buoy, depth, running
 
 
 @pytest.fixture
@@ -31,6 +32,30 @@ def test_the_page_shows_what_a_buoy_reports_and_asks_nobody_else(
         assert not outside
         assert not page.complaints
         assert token not in page.value("location.href")
+
+
+def test_a_spike_leaves_the_pages_curves_when_it_is_known_for_one(
+    chromium: Path, live: Running, tmp_path: Path
+) -> None:
+    measured = [(-4, 7.0), (-3, 7.1), (-2, 30.0), (-1, 7.2)]
+    live.post(buoy(-4), *(depth(minute, metres) for minute, metres in measured))
+    # each state is a tick half a minute after its reading
+    state = json.dumps([live.state(at=at(minute + 0.5)) for minute, _ in measured])
+    topology = live.reader.get("/api/v1/cages/ace/topology").text
+    with blank_page(chromium, tmp_path / "profile") as page:
+        page.open(live.address)
+        page.until("document.body.dataset.phase == 'asking'")
+        page.value(f"""import("{live.address}/page/sensors.js").then(({{ Sensors }}) => {{
+            const [grid, legend] = [0, 1].map(() => document.createElement("div"));
+            const sensors = new Sensors({{ grid, legend }});
+            sensors.topology({topology});
+            window.shown = {state}.map((state) => {{
+                sensors.show(state);
+                return sensors.cards.get("depth-2").measured.map(({{ value }}) => value);
+            }});
+        }})""")
+        page.until("Boolean(window.shown)")
+        assert page.value("JSON.stringify(window.shown.slice(-2))") == "[[7,7.1,30],[7,7.1,7.2]]"
 
 
 def test_a_page_without_a_token_asks_for_one(chromium: Path, live: Running, tmp_path: Path) -> None:

@@ -16,6 +16,8 @@ from seacage.records._check import (
     Amendment,
     QualityState,
     Verdict,
+    alike,
+    amended,
     check_record,
     check_sample,
     verdicts_on,
@@ -34,11 +36,12 @@ from seacage.records._limits import DEFAULT_LIMITS, Limits, Range, Season, Stead
 from seacage.records._limits_file import read_limits
 from seacage.records._maps import read_map
 from seacage.records._netcdf import write_record
-from seacage.records._reader import read_record
+from seacage.records._reader import known_map, read_record
 from seacage.records._record import Record
 from seacage.records._sample import Sample
 from seacage.records._shipped import shipped_maps
 from seacage.records._times import instant, moment
+from seacage.records._truth_file import TrueMeans
 
 __all__ = [
     "DEFAULT_LIMITS",
@@ -62,8 +65,11 @@ __all__ = [
     "Sample",
     "Season",
     "Steadiness",
+    "TrueMeans",
     "Verdict",
     "aligned",
+    "alike",
+    "amended",
     "campaign_results",
     "campaign_unsummed",
     "campaign_variable",
@@ -74,6 +80,7 @@ __all__ = [
     "finish_campaign",
     "inspect_file",
     "instant",
+    "known_map",
     "moment",
     "read_campaign",
     "read_history",

@@ -72,6 +72,20 @@ _ZONED = re.compile(
     r"\b(times?|clock|zone)\b[^.;\n]{0,40}?\b([PMCE][DS]T|CES?T|BST|local|LST)\b", re.IGNORECASE
 )
 
+_OFFSETS = {
+    "PDT": "-07:00",
+    "PST": "-08:00",
+    "MDT": "-06:00",
+    "MST": "-07:00",
+    "CDT": "-05:00",
+    "CST": "-06:00",
+    "EDT": "-04:00",
+    "EST": "-05:00",
+    "CET": "+01:00",
+    "CEST": "+02:00",
+    "BST": "+01:00",
+}
+
 
 class _Series(NamedTuple):
     """One variable over time at one place, and what the file says of it."""
@@ -81,6 +95,13 @@ class _Series(NamedTuple):
     standard: str
     direction: str  # a component's, in an earth frame
     where: str
+
+
+class ZoneDoubt(NamedTuple):
+    """Why a file's times may not be UTC, and what can be declared."""
+
+    said: str
+    choices: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -203,8 +224,9 @@ def engine_of(path: Path) -> str:
 def _record(path: Path, dataset: "xarray.Dataset", choice: NetcdfMap, *, stream: str) -> Record:
     if choice.origin is None:
         raise RecordError(
-            f"{path}: nothing says how its numbers were made. Declare origin as "
-            f"{' or '.join(repr(str(one)) for one in (Origin.MEASURED, Origin.COMPUTED))}."
+            f"{path}: nothing says how its numbers were made. Declare origin, "
+            f"{' or '.join(repr(str(one)) for one in (Origin.MEASURED, Origin.COMPUTED))} "
+            "(--origin)."
         )
     time_name, time = _time(path, dataset, choice)
     series = {
@@ -279,20 +301,25 @@ def _zone(path: Path, dataset: "xarray.Dataset", choice: NetcdfMap) -> str:
     """UTC, as CF has it, unless a text in the file speaks of another zone: then declared."""
     if choice.time_zone is not None:
         return choice.time_zone
-    if spoken := spoken_zone(dataset):
+    if doubt := zone_doubt(dataset):
         raise RecordError(
-            f"{path}: an attribute says {spoken!r}, and CF's times are UTC. Declare "
-            'time_zone: "UTC", or an offset such as "-07:00".'
+            f"{path}: {doubt.said}; the two are hours apart. "
+            f"Declare time_zone (--zone): {doubt.choices}."
         )
     return "UTC"
 
 
-def spoken_zone(dataset: "xarray.Dataset") -> str:
-    """What a global attribute says of another zone than UTC, such as "times PDT"."""
-    for text in dataset.attrs.values():
+def zone_doubt(dataset: "xarray.Dataset") -> ZoneDoubt | None:
+    """Find a global attribute that speaks of another zone than UTC, such as "times PDT"."""
+    for name, text in dataset.attrs.items():
         if isinstance(text, str) and (spoken := _ZONED.search(text)):
-            return spoken[0]
-    return ""
+            offset = _OFFSETS.get(spoken[2].upper(), "")
+            local = f'"{offset}"' if offset else 'an offset such as "-07:00"'
+            return ZoneDoubt(
+                said=f"its attribute {name!r} says {spoken[0]!r}, and times in CF are UTC",
+                choices=f'"UTC" if CF holds, {local} if the attribute does',
+            )
+    return None
 
 
 def _series(
@@ -358,7 +385,8 @@ def _index(
             got = "none is chosen" if asked is None else f"{asked:g} m is none of them"
             raise RecordError(
                 f"{path}: {name} is a profile over {kind}s of "
-                f"{', '.join(f'{place:g}' for place in places)} m, and {got}. Declare {kind}_m."
+                f"{', '.join(f'{place:g}' for place in places)} m, and {got}. Declare {kind}_m "
+                f"(--{kind}-m)."
             )
         hit = int(np.argmax(near))
         return hit, f"at a {kind} of {places[hit]:g} m"

@@ -1,6 +1,6 @@
 """Quality control: one path for live samples and for archives."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime, timedelta
 
@@ -9,9 +9,10 @@ from jaxtyping import Int
 
 from seacage.conventions import Flag
 from seacage.records._limits import DEFAULT_LIMITS, GROUPS, Limits
-from seacage.records._quality_tests import Anchor, Finding, judged
+from seacage.records._quality_tests import ATTENUATED, Anchor, Finding, judged
 from seacage.records._record import Record
 from seacage.records._sample import Sample
+from seacage.records._screen import Columns, doubtful
 from seacage.records._times import microseconds
 
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
@@ -23,8 +24,8 @@ class Amendment:
 
     Parameters
     ----------
-    t
-        Of the sample that is meant, UTC.
+    stream, t
+        Of the sample that is meant; t in UTC.
     key
         Of the value.
     flag
@@ -33,6 +34,7 @@ class Amendment:
         Why: one sentence.
     """
 
+    stream: str
     t: datetime
     key: str
     flag: Flag
@@ -110,7 +112,7 @@ def check_sample(
     time = microseconds(sample.t)
     anchors = dict(state.anchors)
     findings: list[Finding] = []
-    amended: list[Amendment] = []
+    taught: list[Amendment] = []
     for group, keys in GROUPS.items():
         values = {key: sample.values[key] for key in keys if key in sample.values}
         if values:
@@ -118,15 +120,25 @@ def check_sample(
             judgement = judged(group, before, time, values, limits)
             findings += judgement.findings
             if before is not None:
-                amended += _amendments(sample.stream, before, judgement.of_the_last)
+                taught += _amendments(sample.stream, before, judgement.of_the_last)
             if judgement.anchor is not None:
                 anchors[group] = judgement.anchor
     flags = dict.fromkeys(sample.values, Flag.GOOD)
     for finding in findings:
         flags[finding.key] = max(flags[finding.key], finding.flag)
     remarks = tuple(_sentence(sample.stream, sample.values, finding) for finding in findings)
-    state = QualityState(anchors=anchors, amended=tuple(amended))
+    state = QualityState(anchors=anchors, amended=tuple(taught))
     return state, replace(sample, flags=flags, remarks=remarks)
+
+
+def amended(sample: Sample, amendments: Iterable[Amendment]) -> Sample:
+    """Return a sample with what later ones taught of it, among other amendments."""
+    for one in amendments:
+        meant = (one.stream, one.t) == (sample.stream, sample.t)
+        if meant and one.flag > sample.flags.get(one.key, one.flag):
+            flags = {**sample.flags, one.key: one.flag}
+            sample = replace(sample, flags=flags, remarks=(*sample.remarks, one.remark))
+    return sample
 
 
 def check_record(record: Record, limits: Limits = DEFAULT_LIMITS) -> Record:
@@ -141,21 +153,17 @@ def check_record(record: Record, limits: Limits = DEFAULT_LIMITS) -> Record:
     verdicts = verdicts_on(record, limits)
     for one in verdicts:
         flags[one.key][one.rows] = np.maximum(flags[one.key][one.rows], one.flag)
-    notes = tuple(
-        f"{one.example} The first of {len(one.rows)} such among {len(record)}, "
-        f"at {record.time[one.rows[0]].astype('datetime64[s]')}Z."
-        for one in verdicts
-    )
+    notes = tuple(_note(record, same) for same in alike(verdicts))
     return replace(record, flags=flags, notes=tuple(dict.fromkeys(record.notes + notes)))
 
 
 def verdicts_on(record: Record, limits: Limits = DEFAULT_LIMITS) -> tuple[Verdict, ...]:
     """Return what each test finds in a record, in the order of first finds."""
-    times = record.time.astype(np.int64).tolist()
+    time = record.time.astype(np.int64)
     found: dict[tuple[str, str, Flag], tuple[list[int], str]] = {}
     for group, keys in GROUPS.items():
-        columns = {key: record.values[key].tolist() for key in keys if key in record.values}
-        for row, finding, values in _findings(group, times, columns, limits):
+        columns = {key: record.values[key] for key in keys if key in record.values}
+        for row, finding, values in _findings(group, time, columns, limits):
             name = (finding.key, finding.test, finding.flag)
             if name not in found:
                 found[name] = ([], _sentence(record.stream, values, finding))
@@ -166,7 +174,39 @@ def verdicts_on(record: Record, limits: Limits = DEFAULT_LIMITS) -> tuple[Verdic
     )
 
 
+def alike(verdicts: Sequence[Verdict]) -> tuple[tuple[Verdict, ...], ...]:
+    """Group what one test found in the same readings, as of a current's speed and direction."""
+    groups: dict[tuple[str, Flag, bytes], list[Verdict]] = {}
+    for one in verdicts:
+        groups.setdefault((one.test, one.flag, one.rows.tobytes()), []).append(one)
+    return tuple(map(tuple, groups.values()))
+
+
+def _note(record: Record, same: Sequence[Verdict]) -> str:
+    first = same[0]
+    others = " and ".join(one.key for one in same[1:])
+    return (
+        f"{first.example} The first of {len(first.rows)} such among {len(record)}, "
+        f"at {record.time[first.rows[0]].astype('datetime64[s]')}Z"
+        f"{f', with {others}' if others else ''}."
+    )
+
+
 def _findings(
+    group: str, time: Int[np.ndarray, " t"], columns: Columns, limits: Limits
+) -> Iterator[tuple[int, Finding, Mapping[str, float]]]:
+    if not columns:
+        return
+    doubt = doubtful(group, time, columns, limits)
+    for rows in doubt.stretches:
+        times = time[rows].tolist()
+        numbers = {key: column[rows].tolist() for key, column in columns.items()}
+        for row, finding, values in _stretch_findings(group, times, numbers, limits):
+            if finding.test != ATTENUATED or doubt.faint[rows.start + row]:
+                yield rows.start + row, finding, values
+
+
+def _stretch_findings(
     group: str, times: list[int], columns: Mapping[str, list[float]], limits: Limits
 ) -> Iterator[tuple[int, Finding, Mapping[str, float]]]:
     anchor: Anchor | None = None
@@ -187,7 +227,13 @@ def _findings(
 def _amendments(stream: str, anchor: Anchor, found: Sequence[Finding]) -> list[Amendment]:
     t = _EPOCH + timedelta(microseconds=anchor.time)
     return [
-        Amendment(t=t, key=one.key, flag=one.flag, remark=_sentence(stream, anchor.values, one))
+        Amendment(
+            stream=stream,
+            t=t,
+            key=one.key,
+            flag=one.flag,
+            remark=_sentence(stream, anchor.values, one),
+        )
         for one in found
     ]
 

@@ -24,7 +24,7 @@ _NO_VALUE = frozenset({"", "nan", "na", "n/a", "null", "none", "mm", "-"})
 
 def read_csv(path: Path, columns: ColumnMap | None, *, stream: str) -> Record:
     """Read a table, unchecked but for what only its file shows; see ``read_record``."""
-    table, columns = _understood(path, columns)
+    table, columns = understood(path, columns)
     values: dict[str, np.ndarray] = {}
     notes: list[str] = []
     for column in columns.taken:
@@ -42,7 +42,8 @@ def read_csv(path: Path, columns: ColumnMap | None, *, stream: str) -> Record:
     return replace(record, notes=(*notes, *record.notes))
 
 
-def _understood(path: Path, columns: ColumnMap | None) -> tuple[Table, ColumnMap]:
+def understood(path: Path, columns: ColumnMap | None) -> tuple[Table, ColumnMap]:
+    """Split a table into cells, with the map that was given or the one that it fits."""
     if columns is None and path.suffix.lower() in {".csv", ".txt", ".dat", ""}:
         text = read_text(path)
         if is_ndbc(text):

@@ -42,7 +42,7 @@ _NAMES: tuple[tuple[str, str], ...] = (
     (r"(^|_|\b)(u|east|ve|vel_?e|u_?vel)(\b|_|$)|eastward", "current_east"),
     (r"(^|_|\b)(v|north|vn|vel_?n|v_?vel)(\b|_|$)|northward", "current_north"),
     (
-        r"curr.*dir|^dir(ection)?\d*$|^dir(ection)?_(to|from|towards)|retning|^set$",
+        r"curr.*dir|^dir(ection)?\d*$|^dir(ection)?_(to|from|towards)|retn|^set$",
         "current_direction",
     ),
     (r"speed|spd|veloc|fart|strøm", "current_speed"),

@@ -14,8 +14,8 @@ from seacage.records._cf import (
     STANDARD_NAMES,
     engine_of,
     is_compass,
-    spoken_zone,
     vertical_of,
+    zone_doubt,
 )
 from seacage.records._netcdf import NETCDF_TROUBLE
 
@@ -62,9 +62,9 @@ def _found(path: Path, dataset: "xarray.Dataset") -> Found:
         f"title = {json.dumps(path.stem, ensure_ascii=False)}",
         'origin = "?"  # "measured" or "computed"',
     ]
-    if zone := spoken_zone(dataset):
-        findings.append(f"Suspicious: an attribute says {zone!r}, and CF's times are UTC.")
-        lines.append('time_zone = "?"  # "UTC", or an offset such as "-07:00"')
+    if doubt := zone_doubt(dataset):
+        findings.append(f"Suspicious: {doubt.said}.")
+        lines.append(f'time_zone = "?"  # {doubt.choices}')
     read = [name for name in map(str, dataset.data_vars) if _tells(dataset, name)]
     findings += [_sentence(dataset, name) for name in map(str, dataset.data_vars)]
     dims = {str(dim) for name in read for dim in dataset[name].dims}

@@ -44,10 +44,10 @@ class Steadiness:
     Parameters
     ----------
     jump, rate
-        A change larger than ``jump + rate * seconds`` is SUSPECT: noise, and what the sea can
-        do. Of a current it is the length of the vector's change [m/s], of waves the change of
-        hs [m], else of the value. Peak period and wave direction may jump, from swell to wind
-        sea and back.
+        A change larger than ``jump + rate * seconds`` is SUSPECT: noise and waves, which lie
+        between any two readings however near, and what the sea can do meanwhile. Of a current
+        it is the length of the vector's change [m/s], of waves the change of hs [m], else of
+        the value. Peak period and wave direction may jump, from swell to wind sea and back.
     gap_s
         After a longer silence a value has nothing to be compared with: SUSPECT [s].
     flat_suspect_s, flat_fail_s
@@ -56,7 +56,7 @@ class Steadiness:
     spike_suspect, spike_fail
         A reading that is farther than this from the one before and from the one after, and on
         the same side of both, as a change is measured: SUSPECT, FAIL. It is only known when
-        the reading after has come.
+        the reading after has come, and ``rate`` times the seconds to it is allowed besides.
     attenuated_s
         How long the attenuated signal's window is [s].
     attenuated_suspect, attenuated_fail
@@ -135,7 +135,9 @@ def _steadiness() -> dict[str, Steadiness]:
             attenuated_suspect=0.05,
         ),
         "tension": Steadiness(
-            jump=15.0,
+            # At Hs 3 m readings of a simulated bridle 2 s apart differ by up to 42 kN: a wrong one
+            # that is nearer hides among the waves' loads.
+            jump=45.0,
             rate=0.02,
             gap_s=hour,
             flat_suspect_s=0.5 * hour,
@@ -148,13 +150,15 @@ def _steadiness() -> dict[str, Steadiness]:
             attenuated_fail=0.001,
         ),
         "depth": Steadiness(
-            jump=1.5,
+            # The net follows the surface: at Hs 3 m simulated sensors change by up to 1.7 m, and
+            # stand out by up to 1.3 m.
+            jump=2.0,
             rate=0.01,
             gap_s=hour,
             flat_suspect_s=0.5 * hour,
             flat_fail_s=2 * hour,
-            spike_suspect=4.0,
-            spike_fail=10.0,
+            spike_suspect=2.0,
+            spike_fail=3.0,
             attenuated_s=2 * hour,
             attenuated_suspect=0.002,
             attenuated_fail=0.0005,

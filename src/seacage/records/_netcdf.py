@@ -76,9 +76,9 @@ def read_netcdf(path: Path) -> Record:
             return _record(dataset)
     except NETCDF_TROUBLE as error:
         raise RecordError(
-            f"{path}: this is no stream that seacage wrote ({error}). Give a file written by "
-            "write_record, a table with its column map, or say of a foreign NetCDF file how its "
-            "numbers were made (origin, in a NetcdfMap)."
+            f"{path}: this is no stream that seacage wrote ({error}). If it is another's, say how "
+            "its numbers were made, measured or computed (--origin); `seacage field import FILE "
+            "MAP --inspect` shows what else it leaves open. If it is seacage's, write it anew."
         ) from error
 
 
@@ -144,7 +144,9 @@ def _flag_attributes(key: str) -> dict[str, Any]:
 
 def _record(dataset: "xarray.Dataset") -> Record:
     attributes = dataset.attrs
-    if attributes.get("schema") != _SCHEMA:
+    if "schema" not in attributes:
+        raise ValueError("it does not say seacage's schema")
+    if attributes["schema"] != _SCHEMA:
         raise ValueError(f"its schema is {attributes.get('schema')!r}, not {_SCHEMA!r}")
     keys = [str(name) for name in dataset.data_vars if not str(name).endswith(_FLAG)]
     for key in keys:

@@ -9,9 +9,10 @@ from seacage.conventions import GRAVITY, Flag
 from seacage.ocean import steepness_limit
 from seacage.records._limits import GROUPS, Limits, Range, Steadiness
 
-_SECOND = 1_000_000
-_FLAT_SUSPECT_COUNT, _FLAT_FAIL_COUNT = 3, 5
-_BUCKETS = 64
+SECOND = 1_000_000
+FLAT_SUSPECT_COUNT, FLAT_FAIL_COUNT = 3, 5
+BUCKETS = 64
+ATTENUATED = "attenuated signal"
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 
 Point = tuple[float, ...]
@@ -67,15 +68,7 @@ def judged(
     group: str, anchor: Anchor | None, time: int, values: Mapping[str, float], limits: Limits
 ) -> Judgement:
     """Judge one reading of a group; only one in range, and not late, becomes the next anchor."""
-    findings = [
-        finding
-        for key, value in values.items()
-        if (finding := _range_finding(key, value, limits.ranges[key], "gross range")) is not None
-    ]
-    if limits.climatology:
-        findings += _climatology_findings(time, values, limits)
-    if group == "waves":
-        findings += _steepness_findings(values)
+    findings = judged_alone(group, time, values, limits)
     late = anchor is not None and time <= anchor.time
     if late or any(finding.flag >= Flag.FAIL for finding in findings):
         return Judgement(anchor, findings)
@@ -88,6 +81,22 @@ def judged(
         + _attenuation_findings(group, moved, steadiness),
         _spike_findings(group, anchor, moved, steadiness),
     )
+
+
+def judged_alone(
+    group: str, time: int, values: Mapping[str, float], limits: Limits
+) -> list[Finding]:
+    """Judge values by themselves, whatever came before."""
+    findings = [
+        finding
+        for key, value in values.items()
+        if (finding := _range_finding(key, value, limits.ranges[key], "gross range")) is not None
+    ]
+    if limits.climatology:
+        findings += _climatology_findings(time, values, limits)
+    if group == "waves":
+        findings += _steepness_findings(values)
+    return findings
 
 
 def _range_finding(key: str, value: float, limits: Range, test: str) -> Finding | None:
@@ -139,7 +148,7 @@ def _moved(
     group: str, anchor: Anchor | None, time: int, values: Mapping[str, float], limits: Steadiness
 ) -> Anchor:
     point = _point(group, values)
-    gap = anchor is None or time - anchor.time > limits.gap_s * _SECOND
+    gap = anchor is None or time - anchor.time > limits.gap_s * SECOND
     # A point of another kind (a current without its direction) is nothing to compare with.
     if anchor is None or gap or len(anchor.point) != len(point):
         return Anchor(time, values, time, 1, point, None, _opened(time, point, limits))
@@ -150,7 +159,7 @@ def _moved(
 
 
 def _bucket(time: int, limits: Steadiness) -> int:
-    width = limits.attenuated_s * _SECOND / _BUCKETS
+    width = limits.attenuated_s * SECOND / BUCKETS
     return 0 if math.isinf(width) else int(time // width)
 
 
@@ -165,7 +174,7 @@ def _spread(last: Spread, last_time: int, time: int, point: Point, limits: Stead
             low=tuple(map(min, last.low, point)),
             high=tuple(map(max, last.high, point)),
         )
-    oldest = time - limits.attenuated_s * _SECOND
+    oldest = time - limits.attenuated_s * SECOND
     closed = tuple(
         one for one in (*last.closed, (last_time, last.low, last.high)) if one[0] > oldest
     )
@@ -191,17 +200,19 @@ def _spike_findings(
     if sum(one * other for one, other in zip(there, back, strict=True)) >= 0.0:
         return []
     size = min(math.hypot(*there), math.hypot(*back))
-    for flag, limit in ((Flag.FAIL, limits.spike_fail), (Flag.SUSPECT, limits.spike_suspect)):
+    meanwhile = limits.rate * (after.time - before.time) / SECOND
+    for flag, least in ((Flag.FAIL, limits.spike_fail), (Flag.SUSPECT, limits.spike_suspect)):
+        limit = least + meanwhile
         if size > limit:
-            why = f"stands out by {size:.3g} from its neighbours (limit {limit:g})"
+            why = f"stands out by {size:.3g} from its neighbours (limit {limit:.3g})"
             return [Finding(key, flag, why, "spike") for key in _of_change(group, before.values)]
     return []
 
 
 def _attenuation_findings(group: str, after: Anchor, limits: Steadiness) -> list[Finding]:
     spread = after.spread
-    full = after.time - spread.began >= limits.attenuated_s * _SECOND
-    if not full or len(spread.closed) + 1 < _FLAT_FAIL_COUNT or not after.point:
+    full = after.time - spread.began >= limits.attenuated_s * SECOND
+    if not full or len(spread.closed) + 1 < FLAT_FAIL_COUNT or not after.point:
         return []
     size = max(
         max(high, closed_high) - min(low, closed_low)
@@ -217,7 +228,7 @@ def _attenuation_findings(group: str, after: Anchor, limits: Steadiness) -> list
             hours = limits.attenuated_s / 3600.0
             why = f"stayed within {size:.2g} for {hours:g} h (limit {limit:g})"
             keys = _of_change(group, after.values)
-            return [Finding(key, flag, why, "attenuated signal") for key in keys]
+            return [Finding(key, flag, why, ATTENUATED) for key in keys]
     return []
 
 
@@ -231,7 +242,7 @@ def _steadiness_findings(
 ) -> list[Finding]:
     if before is None:
         return []
-    elapsed = (after.time - before.time) / _SECOND
+    elapsed = (after.time - before.time) / SECOND
     keys = tuple(after.values)
     if elapsed > limits.gap_s:
         why = f"comes after {elapsed / 3600:.3g} h of silence (limit {limits.gap_s / 3600:g} h)"
@@ -242,10 +253,10 @@ def _steadiness_findings(
         why = f"changed by {change:.3g} in {elapsed:g} s (limit {allowed:.3g})"
         changed = _of_change(group, after.values)
         return [Finding(key, Flag.SUSPECT, why, "rate of change") for key in changed]
-    still = (after.time - after.since) / _SECOND
-    if still >= limits.flat_fail_s and after.readings >= _FLAT_FAIL_COUNT:
+    still = (after.time - after.since) / SECOND
+    if still >= limits.flat_fail_s and after.readings >= FLAT_FAIL_COUNT:
         flag = Flag.FAIL
-    elif still >= limits.flat_suspect_s and after.readings >= _FLAT_SUSPECT_COUNT:
+    elif still >= limits.flat_suspect_s and after.readings >= FLAT_SUSPECT_COUNT:
         flag = Flag.SUSPECT
     else:
         return []

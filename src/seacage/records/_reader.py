@@ -9,7 +9,7 @@ from seacage.conventions import Flag, RecordError
 from seacage.records._cf import NetcdfMap, is_netcdf, read_cf
 from seacage.records._check import check_record
 from seacage.records._columns import ColumnMap
-from seacage.records._csv import read_csv
+from seacage.records._csv import read_csv, understood
 from seacage.records._limits import DEFAULT_LIMITS, Limits
 from seacage.records._netcdf import read_netcdf
 from seacage.records._record import Record
@@ -58,6 +58,18 @@ def read_record(
     if isinstance(columns, NetcdfMap):
         raise RecordError(f"{path}: a NetCDF file's map is no table's. Give a ColumnMap.")
     return _checked(read_csv(path, columns, stream=stream), limits)
+
+
+def known_map(path: Path | str) -> ColumnMap | None:
+    """Return the map by which a table is read that is given none; None for NetCDF.
+
+    Raises
+    ------
+    RecordError
+        A table that cannot be split, or whose header no shipped map fits.
+    """
+    path = Path(path)
+    return None if is_netcdf(path) else understood(path, None)[1]
 
 
 def _checked(record: Record, limits: Limits) -> Record:

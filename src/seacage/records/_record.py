@@ -1,5 +1,6 @@
 """One stream over time."""
 
+import hashlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
@@ -73,6 +74,14 @@ class Record:
     def __len__(self) -> int:
         """How many times the stream spoke."""
         return len(self.time)
+
+    @property
+    def sha256(self) -> str:
+        """Of times, values and flags: the same for the same readings, whatever the notes."""
+        digest = hashlib.sha256(self.time.tobytes())
+        for key, column in sorted(self.values.items()):
+            digest.update(key.encode() + column.tobytes() + self.flags[key].tobytes())
+        return digest.hexdigest()
 
     def usable(self, key: str) -> Bool[np.ndarray, " t"]:
         """Where a quantity may be used: finite, and neither failed nor missing.

@@ -196,7 +196,7 @@ def _read_parquet(path: Path) -> Table:
     try:
         content = parquet.read_table(path)
         names: list[str] = content.column_names
-        columns: list[list[object]] = [column.to_pylist() for column in content.columns]
+        columns = [_listed(column) for column in content.columns]
     except (OSError, ValueError, TypeError, NotImplementedError, OverflowError) as error:
         raise RecordError(
             f"{path}: this is no Parquet file that can be read ({_one_line(error)}). "
@@ -204,6 +204,14 @@ def _read_parquet(path: Path) -> Table:
         ) from error
     rows = [tuple(_cell(value) for value in row) for row in zip(*columns, strict=True)]
     return checked_table(path, [tuple(names), *rows], range(len(rows) + 1))
+
+
+def _listed(column: Any) -> list[object]:
+    """Values of an Arrow column, whose nanoseconds Python has no time for."""
+    arrow: Any = importlib.import_module("pyarrow")
+    if arrow.types.is_timestamp(column.type):
+        column = column.cast(arrow.timestamp("us", tz=column.type.tz), safe=False)
+    return column.to_pylist()
 
 
 def _cell(value: object) -> str:

@@ -1,7 +1,7 @@
 """From the twin's answers to the JSON of the doors: the one place where SI is left."""
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 
 import numpy as np
@@ -10,8 +10,9 @@ from jaxtyping import Float
 from seacage.cage import Cage
 from seacage.conventions import Flag, compass
 from seacage.ocean import SeaState
-from seacage.records import Record, Sample
+from seacage.records import Amendment, Record, Sample
 from seacage.service._schemas import (
+    Amended,
     BridleState,
     Frame,
     History,
@@ -28,7 +29,7 @@ from seacage.service._schemas import (
     Water,
 )
 from seacage.surrogates import Prediction
-from seacage.twin import Answer, Answered, Metocean, Twin
+from seacage.twin import Answer, Answered, Metocean, Twin, TwinState
 
 _UNUSABLE = (Flag.FAIL, Flag.MISSING)
 _DOOR_UNIT = {"N": ("kN", 1e-3), "m": ("m", 1.0)}
@@ -37,14 +38,7 @@ _DECIMALS = 3  # a newton, a millimetre: below what any sensor here resolves
 Table = Float[np.ndarray, "case output"]
 
 
-def state_of(
-    name: str,
-    twin: Twin,
-    answered: Answered,
-    *,
-    latest: Mapping[str, Sample],
-    silent: Iterable[str] = (),
-) -> State:
+def state_of(name: str, twin: Twin, answered: Answered, memory: TwinState) -> State:
     """Say what a cage does at one time.
 
     Parameters
@@ -53,10 +47,8 @@ def state_of(
         Of the cage.
     twin, answered
         Who answered, and what.
-    latest
-        The newest sample of each stream, with flags.
-    silent
-        Streams that have fallen silent.
+    memory
+        What the twin remembers of its streams.
     """
     answer = answered.answer
     return State(
@@ -69,10 +61,11 @@ def state_of(
         origin=str(twin.origin),
         water=_water(answered.metocean),
         bridles=_bridles(twin.cage, answer),
-        sensors=_sensors(answer, latest, answered.t, twin.watch.sensor_silent_after_s),
+        sensors=_sensors(answer, memory, answered.t, twin.watch.sensor_silent_after_s),
         shape_level=answer.shape_level,
         volume_fraction=_number(answer.volume_fraction[0], 4),
-        silent=sorted(silent),
+        silent=sorted(memory.silent),
+        amended=[_amended(one) for one in memory.amended],
     )
 
 
@@ -95,12 +88,12 @@ def _bridles(cage: Cage, answer: Answer) -> list[BridleState]:
 
 
 def _sensors(
-    answer: Answer, latest: Mapping[str, Sample], now: datetime, silent_after_s: float
+    answer: Answer, memory: TwinState, now: datetime, silent_after_s: float
 ) -> list[SensorState]:
     (lower, upper), states = answer.sensor_interval(), list[SensorState]()
     for k, sensor in enumerate(answer.sensor_names):
         unit, scale = _DOOR_UNIT[answer.sensor_units[k]]
-        sample = latest.get(sensor)
+        sample = memory.latest(sensor)
         measured = usable_value(sample) if sample else None
         age = (now - sample.t).total_seconds() if sample and measured is not None else None
         fresh = age is not None and age <= silent_after_s
@@ -118,6 +111,12 @@ def _sensors(
             )
         )
     return states
+
+
+def _amended(one: Amendment) -> Amended:
+    return Amended(
+        stream=one.stream, t=one.t, quantity=one.key, flag=int(one.flag), reason=one.remark
+    )
 
 
 def usable_value(sample: Sample) -> float | None:

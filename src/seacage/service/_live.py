@@ -10,12 +10,12 @@ from typing import assert_never
 
 import structlog
 
-from seacage.records import QualityState, Sample, check_sample
+from seacage.records import Amendment, QualityState, Sample, check_sample
 from seacage.service._answers import frame_of, state_of, topology_of
 from seacage.service._clock import Clock
 from seacage.service._mailbox import Mailbox
 from seacage.service._metrics import Metrics
-from seacage.service._past import answered_in, latest_of, state_at, streams_of
+from seacage.service._past import answered_in, state_at, streams_of
 from seacage.service._samples import BUOY_KEYS
 from seacage.service._schemas import State, Topology
 from seacage.service._store import Store
@@ -69,13 +69,13 @@ class LiveCage:
         self.name, self.twin, self.store, self.clock = name, twin, store, clock
         self._metrics, self._tick_s = metrics, tick_s
         self._streams = _quantities(twin)
-        self._quality: dict[str, QualityState] = {}
         self._pending: deque[Sample] = deque()
         self._arrived = asyncio.Event()
         self._stepping = asyncio.Lock()
         self._mailboxes: set[Mailbox[Snapshot]] = set()
         self._topology: Topology | None = None
         self._state, answered = state_at(twin, store, name, clock.now())
+        self._quality = {stream: taken[-1].quality for stream, taken in self._state.streams.items()}
         self.snapshot = self._shown(answered)
 
     @property
@@ -148,14 +148,17 @@ class LiveCage:
             self._metrics.clients.labels(self.name).dec()
 
     async def _stored(self, samples: Sequence[Sample]) -> tuple[bool, ...]:
-        checked = [self._checked(sample) for sample in samples]
-        appended = self.store.append(self.name, checked, ingested=self.clock.now())
+        checked, amendments = list[Sample](), list[Amendment]()
+        for sample in samples:
+            quality = self._quality.get(sample.stream, QualityState())
+            quality, flagged = check_sample(quality, sample)
+            self._quality[sample.stream] = quality
+            checked.append(flagged)
+            amendments += quality.amended
+        appended = self.store.append(
+            self.name, checked, ingested=self.clock.now(), amendments=amendments
+        )
         return await asyncio.wrap_future(appended)
-
-    def _checked(self, sample: Sample) -> Sample:
-        before = self._quality.get(sample.stream, QualityState())
-        self._quality[sample.stream], checked = check_sample(before, sample)
-        return checked
 
     def _stepped(self, samples: Sequence[Sample]) -> tuple[Answered, list[Event]]:
         """Step through the samples, then tick: the newest answer is as old as this call."""
@@ -192,8 +195,7 @@ class LiveCage:
             mailbox.put(self.snapshot)
 
     def _shown(self, answered: Answered) -> Snapshot:
-        latest = latest_of(self.twin, self._state)
-        state = state_of(self.name, self.twin, answered, latest=latest, silent=self._state.silent)
+        state = state_of(self.name, self.twin, answered, self._state)
         return Snapshot(answered=answered, state=state)
 
 

@@ -1,6 +1,6 @@
 """The twin in the past: its states are not stored but folded again from the samples."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from datetime import datetime, timedelta
 
 import numpy as np
@@ -20,12 +20,6 @@ _MEASURED_LIMIT = 50_000
 def streams_of(twin: Twin) -> tuple[str, ...]:
     """Name the streams that a twin listens to, the buoy first."""
     return (twin.buoy, *twin.sensor_names)
-
-
-def latest_of(twin: Twin, state: TwinState) -> Mapping[str, Sample]:
-    """The newest sample of each stream that has spoken."""
-    latest = {stream: state.latest(stream) for stream in streams_of(twin)}
-    return {stream: sample for stream, sample in latest.items() if sample is not None}
 
 
 def answered_in(events: Sequence[Event]) -> Answered | None:

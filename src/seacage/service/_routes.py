@@ -9,7 +9,7 @@ from fastapi.responses import JSONResponse
 from seacage.service._answers import sample_of, shape_of, state_of
 from seacage.service._guard import Permit
 from seacage.service._live import LiveCage
-from seacage.service._past import history_between, latest_of, state_at
+from seacage.service._past import history_between, state_at
 from seacage.service._samples import read_samples
 from seacage.service._schemas import (
     Cages,
@@ -137,8 +137,7 @@ def get_state(live: Live, at: At = None) -> State:
     if at is None:
         return live.snapshot.state
     state, answered = state_at(live.twin, live.store, live.name, at)
-    latest = latest_of(live.twin, state)
-    return state_of(live.name, live.twin, answered, latest=latest, silent=state.silent)
+    return state_of(live.name, live.twin, answered, state)
 
 
 @cages.get("/{cage}/shape", dependencies=may_read, responses=_READ)

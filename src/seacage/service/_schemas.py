@@ -125,12 +125,23 @@ class Water(_Answered):
     wave_from_deg: float | None
 
 
+class Amended(_Answered):
+    """A reading that the next one showed to be a spike: what was shown of it, take back."""
+
+    stream: str
+    t: datetime
+    quantity: str
+    flag: int
+    reason: str
+
+
 class State(_Answered):
     """A cage at one time.
 
     Without valid input ``valid`` is false, ``reason`` says why, and every computed number is
     null. ``in_domain`` false means extrapolating beyond what was learned. ``age_s`` is the age
-    of the input. ``origin`` says how the sensors' numbers were made.
+    of the input. ``origin`` says how the sensors' numbers were made. ``amended`` holds the
+    readings of the last minutes whose flags grew worse after they came.
     """
 
     cage: str
@@ -146,6 +157,7 @@ class State(_Answered):
     shape_level: int
     volume_fraction: float | None
     silent: list[str]
+    amended: list[Amended]
 
 
 class Shape(_Answered):

@@ -12,7 +12,7 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 from seacage.conventions import Flag, SeacageError
-from seacage.records import Sample
+from seacage.records import Amendment, Sample
 
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 _MICROSECOND = timedelta(microseconds=1)
@@ -32,6 +32,12 @@ CREATE TABLE IF NOT EXISTS sample (
 """
 
 _INSERT = "INSERT INTO sample VALUES (?, ?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING"
+
+# A flag only ever grows worse, so an amendment made twice is made once.
+_AMEND = """
+UPDATE sample SET readings = with_flag(readings, ?1, ?2), remarks = with_remark(remarks, ?3)
+WHERE cage = ?4 AND stream = ?5 AND t = ?6 AND flag_of(readings, ?1) < ?2
+"""
 
 
 class StoreError(SeacageError):
@@ -84,9 +90,23 @@ class Store:
         return self._fault
 
     def append(
-        self, cage: str, samples: Sequence[Sample], *, ingested: datetime
+        self,
+        cage: str,
+        samples: Sequence[Sample],
+        *,
+        ingested: datetime,
+        amendments: Sequence[Amendment] = (),
     ) -> "Future[tuple[bool, ...]]":
         """Store samples, each once by (stream, t, seq); the future resolves after the commit.
+
+        Parameters
+        ----------
+        cage, samples
+            What to store, and whose.
+        ingested
+            When they came.
+        amendments
+            What they taught of samples before them, in the store or among these.
 
         Returns
         -------
@@ -94,14 +114,15 @@ class Store:
             For each sample whether it was not known before.
         """
         stamp = _microseconds(ingested)
-        asked = self._ask(tuple((_INSERT, _row(cage, sample, stamp)) for sample in samples))
+        inserts = tuple((_INSERT, _row(cage, sample, stamp)) for sample in samples)
+        asked = self._ask(inserts + tuple((_AMEND, _change(cage, one)) for one in amendments))
         answer: Future[tuple[bool, ...]] = Future()
 
         def resolve(asked: "Future[tuple[int, ...]]") -> None:
             if error := asked.exception():
                 answer.set_exception(error)
             else:
-                answer.set_result(tuple(count == 1 for count in asked.result()))
+                answer.set_result(tuple(n == 1 for n in asked.result()[: len(inserts)]))
 
         asked.add_done_callback(resolve)
         return answer
@@ -224,7 +245,25 @@ def _opened(path: Path) -> sqlite3.Connection:
     connection.execute("PRAGMA journal_mode = WAL")
     connection.execute("PRAGMA synchronous = FULL")
     connection.executescript(_SCHEMA)
+    # SQLite's own JSON functions know no NaN, which raw values may be.
+    connection.create_function("flag_of", 2, _flag_of)
+    connection.create_function("with_flag", 3, _with_flag)
+    connection.create_function("with_remark", 2, _with_remark)
     return connection
+
+
+def _flag_of(readings: str, key: str) -> int | None:
+    pair = json.loads(readings).get(key)
+    return None if pair is None else pair[1]
+
+
+def _with_flag(readings: str, key: str, flag: int) -> str:
+    pairs = json.loads(readings)
+    return json.dumps({**pairs, key: [pairs[key][0], flag]})
+
+
+def _with_remark(remarks: str, remark: str) -> str:
+    return json.dumps([*json.loads(remarks), remark])
 
 
 def _row(cage: str, sample: Sample, stamp: int) -> tuple[object, ...]:
@@ -232,6 +271,10 @@ def _row(cage: str, sample: Sample, stamp: int) -> tuple[object, ...]:
     seq = _NO_SEQ if sample.seq is None else sample.seq
     t = _microseconds(sample.t)
     return (cage, sample.stream, t, seq, json.dumps(readings), json.dumps(sample.remarks), stamp)
+
+
+def _change(cage: str, one: Amendment) -> tuple[object, ...]:
+    return (one.key, int(one.flag), one.remark, cage, one.stream, _microseconds(one.t))
 
 
 def _sample(row: tuple[str, int, int, str, str]) -> Sample:

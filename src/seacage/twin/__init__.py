@@ -2,6 +2,7 @@
 
 from seacage.twin._align import Pairs, align, spread_out, teaching_window
 from seacage.twin._answer import Answer
+from seacage.twin._correction import Correction, Said
 from seacage.twin._events import Answered, Event, Flagged, StreamBack, StreamSilent
 from seacage.twin._metocean import Metocean
 from seacage.twin._models import Models
@@ -14,6 +15,7 @@ from seacage.twin._twin import Twin
 __all__ = [
     "Answer",
     "Answered",
+    "Correction",
     "Event",
     "Flagged",
     "Lesson",
@@ -21,6 +23,7 @@ __all__ = [
     "Models",
     "Pairs",
     "Provenance",
+    "Said",
     "StreamBack",
     "StreamSilent",
     "Training",

@@ -15,6 +15,9 @@ GAIN_SD = 0.5
 HOUR = 3_600_000_000
 """[us]"""
 
+PROOF_SD = 2.0
+"""Standard errors by which a lesson has to beat level 1 to be believed [-]."""
+
 Features = Float[np.ndarray, "case feature"]
 
 
@@ -58,6 +61,29 @@ class Correction:
         rest = NARGP(restarts=restarts).fit([(x, pairs.value - gain * low)], seed=seed, lower=lower)
         return cls(gain=gain, rest=rest)
 
+    def proven(self, pairs: Pairs, low: Float[np.ndarray, " pair"]) -> bool:
+        """Whether readings that it was taught are met better than by level 1, and not by chance.
+
+        Each reading is left out in turn. Readings within an hour share their error and count
+        as one. What learned from noise alone seldom passes, and would only add noise.
+
+        Parameters
+        ----------
+        pairs
+            The lesson.
+        low
+            What level 1 says at its readings [N] or [m].
+        """
+        (rest,) = self.rest.upper
+        left_out = self.gain * low + np.ravel(rest.leave_one_out().mean)
+        better = np.abs(pairs.value - low) - np.abs(pairs.value - left_out)
+        _, hour = np.unique(_hours(pairs.time), return_inverse=True)
+        count = np.bincount(hour)
+        by_hour = np.bincount(hour, weights=better) / count
+        if len(by_hour) < 2:
+            return True  # nothing to judge by; the caller wants a minimum of readings
+        return bool(by_hour.mean() > PROOF_SD * by_hour.std(ddof=1) / np.sqrt(len(by_hour)))
+
     @property
     def noise(self) -> float:
         """Variance of a reading about what lies behind it [N2] or [m2]."""
@@ -93,5 +119,9 @@ def fitted_gain(
     above = value - low
     slope = float(np.mean((low - np.mean(low)) * above)) / variance
     left = float(np.var(above - slope * low))
-    hours = len(np.unique(time.astype("datetime64[us]").astype(np.int64) // HOUR))
+    hours = len(np.unique(_hours(time)))
     return 1.0 + slope * variance / (variance + left / (hours * GAIN_SD**2))
+
+
+def _hours(time: Shaped[np.ndarray, " pair"]) -> Shaped[np.ndarray, " pair"]:
+    return time.astype("datetime64[us]").astype(np.int64) // HOUR

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from datetime import datetime, timedelta
 
 from seacage.conventions import Flag
-from seacage.records import QualityState, Sample, check_sample
+from seacage.records import Amendment, QualityState, Sample, check_sample
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,11 +40,11 @@ class Taken:
     Parameters
     ----------
     sample
-        With the flags it got.
+        With the flags it got when it came.
     newest
         The last sample that carried each key.
     quality
-        Of the checks that look back.
+        Of the checks that look back; holds what this sample taught of the one before it.
     """
 
     sample: Sample
@@ -79,6 +79,11 @@ class TwinState:
         taken = self.streams.get(stream, ())
         return taken[-1].sample if taken else None
 
+    @property
+    def amended(self) -> tuple[Amendment, ...]:
+        """What of the last minutes was shown to be a spike by the sample that came next."""
+        return tuple(one for stream in self.streams.values() for one in amendments_in(stream))
+
 
 def taken_in(stream: Stream, sample: Sample, *, disorder_s: float) -> Stream | None:
     """Put a sample in its place in time and check it and all that came after it anew.
@@ -103,6 +108,15 @@ def taken_in(stream: Stream, sample: Sample, *, disorder_s: float) -> Stream | N
         last = _checked(last, one)
         grown.append(last)
     return _trimmed(grown, disorder_s=disorder_s)
+
+
+def amendments_in(stream: Stream) -> tuple[Amendment, ...]:
+    """What samples of a stream taught of those before them.
+
+    It is kept with the sample that taught it, so that another which comes late, and lies
+    between the two, changes both.
+    """
+    return tuple(one for taken in stream for one in taken.quality.amended)
 
 
 def troubled(sample: Sample) -> bool:

@@ -7,10 +7,18 @@ from datetime import datetime, timedelta
 import numpy as np
 
 from seacage.conventions import Flag, InputError
-from seacage.records import Sample
+from seacage.records import Sample, amended
 from seacage.twin._events import Flagged, StreamBack, StreamSilent
 from seacage.twin._metocean import Metocean
-from seacage.twin._state import TwinState, Watch, taken_in, troubled, usable
+from seacage.twin._state import (
+    Stream,
+    TwinState,
+    Watch,
+    amendments_in,
+    taken_in,
+    troubled,
+    usable,
+)
 
 Notice = Flagged | StreamSilent | StreamBack
 
@@ -91,9 +99,26 @@ def _taken(
     moment = sample.t, sample.seq
     seen = (taken.sample for taken in after if (taken.sample.t, taken.sample.seq) == moment)
     flagged = next(seen, sample)
-    if not troubled(flagged):
-        return state, ()
-    return state, (Flagged(sample=flagged, reason=" ".join(flagged.remarks), used=True),)
+    notices = _mended(before, after)
+    if troubled(flagged):
+        notices += (Flagged(sample=flagged, reason=" ".join(flagged.remarks), used=True),)
+    return state, notices
+
+
+def _mended(before: Stream, after: Stream) -> tuple[Flagged, ...]:
+    """Say which earlier samples of a stream are now known to be spikes."""
+    told = amendments_in(before)
+    new = [one for one in amendments_in(after) if one not in told]
+    times = {one.t for one in new}
+    return tuple(
+        Flagged(
+            sample=amended(taken.sample, new),
+            reason=" ".join(one.remark for one in new if one.t == taken.sample.t),
+            used=True,
+        )
+        for taken in after
+        if taken.sample.t in times
+    )
 
 
 def _set_aside(sample: Sample, why: str) -> tuple[Flagged]:

@@ -80,7 +80,8 @@ def train(
     Level 1 learns bridle tensions and shape from the campaign's converged cases. Each sensor
     of the field record then teaches its own level 2 (NARGP) on top: a shackle on its bridle's
     tension, a depth sensor on the depth of its node in the reconstructed shape. A sensor
-    without enough sound readings stays at level 1.
+    without enough sound readings, or whose readings level 1 meets as well as what they taught,
+    stays at level 1.
 
     Parameters
     ----------
@@ -184,7 +185,7 @@ def _better_kernel(
 def _learned(
     models: Models, field: FieldRecord, sensor: str, training: Training
 ) -> tuple[Lesson, Correction] | None:
-    """Return what a sensor taught, and level 2 of it; None where it has too little to say."""
+    """Return what a sensor taught, and level 2 of it; None where it says nothing new."""
     window = teaching_window(field.sensors[sensor], days=training.days, pause_s=training.pause_s)
     if window is None:
         return None
@@ -194,13 +195,16 @@ def _learned(
     if len(pairs) < LEAST_PAIRS:
         return None
     pairs = _chosen(pairs, training)
+    x = pairs.metocean.features(training.inputs)
     model = Correction.learned(
         pairs,
-        pairs.metocean.features(training.inputs),
+        x,
         models.lower(sensor),
         restarts=training.restarts,
         seed=training.seed,
     )
+    if not model.proven(pairs, models.lower(sensor).predict(x).mean):
+        return None
     return Lesson(start=start, end=end, points=len(pairs)), model
 
 

@@ -9,11 +9,13 @@ import pytest
 from seacage.conventions import Flag, Origin
 from seacage.records import (
     DEFAULT_LIMITS,
+    Amendment,
     QualityState,
     Range,
     Record,
     Sample,
     Season,
+    amended,
     check_record,
     check_sample,
     instant,
@@ -198,11 +200,21 @@ def test_checking_twice_changes_nothing():
     assert flags(twice, "depth_m") == flags(once, "depth_m")
 
 
+def test_readings_far_apart_may_differ_by_more():
+    depth = [15.0, 15.1, 18.5, 15.1, 15.0]
+    near, far = (
+        flags(check_record(record(every_s=every_s, depth_m=depth)), "depth_m")
+        for every_s in (2.0, 600.0)
+    )
+    assert near == ["GOOD", "GOOD", "FAIL", "SUSPECT", "GOOD"]
+    assert set(far) == {"GOOD"}
+
+
 def test_a_spike_fails_once_the_next_reading_has_come_and_its_neighbours_stay():
     checked = check_record(record(every_s=60.0, depth_m=[7.0, 7.1, 30.0, 7.1, 7.0, 7.1]))
     # the jump there and back is suspect by its rate as well
     assert flags(checked, "depth_m") == ["GOOD", "GOOD", "FAIL", "SUSPECT", "GOOD", "GOOD"]
-    assert "depth_m = 30 stands out by 22.9 from its neighbours (limit 10)" in " ".join(
+    assert "depth_m = 30 stands out by 22.9 from its neighbours (limit 3.6)" in " ".join(
         checked.notes
     )
 
@@ -219,6 +231,33 @@ def test_a_live_spike_is_amended_by_the_sample_after_it():
     assert amendment.t == NOON + timedelta(minutes=2)
     assert (amendment.key, amendment.flag) == ("depth_m", Flag.FAIL)
     assert amendment.remark.endswith("Flagged 4 (fail); the raw value is kept.")
+
+
+def test_a_silence_of_a_current_is_one_note_on_its_speed_and_direction():
+    columns = {"current_speed_m_s": [0.1, 0.2], "current_to_deg": [10.0, 20.0]}
+    (note,) = check_record(record(every_s=20000.0, **columns)).notes
+    assert note.startswith("buoy-1: current_speed_m_s = 0.2 comes after 5.56 h of silence")
+    assert note.endswith(
+        "The first of 1 such among 2, at 2018-01-26T17:33:20Z, with current_to_deg."
+    )
+
+
+def test_an_amendment_makes_the_sample_that_it_means_worse_and_never_better():
+    one = Amendment(stream="depth-1", t=NOON, key="depth_m", flag=Flag.SUSPECT, remark="Why.")
+    good, bad = (
+        Sample(stream="depth-1", t=NOON, values={"depth_m": 7.0}, flags={"depth_m": flag})
+        for flag in (Flag.GOOD, Flag.FAIL)
+    )
+    spike = amended(good, [one, one])
+    assert spike.flags == {"depth_m": Flag.SUSPECT}
+    assert spike.remarks == ("Why.",)
+    assert amended(bad, [one]) == bad
+    for other in (
+        replace(one, stream="depth-2"),
+        replace(one, t=NOON + timedelta(seconds=2)),
+        replace(one, key="tension_kn"),
+    ):
+        assert amended(good, [other]) == good
 
 
 def test_a_step_is_no_spike():

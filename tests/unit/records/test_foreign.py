@@ -3,7 +3,9 @@
 import json
 
 import numpy as np
+import pyarrow as pa
 import pytest
+from pyarrow import parquet
 
 from seacage.conventions import Flag, Origin, RecordError
 from seacage.records import (
@@ -124,15 +126,13 @@ def test_other_json_is_refused(tmp_path, text, sentence):
 
 
 def test_parquet_is_read_to_the_last_bit(tmp_path):
-    parquet = pytest.importorskip("pyarrow.parquet")
-    arrow = pytest.importorskip("pyarrow")
     time = np.datetime64("2018-01-26T23:08:00", "us") + np.arange(3) * np.timedelta64(12, "m")
     speed = np.array([0.1, 1.0 / 3.0, np.nan])
-    table = arrow.table(
+    table = pa.table(
         {
-            "time": arrow.array(time, type=arrow.timestamp("us", tz="UTC")),
+            "time": pa.array(time, type=pa.timestamp("us", tz="UTC")),
             "current_speed_m_s": speed,
-            "current_to_deg": arrow.array([10, 20, None]),
+            "current_to_deg": pa.array([10, 20, None]),
         }
     )
     parquet.write_table(table, tmp_path / "buoy.parquet")
@@ -143,6 +143,39 @@ def test_parquet_is_read_to_the_last_bit(tmp_path):
     (tmp_path / "cut.parquet").write_bytes((tmp_path / "buoy.parquet").read_bytes()[:200])
     with pytest.raises(RecordError, match="this is no Parquet file that can be read"):
         read_record(tmp_path / "cut.parquet")
+
+
+@pytest.mark.parametrize("zone", [None, "Europe/Oslo"])
+def test_parquet_of_a_logger_is_declared(tmp_path, zone):
+    # As pandas writes: times in nanoseconds, floats of 32 bits; 23:08 in Oslo's winter is 22:08.
+    time = np.datetime64("2018-01-26T22:08:00.000000007", "ns") + np.arange(2) * np.timedelta64(
+        12, "m"
+    )
+    table = pa.table(
+        {
+            "Tid": pa.array(time, type=pa.timestamp("ns", tz=zone)),
+            "Fart": np.array([25.0, 50.0], dtype=np.float32),
+            "Retn": [350, 170],
+            "Batteri": ["good", None],
+        }
+    )
+    parquet.write_table(table, tmp_path / "logger.parquet")
+    declared = ColumnMap(
+        title="Logger",
+        origin=Origin.MEASURED,
+        time_column="Tid",
+        time_format="iso",
+        time_zone="stated" if zone else "UTC",
+        columns=(
+            Column(name="Fart", quantity="current_speed", unit="cm/s"),
+            Column(name="Retn", quantity="current_direction", unit="deg", sense="from"),
+        ),
+        ignored=("Batteri",),
+    )
+    record = read_record(tmp_path / "logger.parquet", columns=declared)
+    np.testing.assert_array_equal(record.time, time.astype("datetime64[us]"))
+    np.testing.assert_array_equal(record.values["current_speed_m_s"], [0.25, 0.5])
+    np.testing.assert_array_equal(record.values["current_to_deg"], [170.0, 350.0])
 
 
 def test_european_tables_are_declared(tmp_path):

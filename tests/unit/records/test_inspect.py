@@ -77,7 +77,9 @@ def test_a_file_that_is_known_is_said_to_be(shared, name):
 def test_a_profiler_file_is_asked_for_its_zone_bin_and_origin(shared):
     pytest.importorskip("xarray")
     found = inspect_file(shared / "data" / "adcp_awac_snippet.nc")
-    assert "Suspicious: an attribute says 'times PDT', and CF's times are UTC." in found.findings
+    said = "Suspicious: its attribute 'comments' says 'times PDT', and times in CF are UTC."
+    assert said in found.findings
+    assert 'time_zone = "?"  # "UTC" if CF holds, "-07:00" if the attribute' in found.map_text
     assert found.open_questions == 3
     for question in ("origin", "time_zone", "range_m"):
         assert f'{question} = "?"' in found.map_text

@@ -79,7 +79,7 @@ def test_a_file_that_is_not_there_is_refused(tmp_path):
 
 def test_a_foreign_netcdf_is_refused(tmp_path):
     xarray.Dataset({"u": ("time", [0.1])}).to_netcdf(tmp_path / "u.nc", engine="h5netcdf")
-    with pytest.raises(RecordError, match="its schema is None, not 'seacage stream 1'"):
+    with pytest.raises(RecordError, match="it does not say seacage's schema"):
         read_record(tmp_path / "u.nc")
 
 

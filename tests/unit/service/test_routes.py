@@ -51,6 +51,31 @@ def test_a_sample_sent_again_is_a_duplicate_and_changes_nothing(live: Running):
     assert len(live.reader.get("/api/v1/cages/ace/samples").json()["samples"]) == 1
 
 
+def test_a_spike_is_taken_back_wherever_it_was_shown(live: Running):
+    live.post(buoy(-5))
+    for minute, metres in enumerate([7.0, 7.1, 30.0]):
+        live.post(depth(minute - 4, metres))
+    seen = eventually(lambda: measured(live), lambda value: value == 30.0)
+    assert seen == 30.0, "the newest reading is shown before anyone knows"
+    assert live.state()["amended"] == []
+    live.post(depth(-1, 7.2))
+
+    samples = live.reader.get("/api/v1/cages/ace/samples", params={"stream": "depth-2"}).json()
+    assert [one["flags"]["depth_m"] for one in samples["samples"]] == [1, 1, 4, 3]
+    (amended,) = eventually(lambda: live.state()["amended"], bool)
+    assert (amended["stream"], amended["quantity"], amended["flag"]) == ("depth-2", "depth_m", 4)
+    assert amended["t"] == "2020-02-01T11:58:00Z"
+    assert "stands out" in amended["reason"]
+    history = live.reader.get("/api/v1/cages/ace/history").json()
+    assert history["measured"]["depth-2"]["value"] == [7.0, 7.1, 7.2]
+    past = live.state(at=at(-1))
+    assert past["amended"] == [amended]
+
+
+def measured(live: Running):
+    return next(s["measured"] for s in live.state()["sensors"] if s["name"] == "depth-2")
+
+
 def test_samples_come_back_in_time_order_and_within_their_span(live: Running):
     live.post(buoy(-10), depth(-30), buoy(-20), depth(0))
     asked = {"from": at(-20), "to": at(0)}

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from seacage.conventions import Flag
-from seacage.records import Sample
+from seacage.records import Amendment, Sample
 from seacage.service._store import Store, StoreError
 
 NOON = datetime(2020, 2, 1, 12, tzinfo=UTC)
@@ -44,6 +44,29 @@ def test_a_value_that_is_no_number_keeps_its_place_and_flag(store):
     (read,) = store.samples("ace", limit=9)
     assert read.values["depth_m"] != read.values["depth_m"]
     assert read.flags["depth_m"] == Flag.MISSING
+
+
+def test_what_a_sample_taught_of_an_earlier_one_is_stored_with_it(store):
+    spike = Sample(
+        stream="buoy-1",
+        t=NOON,
+        values={"current_speed_m_s": 1.7, "hs_m": float("nan")},
+        flags={"current_speed_m_s": Flag.SUSPECT, "hs_m": Flag.MISSING},
+        remarks=("It jumped.",),
+    )
+    put(store, spike, sample(0))
+    for flag in (Flag.FAIL, Flag.FAIL, Flag.SUSPECT):  # only the first makes anything worse
+        change = Amendment(
+            stream="buoy-1", t=NOON, key="current_speed_m_s", flag=flag, remark="It is a spike."
+        )
+        stored = store.append("ace", [sample(1)], ingested=NOON, amendments=[change])
+        assert len(stored.result(timeout=10)) == 1
+    read, other = store.samples("ace", end=NOON + timedelta(seconds=1), limit=9)
+    assert read.flags == {"current_speed_m_s": Flag.FAIL, "hs_m": Flag.MISSING}
+    assert read.remarks == ("It jumped.", "It is a spike.")
+    assert read.values["current_speed_m_s"] == 1.7
+    assert read.values["hs_m"] != read.values["hs_m"]
+    assert other == sample(0)
 
 
 @settings(max_examples=25)

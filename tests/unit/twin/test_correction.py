@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
-from seacage.surrogates import GaussianProcess
+from seacage.surrogates import GaussianProcess, Prediction
 from seacage.testing import stand_in_twin
 from seacage.twin import Metocean, Pairs
-from seacage.twin._correction import Correction, fitted_gain
+from seacage.twin._correction import Correction, Said, fitted_gain
 
 START = np.datetime64("2020-01-18T00:00", "us")
 
@@ -59,3 +59,30 @@ def test_an_answer_does_not_depend_on_who_asked_level_one():
     x = np.array([[0.5, 0.3, 0.4], [0.0, 0.0, 0.0]])
     behind, rest = model.behind(x, lower.predict(x)), model.rest.predict(x)
     np.testing.assert_allclose(behind.mean, rest.mean + model.gain * lower.predict(x).mean)
+
+
+def taught_by(value, low, every):
+    x = np.column_stack([low, np.cos(3.0 * low)])
+    time = START + np.arange(len(low)) * every
+    pairs = Pairs(time=time, metocean=Metocean.from_columns({}, len(low)), value=value)
+    said = Said(prediction=Prediction(mean=low, std=np.zeros(len(low))))
+    return Correction.learned(pairs, x, said, restarts=0, seed=0), pairs
+
+
+def test_a_lesson_of_noise_alone_is_seldom_believed():
+    random = np.random.default_rng(5)
+    low = np.sin(np.arange(72) / 7.0)
+    hour = np.timedelta64(20, "m")
+    believed = 0
+    for _ in range(20):
+        model, pairs = taught_by(low + 0.1 * random.standard_normal(72), low, hour)
+        believed += model.proven(pairs, low)
+    # 1 in 44 by the two standard errors, a little more as the search has seen the readings
+    assert believed <= 3
+
+
+def test_a_lesson_that_level_one_lacks_is_believed():
+    low = np.sin(np.arange(72) / 7.0)
+    noise = 0.1 * np.random.default_rng(6).standard_normal(72)
+    model, pairs = taught_by(1.5 * low + 0.3 + noise, low, np.timedelta64(20, "m"))
+    assert model.proven(pairs, low)

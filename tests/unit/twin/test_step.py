@@ -121,6 +121,28 @@ def test_a_repeated_sample_changes_nothing_and_says_nothing():
     assert len(events) == 1
 
 
+def test_a_spike_is_told_when_the_next_reading_has_come():
+    readings = [depth(0, 7.0), depth(1, 7.1), depth(2, 30.0)]
+    before, events = played(*readings)
+    (jump,) = only(events, Flagged)
+    assert "changed by" in jump.reason
+    assert before.amended == ()
+    after, events = played(*readings, depth(3, 7.1))
+    spike, *_ = (event for event in only(events, Flagged) if "stands out" in event.reason)
+    assert spike.used
+    assert spike.sample.t == NOON + timedelta(minutes=2)
+    assert spike.sample.flags == {"depth_m": Flag.FAIL}
+    assert [(one.stream, one.t) for one in after.amended] == [("depth-2", spike.sample.t)]
+
+
+def test_a_late_reading_beside_a_spike_shows_that_it_was_none():
+    spiky = [depth(0, 7.0), depth(1, 7.1), depth(2, 16.0), depth(4, 7.1)]
+    state, _ = played(*spiky)
+    assert len(state.amended) == 1
+    state, _ = played(*spiky, depth(3, 16.1))
+    assert state.amended == ()
+
+
 def test_a_sample_later_than_the_disorder_allowed_is_set_aside():
     state, events = played(buoy(30), buoy(0))
     (late,) = only(events, Flagged)

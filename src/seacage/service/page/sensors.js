@@ -5,6 +5,7 @@ import { explain, make } from "./dom.js";
 import { fixed, half, time } from "./format.js";
 
 const SPAN = 24 * 3600e3;
+const FAIL = 4; // of QARTOD
 const STEP = 60e3; // the newest points of a curve are at least so far apart
 
 export class Sensors {
@@ -50,11 +51,18 @@ export class Sensors {
 
   show(state) {
     const now = Date.parse(state.t);
+    const failed = state.amended.filter(({ flag }) => flag >= FAIL);
     for (const sensor of state.sensors) {
       const one = this.cards.get(sensor.name);
-      const { low_fidelity: low, mean, lower, upper, measured } = sensor;
+      const { low_fidelity: low, mean, lower, upper, measured, measured_age_s: age } = sensor;
       append(one.twin, { t: now, low, mean, lower, upper });
-      if (measured !== null) append(one.measured, { t: now, value: measured });
+      if (measured !== null) {
+        append(one.measured, { t: now - 1e3 * age, value: measured });
+      }
+      for (const spike of failed.filter(({ stream }) => stream === sensor.name)) {
+        const at = Date.parse(spike.t);
+        one.measured = one.measured.filter(({ t }) => Math.abs(t - at) > 2); // ages are rounded
+      }
       this.trim(one, now);
       Object.assign(one, { sensor });
       this.write(one);

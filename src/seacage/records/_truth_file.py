@@ -1,0 +1,170 @@
+"""What no sensor of a virtual field sees, as three CF-NetCDF files beside its truth."""
+
+# xarray leaves parts of its signatures untyped.
+# pyright: reportUnknownMemberType=false
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
+from jaxtyping import Float, Shaped
+
+from seacage.conventions import Origin, RecordError
+from seacage.records._netcdf import NETCDF_TROUBLE
+
+if TYPE_CHECKING:
+    import xarray
+
+_SCHEMA = "seacage true means 1"
+_FILES: dict[str, tuple[str, ...]] = {
+    "bridles.nc": ("bridle_tension_mean", "bridle_tension_std", "bridle_tension_max"),
+    "shape.nc": ("node_position",),
+    "water.nc": ("current_velocity", "hs", "growth"),
+}
+_VARIABLES: dict[str, tuple[tuple[str, ...], str, str]] = {
+    "bridle_tension_mean": (("bridle",), "N", "mean tension of each bridle"),
+    "bridle_tension_std": (("bridle",), "N", "standard deviation of each bridle's tension"),
+    "bridle_tension_max": (("bridle",), "N", "greatest tension of each bridle"),
+    "node_position": (("node", "axis"), "m", "mean position of each node of the drawn mesh"),
+    "current_velocity": (("level", "heading"), "m s-1", "mean current at the cage, to"),
+    "hs": ((), "m", "significant wave height at the cage"),
+    "growth": ((), "1", "growth on the netting, 0 just cleaned, 1 grown out"),
+}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class TrueMeans:
+    """Means of what was true in a virtual field, over short times one after another.
+
+    Parameters
+    ----------
+    time
+        When each mean begins, UTC; gaps are left out.
+    length
+        Of the time of each mean [s].
+    bridle_names
+        Of the cage.
+    level_depth
+        Of the current [m].
+    bridle_tension_mean, bridle_tension_std, bridle_tension_max
+        Of the readings [N].
+    node_position
+        Of the nodes of the cage as drawn [m].
+    current_velocity
+        East and north at each level [m/s].
+    hs
+        Significant wave height [m].
+    growth
+        Of what grows on the netting, 0 just cleaned, 1 grown out [-].
+    """
+
+    time: Shaped[np.ndarray, " mean"]
+    length: float
+    bridle_names: tuple[str, ...]
+    level_depth: Float[np.ndarray, " level"]
+    bridle_tension_mean: Float[np.ndarray, "mean bridle"]
+    bridle_tension_std: Float[np.ndarray, "mean bridle"]
+    bridle_tension_max: Float[np.ndarray, "mean bridle"]
+    node_position: Float[np.ndarray, "mean node 3"]
+    current_velocity: Float[np.ndarray, "mean level 2"]
+    hs: Float[np.ndarray, " mean"]
+    growth: Float[np.ndarray, " mean"]
+
+    def write(self, folder: Path | str) -> None:
+        """Write ``bridles.nc``, ``shape.nc`` and ``water.nc``, in single precision."""
+        folder = Path(folder)
+        folder.mkdir(parents=True, exist_ok=True)
+        for file, names in _FILES.items():
+            unborn = folder / f".{file}.unborn"
+            packed = {"zlib": True, "complevel": 4, "shuffle": True, "dtype": "float32"}
+            self._dataset(names).to_netcdf(
+                unborn, engine="h5netcdf", encoding=dict.fromkeys(names, packed)
+            )
+            unborn.replace(folder / file)
+
+    @classmethod
+    def read(cls, folder: Path | str) -> Self:
+        """Read back what ``write`` wrote.
+
+        Raises
+        ------
+        RecordError
+            A file that is missing or damaged, or of another schema.
+        """
+        import xarray
+
+        values: dict[str, Any] = {}
+        for file, names in _FILES.items():
+            path = Path(folder) / file
+            try:
+                with xarray.open_dataset(path, engine="h5netcdf", decode_times=False) as dataset:
+                    found = _values(dataset, names)
+                if not np.array_equal(values.get("time", found["time"]), found["time"]):
+                    raise ValueError("its times are not those of the file before")
+                values |= found
+            except NETCDF_TROUBLE as error:
+                raise RecordError(
+                    f"{path}: these are no true means of a virtual field ({error}). Give the "
+                    "folder `truth` of a field that was simulated in time."
+                ) from error
+        return cls(**values)
+
+    def _dataset(self, names: tuple[str, ...]) -> "xarray.Dataset":
+        import xarray
+
+        variables: dict[str, Any] = {}
+        for name in names:
+            dims, units, meaning = _VARIABLES[name]
+            said = {"units": units, "long_name": meaning, "cell_methods": _method(name)}
+            variables[name] = (("time", *dims), getattr(self, name), said)
+        axes = {dim for name in names for dim in _VARIABLES[name][0]}
+        return xarray.Dataset(
+            variables,
+            coords={
+                "time": ("time", self.time.astype("datetime64[us]").astype(np.int64), _TIME),
+                **{name: axis for name, axis in self._axes().items() if name in axes},
+            },
+            attrs={
+                "Conventions": "CF-1.11, ACDD-1.3",
+                "title": f"The truth of a {Origin.VIRTUAL_FIELD}: means over {self.length:g} s",
+                "schema": _SCHEMA,
+                "origin": str(Origin.VIRTUAL_FIELD),
+                "mean_length_s": self.length,
+            },
+        )
+
+    def _axes(self) -> dict[str, Any]:
+        depth = {"units": "m", "long_name": "depth", "positive": "down"}
+        return {
+            "bridle": np.array(self.bridle_names, dtype=object),
+            "axis": np.array(["x", "y", "z"], dtype=object),
+            "heading": np.array(["east", "north"], dtype=object),
+            "level": ("level", self.level_depth, depth),
+        }
+
+
+_TIME = {
+    "standard_name": "time",
+    "long_name": "when the mean begins, UTC",
+    "units": "microseconds since 1970-01-01 00:00:00",
+    "calendar": "standard",
+}
+
+
+def _method(name: str) -> str:
+    kind = {"std": "standard_deviation", "max": "maximum"}.get(name.rsplit("_", 1)[-1], "mean")
+    return f"time: {kind}"
+
+
+def _values(dataset: "xarray.Dataset", names: tuple[str, ...]) -> dict[str, Any]:
+    if dataset.attrs.get("schema") != _SCHEMA:
+        raise ValueError(f"its schema is {dataset.attrs.get('schema')!r}, not {_SCHEMA!r}")
+    values: dict[str, Any] = {name: np.asarray(dataset[name].values) for name in names}
+    values["time"] = np.asarray(dataset["time"].values, dtype=np.int64).view("datetime64[us]")
+    values["length"] = float(dataset.attrs["mean_length_s"])
+    if "bridle" in dataset.coords:
+        values["bridle_names"] = tuple(str(name) for name in dataset["bridle"].values)
+    if "level" in dataset.coords:
+        values["level_depth"] = np.asarray(dataset["level"].values)
+    return values
