@@ -2,21 +2,30 @@
 
 from seacage.campaigns._cases import Simulator
 from seacage.campaigns._current import generated_current
-from seacage.campaigns._field import VirtualField, virtual_field
+from seacage.campaigns._events import Event, read_events
+from seacage.campaigns._field import VirtualField, virtual_field, virtual_field_share
 from seacage.campaigns._hidden import Hidden
 from seacage.campaigns._plan import Plan
 from seacage.campaigns._run import run_campaign, run_share
 from seacage.campaigns._status import CampaignStatus, campaign_status
+from seacage.campaigns._timetable import Timetable
+from seacage.campaigns._waves import generated_waves, waves_at_site
 
 __all__ = [
     "CampaignStatus",
+    "Event",
     "Hidden",
     "Plan",
     "Simulator",
+    "Timetable",
     "VirtualField",
     "campaign_status",
     "generated_current",
+    "generated_waves",
+    "read_events",
     "run_campaign",
     "run_share",
     "virtual_field",
+    "virtual_field_share",
+    "waves_at_site",
 ]

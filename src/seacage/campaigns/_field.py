@@ -1,22 +1,29 @@
 """A virtual field: a truth that the low fidelity misses, seen by imperfect sensors."""
 
 import tempfile
-from contextlib import nullcontext
+from collections.abc import Generator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 from jaxtyping import Float, Shaped
 
 from seacage.cage import Cage
-from seacage.campaigns._hidden import Hidden, HiddenCurrent
-from seacage.campaigns._noise import wandering
-from seacage.campaigns._responses import true_responses
-from seacage.campaigns._sensors import sensed
-from seacage.conventions import InputError, Origin, Progress, compass, towards
-from seacage.records import FieldRecord, Record
+from seacage.campaigns._events import Event
+from seacage.campaigns._hidden import Hidden
+from seacage.campaigns._responses import Responses, true_responses
+from seacage.campaigns._sensors import air_pressure, buoy_heard, radio_silence, sensed
+from seacage.campaigns._simulated import Asked, Truth, gathered, simulate_share
+from seacage.campaigns._timetable import Timetable, reading_times
+from seacage.campaigns._weather import current_at_cage
+from seacage.conventions import InputError, Origin, Progress
+from seacage.records import FieldRecord, Record, TrueMeans
 
 _DAY = 86400.0
+_EXACT = "These are the sensors without their errors."
+FieldMethod = Literal["simulate", "settle"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -28,11 +35,25 @@ class VirtualField:
     record
         With noise, drift, gaps and outages: all that training may see.
     truth
-        The same sensors without error and without gaps, to score against.
+        The same sensors without error and outages, to score against.
+    means
+        What no sensor sees; None where the cage was settled.
     """
 
     record: FieldRecord
     truth: FieldRecord
+    means: TrueMeans | None = None
+
+    def write(self, folder: Path | str) -> None:
+        """Write the record, and in its folder ``truth`` the truth.
+
+        The record's ``field.json`` comes last: a folder that has it is whole.
+        """
+        folder = Path(folder)
+        self.truth.write(folder / "truth")
+        if self.means is not None:
+            self.means.write(folder / "truth")
+        self.record.write(folder)
 
 
 def virtual_field(
@@ -41,153 +62,223 @@ def virtual_field(
     *,
     hidden: Hidden,
     seed: int,
-    every_s: float = 60.0,
-    responses: str | Path | None = None,
+    method: FieldMethod = "simulate",
+    waves: Record | None = None,
+    events: Sequence[Event] = (),
+    every_s: float | None = None,
+    timetable: Timetable | None = None,
+    kept: str | Path | None = None,
     workers: int | None = None,
     progress: Progress | None = None,
 ) -> VirtualField:
     """Sensors on a cage that differs from its drawing, in a current that differs from the buoy's.
 
-    The cage answers at once: its equilibria are settled on a grid of currents and growths
-    and interpolated, with the error on the record's notes. Waves, depth profile and inertia
-    are left out. The buoy's stream passes through as it came.
+    Simulated, the cage moves in waves and in a current that changes with time and depth, under
+    growth. Settled, it answers at once: its equilibria are interpolated on a grid of currents
+    and growths, with the error on the record's notes; waves, depth profile and inertia are left
+    out, and the buoy's stream passes through as it came.
 
     Parameters
     ----------
     cage
         As drawn; its sensors are the ones simulated.
     buoy
-        What the buoy reported, generated or measured.
+        What the buoy measured, generated or real. Its waves are those at the cage if it
+        carries any.
     hidden
         How the truth differs.
     seed
-        Of noise and outages. The hidden cage does not depend on it.
+        Of weather, noise and outages. The hidden cage does not depend on it.
+    method
+        "simulate" takes hours of computing for weeks, "settle" minutes.
+    waves
+        Beside the buoy's current; None for the buoy's own, or none.
+    events
+        What goes wrong, and when.
     every_s
-        Time between readings [s].
-    responses
-        Folder that keeps the settled grid (about 500 equilibria) for the next call; None
-        settles it anew.
+        Time between readings [s]; None for 2 s simulated, 60 s settled.
+    timetable
+        How simulated time is cut; None for ``Timetable.over`` the buoy's record.
+    kept
+        Folder that keeps finished stretches, or the settled grid, for another call: after a
+        stop it goes on from them, to the same bits. None begins anew.
     workers
-        Processes; None for one per available core.
+        Processes; None for one per available core. The numbers do not depend on it.
     progress
-        Called as ("virtual field", done, total) in equilibria.
+        Called as ("virtual field", done, total), in simulated hours or in equilibria.
+
+    Raises
+    ------
+    InputError
+        A record too short, events that cannot be, ``kept`` of another field; waves, events or
+        a timetable for a settled field.
     """
-    rng, *sensor_rngs = np.random.default_rng(seed).spawn(1 + len(cage.sensor_names))
-    time = _times(buoy, every_s)
+    if method == "simulate":
+        asked = Asked.of(
+            cage,
+            buoy,
+            hidden=hidden,
+            seed=seed,
+            waves=waves,
+            events=events,
+            every_s=every_s,
+            timetable=timetable,
+        )
+        with _folder(kept) as folder:
+            stretches = simulate_share(asked, folder, workers=workers, progress=progress)
+            return _simulated(asked, gathered(asked, stretches))
+    if waves is not None or events or timetable is not None:
+        raise InputError(
+            "virtual_field: a settled field has no waves, no events and no timetable. "
+            'Leave them out, or take method="simulate".'
+        )
+    time = reading_times(buoy, 60.0 if every_s is None else every_s)
+    with _folder(kept) as folder:
+        answers, error = true_responses(
+            cage, hidden, store=folder, workers=workers, progress=progress
+        )
+    return _settled(cage, buoy, hidden, seed, time, answers, error)
+
+
+def virtual_field_share(
+    cage: Cage,
+    buoy: Record,
+    *,
+    hidden: Hidden,
+    seed: int,
+    kept: str | Path,
+    share: tuple[int, int],
+    waves: Record | None = None,
+    events: Sequence[Event] = (),
+    every_s: float | None = None,
+    timetable: Timetable | None = None,
+    workers: int | None = None,
+    progress: Progress | None = None,
+) -> None:
+    """Simulate every n-th stretch of a virtual field, on one of several machines perhaps.
+
+    ``virtual_field`` with the same words puts the field together, and simulates what is missing.
+
+    Parameters
+    ----------
+    cage, buoy, hidden, seed, waves, events, every_s, timetable, workers, progress
+        As for ``virtual_field``.
+    kept
+        Folder of the finished stretches.
+    share
+        Which share, from 0, and of how many.
+    """
+    asked = Asked.of(
+        cage,
+        buoy,
+        hidden=hidden,
+        seed=seed,
+        waves=waves,
+        events=events,
+        every_s=every_s,
+        timetable=timetable,
+    )
+    simulate_share(asked, Path(kept), share=share, workers=workers, progress=progress)
+
+
+@contextmanager
+def _folder(kept: str | Path | None) -> Generator[Path]:
+    if kept is not None:
+        yield Path(kept)
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        yield Path(folder)
+
+
+def _simulated(asked: Asked, truth: Truth) -> VirtualField:
+    """Give the truth to the sensors, and the buoy's word to the radio."""
+    cage, hidden, time = asked.cage, asked.hidden, asked.time
+    chance = np.random.default_rng([asked.seed, *b"sensors"])
+    radio, air, at_buoy, *own = chance.spawn(3 + len(cage.sensor_names))
+    silence = radio_silence(hidden, time, radio)
+    told = truth.told
+    pressure = air_pressure(hidden, time, air)[told]
+    head = truth.wave_head[told]
+    exact = _exact_sensors(cage, time[told], truth.readings(cage)[told])
+    seen = {
+        name: sensed(
+            sensor,
+            hidden,
+            rng,
+            wave_head=head[:, number] if number < head.shape[1] else None,
+            pressure=pressure,
+            silence=silence,
+            events=asked.events,
+        )
+        for number, ((name, sensor), rng) in enumerate(zip(exact.items(), own, strict=True))
+    }
+    record = FieldRecord(
+        cage=cage.name,
+        buoy=buoy_heard(asked.buoy, hidden, at_buoy, silence=silence, events=asked.events),
+        sensors=seen,
+        origin=Origin.VIRTUAL_FIELD,
+        hidden_sha256=hidden.sha256,
+        notes=_simulation_notes(asked, truth),
+    )
+    happened = tuple(f"Event: {event}." for event in asked.events)
+    return VirtualField(
+        record=record,
+        truth=replace(
+            record, buoy=asked.buoy, sensors=exact, notes=(*record.notes, *happened, _EXACT)
+        ),
+        means=truth.means,
+    )
+
+
+def _simulation_notes(asked: Asked, truth: Truth) -> tuple[str, ...]:
+    timetable = asked.timetable
+    notes = [
+        f"Virtual field, seed {asked.seed}, simulated in time, a reading every {asked.every:g} s."
+    ]
+    if timetable.one_in > 1:
+        notes.append(
+            f"Of {timetable.one_in} stretches of {timetable.stretch:g} s one was simulated, and "
+            "those in which the load shackles live; the others are gaps."
+        )
+    if truth.lost:
+        first = asked.time[truth.lost[0].first].astype("datetime64[s]")
+        notes.append(
+            f"{len(truth.lost)} of {len(asked.stretches)} stretches did not stay finite, the "
+            f"first at {first}Z; they are gaps."
+        )
+    return tuple(notes)
+
+
+def _settled(
+    cage: Cage,
+    buoy: Record,
+    hidden: Hidden,
+    seed: int,
+    time: Shaped[np.ndarray, " t"],
+    answers: Responses,
+    error: Float[np.ndarray, "case sensor"],
+) -> VirtualField:
+    """The current as it is, its answers, and what the sensors make of them."""
+    rng, *own = np.random.default_rng(seed).spawn(1 + len(cage.sensor_names))
     seconds = (time - buoy.time[0]) / np.timedelta64(1, "s")
     velocity = current_at_cage(buoy, seconds, hidden=hidden, rng=rng)
-    with nullcontext(responses) if responses else tempfile.TemporaryDirectory() as folder:
-        answers, error = true_responses(
-            cage, hidden, store=Path(folder), workers=workers, progress=progress
-        )
     exact = answers.at(velocity, hidden.fouling.grown(seconds / _DAY))
-    sensors = _exact_sensors(cage, time, exact)
     truth = FieldRecord(
         cage=cage.name,
         buoy=buoy,
-        sensors=sensors,
+        sensors=_exact_sensors(cage, time, exact),
         origin=Origin.VIRTUAL_FIELD,
         hidden_sha256=hidden.sha256,
         notes=(f"Virtual field, seed {seed}.", *_interpolation_notes(cage, error)),
     )
     seen = {
-        name: sensed(sensor, hidden, own)
-        for (name, sensor), own in zip(sensors.items(), sensor_rngs, strict=True)
+        name: sensed(sensor, hidden, rng)
+        for (name, sensor), rng in zip(truth.sensors.items(), own, strict=True)
     }
     return VirtualField(
         record=replace(truth, sensors=seen),
-        truth=replace(truth, notes=(*truth.notes, "These are the sensors without their errors.")),
+        truth=replace(truth, notes=(*truth.notes, _EXACT)),
     )
-
-
-def current_at_cage(
-    buoy: Record,
-    seconds: Float[np.ndarray, " t"],
-    *,
-    hidden: Hidden,
-    rng: np.random.Generator,
-) -> Float[np.ndarray, "t 2"]:
-    """The true current at the cage (east, north) [m/s].
-
-    What the buoy reported, less the buoy's own error, arrives later, slowed and turned by
-    its direction, with eddies that the buoy does not see.
-
-    Parameters
-    ----------
-    buoy
-        Its unusable rows are bridged by its neighbours.
-    seconds
-        Since the buoy's first time, in even steps [s].
-    """
-    there, reported = _reported(buoy)
-    speed = np.linalg.norm(reported, axis=1)
-    noise = hidden.buoy
-    at_buoy = towards(
-        np.maximum(speed - rng.normal(scale=noise.speed_sd_m_s, size=len(speed)), 0.0),
-        compass(reported) - rng.normal(scale=noise.direction_sd_deg, size=len(speed)),
-    )
-    way = hidden.current
-    now = _between(seconds, there, at_buoy)
-    lag = np.minimum(way.distance_m / np.maximum(np.linalg.norm(now, axis=1), 1e-6), way.lag_most_s)
-    arrived = _between(seconds - lag, there, at_buoy)
-    eddies = wandering(
-        rng,
-        len(seconds),
-        sd=way.residual_sd_m_s,
-        step_s=float(seconds[1] - seconds[0]),
-        memory_s=way.residual_memory_s,
-    )
-    return _sheltered(arrived, way) + eddies
-
-
-def _times(buoy: Record, every_s: float) -> Shaped[np.ndarray, " t"]:
-    """Even times over a buoy's record."""
-    span = float((buoy.time[-1] - buoy.time[0]) / np.timedelta64(1, "s")) if len(buoy) else 0.0
-    if not 0.0 < every_s < span:
-        raise InputError(
-            f"virtual_field: {buoy.stream} spans {span:g} s, which holds no two readings "
-            f"every {every_s:g} s. Give a longer record or a shorter step."
-        )
-    return np.arange(buoy.time[0], buoy.time[-1], np.timedelta64(round(every_s * 1e6), "us"))
-
-
-def _reported(
-    buoy: Record,
-) -> tuple[Float[np.ndarray, " row"], Float[np.ndarray, "row 2"]]:
-    """Times since the first row [s] and currents of the usable rows [m/s]."""
-    usable = buoy.usable("current_speed_m_s") & buoy.usable("current_to_deg")
-    if np.sum(usable) < 2:
-        raise InputError(
-            f"{buoy.stream}: {np.sum(usable)} usable currents in {len(buoy)} rows. "
-            "A virtual field needs two at least."
-        )
-    seconds = (buoy.time - buoy.time[0]) / np.timedelta64(1, "s")
-    velocity = towards(buoy.values["current_speed_m_s"], buoy.values["current_to_deg"])
-    return seconds[usable], velocity[usable]
-
-
-def _between(
-    at: Float[np.ndarray, " t"],
-    seconds: Float[np.ndarray, " row"],
-    velocity: Float[np.ndarray, "row 2"],
-) -> Float[np.ndarray, "t 2"]:
-    return np.column_stack([np.interp(at, seconds, component) for component in velocity.T])
-
-
-def _sheltered(velocity: Float[np.ndarray, "t 2"], way: HiddenCurrent) -> Float[np.ndarray, "t 2"]:
-    """Slowed and turned on its way, smoothly by direction."""
-    to = compass(velocity)
-    factor = _swing(to, way.factor_least, way.factor_most, way.factor_most_to_deg)
-    turn = _swing(to, way.turn_least_deg, way.turn_most_deg, way.turn_most_to_deg)
-    return towards(np.linalg.norm(velocity, axis=1) * factor, to + turn)
-
-
-def _swing(
-    to: Float[np.ndarray, " t"], least: float, most: float, most_to: float
-) -> Float[np.ndarray, " t"]:
-    """From least to most and back, once round the compass."""
-    share = (1.0 + np.cos(np.deg2rad(to - most_to))) / 2.0
-    return least + (most - least) * share
 
 
 def _exact_sensors(

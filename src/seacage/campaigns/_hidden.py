@@ -21,6 +21,7 @@ class HiddenNetting:
     """How the true net differs."""
 
     elastic_modulus_pa: float
+    refined: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -33,12 +34,23 @@ class HiddenFouling:
     boundary_depth_m: float
     half_grown_days: float
     growth_days: float
-    cleaned_day: float
+    cleaned_days: tuple[float, ...]
+    soft_drag_factor: float
 
     def grown(self, day: Float[np.ndarray, " t"]) -> Float[np.ndarray, " t"]:
         """Growth on a day of the record, 0 just cleaned, 1 grown out [-]."""
-        age = np.where(day < self.cleaned_day, day, day - self.cleaned_day)
+        begun = np.array([0.0, *sorted(self.cleaned_days)])
+        age = day - begun[np.searchsorted(begun[1:], day, side="right")]
         return 1.0 / (1.0 + np.exp(-(age - self.half_grown_days) / self.growth_days))
+
+    def added(
+        self, growth: float, depth: Float[np.ndarray, " panel"]
+    ) -> tuple[Float[np.ndarray, " panel"], Float[np.ndarray, " panel"]]:
+        """Solidity added at some depths [m], and the drag factor of what grew there [-]."""
+        shallow = self.shallow_least + growth * (self.shallow_most - self.shallow_least)
+        solidity = np.where(depth < self.boundary_depth_m, shallow, self.deep_share * shallow)
+        soft = 1.0 - (1.0 - self.soft_drag_factor) * growth
+        return solidity, np.full(len(depth), soft)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,6 +59,36 @@ class HiddenBridles:
 
     length_sd_m: float
     seed: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HiddenLines:
+    """How ropes stiffen under load."""
+
+    stiffer_from_strain: float
+    stiffer_share: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HiddenProfile:
+    """How the current changes with depth, and how that wanders."""
+
+    depth_m: tuple[float, ...]
+    factor: tuple[float, ...]
+    turned_deg: tuple[float, ...]
+    factor_sd: float
+    turned_sd_deg: float
+    memory_s: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HiddenWaves:
+    """What the waves at the cage are like."""
+
+    components: int
+    spreading: float
+    sheltered: float
+    hs_most_m: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -67,10 +109,11 @@ class HiddenCurrent:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HiddenBuoy:
-    """How far the buoy's numbers are off."""
+    """How far the buoy's numbers are off, and a reading that is wrong."""
 
     speed_sd_m_s: float
     direction_sd_deg: float
+    spike_m_s: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -91,6 +134,9 @@ class HiddenDepth:
     noise_sd_m: float
     drift_m_week: float
     spike_m: float
+    air_pressure_sd_hpa: float
+    air_pressure_memory_s: float
+    m_per_hpa: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -103,6 +149,8 @@ class HiddenOutages:
     spikes_per_week: float
     stuck_per_week: float
     stuck_mean_h: float
+    radio_losses_per_week: float
+    radio_loss_mean_h: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -116,7 +164,10 @@ class Hidden:
     netting: HiddenNetting
     fouling: HiddenFouling
     bridles: HiddenBridles
+    lines: HiddenLines
     current: HiddenCurrent
+    profile: HiddenProfile
+    waves: HiddenWaves
     buoy: HiddenBuoy
     shackle: HiddenShackle
     depth: HiddenDepth
@@ -145,15 +196,35 @@ class Hidden:
         """The cage as it truly is, its net grown by a share of the whole growth, 0 to 1."""
         least, most = self.fouling.shallow_least, self.fouling.shallow_most
         shallow = least + growth * (most - least)
+        return self._strung(cage).fouled(
+            shallow=shallow,
+            deep=self.fouling.deep_share * shallow,
+            boundary_depth=self.fouling.boundary_depth_m,
+        )
+
+    def refined_cage(self, cage: Cage) -> Cage:
+        """The true cage on a finer mesh, whose nodes include those drawn; nothing grows on it.
+
+        Ropes run on all of the new meridians, as strong together as those drawn.
+        """
+        times = self.netting.refined
+        drawn = np.array([*cage.mesh.ring_depths, cage.mesh.tip_depth])
+        between = np.arange(times) / times
+        depths = drawn[:-1, None] + np.diff(drawn)[:, None] * between
+        return self._strung(cage).altered(
+            mesh={"spokes": times * cage.spokes, "ring_depths_m": depths.ravel().tolist()},
+            ropes={
+                "axial_stiffness_n": cage.ropes.axial_stiffness / times,
+                "diameter_m": cage.ropes.diameter / math.sqrt(times),
+            },
+        )
+
+    def _strung(self, cage: Cage) -> Cage:
         rng = np.random.default_rng(self.bridles.seed)
         offset = rng.normal(scale=self.bridles.length_sd_m, size=cage.bridle_count)
         return cage.altered(
             netting={"elastic_modulus_pa": self.netting.elastic_modulus_pa},
             bridles={"length_offset_m": offset.tolist()},
-        ).fouled(
-            shallow=shallow,
-            deep=self.fouling.deep_share * shallow,
-            boundary_depth=self.fouling.boundary_depth_m,
         )
 
 

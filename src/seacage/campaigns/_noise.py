@@ -1,7 +1,5 @@
 """Noise that remembers."""
 
-from itertools import accumulate
-
 import numpy as np
 from jaxtyping import Float
 
@@ -26,11 +24,9 @@ def wandering(
     ----------
     Uhlenbeck and Ornstein (1930); its samples are an AR(1) series.
     """
+    from scipy.signal import lfilter
+
     kept = np.exp(-step_s / memory_s)
     shocks = rng.normal(scale=sd * np.sqrt(1.0 - kept**2), size=(steps, 2))
     shocks[0] = rng.normal(scale=sd, size=2)
-    walk = accumulate(
-        (shocks @ np.array([1.0, 1.0j])).tolist(), lambda last, shock: kept * last + shock
-    )
-    both = np.array(list(walk), dtype=np.complex128)
-    return np.column_stack([both.real, both.imag])
+    return np.asarray(lfilter([1.0], [1.0, -kept], shocks, axis=0))

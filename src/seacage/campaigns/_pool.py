@@ -6,7 +6,7 @@ import sys
 import threading
 import types
 from collections.abc import Callable, Generator, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from typing import Any, TypeVar
@@ -14,6 +14,9 @@ from typing import Any, TypeVar
 from seacage.conventions import SeacageError
 
 _ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+
+_LOOK_EVERY = 0.5
+"""Between two looks at how far the workers are [s]."""
 
 Task = TypeVar("Task")
 Answer = TypeVar("Answer")
@@ -27,7 +30,11 @@ def available_cores() -> int:
 
 
 def mapped(
-    work: Callable[[Task], Answer], tasks: Sequence[Task], *, workers: int
+    work: Callable[[Task], Answer],
+    tasks: Sequence[Task],
+    *,
+    workers: int,
+    heard: Callable[[float], None] | None = None,
 ) -> Generator[tuple[Task, Answer], None, None]:
     """Tasks with their answers, in the order in which they end.
 
@@ -42,19 +49,32 @@ def mapped(
         What to do.
     workers
         Processes at most.
+    heard
+        Called now and then, while an answer is waited for, with the sum of what the tasks say
+        by ``tell``.
     """
     workers = min(workers, len(tasks))
-    if workers <= 1:
-        yield from ((task, work(task)) for task in tasks)
-        return
     spawn = multiprocessing.get_context("spawn")
+    board = spawn.RawArray("d", max(len(tasks), 1))
+    if workers <= 1:
+        _PLACE.take(board, heard)
+        try:
+            yield from ((task, _at(number, work, task)) for number, task in enumerate(tasks))
+        finally:
+            _PLACE.leave()
+        return
     others = set(multiprocessing.active_children())
-    pool = ProcessPoolExecutor(workers, mp_context=spawn, initializer=_leave_with_parent)
+    pool = ProcessPoolExecutor(workers, spawn, initializer=_begin, initargs=(board,))
     try:
         with _clean_start():
-            futures = {pool.submit(work, task): task for task in tasks}
-        for future in as_completed(futures):
-            yield futures[future], future.result()
+            futures = {pool.submit(_at, at, work, task): task for at, task in enumerate(tasks)}
+        pending = set(futures)
+        while pending:
+            ended, pending = wait(pending, _LOOK_EVERY, FIRST_COMPLETED)
+            if heard is not None:
+                heard(sum(board))
+            for future in ended:
+                yield futures[future], future.result()
     except BrokenProcessPool as error:
         # A worker that began while the pool broke is waited for, but not ended, by the pool.
         for worker in set(multiprocessing.active_children()) - others:
@@ -65,6 +85,38 @@ def mapped(
         ) from error
     finally:
         pool.shutdown(cancel_futures=True)
+
+
+def tell(amount: float) -> None:
+    """Say, from within a task, how much of it is done, in whatever whoever listens counts."""
+    _PLACE.tell(amount)
+
+
+class _Place:
+    """Where the task of this process writes how far it is: each at its own number, unlocked."""
+
+    def __init__(self) -> None:
+        self.leave()
+
+    def leave(self) -> None:
+        self.number = 0
+        self.take([0.0])
+
+    def take(self, board: Any, heard: Callable[[float], None] | None = None) -> None:
+        self._board, self._heard = board, heard
+
+    def tell(self, amount: float) -> None:
+        self._board[self.number] = amount
+        if self._heard is not None:
+            self._heard(sum(self._board))
+
+
+_PLACE = _Place()
+
+
+def _at(number: int, work: Callable[[Task], Answer], task: Task) -> Answer:
+    _PLACE.number = number
+    return work(task)
 
 
 @contextmanager
@@ -120,8 +172,9 @@ def _clean_start() -> Iterator[None]:
                 os.environ[name] = environment[name]
 
 
-def _leave_with_parent() -> None:
+def _begin(board: Any) -> None:
     """End this worker when its parent is gone: killed, it could not say goodbye."""
+    _PLACE.take(board)
     threading.Thread(target=_await_parent, daemon=True).start()
 
 

@@ -1,102 +1,184 @@
-"""Virtual sensors: what is true, as imperfect instruments tell it."""
+"""Virtual sensors and the radio: what is true, as imperfect instruments tell it."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Float, Int, Shaped
 
+from seacage.campaigns._events import Event
 from seacage.campaigns._hidden import Hidden, HiddenDepth, HiddenOutages, HiddenShackle
+from seacage.campaigns._noise import wandering
+from seacage.campaigns._spells import Spells
 from seacage.records import Record, check_record
 
-_HOUR, _WEEK = 3600.0, 604800.0
+_WEEK = 604800.0
+_WEATHER_STEP = 600.0  # within which the air pressure hardly changes
 
-Times = Float[np.ndarray, " t"]
+Times = Shaped[np.ndarray, " t"]
+Values = Float[np.ndarray, " t"]
 
 
-def sensed(truth: Record, hidden: Hidden, rng: np.random.Generator) -> Record:
+def radio_silence(hidden: Hidden, time: Times, rng: np.random.Generator) -> Spells:
+    """When no stream is heard, between the first and the last of some times."""
+    outages = hidden.outages
+    return Spells.by_chance(
+        time, rng, per_week=outages.radio_losses_per_week, mean_h=outages.radio_loss_mean_h
+    )
+
+
+def air_pressure(hidden: Hidden, time: Times, rng: np.random.Generator) -> Values:
+    """How far the air's pressure is off its mean at some times, for all sensors alike [hPa]."""
+    errors, seconds = hidden.depth, _seconds(time)
+    grid = np.arange(0.0, seconds[-1] + 2.0 * _WEATHER_STEP, _WEATHER_STEP)
+    weather = wandering(
+        rng,
+        len(grid),
+        sd=errors.air_pressure_sd_hpa,
+        step_s=_WEATHER_STEP,
+        memory_s=errors.air_pressure_memory_s,
+    )
+    return np.interp(seconds, grid, weather[:, 0])
+
+
+def sensed(
+    truth: Record,
+    hidden: Hidden,
+    rng: np.random.Generator,
+    *,
+    wave_head: Values | None = None,
+    pressure: Values | None = None,
+    silence: Spells | None = None,
+    events: Sequence[Event] = (),
+) -> Record:
     """What a sensor made of the truth, quality flags included.
 
-    A shackle has a gain, a bias and noise, and lives in two windows; a depth sensor has
-    noise and drifts. Both get stuck, spike, lose single readings and fall silent.
+    A shackle has a gain, a bias and noise, and lives in its windows. A depth sensor takes
+    waves and weather for depth, has noise and drifts. Both get stuck, spike, lose single
+    readings and fall silent; when, does not hang on the step between readings.
 
     Parameters
     ----------
     truth
-        One error-free sensor, in even steps.
+        One error-free sensor; a depth is that below still water.
     hidden
         Sizes of the errors.
     rng
         Source of chance, this sensor's own.
+    wave_head
+        What the waves add to a depth sensor's pressure, as a depth [m]; None without waves.
+    pressure
+        Of the air, off its mean [hPa]; None for an even one. ``air_pressure`` makes it.
+    silence
+        When the radio is dead; None where it never is. ``radio_silence`` makes it.
+    events
+        Those that meet this sensor; others change nothing.
     """
     ((key, exact),) = truth.values.items()
-    seconds = (truth.time - truth.time[0]) / np.timedelta64(1, "s")
+    noise, faults = rng.spawn(2)
     if key == "tension_kn":
-        values = _loaded(exact, hidden.shackle, rng)
-        spike, alive = hidden.shackle.spike_kn, _in_windows(seconds, hidden.shackle)
+        values = _loaded(exact, hidden.shackle, noise)
+        size = hidden.shackle.spike_kn
+        alive = Spells.at_shares(truth.time, hidden.shackle.windows)
     else:
-        values = _sunk(exact, seconds, hidden.depth, rng)
-        spike, alive = hidden.depth.spike_m, np.ones(len(exact), bool)
-    values = _spiked(_stuck(values, seconds, hidden.outages, rng), seconds, spike, hidden, rng)
-    heard = alive & _heard(seconds, hidden.outages, rng)
-    return check_record(
-        replace(truth, time=truth.time[heard], values={key: values[heard]}, flags={})
+        values = _sunk(exact, _seconds(truth.time), hidden.depth, noise)
+        values += 0.0 if wave_head is None else wave_head
+        values += 0.0 if pressure is None else hidden.depth.m_per_hpa * pressure
+        size, alive = hidden.depth.spike_m, None
+    said = _met(replace(truth, values={key: values}, flags={}), events)
+    return _received(
+        said, truth.time, {key: size}, hidden.outages, faults, silence=silence, alive=alive
     )
 
 
-def _loaded(exact: Times, errors: HiddenShackle, rng: np.random.Generator) -> Times:
+def buoy_heard(
+    buoy: Record,
+    hidden: Hidden,
+    rng: np.random.Generator,
+    *,
+    silence: Spells | None = None,
+    events: Sequence[Event] = (),
+) -> Record:
+    """A buoy's record as it is received: its word, but for what goes wrong on the way.
+
+    It gets stuck, its speed spikes, single readings are lost, and it falls silent. It adds no
+    noise: the buoy's own is in its word.
+
+    Parameters
+    ----------
+    buoy
+        What it measured.
+    hidden, rng, silence, events
+        As of ``sensed``.
+    """
+    sizes = {"current_speed_m_s": hidden.buoy.spike_m_s}
+    said = _met(replace(buoy, flags={}), events)
+    return _received(said, buoy.time, sizes, hidden.outages, rng, silence=silence)
+
+
+def _seconds(time: Times) -> Values:
+    return (time - time[0]) / np.timedelta64(1, "s")
+
+
+def _met(said: Record, events: Sequence[Event]) -> Record:
+    for event in events:
+        said = event.applied_to(said)
+    return said
+
+
+def _loaded(exact: Values, errors: HiddenShackle, rng: np.random.Generator) -> Values:
     gain = 1.0 + errors.gain * rng.uniform(-1.0, 1.0)
     bias = errors.bias_kn * rng.uniform(-1.0, 1.0)
     return gain * exact + bias + rng.normal(scale=errors.noise_sd_kn, size=len(exact))
 
 
-def _in_windows(seconds: Times, errors: HiddenShackle) -> Bool[np.ndarray, " t"]:
-    alive = np.zeros(len(seconds), bool)
-    for share, hours in errors.windows:
-        start = share * seconds[-1]
-        alive |= (seconds >= start) & (seconds < start + hours * _HOUR)
-    return alive
-
-
-def _sunk(exact: Times, seconds: Times, errors: HiddenDepth, rng: np.random.Generator) -> Times:
+def _sunk(exact: Values, seconds: Values, errors: HiddenDepth, rng: np.random.Generator) -> Values:
     drift = rng.choice([-1.0, 1.0]) * errors.drift_m_week * seconds / _WEEK
     return exact + drift + rng.normal(scale=errors.noise_sd_m, size=len(exact))
 
 
-def _stuck(
-    values: Times, seconds: Times, outages: HiddenOutages, rng: np.random.Generator
-) -> Times:
-    """Now and then a sensor repeats its last value for a while."""
-    held = values.copy()
-    for span in _spans(seconds, outages.stuck_per_week, outages.stuck_mean_h, rng):
-        held[span] = values[span.start]
-    return held
+def _received(
+    said: Record,
+    all_times: Times,
+    spike_sizes: Mapping[str, float],
+    outages: HiddenOutages,
+    rng: np.random.Generator,
+    *,
+    silence: Spells | None,
+    alive: Spells | None = None,
+) -> Record:
+    """What arrives of a stream, with the flags it deserves.
+
+    Spells are drawn over all its times, not those that an event left, so that an event that
+    silences it moves no other fault.
+    """
+    sticking, spiking, losing = rng.spawn(3)
+    time, values = said.time, {key: column.copy() for key, column in said.values.items()}
+    stuck = Spells.by_chance(
+        all_times, sticking, per_week=outages.stuck_per_week, mean_h=outages.stuck_mean_h
+    )
+    for rows in stuck.rows(time):
+        for column in values.values():
+            column[rows] = column[rows.start]
+    spikes = Spells.by_chance(all_times, spiking, per_week=outages.spikes_per_week)
+    for key, size in spike_sizes.items():
+        _spike(values[key], np.searchsorted(time, spikes.start), size, spiking)
+    gaps = Spells.by_chance(
+        all_times, losing, per_week=outages.gaps_per_week, mean_h=outages.gap_mean_h
+    )
+    heard = (losing.uniform(size=len(time)) >= outages.lost_share) & ~gaps.cover(time)
+    if silence is not None:
+        heard &= ~silence.cover(time)
+    if alive is not None:
+        heard &= alive.cover(time)
+    values = {key: column[heard] for key, column in values.items()}
+    return check_record(replace(said, time=time[heard], values=values, flags={}))
 
 
-def _spiked(
-    values: Times, seconds: Times, size: float, hidden: Hidden, rng: np.random.Generator
-) -> Times:
-    """Single readings are far off."""
-    count = rng.poisson(hidden.outages.spikes_per_week * seconds[-1] / _WEEK)
-    at = rng.integers(len(values), size=count)
-    spiked = values.copy()
-    spiked[at] += size * rng.choice([-1.0, 1.0], size=count) * rng.uniform(0.7, 1.3, size=count)
-    return spiked
-
-
-def _heard(
-    seconds: Times, outages: HiddenOutages, rng: np.random.Generator
-) -> Bool[np.ndarray, " t"]:
-    """Readings that arrive: neither lost one by one nor in a gap."""
-    heard = rng.uniform(size=len(seconds)) >= outages.lost_share
-    for span in _spans(seconds, outages.gaps_per_week, outages.gap_mean_h, rng):
-        heard[span] = False
-    return heard
-
-
-def _spans(seconds: Times, per_week: float, mean_h: float, rng: np.random.Generator) -> list[slice]:
-    """Spans of rows that begin by chance and last for exponential times."""
-    count = rng.poisson(per_week * seconds[-1] / _WEEK)
-    starts = rng.uniform(0.0, seconds[-1], size=count)
-    ends = starts + rng.exponential(mean_h * _HOUR, size=count)
-    rows = np.searchsorted(seconds, [starts, ends])
-    return [slice(first, last) for first, last in rows.T if first < len(seconds)]
+def _spike(
+    column: Values, rows: Int[np.ndarray, " spike"], size: float, rng: np.random.Generator
+) -> None:
+    """Set single readings far off, in place."""
+    far = size * rng.choice([-1.0, 1.0], size=len(rows)) * rng.uniform(0.7, 1.3, size=len(rows))
+    there = rows < len(column)
+    column[rows[there]] += far[there]

@@ -30,7 +30,7 @@ def test_a_scheduler_without_workers_is_told_in_one_sentence(
 
     monkeypatch.setattr("seacage.campaigns._cluster._WORKER_S", 0.2)
     with (
-        LocalCluster(n_workers=0, dashboard_address=None, silence_logs=50) as cluster,
+        LocalCluster(n_workers=0, dashboard_address=":0", silence_logs=50) as cluster,
         pytest.raises(SeacageError, match=r"had no worker for 0\.2 s"),
     ):
         next(mapped_on_cluster(abs, [-1], address=cluster.scheduler_address))

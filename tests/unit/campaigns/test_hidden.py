@@ -2,6 +2,7 @@
 
 import hashlib
 import re
+from dataclasses import replace
 from importlib import resources
 from pathlib import Path
 
@@ -32,9 +33,9 @@ def test_one_changed_character_changes_the_hash(tmp_path: Path) -> None:
     [
         (TEXT.replace("growth_days", "grwth_days"), "'growth_days' is missing"),
         (TEXT + "colour = 3\n", "'colour' is unknown"),
-        (TEXT.replace("= 24.0", '= "late"'), "cleaned_day: 'late' is no finite number"),
-        (TEXT.replace("= 24.0", "= nan"), "cleaned_day: nan is no finite number"),
-        (re.sub(r"\[netting\]\n.*\n", "netting = 3\n", TEXT), "is unknown|is missing"),
+        (TEXT.replace("[24.0]", '["late"]'), "cleaned_days: 'late' is no finite number"),
+        (TEXT.replace("[24.0]", "[nan]"), "cleaned_days: nan is no finite number"),
+        (re.sub(r"\[netting\]\n.*\n.*\n", "netting = 3\n", TEXT), "is unknown|is missing"),
         (TEXT.replace('"loland"', '"lolland"'), "'lolland' is none of"),
         ("law = ", "as TOML"),
     ],
@@ -57,16 +58,37 @@ def test_no_room_that_learns_names_the_hidden_parameters() -> None:
 
 
 def test_fouling_grows_until_the_net_is_cleaned_and_again() -> None:
-    fouling = Hidden.read().fouling
+    fouling = replace(Hidden.read().fouling, cleaned_days=(24.0, 36.0))
     day = np.linspace(0.0, 48.0, 481)
     grown = fouling.grown(day)
-    before = day < fouling.cleaned_day
-    assert np.all(np.diff(grown[before]) > 0.0)
-    assert np.all(np.diff(grown[~before]) > 0.0)
-    assert grown[before][-1] > 0.9
-    assert grown[~before][0] < 0.1
+    for first, last in ((0.0, 24.0), (24.0, 36.0), (36.0, 48.0)):
+        part = grown[(day >= first) & (day < last)]
+        assert np.all(np.diff(part) > 0.0)
+        assert part[0] < 0.1
+    assert grown[day < 24.0][-1] > 0.9
     assert grown.min() >= 0.0
     assert grown.max() <= 1.0
+
+
+def test_growth_is_thicker_above_and_softer_than_a_net_as_solid() -> None:
+    fouling = Hidden.read().fouling
+    for growth, shallow, soft in ((0.0, 0.03, 1.0), (1.0, 0.10, 0.85)):
+        solidity, drag = fouling.added(growth, np.array([2.0, 20.0]))
+        np.testing.assert_allclose(solidity, [shallow, 0.6 * shallow])
+        np.testing.assert_allclose(drag, soft)
+
+
+def test_the_refined_cage_has_the_drawn_nodes_where_they_were() -> None:
+    hidden, drawn = Hidden.read(), Cage.named("ace")
+    fine = hidden.refined_cage(drawn)
+    assert fine.node_count == 20 * 64 + 1
+    ring, spoke = np.divmod(np.arange(drawn.node_count - 1), drawn.spokes)
+    same = np.append(fine.spokes * 2 * ring + 2 * spoke, fine.bottom_node)
+    np.testing.assert_allclose(
+        fine.design_position[same], drawn.design_position, atol=1e-9
+    )  # rounding
+    stiffness = [cage.spokes * cage.ropes.axial_stiffness for cage in (drawn, fine)]
+    assert stiffness[0] == pytest.approx(stiffness[1])
 
 
 def test_the_true_cage_is_grown_stiffer_and_uneven() -> None:

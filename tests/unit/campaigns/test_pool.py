@@ -14,7 +14,7 @@ import numpy as np  # noqa: F401  (brings the linear algebra whose threads are c
 import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from seacage.campaigns._pool import mapped, one_thread
+from seacage.campaigns._pool import mapped, one_thread, tell
 from seacage.conventions import SeacageError
 
 UNGUARDED = """
@@ -34,6 +34,17 @@ for task, answer in mapped(time.sleep, [0.1, 600, 600], workers=2):
 def test_answers_come_with_their_tasks() -> None:
     tasks = [-3, 4, -5]
     assert sorted(mapped(abs, tasks, workers=1)) == [(-5, 5), (-3, 3), (4, 4)]
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_tasks_say_how_far_they_are_while_they_work(workers: int) -> None:
+    heard: list[float] = []
+    answers = mapped(_slow_halves, [1.0, 2.0, 3.0], workers=workers, heard=heard.append)
+    assert len(list(answers)) == 3
+    assert heard == sorted(heard)
+    # while a task worked, half of it had been told
+    assert any(0.0 < amount < 6.0 for amount in heard)
+    assert heard[-1] <= 6.0
 
 
 def test_one_task_stays_in_this_process() -> None:
@@ -71,6 +82,8 @@ def test_a_worker_that_dies_is_told_in_one_sentence() -> None:
         list(mapped(os._exit, [1, 1], workers=2))
 
 
+# The executor's own thread may stumble over a process that is born as it counts the dead.
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
 @pytest.mark.parametrize("_time", range(4))  # a hang would need luck
 def test_a_worker_that_dies_as_it_begins_does_not_keep_the_others_waiting(_time: int) -> None:
     def kill_first() -> None:
@@ -122,3 +135,9 @@ def _alive(pid: int) -> bool:
         return " Z " not in Path(f"/proc/{pid}/stat").read_text()
     except FileNotFoundError:
         return False
+
+
+def _slow_halves(size: float) -> None:
+    tell(size / 2.0)
+    time.sleep(1.2)
+    tell(size)

@@ -1,12 +1,14 @@
 """Virtual sensors."""
 
 from dataclasses import replace
+from datetime import UTC, datetime
 
 import numpy as np
 import pytest
 
 from seacage.campaigns import Hidden
-from seacage.campaigns._sensors import sensed
+from seacage.campaigns._events import Event
+from seacage.campaigns._sensors import air_pressure, buoy_heard, radio_silence, sensed
 from seacage.conventions import Flag, Origin
 from seacage.records import Record
 
@@ -27,6 +29,16 @@ def truth(stream: str, key: str) -> Record:
     return Record(stream=stream, time=TIME, values={key: values}, origin=Origin.VIRTUAL_FIELD)
 
 
+BUOY = Record(
+    stream="buoy-1",
+    time=TIME,
+    values={
+        "current_speed_m_s": 0.5 + 0.3 * np.sin(SECONDS / 7117.0),
+        "current_to_deg": 180.0 + 90.0 * np.sin(SECONDS / 9001.0),
+        "hs_m": 1.0 + 0.5 * np.sin(SECONDS / 90001.0),
+    },
+    origin=Origin.VIRTUAL_FIELD,
+)
 DEPTH, TENSION = truth("depth-1", "depth_m"), truth("shackle-1", "tension_kn")
 
 
@@ -98,3 +110,82 @@ def test_chance_is_the_generators_alone() -> None:
     first, again, other = (sensed_tension(seed).values["tension_kn"] for seed in (1, 1, 2))
     np.testing.assert_array_equal(first, again)
     assert not np.array_equal(first, other)
+
+
+def test_a_depth_sensor_takes_waves_and_weather_for_depth() -> None:
+    head = 0.4 * np.sin(SECONDS / 7.0)
+    pressure = air_pressure(HIDDEN, TIME, np.random.default_rng(5))
+    said = sensed(DEPTH, CALM, np.random.default_rng(1), wave_head=head, pressure=pressure)
+    plain = sensed(DEPTH, CALM, np.random.default_rng(1))
+    np.testing.assert_allclose(
+        errors(said, DEPTH) - errors(plain, DEPTH), head + 0.01 * pressure, atol=1e-12
+    )  # rounding
+
+
+def test_the_air_pressure_is_a_weathers() -> None:
+    time = TIME[0] + np.arange(0, 4000 * 86400, 3600) * np.timedelta64(1, "s")
+    pressure = air_pressure(HIDDEN, time, np.random.default_rng(2))
+    # 4,000 days hold 1,300 memories: 10 hPa is known to 3 %, the correlation to 0.03.
+    assert np.std(pressure) == pytest.approx(10.0, rel=0.1)
+    after = np.corrcoef(pressure[:-72], pressure[72:])[0, 1]
+    assert after == pytest.approx(np.exp(-1.0), abs=0.1)
+
+
+def test_faults_come_at_the_same_times_whatever_the_step() -> None:
+    coarse = Record(
+        stream=DEPTH.stream,
+        time=DEPTH.time[::6],
+        values={"depth_m": DEPTH.values["depth_m"][::6]},
+        origin=DEPTH.origin,
+    )
+    fine, rare = (sensed(one, HIDDEN, np.random.default_rng(4)) for one in (DEPTH, coarse))
+    gaps = [
+        one.time[np.flatnonzero(np.diff(one.time) > np.timedelta64(65, "m"))]
+        for one in (fine, rare)
+    ]
+    assert len(gaps[0]) == len(gaps[1]) > 2
+    # Two steps of half an hour: the last reading before a gap may be lost by itself.
+    assert np.abs(gaps[0] - gaps[1]).max() <= np.timedelta64(60, "m")
+
+
+def test_a_dead_radio_silences_sensors_and_buoy_at_once() -> None:
+    silence = radio_silence(HIDDEN, TIME, np.random.default_rng(3))
+    dead = silence.cover(TIME)
+    # Two losses of half an hour a week are 0.6 % of the time on average.
+    assert 0.001 < dead.mean() < 0.03
+    depth = sensed(DEPTH, CALM, np.random.default_rng(1), silence=silence)
+    buoy = buoy_heard(BUOY, CALM, np.random.default_rng(1), silence=silence)
+    for heard in (depth, buoy):
+        np.testing.assert_array_equal(heard.time, TIME[~dead])
+
+
+def test_a_buoys_word_is_received_as_it_was_but_for_faults() -> None:
+    calm = buoy_heard(BUOY, CALM, np.random.default_rng(1))
+    rough = buoy_heard(BUOY, HIDDEN, np.random.default_rng(1))
+    np.testing.assert_array_equal(calm.time, BUOY.time)
+    for key, column in BUOY.values.items():
+        np.testing.assert_array_equal(calm.values[key], column)
+        same = rough.values[key] == column[np.isin(TIME, rough.time)]
+        assert 0.9 < same.mean() < 1.0
+    assert set(rough.values) == {"current_speed_m_s", "current_to_deg", "hs_m"}
+    assert 0.003 < 1.0 - len(rough) / len(BUOY) < 0.08
+
+
+def test_an_event_meets_its_stream_and_moves_no_other_fault() -> None:
+    at, until = datetime(2020, 2, 1, tzinfo=UTC), datetime(2020, 2, 2, tzinfo=UTC)
+    silent = Event(kind="silent", target="depth-1", at=at, until=until)
+    drifting = Event(kind="drift", target="depth-1", at=at, size=0.5)
+    calm, quiet, adrift = (
+        sensed(DEPTH, HIDDEN, np.random.default_rng(4), events=events)
+        for events in ((), (silent,), (drifting,))
+    )
+    assert not len(quiet.between(at, until))
+    before = calm.time < np.datetime64("2020-02-01")
+    for other in (quiet, adrift):
+        np.testing.assert_array_equal(
+            other.values["depth_m"][: before.sum()], calm.values["depth_m"][before]
+        )
+    moved = adrift.values["depth_m"] - calm.values["depth_m"]
+    days = (calm.time - np.datetime64("2020-02-01")) / np.timedelta64(1, "D")
+    # A stuck sensor holds its drift too, which half a percent of the rows are.
+    assert np.mean(np.isclose(moved, 0.5 * np.maximum(days, 0.0))) > 0.98

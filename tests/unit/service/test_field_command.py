@@ -1,58 +1,132 @@
-"""``seacage field`` on files that people bring."""
+"""``seacage field virtual``, with a formula in the simulator's place."""
 
 import json
-import os
+from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from follower import Follower
+from seacage.cage import Cage
+from seacage.records import FieldRecord, TrueMeans
 from seacage.service._cli import app
 
-pytest.importorskip("xarray")
+
+@pytest.fixture(autouse=True)
+def own_logs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Commands keep their hands off the process's logs: their stream closes with the test."""
+    monkeypatch.setattr("seacage.service._logs.begin_logs", lambda _: None)
 
 
-def run(*words):
-    return CliRunner().invoke(app, [os.fspath(word) for word in words])
+@pytest.fixture
+def follower(monkeypatch: pytest.MonkeyPatch) -> Follower:
+    fake = Follower()
+    monkeypatch.setattr("seacage.campaigns._stretches.follow", fake.follow)
+    return fake
 
 
-def test_a_new_file_is_inspected_and_only_imported_once_its_map_is_filled_in(tmp_path):
-    table, columns, out = tmp_path / "t.csv", tmp_path / "map.toml", tmp_path / "buoy-1.nc"
-    table.write_text("time,hs,temp\n2018-01-26T23:08:00Z,1.2,5\n")
-    told = run("field", "import", table, columns, "--inspect", "--json")
-    assert json.loads(told.stdout)["to_fill_in"] == 2
-    refused = run("field", "import", table, out, "--columns", columns)
-    assert refused.exit_code == 1
-    assert 'origin is still "?"' in refused.stderr
-    assert not out.exists()
-    columns.write_text(
-        columns.read_text().replace('origin = "?"', 'origin = "measured"').replace('"?"', '"m"')
+@pytest.fixture
+def words(tmp_path: Path) -> list[str]:
+    """Three hours of a small cage, in this process."""
+    mesh = {"ring_depths_m": [0.0, 7.0, 15.0, 23.0], "spokes": 16}
+    Cage.named("ace").altered(mesh=mesh).write(tmp_path / "small.toml")
+    cage = ["--cage", str(tmp_path / "small.toml"), "--workers", "1"]
+    return ["field", "virtual", str(tmp_path / "out"), *cage, "--days", "0.14"]
+
+
+def run(*words: str) -> Any:
+    return CliRunner().invoke(app, list(words), catch_exceptions=False)
+
+
+def test_a_field_is_made_with_its_truth_and_its_waves(
+    follower: Follower, words: list[str], tmp_path: Path
+) -> None:
+    result = run(*words, "--json")
+    assert result.exit_code == 0, result.stderr
+    said = json.loads(result.stdout)
+    assert said["origin"] == "virtual field"
+    assert said["streams"]["depth-1"] > 5000
+    record = FieldRecord.read(tmp_path / "out")
+    assert record.buoy.values.keys() >= {"current_speed_m_s", "hs_m"}
+    assert len(TrueMeans.read(tmp_path / "out" / "truth").time) == 18
+    # three hours, in as many lanes as may be
+    assert follower.starts == [600.0 * number for number in range(18)]
+
+
+def test_a_calm_sea_has_no_waves(follower: Follower, words: list[str], tmp_path: Path) -> None:
+    assert run(*words, "--calm").exit_code == 0
+    assert "hs_m" not in FieldRecord.read(tmp_path / "out").buoy.values
+
+
+def test_a_record_drives_the_field_in_its_first_days_with_its_own_waves(
+    follower: Follower, words: list[str], tmp_path: Path
+) -> None:
+    rows = [f"2018-01-26T{hour:02d}:{minute:02d}:00Z" for hour in range(9) for minute in (0, 30)]
+    (tmp_path / "buoy.csv").write_text(
+        "time,current_speed_m_s,current_to_deg,hs_m,tp_s,wave_from_deg\n"
+        + "".join(f"{time},0.4,80,1.5,6,240\n" for time in rows)
     )
-    assert run("field", "import", table, out, "--columns", columns).exit_code == 0
-    assert run("field", "import", table, columns, "--inspect").exit_code == 1
+    result = run(*words, "--record", str(tmp_path / "buoy.csv"))
+    assert result.exit_code == 0, result.stderr
+    truth = FieldRecord.read(tmp_path / "out" / "truth")
+    assert (
+        truth.buoy.time[[0, -1]].tolist()
+        == np.array(["2018-01-26T00:00", "2018-01-26T03:00"], "datetime64[us]").tolist()
+    )
+    np.testing.assert_array_equal(truth.buoy.values["hs_m"], 1.5)
 
 
-def test_a_foreign_netcdf_is_imported_by_options_alone(tmp_path, shared):
-    out = tmp_path / "adcp.nc"
-    words = ("field", "import", shared / "data" / "adcp_awac_snippet.nc", out)
-    assert "nothing says how its numbers were made" in run(*words, "--range-m", "5.4").stderr
-    given = ("--origin", "measured", "--zone=-07:00", "--range-m", "5.4", "--json")
-    streams = json.loads(run(*words, *given).stdout)["streams"]
-    assert streams["buoy-1"]["rows"] == 100
+def test_events_come_from_words_and_from_a_file(
+    follower: Follower, words: list[str], tmp_path: Path
+) -> None:
+    (tmp_path / "events.toml").write_text(
+        '[[event]]\nkind = "drift"\ntarget = "depth-2"\nat = 2020-01-18T02:00:00Z\n'
+    )
+    cut = "bridle-cut bridle-8 2020-01-18T01:30Z"
+    result = run(*words, "--event", cut, "--events", str(tmp_path / "events.toml"))
+    assert result.exit_code == 0, result.stderr
+    notes = FieldRecord.read(tmp_path / "out" / "truth").notes
+    assert [note.split()[1] for note in notes if note.startswith("Event")] == [
+        "bridle-cut",
+        "drift",
+    ]
 
 
-def test_options_of_netcdf_beside_a_tables_map_are_refused(tmp_path):
-    (tmp_path / "t.csv").write_text("a,b\n1,2\n")
-    words = ("field", "import", tmp_path / "t.csv", tmp_path / "o.nc", "--columns", "nora10_waves")
-    assert "are for NetCDF" in run(*words, "--range-m", "5.4").stderr
-    assert "no column is at a depth of 5 m" in run(*words, "--depth-m", "5").stderr
+def test_a_share_simulates_its_part_and_writes_no_record(
+    follower: Follower, words: list[str], tmp_path: Path
+) -> None:
+    assert run(*words, "--share", "1/2").exit_code == 0
+    assert follower.starts == [600.0 * number for number in range(1, 18, 2)]
+    assert not (tmp_path / "out" / "field.json").exists()
+    follower.calls.clear()
+    assert run(*words).exit_code == 0
+    assert follower.starts == [600.0 * number for number in range(0, 18, 2)]
 
 
-def test_a_check_writes_its_page_and_obeys_the_sites_limits(tmp_path):
-    pytest.importorskip("matplotlib")
-    table, page, limits = tmp_path / "t.csv", tmp_path / "quality.html", tmp_path / "limits.toml"
-    table.write_text("time,hs_m\n2018-01-26T23:08:00Z,3.2\n2018-01-26T23:28:00Z,3.1\n")
-    limits.write_text("[ranges.hs_m]\nsuspect = [0, 3]\n")
-    assert "2 good" in run("field", "check", table).stdout
-    told = run("field", "check", table, "--report", page, "--limits", limits)
-    assert "2 suspect" in told.stdout
-    assert "hs_m = 3.2 is outside [0, 3]" in page.read_text()
+@pytest.mark.parametrize(
+    ("more", "sentence"),
+    [
+        (["--event", "bridle-cut bridle-8 2021-01-01T00:00Z"], "not within the record"),
+        (["--event", "sinks cage-1 2020-01-18T01:00Z"], "sinks"),
+        (["--share", "5/2"], "Share 5 of 2 does not exist"),
+        (["--method", "settle", "--one-in", "8"], "are for --method simulate"),
+        (["--method", "settle", "--event", "drift depth-1 2020-01-18T01:00Z"], "no events"),
+    ],
+)
+def test_what_cannot_be_made_ends_with_1_and_one_sentence(
+    follower: Follower, words: list[str], more: list[str], sentence: str
+) -> None:
+    result = run(*words, *more)
+    assert result.exit_code == 1
+    assert result.stdout == ""
+    assert sentence in result.stderr
+    assert not follower.calls
+
+
+def test_a_folder_of_another_seed_is_refused(follower: Follower, words: list[str]) -> None:
+    assert run(*words).exit_code == 0
+    result = run(*words, "--seed", "1")
+    assert result.exit_code == 1
+    assert "stretches of a field with another seed and buoy record" in result.stderr

@@ -119,7 +119,7 @@ def run(
             asked,
             store,
             by=by,
-            share=_share(share),
+            share=read_share(share),
             workers=workers,
             cluster=cluster,
             progress=progress,
@@ -235,7 +235,8 @@ def _understood(words: list[str]) -> dict[str, Any]:
         return dict(asked.params)
 
 
-def _share(text: str | None) -> tuple[int, int]:
+def read_share(text: str | None) -> tuple[int, int]:
+    """Which share of how many, from I/N."""
     from seacage.conventions import InputError
 
     which, slash, shares = (text or "0/1").partition("/")

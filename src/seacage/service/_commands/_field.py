@@ -1,16 +1,18 @@
 """``seacage field``: records of buoys and sensors."""
 
-from datetime import datetime
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
+from seacage.service._commands._campaign import read_share
 from seacage.service._commands._settle import CageName, read_cage
 from seacage.service._console import Json, guarded, progress_bar, tell
 
 if TYPE_CHECKING:
-    from seacage.records import ColumnMap, Limits, NetcdfMap, Record
+    from seacage.campaigns import Event, Hidden
+    from seacage.records import ColumnMap, FieldRecord, Limits, NetcdfMap, Record
 
 group = typer.Typer(help="Records of buoys and sensors: make, read and check them.")
 
@@ -30,15 +32,45 @@ LimitsFile = Annotated[
 def virtual(
     out: Annotated[Path, typer.Argument(file_okay=False, help="Folder of the field record.")],
     *,
+    method: Annotated[
+        Literal["simulate", "settle"],
+        typer.Option(help="In time, in waves: hours. Or equilibria in the current: minutes."),
+    ] = "simulate",
     record: Annotated[
         Path | None,
         typer.Option(exists=True, dir_okay=False, help="A buoy's record; else one is generated."),
     ] = None,
-    days: Annotated[float, typer.Option(min=1.0, max=400.0, help="Of a generated current.")] = 50.0,
+    days: Annotated[
+        float | None,
+        typer.Option(
+            min=0.01, max=400.0, help="Its first days. [default: 48 generated, or the whole record]"
+        ),
+    ] = None,
     start: Annotated[
         datetime, typer.Option(formats=["%Y-%m-%d"], help="Of a generated current, UTC.")
     ] = datetime(2020, 1, 18),  # noqa: DTZ001
-    seed: Annotated[int, typer.Option(min=0, help="Of current, noise and outages.")] = 0,
+    waves: Annotated[
+        Path | None,
+        typer.Option(
+            exists=True,
+            dir_okay=False,
+            help="A record of waves, brought to the same days of the year and to a sheltered "
+            "site; else the buoy's own, else they are generated.",
+        ),
+    ] = None,
+    calm: Annotated[bool, typer.Option("--calm", help="No waves at all.")] = False,
+    one_in: Annotated[
+        int,
+        typer.Option(min=1, help="Simulate one hour in so many, and those of the shackles."),
+    ] = 1,
+    event: Annotated[
+        list[str] | None,
+        typer.Option(help='What goes wrong, as "bridle-cut bridle-8 2020-02-01T12:00Z".'),
+    ] = None,
+    events: Annotated[
+        Path | None, typer.Option(exists=True, dir_okay=False, help="A TOML file of events.")
+    ] = None,
+    seed: Annotated[int, typer.Option(min=0, help="Of weather, noise and outages.")] = 0,
     hidden: Annotated[
         Path | None,
         typer.Option(exists=True, dir_okay=False, help="Hidden parameters; else those shipped."),
@@ -47,43 +79,119 @@ def virtual(
     workers: Annotated[
         int | None, typer.Option(min=1, help="Processes. [default: one per core]")
     ] = None,
+    share: Annotated[
+        str | None,
+        typer.Option(
+            metavar="I/N",
+            help="Only simulate the I-th of N shares of the hours, from 0; others do the rest.",
+        ),
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """Make a virtual field: sensors on a cage that differs from its drawing.
 
     What they say is marked "virtual field" wherever it goes. OUT gets the record, OUT/truth
-    the same sensors without error.
+    what was true. Finished hours are on disk at once: stopped at any moment, the same command
+    goes on where it was, and the numbers do not depend on --workers or --share.
 
     Example:
-        seacage field virtual field --seed 1
+        seacage field virtual field --days 1.5 --seed 1
+        seacage field virtual field --record buoy.csv --waves nora10.csv --one-in 8
+        seacage field virtual field --event "net-hole ring-3/spoke-24 2020-02-01T12:00Z"
     """
-    from datetime import UTC
+    from seacage.campaigns import Hidden, Timetable, virtual_field, virtual_field_share
 
-    from seacage.campaigns import Hidden, generated_current, virtual_field
-    from seacage.records import read_record
-
-    begin = start.replace(tzinfo=UTC)
-    buoy = read_record(record) if record else generated_current(seed, start=begin, days=days)
+    truth = Hidden.read(hidden)
+    buoy = _buoy(record, days=days, start=start, seed=seed, calm=calm)
+    asked: dict[str, Any] = {"hidden": truth, "seed": seed, "workers": workers}
+    if method == "simulate":
+        asked |= {
+            "kept": out / "stretches",
+            "waves": None if calm else _waves(waves, buoy, truth, seed=seed),
+            "timetable": Timetable.over(buoy, one_in=one_in),
+        }
+    else:
+        asked |= {"method": method, "kept": out / "responses"}
+        _check_settled(waves=waves, calm=calm, one_in=one_in, share=share)
+    asked |= {"events": _events(event, events)}
     with progress_bar() as progress:
-        made = virtual_field(
-            read_cage(cage),
-            buoy,
-            hidden=Hidden.read(hidden),
-            seed=seed,
-            responses=out / "responses",
-            workers=workers,
-            progress=progress,
+        if share is not None:
+            virtual_field_share(
+                read_cage(cage), buoy, share=read_share(share), progress=progress, **asked
+            )
+            tell({"share": share}, as_json=as_json, rows=[("Simulated", f"share {share}")])
+            return
+        made = virtual_field(read_cage(cage), buoy, progress=progress, **asked)
+    made.write(out)
+    _tell_field(made.record, out, as_json=as_json)
+
+
+def _buoy(
+    path: Path | None, *, days: float | None, start: datetime, seed: int, calm: bool
+) -> "Record":
+    """The buoy's record: read or generated, its first days, and without waves for a calm sea."""
+    from dataclasses import replace
+
+    from seacage.campaigns import generated_current
+    from seacage.records import moment, read_record
+
+    if path is None:
+        return generated_current(seed, start=start.replace(tzinfo=UTC), days=days or 48.0)
+    record = read_record(path)
+    if days is not None and len(record):
+        first = moment(record.time[0])
+        record = record.between(first, first + timedelta(days=days))
+    if not calm:
+        return record
+    current = {key: column for key, column in record.values.items() if key.startswith("current")}
+    return replace(record, values=current)
+
+
+def _waves(path: Path | None, buoy: "Record", hidden: "Hidden", *, seed: int) -> "Record | None":
+    """Waves from a file, brought to the site; None for the buoy's own; else generated."""
+    from seacage.campaigns import generated_waves, waves_at_site
+    from seacage.records import moment, read_record
+
+    if path is not None:
+        factor, most = hidden.waves.sheltered, hidden.waves.hs_most_m
+        return waves_at_site(read_record(path), buoy.time, factor=factor, most=most)
+    if "hs_m" in buoy.values or not len(buoy):
+        return None
+    first, last = moment(buoy.time[0]), moment(buoy.time[-1])
+    days = (last - first) / timedelta(days=1) + 1.0  # to the last reading, and an hour on
+    return generated_waves(seed, start=first, days=days)
+
+
+def _events(words: list[str] | None, path: Path | None) -> "list[Event]":
+    from seacage.campaigns import Event, read_events
+
+    listed = read_events(path) if path else ()
+    return sorted([*listed, *map(Event.parse, words or ())], key=lambda event: event.at)
+
+
+def _check_settled(*, waves: Path | None, calm: bool, one_in: int, share: str | None) -> None:
+    from seacage.conventions import InputError
+
+    if waves is not None or calm or one_in > 1 or share is not None:
+        raise InputError(
+            "--waves, --calm, --one-in and --share are for --method simulate. Leave them out."
         )
-    made.record.write(out)
-    made.truth.write(out / "truth")
-    streams = [made.record.buoy, *made.record.sensors.values()]
+
+
+def _tell_field(record: "FieldRecord", out: Path, *, as_json: bool) -> None:
+    streams = [record.buoy, *record.sensors.values()]
     tell(
-        {"written": str(out), "origin": str(made.record.origin)}
-        | {"streams": {one.stream: len(one) for one in streams}},
+        {
+            "written": str(out),
+            "origin": str(record.origin),
+            "streams": {one.stream: len(one) for one in streams},
+            "notes": record.notes,
+        },
         as_json=as_json,
         rows=[
-            ("Written", f"{out} (virtual field)"),
+            ("Written", f"{out} ({record.origin})"),
             *((one.stream, f"{len(one)} readings") for one in streams),
+            *(("note", note) for note in record.notes),
         ],
     )
 
@@ -176,7 +284,7 @@ def _choice(
     from dataclasses import replace
 
     from seacage.conventions import InputError, Origin
-    from seacage.records import NetcdfMap, read_map
+    from seacage.records import NetcdfMap, known_map, read_map
 
     said: dict[str, Any] = {"time_zone": zone, "depth_m": depth_m, "range_m": range_m}
     given = {name: value for name, value in said.items() if value is not None}
@@ -184,7 +292,7 @@ def _choice(
         if origin not in {str(Origin.MEASURED), str(Origin.COMPUTED)}:
             raise InputError(f"--origin {origin!r} is unknown. Say measured or computed.")
         given |= {"origin": Origin(origin)}
-    chosen = read_map(columns) if columns else None
+    chosen = read_map(columns) if columns else known_map(path) if given else None
     if isinstance(chosen, NetcdfMap) or (chosen is None and given):
         return replace(chosen or NetcdfMap(title=path.name), **given)
     if chosen is not None and depth_m is not None and len(given) == 1:

@@ -1,0 +1,300 @@
+"""The truth of a virtual field that is simulated in time, put together from its stretches."""
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Self
+
+import numpy as np
+from jaxtyping import Bool, Float, Int, Shaped
+
+from seacage.cage import Cage
+from seacage.campaigns._events import Event, check_events
+from seacage.campaigns._hidden import Hidden
+from seacage.campaigns._spells import Spells
+from seacage.campaigns._stretches import Kept, TrueCage, simulate_stretches
+from seacage.campaigns._timetable import Stretch, Timetable, cut, reading_times
+from seacage.campaigns._waves import usable_waves
+from seacage.campaigns._weather import Weather, true_weather
+from seacage.conventions import InputError, Progress, SeacageError
+from seacage.records import Record, TrueMeans, check_record, instant
+
+_DAY, _HOUR = 86400.0, 3600.0
+_LOOKS = 10  # at the water during each mean
+_LATEST = np.timedelta64(6, "h")  # waves are held no longer
+_WAVES = ("hs_m", "tp_s", "wave_from_deg")
+
+
+# No slots: the weather is made once and kept.
+@dataclass(frozen=True, kw_only=True)
+class Asked:
+    """A virtual field that is asked for, and all that its truth depends on.
+
+    Parameters
+    ----------
+    cage, buoy, waves, hidden, seed, events, timetable
+        As for ``virtual_field``.
+    time
+        Of the readings, in even steps.
+    """
+
+    cage: Cage
+    buoy: Record
+    waves: Record | None
+    hidden: Hidden
+    seed: int
+    events: tuple[Event, ...]
+    timetable: Timetable
+    time: Shaped[np.ndarray, " reading"]
+
+    @classmethod
+    def of(
+        cls,
+        cage: Cage,
+        buoy: Record,
+        *,
+        hidden: Hidden,
+        seed: int,
+        waves: Record | None,
+        events: Sequence[Event],
+        every_s: float | None,
+        timetable: Timetable | None,
+    ) -> Self:
+        """A field that can be made, its waves on the buoy's record."""
+        time = reading_times(buoy, 2.0 if every_s is None else every_s)
+        check_events(events, cage, buoy, hidden)
+        if waves is None and buoy.values.keys() >= set(_WAVES):
+            waves = buoy
+        return cls(
+            cage=cage,
+            buoy=buoy if waves is None else _with_waves(buoy, waves),
+            waves=waves,
+            hidden=hidden,
+            seed=seed,
+            events=tuple(events),
+            timetable=timetable or Timetable.over(buoy),
+            time=time,
+        )
+
+    @property
+    def every(self) -> float:
+        """Between readings [s]."""
+        return float((self.time[1] - self.time[0]) / np.timedelta64(1, "s"))
+
+    @cached_property
+    def weather(self) -> Weather:
+        """What the cage meets."""
+        return true_weather(
+            self.buoy,
+            self.waves,
+            hidden=self.hidden,
+            seed=self.seed,
+            every_s=self.every,
+            depth=self.cage.site.water_depth,
+        )
+
+    @cached_property
+    def stretches(self) -> tuple[Stretch, ...]:
+        """Those to simulate."""
+        each, _ = self.timetable.readings(self.every)
+        damages = [(event, event.damage(self.cage)) for event in self.events]
+        return cut(
+            len(self.time),
+            each,
+            one_in=self.timetable.one_in,
+            always=Spells.at_shares(self.time, self.hidden.shackle.windows).cover(self.time),
+            breaks=[
+                (int(np.searchsorted(self.time, instant(event.at))), damage)
+                for event, damage in damages
+                if damage is not None
+            ],
+        )
+
+    @property
+    def identity(self) -> dict[str, object]:
+        """What no two fields with other stretches share. Which are simulated is none of it."""
+        cutting = {key: value for key, value in asdict(self.timetable).items() if key != "one_in"}
+        return {
+            "cage": self.cage.to_toml(),
+            "hidden_parameters_sha256": self.hidden.sha256,
+            "seed": self.seed,
+            "buoy_record_sha256": self.buoy.sha256,
+            "waves_sha256": None if self.waves is None else self.waves.sha256,
+            "damage": [str(one) for one in self.events if one.damage(self.cage) is not None],
+            "timetable": {"every": self.every, **cutting},
+        }
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Truth:
+    """What was true along a whole record; NaN where nothing was simulated.
+
+    Attributes
+    ----------
+    depth_position
+        Of the depth sensors [m].
+    bridle_tension
+        [N].
+    means
+        What no sensor sees.
+    wave_head
+        What the waves add to the pressure at each depth sensor [m].
+    lost
+        Stretches that left the finite numbers: gaps like those not simulated.
+    """
+
+    depth_position: Float[np.ndarray, "reading depth_sensor 3"]
+    bridle_tension: Float[np.ndarray, "reading bridle"]
+    wave_head: Float[np.ndarray, "reading depth_sensor"]
+    means: TrueMeans
+    lost: tuple[Stretch, ...]
+
+    @property
+    def told(self) -> Bool[np.ndarray, " reading"]:
+        """Where something is known."""
+        return np.isfinite(self.bridle_tension[:, 0])
+
+    def readings(self, cage: Cage) -> Float[np.ndarray, "reading sensor"]:
+        """What each sensor of the cage would say without error [m or kN]."""
+        bridles = [shackle.bridle for shackle in cage.shackles]
+        tension = self.bridle_tension[:, bridles].astype(np.float64) / 1e3
+        return np.hstack([-self.depth_position[..., 2].astype(np.float64), tension])
+
+
+def simulate_share(
+    asked: Asked,
+    folder: Path,
+    *,
+    share: tuple[int, int] = (0, 1),
+    workers: int | None = None,
+    progress: Progress | None = None,
+) -> Kept:
+    """Simulate every n-th stretch of a field into a folder, unless it is there.
+
+    Parameters
+    ----------
+    asked
+        The field.
+    folder
+        Keeps the stretches, each as soon as it is done.
+    share
+        Which share, from 0, and of how many.
+    workers
+        Processes; None for one per available core.
+    progress
+        Called as ("virtual field", done, total) in simulated hours, rounded.
+    """
+    kept = Kept.opened(folder, asked.identity)
+    which, shares = share
+    if not 0 <= which < shares:
+        raise InputError(f"Share {which} of {shares} does not exist. Shares count from 0.")
+    mine = asked.stretches[which::shares]
+    each = asked.timetable.stretch / _HOUR
+
+    def report(done: float) -> None:
+        if progress is not None:
+            progress("virtual field", round(done * each), round(len(mine) * each))
+
+    simulate_stretches(
+        mine,
+        kept,
+        asked.weather,
+        cage=TrueCage.of(asked.cage, asked.hidden),
+        timetable=asked.timetable,
+        every=asked.every,
+        workers=workers,
+        report=report,
+    )
+    return kept
+
+
+def gathered(asked: Asked, kept: Kept) -> Truth:
+    """The truth along the whole record, from its stretches.
+
+    Raises
+    ------
+    SeacageError
+        Not one stretch stayed finite.
+    """
+    readings, cage = len(asked.time), asked.cage
+    position = np.full((readings, len(cage.depth_sensors), 3), np.nan, np.float32)
+    head = np.full(position.shape[:2], np.nan, np.float32)
+    tension = np.full((readings, cage.bridle_count), np.nan, np.float32)
+    _, of_mean = asked.timetable.readings(asked.every)
+    lost: list[Stretch] = []
+    firsts: list[int] = []
+    shapes: list[Float[np.ndarray, "mean node 3"]] = []
+    for stretch in asked.stretches:
+        passed = kept.read(stretch)
+        if passed.lost:
+            lost.append(stretch)
+            continue
+        position[stretch.rows] = passed.watched_position[: stretch.readings]
+        head[stretch.rows] = passed.wave_head[: stretch.readings]
+        tension[stretch.rows] = passed.bridle_tension[: stretch.readings]
+        whole = stretch.readings // of_mean
+        firsts += [stretch.first + of_mean * number for number in range(whole)]
+        shapes.append(passed.shape[:whole])
+    if not shapes:
+        raise SeacageError(
+            f"The virtual field's cage broke all {len(lost)} simulations: its hidden parameters "
+            "are out of reach of the time step. Weaken them or give a shorter one."
+        )
+    return Truth(
+        depth_position=position,
+        bridle_tension=tension,
+        wave_head=head,
+        means=_means(asked, np.array(firsts), of_mean, np.concatenate(shapes), tension),
+        lost=tuple(lost),
+    )
+
+
+def _means(
+    asked: Asked,
+    first: Int[np.ndarray, " mean"],
+    of_mean: int,
+    shape: Float[np.ndarray, "mean node 3"],
+    tension: Float[np.ndarray, "reading bridle"],
+) -> TrueMeans:
+    each = tension[first[:, None] + np.arange(of_mean)].astype(np.float64)
+    length = asked.timetable.mean
+    begin = first * asked.every
+    looks = begin[:, None] + length * (np.arange(_LOOKS) + 0.5) / _LOOKS
+    weather = asked.weather
+    current = np.array([[weather.current(second) for second in row] for row in looks.tolist()])
+    middle = begin + length / 2.0
+    heights = [_height(weather, second) for second in middle.tolist()]
+    return TrueMeans(
+        time=asked.time[first],
+        length=length,
+        bridle_names=asked.cage.bridle_names,
+        level_depth=np.array(weather.level_depth),
+        bridle_tension_mean=each.mean(axis=1),
+        bridle_tension_std=each.std(axis=1),
+        bridle_tension_max=each.max(axis=1),
+        node_position=shape,
+        current_velocity=current.mean(axis=1),
+        hs=np.array(heights),
+        growth=asked.hidden.fouling.grown(middle / _DAY),
+    )
+
+
+def _with_waves(buoy: Record, waves: Record) -> Record:
+    """The buoy's record with the last waves at each of its times, all checked anew."""
+    time, values = usable_waves(waves)
+    if time[0] > buoy.time[0] or time[-1] + _LATEST < buoy.time[-1]:
+        first, last = (moment.astype("datetime64[m]") for moment in time[[0, -1]])
+        raise InputError(
+            f"{waves.stream}: its waves last from {first}Z to {last}Z and not as long as the "
+            f"current of {buoy.stream}. Give waves of the same days."
+        )
+    held = values[np.searchsorted(time, buoy.time, side="right") - 1]
+    columns = dict(zip(_WAVES, held.T, strict=True))
+    notes = tuple(dict.fromkeys(buoy.notes + waves.notes))
+    return check_record(replace(buoy, values={**buoy.values, **columns}, flags={}, notes=notes))
+
+
+def _height(weather: Weather, second: float) -> float:
+    """Significant wave height of the components [m]."""
+    return 4.0 * float(np.sqrt(np.sum(weather.waves(second).amplitude ** 2) / 2.0))

@@ -1,0 +1,82 @@
+"""Stretches of time in which something is the matter."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+from jaxtyping import Bool, Float, Shaped
+
+_HOUR, _WEEK = 3600.0, 604800.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Spells:
+    """Stretches of time, each from its start up to its end; they may overlap.
+
+    Parameters
+    ----------
+    start, end
+        UTC, datetime64[us].
+    """
+
+    start: Shaped[np.ndarray, " spell"]
+    end: Shaped[np.ndarray, " spell"]
+
+    @classmethod
+    def by_chance(
+        cls,
+        time: Shaped[np.ndarray, " t"],
+        rng: np.random.Generator,
+        *,
+        per_week: float,
+        mean_h: float = 0.0,
+    ) -> Self:
+        """Spells that begin by chance between some times and last for exponential times."""
+        span = _span(time)
+        start = rng.uniform(0.0, span, size=rng.poisson(per_week * span / _WEEK))
+        return cls._after(time[0], start, rng.exponential(mean_h * _HOUR, size=len(start)))
+
+    @classmethod
+    def at_shares(
+        cls, time: Shaped[np.ndarray, " t"], windows: Sequence[tuple[float, float]]
+    ) -> Self:
+        """Windows that begin at shares of the time between the first and the last of some times.
+
+        Parameters
+        ----------
+        windows
+            Share [-] and length [h] of each.
+        """
+        start = np.array([share * _span(time) for share, _ in windows])
+        length = np.array([hours * _HOUR for _, hours in windows])
+        return cls._after(time[0], start, length)
+
+    @classmethod
+    def _after(
+        cls,
+        first: np.datetime64,
+        start: Float[np.ndarray, " spell"],
+        length: Float[np.ndarray, " spell"],
+    ) -> Self:
+        begin, end = (
+            first + np.round(seconds * 1e6).astype("timedelta64[us]")
+            for seconds in (start, start + length)
+        )
+        return cls(start=begin, end=end)
+
+    def rows(self, time: Shaped[np.ndarray, " t"]) -> list[slice]:
+        """Rows of ascending times within each spell that has any."""
+        edges = np.searchsorted(time, np.array([self.start, self.end]))
+        return [slice(first, last) for first, last in edges.T.tolist() if first < last]
+
+    def cover(self, time: Shaped[np.ndarray, " t"]) -> Bool[np.ndarray, " t"]:
+        """Whether each of some ascending times lies in a spell."""
+        covered = np.zeros(len(time), dtype=bool)
+        for rows in self.rows(time):
+            covered[rows] = True
+        return covered
+
+
+def _span(time: Shaped[np.ndarray, " t"]) -> float:
+    return float((time[-1] - time[0]) / np.timedelta64(1, "s"))

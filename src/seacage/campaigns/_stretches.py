@@ -1,0 +1,304 @@
+"""Stretches of a virtual field: simulated side by side, and kept as they are done."""
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import closing
+from dataclasses import dataclass, fields
+from importlib.metadata import version
+from pathlib import Path
+from typing import Self
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.cage import Cage
+from seacage.campaigns._hidden import Hidden
+from seacage.campaigns._pool import available_cores, mapped, one_thread, tell
+from seacage.campaigns._timetable import Stretch, Timetable, side_by_side
+from seacage.campaigns._weather import Weather
+from seacage.conventions import InputError, RecordError
+from seacage.dynamics import Followed, MovingLaw, follow, simulation_lanes
+
+_MANIFEST = "manifest.json"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TrueCage:
+    """The cage that is followed, and where it is looked at.
+
+    Parameters
+    ----------
+    toml
+        Of the true cage, on its finer mesh.
+    refined
+        How much finer it is than drawn.
+    law, stiffening
+        Of netting and ropes, as ``follow`` takes them.
+    watched
+        The depth sensors' nodes.
+    drawn
+        Nodes of the drawing's mesh.
+    """
+
+    toml: str
+    refined: int
+    law: MovingLaw
+    stiffening: tuple[float, float]
+    watched: tuple[int, ...]
+    drawn: tuple[int, ...]
+
+    @classmethod
+    def of(cls, cage: Cage, hidden: Hidden) -> Self:
+        """What a drawn cage truly is."""
+        true, times = hidden.refined_cage(cage), hidden.netting.refined
+        rings, spokes = np.divmod(np.arange(cage.node_count - 1), cage.spokes)
+        drawn = np.append(true.spokes * times * rings + times * spokes, true.bottom_node)
+        return cls(
+            toml=true.to_toml(),
+            refined=times,
+            law=hidden.law,
+            stiffening=(hidden.lines.stiffer_from_strain, hidden.lines.stiffer_share),
+            watched=tuple(int(drawn[sensor.node]) for sensor in cage.depth_sensors),
+            drawn=tuple(drawn.tolist()),
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Group:
+    """Stretches side by side, and all that simulating them takes: it travels to a worker."""
+
+    stretches: tuple[Stretch, ...]
+    weathers: tuple[Weather, ...]
+    cage: TrueCage
+    timetable: Timetable
+    every: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Passed:
+    """What was seen of the cage along one stretch, in single precision.
+
+    Attributes
+    ----------
+    watched_position
+        [m].
+    wave_head
+        What the waves add to the pressure there, as a depth [m].
+    bridle_tension
+        [N].
+    shape
+        Mean positions of the drawn nodes [m].
+    lost
+        Whether the simulation left the finite numbers: then nothing of it counts.
+    """
+
+    watched_position: Float[np.ndarray, "reading watched 3"]
+    wave_head: Float[np.ndarray, "reading watched"]
+    bridle_tension: Float[np.ndarray, "reading bridle"]
+    shape: Float[np.ndarray, "mean node 3"]
+    lost: bool
+
+
+_NAMES = tuple(field.name for field in fields(Passed))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Kept:
+    """A folder of finished stretches of one field.
+
+    A file comes in whole or not at all; which were there before a stop, and how many workers
+    there are, makes no difference to any of them.
+    """
+
+    folder: Path
+
+    @classmethod
+    def opened(cls, folder: Path, identity: Mapping[str, object]) -> Self:
+        """A folder for the stretches of the field with this identity, made if it is not there.
+
+        Raises
+        ------
+        InputError
+            It holds those of another field.
+        """
+        asked = {"schema": "seacage stretches 1", "seacage": version("seacage"), **identity}
+        manifest = folder / _MANIFEST
+        if manifest.exists():
+            found = _manifest(manifest)
+            other = [_words(name) for name, value in asked.items() if found.get(name) != value]
+            if other:
+                raise InputError(
+                    f"{folder} holds stretches of a field with another {' and '.join(other)}. "
+                    "Give another folder, or delete this one."
+                )
+        else:
+            folder.mkdir(parents=True, exist_ok=True)
+            _write(manifest, (json.dumps(asked, indent=2) + "\n").encode())
+        return cls(folder=folder)
+
+    def has(self, stretch: Stretch) -> bool:
+        """Whether a stretch is done."""
+        return self._path(stretch).exists()
+
+    def keep(self, stretch: Stretch, passed: Passed) -> None:
+        """Put a stretch in its place."""
+        from safetensors.numpy import save
+
+        # safetensors takes the memory as it lies
+        arrays = {name: np.ascontiguousarray(getattr(passed, name)) for name in _NAMES}
+        _write(self._path(stretch), save(arrays))
+
+    def read(self, stretch: Stretch) -> Passed:
+        """Read a stretch that is done.
+
+        Raises
+        ------
+        RecordError
+            Its file is damaged.
+        """
+        from safetensors import SafetensorError
+        from safetensors.numpy import load
+
+        path = self._path(stretch)
+        try:
+            arrays = load(path.read_bytes())
+            position, head, tension, shape, lost = (arrays[name] for name in _NAMES)
+        except (OSError, KeyError, SafetensorError) as error:
+            raise RecordError(
+                f"{path}: this is no finished stretch ({error}). "
+                "Delete the file and run again: it will be simulated anew."
+            ) from error
+        return Passed(
+            watched_position=position,
+            wave_head=head,
+            bridle_tension=tension,
+            shape=shape,
+            lost=bool(lost),
+        )
+
+    def _path(self, stretch: Stretch) -> Path:
+        return self.folder / f"{stretch.first:08d}.safetensors"
+
+
+def simulate_stretches(
+    stretches: Sequence[Stretch],
+    kept: Kept,
+    weather: Weather,
+    *,
+    cage: TrueCage,
+    timetable: Timetable,
+    every: float,
+    workers: int | None,
+    report: Callable[[float], None],
+) -> None:
+    """Simulate those stretches that are not kept yet.
+
+    Parameters
+    ----------
+    stretches
+        All that are wanted.
+    kept
+        Where they go.
+    weather
+        Of the whole record.
+    cage, timetable, every
+        What is simulated and how, and the time between readings [s].
+    workers
+        Processes; None for one per available core.
+    report
+        Told how many stretches are done, first those there already; parts count.
+    """
+    missing = [one for one in stretches if not kept.has(one)]
+    groups = [
+        Group(
+            stretches=alike,
+            weathers=tuple(_met(weather, one, timetable, every) for one in alike),
+            cage=cage,
+            timetable=timetable,
+            every=every,
+        )
+        for alike in side_by_side(missing, simulation_lanes())
+    ]
+    there = len(stretches) - len(missing)
+    report(there)
+
+    def heard(since: float) -> None:
+        report(there + since)
+
+    running = mapped(passed, groups, workers=workers or available_cores(), heard=heard)
+    with closing(running) as finished:
+        for group, answers in finished:
+            for stretch, answer in zip(group.stretches, answers, strict=True):
+                kept.keep(stretch, answer)
+    report(len(stretches))
+
+
+def passed(group: Group) -> list[Passed]:
+    """Simulate a group of stretches."""
+    timetable = group.timetable
+    with one_thread():
+        followed = follow(
+            Cage.from_toml(group.cage.toml),
+            group.weathers,
+            [one.first * group.every for one in group.stretches],
+            duration=timetable.stretch,
+            every=group.every,
+            spin_up=timetable.spin_up,
+            time_step=timetable.time_step,
+            law=group.cage.law,
+            stiffening=group.cage.stiffening,
+            watched=group.cage.watched,
+            damaged=group.stretches[0].damaged,
+            breaking=group.stretches[0].breaking,
+            refined=group.cage.refined,
+            shape_nodes=group.cage.drawn,
+            shape_every=timetable.mean,
+            progress=lambda _, done, total: tell(len(group.stretches) * done / total),
+        )
+    return [_passed(followed, lane, weather) for lane, weather in enumerate(group.weathers)]
+
+
+def _met(weather: Weather, stretch: Stretch, timetable: Timetable, every: float) -> Weather:
+    """What a stretch meets, its spin-up included."""
+    start = stretch.first * every
+    return weather.between(start - timetable.spin_up, start + timetable.stretch)
+
+
+def _passed(followed: Followed, lane: int, weather: Weather) -> Passed:
+    seen = (followed.watched_position, followed.bridle_tension, followed.shape)
+    position, tension, shape = (each[lane] for each in seen)
+    finite = all(np.isfinite(each).all() for each in (position, tension, shape))
+    lost = not (finite and np.isnan(followed.lost_at[lane]))
+    head = np.zeros(position.shape[:2])
+    if not (lost or _calm(weather, followed.time[lane, 0])):
+        head = weather.pressure_head(followed.time[lane], position)
+    return Passed(
+        watched_position=position.astype(np.float32),
+        wave_head=head.astype(np.float32),
+        bridle_tension=tension.astype(np.float32),
+        shape=shape.astype(np.float32),
+        lost=lost,
+    )
+
+
+def _calm(weather: Weather, second: float) -> bool:
+    return not weather.waves(second).amplitude.size
+
+
+def _manifest(path: Path) -> dict[str, object]:
+    try:
+        return dict(json.loads(path.read_text("utf-8")))
+    except (OSError, ValueError, TypeError) as error:
+        raise RecordError(
+            f"{path}: this is no manifest of stretches ({error}). Delete its folder."
+        ) from error
+
+
+def _words(name: str) -> str:
+    return name.removesuffix("_sha256").replace("_", " ")
+
+
+def _write(path: Path, content: bytes) -> None:
+    unborn = path.with_name(f".{path.name}.unborn")
+    unborn.write_bytes(content)
+    unborn.replace(path)

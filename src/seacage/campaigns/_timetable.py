@@ -1,0 +1,177 @@
+"""How the time of a virtual field is cut into stretches, and which of them are simulated."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import groupby
+from typing import Self
+
+import numpy as np
+from jaxtyping import Bool, Shaped
+
+from seacage.conventions import InputError
+from seacage.dynamics import Damage, simulation_lanes
+from seacage.records import Record
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Timetable:
+    """How a virtual field is simulated: in stretches of time, many side by side.
+
+    Parameters
+    ----------
+    stretch
+        Length of each [s].
+    spin_up
+        Simulated before each, and not counted [s].
+    mean
+        Over which shape and tensions are averaged for the truth [s]; a stretch is a whole
+        number of it.
+    time_step
+        At most [s].
+    one_in
+        Simulate one stretch in so many; the rest are gaps. The first, the last, those that
+        begin with a damage and those in which the shackles live are always simulated.
+    """
+
+    stretch: float = 3600.0
+    spin_up: float = 300.0
+    mean: float = 600.0
+    time_step: float = 0.001
+    one_in: int = 1
+
+    def __post_init__(self) -> None:
+        if self.one_in < 1:
+            raise InputError(f"Timetable: one stretch in {self.one_in} is none. Give 1 or more.")
+        _times(self.stretch, self.mean, "stretch")
+
+    @classmethod
+    def over(cls, buoy: Record, *, one_in: int = 1) -> Self:
+        """Stretches of about an hour that fill the kernel's lanes.
+
+        A lane that stays empty costs as much as one that is simulated, so the record's time is
+        cut into nearly whole vectors of stretches, an even number of them: 36 hours into 31
+        stretches of 70 minutes, 48 days into hours.
+        """
+        plain, lanes = cls(one_in=one_in), 2 * simulation_lanes()
+        rounds = max(1, round(_span(buoy) / (lanes * plain.stretch)))
+        means = math.ceil(_span(buoy) / (rounds * lanes * plain.mean) - 1e-9)
+        return replace(plain, stretch=max(means, 1) * plain.mean)
+
+    def readings(self, every: float) -> tuple[int, int]:
+        """Readings of a stretch and of a mean.
+
+        Raises
+        ------
+        InputError
+            A mean that is no whole number of readings.
+        """
+        of_mean = _times(self.mean, every, "mean")
+        return of_mean * _times(self.stretch, self.mean, "stretch"), of_mean
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stretch:
+    """A stretch of time, simulated in one go.
+
+    Parameters
+    ----------
+    first
+        Number of its first reading in the record.
+    readings
+        How many count: fewer than were simulated where the record ends or something breaks.
+    damaged, breaking
+        What is broken when it begins, and what breaks then.
+    """
+
+    first: int
+    readings: int
+    damaged: tuple[Damage, ...] = ()
+    breaking: tuple[Damage, ...] = ()
+
+    @property
+    def rows(self) -> slice:
+        """Its readings in the record."""
+        return slice(self.first, self.first + self.readings)
+
+
+def reading_times(buoy: Record, every_s: float) -> Shaped[np.ndarray, " t"]:
+    """Even times over a buoy's record.
+
+    Raises
+    ------
+    InputError
+        A record or a step that leaves no two.
+    """
+    span = _span(buoy)
+    if not 0.0 < every_s < span:
+        raise InputError(
+            f"virtual_field: {buoy.stream} spans {span:g} s, which holds no two readings "
+            f"every {every_s:g} s. Give a longer record or a shorter step."
+        )
+    return np.arange(buoy.time[0], buoy.time[-1], np.timedelta64(round(every_s * 1e6), "us"))
+
+
+def cut(
+    readings: int,
+    each: int,
+    *,
+    one_in: int = 1,
+    always: Bool[np.ndarray, " reading"],
+    breaks: Sequence[tuple[int, Damage]] = (),
+) -> tuple[Stretch, ...]:
+    """The stretches to simulate, in order of time.
+
+    Parameters
+    ----------
+    readings
+        Of the record.
+    each
+        Readings of a stretch.
+    one_in
+        Take one stretch in so many, the first and the last in any case.
+    always
+        Readings whose stretches are taken in any case.
+    breaks
+        Readings before which something breaks; a new stretch begins there.
+    """
+    found: list[Stretch] = []
+    broken: tuple[Damage, ...] = ()
+    begins = sorted({0, *(at for at, _ in breaks)})
+    for begin, end in zip(begins, [*begins[1:], readings], strict=True):
+        breaking = tuple(damage for at, damage in breaks if at == begin)
+        for number, first in enumerate(range(begin, end, each)):
+            last = min(first + each, end)
+            if number % one_in and last < readings and not always[first:last].any():
+                continue
+            begun = number > 0
+            stretch = Stretch(
+                first=first,
+                readings=last - first,
+                damaged=broken + breaking if begun else broken,
+                breaking=() if begun else breaking,
+            )
+            found.append(stretch)
+        broken += breaking
+    return tuple(found)
+
+
+def side_by_side(stretches: Sequence[Stretch], most: int) -> list[tuple[Stretch, ...]]:
+    """Stretches in groups that can be simulated together: of one damage, and not too many."""
+    alike = groupby(stretches, key=lambda one: (one.damaged, one.breaking))
+    groups = [tuple(group) for _, group in alike]
+    return [group[at : at + most] for group in groups for at in range(0, len(group), most)]
+
+
+def _times(whole: float, part: float, name: str) -> int:
+    count = round(whole / part) if part > 0.0 and math.isfinite(whole) else 0
+    if count < 1 or not math.isclose(count * part, whole, rel_tol=1e-9):
+        raise InputError(
+            f"Timetable: {name} = {whole:g} s is no whole number of {part:g} s. Give a multiple."
+        )
+    return count
+
+
+def _span(buoy: Record) -> float:
+    """From a buoy's first word to its last [s]."""
+    return float((buoy.time[-1] - buoy.time[0]) / np.timedelta64(1, "s")) if len(buoy) else 0.0

@@ -1,0 +1,197 @@
+"""Records of waves: one made from weather and chance, and a real winter brought to a site."""
+
+import math
+from datetime import datetime
+
+import numpy as np
+from jaxtyping import Bool, Float, Shaped
+
+from seacage.campaigns._noise import wandering
+from seacage.conventions import GRAVITY, InputError, Origin, compass, towards
+from seacage.ocean import steepness_limit
+from seacage.records import Record, check_record, instant
+
+_HOUR = 3600.0
+
+_KEYS = ("hs_m", "tp_s", "wave_from_deg")
+
+_HEIGHT = (0.5, 0.58, 3.0)
+"""Median of Hs [m], spread of its logarithm, and the most [m]."""
+
+_PERIOD = (0.75, 0.41, 0.75)
+"""Tp / (5 sqrt(Hs)): its least, the median above that, and the spread of that one's logarithm.
+
+Near what the hindcast NORA10 has off Norway: median 1.16, 5 to 95 % from 0.84 to 2.16."""
+
+_SWELL = -0.6
+"""Correlation of height and relative period: a low sea is mostly swell."""
+
+_MEMORY = 40.0 * _HOUR
+"""Of the weather [s]."""
+
+_FROM = 250.0
+"""Where the weather comes from on average, clockwise from north [deg]."""
+
+_LONGEST_GAP = 12.0 * _HOUR
+"""In a winter that has it all [s]."""
+
+
+def generated_waves(
+    seed: int, *, start: datetime, days: float = 50.0, every_s: float = 3600.0
+) -> Record:
+    """A wave record of a sheltered site, with weather that passes over days.
+
+    Hs is log-normal about 0.5 m and 3 m at most; Tp is that of 5 sqrt(Hs) times a factor that
+    is log-normal above 0.75, larger in low seas; the direction wanders about west-southwest.
+    It is no place's climate: origin "virtual field".
+
+    Parameters
+    ----------
+    seed
+        Of the weather.
+    start
+        Time of the first value, with its zone.
+    days
+        Length of the record.
+    every_s
+        Time between values [s].
+    """
+    steps = int(days * 24.0 * _HOUR / every_s)
+    if steps < 1:
+        raise InputError(f"generated_waves: {days:g} days hold no step of {every_s:g} s.")
+    rng = np.random.default_rng([seed, *b"waves"])
+    high, own = wandering(rng, steps, sd=1.0, step_s=every_s, memory_s=_MEMORY).T
+    wind = wandering(rng, steps, sd=0.6, step_s=every_s, memory_s=_MEMORY)
+    middle, spread, most = _HEIGHT
+    hs = np.minimum(middle * np.exp(spread * high), most)
+    least, above, width = _PERIOD
+    long = _SWELL * high + math.sqrt(1.0 - _SWELL**2) * own
+    tp = 5.0 * np.sqrt(hs) * (least + above * np.exp(width * long))
+    record = Record(
+        stream="buoy-1",
+        time=instant(start) + (np.arange(steps) * every_s * 1e6).astype("timedelta64[us]"),
+        values={
+            "hs_m": np.round(hs, 2),
+            "tp_s": np.round(tp, 1),
+            "wave_from_deg": np.round(compass(wind + towards(np.array(1.0), np.array(_FROM)))),
+        },
+        origin=Origin.VIRTUAL_FIELD,
+        notes=(f"Generated waves: weather from seed {seed}.",),
+    )
+    return check_record(record)
+
+
+def waves_at_site(
+    record: Record, buoy_time: Shaped[np.ndarray, " t"], *, factor: float, most: float
+) -> Record:
+    """Bring a winter's waves to the dates of a buoy, and to a sheltered site.
+
+    The same days of the first year that has them all, lower by a factor; a sea that would then
+    be too steep to stand has its period lengthened. The notes say what was done.
+
+    Parameters
+    ----------
+    record
+        Of waves: height, period and direction.
+    buoy_time
+        Of the buoy's record, UTC.
+    factor
+        Heights at the site over those of the record [-].
+    most
+        Highest Hs at the site [m].
+
+    Raises
+    ------
+    InputError
+        A record without waves, or one that has those days in no year.
+    """
+    kept = _usable(record)
+    time = record.time[kept]
+    shift = _shift(time, buoy_time[0], buoy_time[-1], stream=record.stream)
+    first = np.searchsorted(time, buoy_time[0] - shift, side="right") - 1
+    last = np.searchsorted(time, buoy_time[-1] - shift) + 1
+    values = {key: record.values[key][kept][first:last] for key in _KEYS}
+    hs = np.minimum(values["hs_m"] * factor, most)
+    tp = np.maximum(values["tp_s"], shortest_period(hs))
+    begun = time[first].astype("datetime64[m]")
+    lengthened = np.mean(tp > values["tp_s"])
+    note = (
+        f"Waves of {record.stream} ({record.origin}) from {begun}Z on, moved by "
+        f"{shift / np.timedelta64(1, 'D'):g} days; heights times {factor:g}, {most:g} m at "
+        f"most; periods lengthened at {lengthened:.0%} of the times, where too steep."
+    )
+    return Record(
+        stream=record.stream,
+        time=time[first:last] + shift,
+        values={**values, "hs_m": hs, "tp_s": tp},
+        flags={key: record.flags[key][kept][first:last] for key in _KEYS},
+        origin=Origin.VIRTUAL_FIELD,
+        notes=(note,),
+    )
+
+
+def shortest_period(hs: Float[np.ndarray, " n"]) -> Float[np.ndarray, " n"]:
+    """Peak period of the steepest sea that stands, by its height [s]."""
+    period = np.arange(0.0, 40.0, 0.05)
+    limit = np.array([steepness_limit(each) for each in period])
+    steepest = np.sqrt(limit * GRAVITY / (2.0 * math.pi)) * period
+    # a thousandth longer, as the chords between the points are below the curve
+    return 1.001 * np.interp(np.sqrt(hs), steepest, period)
+
+
+def usable_waves(
+    record: Record,
+) -> tuple[Shaped[np.ndarray, " row"], Float[np.ndarray, "row 3"]]:
+    """Times of the rows whose waves may be used, with hs [m], tp [s] and wave_from [deg].
+
+    Raises
+    ------
+    InputError
+        A record that has no waves, or fewer than two that may be used.
+    """
+    kept = _usable(record)
+    if np.sum(kept) < 2:
+        raise InputError(
+            f"{record.stream}: {np.sum(kept)} usable waves in {len(record)} rows. "
+            "A virtual field needs two at least; leave the waves out for a calm sea."
+        )
+    return record.time[kept], np.column_stack([record.values[key][kept] for key in _KEYS])
+
+
+def _usable(record: Record) -> Bool[np.ndarray, " row"]:
+    missing = [key for key in _KEYS if key not in record.values]
+    if missing:
+        raise InputError(
+            f"{record.stream}: a record of waves has {', '.join(_KEYS)}; "
+            f"{', '.join(missing)} is missing. Give a record that has them all."
+        )
+    return np.logical_and.reduce([record.usable(key) for key in _KEYS])
+
+
+def _shift(
+    time: Shaped[np.ndarray, " row"],
+    start: np.datetime64,
+    end: np.datetime64,
+    *,
+    stream: str,
+) -> np.timedelta64:
+    """From the first year whose same days have no long gap to the days wanted."""
+    new_year = start.astype("datetime64[Y]")
+    years = np.unique(time.astype("datetime64[Y]"))
+    for year in years:
+        shift = new_year.astype(start.dtype) - year.astype(start.dtype)
+        if _has(time, start - shift, end - shift):
+            return shift
+    raise InputError(
+        f"{stream}: in none of {len(years)} years has it the waves from {start}Z to {end}Z, day "
+        f"by day without a gap over {_LONGEST_GAP / _HOUR:g} h. Give a longer record of waves."
+    )
+
+
+def _has(time: Shaped[np.ndarray, " row"], start: np.datetime64, end: np.datetime64) -> bool:
+    first = np.searchsorted(time, start, side="right") - 1
+    last = np.searchsorted(time, end)
+    if first < 0 or last == len(time):
+        return False
+    gaps = np.diff(time[first : last + 1]) / np.timedelta64(1, "s")
+    return bool(gaps.max(initial=0.0) <= _LONGEST_GAP)

@@ -1,0 +1,333 @@
+"""The true weather at the cage, of which the buoy knows a part."""
+
+import math
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.campaigns._even import Even
+from seacage.campaigns._hidden import Hidden, HiddenCurrent, HiddenFouling, HiddenProfile
+from seacage.campaigns._noise import wandering
+from seacage.campaigns._waves import shortest_period, usable_waves
+from seacage.conventions import InputError, compass, towards
+from seacage.dynamics import AbstractWeather
+from seacage.ocean import (
+    CurrentProfile,
+    SeaState,
+    WaveDraw,
+    Waves,
+    pressure_head,
+    turned_by,
+    wavenumber,
+)
+from seacage.records import Record
+
+_DAY = 86400.0
+
+_MINUTE = 60.0
+"""Step in which sea and profile change, and for which waves are good [s]."""
+
+_RIPPLE = 1.0
+"""Shortest peak period: a flat sea has a frequency too [s]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class TrueWaves:
+    """Waves that stay the same ones while their sea and the current change.
+
+    Parameters
+    ----------
+    draw
+        What chance decided about them.
+    sea
+        Hs [m], Tp [s] and, (east, north), where the waves go.
+    phase
+        Of each at the origin, never folded [rad].
+    depth
+        Of the water [m].
+    """
+
+    draw: WaveDraw
+    sea: Even
+    phase: Even
+    depth: float
+
+    def at(self, second: float) -> Waves:
+        """Waves whose time 0 is then, and that meet those of a minute later."""
+        hs, tp, east, north = self.sea.at(second).tolist()
+        came = float(compass(np.array([-east, -north])))
+        sea = SeaState(current_speed=0.0, current_to=0.0, hs=hs, tp=tp, wave_from=came)
+        now = self.phase.at(second, held=False)
+        later = self.phase.at(second + _MINUTE, held=False)
+        return replace(
+            self.draw.waves(sea, depth=self.depth),
+            angular_frequency=(now - later) / _MINUTE,
+            phase=now % (2.0 * math.pi),
+        )
+
+    def between(self, start: float, end: float) -> Self:
+        """What matters from one second to another."""
+        return replace(
+            self, sea=self.sea.between(start, end), phase=self.phase.between(start, end + _MINUTE)
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Weather(AbstractWeather):
+    """What truly passes the cage, in seconds since the buoy's first time.
+
+    Before that time and after the buoy's last, current and sea are as they are there.
+
+    Parameters
+    ----------
+    surface
+        Current near the surface, (east, north) [m/s].
+    swing
+        How far the profile's factor and turn are off, over their standard deviations [-].
+    sea
+        The waves.
+    profile, fouling
+        How the current changes with depth, and how growth adds solidity.
+    """
+
+    surface: Even
+    swing: Even
+    sea: TrueWaves
+    profile: HiddenProfile
+    fouling: HiddenFouling
+
+    @property
+    def level_depth(self) -> tuple[float, ...]:
+        """Of the current's levels [m]."""
+        return self.profile.depth_m
+
+    def current(self, second: float) -> Float[np.ndarray, "level 2"]:
+        """East and north at each level [m/s]."""
+        own = self.profile
+        deep = np.array(own.depth_m) / own.depth_m[-1]
+        stronger, turned = self.swing.at(second)
+        factor = own.factor + own.factor_sd * stronger * deep
+        turn = own.turned_deg + own.turned_sd_deg * turned * deep
+        profile = CurrentProfile(
+            depth=own.depth_m,
+            factor=tuple(np.maximum(factor, 0.0).tolist()),
+            turned=tuple(turn.tolist()),
+        )
+        return profile.velocity(self.surface.at(second))
+
+    def waves(self, second: float) -> Waves:
+        """For the minute from then on, whose time 0 is then."""
+        return self.sea.at(second)
+
+    def netting(
+        self, second: float, depth: Float[np.ndarray, " panel"]
+    ) -> tuple[Float[np.ndarray, " panel"], Float[np.ndarray, " panel"]]:
+        """Solidity added by growth at some depths [m], and the drag factor of what grew [-]."""
+        (growth,) = self.fouling.grown(np.array([max(second, 0.0) / _DAY]))
+        return self.fouling.added(float(growth), depth)
+
+    def pressure_head(
+        self, second: Float[np.ndarray, " t"], position: Float[np.ndarray, "t *sensor 3"]
+    ) -> Float[np.ndarray, "t *sensor"]:
+        """What the waves add to the pressure at places that move, as metres of water [m].
+
+        Parameters
+        ----------
+        second
+            Ascending [s].
+        position
+            Of one sensor or some at each time: east, north, up from still water [m].
+        """
+        time = second.reshape(len(second), *(1,) * (position.ndim - 2))
+        minutes, firsts = np.unique(np.floor(second / _MINUTE), return_index=True)
+        heads = [
+            pressure_head(self.waves(minute * _MINUTE), there, then - minute * _MINUTE)
+            for minute, there, then in zip(
+                minutes, np.split(position, firsts[1:]), np.split(time, firsts[1:]), strict=True
+            )
+        ]
+        return np.concatenate(heads)
+
+    def between(self, start: float, end: float) -> Self:
+        """What matters from one second to another, small enough to send about."""
+        return replace(
+            self,
+            surface=self.surface.between(start, end),
+            swing=self.swing.between(start, end),
+            sea=self.sea.between(start, end),
+        )
+
+
+def true_weather(
+    buoy: Record,
+    waves: Record | None,
+    *,
+    hidden: Hidden,
+    seed: int,
+    every_s: float = 2.0,
+    depth: float = 191.0,
+) -> Weather:
+    """The weather behind a buoy's record.
+
+    Nothing in it depends on which stretch of time is looked at later. The periods of the record
+    of waves count as seen from the moving water. Left out: what a current does to the waves'
+    heights, and the shelter of the neighbour cages from waves.
+
+    Parameters
+    ----------
+    buoy
+        Its current, with an error of its own.
+    waves
+        As they are at the cage; None for a calm sea. Unusable rows are bridged.
+    hidden
+        How the truth differs.
+    seed
+        Of the buoy's error, eddies, profile and waves, each with a stream of its own.
+    every_s
+        Between the current's samples [s].
+    depth
+        Of the water [m].
+
+    Raises
+    ------
+    InputError
+        Fewer than two usable currents or waves.
+    """
+    # the word keeps these streams apart from those of others who have the same seed
+    water, deep, surface = np.random.default_rng([seed, *b"weather"]).spawn(3)
+    span = float((buoy.time[-1] - buoy.time[0]) / np.timedelta64(1, "s"))
+    seconds = np.arange(math.ceil(span / every_s) + 1) * every_s
+    current = Even(step=every_s, values=current_at_cage(buoy, seconds, hidden=hidden, rng=water))
+    minutes = np.arange(math.ceil(span / _MINUTE) + 1) * _MINUTE
+    memory = hidden.profile.memory_s
+    swing = wandering(deep, len(minutes), sd=1.0, step_s=_MINUTE, memory_s=memory)
+    components = 0 if waves is None else hidden.waves.components
+    draw = WaveDraw.sample(surface, components=components, spreading=hidden.waves.spreading)
+    sea = _sea(waves, buoy.time[0], minutes)
+    phase = _phase(draw, sea, current.at(minutes[:-1] + _MINUTE / 2.0), depth)
+    return Weather(
+        surface=current,
+        swing=Even(step=_MINUTE, values=swing),
+        sea=TrueWaves(
+            draw=draw,
+            sea=Even(step=_MINUTE, values=sea),
+            phase=Even(step=_MINUTE, values=phase),
+            depth=depth,
+        ),
+        profile=hidden.profile,
+        fouling=hidden.fouling,
+    )
+
+
+def _sea(
+    waves: Record | None, start: np.datetime64, seconds: Float[np.ndarray, " row"]
+) -> Float[np.ndarray, "row 4"]:
+    """Hs [m], Tp [s] and where the waves go, (east, north), at some seconds after a time."""
+    if waves is None:
+        return np.tile([0.0, _RIPPLE, 0.0, 1.0], (len(seconds), 1))
+    time, rows = usable_waves(waves)
+    hs, tp, came = rows.T
+    known = np.column_stack([hs, tp, -towards(np.ones(len(came)), came)])
+    sea = _between(seconds, (time - start) / np.timedelta64(1, "s"), known)
+    sea[:, 1] = np.maximum(np.maximum(sea[:, 1], shortest_period(sea[:, 0])), _RIPPLE)
+    return sea
+
+
+def _phase(
+    draw: WaveDraw,
+    sea: Float[np.ndarray, "row 4"],
+    current: Float[np.ndarray, "step 2"],
+    depth: float,
+) -> Float[np.ndarray, "row wave"]:
+    """Phases at the origin, of waves that a current carries past [rad]."""
+    middle = (sea[1:] + sea[:-1]) / 2.0
+    frequency = 2.0 * math.pi / middle[:, 1:2] * draw.frequency
+    # by the compass, since a sea that turns right round passes through no direction at all
+    ahead = towards(np.ones(len(middle)), compass(middle[:, 2:]))
+    right = turned_by(ahead, np.array(math.pi / 2.0))
+    along, across = (np.sum(way * current, axis=1) for way in (ahead, right))
+    speed = np.outer(along, np.cos(draw.turned)) + np.outer(across, np.sin(draw.turned))
+    frequency += wavenumber(frequency, depth=depth) * speed
+    turned = np.cumsum(frequency * _MINUTE, axis=0)
+    return draw.phase - np.vstack([np.zeros_like(draw.phase), turned])
+
+
+def current_at_cage(
+    buoy: Record,
+    seconds: Float[np.ndarray, " t"],
+    *,
+    hidden: Hidden,
+    rng: np.random.Generator,
+) -> Float[np.ndarray, "t 2"]:
+    """The true current at the cage (east, north) [m/s].
+
+    What the buoy reported, less the buoy's own error, arrives later, slowed and turned by
+    its direction, with eddies that the buoy does not see.
+
+    Parameters
+    ----------
+    buoy
+        Its unusable rows are bridged by its neighbours.
+    seconds
+        Since the buoy's first time, in even steps [s].
+    """
+    there, reported = _reported(buoy)
+    speed = np.linalg.norm(reported, axis=1)
+    noise = hidden.buoy
+    at_buoy = towards(
+        np.maximum(speed - rng.normal(scale=noise.speed_sd_m_s, size=len(speed)), 0.0),
+        compass(reported) - rng.normal(scale=noise.direction_sd_deg, size=len(speed)),
+    )
+    way = hidden.current
+    now = _between(seconds, there, at_buoy)
+    lag = np.minimum(way.distance_m / np.maximum(np.linalg.norm(now, axis=1), 1e-6), way.lag_most_s)
+    arrived = _between(seconds - lag, there, at_buoy)
+    eddies = wandering(
+        rng,
+        len(seconds),
+        sd=way.residual_sd_m_s,
+        step_s=float(seconds[1] - seconds[0]),
+        memory_s=way.residual_memory_s,
+    )
+    return _sheltered(arrived, way) + eddies
+
+
+def _reported(
+    buoy: Record,
+) -> tuple[Float[np.ndarray, " row"], Float[np.ndarray, "row 2"]]:
+    """Times since the first row [s] and currents of the usable rows [m/s]."""
+    usable = buoy.usable("current_speed_m_s") & buoy.usable("current_to_deg")
+    if np.sum(usable) < 2:
+        raise InputError(
+            f"{buoy.stream}: {np.sum(usable)} usable currents in {len(buoy)} rows. "
+            "A virtual field needs two at least."
+        )
+    seconds = (buoy.time - buoy.time[0]) / np.timedelta64(1, "s")
+    velocity = towards(buoy.values["current_speed_m_s"], buoy.values["current_to_deg"])
+    return seconds[usable], velocity[usable]
+
+
+def _between(
+    at: Float[np.ndarray, " t"],
+    seconds: Float[np.ndarray, " row"],
+    values: Float[np.ndarray, "row value"],
+) -> Float[np.ndarray, "t value"]:
+    return np.column_stack([np.interp(at, seconds, column) for column in values.T])
+
+
+def _sheltered(velocity: Float[np.ndarray, "t 2"], way: HiddenCurrent) -> Float[np.ndarray, "t 2"]:
+    """Slowed and turned on its way, smoothly by direction."""
+    to = compass(velocity)
+    factor = _swing(to, way.factor_least, way.factor_most, way.factor_most_to_deg)
+    turn = _swing(to, way.turn_least_deg, way.turn_most_deg, way.turn_most_to_deg)
+    return towards(np.linalg.norm(velocity, axis=1) * factor, to + turn)
+
+
+def _swing(
+    to: Float[np.ndarray, " t"], least: float, most: float, most_to: float
+) -> Float[np.ndarray, " t"]:
+    """From least to most and back, once round the compass."""
+    share = (1.0 + np.cos(np.deg2rad(to - most_to))) / 2.0
+    return least + (most - least) * share
