@@ -3,7 +3,7 @@
 import subprocess
 import sys
 
-HEAVY = {"dask", "h5py", "jax", "matplotlib", "pandas", "xarray", "zarr"}
+HEAVY = {"dask", "h5py", "jax", "matplotlib", "pandas", "pyarrow", "xarray", "zarr"}
 
 
 def test_the_service_and_the_twin_load_nothing_that_a_barge_lacks() -> None:

@@ -2,6 +2,13 @@
 
 from seacage.figures._animation import Motion, write_animation
 from seacage.figures._comparison import Comparison, density_figure, series_figure
+from seacage.figures._fidelity import (
+    Panel,
+    fouling_figure,
+    gain_figure,
+    left_figure,
+    sector_figure,
+)
 from seacage.figures._net import net_figure
 from seacage.figures._quality import quality_figure
 from seacage.figures._rose import tension_rose_figure
@@ -14,10 +21,15 @@ __all__ = [
     "MEASURED_VOLUMES",
     "Comparison",
     "Motion",
+    "Panel",
     "VolumeMark",
     "density_figure",
+    "fouling_figure",
+    "gain_figure",
+    "left_figure",
     "net_figure",
     "quality_figure",
+    "sector_figure",
     "series_figure",
     "shape_error_figure",
     "states_figure",

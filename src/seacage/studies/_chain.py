@@ -1,6 +1,5 @@
 """The chain from sea states to a trained twin, in stages that outlive a stop."""
 
-import hashlib
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import cached_property
@@ -119,7 +118,7 @@ class Chain:
 
     def driven_by(self, record: Record) -> FieldRecord:
         """Virtual sensors under another buoy record: to look at, for no twin learns from them."""
-        settings = {**self._truth_settings, "record_sha256": _sha256(record)}
+        settings = {**self._truth_settings, "record_sha256": record.sha256}
         folder = self._stages.made(
             "display", settings, lambda begun: self._drive(begun, record), rooms=_FIELD
         )
@@ -176,7 +175,8 @@ class Chain:
             buoy,
             hidden=Hidden.read(),
             seed=self.recipe.seed,
-            responses=self.folder / f"responses-{code_sha256(_SIMULATION)[:10]}",
+            method="settle",
+            kept=self.folder / f"responses-{code_sha256(_SIMULATION)[:10]}",
             workers=self.workers,
             progress=self.progress,
         )
@@ -192,10 +192,3 @@ class Chain:
         )
         twin = train(self.cage, self.campaign, teaching, training=training, progress=self.progress)
         twin.write(begun / "twin")
-
-
-def _sha256(record: Record) -> str:
-    digest = hashlib.sha256(record.time.tobytes())
-    for key, column in sorted(record.values.items()):
-        digest.update(key.encode() + column.tobytes() + record.flags[key].tobytes())
-    return digest.hexdigest()

@@ -29,12 +29,12 @@ def marks(figure, label):
 
 
 def test_each_flag_has_its_mark_and_an_impossible_value_stands_at_the_edge():
-    figure = quality_figure(record({"depth_m": np.array([7.0, 7.1, 5000.0, np.nan, 12.0, 7.1])}))
+    figure = quality_figure(record({"depth_m": np.array([7.0, 7.1, 5000.0, np.nan, 10.2, 7.1])}))
     top = figure.axes[0].get_ylim()[1]
     assert top < 20.0
     assert marks(figure, "Fail").get_ydata().tolist() == [top]
     assert len(marks(figure, "Missing").get_ydata()) == 1
-    assert marks(figure, "Suspect").get_ydata().tolist() == [12.0, 7.1]
+    assert marks(figure, "Suspect").get_ydata().tolist() == [10.2, 7.1]
     assert "virtual field" in [text.get_text() for text in figure.axes[0].texts] + [
         figure.axes[0].get_title(loc="right")
     ]

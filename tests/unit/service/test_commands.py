@@ -24,6 +24,7 @@ COMMANDS = [
     "train",
     "score",
     "study paper",
+    "study fidelity",
     "serve",
     "replay",
     "token new",

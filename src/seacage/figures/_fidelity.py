@@ -1,0 +1,238 @@
+"""How far a low fidelity is from the truth: by direction, by what rescaling leaves, by growth."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.conventions import Origin
+from seacage.figures._style import (
+    AMOUNT,
+    FIT,
+    INK,
+    LOW,
+    MULTI,
+    MUTED,
+    SENSOR,
+    blank_figure,
+    head,
+    style,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_COLUMNS = 4
+_WIDTH = 10.0
+"""Of a whole page [inch]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Panel:
+    """One sensor's part of a figure; every number is computed elsewhere.
+
+    Parameters
+    ----------
+    sensor, quantity, unit
+        Its name, what is drawn and its unit, such as ``depth-1``, ``Rise``, ``m``.
+    """
+
+    sensor: str
+    quantity: str
+    unit: str
+
+
+def sector_figure(
+    panels: Sequence[Panel],
+    sectors: Sequence[str],
+    truth: Float[np.ndarray, "sensor sector"],
+    low: Float[np.ndarray, "sensor sector"],
+    *,
+    origin: Origin,
+) -> "Figure":
+    """Mean response of the truth and of the low fidelity by direction of the current.
+
+    Parameters
+    ----------
+    panels
+        One for each sensor.
+    sectors
+        Where the current goes.
+    truth, low
+        Means; NaN where there is none.
+    origin
+        Of the truth.
+    """
+    place = np.arange(len(sectors))
+    with style():
+        figure, axes = _grid(len(panels), 2.05)
+        for number, (one, panel) in enumerate(zip(axes, panels, strict=True)):
+            one.bar(place - 0.21, truth[number], 0.4, color=SENSOR, label="Truth")
+            one.bar(place + 0.21, low[number], 0.4, color=LOW, label="Low fidelity")
+            one.set_xticks(place, sectors)
+            one.grid(visible=False, axis="x")
+            _named(one, panel)
+        _explained(figure, axes[0], "Mean response by where the current goes", origin)
+    return figure
+
+
+def left_figure(
+    sensors: Sequence[str],
+    left: Float[np.ndarray, " sensor"],
+    *,
+    least: float,
+    origin: Origin,
+) -> "Figure":
+    """Share of the low fidelity's error that the best rescaling leaves, one bar each.
+
+    Parameters
+    ----------
+    sensors
+        Their names.
+    left
+        Shares [-].
+    least
+        What has to be left; drawn as a line [-].
+    origin
+        Of the truth.
+    """
+    place = np.arange(len(sensors))[::-1]
+    with style():
+        figure = blank_figure(6.6, 0.6 + 0.29 * len(sensors))
+        axes = figure.subplots()
+        axes.barh(place, np.ones(len(left)), 0.62, color=LOW, alpha=0.18, lw=0)
+        axes.barh(place, left, 0.62, color=LOW, lw=0)
+        for at, share in zip(place.tolist(), left.tolist(), strict=True):
+            axes.annotate(
+                f"{share:.0%}", (share, at), xytext=(4, 0), textcoords="offset points", va="center"
+            )
+        axes.axvline(least, color=FIT, lw=1.2)
+        axes.annotate(
+            f"{least:.0%} must be left",
+            (least, 0.0),
+            xycoords=("data", "axes fraction"),
+            xytext=(4, 3),
+            textcoords="offset points",
+            color=FIT,
+            fontsize=7.5,
+        )
+        axes.set_yticks(place, sensors)
+        axes.set_ylim(-1.1, len(sensors) - 0.5)
+        axes.set_xlim(0.0, max(1.0, 1.12 * float(np.max(left))))
+        axes.xaxis.set_major_formatter(lambda share, _: f"{share:.0%}")
+        axes.grid(visible=False, axis="y")
+        axes.set_xlabel("Share of the low fidelity's mean absolute error")
+        head(axes, "Left after the best rescaling and rotation", origin=origin)
+    return figure
+
+
+def gain_figure(
+    names: Sequence[str],
+    null: Float[np.ndarray, "row 3"],
+    real: Float[np.ndarray, "row 3"],
+    *,
+    origin: Origin,
+) -> "Figure":
+    """Gains with their intervals, where there is nothing to gain and where there is.
+
+    Parameters
+    ----------
+    names
+        Of the rows: sensors, and all of them together.
+    null, real
+        Mean and ends of the interval, as shares of the low fidelity's error [-].
+    origin
+        Of the readings.
+    """
+    place = np.arange(len(names))[::-1]
+    with style():
+        figure = blank_figure(_WIDTH, 0.75 + 0.29 * len(names))
+        left, right = figure.subplots(1, 2, sharey=True)
+        for axes, gain, colour in ((left, null, MUTED), (right, real, MULTI)):
+            axes.axvline(0.0, color=INK, lw=0.9)
+            axes.hlines(place, gain[:, 1], gain[:, 2], color=colour, lw=2.2)
+            axes.plot(gain[:, 0], place, "o", color=colour, mec="white", mew=0.8, ms=6.0)
+            axes.xaxis.set_major_formatter(lambda share, _: f"{share:.0%}")
+            axes.set_xlabel("Gain over the low fidelity's error")
+            axes.grid(visible=False, axis="y")
+        left.set_yticks(place, names)
+        left.set_ylim(-0.6, len(names) - 0.4)
+        _centred(left, null)
+        head(left, "Null case: the truth is the low fidelity")
+        head(right, "Real case", origin=origin)
+    return figure
+
+
+def fouling_figure(
+    panels: Sequence[Panel],
+    growth: Float[np.ndarray, " growth"],
+    speed: Float[np.ndarray, " speed"],
+    gap: Float[np.ndarray, "growth speed sensor"],
+    *,
+    met_growth: Float[np.ndarray, " bin"],
+    met_gap: Float[np.ndarray, "bin sensor"],
+    origin: Origin,
+) -> "Figure":
+    """Truth less low fidelity while the net grows.
+
+    Parameters
+    ----------
+    panels
+        One for each sensor.
+    growth, speed
+        At which both cages were settled [-] and [m/s].
+    gap
+        Between them.
+    met_growth, met_gap
+        Of the record, over whatever its currents were.
+    origin
+        Of the truth.
+    """
+    from matplotlib import colormaps
+
+    shades = colormaps[AMOUNT](np.linspace(0.15, 0.8, len(speed)))
+    with style():
+        figure, axes = _grid(len(panels), 2.0)
+        for number, (one, panel) in enumerate(zip(axes, panels, strict=True)):
+            one.axhline(0.0, color=MUTED, lw=0.8)
+            for shade, own, at in zip(shades, gap[..., number].T, speed.tolist(), strict=True):
+                one.plot(growth, own, "-", color=shade, lw=1.6, label=f"{at:g} m/s, settled")
+            one.plot(
+                met_growth, met_gap[:, number], "o", color=FIT, ms=4.0, label="The record's mean"
+            )
+            _named(one, panel)
+        for one in axes[-_COLUMNS:]:
+            one.set_xlabel("Growth [-]")
+        _explained(figure, axes[0], "Truth less low fidelity", origin)
+    return figure
+
+
+def _grid(count: int, height: float) -> "tuple[Figure, list[Axes]]":
+    """As many axes as asked for, in rows of four."""
+    columns = min(_COLUMNS, count)
+    rows = -(-count // columns)
+    figure = blank_figure(_WIDTH, height * rows + 0.45)
+    axes = figure.subplots(rows, columns, sharex=True, squeeze=False).ravel().tolist()
+    for empty in axes[count:]:
+        empty.set_visible(False)
+    return figure, axes[:count]
+
+
+def _named(axes: "Axes", panel: Panel) -> None:
+    axes.set_title(f"{panel.sensor}: {panel.quantity.lower()} [{panel.unit}]")
+    axes.tick_params(labelbottom=True)
+
+
+def _explained(figure: "Figure", axes: "Axes", title: str, origin: Origin) -> None:
+    """One line over all panels: what is drawn, in which colours, and where it comes from."""
+    handles, labels = axes.get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper right", ncols=len(handles))
+    figure.suptitle(f"{title} ({origin})", x=0.01, ha="left", fontsize=9.5, fontweight="bold")
+
+
+def _centred(axes: "Axes", gain: Float[np.ndarray, "row 3"]) -> None:
+    most = max(1.15 * float(np.max(np.abs(gain))), 0.01)
+    axes.set_xlim(-most, most)

@@ -1,0 +1,363 @@
+"""Ten-minute windows of a virtual field: what was true, and what the low fidelity answers there."""
+
+from dataclasses import dataclass, replace
+from datetime import datetime, timedelta
+from pathlib import Path
+from typing import Literal, Self
+
+import numpy as np
+from jaxtyping import Bool, Float, Shaped
+
+from seacage.cage import Cage
+from seacage.campaigns import Plan, run_campaign
+from seacage.conventions import GRAVITY, Flag, InputError, Progress, Result, compass
+from seacage.dynamics import Law, rest_shape
+from seacage.ocean import SeaState
+from seacage.records import (
+    CampaignRecord,
+    Clock,
+    FieldRecord,
+    Record,
+    aligned,
+    moment,
+    read_campaign,
+)
+from seacage.studies._sensor_scores import MEAN_S
+from seacage.studies._stages import Stages
+from seacage.twin import Metocean, Watch
+
+SIMULATION = ("conventions", "ocean", "cage", "dynamics", "campaigns")
+"""Rooms whose code makes the low fidelity's answers."""
+
+_EVERY_S = 2.0
+"""How often the buoy's held word is looked at for a window's mean [s]."""
+
+_HEARD = 0.9
+"""Share of a window in which the buoy's word must be sound and fresh."""
+
+_LONGEST_GAP_S = 200.0
+_LEAST = 40
+_STEEPEST = 1.0 / 15.0
+"""Of a sea up to 8 s; a measured pair of height and period may be steeper by its noise."""
+
+Responses = Float[np.ndarray, "window sensor"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Sensors:
+    """The sensors of a cage, and what their values mean as a response to the sea.
+
+    A depth sensor's response is how far it has risen above its place in still water [m], a
+    shackle's is the tension [kN]: both grow with the load.
+
+    Parameters
+    ----------
+    cage
+        As drawn.
+    rest
+        Depths in still water of the drawn cage [m]; zero for shackles.
+    """
+
+    cage: Cage
+    rest: Float[np.ndarray, " sensor"]
+
+    @classmethod
+    def of(cls, cage: Cage) -> Self:
+        """The sensors of a cage that comes to rest in still water."""
+        still = -rest_shape(cage)[:, 2]
+        depth = [still[sensor.node] for sensor in cage.depth_sensors]
+        return cls(cage=cage, rest=np.array([*depth, *(0.0 for _ in cage.shackles)]))
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """As in the cage's file, depth sensors first."""
+        return self.cage.sensor_names
+
+    @property
+    def units(self) -> tuple[str, ...]:
+        """Of the responses."""
+        return ("m",) * len(self.cage.depth_sensors) + ("kN",) * len(self.cage.shackles)
+
+    def response(
+        self, sensor: int, value: Float[np.ndarray, " reading"]
+    ) -> Float[np.ndarray, " reading"]:
+        """Response that a depth [m] or a tension [kN] stands for."""
+        return self.rest[sensor] - value if self.units[sensor] == "m" else value
+
+    def computed(
+        self, node_position: Float[np.ndarray, "case node 3"], tension: Float[np.ndarray, "case _"]
+    ) -> Float[np.ndarray, "case sensor"]:
+        """Responses of simulated cages [m] or [kN]."""
+        depth = -node_position[:, [sensor.node for sensor in self.cage.depth_sensors], 2]
+        pulled = tension[:, [shackle.bridle for shackle in self.cage.shackles]] / 1000.0
+        values = np.hstack([depth, pulled])
+        return np.column_stack([self.response(i, column) for i, column in enumerate(values.T)])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Windows:
+    """Some 10-minute windows of a field record.
+
+    Parameters
+    ----------
+    sensors
+        Whose responses these are.
+    end
+        Of each window, UTC, ascending.
+    water
+        Means of what the twin hears.
+    period
+        Peak period of the waves, 0 without [s].
+    surveyed
+        Windows that are spread evenly over the days; the others are those in which a shackle
+        lives besides.
+    truth, low
+        Mean responses without any sensor's error: of the virtual field, and of the low
+        fidelity in the water heard; NaN where it was not asked yet.
+    """
+
+    sensors: Sensors
+    end: Shaped[np.ndarray, " window"]
+    water: Metocean
+    period: Float[np.ndarray, " window"]
+    surveyed: Bool[np.ndarray, " window"]
+    truth: Responses
+    low: Responses
+
+    def __len__(self) -> int:
+        return len(self.end)
+
+    @property
+    def day(self) -> Shaped[np.ndarray, " window"]:
+        """The UTC day of each window."""
+        return (self.end - np.timedelta64(1, "us")).astype("datetime64[D]")
+
+    @property
+    def waves(self) -> bool:
+        """Whether the low fidelity is asked with waves."""
+        return bool(np.any(self.water.hs > 0.0))
+
+    def rows(self, chosen: Bool[np.ndarray, " window"]) -> Self:
+        """Some of the windows."""
+        return replace(
+            self,
+            end=self.end[chosen],
+            water=self.water.rows(chosen),
+            period=self.period[chosen],
+            surveyed=self.surveyed[chosen],
+            truth=self.truth[chosen],
+            low=self.low[chosen],
+        )
+
+    def seas(self) -> list[SeaState]:
+        """The water as sea states; a sea too steep to stand gets the shortest period it may."""
+        velocity, hs = self.water.current_velocity, self.water.hs
+        period = np.maximum(self.period, 1.001 * np.sqrt(2.0 * np.pi * hs / GRAVITY / _STEEPEST))
+        wave_from = compass(-self.water.wave_direction)
+        return [
+            SeaState(current_speed=speed, current_to=to, hs=h, tp=tp, wave_from=origin)
+            for speed, to, h, tp, origin in zip(
+                np.linalg.norm(velocity, axis=1).tolist(),
+                compass(velocity).tolist(),
+                hs.tolist(),
+                period.tolist(),
+                wave_from.tolist(),
+                strict=True,
+            )
+        ]
+
+
+def chosen_windows(
+    sensors: Sensors, field: FieldRecord, truth: FieldRecord, *, count: int, seed: int
+) -> Windows:
+    """Choose windows in which the truth is whole and the buoy was heard.
+
+    About ``count`` are drawn evenly over all days, one from each equal share of a day's
+    windows, so that no hour of the tide is preferred; besides all in which a shackle's own
+    readings are whole.
+
+    Raises
+    ------
+    InputError
+        There are too few such windows to say anything.
+    """
+    means = [window_means(truth.sensors[name], field) for name in sensors.names]
+    end = means[0][0]
+    responses = np.column_stack([sensors.response(i, mean) for i, (_, mean) in enumerate(means)])
+    water, period = heard(field.buoy, end)
+    whole = Windows(
+        sensors=sensors,
+        end=end,
+        water=water,
+        period=period,
+        surveyed=np.zeros(len(end), bool),
+        truth=responses,
+        low=np.full(responses.shape, np.nan),
+    )
+    known = [*responses.T, *water.current_velocity.T]
+    if whole.waves:
+        known += [water.hs, *water.wave_direction.T]
+    else:
+        whole = replace(whole, water=_flat(water))
+    usable = np.logical_and.reduce([np.isfinite(column) for column in known])
+    if np.sum(usable) < _LEAST:
+        raise InputError(
+            f"study fidelity: the field has {np.sum(usable)} ten-minute windows with a whole truth "
+            f"and a sound buoy, and needs {_LEAST}. Give a longer virtual field."
+        )
+    surveyed = _spread(whole.day, usable, count=count, seed=seed)
+    alive = np.zeros(len(end), bool)
+    for shackle in sensors.cage.shackles:
+        if shackle.name in field.sensors:
+            alive |= np.isfinite(window_means(field.sensors[shackle.name], field)[1])
+    return replace(whole, surveyed=surveyed).rows(surveyed | (alive & usable))
+
+
+def window_means(
+    record: Record, field: FieldRecord, *, length: float = MEAN_S
+) -> tuple[Shaped[np.ndarray, " window"], Float[np.ndarray, " window"]]:
+    """Ends of all windows of a field's time, and a sensor's mean over each that it has whole.
+
+    Parameters
+    ----------
+    record
+        One sensor; suspect values are left out.
+    field
+        Whose buoy says which time.
+    length
+        Of a window [s].
+    """
+    clock = Clock(
+        every_s=length, window_s=length, max_gap_s=min(length, _LONGEST_GAP_S), suspect=False
+    )
+    means = aligned(record, clock, start=_shortly_after(field, 0), end=_shortly_after(field, -1))
+    return means.time, next(iter(means.values.values()))
+
+
+def heard(
+    buoy: Record, end: Shaped[np.ndarray, " window"]
+) -> tuple[Metocean, Float[np.ndarray, " window"]]:
+    """Mean water over each window as a twin hears it: the buoy's last word, held.
+
+    Returns
+    -------
+    water
+        Vectors; NaN where the buoy was silent, stale or unsound for too long.
+    period
+        Peak period of the waves, 0 where there is none [s].
+    """
+    ago = np.arange(MEAN_S - _EVERY_S, -_EVERY_S / 2.0, -_EVERY_S)
+    asked = end[:, None] - (ago * 1e6).astype("timedelta64[us]")
+    word = np.searchsorted(buoy.time, asked, side="right") - 1
+    age = (asked - buoy.time[word]) / np.timedelta64(1, "s")
+    fresh = (word >= 0) & (age <= Watch().stale_after_s)
+    water = Metocean.of_record(buoy)
+    period = buoy.values.get("tp_s", np.zeros(len(buoy)))
+    said = np.column_stack([water.current_velocity, water.hs, water.wave_direction, period])
+    doubtful = [flags == Flag.SUSPECT for key, flags in buoy.flags.items() if "current" in key]
+    said[np.logical_or.reduce(doubtful), :2] = np.nan
+    means = np.column_stack([_mean(column[word], fresh) for column in said.T])
+    length = np.linalg.norm(means[:, 3:5], axis=1, keepdims=True)
+    water = Metocean(
+        current_velocity=means[:, :2],
+        hs=means[:, 2],
+        wave_direction=means[:, 3:5] / np.where(length > 0.0, length, np.nan),
+    )
+    return water, np.nan_to_num(means[:, 5])
+
+
+def answered(
+    windows: Windows, stages: Stages, *, seed: int, workers: int | None, progress: Progress
+) -> Windows:
+    """Windows with the low fidelity's answers; those in which it was lost are left out.
+
+    Simulated in time where there are waves, settled where there are none.
+    """
+    seas = windows.seas()
+    plan = Plan.listed(seas, duration=MEAN_S, seed=seed, name="windows")
+    record = kept_campaign(
+        "windows",
+        windows.sensors.cage,
+        plan,
+        stages,
+        method="simulate" if windows.waves else "settle",
+        workers=workers,
+        progress=progress,
+    )
+    low = windows.sensors.computed(record.node_position, record.bridle_tension)
+    return replace(windows, low=low).rows(record.result != Result.DIVERGED)
+
+
+def kept_campaign(
+    stage: str,
+    cage: Cage,
+    plan: Plan,
+    stages: Stages,
+    *,
+    method: Literal["simulate", "settle"] = "settle",
+    law: Law = "kristiansen-faltinsen",
+    workers: int | None,
+    progress: Progress,
+) -> CampaignRecord:
+    """A cage in the seas of a plan, kept on disk case by case."""
+
+    def make(begun: Path) -> None:
+        run_campaign(
+            cage,
+            plan,
+            begun / "campaign.zarr",
+            method=method,
+            law=law,
+            second_moment=False,
+            workers=workers,
+            progress=lambda _, done, total: progress(stage, done, total),
+        )
+
+    settings = {
+        "cage": cage.to_toml(),
+        "plan_sha256": plan.sha256,
+        "method": method,
+        "law": law,
+    }
+    return read_campaign(stages.made(stage, settings, make, rooms=SIMULATION) / "campaign.zarr")
+
+
+def _shortly_after(field: FieldRecord, row: int) -> datetime:
+    return moment(field.buoy.time[row]) + timedelta(microseconds=1)
+
+
+def _flat(water: Metocean) -> Metocean:
+    """The same current without waves, which nobody measured."""
+    return Metocean(
+        current_velocity=water.current_velocity,
+        hs=np.zeros(len(water)),
+        wave_direction=np.tile([0.0, 1.0], (len(water), 1)),
+    )
+
+
+def _mean(
+    value: Float[np.ndarray, "window asked"], fresh: Bool[np.ndarray, "window asked"]
+) -> Float[np.ndarray, " window"]:
+    sound = fresh & np.isfinite(value)
+    total = np.sum(np.where(sound, value, 0.0), axis=1)
+    count = np.sum(sound, axis=1)
+    return np.where(count >= _HEARD * value.shape[1], total / np.maximum(count, 1), np.nan)
+
+
+def _spread(
+    day: Shaped[np.ndarray, " window"],
+    usable: Bool[np.ndarray, " window"],
+    *,
+    count: int,
+    seed: int,
+) -> Bool[np.ndarray, " window"]:
+    """Mark windows: as many of each day, each from its own share of that day's."""
+    rng = np.random.default_rng(seed)
+    days = np.unique(day[usable])
+    each = max(1, round(count / len(days)))
+    marked = np.zeros(len(day), bool)
+    for one in days:
+        there = np.flatnonzero(usable & (day == one))
+        edges = np.linspace(0, len(there), min(each, len(there)) + 1)
+        marked[there[(edges[:-1] + rng.random(len(edges) - 1) * np.diff(edges)).astype(int)]] = True
+    return marked
