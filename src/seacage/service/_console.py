@@ -2,6 +2,7 @@
 
 import functools
 import json
+import os
 import re
 import sys
 import time
@@ -32,11 +33,12 @@ class Exit(IntEnum):
     USAGE = 2
     FAILED = 3
     INTERRUPTED = 130
+    UNHEARD = 141
 
 
 EXIT_CODES = (
     "Exit codes: 0 done; 1 the input was refused; 2 the command line was not understood; "
-    "3 the work failed; 130 interrupted."
+    "3 the work failed; 130 interrupted; 141 whoever read the output stopped reading."
 )
 
 
@@ -51,6 +53,10 @@ def guarded(command: Callable[P, R]) -> Callable[P, R]:
             return command(*args, **kwargs)
         except (InputError, ModelError) as error:
             raise stopped(str(error), Exit.REFUSED) from error
+        except BrokenPipeError as error:
+            # As after `seacage … | head`: nobody is left to tell, also not when Python ends.
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            raise typer.Exit(Exit.UNHEARD) from error
         except (SeacageError, OSError) as error:
             raise stopped(str(error), Exit.FAILED) from error
         except KeyboardInterrupt as error:

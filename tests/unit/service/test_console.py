@@ -1,4 +1,6 @@
 import math
+import subprocess
+import sys
 
 import pytest
 import typer
@@ -51,3 +53,27 @@ def test_a_log_gets_the_first_and_the_last_line_of_a_stage(capsys):
             progress("settle", done, 100)
     said = capsys.readouterr().err.splitlines()
     assert said == ["settle: 0 of 100", "settle: 100 of 100"]
+
+
+def test_a_reader_who_stops_reading_is_told_nothing():
+    script = (
+        "from seacage.service._console import guarded\n"
+        "import typer\n"
+        "@guarded\n"
+        "def many():\n"
+        "    for line in range(100_000):\n"
+        "        typer.echo(line)\n"
+        "try:\n"
+        "    many()\n"
+        "except typer.Exit as end:\n"
+        "    raise SystemExit(end.exit_code)\n"
+    )
+    with subprocess.Popen(
+        [sys.executable, "-c", script], stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    ) as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        process.stdout.readline()
+        process.stdout.close()
+        assert process.stderr.read() == b""
+    assert process.returncode == Exit.UNHEARD
