@@ -1,6 +1,7 @@
 """The cage: collar, netting, sinker tube, bridles and their node graph; and any structure."""
 
 from seacage.cage._cage import Cage, DepthSensor, Shackle
+from seacage.cage._nearest import Nearest
 from seacage.cage._parts import (
     AnchorLines,
     Bridles,
@@ -26,6 +27,7 @@ __all__ = [
     "Frame",
     "Line",
     "Mesh",
+    "Nearest",
     "Net",
     "Netting",
     "Point",

@@ -12,6 +12,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.cage import _graph
+from seacage.cage._nearest import Nearest, nearest_on_net
 from seacage.cage._parts import (
     AnchorLines,
     Bridles,
@@ -216,6 +217,12 @@ class Cage:
     ) -> Float[np.ndarray, "*case"]:
         """Volume that a shape of the net encloses, closed by the collar's polygon [m3]."""
         return enclosed_volume(node_position, self.panels, self.ring_nodes(0))
+
+    def nearest(
+        self, point: Float[np.ndarray, "point 3"], node_position: Float[np.ndarray, "node 3"]
+    ) -> Nearest:
+        """Where a shape of the net is nearest to each point [m]."""
+        return nearest_on_net(point, node_position, self.panels)
 
     # Mooring
 

@@ -1,0 +1,260 @@
+"""The point of a net that is nearest to a point in the water."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, fields
+from typing import Self
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+CHUNK = 1000
+"""Points answered at once: their distances to all triangles stay in the cache."""
+
+ROUNDING = 1e-6
+"""Of a distance that is the root of a difference of squares [m]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Nearest:
+    """Where a net is nearest to each of some points.
+
+    Parameters
+    ----------
+    distance
+        To the net [m].
+    position
+        The nearest point of the net [m].
+    normal
+        Of the net there, a unit vector out of the cage; across an edge of two panels it is
+        their mean, at a node that of all around it, weighed by their angles.
+    inside
+        Whether the point lies behind that normal: within the cage, near its net.
+    node, weight
+        The three nodes around the nearest point, and the shares of it that sum to 1.
+    """
+
+    distance: Float[np.ndarray, " point"]
+    position: Float[np.ndarray, "point 3"]
+    normal: Float[np.ndarray, "point 3"]
+    inside: Bool[np.ndarray, " point"]
+    node: Int[np.ndarray, "point 3"]
+    weight: Float[np.ndarray, "point 3"]
+
+    @classmethod
+    def joined(cls, parts: "list[Nearest]") -> Self:
+        """Of several sets of points, one after another."""
+        names = [field.name for field in fields(cls)]
+        return cls(
+            **{name: np.concatenate([getattr(one, name) for one in parts]) for name in names}
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Surface:
+    """Triangles, and what every question about them needs.
+
+    Parameters
+    ----------
+    corner
+        Nodes of each triangle, counter-clockwise seen from outside.
+    start, along
+        Of the three edges of each triangle: edge i leads from corner i to the next [m].
+    centre, radius
+        Of a ball around each triangle [m].
+    face, edge, vertex
+        Unit normals of the triangles, of their three edges, and of their three corners.
+    """
+
+    corner: Int[np.ndarray, "triangle 3"]
+    start: Float[np.ndarray, "triangle 3 3"]
+    along: Float[np.ndarray, "triangle 3 3"]
+    centre: Float[np.ndarray, "triangle 3"]
+    radius: Float[np.ndarray, " triangle"]
+    face: Float[np.ndarray, "triangle 3"]
+    edge: Float[np.ndarray, "triangle 3 3"]
+    vertex: Float[np.ndarray, "triangle 3 3"]
+
+    @classmethod
+    def of(
+        cls, node_position: Float[np.ndarray, "node 3"], corner: Int[np.ndarray, "triangle 3"]
+    ) -> Self:
+        start = node_position[corner]
+        along = np.roll(start, -1, axis=1) - start
+        centre = start.mean(axis=1)
+        face = _unit(np.cross(along[:, 0], along[:, 1]))
+        return cls(
+            corner=corner,
+            start=start,
+            along=along,
+            centre=centre,
+            radius=np.linalg.norm(start - centre[:, None], axis=2).max(axis=1),
+            face=face,
+            edge=_edge_normals(corner, face),
+            vertex=_vertex_normals(corner, along, face, nodes=len(node_position)),
+        )
+
+
+def nearest_on_net(
+    point: Float[np.ndarray, "point 3"],
+    node_position: Float[np.ndarray, "node 3"],
+    panels: Int[np.ndarray, "panel 4"],
+) -> Nearest:
+    """Where a net is nearest to each point.
+
+    The net is taken for flat triangles, two to a panel, cut from the panel's first corner to
+    its third; where a panel is warped the other cut lies up to half its warp beside. Twines
+    have no thickness, and a net has no top: whoever is above the collar is near its edge.
+
+    Parameters
+    ----------
+    point
+        [m]
+    node_position
+        One shape of the net [m].
+    panels
+        Corners counter-clockwise seen from outside; a triangle repeats its last.
+
+    References
+    ----------
+    Baerentzen & Aanaes (2005), "Signed distance computation using the angle weighted
+    pseudonormal", for what is inside.
+    """
+    surface = _Surface.of(node_position, _triangles(panels))
+    parts = [_nearest(point[rows], surface) for rows in _chunks(len(point))]
+    return Nearest.joined(parts)
+
+
+def _chunks(count: int) -> Iterator[slice]:
+    return (slice(start, start + CHUNK) for start in range(0, max(count, 1), CHUNK))
+
+
+def _nearest(point: Float[np.ndarray, "point 3"], surface: _Surface) -> Nearest:
+    to_ball = point @ (-2.0 * surface.centre.T)
+    to_ball += np.sum(point**2, axis=1)[:, None]
+    to_ball += np.sum(surface.centre**2, axis=1)
+    np.sqrt(np.maximum(to_ball, 0.0, out=to_ball), out=to_ball)
+    to_ball -= surface.radius
+    # No triangle whose ball is farther than the likeliest one itself can be nearest.
+    likeliest = np.argmin(to_ball, axis=1)
+    bound = _Touch.of(point, likeliest, surface).distance + ROUNDING
+    which, triangle = np.nonzero(to_ball <= bound[:, None])
+    touch = _Touch.of(point[which], triangle, surface)
+    begin = np.searchsorted(which, np.arange(len(point)))
+    least = np.minimum.reduceat(touch.distance, begin) if len(point) else touch.distance
+    first = np.flatnonzero(touch.distance == least[which])
+    first = first[np.unique(which[first], return_index=True)[1]]
+    return touch.rows(first).answer(point, surface)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Touch:
+    """Where one triangle is nearest to one point: ``spot`` 0-2 an edge, 3-5 a corner, 6 within."""
+
+    triangle: Int[np.ndarray, " pair"]
+    position: Float[np.ndarray, "pair 3"]
+    distance: Float[np.ndarray, " pair"]
+    weight: Float[np.ndarray, "pair 3"]
+    spot: Int[np.ndarray, " pair"]
+
+    @classmethod
+    def of(
+        cls,
+        point: Float[np.ndarray, "pair 3"],
+        triangle: Int[np.ndarray, " pair"],
+        surface: _Surface,
+    ) -> Self:
+        start, along = surface.start[triangle], surface.along[triangle]
+        away = point[:, None] - start
+        length2 = np.einsum("pij,pij->pi", along, along)
+        share = np.clip(np.einsum("pij,pij->pi", away, along) / length2, 0.0, 1.0)
+        foot = start + share[:, :, None] * along
+        miss = point[:, None] - foot
+        edge_distance2 = np.einsum("pij,pij->pi", miss, miss)
+        best = np.argmin(edge_distance2, axis=1)
+        rows = np.arange(len(point))
+        share = share[rows, best]
+        corner = np.where(share <= 0.0, best, (best + 1) % 3)
+        weight = np.zeros((len(point), 3))
+        weight[rows, best] = 1.0 - share
+        weight[rows, (best + 1) % 3] += share
+        edge = cls(
+            triangle=triangle,
+            position=foot[rows, best],
+            distance=np.sqrt(edge_distance2[rows, best]),
+            weight=weight,
+            spot=np.where((share > 0.0) & (share < 1.0), best, 3 + corner),
+        )
+        return edge._or_within(away, along, surface)
+
+    def _or_within(
+        self,
+        away: Float[np.ndarray, "pair 3 3"],
+        along: Float[np.ndarray, "pair 3 3"],
+        surface: _Surface,
+    ) -> Self:
+        """The foot of the perpendicular instead, where it falls within the triangle."""
+        face = surface.face[self.triangle]
+        height = np.einsum("pj,pj->p", away[:, 0], face)
+        # Twice the area towards each edge; its share is the weight of the corner across.
+        towards = np.einsum("pij,pj->pi", np.cross(along, away), face)
+        within = np.flatnonzero((towards >= 0.0).all(axis=1) & (towards.sum(axis=1) > 0.0))
+        area = towards[within].sum(axis=1, keepdims=True)
+        first = surface.start[self.triangle[within], 0]
+        self.position[within] = first + away[within, 0] - height[within, None] * face[within]
+        self.distance[within] = np.abs(height[within])
+        self.weight[within] = np.roll(towards[within], -1, axis=1) / area
+        self.spot[within] = 6
+        return self
+
+    def rows(self, index: Int[np.ndarray, " point"]) -> Self:
+        """These pairs alone."""
+        return type(self)(**{one.name: getattr(self, one.name)[index] for one in fields(self)})
+
+    def answer(self, point: Float[np.ndarray, "point 3"], surface: _Surface) -> Nearest:
+        """One nearest triangle to each point, in full."""
+        normals = np.concatenate([surface.edge, surface.vertex, surface.face[:, None]], axis=1)
+        normal = normals[self.triangle, self.spot]
+        return Nearest(
+            distance=self.distance,
+            position=self.position,
+            normal=normal,
+            inside=np.einsum("pj,pj->p", point - self.position, normal) < 0.0,
+            node=surface.corner[self.triangle],
+            weight=self.weight,
+        )
+
+
+def _triangles(panels: Int[np.ndarray, "panel 4"]) -> Int[np.ndarray, "triangle 3"]:
+    both = np.concatenate([panels[:, [0, 1, 2]], panels[:, [0, 2, 3]]])
+    ordered = np.sort(both, axis=1)
+    return both[(ordered[:, 1:] > ordered[:, :-1]).all(axis=1)]
+
+
+def _edge_normals(
+    corner: Int[np.ndarray, "triangle 3"], face: Float[np.ndarray, "triangle 3"]
+) -> Float[np.ndarray, "triangle 3 3"]:
+    ends = np.sort(np.stack([corner, np.roll(corner, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
+    _, edge = np.unique(ends, axis=0, return_inverse=True)
+    edge = np.ravel(edge)
+    total = np.zeros((edge.max() + 1, 3))
+    np.add.at(total, edge, np.repeat(face, 3, axis=0))
+    return _unit(total)[edge].reshape(-1, 3, 3)
+
+
+def _vertex_normals(
+    corner: Int[np.ndarray, "triangle 3"],
+    along: Float[np.ndarray, "triangle 3 3"],
+    face: Float[np.ndarray, "triangle 3"],
+    *,
+    nodes: int,
+) -> Float[np.ndarray, "triangle 3 3"]:
+    out, back = _unit(along), -_unit(np.roll(along, 1, axis=1))
+    angle = np.arccos(np.clip(np.einsum("tij,tij->ti", out, back), -1.0, 1.0))
+    total = np.zeros((nodes, 3))
+    np.add.at(total, corner, angle[:, :, None] * face[:, None])
+    return _unit(total)[corner]
+
+
+def _unit(vector: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:
+    length = np.linalg.norm(vector, axis=-1, keepdims=True)
+    return vector / np.where(length > 0.0, length, 1.0)
