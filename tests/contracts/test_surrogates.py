@@ -5,6 +5,7 @@ import pytest
 
 from seacage.surrogates import (
     NARGP,
+    Box,
     FittedGaussianProcess,
     FittedNARGP,
     FittedPcaGP,
@@ -12,6 +13,7 @@ from seacage.surrogates import (
     GaussianProcess,
     PcaGP,
     ShapeGP,
+    Table,
 )
 from seacage.testing import check_surrogate
 
@@ -55,3 +57,14 @@ def test_the_shape_keeps_its_promises() -> None:
         return ShapeGP(restarts=0).fit(x, y, seed=seed)
 
     check_surrogate(fit, output_shape=(6, 3))
+
+
+@pytest.mark.parametrize("outputs", [(), (4,), (6, 3)])
+def test_a_table_keeps_its_models_promises_within_its_region(outputs: tuple[int, ...]) -> None:
+    region = Box(lower=(-1.0, -1.0), upper=(1.0, 1.0))
+
+    def fit(x: np.ndarray, y: np.ndarray, seed: int) -> Table:
+        learner = ShapeGP(restarts=0) if len(outputs) == 2 else GaussianProcess(restarts=0)
+        return Table.of(learner.fit(x, y, seed=seed), region, least_std=0.01, tolerance=0.02)
+
+    check_surrogate(fit, output_shape=outputs, extrapolates=False)

@@ -7,13 +7,17 @@ from seacage.surrogates._gaussian_process import FittedGaussianProcess, Gaussian
 from seacage.surrogates._nargp import NARGP, FittedNARGP
 from seacage.surrogates._pca import FittedPcaGP, PcaGP
 from seacage.surrogates._prediction import Prediction, Predicts
+from seacage.surrogates._region import Box, Disc
 from seacage.surrogates._saving import Fitted, decode, encode
 from seacage.surrogates._scores import block_bootstrap, coverage, crps, mae, mnll, rmse, skill
 from seacage.surrogates._shape import FittedCoordinate, FittedShapeGP, ShapeGP
+from seacage.surrogates._table import Table, Tabulable
 
 __all__ = [
     "NARGP",
     "Arrays",
+    "Box",
+    "Disc",
     "Domain",
     "Fitted",
     "FittedCoordinate",
@@ -27,6 +31,8 @@ __all__ = [
     "Predicts",
     "Settings",
     "ShapeGP",
+    "Table",
+    "Tabulable",
     "block_bootstrap",
     "coverage",
     "crps",

@@ -11,8 +11,9 @@ from seacage.surrogates._nargp import FittedNARGP
 from seacage.surrogates._pca import FittedPcaGP
 from seacage.surrogates._prediction import Predicts
 from seacage.surrogates._shape import FittedShapeGP
+from seacage.surrogates._table import Table
 
-Fitted = FittedGaussianProcess | FittedNARGP | FittedPcaGP | FittedShapeGP
+Fitted = FittedGaussianProcess | FittedNARGP | FittedPcaGP | FittedShapeGP | Table
 
 
 def encode(fitted: Fitted) -> tuple[Settings, Arrays]:
@@ -21,8 +22,8 @@ def encode(fitted: Fitted) -> tuple[Settings, Arrays]:
     Parameters
     ----------
     fitted
-        Any fitted model of this room. A view of one (an output, a coordinate) is made again
-        from its whole; a NARGP on a lent level 1 leaves that level out.
+        Any fitted model of this room, or a table of one. A view of a model (an output, a
+        coordinate) is made again from its whole; a NARGP on a lent level 1 leaves that level out.
     """
     return fitted.to_arrays()
 
@@ -50,7 +51,7 @@ def decode(
     model = setting(settings, "model", str)
     if model == FittedNARGP.MODEL:
         return FittedNARGP.from_arrays(settings, arrays, lower=lower)
-    for kind in (FittedGaussianProcess, FittedPcaGP, FittedShapeGP):
+    for kind in (FittedGaussianProcess, FittedPcaGP, FittedShapeGP, Table):
         if model == kind.MODEL:
             return kind.from_arrays(settings, arrays)
     raise ModelError(f"The saved model is a {model!r}, which this version does not know.")

@@ -38,7 +38,9 @@ MakeFitted = Callable[[Inputs, Outputs, int], FittedSurrogate]
 """Fits a surrogate to inputs (row, 2) and outputs (row, *output), from a seed."""
 
 
-def check_surrogate(make_fitted: MakeFitted, *, output_shape: tuple[int, ...] = ()) -> None:
+def check_surrogate(
+    make_fitted: MakeFitted, *, output_shape: tuple[int, ...] = (), extrapolates: bool = True
+) -> None:
     """Hold a surrogate to what the twin relies on; an assertion names the first broken promise.
 
     The problem is smooth, without noise, and of three modes, so that a model of the whole
@@ -50,6 +52,9 @@ def check_surrogate(make_fitted: MakeFitted, *, output_shape: tuple[int, ...] = 
         Fits the surrogate to x (row, 2) and y (row, *output_shape), from a seed.
     output_shape
         Of one case: () for a number, (5,) for five, (nodes, 3) for a shape.
+    extrapolates
+        Whether it answers far from its cases too, less surely; False demands that it refuses.
+        Its cases lie between -1 and 1.
     """
     x, y = _problem(CASES, output_shape, seed=1)
     unseen, truth = _problem(UNSEEN, output_shape, seed=2)
@@ -57,6 +62,7 @@ def check_surrogate(make_fitted: MakeFitted, *, output_shape: tuple[int, ...] = 
     _check_answers(fitted, unseen, output_shape)
     _check_rows_are_independent(fitted, unseen)
     _check_it_learns(fitted, x, y, unseen, truth)
+    _check_far(fitted, x, extrapolates=extrapolates)
     _check_noise(fitted, unseen)
     _check_seed(make_fitted, x, y, unseen)
     _check_saving(fitted, unseen)
@@ -100,6 +106,12 @@ def _check_it_learns(
     assert missed < 1e-2, f"it misses noise-free training cases by {missed:.2g} of their spread"
     error = np.sqrt(np.mean((fitted.predict(unseen).mean - truth) ** 2)) / spread
     assert error < 0.05, f"it misses unseen cases by {error:.2g} of the spread"
+
+
+def _check_far(fitted: FittedSurrogate, x: Inputs, *, extrapolates: bool) -> None:
+    if not extrapolates:
+        _check_refused(lambda: fitted.predict(x + 20.0), error=InputError, about="far cases")
+        return
     near, far = fitted.predict(x).std.mean(), fitted.predict(x + 20.0).std.mean()
     assert far > 3.0 * near, "it is as sure far from its cases as among them"
 
