@@ -15,7 +15,8 @@ BUILT := $(wildcard $(KERNEL)/_kernel_*.so $(KERNEL)/_kernel_*.dylib)
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help run test test-outside test-all lint check lock bench sanitize validate always
+.PHONY: help run test test-outside test-all lint check lock bench bench-peers lock-peers sanitize \
+  validate always
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 14
@@ -47,6 +48,8 @@ bench: .venv/.dev .venv/.project ## time what people wait for (ONCE=1: only see 
 	@set -e; for script in benchmarks/[a-z]*.py; do \
 	  echo "== $$script"; $(BIN)/python "$$script" $(if $(ONCE),--once); done
 
+bench-peers: .venv-peers/.ready ## an environment with the learners that ours are compared with
+
 sanitize: .venv/.dev .venv/.project ## the kernel's tests and random INPUTS under sanitizers; needs gcc or clang
 	$(BIN)/python tools/sanitize.py --inputs $(INPUTS)
 
@@ -59,6 +62,25 @@ COMPILE := $(BIN)/uv pip compile pyproject.toml --universal --python-version 3.1
 lock: | $(BIN)/uv ## choose the newest versions again and write both locks
 	$(COMPILE) --extra sim -o requirements.lock
 	$(COMPILE) --extra sim --extra dev -c requirements.lock -o requirements-dev.lock
+
+# torch's CPU build is in few registries; the common one needs several GB of CUDA's libraries even
+# where there is no such device. The link lets the study find its scripts.
+PEERS := benchmarks/peers
+PEERS_PIP := .venv-peers/bin/python -m pip --disable-pip-version-check --quiet install \
+  --no-deps --require-hashes
+.venv-peers/.ready: $(wildcard $(PEERS)/*.lock) | $(BIN)/python
+	@echo "Installing the peers, 1.8 GB in minutes; 5.5 GB where there is no CPU build of torch …"
+	$(BIN)/python -m venv .venv-peers
+	@$(PEERS_PIP) -r $(PEERS)/requirements.lock
+	@$(PEERS_PIP) -r $(PEERS)/torch-cpu.lock 2>/dev/null || $(PEERS_PIP) -r $(PEERS)/torch-cuda.lock
+	@ln -sfn ../$(PEERS) .venv-peers/scripts
+	.venv-peers/bin/python $(PEERS)/check.py
+	@touch $@
+
+lock-peers: | $(BIN)/uv ## choose the peers' newest versions again and write their locks
+	$(subst pyproject.toml,$(PEERS)/requirements.in,$(COMPILE)) -o .venv-peers.lock
+	$(BIN)/python $(PEERS)/lock.py .venv-peers.lock
+	@rm .venv-peers.lock
 
 $(BIN)/uv: | $(BIN)/python
 	@$(PIP) install uv
