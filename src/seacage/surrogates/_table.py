@@ -1,6 +1,6 @@
 """A fitted model of few inputs as a table with a stated error."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from math import isfinite, log, prod
 from typing import Any, ClassVar, Protocol, Self, runtime_checkable
@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from seacage.conventions import InputError, ModelError
 from seacage.surrogates._arrays import Arrays, Settings, array, setting
-from seacage.surrogates._prediction import Prediction, checked_inputs
+from seacage.surrogates._prediction import Prediction, Predicts, checked_inputs
 from seacage.surrogates._region import AbstractRegion, saved_region
 from seacage.surrogates._spline import FEWEST, Spline, coefficient_count, nodes
 
@@ -33,7 +33,7 @@ ROUNDING = 1e-9
 
 @runtime_checkable
 class Tabulable(Protocol):
-    """What can be tabulated: anything that answers with and without the noise of observing."""
+    """What a table takes with its noise: anything that answers as a fitted model does."""
 
     def predict(self, x: Float[np.ndarray, "row feature"], /, *, noisy: bool = False) -> Prediction:
         """Answer at each row of features."""
@@ -52,11 +52,12 @@ class Table:
     region
         Where it answers.
     spline
-        Of the means, the variances and the noise variances, in the outputs' units.
+        Of the means, the variances and, where it was asked for, the noise's variances.
     output_shape
         Of one row's answer: () for a number.
-    tolerance
-        Error that was asked for, in predictive standard deviations.
+    tolerance, std_tolerance
+        Errors of the mean and of the standard deviation that were asked for, in predictive
+        standard deviations.
     mean_error, std_error
         Largest differences from the model's mean and standard deviation that were found, in
         the model's own standard deviations, at thousands of random inputs.
@@ -70,19 +71,22 @@ class Table:
     spline: Spline
     output_shape: tuple[int, ...]
     tolerance: float
+    std_tolerance: float
     mean_error: float
     std_error: float
     least_std: Float[np.ndarray, " output"]
 
     @staticmethod
     def of(
-        fitted: Tabulable,
+        fitted: Tabulable | Predicts,
         region: AbstractRegion,
         *,
         tolerance: float = 1e-3,
+        std_tolerance: float | None = None,
         least_std: ArrayLike = 0.0,
         most_nodes: int = 100_000,
         level: int | None = None,
+        noise: bool = True,
         seed: int = 0,
     ) -> "Table":
         """Tabulate a model, on a grid that grows until the error is small enough.
@@ -99,15 +103,19 @@ class Table:
         region
             The inputs to cover: a ``Box``, or a ``Disc`` for currents.
         tolerance
-            Largest error, in predictive standard deviations.
+            Largest error of the mean, in predictive standard deviations.
+        std_tolerance
+            Largest error of the standard deviation, in itself; None is as the mean's.
         least_std
             Standard deviations below this count as this much: one number, or one per output
             in its unit. A model learned without noise is nearly certain at its own cases, and
             to follow it there would take a grid as fine as certainty is sharp.
         most_nodes
-            Largest size; a node takes three numbers of 8 bytes for each output.
+            Largest size; a node takes two or three numbers of 8 bytes for each output.
         level
             Of a multi-level model; None is its highest.
+        noise
+            Tabulate the noise too, so that ``noisy=True`` can be asked; not every model has it.
         seed
             Of the random inputs.
 
@@ -116,23 +124,33 @@ class Table:
         InputError
             The tolerance cannot be met within the size.
         """
-        _check_request(tolerance, most_nodes, axes=len(region.periodic))
-        asked = _Asked(fitted=fitted, level=level)
+        std_tolerance = tolerance if std_tolerance is None else std_tolerance
+        for one in (tolerance, std_tolerance):
+            _check_tolerance(one)
+        _check_size(most_nodes, axes=len(region.periodic))
+        asked = _Asked(predict=fitted.predict, level=level, noise=noise)
         random = np.random.default_rng(seed)
         shape = (START,) * len(region.periodic)
         while True:
-            table = _gridded(asked, region, shape, tolerance=tolerance, least_std=least_std)
-            table = _held_against(table, asked, random)
-            if table.error <= tolerance:
+            table = _gridded(asked, region, shape, least_std=least_std)
+            table = replace(table, tolerance=tolerance, std_tolerance=std_tolerance)
+            for _ in range(2):
                 table = _held_against(table, asked, random)
-            if table.error <= tolerance:
+                if table.excess > 1.0:
+                    break
+            else:
                 return table
             shape = _finer(table, asked, random, most_nodes=most_nodes)
 
     @property
-    def error(self) -> float:
-        """Largest error found, of mean or standard deviation, in standard deviations."""
-        return max(self.mean_error, self.std_error)
+    def excess(self) -> float:
+        """The larger of its errors, each over what was asked for; a finished one's is below 1."""
+        return max(self.mean_error / self.tolerance, self.std_error / self.std_tolerance)
+
+    @property
+    def has_noise(self) -> bool:
+        """Whether it can answer of a new observation."""
+        return self.spline.coefficients.shape[1] == 3 * len(self.least_std)
 
     @property
     def nodes(self) -> tuple[int, ...]:
@@ -152,8 +170,13 @@ class Table:
         Raises
         ------
         InputError
-            A row lies outside the table.
+            A row lies outside the table, or it has no noise.
         """
+        if noisy and not self.has_noise:
+            raise InputError(
+                "Table.predict: this table was made without noise. "
+                "Make it with `noise=True`, or ask what lies behind an observation."
+            )
         x = checked_inputs(x, what="Table.predict", width=self.region.width)
         fields = self.spline.at(self.region.checked_places(x, what="Table.predict"))
         outputs = len(self.least_std)
@@ -174,7 +197,9 @@ class Table:
             "region": self.region.to_settings(),
             "nodes": list(self.nodes),
             "output_shape": list(self.output_shape),
+            "noise": self.has_noise,
             "tolerance": self.tolerance,
+            "std_tolerance": self.std_tolerance,
             "mean_error": self.mean_error,
             "std_error": self.std_error,
         }
@@ -202,12 +227,14 @@ class Table:
                 f"{len(region.periodic)}. The file is damaged. Make the table again."
             )
         rows = coefficient_count(shape, region.periodic)
-        coefficients = array(arrays, "coefficients", rows, 3 * outputs)
+        fields = (2 + setting(settings, "noise", bool)) * outputs
+        coefficients = array(arrays, "coefficients", rows, fields)
         return cls(
             region=region,
             spline=Spline(shape=shape, periodic=region.periodic, coefficients=coefficients),
             output_shape=output_shape,
             tolerance=setting(settings, "tolerance", float),
+            std_tolerance=setting(settings, "std_tolerance", float),
             mean_error=setting(settings, "mean_error", float),
             std_error=setting(settings, "std_error", float),
             least_std=array(arrays, "least_std", outputs),
@@ -216,15 +243,17 @@ class Table:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Asked:
-    """The model, and at which of its levels it is asked."""
+    """The model, and how it is asked."""
 
-    fitted: Tabulable
+    predict: Callable[..., Prediction]
     level: int | None
+    noise: bool
 
     def __call__(self, x: Float[np.ndarray, "row feature"]) -> tuple[Prediction, Prediction]:
-        """What lies behind an observation, and a new observation."""
+        """What lies behind an observation, and a new observation; twice the one without noise."""
         at: dict[str, Any] = {} if self.level is None else {"level": self.level}
-        return self.fitted.predict(x, **at), self.fitted.predict(x, noisy=True, **at)
+        quiet = self.predict(x, **at)
+        return quiet, self.predict(x, noisy=True, **at) if self.noise else quiet
 
 
 def _gridded(
@@ -232,19 +261,19 @@ def _gridded(
     region: AbstractRegion,
     shape: tuple[int, ...],
     *,
-    tolerance: float,
     least_std: ArrayLike,
 ) -> Table:
-    """Table through the model's answers at a grid's nodes, its error not yet known."""
+    """Table through the model's answers at a grid's nodes, its errors not yet known."""
     quiet, noisy = asked(region.inputs(nodes(shape, region.periodic)))
     mean, std, total = (_flat(one) for one in (quiet.mean, quiet.std, noisy.std))
-    fields = np.hstack([mean, std**2, total**2 - std**2])
+    fields = np.hstack([mean, std**2] + [total**2 - std**2] * asked.noise)
     least = np.broadcast_to(np.ravel(np.asarray(least_std, dtype=float)), mean.shape[1:])
     return Table(
         region=region,
         spline=Spline.through(fields, shape=shape, periodic=region.periodic),
         output_shape=quiet.mean.shape[1:],
-        tolerance=tolerance,
+        tolerance=1.0,
+        std_tolerance=1.0,
         mean_error=0.0,
         std_error=0.0,
         least_std=np.maximum(least, ROUNDING * np.abs(mean).max(axis=0)),
@@ -264,7 +293,7 @@ def _errors(
 ) -> tuple[float, float]:
     x = table.region.inputs(place)
     quiet, noisy = asked(x)
-    own, own_noisy = table.predict(x), table.predict(x, noisy=True)
+    own, own_noisy = table.predict(x), table.predict(x, noisy=table.has_noise)
     std = np.maximum(_flat(quiet.std), table.least_std)
     # An output that is nothing everywhere has no unit to measure its error in.
     unit = np.where(std > 0.0, std, 1.0)
@@ -287,9 +316,9 @@ def _finer(
         The grid is as large as it may be.
     """
     axes, size = len(table.nodes), prod(table.nodes)
-    errors = np.array([_error_along(axis, table, asked, random) for axis in range(axes)])
+    excess = np.array([_excess_along(axis, table, asked, random) for axis in range(axes)])
     # The error of a cubic falls with the fourth power; the axes' errors add up.
-    growth = np.clip((2.0 * axes * errors / table.tolerance) ** 0.25, 1.0, GROWTH[1])
+    growth = np.clip((2.0 * axes * excess) ** 0.25, 1.0, GROWTH[1])
     growth = np.maximum(growth, GROWTH[0] if np.all(growth < GROWTH[0]) else 1.0)
     room = log(most_nodes / size) / log(float(np.prod(growth)))
     growth = growth ** min(1.0, room)
@@ -297,33 +326,38 @@ def _finer(
     if not 1.1 * size < prod(shape) <= most_nodes:
         raise InputError(
             f"Table.of: a grid of {' x '.join(map(str, table.nodes))} nodes errs by "
-            f"{table.error:.2g} predictive sd; at most {table.tolerance:g} was asked for, within "
+            f"{table.mean_error:.2g} predictive sd in the mean and {table.std_error:.2g} in the "
+            f"sd; at most {table.tolerance:g} and {table.std_tolerance:g} were asked for, within "
             f"{most_nodes} nodes. Ask for less precision, allow more nodes, take a smaller "
             "region, or give the `least_std` below which precision is of no use."
         )
     return shape
 
 
-def _error_along(axis: int, table: Table, asked: _Asked, random: np.random.Generator) -> float:
-    """Largest error where every other coordinate is a node's, so that only this axis errs."""
+def _excess_along(axis: int, table: Table, asked: _Asked, random: np.random.Generator) -> float:
+    """Excess where every other coordinate is a node's, so that only this axis errs."""
     place = random.uniform(size=(PROBES, len(table.nodes)))
     for other, count in enumerate(table.nodes):
         if other != axis:
             cells = count if table.region.periodic[other] else count - 1
             place[:, other] = np.floor(place[:, other] * count) / cells
-    return max(_errors(table, asked, place))
+    mean_error, std_error = _errors(table, asked, place)
+    return replace(table, mean_error=mean_error, std_error=std_error).excess
 
 
 def _flat(values: Float[np.ndarray, "row *rest"]) -> Float[np.ndarray, "row output"]:
     return values.reshape(len(values), -1)
 
 
-def _check_request(tolerance: float, most_nodes: int, *, axes: int) -> None:
+def _check_tolerance(tolerance: float) -> None:
     if not (isfinite(tolerance) and tolerance > 0.0):
         raise InputError(
             f"Table.of: tolerance = {tolerance:g} is not above 0. "
             "Give the largest error in predictive standard deviations, e.g. 1e-3."
         )
+
+
+def _check_size(most_nodes: int, *, axes: int) -> None:
     if most_nodes < START**axes:
         raise InputError(
             f"Table.of: most_nodes = {most_nodes} is fewer than the {START**axes} of the first "

@@ -73,7 +73,9 @@ def test_the_stated_error_is_what_independent_inputs_find(nargp, table: Table) -
     found = np.max(np.abs(table.predict(x).mean - exact.mean) / exact.std)
     # Two largest values of 4,000 random inputs each, of the same few places that err most.
     assert table.mean_error == pytest.approx(found, rel=0.3)
-    assert 0.0 < table.error == max(table.mean_error, table.std_error) <= table.tolerance == 1e-3
+    assert 0.0 < table.mean_error <= table.tolerance == 1e-3
+    assert 0.0 < table.std_error <= table.std_tolerance == 1e-3
+    assert table.excess == 1e3 * max(table.mean_error, table.std_error)
 
 
 def test_every_output_shape_and_its_own_noise_are_kept() -> None:
@@ -122,9 +124,38 @@ def test_precision_below_the_least_std_is_not_paid_for() -> None:
     assert missed.max() < 1e-5
 
 
+def test_the_spread_may_be_followed_less_closely_than_the_mean() -> None:
+    x = np.random.default_rng(10).uniform(-1.0, 1.0, (40, 1))
+    certain = GaussianProcess(restarts=0).fit(x, np.sin(4.0 * x[:, 0]))
+    region = Box(lower=(-0.95,), upper=(0.95,))
+    loose = Table.of(certain, region, tolerance=0.05, std_tolerance=0.5)
+    close = Table.of(certain, region, tolerance=0.05)
+    assert loose.nodes < close.nodes
+    assert loose.mean_error <= 0.05
+    assert close.std_error < loose.std_error <= 0.5
+
+
+def test_a_model_that_knows_no_noise_has_a_table_without(table: Table) -> None:
+    class Quiet:
+        def predict(self, x: np.ndarray, /) -> Prediction:
+            return Formula().predict(x)
+
+    region = Box(lower=(-1.0, 0.0), upper=(1.0, 2.0))
+    quiet = Table.of(Quiet(), region, noise=False)
+    x = region.inputs(np.random.default_rng(14).uniform(size=(50, 2)))
+    np.testing.assert_allclose(quiet.predict(x).mean, Quiet().predict(x).mean, atol=1e-3)
+    with pytest.raises(InputError, match="made without noise"):
+        quiet.predict(x, noisy=True)
+    back = decode(*encode(quiet))
+    assert isinstance(back, Table)
+    assert table.has_noise
+    assert not back.has_noise
+
+
 def test_a_tolerance_out_of_reach_is_refused_with_what_was_reached(nargp) -> None:
     with pytest.raises(
-        InputError, match=r"errs by \S+ predictive sd; at most 1e-06 .* within 1000 nodes"
+        InputError,
+        match=r"errs by \S+ predictive sd .* at most 1e-06 and 1e-06 .* within 1000 nodes",
     ):
         Table.of(nargp, CURRENTS, tolerance=1e-6, most_nodes=1000)
 
@@ -144,8 +175,9 @@ def test_an_input_of_another_kind_is_refused(table: Table, x: np.ndarray) -> Non
 
 @pytest.mark.parametrize("tolerance", [0.0, -1.0, np.nan, np.inf])
 def test_a_tolerance_of_nothing_is_refused(nargp, tolerance: float) -> None:
-    with pytest.raises(InputError, match="is not above 0"):
-        Table.of(nargp, CURRENTS, tolerance=tolerance)
+    for asked in ({"tolerance": tolerance}, {"std_tolerance": tolerance}):
+        with pytest.raises(InputError, match="is not above 0"):
+            Table.of(nargp, CURRENTS, **asked)
 
 
 def test_too_small_a_size_is_refused(nargp) -> None:
@@ -159,7 +191,8 @@ def test_it_comes_back_from_a_file_as_it_was(table: Table) -> None:
     assert isinstance(back, Table)
     x = currents(50, seed=12)
     np.testing.assert_array_equal(back.predict(x).mean, table.predict(x).mean)
-    assert (back.region, back.nodes, back.error) == (table.region, table.nodes, table.error)
+    for name in ("region", "nodes", "mean_error", "std_error", "tolerance", "std_tolerance"):
+        assert getattr(back, name) == getattr(table, name)
 
 
 @pytest.mark.parametrize(
