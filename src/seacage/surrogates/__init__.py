@@ -2,18 +2,22 @@
 
 from seacage.surrogates._arrays import Arrays, Settings
 from seacage.surrogates._domain import Domain
-from seacage.surrogates._features import current_features
+from seacage.surrogates._features import current_features, metocean_features, wave_features
 from seacage.surrogates._gaussian_process import FittedGaussianProcess, GaussianProcess
 from seacage.surrogates._nargp import NARGP, FittedNARGP
-from seacage.surrogates._pca import FittedPcaGP, PcaGP
+from seacage.surrogates._pca import FittedPcaGP, OverTime, PcaGP
 from seacage.surrogates._prediction import Prediction, Predicts
+from seacage.surrogates._recursive import AR1
 from seacage.surrogates._region import Box, Disc
 from seacage.surrogates._saving import Fitted, decode, encode
 from seacage.surrogates._scores import block_bootstrap, coverage, crps, mae, mnll, rmse, skill
 from seacage.surrogates._shape import FittedCoordinate, FittedShapeGP, ShapeGP
+from seacage.surrogates._symmetry import Symmetry
+from seacage.surrogates._symmetry_check import check_symmetry
 from seacage.surrogates._table import Table, Tabulable
 
 __all__ = [
+    "AR1",
     "NARGP",
     "Arrays",
     "Box",
@@ -26,21 +30,26 @@ __all__ = [
     "FittedPcaGP",
     "FittedShapeGP",
     "GaussianProcess",
+    "OverTime",
     "PcaGP",
     "Prediction",
     "Predicts",
     "Settings",
     "ShapeGP",
+    "Symmetry",
     "Table",
     "Tabulable",
     "block_bootstrap",
+    "check_symmetry",
     "coverage",
     "crps",
     "current_features",
     "decode",
     "encode",
     "mae",
+    "metocean_features",
     "mnll",
     "rmse",
     "skill",
+    "wave_features",
 ]

@@ -1,6 +1,6 @@
 """Gaussian process regression with one kernel for all outputs."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
@@ -9,9 +9,12 @@ from jaxtyping import Float
 
 from seacage.conventions import InputError
 from seacage.surrogates._arrays import Arrays, Settings, array, setting
-from seacage.surrogates._kernels import AbstractKernel, KernelName, kernel_named, saved_kernel
-from seacage.surrogates._prediction import Prediction, checked_inputs, checked_outputs
-from seacage.surrogates._regression import Posterior, learned
+from seacage.surrogates._autoregressive import saved_kernel
+from seacage.surrogates._kernels import AbstractKernel, KernelName, kernel_named
+from seacage.surrogates._learning import Evidence, learned
+from seacage.surrogates._noise import NoiseName, check_noise, noise_named, saved_noise
+from seacage.surrogates._prediction import Moments, Prediction, checked_inputs, checked_outputs
+from seacage.surrogates._regression import Posterior
 from seacage.surrogates._scaling import Scaling
 
 MANY_OUTPUTS = 16
@@ -24,17 +27,26 @@ SHARED_POINTS = 5.0
 """Weight of the shared variance against each output's own roughness, in points."""
 
 
+Answer = tuple[Float[np.ndarray, "_ _"], Float[np.ndarray, "_ _"]]
+"""Mean of each output, and variance, before the output's centre and amplitude."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GaussianProcess:
     """Gaussian process regression, not yet fitted.
 
     All outputs share one kernel and one factorisation; each keeps its own mean and amplitude.
-    Noise is Gaussian, the same share of every output's variance.
 
     Parameters
     ----------
     kernel
-        ``"squared-exponential"`` for very smooth answers, ``"matern-5/2"`` for those with kinks.
+        ``"squared-exponential"`` for very smooth answers, ``"matern-5/2"`` for those with kinks,
+        ``"matern-3/2"`` for rough ones.
+    noise
+        ``"white"``: Gaussian, the same share of every output's variance. ``"per-output"``: its
+        own share for each. ``"by-input"``: changing smoothly with the inputs, the same share
+        for all. ``"student-t"``: with outliers, four degrees of freedom; what is wrong in one
+        output of a case is doubted in all.
     restarts
         Random starts of the hyperparameter search beside the deterministic one.
 
@@ -44,10 +56,12 @@ class GaussianProcess:
     """
 
     kernel: KernelName = "squared-exponential"
+    noise: NoiseName = "white"
     restarts: int = 3
 
     def __post_init__(self) -> None:
         kernel_named(self.kernel)
+        check_noise(self.noise)
         check_restarts(self.restarts)
 
     def fit(
@@ -73,7 +87,8 @@ class GaussianProcess:
             kernel_named(self.kernel),
             x,
             table,
-            taught_by=teachers(table),
+            taught_by=teachers(table, unlike=self.noise == "per-output"),
+            noise=self.noise,
             restarts=self.restarts,
             seed=seed,
         )
@@ -86,8 +101,11 @@ class FittedGaussianProcess:
 
     Parameters
     ----------
-    posterior
-        Of the outputs less their centre, at standardised inputs.
+    members
+        Of the outputs less their centre, at standardised inputs; more than one for an ensemble
+        of hyperparameters, the most probable ones first.
+    share
+        Probability of each member.
     inputs
         Centre and spread of each feature.
     centre, amplitude
@@ -98,16 +116,29 @@ class FittedGaussianProcess:
 
     MODEL: ClassVar[str] = "gaussian-process"
 
-    posterior: Posterior
+    members: tuple[Posterior, ...]
+    share: Float[np.ndarray, " member"]
     inputs: Scaling
     centre: Float[np.ndarray, " output"]
     amplitude: Float[np.ndarray, " output"]
     single: bool
 
     @property
+    def posterior(self) -> Posterior:
+        """The member with the most probable hyperparameters."""
+        return self.members[0]
+
+    @property
     def noise(self) -> Float[np.ndarray, " output"]:
-        """Variance of each output's noise, in its unit squared."""
-        return self.posterior.noise * self.amplitude**2
+        """Variance of each output's noise, in its unit squared.
+
+        Where it changes with the inputs, its mean over the training cases.
+        """
+        return self._noise(self.posterior.x).mean(axis=0)
+
+    def noise_at(self, x: Float[np.ndarray, "row feature"]) -> Float[np.ndarray, "row *output"]:
+        """Variance of the noise of a new observation at each row, in its unit squared."""
+        return self._shaped(self._noise(self._standardised(x, what="noise_at")))
 
     def predict(self, x: Float[np.ndarray, "row feature"], *, noisy: bool = False) -> Prediction:
         """Answer at each row of features.
@@ -119,9 +150,87 @@ class FittedGaussianProcess:
         noisy
             Of a new observation rather than of what lies behind it: adds the noise.
         """
-        x = checked_inputs(x, what="predict", width=len(self.inputs.centre))
-        mean, variance = self.posterior.predict(self.inputs.standardised(x))
-        return self._answer(mean + self.centre, variance + noisy * self.posterior.noise)
+        x = self._standardised(x, what="predict")
+        mean, variance = self._mixed([member.predict(x) for member in self.members])
+        if noisy:
+            variance = variance + self._noise(x)
+        return self._answer(mean, variance)
+
+    def jacobian(
+        self, x: Float[np.ndarray, "row feature"]
+    ) -> Float[np.ndarray, "row *output feature"]:
+        """Change of the mean per change of each feature, at each row."""
+        x = self._standardised(x, what="jacobian")
+        slope = self._average([member.mean_slope(x) for member in self.members])
+        return self._shaped(slope / self.inputs.unit)
+
+    def moments(self, x: Float[np.ndarray, "row feature"]) -> Moments:
+        """Mean and variance of the one output with their gradients, for what builds on it."""
+        if not self.single:
+            raise InputError(
+                f"moments: this model has {len(self.centre)} outputs. Ask one, e.g. "
+                "`fitted.output(0)`."
+            )
+        x = self._standardised(x, what="moments")
+        answers = [member.predict(x) for member in self.members]
+        mean, variance = self._mixed(answers)
+        slopes = [member.mean_slope(x)[:, 0] for member in self.members]
+        mean_slope = self._average(slopes)
+        square = self.amplitude[0] ** 2
+        # Of the law of total variance: of each member's, and of their means about the mean.
+        parts = [
+            square * member.variance_slope(x)
+            + 2.0 * (answer[0] + self.centre - mean) * (slope - mean_slope)
+            for member, answer, slope in zip(self.members, answers, slopes, strict=True)
+        ]
+        return Moments(
+            mean=mean[:, 0],
+            variance=variance[:, 0],
+            mean_slope=mean_slope / self.inputs.unit,
+            variance_slope=self._average(parts) / self.inputs.unit,
+        )
+
+    def updated(
+        self, x: Float[np.ndarray, "new feature"], y: Float[np.ndarray, "new *output"]
+    ) -> Self:
+        """Conditioned on more cases, with the hyperparameters learned before.
+
+        It answers as if conditioned on all cases at once, at O(n^2) per new case; with noise
+        per output, at O(n^3). Scales, amplitudes and shares stay those of the training.
+
+        Parameters
+        ----------
+        x
+            One row per new case.
+        y
+            (new,) or (new, outputs), as in the training.
+        """
+        what = "updated"
+        x = checked_inputs(x, what=what, width=len(self.inputs.centre))
+        shape = "(rows,)" if self.single else "(rows, outputs)"
+        y = checked_outputs(y, what=what, rows=len(x), shape=shape, least=1)
+        y = y.reshape(len(x), -1)
+        if y.shape[1] != len(self.centre):
+            raise InputError(
+                f"{what}: {y.shape[1]} outputs, but {len(self.centre)} were learned. "
+                "Give the outputs of the training, in the same order."
+            )
+        x, y = self.inputs.standardised(x), y - self.centre
+        members = [member.updated(x, y, amplitude=self.amplitude) for member in self.members]
+        return replace(self, members=tuple(members))
+
+    def cases(self) -> Float[np.ndarray, "n feature"]:
+        """Inputs that it is conditioned on, in their own units."""
+        return self.posterior.x * self.inputs.unit + self.inputs.centre
+
+    def moved(self, x: Float[np.ndarray, "n feature"]) -> Self:
+        """Conditioned on the same outputs at other inputs, one row for each case."""
+        x = self.inputs.standardised(x)
+        members = [
+            member.reconditioned(x, member.observed(), doubt=member.doubt)
+            for member in self.members
+        ]
+        return replace(self, members=tuple(members))
 
     def leave_one_out(self) -> Prediction:
         """Answer at each training case from all the others, as a new observation.
@@ -132,8 +241,12 @@ class FittedGaussianProcess:
         ----------
         Rasmussen & Williams (2006), eqs. (5.10)-(5.12).
         """
-        residual, variance = self.posterior.leave_one_out()
-        return self._answer(self.posterior.observed() + self.centre - residual, variance)
+        left_out = [member.leave_one_out() for member in self.members]
+        answers = [
+            (member.observed() - residual, variance)
+            for member, (residual, variance) in zip(self.members, left_out, strict=True)
+        ]
+        return self._answer(*self._mixed(answers))
 
     def output(self, index: int) -> "FittedGaussianProcess":
         """One output as a model that answers (row,); it shares the factor."""
@@ -144,9 +257,10 @@ class FittedGaussianProcess:
 
     def combined(self, share: Float[np.ndarray, " output"]) -> "FittedGaussianProcess":
         """The sum of the outputs times their share, as a model that answers (row,)."""
+        members = [member.combined(share, amplitude=self.amplitude) for member in self.members]
         return replace(
             self,
-            posterior=replace(self.posterior, weights=self.posterior.weights @ share[:, None]),
+            members=tuple(members),
             centre=np.array([self.centre @ share]),
             amplitude=np.array([np.linalg.norm(self.amplitude * share)]),
             single=True,
@@ -154,20 +268,27 @@ class FittedGaussianProcess:
 
     def to_arrays(self) -> tuple[Settings, Arrays]:
         """Everything that ``from_arrays`` needs, as plain values and float64 arrays."""
+        first = self.posterior
         settings: Settings = {
             "model": self.MODEL,
-            "kernel": self.posterior.kernel.name,
+            "kernel": first.kernel.name,
+            "noise": first.noise.name,
             "single": self.single,
         }
-        return settings, {
-            "log_parameters": self.posterior.log_parameters,
-            "inputs": self.posterior.x,
-            "weights": self.posterior.weights,
+        arrays = {
+            "share": self.share,
+            "log_parameters": np.stack([member.log_parameters for member in self.members]),
+            "log_noise": np.stack([member.log_noise for member in self.members]),
+            "weights": np.stack([member.weights for member in self.members]),
+            "inputs": first.x,
+            "doubt": first.doubt,
             "input_centre": self.inputs.centre,
             "input_spread": self.inputs.spread,
             "output_centre": self.centre,
             "output_amplitude": self.amplitude,
         }
+        anchor = first.noise.anchor
+        return settings, arrays | ({"anchor": anchor} if anchor.size else {})
 
     @classmethod
     def from_arrays(cls, settings: Mapping[str, object], arrays: Mapping[str, np.ndarray]) -> Self:
@@ -182,30 +303,71 @@ class FittedGaussianProcess:
         single = setting(settings, "single", bool)
         x = array(arrays, "inputs", None, None)
         rows, width = x.shape
-        weights = array(arrays, "weights", rows, 1 if single else None)
-        outputs = weights.shape[1]
-        parameters = len(kernel.prior(width).mean) + 1
-        posterior = Posterior.restored(
-            kernel, array(arrays, "log_parameters", parameters), x, weights
+        share = array(arrays, "share", None)
+        weights = array(arrays, "weights", len(share), rows, 1 if single else None)
+        outputs = weights.shape[2]
+        noise = saved_noise(
+            setting(settings, "noise", str),
+            lambda: array(arrays, "anchor", None, width),
+            outputs=outputs,
         )
+        parameters = array(arrays, "log_parameters", len(share), len(kernel.prior(width).mean))
+        log_noise = array(arrays, "log_noise", len(share), len(noise.prior().mean))
+        doubt = array(arrays, "doubt", rows)
+        members = [
+            Posterior.restored(kernel, *hyperparameters, x, weight, noise=noise, doubt=doubt)
+            for hyperparameters, weight in zip(
+                zip(parameters, log_noise, strict=True), weights, strict=True
+            )
+        ]
         inputs = Scaling(
             centre=array(arrays, "input_centre", width), spread=array(arrays, "input_spread", width)
         )
         return cls(
-            posterior=posterior,
+            members=tuple(members),
+            share=share,
             inputs=inputs,
             centre=array(arrays, "output_centre", outputs),
             amplitude=array(arrays, "output_amplitude", outputs),
             single=single,
         )
 
+    def _standardised(
+        self, x: Float[np.ndarray, "row feature"], *, what: str
+    ) -> Float[np.ndarray, "row feature"]:
+        x = checked_inputs(x, what=what, width=len(self.inputs.centre))
+        return self.inputs.standardised(x)
+
+    def _noise(self, x: Float[np.ndarray, "row feature"]) -> Float[np.ndarray, "row output"]:
+        shares = self._average([member.noise_at(x) for member in self.members])
+        return shares * self.amplitude**2
+
+    def _average(self, parts: Sequence[Float[np.ndarray, "row *rest"]]) -> np.ndarray:
+        """Of the members, by their share."""
+        if len(parts) == 1:
+            return parts[0]
+        return np.tensordot(self.share, np.stack(parts), axes=1)
+
+    def _mixed(
+        self, answers: Sequence[Answer]
+    ) -> tuple[Float[np.ndarray, "row output"], Float[np.ndarray, "row output"]]:
+        """Mean and variance of the outputs, by the law of total variance over the members."""
+        means = [mean for mean, _ in answers]
+        mean = self._average(means)
+        variance = self._average([variance for _, variance in answers]) * self.amplitude**2
+        if len(answers) > 1:
+            variance = variance + self._average([(one - mean) ** 2 for one in means])
+        return mean + self.centre, variance
+
     def _answer(
-        self, mean: Float[np.ndarray, "row output"], variance: Float[np.ndarray, " row"]
+        self, mean: Float[np.ndarray, "row output"], variance: Float[np.ndarray, "row output"]
     ) -> Prediction:
-        std = np.sqrt(variance)[:, None] * self.amplitude
-        if self.single:
-            return Prediction(mean=mean[:, 0], std=std[:, 0])
-        return Prediction(mean=mean, std=std)
+        return Prediction(mean=self._shaped(mean), std=self._shaped(np.sqrt(variance)))
+
+    def _shaped(
+        self, values: Float[np.ndarray, "row output *rest"]
+    ) -> Float[np.ndarray, "row *answer"]:
+        return values[:, 0] if self.single else values
 
 
 def fitted_process(
@@ -214,6 +376,7 @@ def fitted_process(
     y: Float[np.ndarray, "n output"],
     *,
     taught_by: Float[np.ndarray, "n teacher"],
+    noise: NoiseName = "white",
     restarts: int,
     seed: int,
 ) -> FittedGaussianProcess:
@@ -227,19 +390,38 @@ def fitted_process(
         Inputs and outputs in their own units.
     taught_by
         What the hyperparameters are learned from, of unit variance all in all.
+    noise
+        As for ``GaussianProcess``.
     restarts, seed
         Of the search.
     """
     inputs, outputs = Scaling.of(x), Scaling.of(y)
     standardised = inputs.standardised(x)
-    log_parameters = learned(kernel, standardised, taught_by, restarts=restarts, seed=seed)
-    posterior = Posterior.conditioned(kernel, log_parameters, standardised, y - outputs.centre)
+    scatter = noise_named(noise, standardised, outputs=taught_by.shape[1])
+    evidence = Evidence.of(kernel, scatter, standardised, taught_by)
+    mode = learned(evidence, restarts=restarts, seed=seed)
+    drawn = [mode.log_parameters]
+    members = [
+        Posterior.conditioned(
+            kernel,
+            *evidence.split(log_parameters),
+            standardised,
+            y - outputs.centre,
+            noise=scatter,
+            doubt=mode.evidence.doubt,
+        )
+        for log_parameters in drawn
+    ]
+    share = np.full(len(members), 1.0 / len(members))
     # Each output's own variance, held to the shared one by a few points' worth of belief:
     # the scale of the conjugate posterior, a scaled inverse chi-squared.
-    own = np.einsum("no,no->o", y - outputs.centre, posterior.weights)
-    variance = (SHARED_POINTS * outputs.spread**2 + own) / (SHARED_POINTS + len(y))
+    own = [np.einsum("no,no->o", y - outputs.centre, member.weights) for member in members]
+    variance = (SHARED_POINTS * outputs.spread**2 + share @ np.stack(own)) / (
+        SHARED_POINTS + len(y)
+    )
     return FittedGaussianProcess(
-        posterior=posterior,
+        members=tuple(members),
+        share=share,
         inputs=inputs,
         centre=outputs.centre,
         amplitude=np.sqrt(variance),
@@ -247,10 +429,22 @@ def fitted_process(
     )
 
 
-def teachers(y: Float[np.ndarray, "n output"]) -> Float[np.ndarray, "n teacher"]:
-    """Standardised outputs for the hyperparameters to be learned from, all alike important."""
+def teachers(
+    y: Float[np.ndarray, "n output"], *, unlike: bool = False
+) -> Float[np.ndarray, "n teacher"]:
+    """Standardised outputs for the hyperparameters to be learned from, all alike important.
+
+    Parameters
+    ----------
+    y
+        All outputs.
+    unlike
+        Each output has noise of its own to learn, so that none can stand for others.
+    """
     standardised = Scaling.of(y).standardised(y)
-    return standardised if y.shape[1] <= MANY_OUTPUTS else condensed(standardised)
+    if unlike or y.shape[1] <= MANY_OUTPUTS:
+        return standardised
+    return condensed(standardised)
 
 
 def condensed(y: Float[np.ndarray, "n output"]) -> Float[np.ndarray, "n teacher"]:

@@ -5,14 +5,16 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 from jaxtyping import Float
 
-from seacage.conventions import InputError, ModelError
+from seacage.conventions import InputError
 
-KernelName = Literal["squared-exponential", "matern-5/2"]
+KernelName = Literal["squared-exponential", "matern-5/2", "matern-3/2"]
+
+PUBLIC: tuple[KernelName, ...] = get_args(KernelName)
 
 Pullback = Callable[[Float[np.ndarray, "n n"]], Float[np.ndarray, " parameter"]]
 """From the loss's gradient in each covariance to its gradient in each hyperparameter."""
@@ -70,6 +72,22 @@ class AbstractKernel(ABC):
     ) -> tuple[Float[np.ndarray, "n n"], Pullback]:
         """Covariance of the rows with one another, and its pullback (of symmetric gradients)."""
 
+    @abstractmethod
+    def slope(
+        self,
+        log_parameters: Float[np.ndarray, " parameter"],
+        x: Float[np.ndarray, "row feature"],
+        z: Float[np.ndarray, "n feature"],
+        share: Float[np.ndarray, "_ n"],
+    ) -> Float[np.ndarray, "row feature"]:
+        """Gradient in each row of x of the sum over z of share times covariance."""
+
+    @abstractmethod
+    def variance_slope(
+        self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "row feature"]
+    ) -> Float[np.ndarray, "row feature"]:
+        """Gradient of each row's variance in that row."""
+
 
 @dataclass(frozen=True, slots=True)
 class StationaryKernel(AbstractKernel):
@@ -85,7 +103,7 @@ class StationaryKernel(AbstractKernel):
         return self.shape
 
     def prior(self, width: int) -> Prior:
-        return _prior([VARIANCE_PRIOR, *_length_priors(width)])
+        return prior_of([VARIANCE_PRIOR, *length_priors(width)])
 
     def covariance(
         self,
@@ -93,7 +111,7 @@ class StationaryKernel(AbstractKernel):
         x: Float[np.ndarray, "row feature"],
         z: Float[np.ndarray, "n feature"],
     ) -> Float[np.ndarray, "row n"]:
-        return np.exp(log_parameters[0]) * _correlation(self.shape, log_parameters[1:], x, z)
+        return np.exp(log_parameters[0]) * correlation(self.shape, log_parameters[1:], x, z)
 
     def variance(
         self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "row feature"]
@@ -103,121 +121,40 @@ class StationaryKernel(AbstractKernel):
     def with_pullback(
         self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "n feature"]
     ) -> tuple[Float[np.ndarray, "n n"], Pullback]:
-        return _scaled(self.shape, log_parameters, x)
+        return scaled(self.shape, log_parameters, x)
 
-
-@dataclass(frozen=True, slots=True)
-class AutoregressiveKernel(AbstractKernel):
-    """The NARGP's covariance over (x, f), f being the level below: the last feature.
-
-    k_rho(x, x') (k_f(f, f') + s f f') + k_delta(x, x'), each a squared exponential with ARD,
-    k_f of unit variance because the product needs only one; without ``linear`` there is no s.
-    Hyperparameters, in logarithms: rho's variance and lengths, f's length, delta's variance
-    and lengths, then s.
-
-    References
-    ----------
-    Perdikaris et al. (2017), eq. (2.14), for the kernel without the linear term.
-    """
-
-    linear: bool
-
-    @property
-    def name(self) -> str:
-        return "autoregressive-linear" if self.linear else "autoregressive"
-
-    def prior(self, width: int) -> Prior:
-        local = [VARIANCE_PRIOR, *_length_priors(width - 1)]
-        return _prior(local + _length_priors(1) + local + [VARIANCE_PRIOR] * self.linear)
-
-    def covariance(
+    def slope(
         self,
         log_parameters: Float[np.ndarray, " parameter"],
         x: Float[np.ndarray, "row feature"],
         z: Float[np.ndarray, "n feature"],
-    ) -> Float[np.ndarray, "row n"]:
-        rho, length, delta, slope = self._split(log_parameters)
-        local = StationaryKernel("squared-exponential")
-        link = _correlation("squared-exponential", length, x[:, -1:], z[:, -1:])
-        link += slope * x[:, -1:] * z[:, -1]
-        link *= local.covariance(rho, x[:, :-1], z[:, :-1])
-        return link + local.covariance(delta, x[:, :-1], z[:, :-1])
+        share: Float[np.ndarray, "_ n"],
+    ) -> Float[np.ndarray, "row feature"]:
+        variance = np.exp(log_parameters[0])
+        return variance * correlation_slope(self.shape, log_parameters[1:], x, z, share)
 
-    def variance(
+    def variance_slope(
         self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "row feature"]
-    ) -> Float[np.ndarray, " row"]:
-        rho, _, delta, slope = self._split(log_parameters)
-        return np.exp(rho[0]) * (1.0 + slope * x[:, -1] ** 2) + np.exp(delta[0])
-
-    def with_pullback(
-        self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "n feature"]
-    ) -> tuple[Float[np.ndarray, "n n"], Pullback]:
-        rho, length, delta, slope = self._split(log_parameters)
-        local, below = x[:, :-1], x[:, -1:]
-        k_rho, pull_rho = _scaled("squared-exponential", rho, local)
-        k_f, pull_f = _unit("squared-exponential", length, below)
-        k_delta, pull_delta = _scaled("squared-exponential", delta, local)
-        straight = slope * below * below[:, 0]
-        link = k_f + straight
-
-        pulls = (pull_rho, pull_f, pull_delta)
-        return k_rho * link + k_delta, partial(self._pulled, k_rho, link, straight, pulls)
-
-    def _pulled(
-        self,
-        k_rho: Float[np.ndarray, "n n"],
-        link: Float[np.ndarray, "n n"],
-        straight: Float[np.ndarray, "n n"],
-        pulls: tuple[Pullback, Pullback, Pullback],
-        adjoint: Float[np.ndarray, "n n"],
-    ) -> Float[np.ndarray, " parameter"]:
-        of_link = adjoint * k_rho
-        adjoints = (adjoint * link, of_link, adjoint)
-        parts = [pull(one) for pull, one in zip(pulls, adjoints, strict=True)]
-        return np.concatenate(parts + [[np.sum(of_link * straight)]] * self.linear)
-
-    def link_length(self, log_parameters: Float[np.ndarray, " parameter"]) -> float:
-        """Length over which the answer bends with f, in the unit of the standardised f."""
-        return float(np.exp(self._split(log_parameters)[1][0]))
-
-    def _split(
-        self, log_parameters: Float[np.ndarray, " parameter"]
-    ) -> tuple[
-        Float[np.ndarray, " local"], Float[np.ndarray, "1"], Float[np.ndarray, " local"], float
-    ]:
-        local = (len(log_parameters) - 1 - self.linear) // 2
-        rho, length, delta, rest = np.split(log_parameters, [local, local + 1, 2 * local + 1])
-        return rho, length, delta, float(np.exp(rest[0])) if self.linear else 0.0
+    ) -> Float[np.ndarray, "row feature"]:
+        del log_parameters  # The same everywhere, whatever they are.
+        return np.zeros_like(x)
 
 
 def kernel_named(name: str) -> StationaryKernel:
     """Kernel that a user asks for by name."""
-    if name not in ("squared-exponential", "matern-5/2"):
-        raise InputError(
-            f"kernel = {name!r} is not known. Choose 'squared-exponential' or 'matern-5/2'."
-        )
-    return StationaryKernel(name)
+    for known in PUBLIC:
+        if name == known:
+            return StationaryKernel(known)
+    raise InputError(f"kernel = {name!r} is not known. Choose one of {', '.join(PUBLIC)}.")
 
 
-def saved_kernel(name: str) -> AbstractKernel:
-    """Kernel of a saved model: those with a public name, and the NARGP's."""
-    kernels: list[AbstractKernel] = [
-        StationaryKernel("squared-exponential"),
-        StationaryKernel("matern-5/2"),
-        AutoregressiveKernel(linear=True),
-        AutoregressiveKernel(linear=False),
-    ]
-    for kernel in kernels:
-        if kernel.name == name:
-            return kernel
-    raise ModelError(f"The saved model has kernel {name!r}, which this version does not know.")
-
-
-def _length_priors(width: int) -> list[tuple[float, float]]:
+def length_priors(width: int) -> list[tuple[float, float]]:
+    """Mean and sd of the log length of each of so many features."""
     return [(math.log(LENGTH * math.sqrt(width)), LENGTH_SPREAD)] * width
 
 
-def _prior(parameters: list[tuple[float, float]]) -> Prior:
+def prior_of(parameters: list[tuple[float, float]]) -> Prior:
+    """From the mean and sd of each log hyperparameter."""
     mean, sd = np.array(parameters).T
     return Prior(mean=mean, sd=sd)
 
@@ -229,9 +166,13 @@ def _shape(
     if name == "squared-exponential":
         correlation = np.exp(-0.5 * squared)
         return correlation, correlation
-    scaled = np.sqrt(5.0 * squared)
-    decay = np.exp(-scaled)
-    return (1.0 + scaled + 5.0 / 3.0 * squared) * decay, 5.0 / 3.0 * (1.0 + scaled) * decay
+    if name == "matern-3/2":
+        far = np.sqrt(3.0 * squared)
+        decay = np.exp(-far)
+        return (1.0 + far) * decay, 3.0 * decay
+    far = np.sqrt(5.0 * squared)
+    decay = np.exp(-far)
+    return (1.0 + far + 5.0 / 3.0 * squared) * decay, 5.0 / 3.0 * (1.0 + far) * decay
 
 
 def _squared_distance(
@@ -243,44 +184,61 @@ def _squared_distance(
     return np.maximum(squared, 0.0, out=squared)
 
 
-def _correlation(
+def correlation(
     name: KernelName,
     log_length: Float[np.ndarray, " feature"],
     x: Float[np.ndarray, "row feature"],
     z: Float[np.ndarray, "n feature"],
 ) -> Float[np.ndarray, "row n"]:
+    """Of two sets of inputs, of unit variance."""
     length = np.exp(log_length)
     return _shape(name, _squared_distance(x / length, z / length))[0]
 
 
-def _unit(
+def correlation_slope(
+    name: KernelName,
+    log_length: Float[np.ndarray, " feature"],
+    x: Float[np.ndarray, "row feature"],
+    z: Float[np.ndarray, "n feature"],
+    share: Float[np.ndarray, "_ n"],
+) -> Float[np.ndarray, "row feature"]:
+    """Gradient in each row of x of the sum over z of share times correlation."""
+    length = np.exp(log_length)
+    scaled_x, scaled_z = x / length, z / length
+    fall = share * _shape(name, _squared_distance(scaled_x, scaled_z))[1]
+    return (fall @ scaled_z - fall.sum(axis=1)[:, None] * scaled_x) / length
+
+
+def unit(
     name: KernelName,
     log_length: Float[np.ndarray, " feature"],
     x: Float[np.ndarray, "n feature"],
 ) -> tuple[Float[np.ndarray, "n n"], Pullback]:
+    """Correlation of the rows with one another, and its pullback to the log lengths."""
     z = x / np.exp(log_length)
-    correlation, decline = _shape(name, _squared_distance(z, z))
-    return correlation, partial(_pulled_lengths, z, decline)
+    alike, fall = _shape(name, _squared_distance(z, z))
+    return alike, partial(_pulled_lengths, z, fall)
 
 
 def _pulled_lengths(
     z: Float[np.ndarray, "n feature"],
-    decline: Float[np.ndarray, "n n"],
+    fall: Float[np.ndarray, "n n"],
     adjoint: Float[np.ndarray, "n n"],
 ) -> Float[np.ndarray, " parameter"]:
     # Sum of w_ab (z_a - z_b)^2 over the pairs, without the n x n differences per feature.
-    weight = adjoint * decline
+    weight = adjoint * fall
     return 2.0 * (weight.sum(axis=1) @ z**2 - np.sum(z * (weight @ z), axis=0))
 
 
-def _scaled(
+def scaled(
     name: KernelName,
     log_parameters: Float[np.ndarray, " parameter"],
     x: Float[np.ndarray, "n feature"],
 ) -> tuple[Float[np.ndarray, "n n"], Pullback]:
+    """Variance times correlation, and its pullback to the log variance and lengths."""
     variance = float(np.exp(log_parameters[0]))
-    correlation, pull_lengths = _unit(name, log_parameters[1:], x)
-    covariance = variance * correlation
+    alike, pull_lengths = unit(name, log_parameters[1:], x)
+    covariance = variance * alike
     return covariance, partial(_pulled_scale, covariance, variance, pull_lengths)
 
 

@@ -1,5 +1,6 @@
 """Nonlinear autoregressive Gaussian processes: each fidelity corrects the one below."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar, Self
@@ -16,49 +17,46 @@ from seacage.surrogates._arrays import (
     sub_settings,
     within,
 )
+from seacage.surrogates._autoregressive import AutoregressiveKernel, LinkKernel
 from seacage.surrogates._gaussian_process import (
     FittedGaussianProcess,
     check_restarts,
     fitted_process,
     teachers,
 )
-from seacage.surrogates._kernels import AutoregressiveKernel, kernel_named
-from seacage.surrogates._prediction import Prediction, Predicts, checked_inputs, checked_outputs
-from seacage.surrogates._quadrature import carried
+from seacage.surrogates._kernels import AbstractKernel, kernel_named
+from seacage.surrogates._noise import NoiseName, check_noise
+from seacage.surrogates._prediction import (
+    Moments,
+    Prediction,
+    Predicts,
+    checked_inputs,
+    checked_outputs,
+)
+from seacage.surrogates._quadrature import carried, carried_slope
 
-WHAT = "NARGP.fit"
+DIFFERENCE = 1e-4
+"""Step of central differences, in spreads of a feature; their error falls with its square."""
 
 Cases = tuple[Float[np.ndarray, "_ _"], Float[np.ndarray, " _"]]
 """Inputs (n, features) and outputs (n,) of one fidelity."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class NARGP:
-    """Nonlinear autoregressive multifidelity regression, not yet fitted; any number of levels.
+class AbstractMultifidelity(ABC):
+    """Levels of fidelity learned one after the other, each on the one below; not yet fitted."""
 
-    Level 1 is a Gaussian process of the inputs. Each level above is one of the inputs and of
-    the level below, f_t(x) = g_t(x, f_{t-1}(x)), trained at the posterior mean of the level
-    below, so that its inputs need not be among those below.
-
-    Parameters
-    ----------
-    linear
-        Add a linear term in the level below to the kernel, which extrapolates a plain ratio of
-        the two; False is the kernel as published.
-    restarts
-        Random starts of each level's hyperparameter search beside the deterministic one.
-
-    References
-    ----------
-    Perdikaris et al. (2017), "Nonlinear information fusion algorithms for data-efficient
-    multi-fidelity modelling", Proc. R. Soc. A 473:20160751.
-    """
-
-    linear: bool = True
+    noise: NoiseName = "white"
     restarts: int = 3
 
     def __post_init__(self) -> None:
+        check_noise(self.noise)
         check_restarts(self.restarts)
+
+    @property
+    @abstractmethod
+    def link(self) -> LinkKernel:
+        """Covariance of a level over its inputs and the level below."""
 
     def fit(
         self,
@@ -88,55 +86,76 @@ class NARGP:
         InputError
             No level, tables that do not fit, or inputs that are not nested though they should be.
         """
-        cases = _checked_cases(levels, first=1 if lower is None else 2)
+        what = f"{type(self).__name__}.fit"
+        cases = _checked_cases(levels, first=1 if lower is None else 2, what=what)
         if nested and lower is not None:
             raise InputError(
-                f"{WHAT}: nested=True needs the cases of level 1, but `lower` has none to give. "
+                f"{what}: nested=True needs the cases of level 1, but `lower` has none to give. "
                 "Pass `nested=False` to use its mean."
             )
         seeds = np.random.SeedSequence(seed).generate_state(len(cases)).tolist()
-        if lower is None:
-            first, fitted = 1, FittedNARGP(own=(self._base(*cases[0], seed=seeds[0]),))
-        else:
-            first, fitted = 0, FittedNARGP(own=(), lent=lower)
-        for index in range(first, len(cases)):
-            x, y = cases[index]
-            if nested:
-                below = _observed_below(x, cases[index - 1], level=index + 1)
-            else:
-                below = _one_per_row(fitted.predict(x).mean)
-            added = self._added(x, below, y, seed=seeds[index])
+        fitted = FittedNARGP(own=(), lent=lower, nested=nested)
+        for index, (x, y) in enumerate(cases):
+            kernel: AbstractKernel = kernel_named("squared-exponential")
+            inputs = x
+            if fitted.levels:
+                if nested:
+                    below = _observed_below(x, cases[index - 1], level=index + 1, what=what)
+                else:
+                    below = _one_per_row(fitted.predict(x).mean, what=what)
+                kernel, inputs = self.link, np.column_stack([x, below])
+            added = self._process(kernel, inputs, y[:, None], seed=seeds[index])
             fitted = replace(fitted, own=(*fitted.own, added))
         return fitted
 
-    def _base(
-        self, x: Float[np.ndarray, "n feature"], y: Float[np.ndarray, " n"], *, seed: int
-    ) -> FittedGaussianProcess:
-        return fitted_process(
-            kernel_named("squared-exponential"),
-            x,
-            y[:, None],
-            taught_by=teachers(y[:, None]),
-            restarts=self.restarts,
-            seed=seed,
-        )
-
-    def _added(
+    def _process(
         self,
+        kernel: AbstractKernel,
         x: Float[np.ndarray, "n feature"],
-        below: Float[np.ndarray, " n"],
-        y: Float[np.ndarray, " n"],
+        y: Float[np.ndarray, "n 1"],
         *,
         seed: int,
     ) -> FittedGaussianProcess:
         return fitted_process(
-            AutoregressiveKernel(linear=self.linear),
-            np.column_stack([x, below]),
-            y[:, None],
-            taught_by=teachers(y[:, None]),
+            kernel,
+            x,
+            y,
+            taught_by=teachers(y),
+            noise=self.noise,
             restarts=self.restarts,
             seed=seed,
         )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NARGP(AbstractMultifidelity):
+    """Nonlinear autoregressive multifidelity regression, not yet fitted; any number of levels.
+
+    Level 1 is a Gaussian process of the inputs. Each level above is one of the inputs and of
+    the level below, f_t(x) = g_t(x, f_{t-1}(x)), trained at the posterior mean of the level
+    below, so that its inputs need not be among those below.
+
+    Parameters
+    ----------
+    linear
+        Add a linear term in the level below to the kernel, which extrapolates a plain ratio of
+        the two; False is the kernel as published.
+    noise
+        Of every level, as for ``GaussianProcess``; a level has one output.
+    restarts
+        Random starts of each level's hyperparameter search beside the deterministic one.
+
+    References
+    ----------
+    Perdikaris et al. (2017), "Nonlinear information fusion algorithms for data-efficient
+    multi-fidelity modelling", Proc. R. Soc. A 473:20160751.
+    """
+
+    linear: bool = True
+
+    @property
+    def link(self) -> LinkKernel:
+        return AutoregressiveKernel(linear=self.linear)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -149,12 +168,15 @@ class FittedNARGP:
         The levels learned here: from level 1, or from level 2 where level 1 is lent.
     lent
         Level 1 where another model serves as it; it is not saved with this one.
+    nested
+        Whether each level was taught at what the level below observed, not at its mean.
     """
 
     MODEL: ClassVar[str] = "nargp"
 
     own: tuple[FittedGaussianProcess, ...]
     lent: Predicts | None = None
+    nested: bool = False
 
     @property
     def levels(self) -> int:
@@ -189,20 +211,98 @@ class FittedNARGP:
         noisy
             Of a new observation at this level: adds its noise.
         """
-        level = self.levels if level is None else level
-        if not 1 <= level <= self.levels:
-            raise InputError(
-                f"predict: level = {level} does not exist; this model has levels 1 to "
-                f"{self.levels}."
-            )
+        level = self._level(level, lowest=1, what="predict")
         if level == 1:
             return self._lowest(x, noisy=noisy)
         upper = self.upper[: level - 1]
-        x = checked_inputs(x, what="predict", width=len(upper[0].inputs.centre) - 1)
+        x = checked_inputs(x, what="predict", width=self._width)
         below = self.lower.predict(x)
-        steps = [_Step(process) for process in upper]
-        mean, variance = carried(steps, x, below.mean, below.std**2)
-        return Prediction(mean=mean, std=np.sqrt(variance + noisy * upper[-1].noise))
+        mean, variance = carried(self._steps(level), x, below.mean, below.std**2)
+        if noisy:
+            # Where the noise changes with the level below, it is that at its mean.
+            at = below.mean if level == 2 else self.predict(x, level=level - 1).mean
+            variance = variance + upper[-1].noise_at(np.column_stack([x, at]))
+        return Prediction(mean=mean, std=np.sqrt(variance))
+
+    def jacobian(
+        self, x: Float[np.ndarray, "row feature"], *, level: int | None = None
+    ) -> Float[np.ndarray, "row feature"]:
+        """Change of the mean per change of each feature, at each row, through all levels.
+
+        A lent level 1 that is no Gaussian process is differentiated by central differences.
+
+        Parameters
+        ----------
+        x
+            One row per case, the features of the training.
+        level
+            As for ``predict``.
+        """
+        level = self._level(level, lowest=1, what="jacobian")
+        x = checked_inputs(x, what="jacobian", width=self._width)
+        below = self._lowest_moments(x)
+        return carried_slope(self._steps(level), x, below) if level > 1 else below.mean_slope
+
+    def updated(
+        self,
+        x: Float[np.ndarray, "new feature"],
+        y: Float[np.ndarray, " new"],
+        *,
+        level: int | None = None,
+    ) -> Self:
+        """Conditioned on more cases of a level above the first, without learning anew.
+
+        Levels below stay the same objects. Levels above were taught at the mean of this one, so
+        they are conditioned again on their own cases at its new mean, unless taught nested.
+
+        Parameters
+        ----------
+        x, y
+            New cases; the level below is asked for its mean there.
+        level
+            From 2 to ``levels``, which None means.
+        """
+        level = self._level(level, lowest=2, what="updated")
+        x = checked_inputs(x, what="updated", width=self._width)
+        below = self.predict(x, level=level - 1).mean
+        process = self.upper[level - 2].updated(np.column_stack([x, below]), y)
+        fitted = self._replaced(level, process)
+        if not self.nested:
+            for above in range(level + 1, self.levels + 1):
+                taught = fitted.upper[above - 2]
+                x = taught.cases()[:, :-1]
+                below = fitted.predict(x, level=above - 1).mean
+                fitted = fitted._replaced(above, taught.moved(np.column_stack([x, below])))  # noqa: SLF001
+        return fitted
+
+    def _replaced(self, level: int, process: FittedGaussianProcess) -> Self:
+        own = list(self.own)
+        own[level - 1 - (self.lent is not None)] = process
+        return replace(self, own=tuple(own))
+
+    @property
+    def _width(self) -> int | None:
+        """Features of a row, where a level tells."""
+        if self.upper:
+            return len(self.upper[0].inputs.centre) - 1
+        return len(self.own[0].inputs.centre) if self.own else None
+
+    def _level(self, level: int | None, *, lowest: int, what: str) -> int:
+        level = self.levels if level is None else level
+        if not lowest <= level <= self.levels:
+            raise InputError(
+                f"{what}: level = {level} does not exist; this model has levels {lowest} to "
+                f"{self.levels}."
+            )
+        return level
+
+    def _steps(self, level: int) -> "list[_Step]":
+        return [_Step(process) for process in self.upper[: level - 1]]
+
+    def _lowest_moments(self, x: Float[np.ndarray, "row feature"]) -> Moments:
+        if isinstance(self.lower, FittedGaussianProcess):
+            return self.lower.moments(x)
+        return _differenced(self.lower, x, step=DIFFERENCE * self.upper[0].inputs.unit[:-1])
 
     def _lowest(self, x: Float[np.ndarray, "row feature"], *, noisy: bool) -> Prediction:
         if self.lent is None:
@@ -220,6 +320,7 @@ class FittedNARGP:
         settings: Settings = {
             "model": self.MODEL,
             "lent": self.lent is not None,
+            "nested": self.nested,
             "levels": [settings for settings, _ in saved],
         }
         return settings, joined([arrays for _, arrays in saved])
@@ -254,7 +355,7 @@ class FittedNARGP:
             FittedGaussianProcess.from_arrays(part, within(index, arrays))
             for index, part in enumerate(sub_settings(settings, "levels"))
         )
-        fitted = cls(own=own, lent=lower)
+        fitted = cls(own=own, lent=lower, nested=setting(settings, "nested", bool))
         _check_chain(fitted)
         return fitted
 
@@ -268,9 +369,10 @@ class _Step:
     @property
     def bend(self) -> float:
         kernel = self.process.posterior.kernel
-        assert isinstance(kernel, AutoregressiveKernel)
-        length = kernel.link_length(self.process.posterior.log_parameters[:-1])
-        return length * (float(self.process.inputs.spread[-1]) or 1.0)
+        assert isinstance(kernel, LinkKernel)
+        members = self.process.members
+        length = min(kernel.link_length(member.log_parameters) for member in members)
+        return length * float(self.process.inputs.unit[-1])
 
     def moments(
         self, x: Float[np.ndarray, "row feature"], below: Float[np.ndarray, " row"]
@@ -278,20 +380,25 @@ class _Step:
         answer = self.process.predict(np.column_stack([x, below]))
         return answer.mean, answer.std**2
 
+    def sloped(
+        self, x: Float[np.ndarray, "row feature"], below: Float[np.ndarray, " row"]
+    ) -> Moments:
+        return self.process.moments(np.column_stack([x, below]))
 
-def _checked_cases(levels: Sequence[Cases], *, first: int) -> list[Cases]:
+
+def _checked_cases(levels: Sequence[Cases], *, first: int, what: str) -> list[Cases]:
     if len(levels) == 0:
-        raise InputError(f"{WHAT}: there is no level to learn. Give (x, y) of each, low to high.")
+        raise InputError(f"{what}: there is no level to learn. Give (x, y) of each, low to high.")
     cases: list[Cases] = []
     for level, (x, y) in enumerate(levels, start=first):
-        what = f"{WHAT}, level {level}"
-        rows = checked_inputs(x, what=what, width=cases[0][0].shape[1] if cases else None)
-        cases.append((rows, checked_outputs(y, what=what, rows=len(rows), shape="(rows,)")))
+        who = f"{what}, level {level}"
+        rows = checked_inputs(x, what=who, width=cases[0][0].shape[1] if cases else None)
+        cases.append((rows, checked_outputs(y, what=who, rows=len(rows), shape="(rows,)")))
     return cases
 
 
 def _observed_below(
-    x: Float[np.ndarray, "n feature"], below: Cases, *, level: int
+    x: Float[np.ndarray, "n feature"], below: Cases, *, level: int, what: str
 ) -> Float[np.ndarray, " n"]:
     """What the level below observed at the same inputs."""
     found = {row.tobytes(): value for row, value in zip(*below, strict=True)}
@@ -299,20 +406,40 @@ def _observed_below(
     missing = np.flatnonzero(np.isnan(values))
     if len(missing):
         raise InputError(
-            f"{WHAT}: {len(missing)} inputs of level {level} are not in level {level - 1} "
+            f"{what}: {len(missing)} inputs of level {level} are not in level {level - 1} "
             f"(first: case {missing[0]}). Pass `nested=False` to use the level-{level - 1} mean "
             "there."
         )
     return np.array(values)
 
 
-def _one_per_row(mean: Float[np.ndarray, "n *rest"]) -> Float[np.ndarray, " n"]:
+def _one_per_row(mean: Float[np.ndarray, "n *rest"], *, what: str) -> Float[np.ndarray, " n"]:
     if mean.ndim != 1:
         raise InputError(
-            f"{WHAT}: `lower` answers with shape {mean.shape}; expected one number per row. "
+            f"{what}: `lower` answers with shape {mean.shape}; expected one number per row. "
             "Lend one output of it, e.g. `fitted.output(0)` or `fitted.coordinate(node, axis)`."
         )
     return mean
+
+
+def _differenced(
+    lower: Predicts, x: Float[np.ndarray, "row feature"], *, step: Float[np.ndarray, " feature"]
+) -> Moments:
+    """Mean and variance of a lent level, and their gradients by central differences."""
+    here = lower.predict(x)
+    mean_slope, variance_slope = np.empty_like(x), np.empty_like(x)
+    for feature, size in enumerate(step):
+        aside = np.zeros(x.shape[1])
+        aside[feature] = size
+        up, down = lower.predict(x + aside), lower.predict(x - aside)
+        mean_slope[:, feature] = (up.mean - down.mean) / (2.0 * size)
+        variance_slope[:, feature] = (up.std**2 - down.std**2) / (2.0 * size)
+    return Moments(
+        mean=here.mean,
+        variance=here.std**2,
+        mean_slope=mean_slope,
+        variance_slope=variance_slope,
+    )
 
 
 def _check_chain(fitted: FittedNARGP) -> None:
@@ -321,7 +448,7 @@ def _check_chain(fitted: FittedNARGP) -> None:
     if fitted.lent is None and fitted.own:
         widths.add(len(fitted.own[0].inputs.centre))
     steps = all(
-        process.single and isinstance(process.posterior.kernel, AutoregressiveKernel)
+        process.single and isinstance(process.posterior.kernel, LinkKernel)
         for process in fitted.upper
     )
     if not fitted.own or len(widths) > 1 or not steps or not fitted.own[0].single:

@@ -1,10 +1,10 @@
 """What every surrogate answers, and the checks of what it is asked."""
 
-from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
+from dataclasses import dataclass, replace
+from typing import Protocol, Self, runtime_checkable
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 from numpy.typing import ArrayLike
 
 from seacage.conventions import InputError
@@ -22,6 +22,50 @@ class Prediction:
 
     mean: Float[np.ndarray, "row *rest"]
     std: Float[np.ndarray, "row *rest"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Moments:
+    """Mean and variance of one output, and their gradient in the features, at each row."""
+
+    mean: Float[np.ndarray, " row"]
+    variance: Float[np.ndarray, " row"]
+    mean_slope: Float[np.ndarray, "row feature"]
+    variance_slope: Float[np.ndarray, "row feature"]
+
+    def rows(self, chosen: Int[np.ndarray, " chosen"]) -> Self:
+        """Of some of the rows."""
+        return replace(
+            self,
+            mean=self.mean[chosen],
+            variance=self.variance[chosen],
+            mean_slope=self.mean_slope[chosen],
+            variance_slope=self.variance_slope[chosen],
+        )
+
+    def at(
+        self, node: Float[np.ndarray, " node"]
+    ) -> tuple[Float[np.ndarray, " value"], Float[np.ndarray, "value feature"]]:
+        """Values so many sd from the mean, and their gradients, one row after the other."""
+        std = np.sqrt(self.variance)[:, None]
+        value = self.mean[:, None] + std * node
+        std_slope = self.variance_slope / np.maximum(2.0 * std, np.finfo(float).tiny)
+        slope = self.mean_slope[:, None] + node[:, None] * std_slope[:, None]
+        return value.ravel(), slope.reshape(value.size, -1)
+
+    def through(self, below: Float[np.ndarray, "row below"]) -> "Moments":
+        """As functions of the features alone, the last one being a function of the others.
+
+        Parameters
+        ----------
+        below
+            Gradient of that last feature.
+        """
+        return replace(
+            self,
+            mean_slope=self.mean_slope[:, :-1] + self.mean_slope[:, -1:] * below,
+            variance_slope=self.variance_slope[:, :-1] + self.variance_slope[:, -1:] * below,
+        )
 
 
 @runtime_checkable
@@ -68,7 +112,7 @@ def checked_inputs(
 
 
 def checked_outputs(
-    y: ArrayLike, *, what: str, rows: int, shape: str
+    y: ArrayLike, *, what: str, rows: int, shape: str, least: int = 2
 ) -> Float[np.ndarray, "row *rest"]:
     """Outputs as finite numbers, one entry per row of inputs.
 
@@ -79,14 +123,16 @@ def checked_outputs(
     what
         Who asks, for the error's sentence.
     rows
-        The number of rows of inputs, at least 2.
+        The number of rows of inputs.
     shape
         The axes expected, e.g. ``"(rows, nodes, 3)"``; only their number and a last 3 count.
+    least
+        Rows that are needed.
 
     Raises
     ------
     InputError
-        Of another shape, fewer than 2 rows, or with a number that is not finite.
+        Of another shape, too few rows, or with a number that is not finite.
     """
     axes = [axis.strip() for axis in shape.strip("()").split(",") if axis.strip()]
     outputs = np.asarray(y, dtype=np.float64, order="C")
@@ -97,8 +143,8 @@ def checked_outputs(
         raise InputError(
             f"{what}: {rows} rows of x but {len(outputs)} of outputs. Give one output per row."
         )
-    if rows < 2:
-        raise InputError(f"{what}: {rows} row is too few to learn from. Give at least 2.")
+    if rows < least:
+        raise InputError(f"{what}: {rows} row is too few to learn from. Give at least {least}.")
     _refuse_missing(outputs, name="the outputs", what=what)
     return outputs
 

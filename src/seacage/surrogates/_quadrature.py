@@ -1,12 +1,13 @@
 """Uncertainty of the level below, carried through the nonlinear levels above it."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import cache
 from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float, Int
 
+from seacage.surrogates._prediction import Moments
 from seacage.surrogates._regression import chunks
 
 RULES = ((0.1, 3), (0.25, 5), (0.45, 8), (0.8, 13), (1.8, 24), (3.2, 40), (np.inf, 64))
@@ -41,6 +42,17 @@ class Level(Protocol):
         ...
 
 
+@runtime_checkable
+class SlopedLevel(Level, Protocol):
+    """One that knows its gradients too."""
+
+    def sloped(
+        self, x: Float[np.ndarray, "row feature"], below: Float[np.ndarray, " row"]
+    ) -> Moments:
+        """The same with their gradients in the features and, last, in the value below."""
+        ...
+
+
 def carried(
     levels: Sequence[Level],
     x: Float[np.ndarray, "row feature"],
@@ -67,14 +79,54 @@ def carried(
     Perdikaris et al. (2017), eq. (2.15), for the integral; the law of total variance.
     """
     top_mean, top_variance = np.empty(len(x)), np.empty(len(x))
+    for count, rows in _by_rule(levels, x, mean, variance):
+        top_mean[rows], top_variance[rows] = _with_rule(
+            count, levels, x[rows], mean[rows], variance[rows]
+        )
+    return top_mean, top_variance
+
+
+def carried_slope(
+    levels: Sequence[SlopedLevel], x: Float[np.ndarray, "row feature"], below: Moments
+) -> Float[np.ndarray, "row feature"]:
+    """Gradient in each row of the mean that ``carried`` gives there.
+
+    Parameters
+    ----------
+    levels, x
+        As there.
+    below
+        Of the value below the first level, with their gradients.
+    """
+    slope = np.empty_like(x)
+    for count, rows in _by_rule(levels, x, below.mean, below.variance):
+        slope[rows] = _slope_with_rule(count, levels, x[rows], below.rows(rows))
+    return slope
+
+
+def _slope_with_rule(
+    count: int, levels: Sequence[SlopedLevel], x: Float[np.ndarray, "row feature"], below: Moments
+) -> Float[np.ndarray, "row feature"]:
+    node, weight = _rule(count)
+    value, its_slope = below.at(node)
+    inputs = np.repeat(x, count, axis=0)
+    at = levels[0].sloped(inputs, value).through(its_slope)
+    slope = at.mean_slope if len(levels) == 1 else carried_slope(levels[1:], inputs, at)
+    return np.einsum("rnf,n->rf", slope.reshape(len(x), count, -1), weight)
+
+
+def _by_rule(
+    levels: Sequence[Level],
+    x: Float[np.ndarray, "row feature"],
+    mean: Float[np.ndarray, " row"],
+    variance: Float[np.ndarray, " row"],
+) -> Iterator[tuple[int, Int[np.ndarray, " chosen"]]]:
+    """How many nodes, and for which rows, a piece at a time."""
     counts = _node_counts(_largest_ratio(levels, x, mean, variance))
     for count in np.unique(counts).tolist():
         alike = np.flatnonzero(counts == count)
-        for rows in (alike[chunk] for chunk in chunks(len(alike), CHUNK // count)):
-            top_mean[rows], top_variance[rows] = _with_rule(
-                count, levels, x[rows], mean[rows], variance[rows]
-            )
-    return top_mean, top_variance
+        for piece in chunks(len(alike), CHUNK // count):
+            yield count, alike[piece]
 
 
 def _with_rule(

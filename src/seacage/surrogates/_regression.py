@@ -1,29 +1,21 @@
-"""The Gaussian process itself: learn hyperparameters, condition on points, predict."""
+"""The Gaussian process itself: condition on points, predict, differentiate, take in more."""
 
-import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
 from jaxtyping import Float
 
-from seacage.conventions import ModelError
+from seacage.conventions import InputError, ModelError
+from seacage.surrogates._factor import Cholesky, Factor, Spectrum
 from seacage.surrogates._kernels import AbstractKernel
-
-SUBSET = 250
-"""Points that the hyperparameters are first learned from."""
-
-POLISH = 12
-"""L-BFGS steps on all points from there; without them coverage falls far below nominal."""
-
-JITTER = 1e-9
-"""Share of each variance added to the diagonal, so that the factor exists in float64."""
-
-NOISE_PRIOR = (math.log(1e-3), 3.0)
-NOISE_BOUNDS = (math.log(1e-6), math.log(10.0))
-NOISE_STARTS = (math.log(1e-3), math.log(0.1))
-"""Logarithms of the noise's share of the outputs' unit variance."""
+from seacage.surrogates._noise import (
+    AbstractNoise,
+    NoisePerOutput,
+    StudentNoise,
+    settled_doubt,
+)
 
 CHUNK = 2**22
 """Covariances held at once while predicting: 32 MiB whatever the number of rows."""
@@ -36,37 +28,66 @@ class Posterior:
     Parameters
     ----------
     kernel, log_parameters
-        The covariance; the last log parameter is the noise variance.
+        The covariance.
+    noise, log_noise
+        What the outputs scatter by, as a share of their unit variance.
     x
         Standardised inputs.
+    doubt
+        Factor on the noise of each point; other than 1 for Student's t alone.
     weights
         Inverse covariance times outputs, so that the mean is one product.
     factor
-        Lower Cholesky factor of the covariance with noise.
+        Of the covariance with noise.
     """
 
     kernel: AbstractKernel
     log_parameters: Float[np.ndarray, " parameter"]
+    noise: AbstractNoise
+    log_noise: Float[np.ndarray, " noise"]
     x: Float[np.ndarray, "n feature"]
+    doubt: Float[np.ndarray, " n"]
     weights: Float[np.ndarray, "n output"]
-    factor: Float[np.ndarray, "n n"]
+    factor: Factor
 
     @classmethod
     def conditioned(
         cls,
         kernel: AbstractKernel,
         log_parameters: Float[np.ndarray, " parameter"],
+        log_noise: Float[np.ndarray, " noise"],
         x: Float[np.ndarray, "n feature"],
         y: Float[np.ndarray, "n output"],
+        *,
+        noise: AbstractNoise,
+        doubt: Float[np.ndarray, " n"] | None = None,
     ) -> Self:
-        """Condition on outputs of zero mean."""
-        from scipy.linalg import cho_solve
+        """Condition on outputs of zero mean.
 
-        factor = _factor(kernel, log_parameters, x)
-        # In C order, as they come back from a file: the same rounding in every prediction.
-        weights = np.ascontiguousarray(cho_solve((factor, True), y, check_finite=False))
+        Raises
+        ------
+        InputError
+            The covariance has no factor in float64.
+        """
+        from scipy.linalg import LinAlgError
+
+        doubt = np.ones(len(x)) if doubt is None else doubt
+        try:
+            factor = factorised(kernel, log_parameters, noise, log_noise, x, doubt)
+        except LinAlgError as error:
+            raise InputError(
+                f"{len(x)} cases give a covariance that is not positive definite. Look for "
+                "features or outputs that are too large by many orders of magnitude."
+            ) from error
         return cls(
-            kernel=kernel, log_parameters=log_parameters, x=x, weights=weights, factor=factor
+            kernel=kernel,
+            log_parameters=log_parameters,
+            noise=noise,
+            log_noise=log_noise,
+            x=x,
+            doubt=doubt,
+            weights=factor.solve(y),
+            factor=factor,
         )
 
     @classmethod
@@ -74,8 +95,12 @@ class Posterior:
         cls,
         kernel: AbstractKernel,
         log_parameters: Float[np.ndarray, " parameter"],
+        log_noise: Float[np.ndarray, " noise"],
         x: Float[np.ndarray, "n feature"],
         weights: Float[np.ndarray, "n output"],
+        *,
+        noise: AbstractNoise,
+        doubt: Float[np.ndarray, " n"],
     ) -> Self:
         """The same again from what was saved; the factor is cheaper to make than to store.
 
@@ -86,192 +111,199 @@ class Posterior:
         """
         from scipy.linalg import LinAlgError
 
+        broken = "The saved model's covariance is not positive definite. Train the model again."
         try:
             with np.errstate(over="ignore", invalid="ignore"):
-                factor = _factor(kernel, log_parameters, x)
-        except LinAlgError:
-            factor = np.full((len(x), len(x)), np.nan)
-        if not np.isfinite(factor).all():
-            raise ModelError(
-                "The saved model's covariance is not positive definite. Train the model again."
-            )
+                factor = factorised(kernel, log_parameters, noise, log_noise, x, doubt)
+                known = factor.explained(kernel.covariance(log_parameters, x[:1], x))
+        except (LinAlgError, ValueError) as error:
+            raise ModelError(broken) from error
+        if not np.isfinite(known).all():
+            raise ModelError(broken)
         return cls(
-            kernel=kernel, log_parameters=log_parameters, x=x, weights=weights, factor=factor
+            kernel=kernel,
+            log_parameters=log_parameters,
+            noise=noise,
+            log_noise=log_noise,
+            x=x,
+            doubt=doubt,
+            weights=weights,
+            factor=factor,
         )
 
-    @property
-    def noise(self) -> float:
-        """Variance of the noise, the outputs having unit variance."""
-        return float(np.exp(self.log_parameters[-1]))
+    def noise_at(self, x: Float[np.ndarray, "row feature"]) -> Float[np.ndarray, "row output"]:
+        """Variance of the noise of a new measurement; one column stands for all outputs."""
+        variance = self.noise.variance(self.log_noise, x)
+        if isinstance(self.factor, Spectrum) and self.factor.mixture is not None:
+            return variance @ self.factor.mixture[:, None]
+        return variance
 
     def predict(
         self, x: Float[np.ndarray, "row feature"]
-    ) -> tuple[Float[np.ndarray, "row output"], Float[np.ndarray, " row"]]:
-        """Mean of each output, and the variance without noise that they share."""
-        mean = np.empty((len(x), self.weights.shape[1]))
-        variance = np.empty(len(x))
-        for rows in chunks(len(x), CHUNK // len(self.x)):
-            mean[rows], variance[rows] = self._predict(x[rows])
-        return mean, variance
+    ) -> tuple[Float[np.ndarray, "row output"], Float[np.ndarray, "row shared"]]:
+        """Mean of each output, and the variance without noise, in one column if all share it."""
+        if len(x) * len(self.x) <= CHUNK:
+            return self._predict(x)
+        parts = [self._predict(x[rows]) for rows in chunks(len(x), CHUNK // len(self.x))]
+        mean, variance = zip(*parts, strict=True)
+        return np.concatenate(mean), np.concatenate(variance)
 
     def _predict(
         self, x: Float[np.ndarray, "row feature"]
-    ) -> tuple[Float[np.ndarray, "row output"], Float[np.ndarray, " row"]]:
-        from scipy.linalg import solve_triangular
-
-        prior = self.kernel.variance(self.log_parameters[:-1], x)
-        cross = self.kernel.covariance(self.log_parameters[:-1], x, self.x)
-        mean = cross @ self.weights
-        explained = solve_triangular(
-            self.factor, cross.T, lower=True, overwrite_b=True, check_finite=False
-        )
+    ) -> tuple[Float[np.ndarray, "row output"], Float[np.ndarray, "row shared"]]:
+        prior = self.kernel.variance(self.log_parameters, x)
+        cross = self.kernel.covariance(self.log_parameters, x, self.x)
         # Rounding can explain a hair more than there is.
-        return mean, np.maximum(prior - np.einsum("nr,nr->r", explained, explained), 0.0)
+        variance = np.maximum(prior[:, None] - self.factor.explained(cross), 0.0)
+        return cross @ self.weights, variance
 
-    def leave_one_out(self) -> tuple[Float[np.ndarray, "n output"], Float[np.ndarray, " n"]]:
+    def mean_slope(
+        self, x: Float[np.ndarray, "row feature"]
+    ) -> Float[np.ndarray, "row output feature"]:
+        """Jacobian of the mean."""
+        slopes = [
+            self.kernel.slope(self.log_parameters, x, self.x, weight[None])
+            for weight in self.weights.T
+        ]
+        return np.stack(slopes, axis=1)
+
+    def variance_slope(
+        self, x: Float[np.ndarray, "row feature"]
+    ) -> Float[np.ndarray, "row feature"]:
+        """Gradient of the variance without noise, where all outputs share it."""
+        cross = self.kernel.covariance(self.log_parameters, x, self.x)
+        share = self.factor.solve(cross.T).T
+        of_explained = self.kernel.slope(self.log_parameters, x, self.x, share)
+        return self.kernel.variance_slope(self.log_parameters, x) - 2.0 * of_explained
+
+    def leave_one_out(self) -> tuple[Float[np.ndarray, "n output"], Float[np.ndarray, "n shared"]]:
         """Residual of each point against all the others, and its variance with noise.
 
         References
         ----------
         Rasmussen & Williams (2006), eqs. (5.10)-(5.12).
         """
-        precision = np.diag(_inverse(self.factor))
-        return self.weights / precision[:, None], 1.0 / precision
+        precision = self.factor.precision()
+        return self.weights / precision, 1.0 / precision
 
     def observed(self) -> Float[np.ndarray, "n output"]:
         """The outputs that it was conditioned on."""
-        return self.factor @ (self.factor.T @ self.weights)
+        return self.factor.observed(self.weights)
+
+    def updated(
+        self,
+        x: Float[np.ndarray, "new feature"],
+        y: Float[np.ndarray, "new output"],
+        *,
+        amplitude: Float[np.ndarray, " output"],
+    ) -> Self:
+        """Conditioned on more points, with the same hyperparameters.
+
+        The Cholesky factor is extended, in O(n^2) per point; noise unlike between the outputs
+        needs the decomposition anew, in O(n^3).
+
+        Parameters
+        ----------
+        x, y
+            The new points.
+        amplitude
+            Standard deviation of each output that the kernel's is a share of.
+        """
+        doubt = np.append(self.doubt, self._doubts(x, y, amplitude))
+        all_x, all_y = np.concatenate([self.x, x]), np.concatenate([self.observed(), y])
+        factor = self._extended(x, doubt[len(self.x) :])
+        if factor is None:
+            return self.reconditioned(all_x, all_y, doubt=doubt)
+        return replace(self, x=all_x, doubt=doubt, weights=factor.solve(all_y), factor=factor)
+
+    def _extended(
+        self, x: Float[np.ndarray, "new feature"], doubt: Float[np.ndarray, " new"]
+    ) -> Cholesky | None:
+        from scipy.linalg import LinAlgError
+
+        if not isinstance(self.factor, Cholesky):
+            return None
+        try:
+            return self.factor.extended(
+                self.kernel.covariance(self.log_parameters, x, self.x),
+                self.kernel.covariance(self.log_parameters, x, x),
+                self.noise.with_pullback(self.log_noise, x)[0] * doubt,
+            )
+        except LinAlgError:
+            return None  # The whole can afford a larger jitter.
+
+    def reconditioned(
+        self,
+        x: Float[np.ndarray, "n feature"],
+        y: Float[np.ndarray, "n output"],
+        *,
+        doubt: Float[np.ndarray, " n"],
+    ) -> Self:
+        """Conditioned on other points, with the same hyperparameters."""
+        return self.conditioned(
+            self.kernel,
+            self.log_parameters,
+            self.log_noise,
+            x,
+            y,
+            noise=self.noise,
+            doubt=doubt,
+        )
+
+    def combined(
+        self, share: Float[np.ndarray, " output"], *, amplitude: Float[np.ndarray, " output"]
+    ) -> Self:
+        """With one output: the sum of the outputs times their share.
+
+        Parameters
+        ----------
+        share
+            Of each output.
+        amplitude
+            Standard deviation of each output that the kernel's is a share of.
+        """
+        weights = self.weights @ share[:, None]
+        if isinstance(self.factor, Cholesky):
+            return replace(self, weights=weights)
+        variance = (share * amplitude) ** 2
+        variance /= max(float(variance.sum()), np.finfo(float).tiny)
+        only = np.flatnonzero(share)
+        log_noise = self.log_noise[only] if len(only) == 1 else self.log_noise
+        factor = self.factor.mixed(np.where(share == 0.0, 0.0, variance))
+        return replace(self, weights=weights, factor=factor, log_noise=log_noise)
+
+    def _doubts(
+        self,
+        x: Float[np.ndarray, "new feature"],
+        y: Float[np.ndarray, "new output"],
+        amplitude: Float[np.ndarray, " output"],
+    ) -> Float[np.ndarray, " new"]:
+        """Doubt of new points, each judged by what the old ones made it expect."""
+        if not isinstance(self.noise, StudentNoise):
+            return np.ones(len(x))
+        mean, variance = self.predict(x)
+        known = amplitude > 0.0
+        square = np.sum(((y - mean)[:, known] / amplitude[known]) ** 2, axis=1)
+        scale, outputs = float(np.exp(self.log_noise[0])), int(np.sum(known))
+        return settled_doubt(square, variance[:, 0], scale=scale, outputs=outputs)
 
 
-def learned(
-    kernel: AbstractKernel,
-    x: Float[np.ndarray, "n feature"],
-    y: Float[np.ndarray, "n output"],
-    *,
-    restarts: int,
-    seed: int,
-) -> Float[np.ndarray, " parameter"]:
-    """Most probable log hyperparameters, the outputs sharing them.
-
-    Each start is improved on a random subset, the best one then on all points.
-
-    Parameters
-    ----------
-    kernel
-        The covariance to learn.
-    x, y
-        Standardised inputs and outputs.
-    restarts
-        Random starts beside the deterministic one.
-    seed
-        Of the subset and of the starts.
-    """
-    random = np.random.default_rng(seed)
-    rows = np.sort(random.permutation(len(x))[:SUBSET])
-    ends = [
-        _improved(kernel, x[rows], y[rows], start, steps=200)
-        for start in _starts(kernel, x.shape[1], restarts, random)
-    ]
-    best = min(ends, key=lambda end: end[1])[0]
-    return best if len(x) <= SUBSET else _improved(kernel, x, y, best, steps=POLISH)[0]
-
-
-def loss(
+def factorised(
     kernel: AbstractKernel,
     log_parameters: Float[np.ndarray, " parameter"],
+    noise: AbstractNoise,
+    log_noise: Float[np.ndarray, " noise"],
     x: Float[np.ndarray, "n feature"],
-    y: Float[np.ndarray, "n output"],
-) -> tuple[float, Float[np.ndarray, " parameter"]]:
-    """Negative log posterior of the hyperparameters, and its gradient.
-
-    The likelihood is summed over the outputs, which share one factor; constants are left out.
-
-    References
-    ----------
-    Rasmussen & Williams (2006), eqs. (5.8) and (5.9).
-    """
-    outputs = y.shape[1]
-    noise = np.exp(log_parameters[-1])
-    covariance, pullback = kernel.with_pullback(log_parameters[:-1], x)
-    factor = _cholesky(covariance, noise)
-    inverse = _inverse(factor)
-    weights = inverse @ y
-    value = 0.5 * np.sum(y * weights) + outputs * np.sum(np.log(np.diag(factor)))
-
-    adjoint = 0.5 * (outputs * inverse - weights @ weights.T)
-    of_noise = noise * np.trace(adjoint)
-    adjoint[np.diag_indices_from(adjoint)] *= 1.0 + JITTER
-    gradient = np.append(pullback(adjoint), of_noise)
-
-    prior = kernel.prior(x.shape[1])
-    mean = np.append(prior.mean, NOISE_PRIOR[0])
-    sd = np.append(prior.sd, NOISE_PRIOR[1])
-    offset = (log_parameters - mean) / sd
-    return float(value + 0.5 * offset @ offset), gradient + offset / sd
+    doubt: Float[np.ndarray, " n"],
+) -> Factor:
+    """Of the covariance of points with noise."""
+    covariance = kernel.covariance(log_parameters, x, x)
+    if isinstance(noise, NoisePerOutput):
+        return Spectrum.of(covariance, np.exp(log_noise))
+    return Cholesky.of(covariance, noise.with_pullback(log_noise, x)[0] * doubt)
 
 
 def chunks(rows: int, size: int) -> Iterator[slice]:
     """Consecutive slices of at most so many rows."""
     step = max(size, 1)
     return (slice(start, start + step) for start in range(0, rows, step))
-
-
-def _starts(
-    kernel: AbstractKernel, width: int, restarts: int, random: np.random.Generator
-) -> Iterator[Float[np.ndarray, " parameter"]]:
-    prior = kernel.prior(width)
-    yield np.append(prior.mean, NOISE_STARTS[0])
-    for draw in range(restarts):
-        noise = NOISE_STARTS[(draw + 1) % 2]
-        yield np.append(prior.mean + prior.sd * random.standard_normal(len(prior.mean)), noise)
-
-
-def _improved(
-    kernel: AbstractKernel,
-    x: Float[np.ndarray, "n feature"],
-    y: Float[np.ndarray, "n output"],
-    start: Float[np.ndarray, " parameter"],
-    *,
-    steps: int,
-) -> tuple[Float[np.ndarray, " parameter"], float]:
-    from scipy.optimize import minimize
-
-    prior = kernel.prior(x.shape[1])
-    # Four sd either way keep the covariance well enough conditioned to factorise.
-    reach = np.stack([prior.mean - 4.0 * prior.sd, prior.mean + 4.0 * prior.sd], axis=1)
-    bounds = np.vstack([reach, NOISE_BOUNDS])
-    end = minimize(
-        lambda parameters: loss(kernel, parameters, x, y),
-        np.clip(start, bounds[:, 0], bounds[:, 1]),
-        jac=True,
-        method="L-BFGS-B",
-        bounds=bounds,
-        options={"maxiter": steps},
-    )
-    return end.x, float(end.fun)
-
-
-def _factor(
-    kernel: AbstractKernel,
-    log_parameters: Float[np.ndarray, " parameter"],
-    x: Float[np.ndarray, "n feature"],
-) -> Float[np.ndarray, "n n"]:
-    covariance = kernel.covariance(log_parameters[:-1], x, x)
-    return _cholesky(covariance, np.exp(log_parameters[-1]))
-
-
-def _cholesky(covariance: Float[np.ndarray, "n n"], noise: float) -> Float[np.ndarray, "n n"]:
-    from scipy.linalg import cholesky
-
-    noisy = covariance.copy()
-    noisy[np.diag_indices_from(noisy)] *= 1.0 + JITTER
-    noisy[np.diag_indices_from(noisy)] += noise
-    return cholesky(noisy, lower=True, overwrite_a=True, check_finite=False)
-
-
-def _inverse(factor: Float[np.ndarray, "n n"]) -> Float[np.ndarray, "n n"]:
-    from scipy.linalg import get_lapack_funcs
-
-    (potri,) = get_lapack_funcs(("potri",), (factor,))
-    lower = np.tril(potri(factor, lower=True)[0])
-    return lower + np.tril(lower, -1).T

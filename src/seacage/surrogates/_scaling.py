@@ -26,4 +26,9 @@ class Scaling:
         self, values: Float[np.ndarray, "row column"]
     ) -> Float[np.ndarray, "row column"]:
         """In spreads from the centre; a constant column keeps its unit."""
-        return (values - self.centre) / np.where(self.spread > 0.0, self.spread, 1.0)
+        return (values - self.centre) / self.unit
+
+    @property
+    def unit(self) -> Float[np.ndarray, " column"]:
+        """What a standardised 1 is, in the unit of each column."""
+        return np.where(self.spread > 0.0, self.spread, 1.0)

@@ -4,19 +4,16 @@ import numpy as np
 import pytest
 
 from seacage.conventions import InputError, ModelError
-from seacage.surrogates._kernels import (
-    AbstractKernel,
-    AutoregressiveKernel,
-    StationaryKernel,
-    kernel_named,
-    saved_kernel,
-)
+from seacage.surrogates._autoregressive import AutoregressiveKernel, StraightKernel, saved_kernel
+from seacage.surrogates._kernels import AbstractKernel, StationaryKernel, kernel_named
 
 KERNELS = [
     StationaryKernel("squared-exponential"),
     StationaryKernel("matern-5/2"),
+    StationaryKernel("matern-3/2"),
     AutoregressiveKernel(linear=True),
     AutoregressiveKernel(linear=False),
+    StraightKernel(),
 ]
 every_kernel = pytest.mark.parametrize("kernel", KERNELS, ids=lambda kernel: kernel.name)
 
@@ -67,10 +64,56 @@ def test_the_pullback_agrees_with_finite_differences(kernel: AbstractKernel) -> 
     np.testing.assert_allclose(pullback(slope), moved, rtol=1e-6, atol=1e-6)
 
 
+@every_kernel
+def test_the_slope_agrees_with_finite_differences(kernel: AbstractKernel) -> None:
+    z, log_parameters = some(kernel)
+    random = np.random.default_rng(6)
+    x, share = random.standard_normal((7, 3)), random.standard_normal((7, 20))
+    step = 1e-6
+    moved = [
+        np.sum(
+            share
+            * (
+                kernel.covariance(log_parameters, x + one, z)
+                - kernel.covariance(log_parameters, x - one, z)
+            ),
+            axis=1,
+        )
+        / (2.0 * step)
+        for one in step * np.eye(3)
+    ]
+    slope = kernel.slope(log_parameters, x, z, share)
+    np.testing.assert_allclose(slope, np.transpose(moved), rtol=1e-6, atol=1e-6)
+    alike = kernel.slope(log_parameters, x, z, share[:1])
+    np.testing.assert_allclose(
+        alike, kernel.slope(log_parameters, x, z, np.tile(share[:1], (7, 1))), rtol=1e-12
+    )
+
+
+@every_kernel
+def test_the_variance_slope_agrees_with_finite_differences(kernel: AbstractKernel) -> None:
+    x, log_parameters = some(kernel)
+    step = 1e-6
+    moved = [
+        (kernel.variance(log_parameters, x + one) - kernel.variance(log_parameters, x - one))
+        / (2.0 * step)
+        for one in step * np.eye(3)
+    ]
+    slope = kernel.variance_slope(log_parameters, x)
+    np.testing.assert_allclose(slope, np.transpose(moved), rtol=1e-6, atol=1e-6)
+
+
 def test_the_squared_exponential_has_its_published_values() -> None:
     kernel = StationaryKernel("squared-exponential")
     at = kernel.covariance(np.log([2.0, 0.5]), np.zeros((1, 1)), np.array([[0.5], [1.0]]))
     np.testing.assert_allclose(at, 2.0 * np.exp([[-0.5, -2.0]]), rtol=1e-14)
+
+
+def test_the_rough_matern_has_its_published_values() -> None:
+    # Rasmussen & Williams (2006), eq. (4.17), at one length.
+    kernel = StationaryKernel("matern-3/2")
+    at = kernel.covariance(np.log([1.0, 0.5]), np.zeros((1, 1)), np.array([[0.5]]))
+    np.testing.assert_allclose(at, [[(1.0 + np.sqrt(3.0)) * np.exp(-np.sqrt(3.0))]], rtol=1e-14)
 
 
 def test_the_matern_has_its_published_values() -> None:

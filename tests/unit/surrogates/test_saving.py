@@ -91,23 +91,23 @@ def test_arrays_of_another_precision_are_refused() -> None:
     settings, arrays = encode(process())
     arrays["weights"] = arrays["weights"].astype(np.float32)
     with pytest.raises(
-        ModelError, match=r"'weights' is float32 \(25, 1\); expected finite float64"
+        ModelError, match=r"'weights' is float32 \(1, 25, 1\); expected finite float64"
     ):
         decode(settings, arrays)
 
 
 def test_arrays_that_do_not_fit_one_another_are_refused() -> None:
     settings, arrays = encode(process())
-    with pytest.raises(ModelError, match=r"'weights' .* expected finite float64 \(24, 1\)"):
+    with pytest.raises(ModelError, match=r"'weights' .* expected finite float64 \(1, 24, 1\)"):
         decode(settings, arrays | {"inputs": arrays["inputs"][:24]})
 
 
 @pytest.mark.parametrize("size", [-800.0, 800.0])
 def test_a_covariance_that_no_model_has_is_refused(size: float) -> None:
     settings, arrays = encode(process())
-    wild = np.array([size, 0.0, 0.0, -800.0])
+    wild = {"log_parameters": np.array([[size, 0.0, 0.0]]), "log_noise": np.array([[-800.0]])}
     with pytest.raises(ModelError, match="covariance is not positive definite"):
-        decode(settings, arrays | {"log_parameters": wild})
+        decode(settings, arrays | wild)
 
 
 def test_levels_that_do_not_stand_on_one_another_are_refused() -> None:

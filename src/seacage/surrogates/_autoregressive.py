@@ -1,0 +1,219 @@
+"""Covariance functions of a fidelity over its inputs and the fidelity below."""
+
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.conventions import ModelError
+from seacage.surrogates._kernels import (
+    PUBLIC,
+    VARIANCE_PRIOR,
+    AbstractKernel,
+    Prior,
+    Pullback,
+    StationaryKernel,
+    correlation,
+    correlation_slope,
+    length_priors,
+    prior_of,
+    scaled,
+    unit,
+)
+
+BELL = "squared-exponential"
+LOCAL = StationaryKernel(BELL)
+
+
+@dataclass(frozen=True, slots=True)
+class AutoregressiveKernel(AbstractKernel):
+    """The NARGP's covariance over (x, f), f being the level below: the last feature.
+
+    k_rho(x, x') (k_f(f, f') + s f f') + k_delta(x, x'), each a squared exponential with ARD,
+    k_f of unit variance because the product needs only one; without ``linear`` there is no s.
+    Hyperparameters, in logarithms: rho's variance and lengths, f's length, delta's variance
+    and lengths, then s.
+
+    References
+    ----------
+    Perdikaris et al. (2017), eq. (2.14), for the kernel without the linear term.
+    """
+
+    linear: bool
+
+    @property
+    def name(self) -> str:
+        return "autoregressive-linear" if self.linear else "autoregressive"
+
+    def prior(self, width: int) -> Prior:
+        local = [VARIANCE_PRIOR, *length_priors(width - 1)]
+        return prior_of(local + length_priors(1) + local + [VARIANCE_PRIOR] * self.linear)
+
+    def covariance(
+        self,
+        log_parameters: Float[np.ndarray, " parameter"],
+        x: Float[np.ndarray, "row feature"],
+        z: Float[np.ndarray, "n feature"],
+    ) -> Float[np.ndarray, "row n"]:
+        rho, length, delta, slope = self._split(log_parameters)
+        link = correlation(BELL, length, x[:, -1:], z[:, -1:])
+        link += slope * x[:, -1:] * z[:, -1]
+        link *= LOCAL.covariance(rho, x[:, :-1], z[:, :-1])
+        return link + LOCAL.covariance(delta, x[:, :-1], z[:, :-1])
+
+    def variance(
+        self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "row feature"]
+    ) -> Float[np.ndarray, " row"]:
+        rho, _, delta, slope = self._split(log_parameters)
+        return np.exp(rho[0]) * (1.0 + slope * x[:, -1] ** 2) + np.exp(delta[0])
+
+    def with_pullback(
+        self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "n feature"]
+    ) -> tuple[Float[np.ndarray, "n n"], Pullback]:
+        rho, length, delta, slope = self._split(log_parameters)
+        local, below = x[:, :-1], x[:, -1:]
+        k_rho, pull_rho = scaled(BELL, rho, local)
+        k_f, pull_f = unit(BELL, length, below)
+        k_delta, pull_delta = scaled(BELL, delta, local)
+        straight = slope * below * below[:, 0]
+        link = k_f + straight
+
+        pulls = (pull_rho, pull_f, pull_delta)
+        return k_rho * link + k_delta, partial(self._pulled, k_rho, link, straight, pulls)
+
+    def slope(
+        self,
+        log_parameters: Float[np.ndarray, " parameter"],
+        x: Float[np.ndarray, "row feature"],
+        z: Float[np.ndarray, "n feature"],
+        share: Float[np.ndarray, "_ n"],
+    ) -> Float[np.ndarray, "row feature"]:
+        rho, length, delta, slope = self._split(log_parameters)
+        (local, below), (local_z, below_z) = ((at[:, :-1], at[:, -1:]) for at in (x, z))
+        link = correlation(BELL, length, below, below_z) + slope * below * below_z[:, 0]
+        by_x = LOCAL.slope(rho, local, local_z, share * link)
+        by_x += LOCAL.slope(delta, local, local_z, share)
+        share = share * LOCAL.covariance(rho, local, local_z)
+        by_below = correlation_slope(BELL, length, below, below_z, share)
+        by_below += slope * (share @ below_z)
+        return np.column_stack([by_x, by_below])
+
+    def variance_slope(
+        self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "row feature"]
+    ) -> Float[np.ndarray, "row feature"]:
+        rho, _, _, slope = self._split(log_parameters)
+        gradient = np.zeros_like(x)
+        gradient[:, -1] = 2.0 * np.exp(rho[0]) * slope * x[:, -1]
+        return gradient
+
+    def _pulled(
+        self,
+        k_rho: Float[np.ndarray, "n n"],
+        link: Float[np.ndarray, "n n"],
+        straight: Float[np.ndarray, "n n"],
+        pulls: tuple[Pullback, Pullback, Pullback],
+        adjoint: Float[np.ndarray, "n n"],
+    ) -> Float[np.ndarray, " parameter"]:
+        of_link = adjoint * k_rho
+        adjoints = (adjoint * link, of_link, adjoint)
+        parts = [pull(one) for pull, one in zip(pulls, adjoints, strict=True)]
+        return np.concatenate(parts + [[np.sum(of_link * straight)]] * self.linear)
+
+    def link_length(self, log_parameters: Float[np.ndarray, " parameter"]) -> float:
+        """Length over which the answer bends with f, in the unit of the standardised f."""
+        return float(np.exp(self._split(log_parameters)[1][0]))
+
+    def _split(
+        self, log_parameters: Float[np.ndarray, " parameter"]
+    ) -> tuple[
+        Float[np.ndarray, " local"], Float[np.ndarray, "1"], Float[np.ndarray, " local"], float
+    ]:
+        local = (len(log_parameters) - 1 - self.linear) // 2
+        rho, length, delta, rest = np.split(log_parameters, [local, local + 1, 2 * local + 1])
+        return rho, length, delta, float(np.exp(rest[0])) if self.linear else 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class StraightKernel(AbstractKernel):
+    """s f f' + k_delta(x, x'): a constant ratio to the level below, and what it leaves.
+
+    Hyperparameters, in logarithms: s, then delta's variance and lengths.
+
+    References
+    ----------
+    Kennedy & O'Hagan (2000), Biometrika 87:1-13, eq. (1), the ratio being integrated out under
+    a Gaussian prior; one level at a time as in Le Gratiet & Garnier (2014).
+    """
+
+    @property
+    def name(self) -> str:
+        return "straight"
+
+    def prior(self, width: int) -> Prior:
+        return prior_of([VARIANCE_PRIOR, VARIANCE_PRIOR, *length_priors(width - 1)])
+
+    def covariance(
+        self,
+        log_parameters: Float[np.ndarray, " parameter"],
+        x: Float[np.ndarray, "row feature"],
+        z: Float[np.ndarray, "n feature"],
+    ) -> Float[np.ndarray, "row n"]:
+        delta = LOCAL.covariance(log_parameters[1:], x[:, :-1], z[:, :-1])
+        return np.exp(log_parameters[0]) * x[:, -1:] * z[:, -1] + delta
+
+    def variance(
+        self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "row feature"]
+    ) -> Float[np.ndarray, " row"]:
+        return np.exp(log_parameters[0]) * x[:, -1] ** 2 + np.exp(log_parameters[1])
+
+    def with_pullback(
+        self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "n feature"]
+    ) -> tuple[Float[np.ndarray, "n n"], Pullback]:
+        ratio = np.exp(log_parameters[0]) * x[:, -1:] * x[:, -1]
+        delta, pull_delta = scaled(BELL, log_parameters[1:], x[:, :-1])
+
+        def pullback(adjoint: Float[np.ndarray, "n n"]) -> Float[np.ndarray, " parameter"]:
+            return np.append(np.sum(adjoint * ratio), pull_delta(adjoint))
+
+        return ratio + delta, pullback
+
+    def slope(
+        self,
+        log_parameters: Float[np.ndarray, " parameter"],
+        x: Float[np.ndarray, "row feature"],
+        z: Float[np.ndarray, "n feature"],
+        share: Float[np.ndarray, "_ n"],
+    ) -> Float[np.ndarray, "row feature"]:
+        by_x = LOCAL.slope(log_parameters[1:], x[:, :-1], z[:, :-1], share)
+        by_below = np.exp(log_parameters[0]) * (share @ z[:, -1:])
+        return np.column_stack([by_x, np.broadcast_to(by_below, (len(x), 1))])
+
+    def variance_slope(
+        self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "row feature"]
+    ) -> Float[np.ndarray, "row feature"]:
+        gradient = np.zeros_like(x)
+        gradient[:, -1] = 2.0 * np.exp(log_parameters[0]) * x[:, -1]
+        return gradient
+
+    def link_length(self, _: Float[np.ndarray, " parameter"]) -> float:
+        """A straight level bends nowhere."""
+        return np.inf
+
+
+LinkKernel = AutoregressiveKernel | StraightKernel
+"""Kernels of a level that stands on another."""
+
+
+def saved_kernel(name: str) -> AbstractKernel:
+    """Kernel of a saved model: those with a public name, and those of a level on another."""
+    kernels: list[AbstractKernel] = [
+        *(StationaryKernel(public) for public in PUBLIC),
+        AutoregressiveKernel(linear=True),
+        AutoregressiveKernel(linear=False),
+        StraightKernel(),
+    ]
+    for kernel in kernels:
+        if kernel.name == name:
+            return kernel
+    raise ModelError(f"The saved model has kernel {name!r}, which this version does not know.")

@@ -1,0 +1,187 @@
+"""A covariance with noise, factorised once for all that is asked of it."""
+
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.conventions import InputError
+
+JITTERS = (1e-9, 1e-8, 1e-7, 1e-6)
+"""Shares of each variance added to the diagonal, the first that gives a factor in float64."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Cholesky:
+    """Of a covariance whose noise is the same for all outputs.
+
+    Parameters
+    ----------
+    lower
+        Triangular factor of the covariance with noise.
+    """
+
+    lower: Float[np.ndarray, "n n"]
+
+    @classmethod
+    def of(cls, covariance: Float[np.ndarray, "n n"], noise: Float[np.ndarray, " n"]) -> Self:
+        """Factorise the covariance plus the noise of each case.
+
+        Raises
+        ------
+        LinAlgError
+            It is not positive definite, even with the largest jitter.
+        """
+        from scipy.linalg import LinAlgError
+
+        for jitter in JITTERS:
+            diagonal = np.diag(covariance) * (1.0 + jitter) + noise
+            try:
+                return cls(lower=_lower(covariance, diagonal))
+            except LinAlgError:
+                continue
+        raise LinAlgError("the covariance is not positive definite")
+
+    def solve(self, y: Float[np.ndarray, "n output"]) -> Float[np.ndarray, "n output"]:
+        """Inverse times outputs."""
+        from scipy.linalg import cho_solve
+
+        # In C order, as they come back from a file: the same rounding in every prediction.
+        return np.ascontiguousarray(cho_solve((self.lower, True), y, check_finite=False))
+
+    def observed(self, weights: Float[np.ndarray, "n output"]) -> Float[np.ndarray, "n output"]:
+        """Outputs whose inverse is the weights."""
+        return self.lower @ (self.lower.T @ weights)
+
+    def explained(self, cross: Float[np.ndarray, "row n"]) -> Float[np.ndarray, "row 1"]:
+        """Of each row's variance, by the cases that it varies with."""
+        from scipy.linalg import solve_triangular
+
+        half = solve_triangular(self.lower, cross.T, lower=True, check_finite=False)
+        return np.einsum("nr,nr->r", half, half)[:, None]
+
+    def precision(self) -> Float[np.ndarray, "n 1"]:
+        """Diagonal of the inverse."""
+        return np.diag(inverse(self.lower))[:, None]
+
+    def extended(
+        self,
+        cross: Float[np.ndarray, "new n"],
+        corner: Float[np.ndarray, "new new"],
+        noise: Float[np.ndarray, " new"],
+    ) -> Self:
+        """The factor with more cases, in O(n^2) for each.
+
+        Parameters
+        ----------
+        cross, corner
+            Covariance of the new cases with the old and with one another.
+        noise
+            Of the new cases.
+
+        Raises
+        ------
+        LinAlgError
+            A new case repeats an old one more closely than its noise tells apart.
+        """
+        from scipy.linalg import solve_triangular
+
+        side = solve_triangular(self.lower, cross.T, lower=True, check_finite=False).T
+        left = np.diag(corner) * (1.0 + JITTERS[0]) + noise - np.sum(side**2, axis=1)
+        old, new = len(self.lower), len(corner)
+        lower = np.zeros((old + new, old + new))
+        lower[:old, :old], lower[old:, :old] = self.lower, side
+        lower[old:, old:] = _lower(corner - side @ side.T, left)
+        return replace(self, lower=lower)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Spectrum:
+    """Of a covariance under noise of another size for each output: one basis serves all.
+
+    Parameters
+    ----------
+    basis, value
+        Eigenvectors (columns) and eigenvalues of the covariance.
+    noise
+        Variance of each output's.
+    mixture
+        Shares of the outputs' variance in the one answer that is a sum of them; None answers
+        with each output.
+    """
+
+    basis: Float[np.ndarray, "n n"]
+    value: Float[np.ndarray, " n"]
+    noise: Float[np.ndarray, " output"]
+    mixture: Float[np.ndarray, " output"] | None = None
+
+    @classmethod
+    def of(cls, covariance: Float[np.ndarray, "n n"], noise: Float[np.ndarray, " output"]) -> Self:
+        """Decompose the covariance."""
+        from scipy.linalg import eigh
+
+        jitter = JITTERS[0] * float(np.diag(covariance).max())
+        value, basis = eigh(covariance, check_finite=False)
+        return cls(basis=basis, value=np.maximum(value, 0.0) + jitter, noise=noise)
+
+    @property
+    def inverse_value(self) -> Float[np.ndarray, "n output"]:
+        """Eigenvalues of the inverse, for each answer."""
+        inverse_value = 1.0 / (self.value[:, None] + self.noise)
+        return inverse_value if self.mixture is None else inverse_value @ self.mixture[:, None]
+
+    def solve(self, y: Float[np.ndarray, "n output"]) -> Float[np.ndarray, "n output"]:
+        """Inverse times outputs."""
+        self._refuse_mixture()
+        return self.basis @ ((self.basis.T @ y) * self.inverse_value)
+
+    def observed(self, weights: Float[np.ndarray, "n output"]) -> Float[np.ndarray, "n output"]:
+        """Outputs whose inverse is the weights."""
+        self._refuse_mixture()
+        return self.basis @ ((self.basis.T @ weights) / self.inverse_value)
+
+    def explained(self, cross: Float[np.ndarray, "row n"]) -> Float[np.ndarray, "row output"]:
+        """Of each row's variance, by the cases that it varies with."""
+        return (cross @ self.basis) ** 2 @ self.inverse_value
+
+    def precision(self) -> Float[np.ndarray, "n output"]:
+        """Diagonal of the inverse."""
+        self._refuse_mixture()
+        return self.basis**2 @ self.inverse_value
+
+    def mixed(self, share: Float[np.ndarray, " output"]) -> Self:
+        """For one answer that sums independent outputs of these shares of its variance."""
+        only = np.flatnonzero(share)
+        if len(only) == 1:
+            return replace(self, noise=self.noise[only])
+        return replace(self, mixture=share)
+
+    def _refuse_mixture(self) -> None:
+        if self.mixture is not None:
+            raise InputError(
+                "A sum of outputs of unlike noise can predict, but it was not learned as one "
+                "output. Ask the whole model instead."
+            )
+
+
+Factor = Cholesky | Spectrum
+
+
+def _lower(
+    covariance: Float[np.ndarray, "n n"], diagonal: Float[np.ndarray, " n"]
+) -> Float[np.ndarray, "n n"]:
+    from scipy.linalg import cholesky
+
+    whole = covariance.copy()
+    whole[np.diag_indices_from(whole)] = diagonal
+    return cholesky(whole, lower=True, overwrite_a=True, check_finite=False)
+
+
+def inverse(lower: Float[np.ndarray, "n n"]) -> Float[np.ndarray, "n n"]:
+    """Of the matrix whose Cholesky factor this is."""
+    from scipy.linalg import get_lapack_funcs
+
+    (potri,) = get_lapack_funcs(("potri",), (lower,))
+    half = np.tril(potri(lower, lower=True)[0])
+    return half + np.tril(half, -1).T
