@@ -3,10 +3,20 @@
 import json
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from seacage.cage import Cage
-from seacage.studies import PaperStudy, _demonstration, prepare_demonstration, score_record
+from seacage.campaigns import Plan, run_campaign
+from seacage.conventions import InputError, Origin
+from seacage.records import FieldRecord, check_record
+from seacage.studies import (
+    PaperStudy,
+    _demonstration,
+    paper_study,
+    prepare_demonstration,
+    score_record,
+)
 from seacage.studies._chain import Chain, Recipe
 from seacage.studies._paper import study_chain
 from seacage.twin import Twin
@@ -66,9 +76,11 @@ def test_level_one_is_close_to_simulations_that_it_has_not_seen(study):
 
 def test_the_page_stands_alone_and_says_what_is_virtual(study):
     page = study.report.read_text("utf-8")
-    assert page.count("data:image/svg+xml") == 2 * 3 + 2
-    for score in study.sensors:
-        assert f"{score.sensor}, virtual field" in page
+    assert page.count("data:image/svg+xml") == 6, "net, loads, depths, errors, nets, by speed"
+    assert "Every reading is of the virtual field" in page
+    assert "Where the paper is at odds with itself" in page
+    for claim in study.claims:
+        assert claim.verdict in page
     assert "http" not in page
     assert study.report.stat().st_size < 6e6
 
@@ -79,12 +91,86 @@ def test_the_numbers_behind_the_page_can_be_read_by_a_program(study):
     assert len(scores["provenance"]["Hidden parameters"]) == len("sha256 ") + 64
     mae = {one["sensor"]: one["means"]["multi_mae"] for one in scores["sensors"]}
     assert mae == {score.sensor: score.means.multi_mae for score in study.sensors}
+    assert scores["origin"] == "virtual field"
+    assert {one["model"] for one in scores["shapes"]} >= {"ShapeGP", "PCA-GP, 3 modes"}
+    assert [one["claim"] for one in scores["claims"]] == [one.claim for one in study.claims]
 
 
 def test_a_second_study_makes_nothing_again_and_says_the_same(study, folder):
     page = study.report.read_bytes()
     again = study_chain(chain(folder, progress=unheard), folder)
     assert again.report.read_bytes() == page
+
+
+@pytest.fixture(scope="module")
+def in_waves(study, folder):
+    """A campaign in waves, and a field whose buoy tells of waves, as from another command."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("seacage.campaigns._cases.simulate", StandIn().simulate)
+        run_campaign(SMALL, Plan.sample(3, 60), folder / "campaign.zarr", workers=1)
+    made = chain(folder)
+    buoy = made.field.buoy
+    hs = 1.0 + 0.5 * np.sin(np.arange(len(buoy)) / 90.0)
+    waves = {"hs_m": hs, "tp_s": 5.0 * np.sqrt(hs), "wave_from_deg": np.full(len(buoy), 270.0)}
+    buoy = check_record(replace(buoy, values={**buoy.values, **waves}, flags={}))
+    replace(made.field, buoy=buoy).write(folder / "field")
+    replace(made.truth, buoy=buoy).write(folder / "field" / "truth")
+    return folder / "campaign.zarr", folder / "field"
+
+
+def given(folder, in_waves, **options) -> Chain:
+    campaign, field = in_waves
+    return Chain(
+        folder=folder / "stages",
+        cage=SMALL,
+        recipe=replace(RECIPE, method="simulate"),
+        given_campaign=campaign,
+        given_field=field,
+        workers=1,
+        **options,
+    )
+
+
+def test_a_given_campaign_and_field_are_studied_with_and_without_waves(in_waves, tmp_path):
+    study = study_chain(given(tmp_path, in_waves), tmp_path)
+    assert study.level_one.cases == 12, "the last of the campaign given judge"
+    assert [way.name for way in study.ways] == [
+        "Current, spread",
+        "Current, minutes in a row",
+        "Current and waves, spread",
+    ]
+    readings = {(one.sensor, one.raw.readings) for way in study.ways for one in way.sensors}
+    assert len(readings) == len(SMALL.sensor_names), "all ways are judged on the same readings"
+    assert {one.inputs for one in study.shapes} == {"current", "current and waves"}
+    page = study.report.read_text("utf-8")
+    assert "What teaches, and what is heard" in page
+    assert page.count("data:image/svg+xml") == 7
+    again = study_chain(given(tmp_path, in_waves, progress=unheard), tmp_path)
+    assert again.report.read_text("utf-8") == page
+
+
+def test_what_was_given_makes_a_twin_of_its_own(in_waves, folder, tmp_path):
+    one = given(tmp_path, in_waves)
+    other = replace(one, given_field=None)
+    assert one._sources != other._sources
+    assert one._sources["campaign_sha256"] == one.campaign.sha256
+    assert len(one.campaign) == 48
+    assert not {sea.current_to for sea in one.campaign.seas} & {
+        sea.current_to for sea in one.held_out.seas
+    }
+
+
+def test_a_measured_record_is_refused_for_it_has_no_truth(in_waves, tmp_path):
+    campaign, field = in_waves
+    measured = replace(FieldRecord.read(field), origin=Origin.MEASURED)
+    measured.write(tmp_path / "field")
+    with pytest.raises(InputError, match="no truth is known"):
+        paper_study(tmp_path, campaign=campaign, field=tmp_path / "field", workers=1)
+
+
+def test_a_campaign_of_another_cage_is_refused(in_waves, tmp_path):
+    with pytest.raises(InputError, match="another cage"):
+        _ = replace(given(tmp_path, in_waves), cage=COARSE).campaign
 
 
 def test_a_stop_in_any_stage_loses_no_simulation(study, tmp_path):

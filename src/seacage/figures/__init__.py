@@ -1,7 +1,12 @@
 """Matplotlib figures of records, scores and states."""
 
 from seacage.figures._animation import Motion, write_animation
-from seacage.figures._comparison import Comparison, density_figure, series_figure
+from seacage.figures._comparison import (
+    Comparison,
+    density_figure,
+    rows_figure,
+    series_figure,
+)
 from seacage.figures._fidelity import (
     Panel,
     fouling_figure,
@@ -9,10 +14,13 @@ from seacage.figures._fidelity import (
     left_figure,
     sector_figure,
 )
+from seacage.figures._lessons import Lessons, lessons_figure
 from seacage.figures._net import net_figure
 from seacage.figures._quality import quality_figure
 from seacage.figures._rose import tension_rose_figure
+from seacage.figures._shape_cases import shape_cases_figure
 from seacage.figures._shape_error import shape_error_figure
+from seacage.figures._shape_views import ShapeView, shape_views_figure
 from seacage.figures._states import states_figure
 from seacage.figures._style import svg_text, write_figure
 from seacage.figures._volume import MEASURED_VOLUMES, VolumeMark, volume_figure
@@ -20,18 +28,24 @@ from seacage.figures._volume import MEASURED_VOLUMES, VolumeMark, volume_figure
 __all__ = [
     "MEASURED_VOLUMES",
     "Comparison",
+    "Lessons",
     "Motion",
     "Panel",
+    "ShapeView",
     "VolumeMark",
     "density_figure",
     "fouling_figure",
     "gain_figure",
     "left_figure",
+    "lessons_figure",
     "net_figure",
     "quality_figure",
+    "rows_figure",
     "sector_figure",
     "series_figure",
+    "shape_cases_figure",
     "shape_error_figure",
+    "shape_views_figure",
     "states_figure",
     "svg_text",
     "tension_rose_figure",

@@ -1,7 +1,8 @@
 """A sensor against low fidelity and multifidelity: density scatters and a time series."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from jaxtyping import Bool, Float, Shaped
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
 
 _BAND = 1.96
 _HEXAGONS = 42
+_MOST_POINTS, _STROKES = 12000, 2400
+"""Points that a line is drawn through, and strokes that stand for more of them."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -78,73 +81,80 @@ def density_figure(comparison: Comparison) -> "Figure":
 
     Both share limits and counts; the dashed line is y = x, the red one the best fit.
     """
-    limits = _limits(comparison)
     with style():
         figure = blank_figure(6.6, 3.35)
         left, right = figure.subplots(1, 2, sharex=True, sharey=True)
         panels = [
-            _density(left, comparison, "Low fidelity", limits),
-            _density(right, comparison, "Multifidelity", limits),
+            density_panel(left, comparison, multi=False),
+            density_panel(right, comparison, multi=True),
         ]
-        _share_counts(panels)
-        left.set_ylabel(f"Predicted {comparison.quantity.lower()} [{comparison.unit}]")
+        share_counts(panels)
+        left.set_ylabel(_predicted(comparison))
+        left.legend(loc="lower right", handlelength=1.8)
+        right.legend(loc="lower right", handlelength=1.8)
         head(left, "Low fidelity")
         head(right, "Multifidelity", origin=comparison.origin)
-        bar = figure.colorbar(panels[0], ax=[left, right], shrink=0.86, aspect=32, pad=0.015)
-        bar.set_label("Readings per cell (log)")
-        bar.outline.set_visible(False)  # pyright: ignore[reportCallIssue]
+        count_bar(figure, panels, [left, right], shrink=0.86, aspect=32, pad=0.015)
     return figure
 
 
 def series_figure(comparison: Comparison, *, start: np.datetime64, end: np.datetime64) -> "Figure":
     """The sensor, low fidelity and multifidelity with its 95 % band, from start to end [UTC]."""
-    shown = (comparison.time >= start) & (comparison.time < end)
-    time, reading = comparison.time[shown], comparison.reading[shown]
-    low, mean = comparison.low[shown], comparison.multi[shown]
-    half = _BAND * comparison.multi_std[shown]
-    # An answer holds until the buoy's next word, so only the changes need drawing.
-    word = _changes(low, mean, half)
     with style():
         figure = blank_figure(10.0, 2.55)
         axes = figure.subplots()
-        axes.fill_between(
-            time[word],
-            (mean - half)[word],
-            (mean + half)[word],
-            step="post",
-            color=MULTI,
-            alpha=0.16,
-            lw=0,
-            label="95 % interval",
-        )
-        axes.plot(time, reading, color=SENSOR, lw=0.5, label=comparison.sensor)
-        held = {"drawstyle": "steps-post", "lw": 1.1}
-        axes.plot(time[word], low[word], color=LOW, label="Low fidelity", **held)
-        axes.plot(time[word], mean[word], color=MULTI, label="Multifidelity", **held)
-        axes.set_ylabel(f"{comparison.quantity} [{comparison.unit}]")
-        axes.margins(x=0.0)
-        if comparison.quantity == "Depth":
-            axes.invert_yaxis()  # a lifted net stands higher on the page
-        _date_axis(axes, start)
+        series_panel(axes, comparison, start=start, end=end)
         head(axes, f"{comparison.sensor}, unseen days", origin=comparison.origin, legend=4)
     return figure
 
 
-def _limits(comparison: Comparison) -> tuple[float, float]:
-    """One range for all three series, so that the two panels can be compared by eye."""
-    shown = np.concatenate([comparison.reading, comparison.low, comparison.multi])
-    low, high = float(np.min(shown)), float(np.max(shown))
-    margin = 0.04 * (high - low) or 0.5
-    return low - margin, high + margin
+def rows_figure(
+    comparisons: Sequence[Comparison], spans: Sequence[tuple[np.datetime64, np.datetime64]]
+) -> "Figure":
+    """The paper's figure of some sensors: one row each of two density scatters and a series.
+
+    All scatters share the scale of their counts; each row has limits of its own.
+
+    Parameters
+    ----------
+    comparisons
+        One for each row.
+    spans
+        Start and end of each row's series [UTC].
+    """
+    with style():
+        figure = blank_figure(11.0, 0.75 + 2.6 * len(comparisons))
+        grid = figure.subplots(
+            len(comparisons), 3, squeeze=False, width_ratios=[1.0, 1.0, 2.15]
+        ).tolist()
+        panels: list[PolyCollection] = []
+        letters = iter("abcdefghijklmnopqrstuvwxyz")
+        for (left, right, series), comparison, (start, end) in zip(
+            grid, comparisons, spans, strict=True
+        ):
+            panels += [
+                density_panel(left, comparison, multi=False),
+                density_panel(right, comparison, multi=True),
+            ]
+            left.set_ylabel(_predicted(comparison))
+            head(left, f"({next(letters)}) Low fidelity")
+            head(right, f"({next(letters)}) Multifidelity")
+            series_panel(series, comparison, start=start, end=end)
+            title = f"({next(letters)}) {comparison.sensor}"
+            head(series, title, origin=comparison.origin, legend=4 * (series is grid[0][2]))
+        grid[0][0].legend(loc="lower right", handlelength=1.8)
+        share_counts(panels)
+        scatters = [axes for row in grid for axes in row[:2]]
+        count_bar(figure, panels, scatters, location="bottom", shrink=0.62, aspect=46, pad=0.012)
+    return figure
 
 
-def _density(
-    axes: "Axes", comparison: Comparison, name: str, limits: tuple[float, float]
-) -> "PolyCollection":
-    multi = name == "Multifidelity"
+def density_panel(axes: "Axes", comparison: Comparison, *, multi: bool) -> "PolyCollection":
+    """Prediction against reading, counted in hexagons, with its error and its best fit."""
     predicted = comparison.multi if multi else comparison.low
-    mae = comparison.multi_mae if multi else comparison.low_mae
+    error = comparison.multi_mae if multi else comparison.low_mae
     slope, intercept = comparison.multi_line if multi else comparison.low_line
+    limits = _limits(comparison)
     cells = axes.hexbin(
         comparison.reading,
         predicted,
@@ -164,19 +174,88 @@ def _density(
     axes.text(
         0.04,
         0.96,
-        f"MAE {mae:.3g} {comparison.unit}",
+        f"MAE {error:.3g} {comparison.unit}",
         transform=axes.transAxes,
         va="top",
         bbox={"boxstyle": "round,pad=0.3", "fc": "white", "ec": "none", "alpha": 0.85},
     )
-    axes.legend(loc="lower right", handlelength=1.8)
     return cells
 
 
-def _share_counts(panels: "list[PolyCollection]") -> None:
+def series_panel(
+    axes: "Axes", comparison: Comparison, *, start: np.datetime64, end: np.datetime64
+) -> None:
+    """What was read and what was predicted, from start to end [UTC]."""
+    shown = (comparison.time >= start) & (comparison.time < end)
+    time, reading = comparison.time[shown], comparison.reading[shown]
+    low, mean = comparison.low[shown], comparison.multi[shown]
+    half = _BAND * comparison.multi_std[shown]
+    # An answer holds until the buoy's next word, so only the changes need drawing.
+    word = _changes(low, mean, half)
+    axes.fill_between(
+        time[word],
+        (mean - half)[word],
+        (mean + half)[word],
+        step="post",
+        color=MULTI,
+        alpha=0.16,
+        lw=0,
+        label="95 % interval",
+    )
+    _draw_readings(axes, comparison.sensor, time, reading)
+    held = {"drawstyle": "steps-post", "lw": 1.1}
+    axes.plot(time[word], low[word], color=LOW, label="Low fidelity", **held)
+    axes.plot(time[word], mean[word], color=MULTI, label="Multifidelity", **held)
+    axes.set_ylabel(f"{comparison.quantity} [{comparison.unit}]")
+    axes.margins(x=0.0)
+    if comparison.quantity == "Depth":
+        axes.invert_yaxis()  # a lifted net stands higher on the page
+    _date_axis(axes, start)
+
+
+def share_counts(panels: "Sequence[PolyCollection]") -> None:
+    """One scale of counts for several scatters."""
     highest = max(float(np.max(np.asarray(panel.get_array()))) for panel in panels)
     for panel in panels:
         panel.set_clim(1.0, max(highest, 2.0))
+
+
+def count_bar(
+    figure: "Figure", panels: "Sequence[PolyCollection]", axes: "list[Axes]", **place: Any
+) -> None:
+    """What the colours of scatters that share their counts mean."""
+    bar = figure.colorbar(panels[0], ax=axes, **place)
+    bar.set_label("Readings per cell (log)")
+    bar.outline.set_visible(False)  # pyright: ignore[reportCallIssue]
+
+
+def _predicted(comparison: Comparison) -> str:
+    return f"Predicted {comparison.quantity.lower()} [{comparison.unit}]"
+
+
+def _draw_readings(
+    axes: "Axes",
+    sensor: str,
+    time: Shaped[np.ndarray, " t"],
+    reading: Float[np.ndarray, " t"],
+) -> None:
+    """A line, or where it would be denser than print the least and the largest of each stroke."""
+    if len(time) <= _MOST_POINTS:
+        axes.plot(time, reading, color=SENSOR, lw=0.5, label=sensor)
+        return
+    first = np.arange(0, len(time), -(-len(time) // _STROKES))
+    least, most = np.minimum.reduceat(reading, first), np.maximum.reduceat(reading, first)
+    axes.fill_between(
+        time[first], least, most, step="post", color=SENSOR, alpha=0.75, lw=0.3, label=sensor
+    )
+
+
+def _limits(comparison: Comparison) -> tuple[float, float]:
+    """One range for all three series, so that the two panels can be compared by eye."""
+    shown = np.concatenate([comparison.reading, comparison.low, comparison.multi])
+    low, high = float(np.min(shown)), float(np.max(shown))
+    margin = 0.04 * (high - low) or 0.5
+    return low - margin, high + margin
 
 
 def _changes(*series: Float[np.ndarray, " t"]) -> Bool[np.ndarray, " t"]:

@@ -1,21 +1,34 @@
 """The chain from sea states to a trained twin, in stages that outlive a stop."""
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from functools import cached_property
 from pathlib import Path
+from typing import Literal
+
+import numpy as np
 
 from seacage.cage import Cage
-from seacage.campaigns import Hidden, Plan, generated_current, run_campaign, virtual_field
-from seacage.conventions import Progress
+from seacage.campaigns import (
+    Hidden,
+    Plan,
+    Timetable,
+    generated_current,
+    generated_waves,
+    run_campaign,
+    virtual_field,
+)
+from seacage.conventions import InputError, Progress
 from seacage.records import CampaignRecord, FieldRecord, Record, read_campaign
+from seacage.studies._cases import chosen_cases
 from seacage.studies._split import split
 from seacage.studies._stages import Stages, code_sha256
 from seacage.twin import Training, Twin, train
 
 _SIMULATION = ("conventions", "ocean", "cage", "dynamics", "campaigns")
 _FIELD = (*_SIMULATION, "records")
-_TRAINING = (*_FIELD, "surrogates", "twin")
+TRAINING = (*_FIELD, "surrogates", "twin")
+"""Rooms whose code makes a twin."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -26,10 +39,15 @@ class Recipe:
     ----------
     cases, held_out_cases
         Simulations that level 1 learns from, and others that judge it.
+    method
+        "settle" takes equilibria in currents without waves, in minutes; "simulate" the paper's
+        half-hours in waves and currents, and a virtual field in time, in hours.
     days, teaching_days
         Length of the generated current record, and how many of its days teach.
+    one_in
+        Simulate one hour of the field in so many, and those of the shackles.
     start
-        Of that record.
+        Of the record.
     high_fidelity_points
         Readings that each sensor teaches with.
     seed
@@ -38,21 +56,41 @@ class Recipe:
 
     cases: int = 400
     held_out_cases: int = 100
+    method: Literal["settle", "simulate"] = "settle"
     days: float = 50.0
     teaching_days: int = 25
+    one_in: int = 1
     start: datetime = datetime(2020, 1, 18, tzinfo=UTC)
     high_fidelity_points: int = 300
     seed: int = 0
 
     @property
+    def in_time(self) -> bool:
+        """Whether cage and sensors are simulated in time, in waves."""
+        return self.method == "simulate"
+
+    @property
     def plan(self) -> Plan:
-        """Currents alone, over the paper's speeds and directions."""
+        """The paper's sea states, the last of which judge; or currents alone, all to learn from."""
+        if self.in_time:
+            return Plan.named("paper", self.seed, self.cases + self.held_out_cases)
         return Plan.sample(self.seed, self.cases, hs=(0.0, 0.0), name="current")
 
     @property
     def held_out_plan(self) -> Plan:
-        """The same ranges, drawn with another seed."""
+        """The same currents, drawn with another seed."""
         return Plan.sample(self.seed + 1, self.held_out_cases, hs=(0.0, 0.0), name="held out")
+
+    @property
+    def training(self) -> Training:
+        """What a twin learns from: the current, and readings spread over the teaching days."""
+        return Training(
+            high_fidelity_points=self.high_fidelity_points,
+            days=float(self.teaching_days),
+            # The split by day has said already what teaches; silence in between is no end.
+            pause_s=86400.0 * self.teaching_days,
+            seed=self.seed,
+        )
 
 
 # No slots: what has been made is found once and kept.
@@ -68,6 +106,10 @@ class Chain:
         The cage.
     recipe
         How much of everything.
+    given_campaign
+        Folder of a finished campaign to take in place of the recipe's; its last cases judge.
+    given_field
+        Folder of a virtual field, with its truth in ``truth``, to take in place of the recipe's.
     workers
         Processes for simulations; None for one per core.
     progress
@@ -77,49 +119,63 @@ class Chain:
     folder: Path
     cage: Cage
     recipe: Recipe
+    given_campaign: Path | None = None
+    given_field: Path | None = None
     workers: int | None = None
     progress: Progress | None = None
 
-    @cached_property
+    @property
     def campaign(self) -> CampaignRecord:
         """The simulations that level 1 learns from."""
-        return self._campaign("campaign", self.recipe.plan)
+        return self._campaigns[0]
 
-    @cached_property
+    @property
     def held_out(self) -> CampaignRecord:
         """The simulations that judge level 1."""
-        return self._campaign("held-out", self.recipe.held_out_plan)
+        return self._campaigns[1]
 
     @cached_property
     def field(self) -> FieldRecord:
-        """A generated current record and the virtual sensors that it drove."""
-        return FieldRecord.read(self._field_folder / "field")
+        """A current record and the virtual sensors that it drove."""
+        return FieldRecord.read(self.given_field or self._field_folder / "field")
 
     @cached_property
     def truth(self) -> FieldRecord:
         """The same sensors without their errors; it may judge and never teaches."""
-        return FieldRecord.read(self._field_folder / "truth")
+        given = self.given_field
+        return FieldRecord.read(given / "truth" if given else self._field_folder / "truth")
 
-    @cached_property
+    @property
     def twin_folder(self) -> Path:
         """The twin trained on the campaign and on the field record's teaching days."""
-        settings = {
-            **self._field_settings,
-            "cases": self.recipe.cases,
-            "teaching_days": self.recipe.teaching_days,
-            "high_fidelity_points": self.recipe.high_fidelity_points,
-        }
-        return self._stages.made("twin", settings, self._train, rooms=_TRAINING) / "twin"
+        return self.trained(self.recipe.training)
 
     @cached_property
     def twin(self) -> Twin:
         """The twin, read."""
         return Twin.read(self.twin_folder)
 
+    def trained(self, training: Training) -> Path:
+        """The folder of a twin that learned so from the campaign and the teaching days."""
+
+        def make(begun: Path) -> None:
+            teaching, _ = split(self.field, teaching_days=self.recipe.teaching_days)
+            twin = train(
+                self.cage, self.campaign, teaching, training=training, progress=self.progress
+            )
+            twin.write(begun / "twin")
+
+        settings = {
+            **self._sources,
+            "teaching_days": self.recipe.teaching_days,
+            "training": asdict(training),
+        }
+        return self.stages.made("twin", settings, make, rooms=TRAINING) / "twin"
+
     def driven_by(self, record: Record) -> FieldRecord:
         """Virtual sensors under another buoy record: to look at, for no twin learns from them."""
         settings = {**self._truth_settings, "record_sha256": record.sha256}
-        folder = self._stages.made(
+        folder = self.stages.made(
             "display", settings, lambda begun: self._drive(begun, record), rooms=_FIELD
         )
         return FieldRecord.read(folder / "field")
@@ -130,7 +186,8 @@ class Chain:
             self.progress(stage, done, total)
 
     @property
-    def _stages(self) -> Stages:
+    def stages(self) -> Stages:
+        """Where what is made is kept."""
         return Stages(folder=self.folder)
 
     @property
@@ -143,31 +200,91 @@ class Chain:
 
     @property
     def _field_settings(self) -> dict[str, object]:
-        span = {"days": self.recipe.days, "start": self.recipe.start.isoformat()}
-        return {**self._truth_settings, **span}
+        recipe = self.recipe
+        span = {"days": recipe.days, "start": recipe.start.isoformat()}
+        how = {"method": recipe.method, "one_in": recipe.one_in} if recipe.in_time else {}
+        return {**self._truth_settings, **span, **how}
+
+    @cached_property
+    def _sources(self) -> dict[str, object]:
+        """What a twin learns from: as asked for, or the very numbers where they were given."""
+        recipe, field = self.recipe, self.given_field
+        sources: dict[str, object] = {"cage": self.cage.to_toml(), "seed": recipe.seed}
+        if self.given_campaign:
+            sources["campaign_sha256"] = self.campaign.sha256
+        else:
+            sources |= {"plan_sha256": recipe.plan.sha256, "cases": recipe.cases}
+        if field is None:
+            return {**sources, **self._field_settings, "method": recipe.method}
+        streams = (self.field.buoy, *self.field.sensors.values())
+        return {**sources, "field_sha256": {one.stream: one.sha256 for one in streams}}
 
     @cached_property
     def _field_folder(self) -> Path:
-        return self._stages.made("field", self._field_settings, self._make_field, rooms=_FIELD)
+        return self.stages.made("field", self._field_settings, self._make_field, rooms=_FIELD)
 
-    def _campaign(self, stage: str, plan: Plan) -> CampaignRecord:
+    @cached_property
+    def _campaigns(self) -> tuple[CampaignRecord, CampaignRecord]:
+        """The simulations that teach, and those that judge."""
+        recipe = self.recipe
+        if self.given_campaign is None and not recipe.in_time:
+            return self._run("campaign", recipe.plan), self._run("held-out", recipe.held_out_plan)
+        whole = (
+            self._run("campaign", recipe.plan)
+            if self.given_campaign is None
+            else read_campaign(self.given_campaign)
+        )
+        if whole.cage_toml != self.cage.to_toml():
+            raise InputError(
+                f"study paper: {self.given_campaign} is a campaign of another cage than "
+                f"{self.cage.name}. Give the cage that was simulated."
+            )
+        count = min(recipe.held_out_cases, len(whole) // 2)
+        rows = np.flatnonzero(whole.converged)
+        return (
+            chosen_cases(whole, rows[:-count]),
+            chosen_cases(whole, rows[-count:]),
+        )
+
+    def _run(self, stage: str, plan: Plan) -> CampaignRecord:
         def make(begun: Path) -> None:
             run_campaign(
                 self.cage,
                 plan,
                 begun / "campaign.zarr",
-                method="settle",
+                method=self.recipe.method,
                 workers=self.workers,
                 progress=self.progress,
             )
 
-        settings = {"cage": self.cage.to_toml(), "plan_sha256": plan.sha256}
-        folder = self._stages.made(stage, settings, make, rooms=_SIMULATION)
+        settings = {
+            "cage": self.cage.to_toml(),
+            "plan_sha256": plan.sha256,
+            "method": self.recipe.method,
+        }
+        folder = self.stages.made(stage, settings, make, rooms=_SIMULATION)
         return read_campaign(folder / "campaign.zarr")
 
     def _make_field(self, begun: Path) -> None:
         recipe = self.recipe
-        self._drive(begun, generated_current(recipe.seed, start=recipe.start, days=recipe.days))
+        buoy = generated_current(recipe.seed, start=recipe.start, days=recipe.days)
+        if not recipe.in_time:
+            self._drive(begun, buoy)
+            return
+        made = virtual_field(
+            self.cage,
+            buoy,
+            hidden=Hidden.read(),
+            seed=recipe.seed,
+            # To the last reading, and an hour on.
+            waves=generated_waves(recipe.seed, start=recipe.start, days=recipe.days + 1.0),
+            timetable=Timetable.over(buoy, one_in=recipe.one_in),
+            kept=begun / "stretches",
+            workers=self.workers,
+            progress=self.progress,
+        )
+        made.record.write(begun / "field")
+        made.truth.write(begun / "truth")
 
     def _drive(self, begun: Path, buoy: Record) -> None:
         made = virtual_field(
@@ -182,13 +299,3 @@ class Chain:
         )
         made.record.write(begun / "field")
         made.truth.write(begun / "truth")
-
-    def _train(self, begun: Path) -> None:
-        teaching, _ = split(self.field, teaching_days=self.recipe.teaching_days)
-        training = Training(
-            high_fidelity_points=self.recipe.high_fidelity_points,
-            days=float(self.recipe.teaching_days),
-            seed=self.recipe.seed,
-        )
-        twin = train(self.cage, self.campaign, teaching, training=training, progress=self.progress)
-        twin.write(begun / "twin")

@@ -6,6 +6,9 @@ import numpy as np
 
 from seacage.studies._level_one import LevelOneScore
 from seacage.studies._sensor_scores import SensorScore
+from seacage.studies._shape_models import PCA_PAPER, PCA_WAVES, SHAPE_CURRENT
+from seacage.studies._shape_study import ShapeStudy
+from seacage.studies._ways import HEARING, Judged, WayScore
 
 NOMINAL = 0.95
 
@@ -18,7 +21,8 @@ def number(value: float) -> str:
 
 def percent(share: float, *, digits: int = 0) -> str:
     """A share in percent, which stays with its sign on one line."""
-    return f"{100.0 * share:.{digits}f}\N{NARROW NO-BREAK SPACE}%"
+    written = f"{100.0 * share:.{digits}f}\N{NARROW NO-BREAK SPACE}%"
+    return written.replace("-", "\N{MINUS SIGN}")
 
 
 def listed(names: Sequence[str]) -> str:
@@ -27,14 +31,16 @@ def listed(names: Sequence[str]) -> str:
     return f"{', '.join(others)} and {last}" if others else last
 
 
-def findings(sensors: Sequence[SensorScore], level_one: LevelOneScore) -> list[str]:
+def findings(judged: Judged, level_one: LevelOneScore, shapes: ShapeStudy) -> list[str]:
     """The study's findings, one paragraph each."""
+    sensors = judged.sensors
     return [
         _gain(sensors),
         _bias(sensors),
+        *(_heard(judged, way) for way in judged.ways if way.name == HEARING),
         _coverage(sensors),
         _emulation(sensors, level_one),
-        _shape(level_one),
+        _shape(shapes),
         _shortest(sensors),
     ]
 
@@ -74,8 +80,8 @@ def _bias(sensors: Sequence[SensorScore]) -> str:
 
 
 def _coverage(sensors: Sequence[SensorScore]) -> str:
-    share = [score.raw.coverage for score in sensors]
-    narrow = [score.sensor for score in sensors if score.raw.coverage < NOMINAL - 0.05]
+    share = [score.minutes.coverage for score in sensors]
+    narrow = [score.sensor for score in sensors if score.minutes.coverage < NOMINAL - 0.05]
     verdict = (
         f"They are too narrow for {listed(narrow)}. Two causes are likely and were not told "
         "apart: growth on the net since the days that taught, which level 2 does not see, and "
@@ -85,7 +91,7 @@ def _coverage(sensors: Sequence[SensorScore]) -> str:
     )
     return (
         f"The multifidelity's {percent(NOMINAL)} intervals hold {percent(min(share))} to "
-        f"{percent(max(share))} of single readings. {verdict}"
+        f"{percent(max(share))} of means over a minute, which is what teaches. {verdict}"
     )
 
 
@@ -104,22 +110,43 @@ def _emulation(sensors: Sequence[SensorScore], level_one: LevelOneScore) -> str:
     )
 
 
-def _shape(level_one: LevelOneScore) -> str:
-    ours, paper = level_one.shapes
+def _heard(judged: Judged, way: WayScore) -> str:
+    """What it brings to hear the waves, sensor by sensor on the same readings."""
+    current = {one.sensor: one for one in judged.sensors}
+    pairs = [(one, current[one.sensor]) for one in way.sensors]
+    better = [one.sensor for one, other in pairs if one.means.multi_mae < other.means.multi_mae]
+    low = [one.sensor for one, other in pairs if one.means.low_mae < other.means.low_mae]
+    change = float(np.median([a.means.multi_mae / b.means.multi_mae - 1.0 for a, b in pairs]))
     return (
-        "For the whole shape, one Gaussian process with a kernel shared by all coordinates is "
-        f"off by {number(float(np.mean(ours.axis_mae)))} m on average and by "
-        f"{number(ours.worst)} m at the worst node of the worst case; three PCA modes with a "
-        f"Gaussian process each, as in the paper, by {number(float(np.mean(paper.axis_mae)))} m "
-        f"and {number(paper.worst)} m."
+        "A twin that hears the waves, too, has a smaller multifidelity error at "
+        f"{listed(better or ['no sensor'])} and a larger one at the others; the median change is "
+        f"{percent(change)}. Low fidelity gains by it at {listed(low or ['no sensor'])}."
+    )
+
+
+def _shape(shapes: ShapeStudy) -> str:
+    ours, paper = shapes.best, shapes.scores[PCA_PAPER]
+    told = (
+        f"For the whole shape, one Gaussian process with a kernel shared by all coordinates is "
+        f"off by {number(ours.mae)} m on average and by {number(ours.worst)} m at the worst node "
+        f"of the worst case; three PCA modes with a Gaussian process each, as in the paper, by "
+        f"{number(paper.mae)} m and {number(paper.worst)} m: {number(paper.mae / ours.mae)} times "
+        "the average error."
+    )
+    deaf, modes = shapes.scores.get(SHAPE_CURRENT), shapes.scores.get(PCA_WAVES)
+    if deaf is None or modes is None:
+        return told
+    return told + (
+        f" Both the waves and the modes count: without waves the shared kernel is at "
+        f"{number(deaf.mae)} m, three modes with waves at {number(modes.mae)} m."
     )
 
 
 def _shortest(sensors: Sequence[SensorScore]) -> str:
-    shortest = min(sensors, key=lambda score: score.span_h)
+    shortest = min(sensors, key=lambda score: score.told_h)
     return (
-        f"The shortest trial is that of {shortest.sensor}: {shortest.span_h:.0f} hours, about "
-        f"{shortest.span_h / shortest.block_h:.0f} blocks for the bootstrap. That is few tides, "
+        f"The shortest trial is that of {shortest.sensor}: {shortest.told_h:.0f} hours, "
+        f"{shortest.blocks} blocks for the bootstrap. That is few tides, "
         "so its interval says how sure the gain is in those hours, not in any others. All numbers "
         "are of one draw of current, noise and outages: another seed gives other hours, and a "
         "sensor that gains here may lose there."

@@ -16,6 +16,9 @@ from seacage.twin import Twin
 SHOWN_DAYS = 5
 """A series shows so many unseen days; the scores take them all."""
 
+_BREAK = np.timedelta64(12, "h")
+"""A silence as long breaks a series: what was between is not known."""
+
 
 def score_record(
     twin: Twin, field: FieldRecord, *, out: str | Path | None = None, seed: int = 0
@@ -67,8 +70,16 @@ def comparison(score: SensorScore, readings: Readings) -> Comparison:
 
 
 def shown(readings: Readings) -> tuple[np.datetime64, np.datetime64]:
-    """Start and end of the time that a series shows."""
-    return readings.time[0], readings.time[0] + np.timedelta64(SHOWN_DAYS, "D")
+    """Start and end of the time that a series shows: the first days of the longest part unbroken.
+
+    A part ends where nothing was read for hours.
+    """
+    breaks = np.flatnonzero(np.diff(readings.time) > _BREAK)
+    first = np.concatenate([[0], breaks + 1])
+    last = np.concatenate([breaks, [len(readings.time) - 1]])
+    longest = int(np.argmax(readings.time[last] - readings.time[first]))
+    start, until = readings.time[[first[longest], last[longest]]]
+    return start, min(until + np.timedelta64(1, "us"), start + np.timedelta64(SHOWN_DAYS, "D"))
 
 
 def write_scores(path: Path, scores: Mapping[str, object]) -> None:

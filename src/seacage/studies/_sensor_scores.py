@@ -14,10 +14,13 @@ from seacage.twin import Answer, align
 MEAN_S = 600.0
 """Scores are given raw and on means of this length [s]."""
 
+LESSON_S = 60.0
+"""Readings teach as means of this length, and the twin's intervals are of such means [s]."""
+
 _DRAWS = 1000
 _LEAST_READINGS = 100
 _LEAST_BLOCKS = 8
-_LONGEST_BLOCK_H = 24.0
+_HOUR = np.timedelta64(1, "h")
 
 _PEOPLE = {"m": ("m", 1.0), "N": ("kN", 1e-3)}
 """A sensor's unit inside, and the one that people read with what it is multiplied by."""
@@ -137,10 +140,13 @@ class SensorScore:
     ----------
     sensor, unit, origin
         Its name, the unit of all errors, and how its readings were made.
-    span_h, block_h
-        From the first reading to the last, and length of the bootstrap's blocks [h].
-    raw, means
-        Errors on single readings and on 10-minute means.
+    span_h, told_h
+        From the first reading to the last, and hours of it that have readings [h].
+    blocks
+        Of the bootstrap: the days that have readings, eight at least.
+    raw, minutes, means
+        Errors on single readings, on means over a minute as they teach, and on 10-minute means.
+        Coverage and CRPS are those of minutes: the twin's interval is of such means.
     low_line, multi_line
         Slope [-] and intercept [unit] of the best fit of the prediction on the reading.
     low_truth_mae, multi_truth_mae
@@ -151,8 +157,10 @@ class SensorScore:
     unit: str
     origin: Origin
     span_h: float
-    block_h: float
+    told_h: float
+    blocks: int
     raw: Errors
+    minutes: Errors
     means: Errors
     low_line: tuple[float, float]
     multi_line: tuple[float, float]
@@ -178,10 +186,10 @@ def compared(answer: Answer, field: FieldRecord) -> dict[str, Readings]:
 
 
 def score_sensor(readings: Readings, *, seed: int, truth: Readings | None = None) -> SensorScore:
-    """Score one sensor, raw and on 10-minute means.
+    """Score one sensor: raw, and on means over one and over ten minutes.
 
-    The bootstrap's blocks are a day long, for errors resemble themselves from tide to tide,
-    or an eighth of the readings' span where that is less.
+    The bootstrap's blocks hold as much as a day has on average, for errors resemble themselves
+    from tide to tide, or an eighth of the readings where there are fewer days than eight.
 
     Parameters
     ----------
@@ -194,17 +202,21 @@ def score_sensor(readings: Readings, *, seed: int, truth: Readings | None = None
     """
     if truth is not None:
         truth = truth.at(np.isin(truth.time, readings.time))
-    span_h = float((readings.time[-1] - readings.time[0]) / np.timedelta64(1, "h"))
-    block_h = min(_LONGEST_BLOCK_H, span_h / _LEAST_BLOCKS)
-    means = readings.averaged(MEAN_S)
+    blocks = max(_LEAST_BLOCKS, len(np.unique(readings.time.astype("datetime64[D]"))))
+    raw, minutes, means = (
+        _errors(some, blocks=blocks, seed=seed)
+        for some in (readings, readings.averaged(LESSON_S), readings.averaged(MEAN_S))
+    )
     return SensorScore(
         sensor=readings.sensor,
         unit=readings.unit,
         origin=readings.origin,
-        span_h=span_h,
-        block_h=block_h,
-        raw=_errors(readings, block_h=block_h, seed=seed),
-        means=_errors(means, block_h=block_h, seed=seed),
+        span_h=float((readings.time[-1] - readings.time[0]) / _HOUR),
+        told_h=float(len(readings.time) * np.median(np.diff(readings.time)) / _HOUR),
+        blocks=blocks,
+        raw=raw,
+        minutes=minutes,
+        means=means,
         low_line=_best_fit(readings.reading, readings.low),
         multi_line=_best_fit(readings.reading, readings.multi),
         low_truth_mae=None if truth is None else mae(truth.reading, truth.low),
@@ -236,11 +248,10 @@ def _compared(answer: Answer, field: FieldRecord, sensor: str) -> Readings:
     )
 
 
-def _errors(readings: Readings, *, block_h: float, seed: int) -> Errors:
-    step_h = float(np.median(np.diff(readings.time)) / np.timedelta64(1, "h"))
+def _errors(readings: Readings, *, blocks: int, seed: int) -> Errors:
     low_error, multi_error = readings.low - readings.reading, readings.multi - readings.reading
     low, multi = np.abs(low_error), np.abs(multi_error)
-    block = max(1, round(block_h / step_h))
+    block = max(1, round(len(low) / blocks))
     gain, gain_low, gain_high = block_bootstrap(low - multi, block=block, seed=seed, draws=_DRAWS)
     return Errors(
         readings=len(low),

@@ -7,7 +7,7 @@ import pytest
 from matplotlib.colors import to_hex
 
 from seacage.conventions import InputError, Origin
-from seacage.figures import Comparison, density_figure, series_figure
+from seacage.figures import Comparison, density_figure, rows_figure, series_figure
 
 START = np.datetime64("2020-02-22T00:00", "us")
 
@@ -99,3 +99,33 @@ def test_an_answer_that_holds_is_drawn_once_until_it_changes(comparison):
     reading, low, multi = axes.lines
     assert len(reading.get_xdata()) == 120
     assert len(low.get_xdata()) == len(multi.get_xdata()) == 2, "its first and last moment"
+
+
+def test_rows_share_the_scale_of_their_counts_and_letter_their_panels(comparison):
+    other = replace(comparison, sensor="depth-1", quantity="Depth", unit="m")
+    spans = [(START, START + np.timedelta64(2, "h"))] * 2
+    *panels, _bar = rows_figure([comparison, other], spans).axes
+    letters = [axes.get_title(loc="left")[:3] for axes in panels]
+    assert letters == ["(a)", "(b)", "(c)", "(d)", "(e)", "(f)"]
+    scales = {axes.collections[0].get_clim() for axes in panels if axes.get_aspect() == 1.0}
+    assert len(scales) == 1
+    assert [panels[at].get_title(loc="right") for at in (2, 5)] == ["virtual field"] * 2
+
+
+def test_a_series_denser_than_print_keeps_its_peaks(comparison):
+    count = 50_000
+    reading = np.zeros(count)
+    reading[33_333] = 9.0
+    dense = replace(
+        comparison,
+        time=START + np.arange(count) * np.timedelta64(2, "s"),
+        reading=reading,
+        low=np.full(count, 1.0),
+        multi=np.full(count, 2.0),
+        multi_std=np.ones(count),
+    )
+    (axes,) = series_figure(dense, start=dense.time[0], end=dense.time[-1]).axes
+    _band, stroke = axes.collections
+    drawn = stroke.get_paths()[0].vertices
+    assert len(drawn) < 20_000
+    assert drawn[:, 1].max() == 9.0

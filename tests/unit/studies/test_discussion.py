@@ -1,62 +1,15 @@
 """Sentences that follow from the numbers."""
 
-from dataclasses import replace
-
-import numpy as np
 import pytest
 
-from seacage.conventions import Origin
+from scores_made import judged, level_one, sensor, shapes, way
 from seacage.studies._discussion import findings, listed, number, percent
-from seacage.studies._level_one import LevelOneScore, ShapeScore
-from seacage.studies._sensor_scores import Errors, SensorScore
-
-ERRORS = Errors(
-    readings=1440,
-    low_mae=4.0,
-    multi_mae=1.0,
-    low_bias=-3.9,
-    multi_bias=-0.1,
-    gain=3.0,
-    gain_low=2.0,
-    gain_high=4.0,
-    coverage=0.94,
-    crps=0.7,
-)
-
-
-def sensor(name: str, *, unit: str = "kN", **changes: float) -> SensorScore:
-    errors = replace(ERRORS, **changes)
-    return SensorScore(
-        sensor=name,
-        unit=unit,
-        origin=Origin.VIRTUAL_FIELD,
-        span_h=24.0,
-        block_h=3.0,
-        raw=errors,
-        means=errors,
-        low_line=(0.5, 0.0),
-        multi_line=(1.0, 0.0),
-        low_truth_mae=4.0,
-        multi_truth_mae=1.0,
-    )
-
-
-def level_one(bridle_mae: float = 10.0) -> LevelOneScore:
-    shape = ShapeScore(
-        model="A", axis_mae=(0.1, 0.1, 0.1), p99=0.3, worst=0.5, case_mae=np.array([0.1])
-    )
-    return LevelOneScore(
-        cases=1,
-        current_speed=np.array([0.5]),
-        bridle_names=("bridle-1",),
-        bridle_mae=np.array([bridle_mae]),
-        bridle_mean=np.array([10e3]),
-        shapes=(shape, shape),
-    )
+from seacage.studies._sensor_scores import SensorScore
+from seacage.studies._ways import HEARING
 
 
 def told(*sensors: SensorScore, **options: float) -> str:
-    return " ".join(findings(sensors, level_one(**options)))
+    return " ".join(findings(judged(*sensors), level_one(**options), shapes()))
 
 
 def test_a_sensor_without_a_proven_gain_is_named():
@@ -96,6 +49,23 @@ def test_a_poor_emulator_is_not_hidden_behind_level_two():
     assert "more simulations would help" in told(sensor("shackle-1"), bridle_mae=2000.0)
 
 
+def test_what_hears_the_waves_is_held_against_what_does_not():
+    heard = way(
+        sensor("shackle-1", multi_mae=0.5), sensor("shackle-2", multi_mae=2.0), name=HEARING
+    )
+    both = judged(sensor("shackle-1"), sensor("shackle-2"), more=(heard,))
+    text = " ".join(findings(both, level_one(), shapes()))
+    assert "smaller multifidelity error at shackle-1 and a larger one at the others" in text
+    assert "median change is 25" in text
+    assert "Low fidelity gains by it at no sensor" in text
+
+
+def test_the_shape_is_told_by_its_mean_and_its_worst_node():
+    text = told(sensor("shackle-1"))
+    assert "0.0100 m on average and by 0.100 m at the worst node" in text
+    assert "30.0 times the average error" in text
+
+
 @pytest.mark.parametrize(
     ("value", "written"),
     [(0.0903, "0.0903"), (3.3, "3.30"), (-7.351, "−7.35"), (120.0, "120"), (16510.0, "16,510")],
@@ -105,6 +75,7 @@ def test_numbers_have_three_digits_that_matter(value, written):
 
 
 def test_percent_and_lists_read_as_prose():
+    assert percent(-0.05) == "\N{MINUS SIGN}5\N{NARROW NO-BREAK SPACE}%"
     assert percent(0.946) == "95\N{NARROW NO-BREAK SPACE}%"
     assert listed(["a"]) == "a"
     assert listed(["a", "b", "c"]) == "a, b and c"

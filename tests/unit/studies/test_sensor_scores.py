@@ -78,6 +78,24 @@ def test_the_best_fit_is_of_the_prediction_on_the_reading():
     assert (slope, intercept) == pytest.approx((0.5, 3.0))
 
 
-def test_blocks_are_a_day_or_an_eighth_of_a_shorter_span():
-    assert scored(readings(1441)).block_h == 3.0
-    assert scored(readings(12 * 1440 + 1)).block_h == 24.0
+def test_blocks_are_the_days_or_eight_of_a_shorter_span():
+    assert scored(readings(1441)).blocks == 8
+    assert scored(readings(12 * 1440)).blocks == 13, "it begins five minutes after midnight"
+
+
+def test_a_sparse_record_counts_the_hours_that_it_has():
+    hours = np.arange(20 * 60) // 60  # one hour in two days, twenty times
+    time = START + (np.arange(20 * 60) % 60 + 2880 * hours) * np.timedelta64(60, "s")
+    score = scored(readings(1200, time=time))
+    assert score.told_h == pytest.approx(20.0)
+    assert score.span_h == pytest.approx(19 * 48 + 59 / 60)
+    assert score.blocks == 20
+
+
+def test_the_interval_is_judged_on_means_as_long_as_those_that_teach():
+    time = START + np.arange(1440) * np.timedelta64(2, "s")
+    sway = np.where(np.arange(1440) % 2, 3.0, -3.0)  # six of the twin's standard deviations
+    score = scored(readings(1440, time=time, reading=readings(1440).multi + sway))
+    assert score.raw.coverage == 0.0
+    assert score.minutes.coverage == 1.0
+    assert score.minutes.readings == 48

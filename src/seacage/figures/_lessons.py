@@ -1,0 +1,83 @@
+"""What different lessons make of the same sensors."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.conventions import Origin
+from seacage.figures._style import FIT, INK, LOW, MULTI, SENSOR, blank_figure, head, style
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_LOOKS = ((LOW, "o"), (MULTI, "D"), ("#4f8a4c", "s"), ("#7d5ba6", "^"), (SENSOR, "v"))
+_NOMINAL = 0.95
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Lessons:
+    """How one way of teaching did at each sensor; NaN where it did not teach.
+
+    Parameters
+    ----------
+    error, crps
+        Mean absolute error and continuous ranked probability score over the first way's low
+        fidelity's mean absolute error [-].
+    coverage
+        Share of readings inside the 95 % interval [-].
+    """
+
+    error: Float[np.ndarray, " sensor"]
+    crps: Float[np.ndarray, " sensor"]
+    coverage: Float[np.ndarray, " sensor"]
+
+
+def lessons_figure(
+    sensors: Sequence[str], ways: Mapping[str, Lessons], *, origin: Origin
+) -> "Figure":
+    """Error, score and coverage of each sensor, one mark for each way of teaching.
+
+    Parameters
+    ----------
+    sensors
+        Their names, from top to bottom.
+    ways
+        By name.
+    origin
+        Of the readings.
+    """
+    place = np.arange(len(sensors))[::-1]
+    with style():
+        figure = blank_figure(11.0, 1.35 + 0.36 * len(sensors))
+        left, middle, right = figure.subplots(1, 3, sharey=True)
+        for number, ((name, one), (colour, mark)) in enumerate(
+            zip(ways.items(), _LOOKS, strict=False)
+        ):
+            height = place + 0.13 * ((len(ways) - 1) / 2.0 - number)
+            for axes, value in ((left, one.error), (middle, one.crps), (right, one.coverage)):
+                axes.plot(
+                    value, height, mark, color=colour, ms=5.0, mec="white", mew=0.5, label=name
+                )
+        _finish(left, "Error over low fidelity's", "MAE / low-fidelity MAE [-]")
+        _finish(middle, "Score over low fidelity's", "CRPS / low-fidelity MAE [-]")
+        _finish(right, "Inside the 95 % interval", "Share of readings [-]", line=_NOMINAL)
+        left.set_yticks(place, sensors)
+        right.set_xlim(right=1.01)
+        right.set_title(
+            str(origin), loc="right", pad=8.0, color=SENSOR, fontsize=8.0, fontweight="normal"
+        )
+        handles, names = left.get_legend_handles_labels()
+        figure.legend(handles, names, loc="outside lower center", ncols=len(ways))
+    return figure
+
+
+def _finish(axes: "Axes", title: str, label: str, *, line: float = 1.0) -> None:
+    head(axes, title)
+    axes.set_xlabel(label)
+    axes.axvline(line, color=FIT if line < 1.0 else INK, lw=0.9, ls=(0, (5, 3)), zorder=0)
+    axes.set_xlim(left=0.0, right=max(axes.get_xlim()[1], 1.08))
+    axes.grid(visible=False, axis="y")

@@ -1,0 +1,91 @@
+"""How far predicted nets are from computed ones, in metres."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.surrogates import Prediction, coverage, crps
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ShapeScore:
+    """One model of the whole shape against held-out simulations.
+
+    Coordinates and displacements from rest differ by a constant, so the errors are of either.
+
+    Parameters
+    ----------
+    model, inputs
+        Its name, and what it was asked with.
+    modes
+        Principal components that it keeps; None for a model without.
+    axis_mae
+        Mean absolute error along x, y and z [m].
+    p99, worst
+        Of the distance between the predicted and the computed node [m].
+    coverage
+        Share of all coordinates inside the 95 % interval [-].
+    crps
+        Continuous ranked probability score of a coordinate, on average [m].
+    fit_cpu_s, predict_ms
+        Processor time of the training, and time of one shape.
+    case_axis_mae, case_worst
+        The same errors for each case, over its nodes [m].
+    """
+
+    model: str
+    inputs: str
+    modes: int | None
+    axis_mae: tuple[float, float, float]
+    p99: float
+    worst: float
+    coverage: float
+    crps: float
+    fit_cpu_s: float
+    predict_ms: float
+    case_axis_mae: Float[np.ndarray, "case 3"]
+    case_worst: Float[np.ndarray, " case"]
+
+    @property
+    def mae(self) -> float:
+        """Mean absolute error over cases, nodes and axes [m]."""
+        return float(np.mean(self.axis_mae))
+
+
+def shape_score(
+    model: str,
+    predicted: Prediction,
+    computed: Float[np.ndarray, "case node 3"],
+    *,
+    inputs: str = "current",
+    modes: int | None = None,
+    fit_cpu_s: float = float("nan"),
+    predict_ms: float = float("nan"),
+) -> ShapeScore:
+    """Score a model's shapes.
+
+    Parameters
+    ----------
+    model, inputs, modes, fit_cpu_s, predict_ms
+        As in ``ShapeScore``.
+    predicted, computed
+        One shape per case [m].
+    """
+    difference = predicted.mean - computed
+    error, distance = np.abs(difference), np.linalg.norm(difference, axis=-1)
+    x, y, z = error.mean(axis=(0, 1)).tolist()
+    return ShapeScore(
+        model=model,
+        inputs=inputs,
+        modes=modes,
+        axis_mae=(x, y, z),
+        p99=float(np.quantile(distance, 0.99)),
+        worst=float(distance.max()),
+        coverage=coverage(computed, predicted.mean, predicted.std),
+        crps=crps(computed, predicted.mean, predicted.std),
+        fit_cpu_s=fit_cpu_s,
+        predict_ms=predict_ms,
+        case_axis_mae=error.mean(axis=1),
+        case_worst=distance.max(axis=1),
+    )
