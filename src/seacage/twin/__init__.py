@@ -9,6 +9,7 @@ from seacage.twin._models import Models
 from seacage.twin._provenance import Lesson, Provenance
 from seacage.twin._replay import replay
 from seacage.twin._state import TwinState, Watch
+from seacage.twin._tabulated import Loads, TabulatedTwin
 from seacage.twin._train import Training, train
 from seacage.twin._twin import Twin
 
@@ -19,6 +20,7 @@ __all__ = [
     "Event",
     "Flagged",
     "Lesson",
+    "Loads",
     "Metocean",
     "Models",
     "Pairs",
@@ -26,6 +28,7 @@ __all__ = [
     "Said",
     "StreamBack",
     "StreamSilent",
+    "TabulatedTwin",
     "Training",
     "Twin",
     "TwinState",

@@ -1,0 +1,204 @@
+"""A twin that asks for the current alone, as one table: a whole winter in seconds."""
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from seacage.cage import Cage
+from seacage.conventions import InputError
+from seacage.surrogates import Disc, Prediction, Table
+from seacage.twin._answer import Answer
+from seacage.twin._metocean import Metocean
+from seacage.twin._twin import Twin
+
+LEAST_TENSION_STD = 10.0
+LEAST_DEPTH_STD = 0.01
+"""Spreads that no instrument here resolves [N], [m]: smaller ones count as these."""
+
+BLOCK = 4096
+"""Rows that the twin is asked for at once: it makes every node of the net for each of them."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Loads:
+    """What a tabulated twin says: an ``Answer`` without the shape.
+
+    A row that is not valid holds NaN in every number.
+
+    Parameters
+    ----------
+    valid
+        The input was known.
+    in_domain
+        The input lies inside what level 1 was trained on.
+    bridle_tension, bridle_low
+        Best mean and standard deviation of each bridle's tension, and the simulations alone [N].
+    sensor, sensor_low
+        What each sensor would read with the scatter of its readings, and the simulations alone
+        with the emulator's spread [N] or [m] depth.
+    """
+
+    valid: Bool[np.ndarray, " case"]
+    in_domain: Bool[np.ndarray, " case"]
+    bridle_tension: Prediction
+    bridle_low: Float[np.ndarray, "case line"]
+    sensor: Prediction
+    sensor_low: Prediction
+
+    def __len__(self) -> int:
+        return len(self.valid)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class TabulatedTwin:
+    """The bridles and the sensors of a twin, both levels, from one table of the current.
+
+    Beyond the table, where the twin extrapolates, the twin itself is asked.
+
+    Parameters
+    ----------
+    twin
+        That the table was made of.
+    table
+        Of the bridles at level 1 and at their best, of the sensors at level 1 and at their
+        best, one output for each; tensions before they are held to what a rope can carry.
+    """
+
+    twin: Twin
+    table: Table
+
+    @classmethod
+    def of(
+        cls,
+        twin: Twin,
+        *,
+        tolerance: float = 1e-3,
+        std_tolerance: float = 0.05,
+        least_tension_std: float = LEAST_TENSION_STD,
+        least_depth_std: float = LEAST_DEPTH_STD,
+        most_nodes: int = 100_000,
+    ) -> Self:
+        """Tabulate a twin over every current that level 1 was trained on.
+
+        Parameters
+        ----------
+        twin
+            Whose inputs are the current alone.
+        tolerance
+            Largest error, in predictive standard deviations.
+        least_tension_std, least_depth_std
+            Standard deviations below these count as these [N], [m]: a simulator is emulated
+            nearly without doubt close to its own cases, more sharply than any sensor sees.
+        most_nodes
+            Largest size; a node takes 0.64 kB for 12 bridles and 8 sensors.
+
+        Raises
+        ------
+        InputError
+            The twin asks for waves too, or the tolerance cannot be met.
+        """
+        inputs = twin.models.inputs
+        if inputs != ("current",):
+            raise InputError(
+                f"tabulated: this twin asks for {' and '.join(inputs)}; a table holds the current "
+                "alone. Ask the twin itself, or train one with inputs=('current',)."
+            )
+        floor = {"N": least_tension_std, "m": least_depth_std}
+        bridles = [least_tension_std] * len(twin.bridle_names)
+        units = twin.predict(Metocean.from_columns({}, 0)).sensor_units
+        sensors = [floor[unit] for unit in units]
+        table = Table.of(
+            _Asked(twin=twin),
+            Disc(radius=twin.models.edge[0]),
+            tolerance=tolerance,
+            std_tolerance=std_tolerance,
+            least_std=bridles + bridles + sensors + sensors,
+            most_nodes=most_nodes,
+            noise=False,
+        )
+        return cls(twin=twin, table=table)
+
+    def predict(self, metocean: Metocean) -> Loads:
+        """Answer for each row of water; a row without a current is not valid.
+
+        Two million rows take a gigabyte: ask a long record day by day.
+        """
+        x = metocean.features(("current",))
+        valid = metocean.known(("current",))
+        inside = valid.copy()
+        inside[valid] = self.table.region.contains(x[valid])
+        mean, std = (np.full((len(x), *self.table.output_shape), np.nan) for _ in range(2))
+        beyond = valid & ~inside
+        for rows, model in ((inside, self.table), (beyond, _Asked(twin=self.twin))):
+            if rows.any():
+                said = model.predict(x[rows])
+                mean[rows], std[rows] = said.mean, said.std
+        return self._loads(valid, inside, mean, std)
+
+    def _loads(
+        self,
+        valid: Bool[np.ndarray, " case"],
+        inside: Bool[np.ndarray, " case"],
+        mean: Float[np.ndarray, "case output"],
+        std: Float[np.ndarray, "case output"],
+    ) -> Loads:
+        lines, sensors = len(self.twin.bridle_names), len(self.twin.sensor_names)
+        ends = np.cumsum([lines, lines, sensors])
+        low, best, sensor_low, sensor = np.split(mean, ends, axis=1)
+        _, best_std, sensor_low_std, sensor_std = np.split(std, ends, axis=1)
+        return Loads(
+            valid=valid,
+            in_domain=inside,
+            # A rope never pushes, whatever a Gaussian says.
+            bridle_tension=Prediction(mean=np.maximum(best, 0.0), std=best_std),
+            bridle_low=np.maximum(low, 0.0),
+            sensor=Prediction(mean=sensor, std=sensor_std),
+            sensor_low=Prediction(mean=sensor_low, std=sensor_low_std),
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Asked:
+    """The twin as a model of the current's features, smooth where a rope goes slack."""
+
+    twin: Twin
+
+    def predict(self, x: Float[np.ndarray, "row feature"], /) -> Prediction:
+        parts = [self._block(x[start : start + BLOCK]) for start in range(0, len(x), BLOCK)]
+        return Prediction(
+            mean=np.concatenate([one.mean for one in parts]),
+            std=np.concatenate([one.std for one in parts]),
+        )
+
+    def _block(self, x: Float[np.ndarray, "row feature"]) -> Prediction:
+        unknown = np.full(len(x), np.nan)
+        water = Metocean(
+            current_velocity=x[:, 1:], hs=unknown, wave_direction=np.full((len(x), 2), np.nan)
+        )
+        answer = self.twin.predict(water)
+        low = self.twin.models.bridles.predict(x)
+        return Prediction(
+            mean=np.hstack(
+                [
+                    low.mean,
+                    _unheld(answer, low, self.twin.cage),
+                    answer.sensor_low.mean,
+                    answer.sensor.mean,
+                ]
+            ),
+            std=np.hstack(
+                [low.std, answer.bridle_tension.std, answer.sensor_low.std, answer.sensor.std]
+            ),
+        )
+
+
+def _unheld(answer: Answer, low: Prediction, cage: Cage) -> Float[np.ndarray, "case line"]:
+    """Best mean of each tension, also where a rope that goes slack holds it at zero."""
+    best = low.mean.copy()
+    for shackle in cage.shackles:
+        if answer.bridle_level[shackle.bridle] > 1:
+            column = answer.sensor_names.index(shackle.name)
+            best[:, shackle.bridle] = answer.sensor.mean[:, column]
+    return best
