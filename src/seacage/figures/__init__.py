@@ -1,6 +1,7 @@
 """Matplotlib figures of records, scores and states."""
 
 from seacage.figures._animation import Motion, write_animation
+from seacage.figures._benchmark import Contest, cost_figure, coverage_figure, error_figure
 from seacage.figures._comparison import (
     Comparison,
     density_figure,
@@ -28,12 +29,16 @@ from seacage.figures._volume import MEASURED_VOLUMES, VolumeMark, volume_figure
 __all__ = [
     "MEASURED_VOLUMES",
     "Comparison",
+    "Contest",
     "Lessons",
     "Motion",
     "Panel",
     "ShapeView",
     "VolumeMark",
+    "cost_figure",
+    "coverage_figure",
     "density_figure",
+    "error_figure",
     "fouling_figure",
     "gain_figure",
     "left_figure",

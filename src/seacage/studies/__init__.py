@@ -1,5 +1,6 @@
 """Whole experiments, from campaign to report."""
 
+from seacage.studies._benchmark import BenchmarkStudy, benchmark_study
 from seacage.studies._demonstration import Demonstration, prepare_demonstration
 from seacage.studies._fidelity import FidelityStudy, fidelity_study
 from seacage.studies._held_out import score_record
@@ -12,6 +13,7 @@ from seacage.studies._shape_scores import ShapeScore
 from seacage.studies._ways import WayScore
 
 __all__ = [
+    "BenchmarkStudy",
     "Demonstration",
     "Errors",
     "FidelityStudy",
@@ -21,6 +23,7 @@ __all__ = [
     "SensorScore",
     "ShapeScore",
     "WayScore",
+    "benchmark_study",
     "fidelity_study",
     "paper_study",
     "prepare_demonstration",

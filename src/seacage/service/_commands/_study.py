@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from seacage.conventions import InputError
 from seacage.service._commands._score import error_rows, error_table
 from seacage.service._console import Json, guarded, progress_bar, tell
 
@@ -197,3 +198,73 @@ def fidelity(
             ("Report", f"{study.report} (virtual field)"),
         ],
     )
+
+
+@group.command()
+@guarded
+def benchmarks(
+    *,
+    out: Annotated[Path, typer.Option(file_okay=False, help="Folder of the report.")] = Path(
+        "benchmarks-report"
+    ),
+    peers: Annotated[
+        Path | None,
+        typer.Option(
+            exists=True,
+            file_okay=False,
+            help="The environment of `make bench-peers`; else ours alone.",
+        ),
+    ] = None,
+    seeds: Annotated[
+        str, typer.Option(help="First and last seed; those below 5 tune and decide nothing.")
+    ] = "0-9",
+    quick: Annotated[
+        bool, typer.Option("--quick/--full", help="Two seeds of each kind, no cage-size problem.")
+    ] = False,
+    fresh: Annotated[
+        bool, typer.Option("--fresh", help="Time the cage-size problem again, all in one run.")
+    ] = False,
+    as_json: Json = False,
+) -> None:
+    """Compare our learners with other people's on published problems.
+
+    It ends in one HTML report: errors, spreads and cost of each method on each problem, and for
+    each promise whether it holds. Stopped, the same command goes on where it was.
+
+    Example:
+        seacage study benchmarks --peers .venv-peers --out benchmarks-report
+    """
+    from dataclasses import asdict
+
+    from seacage.studies import benchmark_study
+
+    with progress_bar() as progress:
+        study = benchmark_study(
+            out,
+            peers=peers,
+            seeds=_seeds(seeds),
+            quick=quick,
+            fresh=fresh,
+            progress=progress,
+        )
+    tell(
+        {
+            "report": str(study.report),
+            "scores": str(study.scores),
+            "origin": "computed",
+            "verdicts": [asdict(one) for one in study.verdicts],
+        },
+        as_json=as_json,
+        rows=[
+            *((one.word, f"{one.claim} {one.finding}") for one in study.verdicts),
+            ("Report", str(study.report)),
+        ],
+    )
+
+
+def _seeds(written: str) -> range:
+    """The seeds of ``5``, or of ``0-9``."""
+    first, dash, last = written.partition("-")
+    if not first.isdecimal() or (dash and not last.isdecimal()):
+        raise InputError(f"--seeds {written} is not a range of seeds. Write 0-9, or a single one.")
+    return range(int(first), int(last or first) + 1)

@@ -1,0 +1,172 @@
+"""How methods compare on problems: error by seed, coverage, and cost."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.figures._style import FAINT, LOW, MULTI, MUTED, SENSOR, blank_figure, style
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_COLUMNS = 4
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Contest:
+    """One problem's part of a figure; every number is computed elsewhere.
+
+    Parameters
+    ----------
+    title
+        Of the problem.
+    error
+        By method and seed; NaN where a method failed or was not run.
+    coverage
+        By method, over seeds [-].
+    """
+
+    title: str
+    error: Float[np.ndarray, "method seed"]
+    coverage: Float[np.ndarray, " method"]
+
+
+def error_figure(
+    methods: Sequence[str], contests: Sequence[Contest], *, ours: Sequence[int]
+) -> "Figure":
+    """Error of each method on each problem: a dot per seed, and a mark at the mean.
+
+    Parameters
+    ----------
+    methods
+        Names, top to bottom.
+    contests
+        One panel each.
+    ours
+        Which of the methods are ours, the first of them the one to look at.
+    """
+    with style():
+        figure, panels = _grid(methods, len(contests))
+        for axes, contest in zip(panels, contests, strict=True):
+            for place, error in enumerate(contest.error):
+                colour = _colour(place, ours)
+                axes.plot(error, np.full(len(error), place), "o", color=colour, ms=3.0, alpha=0.45)
+                axes.plot([np.mean(error)], [place], "d", color=colour, mec="white", ms=7.0)
+            axes.set_xscale("log")
+            _few_ticks(axes, contest.error)
+            axes.set_title(contest.title)
+            axes.set_xlabel("Root mean square error")
+    return figure
+
+
+def coverage_figure(
+    methods: Sequence[str],
+    contests: Sequence[Contest],
+    *,
+    ours: Sequence[int],
+    wanted: tuple[float, float],
+) -> "Figure":
+    """Share of the truth inside 95 % intervals, by method and problem.
+
+    Parameters
+    ----------
+    methods, contests, ours
+        As for the errors.
+    wanted
+        The band that is promised, which is shaded [-].
+    """
+    with style():
+        figure, panels = _grid(methods, len(contests))
+        for axes, contest in zip(panels, contests, strict=True):
+            axes.axvspan(*wanted, color=FAINT, lw=0, zorder=0)
+            axes.axvline(0.95, color=MUTED, lw=0.9)
+            for place, share in enumerate(contest.coverage.tolist()):
+                colour = _colour(place, ours)
+                axes.hlines(place, 0.0, share, color=colour, lw=1.2, alpha=0.5)
+                axes.plot([share], [place], "o", color=colour, mec="white", ms=6.0)
+            axes.set_xlim(0.0, 1.03)
+            axes.xaxis.set_major_formatter(lambda share, _: f"{share:.0%}")
+            axes.set_title(contest.title)
+            axes.set_xlabel("Inside 95 % intervals")
+    return figure
+
+
+def cost_figure(
+    methods: Sequence[str],
+    costs: Mapping[str, Float[np.ndarray, " method"]],
+    *,
+    ours: Sequence[int],
+) -> "Figure":
+    """What each method takes, and how many times ours that is.
+
+    Parameters
+    ----------
+    methods, ours
+        As for the errors.
+    costs
+        By what is done: one core's time [s]; NaN where a method did not do it.
+    """
+    place = np.arange(len(methods))
+    with style():
+        figure = blank_figure(10.0, 0.9 + 0.27 * len(methods))
+        panels = figure.subplots(1, len(costs), sharey=True, squeeze=False)[0]
+        for axes, (title, cost) in zip(panels, costs.items(), strict=True):
+            done = np.isfinite(cost)
+            colours = [_colour(index, ours) for index in place[done]]
+            axes.barh(place[done], 1e3 * cost[done], 0.62, color=colours, lw=0)
+            axes.set_xscale("log")
+            for at, taken in zip(place[done].tolist(), cost[done].tolist(), strict=True):
+                axes.annotate(
+                    f"{taken / cost[ours[0]]:.2g} ×",
+                    (1e3 * taken, at),
+                    xytext=(4, 0),
+                    textcoords="offset points",
+                    va="center",
+                    fontsize=7.5,
+                )
+            least, most = axes.get_xlim()
+            axes.set_xlim(least, most * (most / least) ** 0.18)
+            axes.set_title(title)
+            axes.set_xlabel("Time of one core [ms]")
+            axes.grid(visible=False, axis="y")
+        _named(panels[0], methods)
+    return figure
+
+
+def _grid(methods: Sequence[str], count: int) -> "tuple[Figure, list[Axes]]":
+    columns = min(_COLUMNS, count)
+    rows = -(-count // columns)
+    figure = blank_figure(10.0, rows * (0.8 + 0.2 * len(methods)))
+    axes = figure.subplots(rows, columns, sharey=True, squeeze=False)
+    for empty in axes.ravel()[count:]:
+        empty.set_visible(False)
+    for one in axes.ravel():
+        one.grid(visible=False, axis="y")
+    _named(axes[0, 0], methods)
+    return figure, axes.ravel()[:count].tolist()
+
+
+def _named(axes: "Axes", methods: Sequence[str]) -> None:
+    axes.set_yticks(np.arange(len(methods)), methods)
+    axes.set_ylim(len(methods) - 0.5, -0.5)
+
+
+def _few_ticks(axes: "Axes", error: Float[np.ndarray, "method seed"]) -> None:
+    """Powers of ten where they are met, else a few plain numbers."""
+    from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
+
+    met = error[np.isfinite(error) & (error > 0.0)]
+    narrow = met.size > 0 and np.max(met) < 30.0 * np.min(met)
+    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if narrow else (1.0,)))
+    axes.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    axes.xaxis.set_minor_formatter(NullFormatter())
+
+
+def _colour(place: int, ours: Sequence[int]) -> str:
+    if place == ours[0]:
+        return MULTI
+    return LOW if place in ours else SENSOR
