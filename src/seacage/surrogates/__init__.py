@@ -6,6 +6,7 @@ from seacage.surrogates._design import spread_design, window_design
 from seacage.surrogates._domain import Domain
 from seacage.surrogates._features import current_features, metocean_features, wave_features
 from seacage.surrogates._gaussian_process import FittedGaussianProcess, GaussianProcess
+from seacage.surrogates._gcn import GCN, FittedGCN
 from seacage.surrogates._nargp import NARGP, FittedNARGP
 from seacage.surrogates._pca import FittedPcaGP, OverTime, PcaGP
 from seacage.surrogates._prediction import Prediction, Predicts
@@ -20,6 +21,7 @@ from seacage.surrogates._symmetry_check import check_symmetry
 from seacage.surrogates._table import Table, Tabulable
 
 __all__ = [
+    "GCN",
     "AR1",
     "NARGP",
     "AdaptiveConformal",
@@ -29,6 +31,7 @@ __all__ = [
     "Domain",
     "Fitted",
     "FittedCoordinate",
+    "FittedGCN",
     "FittedGaussianProcess",
     "FittedNARGP",
     "FittedPcaGP",

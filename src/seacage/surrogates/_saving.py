@@ -7,13 +7,14 @@ import numpy as np
 from seacage.conventions import ModelError
 from seacage.surrogates._arrays import Arrays, Settings, setting
 from seacage.surrogates._gaussian_process import FittedGaussianProcess
+from seacage.surrogates._gcn import FittedGCN
 from seacage.surrogates._nargp import FittedNARGP
 from seacage.surrogates._pca import FittedPcaGP
 from seacage.surrogates._prediction import Predicts
 from seacage.surrogates._shape import FittedShapeGP
 from seacage.surrogates._table import Table
 
-Fitted = FittedGaussianProcess | FittedNARGP | FittedPcaGP | FittedShapeGP | Table
+Fitted = FittedGaussianProcess | FittedGCN | FittedNARGP | FittedPcaGP | FittedShapeGP | Table
 
 
 def encode(fitted: Fitted) -> tuple[Settings, Arrays]:
@@ -51,7 +52,7 @@ def decode(
     model = setting(settings, "model", str)
     if model == FittedNARGP.MODEL:
         return FittedNARGP.from_arrays(settings, arrays, lower=lower)
-    for kind in (FittedGaussianProcess, FittedPcaGP, FittedShapeGP, Table):
+    for kind in (FittedGaussianProcess, FittedGCN, FittedPcaGP, FittedShapeGP, Table):
         if model == kind.MODEL:
             return kind.from_arrays(settings, arrays)
     raise ModelError(f"The saved model is a {model!r}, which this version does not know.")

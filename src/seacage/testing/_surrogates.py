@@ -39,7 +39,12 @@ MakeFitted = Callable[[Inputs, Outputs, int], FittedSurrogate]
 
 
 def check_surrogate(
-    make_fitted: MakeFitted, *, output_shape: tuple[int, ...] = (), extrapolates: bool = True
+    make_fitted: MakeFitted,
+    *,
+    output_shape: tuple[int, ...] = (),
+    extrapolates: bool = True,
+    worst_taught: float = 1e-2,
+    unseen_error: float = 0.05,
 ) -> None:
     """Hold a surrogate to what the twin relies on; an assertion names the first broken promise.
 
@@ -55,13 +60,17 @@ def check_surrogate(
     extrapolates
         Whether it answers far from its cases too, less surely; False demands that it refuses.
         Its cases lie between -1 and 1.
+    worst_taught, unseen_error
+        Largest miss of a case it was given, and root mean square miss of unseen ones, as
+        shares of the spread. A network, which holds cases back and stops early, may need
+        more; say how much.
     """
     x, y = _problem(CASES, output_shape, seed=1)
     unseen, truth = _problem(UNSEEN, output_shape, seed=2)
     fitted = make_fitted(x, y, 0)
     _check_answers(fitted, unseen, output_shape)
     _check_rows_are_independent(fitted, unseen)
-    _check_it_learns(fitted, x, y, unseen, truth)
+    _check_it_learns(fitted, (x, y), (unseen, truth), worst_taught, unseen_error)
     _check_far(fitted, x, extrapolates=extrapolates)
     _check_noise(fitted, unseen)
     _check_seed(make_fitted, x, y, unseen)
@@ -99,13 +108,20 @@ def _check_rows_are_independent(fitted: FittedSurrogate, unseen: Inputs) -> None
 
 
 def _check_it_learns(
-    fitted: FittedSurrogate, x: Inputs, y: Outputs, unseen: Inputs, truth: Outputs
+    fitted: FittedSurrogate,
+    given: tuple[Inputs, Outputs],
+    kept: tuple[Inputs, Outputs],
+    worst_taught: float,
+    unseen_error: float,
 ) -> None:
+    (x, y), (unseen, truth) = given, kept
     spread = y.std()
     missed = np.max(np.abs(fitted.predict(x).mean - y)) / spread
-    assert missed < 1e-2, f"it misses noise-free training cases by {missed:.2g} of their spread"
+    assert missed < worst_taught, (
+        f"it misses noise-free training cases by {missed:.2g} of their spread"
+    )
     error = np.sqrt(np.mean((fitted.predict(unseen).mean - truth) ** 2)) / spread
-    assert error < 0.05, f"it misses unseen cases by {error:.2g} of the spread"
+    assert error < unseen_error, f"it misses unseen cases by {error:.2g} of the spread"
 
 
 def _check_far(fitted: FittedSurrogate, x: Inputs, *, extrapolates: bool) -> None:

@@ -1,0 +1,57 @@
+"""How a network is trained where its user does not say."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from seacage.conventions import InputError
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Recipe:
+    """The choices of a training.
+
+    Parameters
+    ----------
+    width
+        Channels per node.
+    epochs
+        Most passes through the cases.
+    patience
+        Epochs without a better answer to the held-out cases, after which training ends.
+    learning_rate
+        Of Adam, at its largest; it rises over the first twentieth and falls as a cosine to 0.
+    """
+
+    width: int
+    epochs: int
+    patience: int
+    learning_rate: float
+
+
+RECIPES: Mapping[str, Recipe] = {
+    "paper": Recipe(width=64, epochs=150, patience=30, learning_rate=5e-3),
+    "modal": Recipe(width=16, epochs=400, patience=80, learning_rate=3e-3),
+}
+
+LARGEST_BATCH, FEWEST_BATCHES = 64, 10
+"""Cases per step of the optimiser, and steps per epoch."""
+
+
+def recipe_of(kind: str, **wanted: float | None) -> Recipe:
+    """The recipe of a kind, changed where a value is given.
+
+    Raises
+    ------
+    InputError
+        There is no such network, or a value is not above 0.
+    """
+    if kind not in RECIPES:
+        raise InputError(f"GCN: no network {kind!r}; there are: {', '.join(RECIPES)}.")
+    chosen = {name: value for name, value in wanted.items() if value is not None}
+    for name, value in chosen.items():
+        if not value > 0:
+            raise InputError(
+                f"GCN: {name} = {value:g} is not above 0. "
+                f"Leave it out for {getattr(RECIPES[kind], name):g}."
+            )
+    return replace(RECIPES[kind], **chosen)

@@ -1,0 +1,166 @@
+"""How far a network is off: judged on cases that it was not trained on."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from seacage.surrogates._arrays import Arrays, array
+
+NEIGHBOURS = 10
+"""Held-out cases whose misses make the size of a miss at a place."""
+
+TWO_SIGMA = 1.959963984540054
+"""Standard deviations that hold 95 % of a Gaussian."""
+
+NOISE_SHARE = (0.01, 0.98)
+"""Least and largest share of the variance that may be called noise."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Spread:
+    """Standard deviation of a network's answer, by coordinate and by place among its cases.
+
+    A network does not know what it does not know, so its held-out cases say it: each
+    coordinate has the miss that 95 % of them stay within (split conformal), made larger or
+    smaller by the misses of the nearest of them. Beyond the farthest that a held-out case lay
+    from its nearest training case, it grows in proportion to that distance.
+
+    Parameters
+    ----------
+    taught, held_out
+        Standardised features of the cases that trained the network, and of the others.
+    size
+        Of the miss of each held-out case, 1 on average.
+    miss
+        Of each coordinate, where the size is 1 [m].
+    noise
+        Share of the variance that differs between neighbouring cases.
+    """
+
+    taught: Float[np.ndarray, "taught feature"]
+    held_out: Float[np.ndarray, "held feature"]
+    size: Float[np.ndarray, " held"]
+    miss: Float[np.ndarray, "node 3"]
+    noise: Float[np.ndarray, "node 3"]
+
+    @classmethod
+    def of(
+        cls,
+        x: Float[np.ndarray, "case feature"],
+        residual: Float[np.ndarray, "case node 3"],
+        *,
+        taught: Int[np.ndarray, " taught"],
+        held_out: Int[np.ndarray, " held"],
+    ) -> Self:
+        """Judge a network.
+
+        Parameters
+        ----------
+        x
+            Standardised features of all cases.
+        residual
+            Truth less the network's answer [m].
+        taught, held_out
+            Which cases are which.
+        """
+        missed = residual[held_out]
+        # Coordinates that never move are never missed, and must not divide by 0.
+        tiny = 1e-9 * max(1.0, float(np.abs(residual).max()))
+        typical = np.sqrt(np.mean(missed**2, axis=0)) + tiny
+        size = np.sqrt(np.mean((missed / typical) ** 2, axis=(1, 2))) + 1e-9
+        without_itself = _nearest_mean(x[held_out], x[held_out], size**2, skip=1)
+        around = np.sqrt(without_itself)[:, None, None]
+        enough = min(1.0, math.ceil(0.95 * (len(missed) + 1)) / len(missed))
+        scaled = np.quantile(np.abs(missed) / around, enough, axis=0, method="higher")
+        miss = scaled / TWO_SIGMA + tiny
+        rough = _roughness(x[taught], residual[taught])
+        return cls(
+            taught=x[taught],
+            held_out=x[held_out],
+            size=size,
+            miss=miss,
+            noise=np.clip(rough / typical**2, *NOISE_SHARE),
+        )
+
+    def std(
+        self, x: Float[np.ndarray, "row feature"], *, noisy: bool
+    ) -> Float[np.ndarray, "row node 3"]:
+        """At standardised features [m].
+
+        Parameters
+        ----------
+        x
+            One row per case.
+        noisy
+            Of a case as it was learned from; otherwise without what differs between neighbours.
+        """
+        around = np.sqrt(_nearest_mean(x, self.held_out, self.size**2))
+        grown = np.maximum(1.0, _nearest(x, self.taught) / self._reach)
+        kept = grown[:, None, None] ** 2 - (0.0 if noisy else self.noise)
+        return around[:, None, None] * self.miss * np.sqrt(kept)
+
+    @property
+    def _reach(self) -> float:
+        """How far from a training case the network was judged."""
+        return max(1e-6, float(_nearest(self.held_out, self.taught).max()))
+
+    def to_arrays(self) -> Arrays:
+        """By the names of its parts."""
+        names = ("taught", "held_out", "size", "miss", "noise")
+        return {name: np.ascontiguousarray(getattr(self, name)) for name in names}
+
+    @classmethod
+    def from_arrays(cls, arrays: Mapping[str, np.ndarray], *, features: int, nodes: int) -> Self:
+        """The other way.
+
+        Raises
+        ------
+        ModelError
+            An array is missing, of another shape, or not finite.
+        """
+        held_out = array(arrays, "held_out", None, features)
+        return cls(
+            taught=array(arrays, "taught", None, features),
+            held_out=held_out,
+            size=array(arrays, "size", len(held_out)),
+            miss=array(arrays, "miss", nodes, 3),
+            noise=array(arrays, "noise", nodes, 3),
+        )
+
+
+def _distances(
+    x: Float[np.ndarray, "row feature"], cases: Float[np.ndarray, "case feature"]
+) -> Float[np.ndarray, "row case"]:
+    from scipy.spatial.distance import cdist
+
+    return cdist(x, cases)
+
+
+def _nearest(
+    x: Float[np.ndarray, "row feature"], cases: Float[np.ndarray, "case feature"]
+) -> Float[np.ndarray, " row"]:
+    return _distances(x, cases).min(axis=1)
+
+
+def _nearest_mean(
+    x: Float[np.ndarray, "row feature"],
+    cases: Float[np.ndarray, "case feature"],
+    values: Float[np.ndarray, " case"],
+    *,
+    skip: int = 0,
+) -> Float[np.ndarray, " row"]:
+    """Mean over the nearest cases, but for so many of the very nearest."""
+    order = np.argsort(_distances(x, cases), axis=1, kind="stable")
+    return values[order[:, skip : skip + NEIGHBOURS]].mean(axis=1)
+
+
+def _roughness(
+    x: Float[np.ndarray, "case feature"], residual: Float[np.ndarray, "case node 3"]
+) -> Float[np.ndarray, "node 3"]:
+    """Variance of what neighbours do not share: half the mean square of their difference."""
+    beside = np.argsort(_distances(x, x), axis=1, kind="stable")[:, 1]
+    return 0.5 * np.mean((residual - residual[beside]) ** 2, axis=0)
