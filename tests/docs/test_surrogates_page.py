@@ -27,8 +27,8 @@ def test_the_code_of_the_page_runs_in_its_order() -> None:
         exec(compile(block, "docs/surrogates.md", "exec"), names)
 
 
-def test_the_page_prints_four_examples() -> None:
-    assert len({example for example, _ in PRINTOUTS}) == 4
+def test_the_page_prints_five_examples() -> None:
+    assert len({example for example, _ in PRINTOUTS}) == 5
 
 
 @pytest.mark.parametrize(("example", "printed"), PRINTOUTS, ids=lambda one: one[:24])

@@ -13,7 +13,7 @@ from seacage.twin._answer import Answer
 from seacage.twin._metocean import Metocean
 from seacage.twin._twin import Twin
 
-LEAST_TENSION_STD = 10.0
+LEAST_TENSION_STD = 50.0
 LEAST_DEPTH_STD = 0.01
 """Spreads that no instrument here resolves [N], [m]: smaller ones count as these."""
 
@@ -74,7 +74,7 @@ class TabulatedTwin:
         cls,
         twin: Twin,
         *,
-        tolerance: float = 1e-3,
+        tolerance: float = 1e-2,
         std_tolerance: float = 0.05,
         least_tension_std: float = LEAST_TENSION_STD,
         least_depth_std: float = LEAST_DEPTH_STD,
@@ -86,8 +86,9 @@ class TabulatedTwin:
         ----------
         twin
             Whose inputs are the current alone.
-        tolerance
-            Largest error, in predictive standard deviations.
+        tolerance, std_tolerance
+            Largest error of a mean in predictive standard deviations, and of a standard
+            deviation in itself.
         least_tension_std, least_depth_std
             Standard deviations below these count as these [N], [m]: a simulator is emulated
             nearly without doubt close to its own cases, more sharply than any sensor sees.
