@@ -116,7 +116,7 @@ def cost_figure(
         panels = figure.subplots(1, len(costs), sharey=True, squeeze=False)[0]
         for axes, (title, cost) in zip(panels, costs.items(), strict=True):
             done = np.isfinite(cost)
-            colours = [_colour(index, ours) for index in place[done]]
+            colours = [_colour(index, ours) for index in place[done].tolist()]
             axes.barh(place[done], 1e3 * cost[done], 0.62, color=colours, lw=0)
             axes.set_xscale("log")
             for at, taken in zip(place[done].tolist(), cost[done].tolist(), strict=True):
@@ -130,6 +130,7 @@ def cost_figure(
                 )
             least, most = axes.get_xlim()
             axes.set_xlim(least, most * (most / least) ** 0.18)
+            _few_ticks(axes, cost[done])
             axes.set_title(title)
             axes.set_xlabel("Time of one core [ms]")
             axes.grid(visible=False, axis="y")
@@ -155,11 +156,11 @@ def _named(axes: "Axes", methods: Sequence[str]) -> None:
     axes.set_ylim(len(methods) - 0.5, -0.5)
 
 
-def _few_ticks(axes: "Axes", error: Float[np.ndarray, "method seed"]) -> None:
+def _few_ticks(axes: "Axes", shown: Float[np.ndarray, "*n"]) -> None:
     """Powers of ten where they are met, else a few plain numbers."""
     from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
-    met = error[np.isfinite(error) & (error > 0.0)]
+    met = shown[np.isfinite(shown) & (shown > 0.0)]
     narrow = met.size > 0 and np.max(met) < 30.0 * np.min(met)
     axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if narrow else (1.0,)))
     axes.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
