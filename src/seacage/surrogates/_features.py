@@ -3,6 +3,11 @@
 import numpy as np
 from jaxtyping import Float
 
+from seacage.conventions import InputError
+
+ROUNDED = 1e-3
+"""Share by which a length may differ from that of its vector: features may come rounded."""
+
 
 def current_features(
     current_velocity: Float[np.ndarray, "row 2"],
@@ -24,3 +29,91 @@ def current_features(
     """
     speed = np.hypot(current_velocity[:, 0], current_velocity[:, 1])
     return np.column_stack([speed, current_velocity])
+
+
+def wave_features(
+    hs: Float[np.ndarray, " row"],
+    wave_direction: Float[np.ndarray, "row 2"],
+    *,
+    tp: Float[np.ndarray, " row"] | None = None,
+) -> Float[np.ndarray, "row feature"]:
+    """Features (Hs, Hs cos beta, Hs sin beta) of waves, beta from east.
+
+    Where the peak period is known too they are (W, W cos beta, W sin beta, Hs), W = pi Hs / Tp
+    being the speed of the water at the surface of regular waves of that height and period: what
+    the waves add to the current.
+
+    Parameters
+    ----------
+    hs
+        Significant wave height [m].
+    wave_direction
+        Unit vector that the waves travel along, (east, north) [-].
+    tp
+        Peak period [s]; of no meaning where there are no waves.
+
+    Returns
+    -------
+    features
+        Height, east and north component [m]; or speed, east and north component [m/s], and
+        height [m].
+    """
+    if tp is None:
+        return np.column_stack([hs, hs[:, None] * wave_direction])
+    speed = np.pi * hs / np.where(hs > 0.0, tp, 1.0)
+    return np.column_stack([speed, speed[:, None] * wave_direction, hs])
+
+
+def metocean_features(
+    current_velocity: Float[np.ndarray, "row 2"],
+    *,
+    hs: Float[np.ndarray, " row"] | None = None,
+    wave_direction: Float[np.ndarray, "row 2"] | None = None,
+    tp: Float[np.ndarray, " row"] | None = None,
+) -> Float[np.ndarray, "row feature"]:
+    """All that a buoy measures as features: ``current_features``, then ``wave_features``.
+
+    ``ShapeGP`` can turn these, so it may learn in the current's frame or fold by a symmetry.
+
+    Parameters
+    ----------
+    current_velocity, hs, wave_direction, tp
+        As there; without ``hs`` the current alone.
+
+    Returns
+    -------
+    features
+        3 columns of the current alone, 6 with waves, 7 with their period.
+    """
+    current = current_features(current_velocity)
+    if hs is None and wave_direction is None and tp is None:
+        return current
+    if hs is None or wave_direction is None:
+        raise InputError(
+            "metocean_features: waves need both hs and wave_direction. Give both, or neither."
+        )
+    return np.hstack([current, wave_features(hs, wave_direction, tp=tp)])
+
+
+def vector_columns(width: int) -> tuple[slice, ...]:
+    """Where ``metocean_features`` of this width holds vectors."""
+    return (slice(1, 3), slice(4, 6))[: 1 + (width > 3)]
+
+
+def check_turnable(x: Float[np.ndarray, "row feature"], *, what: str) -> None:
+    """Refuse features that cannot be turned, for their vectors are not where they should be."""
+    if x.shape[1] not in (3, 6, 7):
+        raise InputError(
+            f"{what}: x has {x.shape[1]} features per row; a current's frame and a symmetry "
+            "turn the 3, 6 or 7 of metocean_features. Build x with it."
+        )
+    for at in vector_columns(x.shape[1]):
+        length, vector = x[:, at.start - 1], x[:, at]
+        wrong = np.abs(np.hypot(*vector.T) - length) > ROUNDED * np.abs(length) + 1e-9
+        if wrong.any():
+            row = int(np.argmax(wrong))
+            raise InputError(
+                f"{what}: in row {row} feature {at.start - 1} = {length[row]:g} is not the length "
+                f"of the vector ({vector[row, 0]:g}, {vector[row, 1]:g}) after it. Directions in "
+                "degrees cannot be turned: build x with metocean_features."
+            )

@@ -72,8 +72,65 @@ class Modes:
         return replace(kept, truncation=np.sqrt(np.mean(missed**2, axis=0)))
 
 
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class OverTime:
+    """The shapes at all time steps of all cases, as far as principal modes know them.
+
+    Parameters
+    ----------
+    mean
+        Over all steps [m].
+    scatter
+        Mean product of two coordinates' distances from their means [m2].
+    """
+
+    mean: Float[np.ndarray, " coordinate"]
+    scatter: Float[np.ndarray, "coordinate coordinate"]
+
+    @classmethod
+    def of_snapshots(cls, node_position: Float[np.ndarray, "t node 3"]) -> Self:
+        """Of the shapes themselves, e.g. ``History.node_position`` of all cases [m]."""
+        node_position = checked_outputs(
+            node_position, what="OverTime", rows=len(node_position), shape="(steps, nodes, 3)"
+        )
+        rows = node_position.reshape(len(node_position), -1)
+        mean = rows.mean(axis=0)
+        return cls(mean=mean, scatter=(rows - mean).T @ (rows - mean) / len(rows))
+
+    @classmethod
+    def of_moment(
+        cls,
+        node_position: Float[np.ndarray, "case node 3"],
+        second_moment: Float[np.ndarray, "coordinate coordinate"],
+        *,
+        rest_position: Float[np.ndarray, "node 3"],
+    ) -> Self:
+        """Of what a campaign in time keeps in place of the shapes.
+
+        Parameters
+        ----------
+        node_position
+            Means over time of all cases that the moment is of: those that converged [m].
+        second_moment
+            Mean over time and cases of the products of displacements from the shape at rest
+            [m2].
+        rest_position
+            That shape: ``cage.design_position`` for a campaign of seacage [m].
+        """
+        mean = node_position.reshape(len(node_position), -1).mean(axis=0)
+        if second_moment.shape != (len(mean), len(mean)) or rest_position.size != len(mean):
+            raise InputError(
+                f"OverTime: a second moment of shape {second_moment.shape} and a shape at rest of "
+                f"{rest_position.size // 3} nodes do not belong to {len(mean) // 3} nodes."
+            )
+        moved = mean - rest_position.ravel()
+        return cls(mean=mean, scatter=second_moment - np.outer(moved, moved))
+
+
 def all_modes(
-    shape: Float[np.ndarray, "row coordinate"], *, centred: bool = True
+    shape: Float[np.ndarray, "row coordinate"],
+    *,
+    about: Float[np.ndarray, " coordinate"] | None = None,
 ) -> tuple[Modes, Float[np.ndarray, " mode"]]:
     """Every mode of a table of shapes, and the share of the variance up to each.
 
@@ -81,12 +138,43 @@ def all_modes(
     ----------
     shape
         One row per case [m].
-    centred
-        About the mean shape; otherwise about zero, and "variance" is the mean square.
+    about
+        Where the modes start, "variance" being the mean square from there; None for the mean.
     """
-    centre = shape.mean(axis=0) if centred else np.zeros(shape.shape[1])
+    centre = shape.mean(axis=0) if about is None else about
     _, size, direction = np.linalg.svd(shape - centre, full_matrices=False)
-    share = np.cumsum(size**2) / max(float(np.sum(size**2)), np.finfo(float).tiny)
+    return _sorted_modes(centre, direction, size**2)
+
+
+def modes_over_time(
+    over_time: OverTime, *, about: Float[np.ndarray, " coordinate"] | None = None
+) -> tuple[Modes, Float[np.ndarray, " mode"]]:
+    """Every mode of the shapes at all time steps, and the share of the variance up to each."""
+    centre = over_time.mean if about is None else about
+    moved = over_time.mean - centre
+    size, direction = np.linalg.eigh(over_time.scatter + np.outer(moved, moved))
+    # Rounding can leave a hair less than nothing.
+    return _sorted_modes(centre, direction.T[::-1], np.maximum(size[::-1], 0.0))
+
+
+def modes_within(shape: Float[np.ndarray, "row coordinate"], tolerance: float) -> Modes:
+    """The fewest modes that move no node by more than the tolerance [m], root mean square."""
+    modes, _ = all_modes(shape)
+    held = np.mean(modes.encode(shape) ** 2, axis=0)[:, None] * modes.direction**2
+    missed = np.mean((shape - modes.centre) ** 2, axis=0) - np.cumsum(held, axis=0)
+    worst = missed.reshape(len(missed), -1, 3).sum(axis=2).max(axis=1)
+    enough = np.flatnonzero(worst <= tolerance**2)
+    return modes.truncated(shape, int(enough[0]) + 1 if len(enough) else len(worst))
+
+
+def _sorted_modes(
+    centre: Float[np.ndarray, " coordinate"],
+    direction: Float[np.ndarray, "mode coordinate"],
+    size: Float[np.ndarray, " mode"],
+) -> tuple[Modes, Float[np.ndarray, " mode"]]:
+    share = np.cumsum(size) / max(float(np.sum(size)), np.finfo(float).tiny)
+    # In C order, as they come back from a file: the same rounding in every prediction.
+    direction = np.ascontiguousarray(direction)
     modes = Modes(centre=centre, direction=direction, truncation=np.zeros_like(centre))
     return modes, share
 
@@ -95,9 +183,10 @@ def all_modes(
 class PcaGP:
     """A few principal scores of the shape, each its own Gaussian process; not yet fitted.
 
-    The paper's model. Its matrix M of positions gives the modes as eigenvectors of M M', the
-    scores as phi' M (the paper prints M phi), and the shape as the sum over modes (the paper
-    also sums over the scenarios); ``centred=False`` reads M M' literally.
+    The paper's model. Its matrix M of all nodes at all time steps of all cases gives the modes
+    as eigenvectors of M M', the scores as phi' M (the paper prints M phi), their means over
+    each case teach the processes, and the shape is the sum over modes (the paper also sums over
+    the cases); ``centred=False`` reads M M' literally.
 
     Parameters
     ----------
@@ -106,7 +195,8 @@ class PcaGP:
     variance
         keep the fewest that explain this share. Neither means the paper's 0.93.
     centred
-        Whether the mean shape is taken out first.
+        Whether the mean shape is taken out first. Otherwise M holds coordinates, or, where
+        ``fit`` is told the shape at rest, displacements from it: the paper says both.
     kernel, restarts
         As for ``GaussianProcess``.
 
@@ -139,6 +229,8 @@ class PcaGP:
         x: Float[np.ndarray, "n feature"],
         node_position: Float[np.ndarray, "n node 3"],
         *,
+        over_time: OverTime | None = None,
+        rest_position: Float[np.ndarray, "node 3"] | None = None,
         seed: int = 0,
     ) -> "FittedPcaGP":
         """Learn from features and shapes.
@@ -148,7 +240,12 @@ class PcaGP:
         x
             One row per case.
         node_position
-            The shape of each case [m].
+            The shape of each case, a mean over time [m].
+        over_time
+            The shapes at all time steps, for the modes to be of; without it they are of the
+            cases' means.
+        rest_position
+            The shape at rest, for ``centred=False`` to mean displacements from it [m].
         seed
             Of the subsets of points and of the random starts.
         """
@@ -157,7 +254,16 @@ class PcaGP:
             node_position, what="PcaGP.fit", rows=len(x), shape="(rows, nodes, 3)"
         )
         shape = node_position.reshape(len(x), -1)
-        modes, share = all_modes(shape, centred=self.centred)
+        about = self._about(rest_position, coordinates=shape.shape[1])
+        if over_time is None:
+            modes, share = all_modes(shape, about=about)
+        elif len(over_time.mean) == shape.shape[1]:
+            modes, share = modes_over_time(over_time, about=about)
+        else:
+            raise InputError(
+                f"PcaGP.fit: the shapes over time have {len(over_time.mean) // 3} nodes, those of "
+                f"the cases {shape.shape[1] // 3}. Give both of the same net."
+            )
         count = self._count(share)
         modes = modes.truncated(shape, count)
         scores = tuple(
@@ -172,6 +278,21 @@ class PcaGP:
             for mode, score in enumerate(modes.encode(shape).T)
         )
         return FittedPcaGP(basis=modes, scores=scores, explained_variance=float(share[count - 1]))
+
+    def _about(
+        self, rest_position: Float[np.ndarray, "node 3"] | None, *, coordinates: int
+    ) -> Float[np.ndarray, " coordinate"] | None:
+        if self.centred:
+            return None
+        if rest_position is None:
+            return np.zeros(coordinates)
+        rest = checked_inputs(rest_position, what="PcaGP.fit: rest_position", width=3).ravel()
+        if len(rest) != coordinates:
+            raise InputError(
+                f"PcaGP.fit: the shape at rest has {len(rest) // 3} nodes, those of the cases "
+                f"{coordinates // 3}. Give both of the same net."
+            )
+        return rest
 
     def _count(self, share: Float[np.ndarray, " mode"]) -> int:
         if self.modes is None:

@@ -1,14 +1,24 @@
 """The whole shape of the net from one shared kernel."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from typing import ClassVar, Self
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import ClassVar, Literal, Self, get_args
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
 from seacage.conventions import InputError, ModelError
-from seacage.surrogates._arrays import Arrays, Settings, joined, sub_settings, within
+from seacage.surrogates._arrays import (
+    Arrays,
+    Settings,
+    array,
+    joined,
+    setting,
+    sub_settings,
+    within,
+)
+from seacage.surrogates._features import check_turnable
+from seacage.surrogates._frame import moment_products, parted, seen_along, whole, whole_moments
 from seacage.surrogates._gaussian_process import (
     FittedGaussianProcess,
     check_restarts,
@@ -16,8 +26,23 @@ from seacage.surrogates._gaussian_process import (
     fitted_process,
 )
 from seacage.surrogates._kernels import KernelName, kernel_named
-from seacage.surrogates._pca import Modes, all_modes, modes_from_arrays, modes_to_arrays
+from seacage.surrogates._pca import Modes, modes_from_arrays, modes_to_arrays, modes_within
 from seacage.surrogates._prediction import Prediction, checked_inputs, checked_outputs
+from seacage.surrogates._symmetry import Symmetry
+from seacage.surrogates._symmetry_check import check_symmetry
+
+Frame = Literal["earth", "current"]
+
+LEVEL, DEVIATIONS = 0.95, 1.959964
+"""Share of the cases that an interval of so many standard deviations is to cover."""
+
+Nodes = slice | Int[np.ndarray, " node"]
+"""Some nodes: a slice, or their numbers."""
+
+EVERY = slice(None)
+
+BLOCK = 4096
+"""Rows of one coordinate that are answered at a time."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,19 +61,35 @@ class ShapeGP:
         training cases [m].
     restarts
         Random starts of the hyperparameter search beside the deterministic one.
+    frame
+        "current" learns displacements and waves as seen along the current, near slack water as
+        seen from the earth. Needs ``metocean_features``.
+    symmetry
+        Of the cage: every case is learned by its image in one sector of the current's
+        directions, and answered from there. Needs ``metocean_features``.
+    asymmetry
+        Largest that ``check_symmetry`` may find in the training [m].
     """
 
     kernel: KernelName = "matern-5/2"
     tolerance: float = 1e-3
     restarts: int = 3
+    frame: Frame = "earth"
+    symmetry: Symmetry | None = None
+    asymmetry: float = 0.05
 
     def __post_init__(self) -> None:
         kernel_named(self.kernel)
         check_restarts(self.restarts)
-        if not self.tolerance > 0.0:
+        for name in ("tolerance", "asymmetry"):
+            if not getattr(self, name) > 0.0:
+                raise InputError(
+                    f"ShapeGP: {name} = {getattr(self, name):g} m is not above 0. "
+                    "Give the distance that a node may be off by, e.g. 0.001 m."
+                )
+        if self.frame not in get_args(Frame):
             raise InputError(
-                f"ShapeGP: tolerance = {self.tolerance:g} m is not above 0. "
-                "Give the distance that compression may move a node by, e.g. 0.001 m."
+                f"ShapeGP: frame = {self.frame!r} is not known. Choose 'earth' or 'current'."
             )
 
     def fit(
@@ -63,7 +104,7 @@ class ShapeGP:
         Parameters
         ----------
         x
-            One row per case, e.g. from ``current_features``.
+            One row per case, e.g. from ``metocean_features``.
         node_position
             The shape of each case [m].
         seed
@@ -73,36 +114,88 @@ class ShapeGP:
         node_position = checked_outputs(
             node_position, what="ShapeGP.fit", rows=len(x), shape="(rows, nodes, 3)"
         )
-        shape = node_position.reshape(len(x), -1)
-        modes = _within_tolerance(shape, self.tolerance)
-        scores = modes.encode(shape)
+        if self.frame == "current":
+            check_turnable(x, what="ShapeGP.fit")
+        if self.symmetry is not None:
+            check_symmetry(self.symmetry, x, node_position, tolerance=self.asymmetry, seed=seed)
+            x, node_position = _brought_home(self.symmetry, x, node_position)
+        return self._learned(x, node_position, seed)
+
+    def _learned(
+        self, x: Float[np.ndarray, "n feature"], shape: Float[np.ndarray, "n node 3"], seed: int
+    ) -> "FittedShapeGP":
+        centre = shape.mean(axis=0)
+        parts = _in_frame(self.frame, x, shape - centre).reshape(len(x), -1)
+        # A node's two parts may be off in the same direction.
+        modes = modes_within(parts, self.tolerance / np.sqrt(parts.shape[1] // centre.size))
+        scores = modes.encode(parts)
         process = fitted_process(
             kernel_named(self.kernel),
-            x,
+            seen_along(x) if self.frame == "current" else x,
             scores,
             taught_by=condensed(scores),
             restarts=self.restarts,
             seed=seed,
         )
-        return FittedShapeGP(basis=modes, scores=process)
+        fitted = FittedShapeGP(
+            basis=modes,
+            scores=process,
+            centre=centre,
+            left_out=np.zeros_like(centre),
+            scale=np.ones_like(centre),
+            features=x.shape[1],
+            frame=self.frame,
+            symmetry=self.symmetry,
+        )
+        missed = shape - fitted.rendered(x, scores)
+        fitted = replace(fitted, left_out=np.sqrt(np.mean(missed**2, axis=0)))
+        return replace(fitted, scale=_calibrated(fitted, x, shape))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class FittedShapeGP:
     """The whole shape: compressed modes, and one process for all their scores.
 
+    With a symmetry all of this is of the sector in which it was learned.
+
     Parameters
     ----------
     basis
-        The modes kept.
+        The modes kept, of displacements from the mean shape; in the current's frame of their
+        earthly part and of their part along the current.
     scores
         One process with an output per mode.
+    centre
+        The mean shape [m].
+    left_out
+        Root mean square over the training cases of what the modes leave out [m].
+    scale
+        What the standard deviation of each coordinate is multiplied by: with it 95 % of the
+        training cases lie inside 1.96 of them, each predicted from all others.
+    features
+        How many the sea state has.
+    frame, symmetry
+        As in ``ShapeGP``.
+    products
+        Of the modes' coordinates at each node, which variances are sums of.
     """
 
     MODEL: ClassVar[str] = "shape-gp"
 
     basis: Modes
     scores: FittedGaussianProcess
+    centre: Float[np.ndarray, "node 3"]
+    left_out: Float[np.ndarray, "node 3"]
+    scale: Float[np.ndarray, "node 3"]
+    features: int
+    frame: Frame
+    symmetry: Symmetry | None
+    products: Float[np.ndarray, "mode product node"] = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        # Formed once: it would cost more than all the rest of a prediction.
+        direction = self.basis.direction.reshape(self.modes, -1, len(self.centre), 3)
+        object.__setattr__(self, "products", moment_products(direction))
 
     @property
     def modes(self) -> int:
@@ -111,9 +204,8 @@ class FittedShapeGP:
 
     @property
     def compression_error_m(self) -> float:
-        """Root mean square distance that compression moves the worst node by, in training [m]."""
-        missed = self.basis.truncation.reshape(-1, 3)
-        return float(np.sqrt(np.max(np.sum(missed**2, axis=1))))
+        """Largest root mean square distance that compression moves a node by [m]."""
+        return float(np.sqrt(np.max(np.sum(self.left_out**2, axis=1))))
 
     def predict(self, x: Float[np.ndarray, "row feature"], *, noisy: bool = False) -> Prediction:
         """Shape at each row of features [m].
@@ -126,10 +218,36 @@ class FittedShapeGP:
             Of a new observation: adds the noise. What compression leaves out is in the
             standard deviation either way.
         """
-        score = self.scores.predict(x, noisy=noisy)
-        mean, std = self.basis.decode(score.mean), self.basis.std(score.std)
-        shape = (len(mean), self.basis.nodes, 3)
-        return Prediction(mean=mean.reshape(shape), std=std.reshape(shape))
+        return self.predict_nodes(x, EVERY, noisy=noisy)
+
+    def predict_nodes(
+        self,
+        x: Float[np.ndarray, "row feature"],
+        nodes: Nodes,
+        *,
+        noisy: bool = False,
+    ) -> Prediction:
+        """These nodes alone at each row of features [m].
+
+        Parameters
+        ----------
+        x, noisy
+            As for ``predict``.
+        nodes
+            Which, from 0.
+        """
+        x = checked_inputs(x, what="predict", width=self.features)
+        if self.symmetry is not None or self.frame == "current":
+            check_turnable(x, what="predict")
+        if self.symmetry is None:
+            mean, variance = self._at_home(x, nodes, noisy=noisy)
+            return Prediction(mean=mean, std=np.sqrt(np.swapaxes(variance[:, :3], 1, 2)))
+        mean, std = np.zeros((2, len(x), len(self.centre[nodes]), 3))
+        for image, rows, share in _asked(self.symmetry, x):
+            own = self._by_image(self.symmetry, image, x[rows], nodes, noisy=noisy)
+            mean[rows] += share * own.mean
+            std[rows] += share * own.std
+        return Prediction(mean=mean, std=std)
 
     def coordinate(self, node: int, axis: int) -> "FittedCoordinate":
         """One coordinate of one node, answered without the rest of the shape.
@@ -141,24 +259,47 @@ class FittedShapeGP:
         axis
             0 east, 1 north, 2 up.
         """
-        nodes = self.basis.nodes
+        nodes = len(self.centre)
         if not (0 <= node < nodes and 0 <= axis < 3):
             raise InputError(
                 f"coordinate: node {node}, axis {axis} does not exist; this shape has {nodes} "
                 "nodes, from 0, and the axes 0, 1 and 2."
             )
-        place = 3 * node + axis
-        process = self.scores.combined(self.basis.direction[:, place])
-        return FittedCoordinate(
-            process=replace(process, centre=process.centre + self.basis.centre[place]),
-            truncation=float(self.basis.truncation[place]),
-        )
+        return FittedCoordinate(shape=self, node=node, axis=axis)
+
+    def rendered(
+        self, x: Float[np.ndarray, "row feature"], score: Float[np.ndarray, "row mode"]
+    ) -> Float[np.ndarray, "row node 3"]:
+        """Shapes of scores [m], at home in the sector of the symmetry, if there is one."""
+        return self._mean(x, score, EVERY)
+
+    def variance(
+        self,
+        x: Float[np.ndarray, "row feature"],
+        score_std: Float[np.ndarray, "row mode"],
+        nodes: Nodes,
+    ) -> Float[np.ndarray, "row 4 node"]:
+        """Of x, y and z of each node, and the covariance of x with y, at home [m2]."""
+        moments = np.tensordot(score_std**2, self.products[..., nodes], axes=1)
+        if self.frame == "current":
+            moments = whole_moments(x, moments)
+        scale = self.scale[nodes].T
+        moments[:, :3] += self.left_out[nodes].T ** 2
+        return moments * np.vstack([scale**2, scale[0] * scale[1]])
 
     def to_arrays(self) -> tuple[Settings, Arrays]:
         """Everything that ``from_arrays`` needs, as plain values and float64 arrays."""
         settings, arrays = self.scores.to_arrays()
-        saved: Settings = {"model": self.MODEL, "scores": [settings]}
-        return saved, modes_to_arrays(self.basis) | joined([arrays])
+        saved: Settings = {
+            "model": self.MODEL,
+            "frame": self.frame,
+            "features": self.features,
+            "symmetric": self.symmetry is not None,
+            "scores": [settings],
+        }
+        own = {"mean_shape": self.centre, "left_out": self.left_out, "scale": self.scale}
+        symmetry = {} if self.symmetry is None else self.symmetry.to_arrays()
+        return saved, modes_to_arrays(self.basis) | own | symmetry | joined([arrays])
 
     @classmethod
     def from_arrays(cls, settings: Mapping[str, object], arrays: Mapping[str, np.ndarray]) -> Self:
@@ -173,7 +314,74 @@ class FittedShapeGP:
         if len(parts) != 1:
             raise ModelError(f"The saved ShapeGP holds {len(parts)} processes; expected 1.")
         scores = FittedGaussianProcess.from_arrays(parts[0], within(0, arrays))
-        return cls(basis=modes_from_arrays(arrays, modes=len(scores.centre)), scores=scores)
+        frame = _saved_frame(setting(settings, "frame", str))
+        centre = array(arrays, "mean_shape", None, 3)
+        nodes = len(centre)
+        basis = modes_from_arrays(arrays, modes=len(scores.centre))
+        if len(basis.centre) != 3 * nodes * (2 if frame == "current" else 1):
+            raise ModelError(
+                f"The saved ShapeGP has modes of {len(basis.centre)} coordinates, which is not "
+                f"the {frame}'s frame of {nodes} nodes. Train the model again."
+            )
+        symmetric = setting(settings, "symmetric", bool)
+        return cls(
+            basis=basis,
+            scores=scores,
+            centre=centre,
+            left_out=array(arrays, "left_out", nodes, 3),
+            scale=array(arrays, "scale", nodes, 3),
+            features=setting(settings, "features", int),
+            frame=frame,
+            symmetry=Symmetry.from_arrays(arrays, nodes=nodes) if symmetric else None,
+        )
+
+    def _by_image(
+        self,
+        symmetry: Symmetry,
+        image: int,
+        x: Float[np.ndarray, "row feature"],
+        nodes: Nodes,
+        *,
+        noisy: bool,
+    ) -> Prediction:
+        """What an image of each sea state says, moved back."""
+        undo = symmetry.back(image)
+        source, turn = symmetry.source[undo][nodes], symmetry.turn[undo]
+        home = symmetry.turned(x, image)
+        if nodes is EVERY:
+            # Answering in order and then sorting the nodes spares a copy of all modes.
+            mean, moments = self._at_home(home, EVERY, noisy=noisy)
+            mean, moments = mean[:, source], moments[..., source]
+        else:
+            mean, moments = self._at_home(home, source, noisy=noisy)
+        mean[..., :2] = symmetry.centre + (mean[..., :2] - symmetry.centre) @ turn.T
+        return Prediction(mean=mean, std=np.sqrt(_turned(moments, turn)))
+
+    def _at_home(
+        self, x: Float[np.ndarray, "row feature"], nodes: Nodes, *, noisy: bool
+    ) -> tuple[Float[np.ndarray, "row node 3"], Float[np.ndarray, "row 4 node"]]:
+        seen = seen_along(x) if self.frame == "current" else x
+        score = self.scores.predict(seen, noisy=noisy)
+        rows = (len(x), self.modes)
+        mean = self._mean(x, score.mean.reshape(rows), nodes)
+        return mean, self.variance(x, score.std.reshape(rows), nodes)
+
+    def _mean(
+        self,
+        x: Float[np.ndarray, "row feature"],
+        score: Float[np.ndarray, "row mode"],
+        nodes: Nodes,
+    ) -> Float[np.ndarray, "row node 3"]:
+        direction = self._parts(self.basis.direction, nodes)
+        centre = self._parts(self.basis.centre[None], nodes)
+        parts = centre + np.tensordot(score, direction, axes=1)
+        moved = whole(x, parts) if self.frame == "current" else parts[:, 0]
+        return self.centre[nodes] + moved
+
+    def _parts(
+        self, rows: Float[np.ndarray, "row coordinate"], nodes: Nodes
+    ) -> Float[np.ndarray, "row part node 3"]:
+        return rows.reshape(len(rows), -1, len(self.centre), 3)[:, :, nodes]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -182,26 +390,92 @@ class FittedCoordinate:
 
     Parameters
     ----------
-    process
-        Of the coordinate, from the compressed modes [m].
-    truncation
-        Root mean square of what the modes leave out [m].
+    shape
+        What it is a coordinate of.
+    node, axis
+        Which.
     """
 
-    process: FittedGaussianProcess
-    truncation: float
+    shape: FittedShapeGP
+    node: int
+    axis: int
 
     def predict(self, x: Float[np.ndarray, "row feature"], *, noisy: bool = False) -> Prediction:
         """The coordinate at each row of features, as the whole shape would answer [m]."""
-        answer = self.process.predict(x, noisy=noisy)
-        return Prediction(mean=answer.mean, std=np.hypot(answer.std, self.truncation))
+        x = checked_inputs(x, what="predict", width=self.shape.features)
+        nodes = np.array([self.node])
+        blocks = [
+            self.shape.predict_nodes(x[first : first + BLOCK], nodes, noisy=noisy)
+            for first in range(0, max(len(x), 1), BLOCK)
+        ]
+        return Prediction(
+            mean=np.concatenate([block.mean[:, 0, self.axis] for block in blocks]),
+            std=np.concatenate([block.std[:, 0, self.axis] for block in blocks]),
+        )
 
 
-def _within_tolerance(shape: Float[np.ndarray, "row coordinate"], tolerance: float) -> Modes:
-    """The fewest modes that move no node by more than the tolerance, root mean square."""
-    modes, _ = all_modes(shape)
-    held = np.mean(modes.encode(shape) ** 2, axis=0)[:, None] * modes.direction**2
-    missed = np.mean((shape - modes.centre) ** 2, axis=0) - np.cumsum(held, axis=0)
-    worst = missed.reshape(len(missed), -1, 3).sum(axis=2).max(axis=1)
-    enough = np.flatnonzero(worst <= tolerance**2)
-    return modes.truncated(shape, int(enough[0]) + 1 if len(enough) else len(worst))
+def _brought_home(
+    symmetry: Symmetry,
+    x: Float[np.ndarray, "n feature"],
+    node_position: Float[np.ndarray, "n node 3"],
+) -> tuple[Float[np.ndarray, "n feature"], Float[np.ndarray, "n node 3"]]:
+    """Each case as its image in the sector."""
+    home_x, home_position = np.empty_like(x), np.empty_like(node_position)
+    image_of = symmetry.home(x)
+    for image in range(len(symmetry)):
+        rows = image_of == image
+        home_x[rows] = symmetry.turned(x[rows], image)
+        home_position[rows] = symmetry.moved(node_position[rows], image)
+    return home_x, home_position
+
+
+def _asked(
+    symmetry: Symmetry, x: Float[np.ndarray, "row feature"]
+) -> Iterator[tuple[int, Int[np.ndarray, " asked"], Float[np.ndarray, "asked 1 1"]]]:
+    """Each image that has something to say, about which rows, and how much."""
+    shares = symmetry.shares(x)
+    for image in range(len(symmetry)):
+        rows = np.flatnonzero(shares[:, image])
+        if len(rows):
+            yield image, rows, shares[rows, image, None, None]
+
+
+def _in_frame(
+    frame: Frame, x: Float[np.ndarray, "row feature"], displacement: Float[np.ndarray, "row node 3"]
+) -> Float[np.ndarray, "row *part node 3"]:
+    return parted(x, displacement) if frame == "current" else displacement
+
+
+def _turned(
+    moments: Float[np.ndarray, "row 4 node"], turn: Float[np.ndarray, "2 2"]
+) -> Float[np.ndarray, "row node 3"]:
+    """Variances of x, y and z after a turn."""
+    x, y, z, both = np.moveaxis(moments, 1, 0)
+    horizontal = [a * a * x + 2.0 * a * b * both + b * b * y for a, b in turn]
+    # Rounding can leave a hair less than nothing.
+    return np.maximum(np.stack([*horizontal, z], axis=2), 0.0)
+
+
+def _calibrated(
+    fitted: FittedShapeGP, x: Float[np.ndarray, "n feature"], shape: Float[np.ndarray, "n node 3"]
+) -> Float[np.ndarray, "node 3"]:
+    """The scale that makes intervals of each coordinate cover what they should.
+
+    Each case is predicted from all others, as a new observation. The quantile is that of
+    split-conformal prediction: one rank higher than the share asks for.
+    """
+    left_out = fitted.scores.leave_one_out()
+    rows = (len(x), fitted.modes)
+    missed = np.abs(shape - fitted.rendered(x, left_out.mean.reshape(rows)))
+    moments = fitted.variance(x, left_out.std.reshape(rows), EVERY)
+    std = np.sqrt(np.swapaxes(moments[:, :3], 1, 2))
+    ratio = np.divide(missed, std, out=np.full_like(missed, DEVIATIONS), where=std > 0.0)
+    rank = min(int(np.ceil(LEVEL * (len(x) + 1))), len(x)) - 1
+    return np.partition(ratio, rank, axis=0)[rank] / DEVIATIONS
+
+
+def _saved_frame(name: str) -> Frame:
+    for frame in get_args(Frame):
+        if name == frame:
+            return frame
+    raise ModelError(f"The saved ShapeGP has frame {name!r}, which this version does not know.")

@@ -10,7 +10,7 @@ from jaxtyping import Bool, Float, Int
 from seacage.conventions import towards
 from seacage.ocean import SeaState
 from seacage.records import Record
-from seacage.surrogates import current_features
+from seacage.surrogates import current_features, wave_features
 
 Input = Literal["current", "waves"]
 
@@ -105,7 +105,7 @@ class Metocean:
         """
         columns = {
             "current": lambda: current_features(self.current_velocity),
-            "waves": lambda: np.column_stack([self.hs, self.hs[:, None] * self.wave_direction]),
+            "waves": lambda: wave_features(self.hs, self.wave_direction),
         }
         return np.hstack([columns[name]() for name in inputs])
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seacage.conventions import InputError
-from seacage.surrogates import PcaGP
+from seacage.surrogates import OverTime, PcaGP
 from seacage.surrogates._pca import all_modes
 
 
@@ -31,7 +31,7 @@ def test_modes_are_orthonormal_and_sorted() -> None:
 def test_modes_are_the_eigenvectors_that_the_paper_names() -> None:
     _, shapes = swaying()
     rows = shapes.reshape(40, -1)
-    modes, _ = all_modes(rows, centred=False)
+    modes, _ = all_modes(rows, about=np.zeros(15))
     value, vector = np.linalg.eigh(rows.T @ rows)
     for mode in range(3):
         along = np.abs(modes.direction[mode] @ vector[:, -1 - mode])
@@ -119,3 +119,68 @@ def test_a_shape_that_never_moves_has_one_mode_of_nothing() -> None:
     answer = PcaGP(restarts=0).fit(x, still).predict(x)
     np.testing.assert_allclose(answer.mean, still, atol=1e-9)
     np.testing.assert_allclose(answer.std, 0.0, atol=1e-9)
+
+
+def moving(rows: int = 30, steps: int = 20) -> tuple[np.ndarray, np.ndarray]:
+    """Shapes that move about their means more, and in another direction, than the means vary."""
+    random = np.random.default_rng(3)
+    x, means = swaying(rows, modes=1)
+    to_and_fro = random.standard_normal((rows, steps, 1, 1)) * random.standard_normal((5, 3))
+    to_and_fro -= to_and_fro.mean(axis=1, keepdims=True)
+    return x, means[:, None] + 3.0 * to_and_fro
+
+
+@pytest.mark.parametrize("centred", [True, False])
+def test_modes_over_time_are_those_of_all_snapshots_in_one_table(centred: bool) -> None:
+    x, shapes = moving()
+    means, table = shapes.mean(axis=1), shapes.reshape(-1, 15)
+    over_time = OverTime.of_snapshots(shapes.reshape(-1, 5, 3))
+    fitted = PcaGP(modes=2, centred=centred, restarts=0).fit(x, means, over_time=over_time)
+    expected, share = all_modes(table, about=None if centred else np.zeros(15))
+    along = np.abs(np.sum(fitted.basis.direction * expected.direction[:2], axis=1))
+    np.testing.assert_allclose(along, 1.0, atol=1e-9)
+    assert fitted.explained_variance == pytest.approx(share[1])
+    # The mean of a case's scores is the score of its mean.
+    scores = [fitted.encode(case).mean(axis=0) for case in shapes]
+    np.testing.assert_allclose(fitted.encode(means), scores, atol=1e-9)
+
+
+def test_modes_over_time_are_not_those_of_the_means() -> None:
+    x, shapes = moving()
+    over_time = OverTime.of_snapshots(shapes.reshape(-1, 5, 3))
+    both = [
+        PcaGP(modes=1, restarts=0).fit(x, shapes.mean(axis=1), over_time=one).basis.direction[0]
+        for one in (over_time, None)
+    ]
+    assert abs(both[0] @ both[1]) < 0.8
+
+
+def test_a_campaigns_second_moment_stands_for_its_snapshots() -> None:
+    _, shapes = moving()
+    rest = shapes[0, 0] + 0.5
+    moved = (shapes - rest).reshape(-1, 15)
+    kept = OverTime.of_moment(shapes.mean(axis=1), moved.T @ moved / len(moved), rest_position=rest)
+    told = OverTime.of_snapshots(shapes.reshape(-1, 5, 3))
+    np.testing.assert_allclose(kept.mean, told.mean, atol=1e-12)
+    np.testing.assert_allclose(kept.scatter, told.scatter, atol=1e-9)
+
+
+def test_uncentred_modes_of_displacements_start_from_the_shape_at_rest() -> None:
+    x, shapes = swaying()
+    rest = shapes.mean(axis=0) + 0.3
+    fitted = PcaGP(modes=2, centred=False, restarts=0).fit(x, shapes, rest_position=rest)
+    np.testing.assert_array_equal(fitted.basis.centre, rest.ravel())
+    expected, _ = all_modes((shapes - rest).reshape(40, -1), about=np.zeros(15))
+    along = np.abs(np.sum(fitted.basis.direction * expected.direction[:2], axis=1))
+    np.testing.assert_allclose(along, 1.0, atol=1e-9)
+
+
+def test_shapes_of_another_net_are_refused() -> None:
+    x, shapes = swaying()
+    over_time = OverTime.of_snapshots(shapes[:, :4])
+    with pytest.raises(InputError, match="over time have 4 nodes, those of the cases 5"):
+        PcaGP().fit(x, shapes, over_time=over_time)
+    with pytest.raises(InputError, match="shape at rest has 4 nodes, those of the cases 5"):
+        PcaGP.fit.__wrapped__(PcaGP(centred=False), x, shapes, rest_position=shapes[0, :4])
+    with pytest.raises(InputError, match="do not belong to 5 nodes"):
+        OverTime.of_moment(shapes, np.eye(12), rest_position=shapes[0])
