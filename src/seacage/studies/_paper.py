@@ -111,11 +111,10 @@ def paper_study(
         The field is not virtual, or has too little on one side of the cut.
     """
     quick = quick and campaign is None and field is None
-    days = days if field is None else _days(field)
     chain = Chain(
         folder=Path(out) / "stages",
         cage=_cage(cage, campaign),
-        recipe=Recipe(seed=seed) if quick else _full(days, one_in, seed),
+        recipe=Recipe(seed=seed) if quick else _full(field, days, one_in, seed),
         given_campaign=None if campaign is None else Path(campaign),
         given_field=None if field is None else Path(field),
         workers=workers,
@@ -177,22 +176,23 @@ def _cage(cage: Cage | None, campaign: str | Path | None) -> Cage:
     return Cage.from_toml(read_campaign(campaign).cage_toml, source=str(campaign))
 
 
-def _days(field: str | Path) -> float:
-    """Length of a field record."""
-    time = FieldRecord.read(field).buoy.time
-    return float((time[-1] - time[0]) / np.timedelta64(1, "D"))
-
-
-def _full(days: float, one_in: int, seed: int) -> Recipe:
+def _full(field: str | Path | None, days: float, one_in: int, seed: int) -> Recipe:
     return Recipe(
         cases=900,
         held_out_cases=100,
         method="simulate",
         days=days,
-        teaching_days=max(1, round(days / 2.0)),
+        teaching_days=round(days / 2.0) if field is None else _first_half(field),
         one_in=one_in,
         seed=seed,
     )
+
+
+def _first_half(field: str | Path) -> int:
+    """Days up to the midnight that is nearest to the middle of a field record."""
+    time = FieldRecord.read(field).buoy.time
+    middle = time[0] + (time[-1] - time[0]) / 2
+    return max(1, round((middle - time[0].astype("datetime64[D]")) / np.timedelta64(1, "D")))
 
 
 def _check(chain: Chain) -> None:

@@ -344,14 +344,14 @@ class PaperReport:
                 "Coverage",
                 "CRPS [mm]",
                 "Fit [CPU-s]",
-                "One shape [ms]",
+                "One shape [CPU-ms]",
                 "Origin",
             ),
             [_shape_row(score) for score in self.shapes.scores.values()],
             caption=f"Taught by {self.shapes.taught} simulations, judged on {self.shapes.judged}. "
             "99 % of nodes: of all nodes in all cases, so many are nearer than this to where they "
-            "should be. Coverage: share of coordinates inside the 95 % interval. Times are of one "
-            "thread of a shared machine: only their ratios mean something.",
+            "should be. Coverage: share of coordinates inside the 95 % interval. Times are "
+            "processor time of one run on a shared machine: only their ratios mean something.",
         )
 
     def _level_one(self) -> list[Html]:

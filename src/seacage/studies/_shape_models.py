@@ -8,19 +8,29 @@ from typing import Any, Literal
 from seacage.cage import Cage
 from seacage.surrogates import PcaGP, ShapeGP
 
-Input = Literal["current", "waves"]
+Input = Literal["current", "waves", "degrees"]
+"""As a twin's, and "degrees" for the paper's own: the current's speed and its compass direction."""
 
+Need = Literal["over_time", "rest_position", "progress"]
+
+CURRENT: tuple[Input, ...] = ("current",)
 ALL: tuple[Input, ...] = ("current", "waves")
+DEGREES: tuple[Input, ...] = ("degrees",)
 
-WORDS: Mapping[tuple[Input, ...], str] = {("current",): "current", ALL: "current and waves"}
+WORDS: Mapping[tuple[Input, ...], str] = {
+    CURRENT: "current",
+    ALL: "current and waves",
+    DEGREES: "current in degrees",
+}
 """How people call the inputs."""
 
 _OF_CAGE = ("cage", "edges", "rest_position", "node_weight")
 """Settings that the cage makes, which the simulations name already."""
 
-PCA_PAPER, PCA_WAVES = "PCA-GP, 3 modes", "PCA-GP, 3 modes, waves heard"
-PCA_LITERAL = "PCA-GP, 3 modes, not centred"
-GCN_PAPER, GCN_CURRENT, GCN_OURS = "GCN, as printed", "GCN, ours, current", "GCN, ours"
+PCA_PAPER, PCA_DEGREES = "PCA-GP, 3 modes", "PCA-GP, 3 modes, degrees"
+PCA_LITERAL, PCA_WAVES = "PCA-GP, 3 modes, not centred", "PCA-GP, 3 modes, waves"
+GCN_PAPER, GCN_DEGREES = "GCN, the paper's", "GCN, the paper's, degrees"
+GCN_CURRENT, GCN_OURS = "GCN, ours, current", "GCN, ours"
 SHAPE_CURRENT, SHAPE = "ShapeGP, current", "ShapeGP"
 
 
@@ -37,19 +47,17 @@ class ShapeModel:
     settings
         All that its answers depend on beside the simulations, as JSON takes it.
     fit
-        Takes features, shapes [m], a seed and whom to tell of progress.
-    displacements
-        Whether it learns displacements from the design shape; coordinates otherwise.
-    slow
-        Whether its fit tells of progress.
+        Takes features, shapes [m], a seed and what ``needs`` names.
+    needs
+        What its fit takes besides: the shapes over time, the shape at rest, or whom to tell of
+        progress.
     """
 
     name: str
     inputs: tuple[Input, ...]
     settings: Mapping[str, object]
     fit: Callable[..., Any]
-    displacements: bool = False
-    slow: bool = False
+    needs: tuple[Need, ...] = ()
 
 
 def shape_models(
@@ -66,48 +74,51 @@ def shape_models(
     networks
         Whether to train graph networks, which takes minutes and needs JAX.
     """
-    current: tuple[Input, ...] = ("current",)
-    heard = ALL if waves else current
+    heard = ALL if waves else CURRENT
+    pca, process = PcaGP(modes=3), ShapeGP(frame="current")
+    literal = PcaGP(modes=3, centred=False)
     models = [
-        _model(PCA_PAPER, current, PcaGP(modes=3)),
-        _model(PCA_LITERAL, current, PcaGP(modes=3, centred=False), displacements=True),
+        _model(PCA_PAPER, CURRENT, pca, "over_time"),
+        _model(PCA_DEGREES, DEGREES, pca, "over_time"),
+        _model(PCA_LITERAL, CURRENT, literal, "over_time", "rest_position"),
     ]
     if waves:
         models += [
-            _model(PCA_WAVES, ALL, PcaGP(modes=3)),
-            _model(SHAPE_CURRENT, current, ShapeGP()),
+            _model(PCA_WAVES, ALL, pca, "over_time"),
+            _model(SHAPE_CURRENT, CURRENT, process),
         ]
-    models.append(_model(SHAPE, heard, ShapeGP()))
+    models.append(_model(SHAPE, heard, process))
     if not networks:
         return tuple(models), ("The graph networks take minutes and are left to the full study.",)
     if find_spec("jax") is None:
-        return tuple(models), (
-            (
-                "The graph networks are missing: JAX is not installed here. "
-                "Install seacage with the extra gcn and say the same again."
-            ),
+        why = (
+            "The graph networks are missing: JAX is not installed here. "
+            "Install seacage with the extra gcn and say the same again."
         )
+        return tuple(models), (why,)
+    return (*models, *_networks(cage, heard)), ()
+
+
+def _networks(cage: Cage, heard: tuple[Input, ...]) -> list[ShapeModel]:
     from seacage.surrogates import GCN
 
-    models += [
-        _model(GCN_PAPER, current, GCN(cage=cage, kind="paper")),
-        _model(GCN_OURS, heard, GCN(cage=cage, kind="better")),
+    paper, ours = GCN(cage=cage, kind="paper"), GCN(cage=cage, kind="modal")
+    models = [
+        _model(GCN_PAPER, CURRENT, paper, "progress"),
+        _model(GCN_DEGREES, DEGREES, paper, "progress"),
     ]
-    if waves:
-        models.append(_model(GCN_CURRENT, current, GCN(cage=cage, kind="better")))
-    return tuple(models), ()
+    if heard != CURRENT:
+        models.append(_model(GCN_CURRENT, CURRENT, ours, "progress"))
+    return [*models, _model(GCN_OURS, heard, ours, "progress")]
 
 
-def _model(
-    name: str, inputs: tuple[Input, ...], estimator: Any, *, displacements: bool = False
-) -> ShapeModel:
+def _model(name: str, inputs: tuple[Input, ...], estimator: Any, *needs: Need) -> ShapeModel:
     return ShapeModel(
         name=name,
         inputs=inputs,
         settings={"estimator": type(estimator).__name__, "how": _told(estimator)},
         fit=estimator.fit,
-        displacements=displacements,
-        slow=name in (GCN_PAPER, GCN_CURRENT, GCN_OURS),
+        needs=needs,
     )
 
 

@@ -29,7 +29,7 @@ class ShapeScore:
     crps
         Continuous ranked probability score of a coordinate, on average [m].
     fit_cpu_s, predict_ms
-        Processor time of the training, and time of one shape.
+        Processor time of the training [s], and of one shape by itself [ms].
     case_axis_mae, case_worst
         The same errors for each case, over its nodes [m].
     """

@@ -5,7 +5,7 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from jaxtyping import Float
@@ -14,14 +14,14 @@ from seacage.cage import Cage
 from seacage.conventions import Progress
 from seacage.ocean import SeaState
 from seacage.records import CampaignRecord
-from seacage.studies._shape_models import SHAPE, WORDS, Input, ShapeModel
+from seacage.studies._shape_models import DEGREES, SHAPE, WORDS, Input, ShapeModel
 from seacage.studies._shape_scores import ShapeScore, shape_score
 from seacage.studies._stages import Stages
-from seacage.surrogates import Prediction
+from seacage.surrogates import OverTime, Prediction
 from seacage.twin import Metocean
 
-_ROOMS = ("conventions", "surrogates", "twin")
-"""Whose code makes a model's answers, the features included."""
+_ROOMS = ("conventions", "surrogates")
+"""Whose code makes a model's answers, its features included."""
 
 _HARSH, _MILD = 0.95, 0.2
 """Quantiles of the test cases' current speeds that the two nets drawn are taken at."""
@@ -59,13 +59,23 @@ class Trial:
         """That they were computed in."""
         return _converged_seas(self.held_out)
 
+    @property
+    def over_time(self) -> OverTime | None:
+        """Shapes at all time steps, judging cases included, as in the paper; None without them."""
+        moment = self.campaign.second_moment
+        if moment is None:
+            return None
+        taught = self.campaign.node_position[self.campaign.converged]
+        every = np.concatenate([taught, self.computed])
+        return OverTime.of_moment(every, moment, rest_position=self.cage.design_position)
+
     def taught(self, inputs: tuple[Input, ...]) -> Float[np.ndarray, "case feature"]:
         """Features of the cases that teach."""
-        return Metocean.of(_converged_seas(self.campaign)).features(inputs)
+        return _features(_converged_seas(self.campaign), inputs)
 
     def asked(self, inputs: tuple[Input, ...]) -> Float[np.ndarray, "case feature"]:
         """Features of the cases that judge."""
-        return Metocean.of(self.seas).features(inputs)
+        return _features(self.seas, inputs)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -180,7 +190,7 @@ def _settings(model: ShapeModel, trial: Trial) -> dict[str, object]:
     return {
         "model": model.name,
         "inputs": list(model.inputs),
-        "displacements": model.displacements,
+        "needs": list(model.needs),
         **model.settings,
         "taught_by": trial.campaign.sha256,
         "asked": trial.held_out.sha256,
@@ -190,12 +200,15 @@ def _settings(model: ShapeModel, trial: Trial) -> dict[str, object]:
 
 def _make(begun: Path, model: ShapeModel, trial: Trial, progress: Progress) -> None:
     """Train a model, ask it, and keep its shapes and what they took."""
-    cage, good = trial.cage, trial.campaign.converged
-    rest = cage.design_position if model.displacements else np.zeros((cage.node_count, 3))
     x, asked = trial.taught(model.inputs), trial.asked(model.inputs)
-    heard = {"progress": progress} if model.slow else {}
+    shape = trial.campaign.node_position[trial.campaign.converged]
+    known = {
+        "over_time": trial.over_time,
+        "rest_position": trial.cage.design_position,
+        "progress": progress,
+    }
     began = time.process_time()
-    fitted = model.fit(x, trial.campaign.node_position[good] - rest, seed=trial.seed, **heard)
+    fitted = model.fit(x, shape, seed=trial.seed, **{name: known[name] for name in model.needs})
     took = time.process_time() - began
     answer = fitted.predict(asked)
     cost = {
@@ -205,7 +218,7 @@ def _make(begun: Path, model: ShapeModel, trial: Trial, progress: Progress) -> N
     }
     np.savez(
         begun / "shapes.npz",
-        mean=(answer.mean + rest).astype(np.float32),
+        mean=answer.mean.astype(np.float32),
         std=answer.std.astype(np.float32),
     )
     (begun / "cost.json").write_text(json.dumps(cost), encoding="utf-8")
@@ -220,10 +233,21 @@ def _kept(folder: Path) -> tuple[Prediction, dict[str, Any]]:
 def _one_shape_ms(fitted: Any, asked: Float[np.ndarray, "case feature"]) -> float:
     took: list[float] = []
     for row in range(min(_TIMED, len(asked))):
-        began = time.perf_counter()
+        began = time.process_time()
         fitted.predict(asked[row : row + 1])
-        took.append(time.perf_counter() - began)
+        took.append(time.process_time() - began)
     return 1000.0 * float(np.median(took))
+
+
+def _features(
+    seas: Sequence[SeaState], inputs: tuple[Input, ...]
+) -> Float[np.ndarray, "case feature"]:
+    if inputs == DEGREES:
+        return np.array([[sea.current_speed, sea.current_to] for sea in seas])
+    heard: tuple[Literal["current", "waves"], ...] = tuple(
+        name for name in inputs if name != "degrees"
+    )
+    return Metocean.of(seas).features(heard)
 
 
 def _converged_seas(record: CampaignRecord) -> list[SeaState]:
@@ -251,22 +275,21 @@ def _drawn(trial: Trial, answers: Mapping[str, Prediction]) -> tuple[ShapeCase, 
 
 
 def _variance(trial: Trial) -> dict[str, float]:
-    """What three modes hold, of the cases' means and, where it was kept, of all time steps.
-
-    The moment over all time steps is that of the whole campaign, judging cases included.
-    """
-    campaign = trial.campaign
-    away = campaign.node_position[campaign.converged] - trial.cage.design_position
-    away = away.reshape(len(away), -1)
-    mean = away.mean(axis=0)
-    moments = {"means of the cases": away.T @ away / len(away)}
-    if campaign.second_moment is not None:
-        moments["all time steps"] = campaign.second_moment
-    return {
-        f"{name}, {how}": _three(moment - centre)
-        for name, moment in moments.items()
-        for how, centre in (("centred", np.outer(mean, mean)), ("not centred", 0.0))
+    """What three modes hold, of the cases' means and, where it was kept, of all time steps."""
+    rest = trial.cage.design_position.ravel()
+    shapes = {
+        "means of the cases": OverTime.of_snapshots(
+            trial.campaign.node_position[trial.campaign.converged]
+        ),
+        "all time steps": trial.over_time,
     }
+    shares: dict[str, float] = {}
+    for name, known in shapes.items():
+        if known is not None:
+            moved = known.mean - rest
+            shares[f"{name}, centred"] = _three(known.scatter)
+            shares[f"{name}, not centred"] = _three(known.scatter + np.outer(moved, moved))
+    return shares
 
 
 def _three(moment: Float[np.ndarray, "coordinate coordinate"]) -> float:

@@ -8,7 +8,14 @@ import pytest
 from seacage.cage import Cage
 from seacage.campaigns import Plan, run_campaign
 from seacage.studies import _shape_models
-from seacage.studies._shape_models import PCA_PAPER, PCA_WAVES, SHAPE, SHAPE_CURRENT, shape_models
+from seacage.studies._shape_models import (
+    PCA_DEGREES,
+    PCA_PAPER,
+    PCA_WAVES,
+    SHAPE,
+    SHAPE_CURRENT,
+    shape_models,
+)
 from seacage.studies._shape_study import Trial, shape_study
 from seacage.studies._stages import Stages
 from stand_in import StandIn
@@ -39,9 +46,10 @@ def trial(tmp_path_factory) -> Trial:
             for seed, cases in ((0, 30), (1, 8))
         ]
     campaign, held_out = (replace(one, node_position=_pushed(one)) for one in records)
-    away = (campaign.node_position - CAGE.design_position).reshape(30, -1)
+    every = np.concatenate([campaign.node_position, held_out.node_position])
+    away = (every - CAGE.design_position).reshape(len(every), -1)
     sway = 0.01 * np.eye(away.shape[1])  # within a half-hour, in no direction more than another
-    campaign = replace(campaign, second_moment=away.T @ away / 30 + sway)
+    campaign = replace(campaign, second_moment=away.T @ away / len(every) + sway)
     return Trial(cage=CAGE, campaign=campaign, held_out=held_out, seed=0)
 
 
@@ -64,6 +72,8 @@ def test_what_hears_the_waves_beats_what_does_not(study):
     assert scores[SHAPE].mae < 0.5 * scores[SHAPE_CURRENT].mae
     assert scores[PCA_WAVES].mae < scores[PCA_PAPER].mae
     assert (scores[SHAPE].inputs, scores[SHAPE_CURRENT].inputs) == ("current and waves", "current")
+    assert scores[PCA_DEGREES].inputs == "current in degrees"
+    assert scores[PCA_DEGREES].mae != scores[PCA_PAPER].mae
     assert scores[PCA_PAPER].modes == 3
 
 
