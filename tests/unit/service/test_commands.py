@@ -24,6 +24,7 @@ COMMANDS = [
     "train",
     "score",
     "study paper",
+    "study benchmarks",
     "study fidelity",
     "serve",
     "replay",
