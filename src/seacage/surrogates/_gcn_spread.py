@@ -3,11 +3,13 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Self
 
 import numpy as np
 from jaxtyping import Float, Int
 
+from seacage.conventions import ModelError
 from seacage.surrogates._arrays import Arrays, array
 
 NEIGHBOURS = 10
@@ -20,7 +22,8 @@ NOISE_SHARE = (0.01, 0.98)
 """Least and largest share of the variance that may be called noise."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+# No slots here: the reach is computed once and kept.
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Spread:
     """Standard deviation of a network's answer, by coordinate and by place among its cases.
 
@@ -103,7 +106,7 @@ class Spread:
         kept = grown[:, None, None] ** 2 - (0.0 if noisy else self.noise)
         return around[:, None, None] * self.miss * np.sqrt(kept)
 
-    @property
+    @cached_property
     def _reach(self) -> float:
         """How far from a training case the network was judged."""
         return max(1e-6, float(_nearest(self.held_out, self.taught).max()))
@@ -123,12 +126,18 @@ class Spread:
             An array is missing, of another shape, or not finite.
         """
         held_out = array(arrays, "held_out", None, features)
+        noise = array(arrays, "noise", nodes, 3)
+        if not np.all((noise > 0.0) & (noise < 1.0)):
+            raise ModelError(
+                "The saved GCN calls less than none or more than all of its spread noise. "
+                "The file is damaged. Train the model again."
+            )
         return cls(
             taught=array(arrays, "taught", None, features),
             held_out=held_out,
             size=array(arrays, "size", len(held_out)),
             miss=array(arrays, "miss", nodes, 3),
-            noise=array(arrays, "noise", nodes, 3),
+            noise=noise,
         )
 
 

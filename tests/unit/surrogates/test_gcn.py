@@ -183,3 +183,9 @@ def test_a_saved_network_with_an_impossible_edge_is_refused(modal: FittedGCN) ->
     settings, arrays = encode(modal)
     with pytest.raises(ModelError, match="The saved GCN is damaged"):
         decode(settings, arrays | {"edges": arrays["edges"] + 1e6})
+
+
+def test_a_saved_spread_that_is_all_noise_is_refused(modal: FittedGCN) -> None:
+    settings, arrays = encode(modal)
+    with pytest.raises(ModelError, match="more than all of its spread noise"):
+        decode(settings, arrays | {"noise": arrays["noise"] + 1.0})
