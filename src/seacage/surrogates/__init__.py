@@ -21,8 +21,8 @@ from seacage.surrogates._symmetry_check import check_symmetry
 from seacage.surrogates._table import Table, Tabulable
 
 __all__ = [
-    "GCN",
     "AR1",
+    "GCN",
     "NARGP",
     "AdaptiveConformal",
     "Arrays",
