@@ -71,11 +71,11 @@ def test_the_stated_error_is_what_independent_inputs_find(nargp, table: Table) -
     x = CURRENTS.inputs(np.random.default_rng(4).uniform(size=(4000, 2)))
     exact = nargp.predict(x)
     found = np.max(np.abs(table.predict(x).mean - exact.mean) / exact.std)
-    # Two largest values of 4,000 random inputs each, of the same few places that err most.
-    assert table.mean_error == pytest.approx(found, rel=0.3)
+    # The largest of 4,000 random errors each: their tails differ from draw to draw.
+    assert 0.5 < found / table.mean_error < 2.0
     assert 0.0 < table.mean_error <= table.tolerance == 1e-3
     assert 0.0 < table.std_error <= table.std_tolerance == 1e-3
-    assert table.excess == 1e3 * max(table.mean_error, table.std_error)
+    assert table.excess == pytest.approx(1e3 * max(table.mean_error, table.std_error))
 
 
 def test_every_output_shape_and_its_own_noise_are_kept() -> None:
