@@ -13,6 +13,7 @@ import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Literal, cast
 
 import numpy as np
 from _timing import ONCE
@@ -20,6 +21,7 @@ from _timing import ONCE
 from seacage.cage import Cage
 from seacage.campaigns import Plan, run_campaign
 from seacage.conventions import SeacageError
+from seacage.dynamics import MovingLaw
 from seacage.records import CampaignRecord, read_campaign
 from seacage.surrogates import (
     GCN,
@@ -137,11 +139,12 @@ def _ours(race: Race, campaign: CampaignRecord, good: np.ndarray) -> None:
     race.run("  folded, compressed to 2 cm", coarse.fit, 7)
     cage = Cage.from_toml(campaign.cage_toml)
     epochs = 2 if ONCE else None
-    for name, kind, columns in (
+    networks: list[tuple[str, Literal["paper", "modal"], int]] = [
         ("GCN, the paper's, current", "paper", 3),
         ("GCN, the paper's, current and waves", "paper", 7),
         ("GCN, modal, current and waves", "modal", 7),
-    ):
+    ]
+    for name, kind, columns in networks:
         try:
             race.run(name, GCN(cage=cage, kind=kind, epochs=epochs).fit, columns)
         except SeacageError as error:
@@ -165,8 +168,8 @@ def _peers(race: Race, environment: Path, scratch: Path) -> None:
     for columns in (6, 7):
         # Six columns are those without the period: heights in place of speeds.
         x = race.x if columns == 7 else _without_period(race.x)
-        given = {"x_train": x[: -race.held], "y_train": race.y[: -race.held]}
-        np.savez(scratch / "in.npz", x_test=x[-race.held :], **given)
+        teach, judge = slice(-race.held), slice(-race.held, None)
+        np.savez(scratch / "in.npz", x_train=x[teach], y_train=race.y[teach], x_test=x[judge])
         for method in ("ezyrb-rbf", "ezyrb-gpr"):
             name = f"{method}, current and waves, {columns} features"
             python = environment / "bin" / "python"
@@ -200,7 +203,8 @@ def _tell_floor(campaign: CampaignRecord, cases: np.ndarray, scratch: Path) -> N
     seas = [campaign.seas[case] for case in cases]
     plan = Plan.listed(seas, seed=campaign.seed + 777, name="again")
     cage = Cage.from_toml(campaign.cage_toml)
-    again = run_campaign(cage, plan, scratch / "again", law=campaign.law, workers=1)
+    law = cast("MovingLaw", campaign.law)
+    again = run_campaign(cage, plan, scratch / "again", law=law, workers=1)
     difference = (again.node_position - campaign.node_position[cases])[again.converged]
     mae = np.abs(difference).mean() / np.sqrt(2.0)
     p99 = np.quantile(np.linalg.norm(difference, axis=2), 0.99) / np.sqrt(2.0)

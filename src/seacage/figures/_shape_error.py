@@ -6,19 +6,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 from jaxtyping import Float
 
-from seacage.conventions import Origin
-from seacage.figures._style import FIT, LOW, MULTI, blank_figure, head, style
+from seacage.conventions import InputError, Origin
+from seacage.figures._style import FIT, LOW, MULTI, MUTED, blank_figure, head, style
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_COLOURS = (MULTI, LOW, "#4f8a4c", "#7d5ba6")
+_COLOURS = (MULTI, LOW, "#4f8a4c", "#7d5ba6", "#b08a1e", "#3a9aa3", "#8a5a44")
 
 
 def shape_error_figure(
     current_speed: Float[np.ndarray, " case"],
     errors: Mapping[str, Float[np.ndarray, " case"]],
     *,
+    floor: float | None = None,
     origin: Origin = Origin.COMPUTED,
 ) -> "Figure":
     """Mean absolute node error of each model in each held-out case, against the speed.
@@ -31,9 +33,17 @@ def shape_error_figure(
         [m/s].
     errors
         By name of the model, averaged over nodes and axes [m].
+    floor
+        What no model can go below: the same between a half hour's mean and the mean of many
+        half hours of the same sea [m].
     origin
         Of the shapes that the models were compared with.
     """
+    if len(errors) > len(_COLOURS):
+        raise InputError(
+            f"shape_error_figure: {len(errors)} models in one figure cannot be told apart. Give at "
+            f"most {len(_COLOURS)}."
+        )
     with style():
         figure = blank_figure(6.6, 3.1)
         axes = figure.subplots()
@@ -41,18 +51,24 @@ def shape_error_figure(
             axes.scatter(
                 current_speed, error, s=11, color=colour, alpha=0.75, linewidths=0, label=name
             )
-        axes.axhline(1.0, color=FIT, lw=1.0)
-        axes.annotate(
-            "1 m: an ROV's distance",
-            (0.0, 1.0),
-            xycoords=("axes fraction", "data"),
-            xytext=(4, 3),
-            textcoords="offset points",
-            color=FIT,
-            fontsize=7.5,
-        )
+        _mark(axes, 1.0, "1 m: an ROV's distance", colour=FIT)
+        if floor is not None:
+            _mark(axes, floor, "mean of half an hour", colour=MUTED)
         axes.set_yscale("log")
         axes.set_xlabel("Current speed [m/s]")
         axes.set_ylabel("Mean absolute node error [m]")
-        head(axes, "Whole shapes, held-out simulations", origin=origin, legend=3)
+        head(axes, "Whole shapes, held-out simulations", origin=origin, legend=min(len(errors), 3))
     return figure
+
+
+def _mark(axes: "Axes", height: float, name: str, *, colour: str) -> None:
+    axes.axhline(height, color=colour, lw=1.0)
+    axes.annotate(
+        name,
+        (0.0, height),
+        xycoords=("axes fraction", "data"),
+        xytext=(4, 3),
+        textcoords="offset points",
+        color=colour,
+        fontsize=7.5,
+    )
