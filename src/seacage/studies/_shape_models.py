@@ -6,7 +6,7 @@ from importlib.util import find_spec
 from typing import Any, Literal
 
 from seacage.cage import Cage
-from seacage.surrogates import PcaGP, ShapeGP
+from seacage.surrogates import PcaGP, ShapeGP, Symmetry
 
 Input = Literal["current", "waves", "degrees"]
 """As a twin's, and "degrees" for the paper's own: the current's speed and its compass direction."""
@@ -24,14 +24,17 @@ WORDS: Mapping[tuple[Input, ...], str] = {
 }
 """How people call the inputs."""
 
-_OF_CAGE = ("cage", "edges", "rest_position", "node_weight")
+_OF_CAGE = ("cage", "edges", "rest_position", "node_weight", "symmetry")
 """Settings that the cage makes, which the simulations name already."""
 
 PCA_PAPER, PCA_DEGREES = "PCA-GP, 3 modes", "PCA-GP, 3 modes, degrees"
 PCA_LITERAL, PCA_WAVES = "PCA-GP, 3 modes, not centred", "PCA-GP, 3 modes, waves"
 GCN_PAPER, GCN_DEGREES = "GCN, the paper's", "GCN, the paper's, degrees"
-GCN_CURRENT, GCN_OURS = "GCN, ours, current", "GCN, ours"
-SHAPE_CURRENT, SHAPE = "ShapeGP, current", "ShapeGP"
+GCN_OURS = "GCN, ours"
+SHAPE_CURRENT, SHAPE, SHAPE_FOLDED = "ShapeGP, current", "ShapeGP", "ShapeGP, folded"
+
+_FOLD, _TOLERANCE = 4, 0.02
+"""Of the folded process: a frame with four corners, and what compression may move a node by [m]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -75,7 +78,8 @@ def shape_models(
         Whether to train graph networks, which takes minutes and needs JAX.
     """
     heard = ALL if waves else CURRENT
-    pca, process = PcaGP(modes=3), ShapeGP(frame="current")
+    pca, process = PcaGP(modes=3), ShapeGP(tolerance=_TOLERANCE)
+    turns = Symmetry.of(cage.design_position, fold=_FOLD, mirror=0.0)
     literal = PcaGP(modes=3, centred=False)
     models = [
         _model(PCA_PAPER, CURRENT, pca, "over_time"),
@@ -87,7 +91,10 @@ def shape_models(
             _model(PCA_WAVES, ALL, pca, "over_time"),
             _model(SHAPE_CURRENT, CURRENT, process),
         ]
-    models.append(_model(SHAPE, heard, process))
+    models += [
+        _model(SHAPE, heard, process),
+        _model(SHAPE_FOLDED, heard, ShapeGP(tolerance=_TOLERANCE, symmetry=turns)),
+    ]
     if not networks:
         return tuple(models), ("The graph networks take minutes and are left to the full study.",)
     if find_spec("jax") is None:
@@ -103,13 +110,11 @@ def _networks(cage: Cage, heard: tuple[Input, ...]) -> list[ShapeModel]:
     from seacage.surrogates import GCN
 
     paper, ours = GCN(cage=cage, kind="paper"), GCN(cage=cage, kind="modal")
-    models = [
+    return [
         _model(GCN_PAPER, CURRENT, paper, "progress"),
         _model(GCN_DEGREES, DEGREES, paper, "progress"),
+        _model(GCN_OURS, heard, ours, "progress"),
     ]
-    if heard != CURRENT:
-        models.append(_model(GCN_CURRENT, CURRENT, ours, "progress"))
-    return [*models, _model(GCN_OURS, heard, ours, "progress")]
 
 
 def _model(name: str, inputs: tuple[Input, ...], estimator: Any, *needs: Need) -> ShapeModel:

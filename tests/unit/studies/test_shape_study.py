@@ -14,6 +14,7 @@ from seacage.studies._shape_models import (
     PCA_WAVES,
     SHAPE,
     SHAPE_CURRENT,
+    SHAPE_FOLDED,
     shape_models,
 )
 from seacage.studies._shape_study import Trial, shape_study
@@ -84,6 +85,18 @@ def test_a_second_study_trains_nothing_again_and_says_the_same(study, trial):
     assert again.scores[SHAPE].fit_cpu_s == study[0].scores[SHAPE].fit_cpu_s
 
 
+def test_a_cage_without_the_symmetry_is_told_of_and_the_rest_goes_on(trial, tmp_path):
+    models, _ = shape_models(CAGE, waves=True, networks=False)
+    moved = trial.campaign.node_position.copy()
+    moved[:, CAGE.node(2, 0), 2] += 3.0  # one node hangs higher, whatever the current
+    uneven = replace(trial, campaign=replace(trial.campaign, node_position=moved))
+    few = [model for model in models if model.name in (SHAPE, SHAPE_FOLDED)]
+    study = shape_study(few, uneven, Stages(folder=tmp_path), progress=unheard)
+    assert list(study.scores) == [SHAPE]
+    assert study.best.model == SHAPE
+    assert study.left_out[0].startswith("ShapeGP, folded is missing")
+
+
 def test_the_nets_drawn_are_a_fast_and_a_slow_test_case(study):
     harsh, mild = study[0].cases
     speed = np.sort(study[0].current_speed)
@@ -104,7 +117,7 @@ def test_the_variance_is_counted_over_cases_and_over_all_time_steps(study):
 
 def test_networks_that_cannot_be_had_are_told_of(monkeypatch):
     models, (why,) = shape_models(CAGE, waves=False, networks=False)
-    assert [model.name for model in models][-1] == SHAPE
+    assert [model.name for model in models][-2:] == [SHAPE, SHAPE_FOLDED]
     assert "full study" in why
     monkeypatch.setattr(_shape_models, "find_spec", lambda _: None)
     _, (why,) = shape_models(CAGE, waves=False, networks=True)
