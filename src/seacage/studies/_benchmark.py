@@ -5,12 +5,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from seacage.conventions import InputError, Progress
-from seacage.studies._benchmark_methods import Method, own_methods, peer_methods
+from seacage.studies._benchmark_methods import OURS, Method, own_methods, peer_methods
 from seacage.studies._benchmark_problems import CAGE_SIZE, PROBLEMS, Problem
 from seacage.studies._benchmark_report import BenchmarkReport
 from seacage.studies._benchmark_runs import Runs
 from seacage.studies._benchmark_scores import RunScore, Summary, scored, summary
 from seacage.studies._benchmark_verdicts import Verdict, verdicts
+from seacage.studies._discussion import listed
 from seacage.studies._held_out import write_scores
 
 TUNING_SEEDS = range(5)
@@ -50,6 +51,7 @@ def benchmark_study(
     seeds: Sequence[int] = SEEDS,
     quick: bool = False,
     fresh: bool = False,
+    kept: bool = False,
     progress: Progress | None = None,
 ) -> BenchmarkStudy:
     """Compare learners on published multifidelity problems, into one HTML page.
@@ -67,6 +69,9 @@ def benchmark_study(
         Leave out the cage-size problem, and take at most two seeds of each kind.
     fresh
         Answer the cage-size problem again, so that all its times are of one run.
+    kept
+        Run nothing: write the page from the answers that are there. A method whose answers to a
+        problem are not all there is left out of it.
     progress
         Called as (problem, done, total), in runs.
 
@@ -83,12 +88,18 @@ def benchmark_study(
     if fresh:
         for method in methods:
             runs.forget(CAGE_SIZE, method)
-    scores = [
-        score
-        for problem in problems
-        for score in _scores(runs, problem, methods, _of(problem, tuning, report), heard)
-    ]
+    scores: list[RunScore] = []
+    for problem in problems:
+        each = _of(problem, tuning, report)
+        there = [one for one in methods if not kept or runs.complete(problem, one, each)]
+        scores += _scores(runs, problem, there, each, heard)
     found, tuned = _summaries(scores, report), _summaries(scores, tuning)
+    lost = [problem.title for problem in problems if (problem.name, OURS) not in found]
+    if lost:
+        raise InputError(
+            f"study benchmarks: our own answers to {listed(lost)} are not there. Leave out "
+            "`kept`, and they are made."
+        )
     judged = verdicts(found)
     page = BenchmarkReport(
         verdicts=judged,

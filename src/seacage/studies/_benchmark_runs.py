@@ -72,7 +72,7 @@ class Runs:
         heard
             Called with the number of seeds that are done.
         """
-        out = self.folder / f"{method.name}-{method.key()}"
+        out = self._answers(method)
         out.mkdir(parents=True, exist_ok=True)
         jobs = {seed: self._job(problem, seed) for seed in seeds}
         missing = [job for job in jobs.values() if not _sign(out, job).is_file()]
@@ -84,10 +84,18 @@ class Runs:
                     _sign(out, job).write_text(json.dumps({"error": said}), encoding="utf-8")
         return [_read(problem, method, seed, out, job) for seed, job in jobs.items()]
 
+    def complete(self, problem: Problem, method: Method, seeds: Sequence[int]) -> bool:
+        """Whether all answers are there already."""
+        out = self._answers(method)
+        return all(_sign(out, self._job(problem, seed)).is_file() for seed in seeds)
+
     def forget(self, problem: Problem, method: Method) -> None:
         """Drop what a method answered to a problem, so that it is timed again."""
-        for path in (self.folder / f"{method.name}-{method.key()}").glob(f"{problem.name}-*"):
+        for path in self._answers(method).glob(f"{problem.name}-*"):
             path.unlink()
+
+    def _answers(self, method: Method) -> Path:
+        return self.folder / f"{method.name}-{method.key()}"
 
     def _job(self, problem: Problem, seed: int) -> Path:
         """The file of what a method is given; the answers to the tests are not in it."""

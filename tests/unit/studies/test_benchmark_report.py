@@ -11,6 +11,7 @@ from seacage.studies._benchmark import _locked, _parted
 from seacage.studies._benchmark_methods import HIGH_ONLY, OURS, own_methods
 from seacage.studies._benchmark_problems import problem_named
 from seacage.studies._benchmark_report import BenchmarkReport
+from seacage.studies._benchmark_runs import Runs
 from seacage.studies._benchmark_scores import RunScore, summary
 from seacage.studies._benchmark_verdicts import verdicts
 
@@ -115,3 +116,17 @@ def test_a_study_of_one_problem_ends_in_a_page_and_goes_on_where_it_was(tmp_path
     runs = {path: path.stat().st_mtime_ns for path in (tmp_path / "runs").rglob("*.json")}
     benchmark_study(tmp_path, seeds=[5], quick=True)
     assert {path: path.stat().st_mtime_ns for path in (tmp_path / "runs").rglob("*.json")} == runs
+    page = benchmark_study(tmp_path, seeds=[5], quick=True, kept=True).report
+    assert page == study.report
+
+
+def test_what_is_not_there_is_left_out_of_the_page_but_never_ours(tmp_path, monkeypatch):
+    monkeypatch.setattr(_benchmark, "PROBLEMS", (problem_named("currin"),))
+    own = tuple(one for one in own_methods() if one.name in {OURS, HIGH_ONLY})
+    monkeypatch.setattr(_benchmark, "own_methods", lambda: own)
+    with pytest.raises(InputError, match="our own answers to Currin are not there"):
+        benchmark_study(tmp_path, seeds=[5], quick=True, kept=True)
+    runs = Runs(folder=tmp_path / "runs")
+    runs.made(problem_named("currin"), own[0], [5], heard=lambda _: None)
+    study = benchmark_study(tmp_path, seeds=[5], quick=True, kept=True)
+    assert [one.method for one in study.summaries] == [OURS]

@@ -224,6 +224,9 @@ def benchmarks(
     fresh: Annotated[
         bool, typer.Option("--fresh", help="Time the cage-size problem again, all in one run.")
     ] = False,
+    kept: Annotated[
+        bool, typer.Option("--kept", help="Run nothing; write the page from what is there.")
+    ] = False,
     as_json: Json = False,
 ) -> None:
     """Compare our learners with other people's on published problems.
@@ -245,6 +248,7 @@ def benchmarks(
             seeds=_seeds(seeds),
             quick=quick,
             fresh=fresh,
+            kept=kept,
             progress=progress,
         )
     tell(
