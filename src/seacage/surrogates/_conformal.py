@@ -13,6 +13,9 @@ Series = Float[np.ndarray, " n"]
 FAR = 16.0
 """A squared error counts as at most so many variances, lest one reading rule the search."""
 
+LEAST = 1e-6
+"""Share of the squared errors' size that is expected anywhere, at least."""
+
 ROUNDS = 8
 """Of reweighting; the shares settle in four or five."""
 
@@ -76,7 +79,7 @@ def variance_components(
     terms
         Variances that each cause would have at share 1, one column per cause.
     square
-        Squared errors.
+        Squared errors; less what is known of them, so that some may be below 0.
 
     References
     ----------
@@ -84,11 +87,13 @@ def variance_components(
     """
     from scipy.optimize import nnls
 
-    tiny = np.finfo(float).tiny
-    share = np.mean(square) / np.maximum(np.mean(terms, axis=0), tiny) / terms.shape[1]
+    size = float(np.mean(np.abs(square)))
+    mean = np.mean(terms, axis=0)
+    share = np.divide(size, mean, out=np.zeros_like(mean), where=mean > 0.0) / len(mean)
+    if size == 0.0:
+        return share
     for _ in range(ROUNDS):
-        variance = terms @ share
-        variance = np.maximum(variance, max(1e-6 * float(variance.max()), tiny))
+        variance = np.maximum(terms @ share, LEAST * size)
         share, _ = nnls(terms / variance[:, None], np.minimum(square / variance, FAR))
     return share
 

@@ -2,7 +2,7 @@
 
 from seacage.twin._align import Pairs, align, spread_out, teaching_window
 from seacage.twin._answer import Answer
-from seacage.twin._correction import Correction, Said
+from seacage.twin._correction import Correction, Said, Spread
 from seacage.twin._events import Answered, Event, Flagged, StreamBack, StreamSilent
 from seacage.twin._metocean import Metocean
 from seacage.twin._models import Models
@@ -10,7 +10,7 @@ from seacage.twin._provenance import Lesson, Provenance
 from seacage.twin._replay import replay
 from seacage.twin._state import TwinState, Watch
 from seacage.twin._tabulated import Loads, TabulatedTwin
-from seacage.twin._train import Training, train
+from seacage.twin._train import Training, train, update
 from seacage.twin._twin import Twin
 
 __all__ = [
@@ -26,6 +26,7 @@ __all__ = [
     "Pairs",
     "Provenance",
     "Said",
+    "Spread",
     "StreamBack",
     "StreamSilent",
     "TabulatedTwin",
@@ -38,4 +39,5 @@ __all__ = [
     "spread_out",
     "teaching_window",
     "train",
+    "update",
 ]

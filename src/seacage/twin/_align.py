@@ -9,6 +9,7 @@ from jaxtyping import Bool, Float, Int, Shaped
 
 from seacage.conventions import Flag, InputError
 from seacage.records import FieldRecord, Record, instant
+from seacage.surrogates import spread_design
 from seacage.twin._metocean import INPUT_KEYS, Metocean
 
 HOLD_S = 10800.0
@@ -129,22 +130,11 @@ def teaching_window(
 def spread_out(pairs: Pairs, count: int, *, seed: int) -> Pairs:
     """Choose pairs that fill the plane of currents and the time, farthest from each other.
 
-    Neighbours in time are the same sample twice: 300 in a row teach little more than one, and
-    give too narrow intervals. The whole time counts as much as two typical speeds.
-
-    References
-    ----------
-    Farthest-point design: Johnson, Moore & Ylvisaker (1990), maximin distance.
+    The whole time counts as much as two typical speeds; why, says ``spread_design``.
     """
     if len(pairs) <= count:
         return pairs
-    place = _places(pairs)
-    chosen = [int(np.random.default_rng(seed).integers(len(pairs)))]
-    distance = np.full(len(pairs), np.inf)
-    for _ in range(count - 1):
-        distance = np.minimum(distance, np.sum((place - place[chosen[-1]]) ** 2, axis=1))
-        chosen.append(int(np.argmax(distance)))
-    return pairs.rows(np.sort(np.array(chosen)))
+    return pairs.rows(spread_design(_places(pairs), count, seed=seed))
 
 
 def _places(pairs: Pairs) -> Float[np.ndarray, "pair 3"]:

@@ -1,6 +1,7 @@
 """What a twin says about a cage: loads, depths, shape, how sure it is and why not."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
@@ -31,7 +32,8 @@ class Answer:
     bridle_low
         The simulations alone [N].
     sensor_names, sensor_units, sensor, sensor_level
-        What each sensor would read, with the scatter of its readings [N] or [m] depth.
+        What each sensor would read, with the scatter of its readings [N] or [m] depth. The
+        standard deviation at level 2 is calibrated: mean ± 1.96 of it is to hold 95 %.
     sensor_low
         The simulations alone at the sensor's place, with the emulator's spread [N] or [m].
     node_position, shape_level
@@ -62,6 +64,16 @@ class Answer:
 
     def __len__(self) -> int:
         return len(self.valid)
+
+    def widened(
+        self, *, bridle: Float[np.ndarray, " line"], sensor: Float[np.ndarray, " sensor"]
+    ) -> Self:
+        """Return the same with standard deviations times factors [-]; means and shape stay."""
+        return replace(
+            self,
+            bridle_tension=replace(self.bridle_tension, std=self.bridle_tension.std * bridle),
+            sensor=replace(self.sensor, std=self.sensor.std * sensor),
+        )
 
     def bridle_interval(self, *, z: float = 1.96) -> Interval:
         """Interval of the tensions [N], mean ± z standard deviations; a rope never pushes."""

@@ -1,7 +1,7 @@
 """Level 2 of one sensor: a line through level 1, and a NARGP of what the line leaves."""
 
 from dataclasses import dataclass, replace
-from typing import Self
+from typing import Literal, Self
 
 import numpy as np
 from jaxtyping import Float, Shaped
@@ -18,6 +18,9 @@ HOUR = 3_600_000_000
 PROOF_SD = 2.0
 """Standard errors by which a lesson has to beat level 1 to be believed [-]."""
 
+LEAST_SHARE = 0.1
+"""Of the noise that a lesson found: what is the cage's and not the instrument's, at least."""
+
 Features = Float[np.ndarray, "case feature"]
 
 
@@ -30,6 +33,29 @@ class Said:
     def predict(self, _: Features, /) -> Prediction:
         """Answer as it did."""
         return self.prediction
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Spread:
+    """How far the truth lies from the mean, calibrated on readings that did not teach.
+
+    Parameters
+    ----------
+    scale
+        Of the standard deviation that the lesson itself gives [-].
+    water_sd
+        Of each component of the current at the cage that the buoy does not tell [m/s]: eddies
+        on the way, and the time it takes. It weighs where level 1 is steep.
+    white
+        Variance of the instrument's own noise [N2] or [m2], which the truth does not have.
+    by
+        "own" readings, "carried" from sensors that stayed longer, or "none".
+    """
+
+    scale: float = 1.0
+    water_sd: float = 0.0
+    white: float = 0.0
+    by: Literal["own", "carried", "none"] = "none"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -46,10 +72,13 @@ class Correction:
         Change of the reading per change of level 1 [-].
     rest
         Of the reading less gain times level 1 [N] or [m]; its own level 1 is lent.
+    spread
+        What calibration made of the lesson's own doubt.
     """
 
     gain: float
     rest: FittedNARGP
+    spread: Spread = Spread()
 
     @classmethod
     def learned(
@@ -84,20 +113,55 @@ class Correction:
             return True  # nothing to judge by; the caller wants a minimum of readings
         return bool(by_hour.mean() > PROOF_SD * by_hour.std(ddof=1) / np.sqrt(len(by_hour)))
 
+    def updated(self, pairs: Pairs, x: Features) -> Self:
+        """Condition on more readings; gain, hyperparameters, spread and level 1 stay."""
+        below = self.rest.lower.predict(x).mean
+        return replace(self, rest=self.rest.updated(x, pairs.value - self.gain * below))
+
     @property
     def noise(self) -> float:
-        """Variance of a reading about what lies behind it [N2] or [m2]."""
-        return float(self.rest.upper[-1].noise[0])
+        """Variance of a reading about what lies behind it: the instrument's own [N2] or [m2]."""
+        return self.spread.white
 
-    def behind(self, x: Features, low: Prediction) -> Prediction:
-        """Return what a reading scatters about, given what level 1 says there.
+    def behind(
+        self,
+        x: Features,
+        low: Prediction,
+        steepness: Float[np.ndarray, " case"] | None = None,
+    ) -> Prediction:
+        """Return what lies behind a reading, given what level 1 says there.
 
-        The line's and the rest's shares of level 1's small variance are taken as independent.
+        The instrument's noise is left out; what the lesson could not explain by the water is
+        not, for the cage itself scattered so. The line's and the rest's shares of level 1's
+        small variance are taken as independent.
+
+        Parameters
+        ----------
+        x
+            Features of the water.
+        low
+            Level 1 there.
+        steepness
+            Of level 1: length of its gradient over the current [N s/m] or [s]; None where the
+            spread has no share of the water.
         """
         rest = replace(self.rest, lent=Said(prediction=low)).predict(x)
-        return Prediction(
-            mean=rest.mean + self.gain * low.mean, std=np.hypot(rest.std, self.gain * low.std)
-        )
+        variance = self.spread.scale**2 * self.doubt(rest.std, low.std)
+        if steepness is not None:
+            variance = variance + (self.gain * steepness * self.spread.water_sd) ** 2
+        return Prediction(mean=rest.mean + self.gain * low.mean, std=np.sqrt(variance))
+
+    def doubt(
+        self, rest_std: Float[np.ndarray, " case"], low_std: Float[np.ndarray, " case"]
+    ) -> Float[np.ndarray, " case"]:
+        """Variance that the lesson gives to what lies behind a reading, before calibration.
+
+        Of the noise that the lesson found, the instrument's share is taken out, but never more
+        than nine tenths.
+        """
+        found = float(self.rest.upper[-1].noise[0])
+        own = max(found - self.spread.white, LEAST_SHARE * found)
+        return rest_std**2 + (self.gain * low_std) ** 2 + own
 
 
 def fitted_gain(

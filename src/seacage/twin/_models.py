@@ -25,6 +25,9 @@ BLOCK = 512
 ROUNDING = 1e-9
 """What sines and cosines may add to a speed [m/s]."""
 
+STRIDE = 0.02
+"""Either way, of the central difference over the current [m/s]: well below what bends a load."""
+
 Features = Float[np.ndarray, "case feature"]
 Numbers = dict[str, Float[np.ndarray, "case *rest"]]
 """By quantity; a mean and its standard deviation side by side."""
@@ -92,6 +95,15 @@ class Models:
         """Return a copy that has level 2 of one more sensor."""
         return replace(self, upper={**self.upper, sensor: model})
 
+    def steepness(self, sensor: str, water: Metocean) -> Float[np.ndarray, " case"]:
+        """Length of the gradient of a sensor's level 1 over the current [N s/m] or [s]."""
+        ways = STRIDE * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
+        around = water.rows(np.tile(np.arange(len(water)), len(ways)))
+        velocity = around.current_velocity + np.repeat(ways, len(water), axis=0)
+        x = replace(around, current_velocity=velocity).features(self.inputs)
+        east, west, north, south = self.lower(sensor).predict(x).mean.reshape(len(ways), -1)
+        return np.hypot(east - west, north - south) / (2.0 * STRIDE)
+
     def answer(self, water: Metocean, trouble: Sequence[str]) -> Answer:
         """Answer each row of water, with no number where there is trouble with it.
 
@@ -148,11 +160,11 @@ class Models:
         return trained & (speed <= self.edge[0] + ROUNDING)
 
     def _numbers(self, water: Metocean, inside: Bool[np.ndarray, " case"]) -> Numbers:
-        said = self._said(water.features(self.inputs))
+        said = self._said(water)
         if not inside.all():
             speed, hs = self.edge
             milder = water.rows(~inside).limited(current_speed=speed, hs=hs)
-            edge = self._said(milder.features(self.inputs))
+            edge = self._said(milder)
             said = {name: _widened(one, edge[name], ~inside) for name, one in said.items()}
         shape = said.pop("shape")
         numbers = {f"{name}_mean": one.mean for name, one in said.items()}
@@ -166,10 +178,11 @@ class Models:
             "volume_fraction": self.cage.volume(shape.mean) / self.still_volume,
         }
 
-    def _said(self, x: Features) -> dict[str, Prediction]:
+    def _said(self, water: Metocean) -> dict[str, Prediction]:
+        x = water.features(self.inputs)
         bridle, shape = self.bridles.predict(x), self.shape.predict(x)
         said = {"bridle_low": bridle, "shape": shape, "sensor_low": self._seen(bridle, shape)}
-        return said | self._corrected(x, bridle, said["sensor_low"])
+        return said | self._corrected(water, bridle, said["sensor_low"])
 
     def _seen(self, bridle: Prediction, shape: Prediction) -> Prediction:
         nodes = [one.node for one in self.cage.depth_sensors]
@@ -180,19 +193,20 @@ class Models:
         )
 
     def _corrected(
-        self, x: Features, bridle_low: Prediction, sensor_low: Prediction
+        self, water: Metocean, bridle_low: Prediction, sensor_low: Prediction
     ) -> dict[str, Prediction]:
         """Return best tensions, and readings: what lies behind them and their scatter.
 
         The bridle that a shackle taught has no scatter: the rope is meant, not the instrument.
         """
         bridle, sensor = _copied(bridle_low), _copied(sensor_low)
-        lines = self._lines()
+        lines, x = self._lines(), water.features(self.inputs)
         for column, name in enumerate(self.cage.sensor_names):
             if name in self.upper:
                 model = self.upper[name]
                 low = Prediction(mean=sensor_low.mean[:, column], std=sensor_low.std[:, column])
-                behind = model.behind(x, low)
+                steep = self.steepness(name, water) if model.spread.water_sd else None
+                behind = model.behind(x, low, steep)
                 sensor.mean[:, column] = behind.mean
                 sensor.std[:, column] = np.sqrt(behind.std**2 + model.noise)
                 if name in lines:

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
+from typing import Literal
 
 from seacage.conventions import Origin
 
@@ -17,11 +18,15 @@ class Lesson:
         The window its readings were taken from; what lies outside may judge the twin.
     points
         How many were used.
+    calibrated
+        Whose readings its intervals were calibrated on: its "own", those of sensors that stayed
+        longer ("carried"), or "none".
     """
 
     start: datetime
     end: datetime
     points: int
+    calibrated: Literal["own", "carried", "none"] = "none"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -18,14 +18,14 @@ from seacage.surrogates import (
     decode,
     encode,
 )
-from seacage.twin._correction import Correction
+from seacage.twin._correction import Correction, Spread
 from seacage.twin._metocean import Input
 from seacage.twin._models import Models
 from seacage.twin._provenance import Provenance
 from seacage.twin._state import Watch
 
 FORMAT = "seacage twin"
-VERSION = 1
+VERSION = 2
 
 UPPER = "upper/"
 """Before the sensor's name, in the names of level 2's parts."""
@@ -45,6 +45,7 @@ class Header:
     edge: tuple[float, float]
     still_volume: float
     gains: Mapping[str, float]
+    spreads: Mapping[str, Spread]
     buoy: str
     watch: Watch
     provenance: Provenance
@@ -65,6 +66,7 @@ def saved(
         edge=models.edge,
         still_volume=models.still_volume,
         gains={name: model.gain for name, model in models.upper.items()},
+        spreads={name: model.spread for name, model in models.upper.items()},
         buoy=buoy,
         watch=watch,
         provenance=provenance,
@@ -139,5 +141,6 @@ def _models(
     )
     for sensor, gain in header.gains.items():
         rest = part(f"{UPPER}{sensor}", FittedNARGP, lower=models.lower(sensor))
-        models = models.taught(sensor, Correction(gain=gain, rest=rest))
+        model = Correction(gain=gain, rest=rest, spread=header.spreads[sensor])
+        models = models.taught(sensor, model)
     return models

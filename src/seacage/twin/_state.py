@@ -7,6 +7,7 @@ from datetime import datetime, timedelta
 
 from seacage.conventions import Flag
 from seacage.records import Amendment, QualityState, Sample, check_sample
+from seacage.twin._online import Tracked
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -25,12 +26,19 @@ class Watch:
         aside.
     future_s
         A sample further ahead of the clock than this has a wrong clock [s].
+    adapt_rate
+        How quickly the intervals follow what sensors read: step of the logarithm of their width
+        per reading that counts [-]; 0 leaves them as trained.
+    adapt_every_s
+        Time between readings that count [s].
     """
 
     stale_after_s: float = 10800.0
     sensor_silent_after_s: float = 900.0
     disorder_s: float = 600.0
     future_s: float = 60.0
+    adapt_rate: float = 0.01
+    adapt_every_s: float = 60.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,11 +76,14 @@ class TwinState:
         By name, those that have spoken.
     silent
         Those that have fallen silent.
+    tracked
+        How well the intervals of each sensor that has taught have held.
     """
 
     clock: datetime | None = None
     streams: Mapping[str, Stream] = field(default_factory=dict[str, Stream])
     silent: frozenset[str] = frozenset()
+    tracked: Mapping[str, Tracked] = field(default_factory=dict[str, Tracked])
 
     def latest(self, stream: str) -> Sample | None:
         """Return the newest sample of a stream, with its flags; None before the first."""

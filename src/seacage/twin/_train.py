@@ -1,7 +1,9 @@
 """Training: the simulations teach level 1, each sensor teaches its own level 2."""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from datetime import datetime, timedelta
 from typing import Literal
 
 import numpy as np
@@ -9,15 +11,17 @@ from jaxtyping import Float
 
 from seacage.cage import Cage
 from seacage.conventions import InputError, Origin, Progress
-from seacage.records import CampaignRecord, FieldRecord
+from seacage.records import CampaignRecord, FieldRecord, moment
 from seacage.surrogates import (
     Domain,
     FittedGaussianProcess,
     GaussianProcess,
     ShapeGP,
     mnll,
+    window_design,
 )
 from seacage.twin._align import Pairs, align, spread_out, teaching_window
+from seacage.twin._calibrate import Lessons, Taught, calibrated
 from seacage.twin._correction import Correction
 from seacage.twin._metocean import Input, Metocean
 from seacage.twin._models import Models
@@ -31,6 +35,11 @@ LEAST_CASES = 20
 LEAST_PAIRS = 20
 """Fewer than these say nothing about a cage."""
 
+PAPER_WINDOW_S = {"depth_m": 300.0, "tension_kn": 10.0}
+PAPER_LEAST = 5
+"""The paper's "few minutes" of a depth sensor and "few seconds" of a shackle [s], which it does
+not count; of slow sensors so many readings in a row."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Training:
@@ -43,8 +52,9 @@ class Training:
     high_fidelity_points
         Readings that each sensor teaches with, at most.
     choice
-        ``"spread"`` over currents and time, or ``"paper"``: so many in a row from the first
-        on, which teaches the noise of one hour and too narrow intervals.
+        ``"spread"`` over currents and time, or ``"paper"``: the single readings of a few
+        minutes (depth) or a few seconds (shackles) from the first on, which teaches the noise
+        of one hour and too narrow intervals; nothing is left to calibrate them on.
     days
         Longest that a sensor teaches [d]; later days are left to judge the twin.
     pause_s
@@ -69,9 +79,10 @@ class Training:
 
 def train(
     cage: Cage,
-    campaign: CampaignRecord,
+    campaign: CampaignRecord | None,
     field: FieldRecord | None = None,
     *,
+    base: Twin | None = None,
     training: Training | None = None,
     progress: Progress | None = None,
 ) -> Twin:
@@ -81,16 +92,20 @@ def train(
     of the field record then teaches its own level 2 (NARGP) on top: a shackle on its bridle's
     tension, a depth sensor on the depth of its node in the reconstructed shape. A sensor
     without enough sound readings, or whose readings level 1 meets as well as what they taught,
-    stays at level 1.
+    stays at level 1. The intervals are calibrated on readings that did not teach: a sensor's
+    own, or for a short lesson those of sensors that stayed longer.
 
     Parameters
     ----------
     cage
         Must be the campaign's; its sensors may have moved.
     campaign
-        Of the low fidelity.
+        Of the low fidelity; None with a base.
     field
         None trains level 1 alone.
+    base
+        A twin of the same cage whose level 1 is taken as it is, and level 2 of every sensor
+        that has not moved: only sensors that moved, or are new, are taught.
     training
         What to learn from; the default suits one buoy and 300 readings of each sensor.
     progress
@@ -98,18 +113,92 @@ def train(
     """
     training = Training() if training is None else training
     report: Progress = progress or (lambda _stage, _done, _total: None)
-    sensors = [name for name in cage.sensor_names if field and name in field.sensors]
-    total = 2 + len(sensors)
-
-    models, kernel = _level_one(cage, campaign, training, report, total)
-    lessons: dict[str, Lesson] = {}
-    for done, name in enumerate(sensors, start=3):
-        assert field is not None
-        learned = _learned(models, field, name, training)
-        if learned is not None:
-            lessons[name], model = learned
+    begun = _begun(cage, campaign, field, base, training, report)
+    kept = begun.models.upper
+    asked = [name for name in cage.sensor_names if field and name in field.sensors]
+    lessons = Lessons(
+        models=begun.models,
+        taught={
+            name: one
+            for name in asked
+            if field and (one := _taught(field, name, training)) is not None
+        },
+        restarts=training.restarts,
+        seed=training.seed,
+        choose=lambda pairs: _chosen(pairs, training),
+    )
+    models, told = begun.models, dict(begun.provenance.lessons)
+    for done, name in enumerate(asked, start=3):
+        if name not in kept and (model := _learned(lessons, name)) is not None:
             models = models.taught(name, model)
-        report(f"train {name}", done, total)
+            told[name] = replace(lessons.taught[name].lesson, calibrated=model.spread.by)
+        report(f"train {name}", done, 2 + len(asked))
+    new = field is not None and told != begun.provenance.lessons
+    provenance = replace(
+        begun.provenance,
+        origin=field.origin if field and new else begun.provenance.origin,
+        hidden_sha256=field.hidden_sha256 if field else begun.provenance.hidden_sha256,
+        seed=training.seed,
+        lessons=told,
+    )
+    return replace(begun, models=models, provenance=provenance)
+
+
+def update(twin: Twin, field: FieldRecord, *, points: int = 60, mean_s: float = 60.0) -> Twin:
+    """Take in what sensors have said since their lessons, without learning anew.
+
+    Level 2 of each sensor is conditioned on more readings; its hyperparameters, its gain and
+    its intervals' calibration stay, and level 1 is not touched. Every reading makes the twin a
+    little slower: where they have doubled, train again.
+
+    Parameters
+    ----------
+    twin
+        Whose sensors have taught it.
+    field
+        Has later readings of some of them.
+    points
+        Readings of each sensor that are taken in, at most, spread over currents and time.
+    mean_s
+        Readings are averaged over so long, as in the training [s].
+    """
+    models, lessons = twin.models, dict(twin.provenance.lessons)
+    for name, model in twin.models.upper.items():
+        if name not in field.sensors:
+            continue
+        pairs = align(field, name, start=lessons[name].end, mean_s=mean_s)
+        pairs = pairs.rows(pairs.metocean.known(models.inputs))
+        if len(pairs) == 0:
+            continue
+        end = moment(pairs.time[-1]) + timedelta(seconds=mean_s)
+        pairs = spread_out(pairs, points, seed=twin.provenance.seed)
+        x = pairs.metocean.features(models.inputs)
+        models = models.taught(name, model.updated(pairs, x))
+        lesson = lessons[name]
+        lessons[name] = replace(lesson, end=end, points=lesson.points + len(pairs))
+    return replace(twin, models=models, provenance=replace(twin.provenance, lessons=lessons))
+
+
+def _begun(
+    cage: Cage,
+    campaign: CampaignRecord | None,
+    field: FieldRecord | None,
+    base: Twin | None,
+    training: Training,
+    report: Progress,
+) -> Twin:
+    """Level 1, and level 2 of the sensors that have not moved since the base."""
+    if (campaign is None) == (base is None):
+        raise InputError(
+            "train: give either a campaign, to teach level 1, or a base, whose level 1 is taken."
+        )
+    if base is not None:
+        report("train bridles", 1, 2)
+        report("train shape", 2, 2)
+        return _from_base(cage, base, training)
+    assert campaign is not None
+    total = 2 + sum(name in field.sensors for name in cage.sensor_names) if field else 2
+    models, kernel = _level_one(cage, campaign, training, report, total)
     provenance = Provenance(
         version=_version(),
         law=campaign.law,
@@ -117,12 +206,44 @@ def train(
         campaign_sha256=campaign.sha256,
         cases=int(np.sum(campaign.converged)),
         kernel=kernel,
-        origin=field.origin if field and lessons else Origin.COMPUTED,
-        hidden_sha256=field.hidden_sha256 if field else None,
+        origin=Origin.COMPUTED,
+        hidden_sha256=None,
         seed=training.seed,
-        lessons=lessons,
     )
     return Twin(models=models, provenance=provenance, buoy=field.buoy.stream if field else "buoy-1")
+
+
+def _from_base(cage: Cage, base: Twin, training: Training) -> Twin:
+    before = base.cage
+    if replace(cage, shackle=before.shackle, depth_sensor=before.depth_sensor) != before:
+        raise InputError(
+            f"train: {cage.name} differs from the base's cage by more than its sensors. Simulate "
+            "it and give the campaign."
+        )
+    if training.inputs != base.models.inputs:
+        raise InputError(
+            f"train: the base is asked with {' and '.join(base.models.inputs)}, not with "
+            f"{' and '.join(training.inputs)}. Ask for the same, or give a campaign."
+        )
+    places, now = _places(before), _places(cage)
+    stay = [name for name in base.models.upper if now.get(name) == places[name]]
+    lessons = base.provenance.lessons
+    return replace(
+        base,
+        models=replace(
+            base.models, cage=cage, upper={name: base.models.upper[name] for name in stay}
+        ),
+        provenance=replace(
+            base.provenance,
+            lessons={name: lessons[name] for name in stay},
+            origin=base.origin if stay else Origin.COMPUTED,
+        ),
+    )
+
+
+def _places(cage: Cage) -> Mapping[str, tuple[str, int]]:
+    nodes = {one.name: ("node", one.node) for one in cage.depth_sensors}
+    return nodes | {one.name: ("bridle", one.bridle) for one in cage.shackles}
 
 
 def _level_one(
@@ -182,37 +303,55 @@ def _better_kernel(
     return fitted[best], KERNELS[best]
 
 
-def _learned(
-    models: Models, field: FieldRecord, sensor: str, training: Training
-) -> tuple[Lesson, Correction] | None:
-    """Return what a sensor taught, and level 2 of it; None where it says nothing new."""
-    window = teaching_window(field.sensors[sensor], days=training.days, pause_s=training.pause_s)
+def _taught(field: FieldRecord, sensor: str, training: Training) -> Taught | None:
+    """Return what a sensor has to teach; None where that is too little."""
+    record = field.sensors[sensor]
+    window = teaching_window(record, days=training.days, pause_s=training.pause_s)
     if window is None:
         return None
     start, end = window
-    pairs = align(field, sensor, start=start, end=end, mean_s=training.mean_s)
-    pairs = pairs.rows(pairs.metocean.known(training.inputs))
+    if training.choice == "paper":
+        pairs = _known(align(field, sensor, start=start, end=end), training)
+        span = PAPER_WINDOW_S[next(iter(record.values))]
+        second = (pairs.time - pairs.time[:1]) / np.timedelta64(1, "s")
+        most = max(training.high_fidelity_points, PAPER_LEAST)
+        rows = window_design(second, span_s=span, least=PAPER_LEAST, most=most)
+        pairs = pairs.rows(rows)
+        if len(pairs) < PAPER_LEAST:
+            return None
+        end = _after(pairs)
+        lesson = Lesson(start=start, end=end, points=len(pairs))
+        return Taught(lesson=lesson, pairs=pairs, chosen=pairs, calibrates=False)
+    pairs = _known(align(field, sensor, start=start, end=end, mean_s=training.mean_s), training)
     if len(pairs) < LEAST_PAIRS:
         return None
-    pairs = _chosen(pairs, training)
-    x = pairs.metocean.features(training.inputs)
-    model = Correction.learned(
-        pairs,
-        x,
-        models.lower(sensor),
-        restarts=training.restarts,
-        seed=training.seed,
-    )
-    if not model.proven(pairs, models.lower(sensor).predict(x).mean):
+    chosen = _chosen(pairs, training)
+    lesson = Lesson(start=start, end=end, points=len(chosen))
+    return Taught(lesson=lesson, pairs=pairs, chosen=chosen, calibrates=True)
+
+
+def _known(pairs: Pairs, training: Training) -> Pairs:
+    return pairs.rows(pairs.metocean.known(training.inputs))
+
+
+def _after(pairs: Pairs) -> datetime:
+    return moment(pairs.time[-1]) + timedelta(microseconds=1)
+
+
+def _learned(lessons: Lessons, sensor: str) -> Correction | None:
+    """Return level 2 of a sensor, calibrated; None where it says nothing new."""
+    taught = lessons.taught.get(sensor)
+    if taught is None:
         return None
-    return Lesson(start=start, end=end, points=len(pairs)), model
+    model = lessons.learned(sensor, taught.chosen)
+    x = taught.chosen.metocean.features(lessons.models.inputs)
+    if not model.proven(taught.chosen, lessons.models.lower(sensor).predict(x).mean):
+        return None
+    return calibrated(model, lessons, sensor) if taught.calibrates else model
 
 
 def _chosen(pairs: Pairs, training: Training) -> Pairs:
-    count = training.high_fidelity_points
-    if training.choice == "paper":
-        return pairs.rows(np.arange(min(count, len(pairs))))
-    return spread_out(pairs, count, seed=training.seed)
+    return spread_out(pairs, training.high_fidelity_points, seed=training.seed)
 
 
 def _version() -> str:

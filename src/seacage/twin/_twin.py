@@ -1,7 +1,7 @@
 """The trained twin: its models, where they come from, and the live loop around them."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import datetime
 from pathlib import Path
 from typing import Self
@@ -17,6 +17,7 @@ from seacage.twin._events import Answered, Event
 from seacage.twin._folder import read_folder, write_folder
 from seacage.twin._metocean import INPUT_KEYS, Metocean
 from seacage.twin._models import Models
+from seacage.twin._online import answered_with, judged_by
 from seacage.twin._provenance import Provenance
 from seacage.twin._saving import restored, saved
 from seacage.twin._state import TwinState, Watch
@@ -111,7 +112,7 @@ class Twin:
         """Answer for each row of a buoy's record; a row that failed its checks is not valid.
 
         These are the answers that ``step`` gives to the record's samples, made in blocks and
-        so faster.
+        so faster; what the sensors' own readings make of the intervals, ``step`` alone knows.
         """
         keys = self._keys()
         absent = [key for key in keys if key not in buoy.values]
@@ -153,13 +154,29 @@ class Twin:
             Silence and return of streams first, then what was wrong with the sample, then
             the answer.
         """
-        before = state.latest(self.buoy)
+        before = state
         state, notices = listened(state, sample, now, patience=self._patience(), watch=self.watch)
-        if sample is None or state.latest(self.buoy) != before:
-            return state, (*notices, self._answered(state, now))
+        if sample is not None:
+            state = self._judged(before, state, sample.stream)
+        if sample is None or state.latest(self.buoy) != before.latest(self.buoy):
+            state, answered = self._answered(state, now)
+            return state, (*notices, answered)
         return state, notices
 
-    def _answered(self, state: TwinState, now: datetime) -> Answered:
+    def _judged(self, before: TwinState, state: TwinState, stream: str) -> TwinState:
+        """Let a sensor's new reading judge what was last said of it."""
+        newest = state.latest(stream)
+        if stream not in state.tracked or newest is None or newest == before.latest(stream):
+            return state
+        after = judged_by(
+            state.tracked[stream],
+            newest,
+            rate=self.watch.adapt_rate,
+            every_s=self.watch.adapt_every_s,
+        )
+        return replace(state, tracked={**state.tracked, stream: after})
+
+    def _answered(self, state: TwinState, now: datetime) -> tuple[TwinState, Answered]:
         stale_after_s = self.watch.stale_after_s
         reading = held_reading(
             state, now, buoy=self.buoy, keys=self._keys(), stale_after_s=stale_after_s
@@ -167,7 +184,32 @@ class Twin:
         unknown = Metocean.from_columns({}, 1)
         water = unknown if reading.metocean is None else reading.metocean
         answer = self.models.answer(water, [reading.trouble])
-        return Answered(t=now, answer=answer, metocean=reading.metocean, input_age_s=reading.age_s)
+        state = replace(state, tracked=answered_with(state.tracked, self._said(answer)))
+        answer = self._adapted(answer, state)
+        return state, Answered(
+            t=now, answer=answer, metocean=reading.metocean, input_age_s=reading.age_s
+        )
+
+    def _said(self, answer: Answer) -> dict[str, tuple[float, float] | None]:
+        """Say what of the sensors that have taught is to be judged."""
+        mean, std = answer.sensor.mean[0].tolist(), answer.sensor.std[0].tolist()
+        return {
+            name: (mean[column], std[column]) if answer.valid[0] else None
+            for column, name in enumerate(answer.sensor_names)
+            if name in self.models.upper
+        }
+
+    def _adapted(self, answer: Answer, state: TwinState) -> Answer:
+        """Widen or narrow the intervals of sensors that speak, and of the ropes they are on."""
+        factor = {
+            name: 1.0 if name in state.silent else tracked.factor
+            for name, tracked in state.tracked.items()
+        }
+        bridle = np.ones(self.cage.bridle_count)
+        for shackle in self.cage.shackles:
+            bridle[shackle.bridle] = factor.get(shackle.name, 1.0)
+        sensor = np.array([factor.get(name, 1.0) for name in answer.sensor_names])
+        return answer.widened(bridle=bridle, sensor=sensor)
 
     def _keys(self) -> list[str]:
         return [key for name in self.models.inputs for key in INPUT_KEYS[name]]

@@ -99,8 +99,8 @@ def resealed(folder, settings):
 
 def test_another_version_is_refused_by_its_number(copy):
     settings = json.loads((copy / "model.json").read_text())
-    resealed(copy, settings | {"version": 2})
-    with pytest.raises(ModelError, match="of version 2"):
+    resealed(copy, settings | {"version": 3})
+    with pytest.raises(ModelError, match="of version 3"):
         Twin.read(copy)
 
 

@@ -6,7 +6,7 @@ import pytest
 from seacage.cage import Cage
 from seacage.conventions import Flag, InputError, Origin
 from seacage.testing import stand_in_campaign, stand_in_field, stand_in_seas, stand_in_twin
-from seacage.twin import Training, align, train
+from seacage.twin import Training, align, train, update
 
 FEW = Training(high_fidelity_points=25, days=1.0, restarts=0)
 
@@ -128,6 +128,125 @@ def test_waves_may_be_among_the_inputs():
     assert twin.predict(wavy[3]).in_domain.all()
     high = replace(wavy[3], hs=6.0, tp=None)
     assert "waves up to" in twin.predict(high).reason[0]
+
+
+def moved(cage):
+    """The cage with its first shackle on the next bridle and one depth sensor more."""
+    first, *rest = cage.shackle
+    added = replace(cage.depth_sensor[0], name="depth-9")
+    return replace(
+        cage,
+        shackle=(replace(first, bridle=first.bridle % 12 + 1), *rest),
+        depth_sensor=(*cage.depth_sensor, added),
+    )
+
+
+def test_moved_and_added_sensors_are_taught_alone_and_all_else_stays_what_it_was():
+    base, cage = stand_in_twin(), moved(coarse())
+    twin = train(cage, None, stand_in_field(cage), base=base, training=FEW)
+    assert twin.models.bridles is base.models.bridles
+    assert twin.models.shape is base.models.shape
+    for name, model in base.models.upper.items():
+        if name != "shackle-1":
+            assert twin.models.upper[name] is model, name
+            assert twin.provenance.lessons[name] == base.provenance.lessons[name]
+    assert twin.models.upper["shackle-1"] is not base.models.upper["shackle-1"]
+    assert "depth-9" in twin.models.upper
+    answer = twin.predict(stand_in_seas(2))
+    assert answer.bridle_level[cage.shackles[0].bridle] == 2
+    assert answer.bridle_level[coarse().shackles[0].bridle] == 1
+    was, now = (one.predict(stand_in_seas(5, seed=3)).sensor.mean[:, 1] for one in (base, twin))
+    np.testing.assert_array_equal(now, was)
+
+
+def test_a_sensor_that_left_the_cage_is_forgotten():
+    cage = replace(coarse(), shackle=coarse().shackle[1:])
+    twin = train(cage, None, None, base=stand_in_twin(), training=FEW)
+    assert "shackle-1" not in twin.provenance.lessons
+    assert "shackle-2" in twin.provenance.lessons
+
+
+def test_a_base_of_another_cage_is_refused():
+    with pytest.raises(InputError, match="by more than its sensors"):
+        train(Cage.named("ace"), None, base=stand_in_twin(), training=FEW)
+
+
+def test_a_base_that_asks_for_other_inputs_is_refused():
+    with pytest.raises(InputError, match="asked with current, not with current and waves"):
+        train(
+            coarse(),
+            None,
+            base=stand_in_twin(),
+            training=replace(FEW, inputs=("current", "waves")),
+        )
+
+
+def test_a_campaign_or_a_base_is_needed_and_not_both():
+    for given in (None, stand_in_campaign(coarse(), stand_in_seas(40))):
+        with pytest.raises(InputError, match="either a campaign"):
+            train(coarse(), given, base=None if given is None else stand_in_twin())
+
+
+def test_new_readings_mend_level_two_and_leave_level_one_and_others_alone():
+    base, field = stand_in_twin(), stand_in_field(coarse(), days=4.0)
+    fresh = with_sensors(field, "depth-3")
+    twin = update(base, fresh)
+    assert twin.models.bridles is base.models.bridles
+    assert twin.models.shape is base.models.shape
+    for name in set(base.models.upper) - {"depth-3"}:
+        assert twin.models.upper[name] is base.models.upper[name]
+    lesson, before = (one.provenance.lessons["depth-3"] for one in (twin, base))
+    assert lesson.points == before.points + 60
+    assert lesson.end > before.end
+    pairs = align(field, "depth-3", start=before.end)
+    column = base.sensor_names.index("depth-3")
+    misses = [
+        np.mean(np.abs(one.predict(pairs.metocean).sensor.mean[:, column] - pairs.value))
+        for one in (base, twin)
+    ]
+    assert misses[1] < misses[0]
+
+
+def test_without_new_readings_an_update_changes_nothing():
+    base, field = stand_in_twin(), stand_in_field(coarse(), days=1.0)
+    twin = update(base, with_sensors(field, "depth-1", "depth-2"))
+    assert twin.provenance == base.provenance
+    assert twin.models.upper == base.models.upper
+
+
+def test_a_short_lesson_is_calibrated_by_sensors_that_stayed_and_a_long_one_by_itself():
+    lessons = stand_in_twin().provenance.lessons
+    assert lessons["depth-1"].calibrated == "own"
+    assert stand_in_twin().models.upper["depth-1"].spread.by == "own"
+    longer = train(
+        coarse(),
+        None,
+        with_sensors(stand_in_field(coarse()), "depth-1", "shackle-1"),
+        base=replace(stand_in_twin(), models=replace(stand_in_twin().models, upper={})),
+        training=replace(FEW, days=3.5),
+    )
+    assert longer.provenance.lessons["shackle-1"].calibrated == "carried"
+
+
+def test_a_short_lesson_that_nobody_stayed_beside_is_judged_by_its_own_hours():
+    field = with_sensors(stand_in_field(coarse(), days=1.0), "shackle-1")
+    assert taught_by(field).provenance.lessons["shackle-1"].calibrated == "own"
+
+
+def test_the_papers_choice_is_a_few_minutes_of_depth_and_a_few_seconds_of_load():
+    field = stand_in_field(coarse(), days=1.0, sensor_s=2.0)
+    field = with_sensors(field, "depth-1", "shackle-1")
+    lessons = taught_by(
+        field, training=replace(FEW, choice="paper", high_fidelity_points=300)
+    ).provenance.lessons
+    # Whether so little is believed is another matter; what is believed spans no more.
+    spans = {"depth-1": (150, 300.0), "shackle-1": (5, 10.0)}
+    for name, lesson in lessons.items():
+        points, span = spans[name]
+        assert lesson.points == points
+        assert (lesson.end - lesson.start).total_seconds() <= span
+        assert lesson.calibrated == "none"
+    assert lessons
 
 
 def test_cases_that_did_not_converge_teach_nothing():

@@ -1,0 +1,149 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from seacage.surrogates import coverage
+from seacage.testing import stand_in_field, stand_in_twin
+from seacage.twin import Spread, align, spread_out
+from seacage.twin._calibration import (
+    Judged,
+    apart,
+    blocks_in,
+    carried_spread,
+    own_spread,
+    stretches,
+    white_noise,
+    without_in_turn,
+)
+
+START = np.datetime64("2020-01-18T00:00", "us")
+
+
+def model():
+    return stand_in_twin().models.upper["depth-1"]
+
+
+def lesson(days=2.0):
+    field = stand_in_field(stand_in_twin().cage, days=days)
+    return align(field, "depth-1", mean_s=60.0)
+
+
+def judged(error, doubt, steepness, white=0.0):
+    return Judged(error=error, doubt=doubt, steepness=steepness, white=white)
+
+
+def test_intervals_calibrated_on_kept_readings_hold_new_ones_in_calm_and_in_steep_water():
+    random = np.random.default_rng(0)
+    doubt, steep = random.uniform(0.5, 1.5, 4000), random.uniform(0.0, 30.0, 4000)
+    error = np.sqrt(4.0 * doubt + (0.1 * steep) ** 2) * random.standard_normal(4000)
+    old, new = slice(0, 2000), slice(2000, 4000)
+    spread = own_spread(model(), judged(error[old], doubt[old], steep[old]), blocks=2000)
+    std = np.sqrt(spread.scale**2 * doubt + (spread.water_sd * steep) ** 2)[new]
+    calm = steep[new] < 15.0
+    # Of a thousand readings a share of 0.95 is known to 0.02 at three standard errors.
+    for rows in (calm, ~calm):
+        held = coverage(error[new][rows], np.zeros(rows.sum()), std[rows])
+        assert held == pytest.approx(0.95, abs=0.025)
+    assert spread.by == "own"
+
+
+def test_few_blocks_widen_what_is_calibrated():
+    random = np.random.default_rng(1)
+    error = random.standard_normal(500)
+    few, many = (
+        own_spread(model(), judged(error, np.ones(500), np.zeros(500)), blocks=blocks).scale
+        for blocks in (3, 300)
+    )
+    assert few > 2.0 * many
+
+
+def test_the_instruments_noise_is_no_error_of_the_twin():
+    random = np.random.default_rng(2)
+    error = np.hypot(0.3, 0.4) * random.standard_normal(4000)
+    spread = own_spread(
+        model(), judged(error, np.ones(4000), np.zeros(4000), white=0.4**2), blocks=4000
+    )
+    assert spread.scale == pytest.approx(0.3, rel=0.07)
+
+
+def test_a_short_lesson_is_as_unsure_as_such_lessons_were_on_other_sensors():
+    random = np.random.default_rng(3)
+    others = [
+        judged(size * random.standard_normal(3000), np.ones(3000), np.zeros(3000))
+        for size in (1.5, 2.5)
+    ]
+    spread = carried_spread(model(), others, days=500.0)
+    assert spread.scale == pytest.approx(2.0, rel=0.06)
+    assert spread.by == "carried"
+    assert spread.white == model().spread.white
+
+
+def test_white_noise_is_told_from_errors_that_last():
+    random = np.random.default_rng(4)
+    time = START + np.arange(400) * np.timedelta64(60, "s")
+    slow = 0.5 * np.sin(np.arange(400) / 20.0)
+    found = white_noise(slow + 0.1 * random.standard_normal(400), time)
+    # Four hundred readings tell a variance to a tenth; the slow part takes or gives some more.
+    assert found == pytest.approx(0.01, rel=0.4)
+
+
+def test_an_error_that_never_moves_has_no_noise():
+    assert white_noise(np.ones(100), START + np.arange(100) * np.timedelta64(60, "s")) == 0.0
+
+
+def test_a_reading_is_judged_without_the_days_around_it():
+    pairs = lesson()
+    chosen = spread_out(pairs, 60, seed=0)
+    x = pairs.metocean.features(("current",))
+    lower = stand_in_twin().models.lower("depth-1")
+    taught = type(model()).learned(
+        chosen, chosen.metocean.features(("current",)), lower, restarts=0, seed=0
+    )
+    first = pairs.time <= pairs.time[0] + (pairs.time[-1] - pairs.time[0]) / 10
+    wrong = replace(chosen, value=chosen.value + 5.0 * (chosen.time <= pairs.time[first][-1]))
+    gain, process = taught.gain, taught.rest.own[0]
+    low = lower.predict(chosen.metocean.features(("current",))).mean
+    moved = process.members[0]
+    moved = moved.reconditioned(
+        moved.x, (wrong.value - gain * low - process.centre)[:, None], doubt=moved.doubt
+    )
+    fooled = replace(taught, rest=replace(taught.rest, own=(replace(process, members=(moved,)),)))
+    mean, doubt = without_in_turn(taught, chosen, pairs, x)
+    other, _ = without_in_turn(fooled, chosen, pairs, x)
+    np.testing.assert_allclose(other[first], mean[first], atol=1e-6)
+    assert np.abs(other[~first] - mean[~first]).max() > 0.1
+    whole = taught.behind(x, lower.predict(x)).std ** 2
+    assert np.all(doubt >= whole - 1e-9)
+
+
+def test_days_count_in_a_long_lesson_and_quarters_of_a_tide_in_a_short_one():
+    pairs = lesson()
+    assert blocks_in(pairs.rows(np.arange(len(pairs) // 4))) == 4
+    hours = START + np.arange(10 * 24) * np.timedelta64(1, "h")
+    long = replace(pairs.rows(np.zeros(len(hours), dtype=int)), time=hours)
+    assert blocks_in(long) == 10
+
+
+def test_readings_near_a_lesson_do_not_judge_it():
+    pairs = lesson(days=4.0)
+    short = pairs.rows(
+        (pairs.time >= START + np.timedelta64(36, "h"))
+        & (pairs.time < START + np.timedelta64(48, "h"))
+    )
+    left = apart(pairs, short)
+    gap = (left.time < short.time[0]) | (left.time > short.time[-1])
+    assert gap.all()
+    assert np.abs((left.time - short.time[0]) / np.timedelta64(1, "h")).min() > 11.9
+
+
+def test_stretches_are_in_a_row_and_reach_both_ends():
+    rows = stretches(10000)
+    assert rows[0] == 0
+    assert rows[-1] == 9999
+    assert np.sum(np.diff(rows) != 1) == 7
+    assert stretches(30).tolist() == list(range(30))
+
+
+def test_a_lesson_that_nobody_judged_keeps_its_own_doubt():
+    assert Spread() == Spread(scale=1.0, water_sd=0.0, white=0.0, by="none")
