@@ -1,13 +1,15 @@
 """The methods that are compared: ours, simple baselines, and peers in an environment of theirs."""
 
 import hashlib
+import re
 import sys
 from dataclasses import dataclass
+from functools import cache
 from importlib import resources
 from pathlib import Path
 
 from seacage.conventions import InputError
-from seacage.studies._stages import code_sha256
+from seacage.surrogates import AR1, NARGP, GaussianProcess
 
 OURS = "nargp"
 """The method that the verdicts are about."""
@@ -48,7 +50,8 @@ class Method:
         """A hash of the code that makes its answers."""
         digest = hashlib.sha256(harness().read_bytes())
         if self.ours:
-            digest.update(self.script.read_bytes() + code_sha256(("surrogates",)).encode())
+            for path in (self.script, *_learners()):
+                digest.update(path.read_bytes())
             return digest.hexdigest()[:10]
         folder = self.script.parent
         for path in (self.script, folder / "scaling.py", folder / "requirements.lock"):
@@ -161,6 +164,20 @@ _PEERS = (
     ),
 )
 """Name, title, maker, settings and script."""
+
+
+@cache  # what this process runs is what it has loaded, whatever is edited meanwhile
+def _learners() -> tuple[Path, ...]:
+    """The files of the surrogates that our methods reach, so that no other counts."""
+    folder = Path(str(resources.files("seacage.surrogates")))
+    reached: set[str] = set()
+    ahead = {one.__module__.rpartition(".")[2] for one in (AR1, NARGP, GaussianProcess)}
+    while ahead:
+        name = ahead.pop()
+        reached.add(name)
+        source = (folder / f"{name}.py").read_text("utf-8")
+        ahead |= set(re.findall(r"from seacage\.surrogates\.(\w+) import", source)) - reached
+    return tuple(folder / f"{name}.py" for name in sorted(reached))
 
 
 def _own(name: str) -> Path:

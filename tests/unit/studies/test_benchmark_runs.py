@@ -8,7 +8,12 @@ import numpy as np
 import pytest
 
 from seacage.conventions import InputError
-from seacage.studies._benchmark_methods import Method, own_methods, peer_methods
+from seacage.studies._benchmark_methods import (
+    Method,
+    _learners,
+    own_methods,
+    peer_methods,
+)
 from seacage.studies._benchmark_ours import METHODS
 from seacage.studies._benchmark_problems import Problem, problem_named
 from seacage.studies._benchmark_runs import Runs
@@ -130,6 +135,12 @@ def test_other_code_or_another_script_makes_another_key(tmp_path):
     first = method(tmp_path, "mean").key()
     (tmp_path / "script.py").write_text(SCRIPT + "\n", encoding="utf-8")
     assert method(tmp_path, "mean").key() != first
+
+
+def test_the_key_of_ours_hangs_on_the_learners_that_are_reached_and_on_no_other():
+    names = {path.stem for path in _learners()}
+    assert {"_nargp", "_gaussian_process", "_kernels", "_quadrature", "_regression"} <= names
+    assert not names & {"_pca", "_shape", "_gcn", "_table"}
 
 
 def test_peers_are_looked_for_where_they_are_made(tmp_path):
