@@ -178,6 +178,8 @@ class FittedShapeGP:
         As in ``ShapeGP``.
     products
         Of the modes' coordinates at each node, which variances are sums of.
+    prior_moments
+        These sums where every score is as uncertain as before the training [m2].
     """
 
     MODEL: ClassVar[str] = "shape-gp"
@@ -191,11 +193,15 @@ class FittedShapeGP:
     frame: Frame
     symmetry: Symmetry | None
     products: Float[np.ndarray, "mode product node"] = field(init=False, repr=False)
+    prior_moments: Float[np.ndarray, "product node"] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         # Formed once: it would cost more than all the rest of a prediction.
         direction = self.basis.direction.reshape(self.modes, -1, len(self.centre), 3)
-        object.__setattr__(self, "products", moment_products(direction))
+        products = moment_products(direction)
+        object.__setattr__(self, "products", products)
+        prior = np.tensordot(self.scores.amplitude**2, products, axes=1)
+        object.__setattr__(self, "prior_moments", prior)
 
     @property
     def modes(self) -> int:
@@ -280,7 +286,7 @@ class FittedShapeGP:
         nodes: Nodes,
     ) -> Float[np.ndarray, "row 4 node"]:
         """Of x, y and z of each node, and the covariance of x with y, at home [m2]."""
-        moments = np.tensordot(score_std**2, self.products[..., nodes], axes=1)
+        moments = self._moments(score_std**2, nodes)
         if self.frame == "current":
             moments = whole_moments(x, moments)
         scale = self.scale[nodes].T
@@ -377,6 +383,17 @@ class FittedShapeGP:
         parts = centre + np.tensordot(score, direction, axes=1)
         moved = whole(x, parts) if self.frame == "current" else parts[:, 0]
         return self.centre[nodes] + moved
+
+    def _moments(
+        self, power: Float[np.ndarray, "row mode"], nodes: Nodes
+    ) -> Float[np.ndarray, "row product node"]:
+        """Second moments of the nodes from those of the scores."""
+        prior = self.scores.amplitude**2
+        share = power.sum(axis=1) / max(float(prior.sum()), np.finfo(float).tiny)
+        # With one kernel and white noise all scores know the same share of what they varied by.
+        if np.allclose(power, share[:, None] * prior, rtol=1e-9, atol=0.0):
+            return share[:, None, None] * self.prior_moments[:, nodes]
+        return np.tensordot(power, self.products[..., nodes], axes=1)
 
     def _parts(
         self, rows: Float[np.ndarray, "row coordinate"], nodes: Nodes

@@ -234,3 +234,14 @@ def test_an_unknown_frame_is_refused() -> None:
     object.__setattr__(model, "frame", "moon")
     with pytest.raises(InputError, match="frame = 'moon' is not known"):
         model.__post_init__()
+
+
+def test_scores_of_unlike_doubt_are_summed_one_by_one(turnable: FittedShapeGP) -> None:
+    x, _ = in_waves(4, seed=2)
+    prior = turnable.scores.amplitude
+    alike = turnable.variance(x, np.tile(0.3 * prior, (4, 1)), slice(None))
+    # A hair of difference takes the other way, and must not change the sum.
+    unlike = np.tile(0.3 * prior * (1.0 + 1e-7 * np.arange(len(prior))), (4, 1))
+    np.testing.assert_allclose(
+        turnable.variance(x, unlike, slice(None)), alike, rtol=1e-3, atol=1e-7
+    )
