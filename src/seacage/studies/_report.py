@@ -261,9 +261,9 @@ class PaperReport:
                 "The paper's twin hears the current alone and learns from a few minutes of depths "
                 "and a few seconds of loads; which ones, it does not say. The page's figures take "
                 f"{_points(self.judged)} one-minute means "
-                "spread over currents and days. Beside it stand five minutes of readings in a "
-                "row, and the same spread lesson for a twin that hears the waves, too. All are "
-                "judged on the same means over a minute.",
+                "spread over currents and days. Beside it stand readings in a row, five minutes "
+                "of a depth and ten seconds of a load, and the same spread lesson for a twin that "
+                "hears the waves, too. All are judged on the same means over a minute.",
             ),
             picture(
                 figure,

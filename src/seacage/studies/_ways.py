@@ -20,12 +20,6 @@ SPREAD, IN_A_ROW, HEARING = (
 )
 """Names of the ways: the page's own, the paper's minutes read as a row, and one that hears more."""
 
-_READING_S = 2.0
-"""Between the paper's readings [s]."""
-
-_ROW = 150
-"""Readings in a row: five minutes, for the paper's "few minutes"."""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Way:
@@ -95,8 +89,7 @@ def ways_of(recipe: Recipe, *, waves: bool) -> tuple[Way, ...]:
     spread = recipe.training
     ways = [Way(name=SPREAD, training=spread)]
     if recipe.in_time:
-        in_a_row = replace(spread, choice="paper", mean_s=_READING_S, high_fidelity_points=_ROW)
-        ways.append(Way(name=IN_A_ROW, training=in_a_row))
+        ways.append(Way(name=IN_A_ROW, training=replace(spread, choice="paper")))
     if waves:
         hearing = replace(spread, inputs=("current", "waves"))
         ways.append(Way(name=HEARING, training=hearing))
