@@ -30,7 +30,7 @@ class Recipe:
 
 RECIPES: Mapping[str, Recipe] = {
     "paper": Recipe(width=64, epochs=150, patience=30, learning_rate=5e-3),
-    "modal": Recipe(width=16, epochs=400, patience=80, learning_rate=3e-3),
+    "modal": Recipe(width=16, epochs=800, patience=200, learning_rate=3e-3),
 }
 
 LARGEST_BATCH, FEWEST_BATCHES = 64, 10
