@@ -15,7 +15,7 @@ from seacage.surrogates import (
     variance_components,
 )
 from seacage.twin._align import Pairs
-from seacage.twin._correction import Correction, Said, Spread
+from seacage.twin._correction import LEAST_SHARE, Correction, Said, Spread
 
 DAY = 86400.0
 QUARTER_TIDE = 10800.0
@@ -133,6 +133,9 @@ def own_spread(model: Correction, kept: Judged, blocks: int) -> Spread:
     # Some are below 0, as the noise is known on average alone.
     square = kept.error**2 - kept.white
     scale2, water2 = variance_components(terms, square).tolist()
+    # A twin that is as good as its sensors can be is still not perfect.
+    least = LEAST_SHARE * float(np.mean(kept.error**2)) / float(np.mean(kept.doubt))
+    scale2 = max(scale2, least) if water2 == 0.0 else scale2
     fitted = replace(model.spread, scale=math.sqrt(scale2), water_sd=math.sqrt(water2), by="own")
     factor = conformal_factor(kept.score(fitted), independent=max(blocks, 2))
     return replace(fitted, scale=fitted.scale * factor, water_sd=fitted.water_sd * factor)

@@ -18,8 +18,9 @@ HOUR = 3_600_000_000
 PROOF_SD = 2.0
 """Standard errors by which a lesson has to beat level 1 to be believed [-]."""
 
-LEAST_SHARE = 0.1
-"""Of the noise that a lesson found: what is the cage's and not the instrument's, at least."""
+LEAST_SHARE = 0.5
+"""Of the noise that a lesson found: what is the cage's and not the instrument's, at least. Where a
+sensor is met to its own noise, the two cannot be told apart, and too wide is better."""
 
 Features = Float[np.ndarray, "case feature"]
 
@@ -157,7 +158,7 @@ class Correction:
         """Variance that the lesson gives to what lies behind a reading, before calibration.
 
         Of the noise that the lesson found, the instrument's share is taken out, but never more
-        than nine tenths.
+        than half.
         """
         found = float(self.rest.upper[-1].noise[0])
         own = max(found - self.spread.white, LEAST_SHARE * found)

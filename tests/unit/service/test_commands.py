@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from safetensors.numpy import load_file
 from typer.testing import CliRunner
 
 from seacage.cage import Cage
@@ -241,6 +242,25 @@ def test_a_twin_is_trained_and_scored_on_what_did_not_teach_it(tmp_path, monkeyp
     assert {one["origin"] for one in scored["sensors"]} == {"virtual field"}
     assert all(one["raw"]["multi_mae"] < one["raw"]["low_mae"] for one in scored["sensors"])
     assert len(list(scores.glob("*.svg"))) == 4
+    # A twin of level 1 alone is the base that one sensor is then added to.
+    alone, added = tmp_path / "alone", tmp_path / "added"
+    answer("train", "--campaign", tmp_path, "--out", alone, "--points", 30)
+    words = ("train", "--base", alone, *field, "--out", added, "--points", 30, "--days", 2)
+    again = answer(*words)
+    assert again["level"] == said["level"]
+    assert set(again["calibrated"]) == set(two)
+    arrays = [load_file(one / "arrays.safetensors") for one in (alone, added)]
+    assert arrays[0]
+    for name, values in arrays[0].items():
+        np.testing.assert_array_equal(arrays[1][name], values, err_msg=name)
+
+
+@pytest.mark.parametrize("given", [(), ("--campaign", "HERE", "--base", "HERE")])
+def test_training_wants_either_simulations_or_a_base(tmp_path, given):
+    words = [tmp_path if word == "HERE" else word for word in given]
+    result = run("train", *words, "--out", tmp_path / "twin")
+    assert result.exit_code == 1
+    assert "either --campaign" in result.stderr
 
 
 def test_a_new_token_stands_alone_on_the_last_line(tmp_path):

@@ -60,11 +60,17 @@ def test_few_blocks_widen_what_is_calibrated():
 
 def test_the_instruments_noise_is_no_error_of_the_twin():
     random = np.random.default_rng(2)
-    error = np.hypot(0.3, 0.4) * random.standard_normal(4000)
+    error = np.hypot(0.4, 0.3) * random.standard_normal(4000)
     spread = own_spread(
-        model(), judged(error, np.ones(4000), np.zeros(4000), white=0.4**2), blocks=4000
+        model(), judged(error, np.ones(4000), np.zeros(4000), white=0.3**2), blocks=4000
     )
-    assert spread.scale == pytest.approx(0.3, rel=0.07)
+    assert spread.scale == pytest.approx(0.4, rel=0.07)
+
+
+def test_a_sensor_that_the_twin_meets_to_its_noise_still_leaves_some_doubt():
+    error = 0.4 * np.random.default_rng(6).standard_normal(500)
+    spread = own_spread(model(), judged(error, np.ones(500), np.zeros(500), white=0.2), blocks=500)
+    assert spread.scale > 0.05
 
 
 def test_a_short_lesson_is_as_unsure_as_such_lessons_were_on_other_sensors():

@@ -1,21 +1,35 @@
 """``seacage train``: from simulations and sensors to a twin."""
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
 from seacage.service._commands._settle import read_cage
 from seacage.service._console import Json, guarded, progress_bar, tell
 
+if TYPE_CHECKING:
+    from seacage.cage import Cage
+    from seacage.records import CampaignRecord
+    from seacage.twin import Twin
+
 
 @guarded
 def train(
     *,
     campaign: Annotated[
-        Path,
+        Path | None,
         typer.Option(exists=True, file_okay=False, help="Simulations, as `campaign run` left."),
-    ],
+    ] = None,
+    base: Annotated[
+        Path | None,
+        typer.Option(
+            exists=True,
+            file_okay=False,
+            help="A twin whose level 1 is taken, instead of --campaign: only sensors that moved, "
+            "or are new, are taught.",
+        ),
+    ] = None,
     field: Annotated[
         Path | None,
         typer.Option(exists=True, file_okay=False, help="A field record; else level 1 alone."),
@@ -33,7 +47,7 @@ def train(
     ] = 300,
     choice: Annotated[
         Literal["spread", "paper"],
-        typer.Option(help="spread over currents and time, or the first ones in a row."),
+        typer.Option(help="spread over currents and time, or the paper's few minutes or seconds."),
     ] = "spread",
     days: Annotated[
         float, typer.Option(min=0.1, help="Longest that a sensor teaches; the rest can judge.")
@@ -49,12 +63,11 @@ def train(
     Example:
         seacage train --campaign ace.zarr --field field --out twin
     """
-    from seacage.cage import Cage
-    from seacage.records import FieldRecord, read_campaign
+    from seacage.records import FieldRecord
     from seacage.twin import Training
     from seacage.twin import train as trained
 
-    simulated = read_campaign(campaign)
+    drawn, simulated, begun = _level_one(campaign, base)
     training = Training(
         inputs=("current", "waves") if inputs == "current,waves" else ("current",),
         high_fidelity_points=points,
@@ -64,9 +77,10 @@ def train(
     )
     with progress_bar() as progress:
         twin = trained(
-            read_cage(cage) if cage else Cage.from_toml(simulated.cage_toml),
+            read_cage(cage) if cage else drawn,
             simulated,
             FieldRecord.read(field) if field else None,
+            base=begun,
             training=training,
             progress=progress,
         )
@@ -76,7 +90,8 @@ def train(
     taught = {name: lessons[name].points if name in lessons else 0 for name in levels}
     tell(
         {"written": str(out), "origin": str(twin.origin), "cases": twin.provenance.cases}
-        | {"level": levels, "points": taught},
+        | {"level": levels, "points": taught}
+        | {"calibrated": {name: lesson.calibrated for name, lesson in lessons.items()}},
         as_json=as_json,
         rows=[
             ("Written", f"{out} ({twin.origin})"),
@@ -84,3 +99,21 @@ def train(
             *((name, f"level {level}, {taught[name]} readings") for name, level in levels.items()),
         ],
     )
+
+
+def _level_one(
+    campaign: Path | None, base: Path | None
+) -> "tuple[Cage, CampaignRecord | None, Twin | None]":
+    """The cage as simulated, and what teaches level 1 or has it."""
+    from seacage.cage import Cage
+    from seacage.conventions import InputError
+    from seacage.records import read_campaign
+    from seacage.twin import Twin
+
+    if campaign and not base:
+        simulated = read_campaign(campaign)
+        return Cage.from_toml(simulated.cage_toml), simulated, None
+    if base and not campaign:
+        begun = Twin.read(base)
+        return begun.cage, None, begun
+    raise InputError("train: give either --campaign, which teaches level 1, or --base.")
