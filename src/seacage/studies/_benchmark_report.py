@@ -185,8 +185,9 @@ class BenchmarkReport:
             tag(
                 "p",
                 f"On the problem “{problem.title.lower()}”, {problem.recipe} cases: what one core "
-                "spends, so that other work on the machine counts little. Medians over seeds; all "
-                "in one run. What a library compiles or loads at its first call is not counted.",
+                "spends, so that other work on the machine counts little; medians over seeds. All "
+                "on one machine, and in one run where the study was told to time it afresh. What "
+                "a library compiles or loads at its first call is not counted.",
             ),
             picture(
                 cost_figure(self._titles, costs, ours=self._ours),

@@ -151,7 +151,7 @@ def _speed(found: Summaries, name: str) -> Verdict:
         claim=claim,
         holds=theirs >= least * ours,
         finding=f"{what} is {number(theirs / ours)} times faster: {_time(ours)} against "
-        f"{_time(theirs)} of one core's time in the same run, medians over seeds.",
+        f"{_time(theirs)} of one core's time, medians over seeds.",
     )
 
 
