@@ -15,7 +15,7 @@ from seacage.service._answers import frame_of, state_of, topology_of
 from seacage.service._clock import Clock
 from seacage.service._mailbox import Mailbox
 from seacage.service._metrics import Metrics
-from seacage.service._past import answered_in, state_at, streams_of
+from seacage.service._past import REMEMBERED, answered_in, state_at, streams_of
 from seacage.service._samples import BUOY_KEYS
 from seacage.service._schemas import State, Topology
 from seacage.service._store import Store
@@ -74,7 +74,7 @@ class LiveCage:
         self._stepping = asyncio.Lock()
         self._mailboxes: set[Mailbox[Snapshot]] = set()
         self._topology: Topology | None = None
-        self._state, answered = state_at(twin, store, name, clock.now())
+        self._state, answered = state_at(twin, store, name, clock.now(), remembered=REMEMBERED)
         self._quality = {stream: taken[-1].quality for stream, taken in self._state.streams.items()}
         self.snapshot = self._shown(answered)
 
