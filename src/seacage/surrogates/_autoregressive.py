@@ -1,7 +1,7 @@
 """Covariance functions of a fidelity over its inputs and the fidelity below."""
 
+import math
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 from jaxtyping import Float
@@ -25,15 +25,27 @@ from seacage.surrogates._kernels import (
 BELL = "squared-exponential"
 LOCAL = StationaryKernel(BELL)
 
+RHO_VARIANCE = (0.0, 4.0)
+DELTA_VARIANCE = (-5.5, 3.0)
+"""Mean and sd of a log variance, the outputs having unit variance."""
+
+RHO_LENGTH = (math.log(8.0), 1.1)
+DELTA_LENGTH = (math.log(3.0), 1.1)
+LINK_LENGTH = (math.log(5.0), 0.9)
+"""Mean and sd of a log length in spreads, for one feature."""
+
 
 @dataclass(frozen=True, slots=True)
 class AutoregressiveKernel(AbstractKernel):
     """The NARGP's covariance over (x, f), f being the level below: the last feature.
 
-    k_rho(x, x') (k_f(f, f') + s f f') + k_delta(x, x'), each a squared exponential with ARD,
+    k_rho(x, x') k_f(f, f') + k_delta(x, x') + s f f', each k a squared exponential with ARD,
     k_f of unit variance because the product needs only one; without ``linear`` there is no s.
     Hyperparameters, in logarithms: rho's variance and lengths, f's length, delta's variance
     and lengths, then s.
+
+    The priors expect the level above to be near a line in the level below, to bend smoothly
+    about it, with a bend that hardly changes over the inputs, and to leave little else.
 
     References
     ----------
@@ -47,8 +59,9 @@ class AutoregressiveKernel(AbstractKernel):
         return "autoregressive-linear" if self.linear else "autoregressive"
 
     def prior(self, width: int) -> Prior:
-        local = [VARIANCE_PRIOR, *length_priors(width - 1)]
-        return prior_of(local + length_priors(1) + local + [VARIANCE_PRIOR] * self.linear)
+        rho = [RHO_VARIANCE, *_lengths(width - 1, *RHO_LENGTH)]
+        delta = [DELTA_VARIANCE, *_lengths(width - 1, *DELTA_LENGTH)]
+        return prior_of([*rho, *_lengths(1, *LINK_LENGTH), *delta, *[VARIANCE_PRIOR] * self.linear])
 
     def covariance(
         self,
@@ -57,16 +70,18 @@ class AutoregressiveKernel(AbstractKernel):
         z: Float[np.ndarray, "n feature"],
     ) -> Float[np.ndarray, "row n"]:
         rho, length, delta, slope = self._split(log_parameters)
-        link = correlation(BELL, length, x[:, -1:], z[:, -1:])
-        link += slope * x[:, -1:] * z[:, -1]
-        link *= LOCAL.covariance(rho, x[:, :-1], z[:, :-1])
-        return link + LOCAL.covariance(delta, x[:, :-1], z[:, :-1])
+        covariance = correlation(BELL, length, x[:, -1:], z[:, -1:])
+        covariance *= LOCAL.covariance(rho, x[:, :-1], z[:, :-1])
+        covariance += LOCAL.covariance(delta, x[:, :-1], z[:, :-1])
+        if self.linear:
+            covariance += (slope * x[:, -1:]) * z[:, -1]
+        return covariance
 
     def variance(
         self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "row feature"]
     ) -> Float[np.ndarray, " row"]:
         rho, _, delta, slope = self._split(log_parameters)
-        return np.exp(rho[0]) * (1.0 + slope * x[:, -1] ** 2) + np.exp(delta[0])
+        return np.exp(rho[0]) + np.exp(delta[0]) + slope * x[:, -1] ** 2
 
     def with_pullback(
         self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "n feature"]
@@ -77,10 +92,12 @@ class AutoregressiveKernel(AbstractKernel):
         k_f, pull_f = unit(BELL, length, below)
         k_delta, pull_delta = scaled(BELL, delta, local)
         straight = slope * below * below[:, 0]
-        link = k_f + straight
 
-        pulls = (pull_rho, pull_f, pull_delta)
-        return k_rho * link + k_delta, partial(self._pulled, k_rho, link, straight, pulls)
+        def pullback(adjoint: Float[np.ndarray, "n n"]) -> Float[np.ndarray, " parameter"]:
+            parts = [pull_rho(adjoint * k_f), pull_f(adjoint * k_rho), pull_delta(adjoint)]
+            return np.concatenate(parts + [[np.sum(adjoint * straight)]] * self.linear)
+
+        return k_rho * k_f + k_delta + straight, pullback
 
     def slope(
         self,
@@ -91,34 +108,19 @@ class AutoregressiveKernel(AbstractKernel):
     ) -> Float[np.ndarray, "row feature"]:
         rho, length, delta, slope = self._split(log_parameters)
         (local, below), (local_z, below_z) = ((at[:, :-1], at[:, -1:]) for at in (x, z))
-        link = correlation(BELL, length, below, below_z) + slope * below * below_z[:, 0]
-        by_x = LOCAL.slope(rho, local, local_z, share * link)
+        by_x = LOCAL.slope(rho, local, local_z, share * correlation(BELL, length, below, below_z))
         by_x += LOCAL.slope(delta, local, local_z, share)
-        share = share * LOCAL.covariance(rho, local, local_z)
-        by_below = correlation_slope(BELL, length, below, below_z, share)
+        of_link = share * LOCAL.covariance(rho, local, local_z)
+        by_below = correlation_slope(BELL, length, below, below_z, of_link)
         by_below += slope * (share @ below_z)
         return np.column_stack([by_x, by_below])
 
     def variance_slope(
         self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "row feature"]
     ) -> Float[np.ndarray, "row feature"]:
-        rho, _, _, slope = self._split(log_parameters)
         gradient = np.zeros_like(x)
-        gradient[:, -1] = 2.0 * np.exp(rho[0]) * slope * x[:, -1]
+        gradient[:, -1] = 2.0 * self._split(log_parameters)[3] * x[:, -1]
         return gradient
-
-    def _pulled(
-        self,
-        k_rho: Float[np.ndarray, "n n"],
-        link: Float[np.ndarray, "n n"],
-        straight: Float[np.ndarray, "n n"],
-        pulls: tuple[Pullback, Pullback, Pullback],
-        adjoint: Float[np.ndarray, "n n"],
-    ) -> Float[np.ndarray, " parameter"]:
-        of_link = adjoint * k_rho
-        adjoints = (adjoint * link, of_link, adjoint)
-        parts = [pull(one) for pull, one in zip(pulls, adjoints, strict=True)]
-        return np.concatenate(parts + [[np.sum(of_link * straight)]] * self.linear)
 
     def link_length(self, log_parameters: Float[np.ndarray, " parameter"]) -> float:
         """Length over which the answer bends with f, in the unit of the standardised f."""
@@ -203,6 +205,11 @@ class StraightKernel(AbstractKernel):
 
 LinkKernel = AutoregressiveKernel | StraightKernel
 """Kernels of a level that stands on another."""
+
+
+def _lengths(width: int, mean: float, sd: float) -> list[tuple[float, float]]:
+    # Distances grow with the root of the number of features.
+    return [(mean + 0.5 * math.log(width), sd)] * width
 
 
 def saved_kernel(name: str) -> AbstractKernel:

@@ -10,6 +10,7 @@ from jaxtyping import Float
 from seacage.conventions import InputError
 from seacage.surrogates._arrays import Arrays, Settings, array, setting
 from seacage.surrogates._autoregressive import saved_kernel
+from seacage.surrogates._ensemble import Ensemble, check_ensemble, drawn, is_drawn
 from seacage.surrogates._kernels import AbstractKernel, KernelName, kernel_named
 from seacage.surrogates._learning import Evidence, learned
 from seacage.surrogates._noise import NoiseName, check_noise, noise_named, saved_noise
@@ -47,6 +48,10 @@ class GaussianProcess:
         own share for each. ``"by-input"``: changing smoothly with the inputs, the same share
         for all. ``"student-t"``: with outliers, four degrees of freedom; what is wrong in one
         output of a case is doubted in all.
+    ensemble
+        ``"auto"``: where observations are few, the answer is that of 16 draws of the
+        hyperparameters from their posterior, as one choice of them would be too sure of itself.
+        ``"always"`` and ``"never"`` decide it.
     restarts
         Random starts of the hyperparameter search beside the deterministic one.
 
@@ -57,11 +62,13 @@ class GaussianProcess:
 
     kernel: KernelName = "squared-exponential"
     noise: NoiseName = "white"
+    ensemble: Ensemble = "auto"
     restarts: int = 3
 
     def __post_init__(self) -> None:
         kernel_named(self.kernel)
         check_noise(self.noise)
+        check_ensemble(self.ensemble)
         check_restarts(self.restarts)
 
     def fit(
@@ -89,6 +96,7 @@ class GaussianProcess:
             table,
             taught_by=teachers(table, unlike=self.noise == "per-output"),
             noise=self.noise,
+            ensemble=self.ensemble,
             restarts=self.restarts,
             seed=seed,
         )
@@ -377,6 +385,7 @@ def fitted_process(
     *,
     taught_by: Float[np.ndarray, "n teacher"],
     noise: NoiseName = "white",
+    ensemble: Ensemble = "never",
     restarts: int,
     seed: int,
 ) -> FittedGaussianProcess:
@@ -390,7 +399,7 @@ def fitted_process(
         Inputs and outputs in their own units.
     taught_by
         What the hyperparameters are learned from, of unit variance all in all.
-    noise
+    noise, ensemble
         As for ``GaussianProcess``.
     restarts, seed
         Of the search.
@@ -400,7 +409,9 @@ def fitted_process(
     scatter = noise_named(noise, standardised, outputs=taught_by.shape[1])
     evidence = Evidence.of(kernel, scatter, standardised, taught_by)
     mode = learned(evidence, restarts=restarts, seed=seed)
-    drawn = [mode.log_parameters]
+    hyperparameters = mode.log_parameters[None]
+    if is_drawn(ensemble, observations=taught_by.size):
+        hyperparameters = drawn(mode, seed=seed)
     members = [
         Posterior.conditioned(
             kernel,
@@ -410,7 +421,7 @@ def fitted_process(
             noise=scatter,
             doubt=mode.evidence.doubt,
         )
-        for log_parameters in drawn
+        for log_parameters in hyperparameters
     ]
     share = np.full(len(members), 1.0 / len(members))
     # Each output's own variance, held to the shared one by a few points' worth of belief:

@@ -24,6 +24,9 @@ SUBSET = 250
 POLISH = 12
 """L-BFGS steps on all points from there; without them coverage falls far below nominal."""
 
+REACH = 4.0
+"""Sd of the prior either way that the kernel's hyperparameters may lie in."""
+
 NOISE_STARTS = (math.log(1e-3), math.log(0.1))
 """Logarithms of the noise's share of the outputs' unit variance."""
 
@@ -69,6 +72,14 @@ class Evidence:
         """Of all hyperparameters."""
         kernel, noise = self.kernel.prior(self.x.shape[1]), self.noise.prior()
         return Prior(mean=np.append(kernel.mean, noise.mean), sd=np.append(kernel.sd, noise.sd))
+
+    def bounds(self) -> Float[np.ndarray, "parameter 2"]:
+        """Least and largest of each; within them the covariance can be factorised."""
+        prior = self.prior()
+        bounds = np.stack([prior.mean - REACH * prior.sd, prior.mean + REACH * prior.sd], axis=1)
+        count = len(prior.mean) - len(self.noise.prior().mean)
+        bounds[count : count + self.noise.sizes] = NOISE_BOUNDS
+        return bounds
 
     def split(
         self, log_parameters: Float[np.ndarray, " parameter"]
@@ -211,7 +222,7 @@ def improved(evidence: Evidence, start: Float[np.ndarray, " parameter"], *, step
     """The nearest mode, or what so many steps come to."""
     from scipy.optimize import minimize
 
-    bounds = _bounds(evidence)
+    bounds = evidence.bounds()
     end = minimize(
         evidence.loss,
         np.clip(start, bounds[:, 0], bounds[:, 1]),
@@ -239,12 +250,3 @@ def _starts(
         level = noise.mean.copy()
         level[: evidence.noise.sizes] = NOISE_STARTS[draw % 2]
         yield np.append(kernel.mean + kernel.sd * scatter, level)
-
-
-def _bounds(evidence: Evidence) -> Float[np.ndarray, "parameter 2"]:
-    # Four sd either way keep the covariance well enough conditioned to factorise.
-    prior = evidence.prior()
-    bounds = np.stack([prior.mean - 4.0 * prior.sd, prior.mean + 4.0 * prior.sd], axis=1)
-    count = len(prior.mean) - len(evidence.noise.prior().mean)
-    bounds[count : count + evidence.noise.sizes] = NOISE_BOUNDS
-    return bounds

@@ -18,6 +18,7 @@ from seacage.surrogates._arrays import (
     within,
 )
 from seacage.surrogates._autoregressive import AutoregressiveKernel, LinkKernel
+from seacage.surrogates._ensemble import Ensemble, check_ensemble
 from seacage.surrogates._gaussian_process import (
     FittedGaussianProcess,
     check_restarts,
@@ -47,10 +48,12 @@ class AbstractMultifidelity(ABC):
     """Levels of fidelity learned one after the other, each on the one below; not yet fitted."""
 
     noise: NoiseName = "white"
+    ensemble: Ensemble = "auto"
     restarts: int = 3
 
     def __post_init__(self) -> None:
         check_noise(self.noise)
+        check_ensemble(self.ensemble)
         check_restarts(self.restarts)
 
     @property
@@ -122,6 +125,7 @@ class AbstractMultifidelity(ABC):
             y,
             taught_by=teachers(y),
             noise=self.noise,
+            ensemble=self.ensemble,
             restarts=self.restarts,
             seed=seed,
         )
@@ -138,9 +142,10 @@ class NARGP(AbstractMultifidelity):
     Parameters
     ----------
     linear
-        Add a linear term in the level below to the kernel, which extrapolates a plain ratio of
-        the two; False is the kernel as published.
-    noise
+        Add a term to the kernel that is linear in the level below, the same everywhere, which
+        carries a plain ratio of the two to where nothing was observed; False is the kernel as
+        published.
+    noise, ensemble
         Of every level, as for ``GaussianProcess``; a level has one output.
     restarts
         Random starts of each level's hyperparameter search beside the deterministic one.

@@ -14,7 +14,7 @@ from seacage.surrogates._kernels import Prior, StationaryKernel
 
 NoiseName = Literal["white", "per-output", "by-input", "student-t"]
 
-NOISE_PRIOR = (math.log(1e-3), 3.0)
+NOISE_PRIOR = (math.log(1e-5), 2.5)
 NOISE_BOUNDS = (math.log(1e-6), math.log(10.0))
 """Of the logarithm of the noise's share of the outputs' unit variance."""
 

@@ -16,7 +16,7 @@ class AR1(AbstractMultifidelity):
 
     Parameters
     ----------
-    noise, restarts
+    noise, ensemble, restarts
         As for ``NARGP``.
 
     References

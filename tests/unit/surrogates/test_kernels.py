@@ -133,7 +133,7 @@ def test_the_autoregressive_kernel_is_what_the_paper_composes() -> None:
     def bell(distance: float, scale: float) -> float:
         return float(np.exp(-0.5 * (distance / scale) ** 2))
 
-    expected = rho[0] * bell(0.7, rho[1]) * (bell(1.5, length) + slope * -1.0 * 0.5)
+    expected = rho[0] * bell(0.7, rho[1]) * bell(1.5, length) + slope * -1.0 * 0.5
     expected += delta[0] * bell(0.7, delta[1])
     np.testing.assert_allclose(kernel.covariance(log_parameters, x, z), [[expected]], rtol=1e-13)
 

@@ -81,7 +81,7 @@ def test_uncertainty_agrees_with_a_hundred_thousand_draws_through_three_levels(k
     x1 = X1[np.linspace(0.0, 49.0, known).round().astype(int)]
     x3 = X2[:10] + 0.004
     levels = [(x1, low(x1)), (X2, high(X2)), (x3, highest(x3))]
-    fitted = NARGP(restarts=1).fit(levels, seed=0)
+    fitted = NARGP(restarts=1, ensemble="never").fit(levels, seed=0)
     random, draws = np.random.default_rng(0), 100_000
     for x in np.array([[0.03], [0.47], [0.81]]):
         base = fitted.predict(x[None], level=1)
@@ -99,7 +99,9 @@ def test_uncertainty_agrees_with_a_hundred_thousand_draws_through_three_levels(k
 def test_a_higher_level_is_never_surer_than_what_it_rests_on() -> None:
     # Level 2 is a plain ratio of a level 1 with a gap in it.
     x1 = X1[(X1[:, 0] < 0.3) | (X1[:, 0] > 0.7)]
-    fitted = NARGP(restarts=1).fit([(x1, low(x1)), (X2[:4], 2.0 * low(X2[:4]))], seed=0)
+    fitted = NARGP(restarts=1, ensemble="never").fit(
+        [(x1, low(x1)), (X2[:4], 2.0 * low(X2[:4]))], seed=0
+    )
     gap = np.array([[0.5]])
     assert fitted.predict(gap).std > fitted.predict(gap, level=1).std
 
@@ -109,7 +111,7 @@ def test_the_jacobian_goes_through_the_levels(level: int) -> None:
     # With 9 inputs level 1 is poor, so that many nodes share in it.
     x1 = X1[np.linspace(0.0, 49.0, 9).round().astype(int)]
     levels = [(x1, low(x1)), (X2, high(X2)), (X2[:10], highest(X2[:10]))]
-    fitted = NARGP(restarts=0).fit(levels)
+    fitted = NARGP(restarts=0, ensemble="never").fit(levels)
     x, step = NEW[20::40], 1e-6
     up, down = (fitted.predict(at, level=level).mean for at in (x + step, x - step))
     # A step may change the rule of a row, whose mean is exact to a thousandth of its sd.
@@ -120,7 +122,7 @@ def test_the_jacobian_goes_through_the_levels(level: int) -> None:
 
 def test_the_jacobian_on_a_lent_level_1_is_that_on_an_own_one() -> None:
     base = GaussianProcess(restarts=0).fit(X1, low(X1))
-    fitted = NARGP(restarts=0).fit([(X2, high(X2))], lower=base)
+    fitted = NARGP(restarts=0, ensemble="never").fit([(X2, high(X2))], lower=base)
     answered = replace(fitted, lent=Lent(base))
     np.testing.assert_allclose(answered.jacobian(NEW), fitted.jacobian(NEW), atol=1e-3)
     np.testing.assert_allclose(answered.jacobian(NEW, level=1), base.jacobian(NEW), atol=1e-3)
@@ -145,7 +147,7 @@ def test_an_update_answers_as_if_all_cases_had_been_there(two_levels: FittedNARG
 def test_an_update_in_the_middle_moves_only_what_stands_on_it() -> None:
     sparse = X2[::2]
     levels = [(X1, low(X1)), (sparse, high(sparse)), (X2[:10], highest(X2[:10]))]
-    fitted = NARGP(restarts=0).fit(levels)
+    fitted = NARGP(restarts=0, ensemble="never").fit(levels)
     updated = fitted.updated(X2[1::2], high(X2[1::2]), level=2)
     assert updated.own[0] is fitted.own[0]
     moved = updated.own[2].cases()
@@ -159,7 +161,7 @@ def test_an_update_in_the_middle_moves_only_what_stands_on_it() -> None:
 
 def test_an_update_leaves_what_was_taught_nested() -> None:
     levels = [(X1, low(X1)), (X2, high(X2)), (X2[:10], highest(X2[:10]))]
-    fitted = NARGP(restarts=0).fit(levels, nested=True)
+    fitted = NARGP(restarts=0, ensemble="never").fit(levels, nested=True)
     updated = fitted.updated(X2 + 0.01, high(X2 + 0.01), level=2)
     assert updated.own[2] is fitted.own[2]
 
@@ -181,8 +183,8 @@ def test_nested_training_uses_what_was_observed_below() -> None:
     shared = int(np.flatnonzero(X1[:, 0] == X2[5, 0])[0])
     observed[shared] += 0.7
     levels = [(X1, observed), (X2, high(X2))]
-    nested = NARGP(restarts=0).fit(levels, nested=True).own[1]
-    by_mean = NARGP(restarts=0).fit(levels).own[1]
+    nested = NARGP(restarts=0, ensemble="never").fit(levels, nested=True).own[1]
+    by_mean = NARGP(restarts=0, ensemble="never").fit(levels).own[1]
 
     def below(process) -> np.ndarray:
         scaled = process.posterior.x[:, -1]
@@ -221,7 +223,7 @@ def test_one_coordinate_of_the_shape_may_be_level_1() -> None:
     shape = np.sin(3.0 * x @ random.standard_normal((2, 12))).reshape(40, 4, 3)
     coordinate = ShapeGP(restarts=0).fit(x, shape).coordinate(2, 1)
     measured = 0.5 * shape[::3, 2, 1] + 0.1 * x[::3, 0]
-    fitted = NARGP(restarts=0).fit([(x[::3], measured)], lower=coordinate)
+    fitted = NARGP(restarts=0, ensemble="never").fit([(x[::3], measured)], lower=coordinate)
     truth = 0.5 * shape[:, 2, 1] + 0.1 * x[:, 0]
     assert rmse(truth, fitted.predict(x).mean) < 0.02
 
@@ -245,7 +247,7 @@ class Straight:
 
 
 def test_a_lent_level_1_needs_no_more_than_a_prediction() -> None:
-    fitted = NARGP(restarts=0).fit([(X1, 3.0 * X1[:, 0] + 1.0)], lower=Straight())
+    fitted = NARGP(restarts=0, ensemble="never").fit([(X1, 3.0 * X1[:, 0] + 1.0)], lower=Straight())
     np.testing.assert_allclose(fitted.predict(NEW).mean, 3.0 * NEW[:, 0] + 1.0, atol=1e-3)
     with pytest.raises(InputError, match="Ask the model that lent it"):
         fitted.predict(NEW, level=1, noisy=True)
@@ -277,5 +279,7 @@ def test_no_level_at_all_is_refused() -> None:
 
 
 def test_a_constant_level_below_teaches_nothing_and_harms_nothing() -> None:
-    fitted = NARGP(restarts=0).fit([(X1, np.full(50, 4.0)), (X1, np.sin(4.0 * X1[:, 0]))], seed=0)
+    fitted = NARGP(restarts=0, ensemble="never").fit(
+        [(X1, np.full(50, 4.0)), (X1, np.sin(4.0 * X1[:, 0]))], seed=0
+    )
     assert rmse(np.sin(4.0 * NEW[:, 0]), fitted.predict(NEW).mean) < 1e-2
