@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from seacage.surrogates import (
+    AR1,
     GCN,
     NARGP,
     Box,
@@ -42,6 +43,28 @@ def test_nargp_keeps_its_promises(linear: bool, levels: int) -> None:
         # The level below bends what the level above has to find.
         cases = [(x, np.hypot(y, step)) for step in range(levels)]
         return NARGP(linear=linear, restarts=0).fit(cases[::-1], seed=seed)
+
+    check_surrogate(fit)
+
+
+def test_the_linear_baseline_keeps_its_promises() -> None:
+    def fit(x: np.ndarray, y: np.ndarray, seed: int) -> FittedNARGP:
+        return AR1(restarts=0).fit([(x, 0.5 * y + x[:, 0]), (x, y)], seed=seed)
+
+    check_surrogate(fit)
+
+
+@pytest.mark.parametrize("noise", ["per-output", "by-input", "student-t"])
+def test_every_noise_keeps_the_promises(noise) -> None:
+    def fit(x: np.ndarray, y: np.ndarray, seed: int) -> FittedGaussianProcess:
+        return GaussianProcess(noise=noise, restarts=0).fit(x, y, seed=seed)
+
+    check_surrogate(fit, output_shape=(3,))
+
+
+def test_an_ensemble_keeps_the_promises() -> None:
+    def fit(x: np.ndarray, y: np.ndarray, seed: int) -> FittedGaussianProcess:
+        return GaussianProcess(ensemble="always", restarts=0).fit(x, y, seed=seed)
 
     check_surrogate(fit)
 
