@@ -15,6 +15,9 @@ if TYPE_CHECKING:
 
 _COLOURS = (MULTI, LOW, "#4f8a4c", "#7d5ba6", "#b08a1e", "#3a9aa3", "#8a5a44")
 
+ABREAST = 3
+"""Names that fit between title and axes."""
+
 
 def shape_error_figure(
     current_speed: Float[np.ndarray, " case"],
@@ -57,7 +60,14 @@ def shape_error_figure(
         axes.set_yscale("log")
         axes.set_xlabel("Current speed [m/s]")
         axes.set_ylabel("Mean absolute node error [m]")
-        head(axes, "Whole shapes, held-out simulations", origin=origin, legend=min(len(errors), 3))
+        head(
+            axes,
+            "Whole shapes, held-out simulations",
+            origin=origin,
+            legend=len(errors) * (len(errors) <= ABREAST),
+        )
+        if len(errors) > ABREAST:
+            figure.legend(loc="outside lower center", ncols=4)
     return figure
 
 
