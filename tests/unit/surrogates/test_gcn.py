@@ -114,7 +114,7 @@ def test_a_saved_network_answers_the_same_where_there_is_no_jax(modal: FittedGCN
     (tmp_path / "settings.json").write_text(json.dumps(settings))
     code = """
 import json, sys
-sys.modules.update(jax=None, equinox=None, optax=None)
+sys.modules.update(jax=None, optax=None)
 import numpy as np
 from seacage.surrogates import decode
 arrays = dict(np.load("arrays.npz"))

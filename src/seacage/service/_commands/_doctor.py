@@ -16,7 +16,7 @@ from seacage.service._console import Exit, Json, guarded, stopped, tell
 
 _EXTRAS = {
     "sim": ("xarray", "zarr", "h5netcdf", "dask", "matplotlib"),
-    "gcn": ("jax", "equinox", "optax"),
+    "gcn": ("jax", "optax"),
     "postgres": ("psycopg",),
     "archive": ("pyarrow",),
     "ros": ("rosbags",),
