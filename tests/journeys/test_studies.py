@@ -113,7 +113,14 @@ def in_waves(study, folder):
     hs = 1.0 + 0.5 * np.sin(np.arange(len(buoy)) / 90.0)
     waves = {"hs_m": hs, "tp_s": 5.0 * np.sqrt(hs), "wave_from_deg": np.full(len(buoy), 270.0)}
     buoy = check_record(replace(buoy, values={**buoy.values, **waves}, flags={}))
-    replace(made.field, buoy=buoy).write(folder / "field")
+    kept = np.arange(len(buoy)) % 50 != 7  # the radio lost some words; the truth has them all
+    heard = replace(
+        buoy,
+        time=buoy.time[kept],
+        values={key: column[kept] for key, column in buoy.values.items()},
+        flags={key: flags[kept] for key, flags in buoy.flags.items()},
+    )
+    replace(made.field, buoy=heard).write(folder / "field")
     replace(made.truth, buoy=buoy).write(folder / "field" / "truth")
     return folder / "campaign.zarr", folder / "field"
 
@@ -141,7 +148,7 @@ def test_a_given_campaign_and_field_are_studied_with_and_without_waves(in_waves,
     ]
     readings = {(one.sensor, one.raw.readings) for way in study.ways for one in way.sensors}
     assert len(readings) == len(SMALL.sensor_names), "all ways are judged on the same readings"
-    assert {one.inputs for one in study.shapes} == {"current", "current and waves"}
+    assert {one.inputs for one in study.shapes} > {"current", "current and waves"}
     page = study.report.read_text("utf-8")
     assert "What teaches, and what is heard" in page
     assert page.count("data:image/svg+xml") == 7

@@ -30,6 +30,8 @@ _HEXAGONS = 42
 _MOST_POINTS, _STROKES = 12000, 2400
 """Points that a line is drawn through, and strokes that stand for more of them."""
 
+_SILENCE = np.timedelta64(20, "m")
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Comparison:
@@ -245,6 +247,9 @@ def _draw_readings(
         return
     first = np.arange(0, len(time), -(-len(time) // _STROKES))
     least, most = np.minimum.reduceat(reading, first), np.maximum.reduceat(reading, first)
+    # A stroke ends where readings do: nothing is drawn over a silence.
+    silent = np.append(np.diff(time[first]) > _SILENCE, False)
+    least[silent] = most[silent] = np.nan
     axes.fill_between(
         time[first], least, most, step="post", color=SENSOR, alpha=0.75, lw=0.3, label=sensor
     )

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 _LOOKS = ((LOW, "o"), (MULTI, "D"), ("#4f8a4c", "s"), ("#7d5ba6", "^"), (SENSOR, "v"))
 _NOMINAL = 0.95
+_MOST = 2.0
+"""Times the low fidelity's error that are drawn; what is more stands at this edge."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -59,11 +61,14 @@ def lessons_figure(
         ):
             height = place + 0.13 * ((len(ways) - 1) / 2.0 - number)
             for axes, value in ((left, one.error), (middle, one.crps), (right, one.coverage)):
+                shown = np.minimum(value, _MOST)
                 axes.plot(
-                    value, height, mark, color=colour, ms=5.0, mec="white", mew=0.5, label=name
+                    shown, height, mark, color=colour, ms=5.0, mec="white", mew=0.5, label=name
                 )
-        _finish(left, "Error over low fidelity's", "MAE / low-fidelity MAE [-]")
-        _finish(middle, "Score over low fidelity's", "CRPS / low-fidelity MAE [-]")
+        _finish(left, "Error over low fidelity's", f"MAE / low-fidelity MAE [-], at most {_MOST:g}")
+        _finish(
+            middle, "Score over low fidelity's", f"CRPS / low-fidelity MAE [-], at most {_MOST:g}"
+        )
         _finish(right, "Inside the 95 % interval", "Share of readings [-]", line=_NOMINAL)
         left.set_yticks(place, sensors)
         right.set_xlim(right=1.01)

@@ -57,7 +57,7 @@ def shape_views_figure(
     """
     models = list(views[0].predicted)
     with style():
-        figure = blank_figure(3.7 * len(models), 0.5 + 2.45 * len(views))
+        figure = blank_figure(3.7 * len(models), 0.5 + 3.0 * len(views))
         grid = figure.subplots(
             len(views), len(models), squeeze=False, subplot_kw={"projection": "3d"}
         ).tolist()
@@ -89,7 +89,7 @@ def _draw(
     axes.plot(*pair.T, color="black", lw=1.4, marker="o", ms=2.5)
     axes.text2D(
         0.5,
-        0.02,
+        -0.04,
         f"mean {distance.mean():.2g} m, worst node {distance[worst]:.2g} m",
         transform=axes.transAxes,
         ha="center",
@@ -109,7 +109,7 @@ def _frame(axes: Any, every: Float[np.ndarray, "node 3"]) -> None:
         axis.line.set_color(MUTED)
         axes.tick_params(axis=name, labelsize=6.5, pad=-2)
         axes.locator_params(axis=name, nbins=4)
-    axes.set_box_aspect(tuple(half), zoom=1.42)
+    axes.set_box_aspect(tuple(half), zoom=1.3)
     axes.set_xlabel("x [m]", labelpad=-6)
     axes.set_ylabel("y [m]", labelpad=-6)
     axes.set_zlabel("z [m]", labelpad=-8)

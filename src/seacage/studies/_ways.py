@@ -7,7 +7,6 @@ from functools import reduce
 import numpy as np
 from jaxtyping import Shaped
 
-from seacage.records import FieldRecord
 from seacage.studies._chain import Chain, Recipe
 from seacage.studies._sensor_scores import Readings, SensorScore, compared, score_sensor
 from seacage.studies._split import split
@@ -106,9 +105,11 @@ def judge(chain: Chain, ways: Sequence[Way]) -> Judged:
     days = chain.recipe.teaching_days
     _, judging = split(chain.field, teaching_days=days)
     _, truth = split(chain.truth, teaching_days=days)
+    truth = replace(truth, buoy=judging.buoy)  # what was heard, gaps and all, not what was true
     twins = [Twin.read(chain.trained(way.training)) for way in ways]
-    said = [_said(twin, chain.field, judging) for twin in twins]
-    exact = _said(twins[0], chain.field, truth)
+    answers = [twin.predict_record(chain.field.buoy) for twin in twins]
+    said = [compared(answer, judging) for answer in answers]
+    exact = compared(answers[0], truth)
     common = {name: reduce(np.intersect1d, (one[name].time for one in said)) for name in said[0]}
     total, scores = len(ways) * len(common), []
     for number, (way, twin, readings) in enumerate(zip(ways, twins, said, strict=True)):
@@ -128,11 +129,6 @@ def judge(chain: Chain, ways: Sequence[Way]) -> Judged:
     chain.report("score", total, total)
     first = {name: _at(said[0][name], time) for name, time in common.items()}
     return Judged(twin=twins[0], readings=first, ways=tuple(scores))
-
-
-def _said(twin: Twin, field: FieldRecord, judging: FieldRecord) -> dict[str, Readings]:
-    """Readings to judge on beside what a twin says; its buoy is heard all along."""
-    return compared(twin.predict_record(field.buoy), judging)
 
 
 def _at(readings: Readings, time: Shaped[np.ndarray, " t"]) -> Readings:
