@@ -132,8 +132,9 @@ class AutoregressiveKernel(AbstractKernel):
         Float[np.ndarray, " local"], Float[np.ndarray, "1"], Float[np.ndarray, " local"], float
     ]:
         local = (len(log_parameters) - 1 - self.linear) // 2
-        rho, length, delta, rest = np.split(log_parameters, [local, local + 1, 2 * local + 1])
-        return rho, length, delta, float(np.exp(rest[0])) if self.linear else 0.0
+        rho, length = log_parameters[:local], log_parameters[local : local + 1]
+        delta = log_parameters[local + 1 : 2 * local + 1]
+        return rho, length, delta, math.exp(log_parameters[-1]) if self.linear else 0.0
 
 
 @dataclass(frozen=True, slots=True)

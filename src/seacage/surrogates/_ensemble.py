@@ -81,7 +81,11 @@ def drawn(mode: Mode, *, seed: int) -> Float[np.ndarray, "member parameter"]:
             step *= math.exp((chance - ACCEPTED) / math.sqrt(1.0 + turn))
         elif (turn - WARM_UP) % THINNING == THINNING - 1:
             kept.append(np.clip(at, *bounds))
-    return np.stack(sorted(kept, key=lambda draw: _held_loss(mode.evidence, draw)[0]))
+
+    def loss(draw: Parameters) -> float:
+        return _held_loss(mode.evidence, draw)[0]
+
+    return np.stack(sorted(kept, key=loss))
 
 
 def _trajectory(

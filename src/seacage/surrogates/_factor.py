@@ -56,9 +56,11 @@ class Cholesky:
 
     def explained(self, cross: Float[np.ndarray, "row n"]) -> Float[np.ndarray, "row 1"]:
         """Of each row's variance, by the cases that it varies with."""
-        from scipy.linalg import solve_triangular
+        from scipy.linalg import get_lapack_funcs
 
-        half = solve_triangular(self.lower, cross.T, lower=True, check_finite=False)
+        # Called bare: for one row, looking at the arguments first would cost as much again.
+        (trtrs,) = get_lapack_funcs(("trtrs",), (self.lower,))
+        half = trtrs(self.lower, cross.T, lower=True)[0]
         return np.einsum("nr,nr->r", half, half)[:, None]
 
     def precision(self) -> Float[np.ndarray, "n 1"]:
@@ -90,7 +92,7 @@ class Cholesky:
         side = solve_triangular(self.lower, cross.T, lower=True, check_finite=False).T
         left = np.diag(corner) * (1.0 + JITTERS[0]) + noise - np.sum(side**2, axis=1)
         old, new = len(self.lower), len(corner)
-        lower = np.zeros((old + new, old + new))
+        lower = np.zeros((old + new, old + new), order="F")
         lower[:old, :old], lower[old:, :old] = self.lower, side
         lower[old:, old:] = _lower(corner - side @ side.T, left)
         return replace(self, lower=lower)
