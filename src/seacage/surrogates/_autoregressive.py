@@ -31,8 +31,14 @@ DELTA_VARIANCE = (-5.5, 3.0)
 
 RHO_LENGTH = (math.log(8.0), 1.1)
 DELTA_LENGTH = (math.log(3.0), 1.1)
-LINK_LENGTH = (math.log(5.0), 0.9)
+LINK_LENGTH = (math.log(6.0), 0.9)
 """Mean and sd of a log length in spreads, for one feature."""
+
+KNOWN_LENGTH = (0.2, 0.5)
+"""Mean and sd of delta's log length less that of the lowest level, where that is known."""
+
+STRANGE = 2.5
+"""A log length of the lowest level counts as known only so far from delta's general one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +51,16 @@ class AutoregressiveKernel(AbstractKernel):
     and lengths, then s.
 
     The priors expect the level above to be near a line in the level below, to bend smoothly
-    about it, with a bend that hardly changes over the inputs, and to leave little else.
+    about it, with a bend that hardly changes over the inputs, and to leave little else, which
+    varies over the inputs about as fast as the lowest level does.
+
+    Parameters
+    ----------
+    linear
+        Whether there is an s.
+    lengths
+        Log lengths of the lowest level, in spreads of the inputs; empty where they are not
+        known. They shape the prior alone.
 
     References
     ----------
@@ -53,6 +68,7 @@ class AutoregressiveKernel(AbstractKernel):
     """
 
     linear: bool
+    lengths: tuple[float, ...] = ()
 
     @property
     def name(self) -> str:
@@ -60,7 +76,7 @@ class AutoregressiveKernel(AbstractKernel):
 
     def prior(self, width: int) -> Prior:
         rho = [RHO_VARIANCE, *_lengths(width - 1, *RHO_LENGTH)]
-        delta = [DELTA_VARIANCE, *_lengths(width - 1, *DELTA_LENGTH)]
+        delta = [DELTA_VARIANCE, *self._delta_lengths(width - 1)]
         return prior_of([*rho, *_lengths(1, *LINK_LENGTH), *delta, *[VARIANCE_PRIOR] * self.linear])
 
     def covariance(
@@ -121,6 +137,17 @@ class AutoregressiveKernel(AbstractKernel):
         gradient = np.zeros_like(x)
         gradient[:, -1] = 2.0 * self._split(log_parameters)[3] * x[:, -1]
         return gradient
+
+    def _delta_lengths(self, width: int) -> list[tuple[float, float]]:
+        general = _lengths(width, *DELTA_LENGTH)
+        if not self.lengths:
+            return general
+        shift, sd = KNOWN_LENGTH
+        held = [
+            min(max(known, mean - STRANGE), mean + STRANGE)
+            for known, (mean, _) in zip(self.lengths, general, strict=True)
+        ]
+        return [(known + shift, sd) for known in held]
 
     def link_length(self, log_parameters: Float[np.ndarray, " parameter"]) -> float:
         """Length over which the answer bends with f, in the unit of the standardised f."""

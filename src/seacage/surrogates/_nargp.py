@@ -7,6 +7,7 @@ from typing import ClassVar, Self
 
 import numpy as np
 from jaxtyping import Float
+from numpy.typing import ArrayLike
 
 from seacage.conventions import InputError, ModelError
 from seacage.surrogates._arrays import (
@@ -35,6 +36,7 @@ from seacage.surrogates._prediction import (
     checked_outputs,
 )
 from seacage.surrogates._quadrature import carried, carried_slope
+from seacage.surrogates._scaling import Scaling
 
 DIFFERENCE = 1e-4
 """Step of central differences, in spreads of a feature; their error falls with its square."""
@@ -56,10 +58,16 @@ class AbstractMultifidelity(ABC):
         check_ensemble(self.ensemble)
         check_restarts(self.restarts)
 
-    @property
     @abstractmethod
-    def link(self) -> LinkKernel:
-        """Covariance of a level over its inputs and the level below."""
+    def link(self, lengths: tuple[float, ...]) -> LinkKernel:
+        """Covariance of a level over its inputs and the level below.
+
+        Parameters
+        ----------
+        lengths
+            Log lengths of the lowest level, in spreads of this level's inputs; empty where a
+            lent one does not tell.
+        """
 
     def fit(
         self,
@@ -106,7 +114,7 @@ class AbstractMultifidelity(ABC):
                     below = _observed_below(x, cases[index - 1], level=index + 1, what=what)
                 else:
                     below = _one_per_row(fitted.predict(x).mean, what=what)
-                kernel, inputs = self.link, np.column_stack([x, below])
+                kernel, inputs = self.link(_lengths_below(fitted, x)), np.column_stack([x, below])
             added = self._process(kernel, inputs, y[:, None], seed=seeds[index])
             fitted = replace(fitted, own=(*fitted.own, added))
         return fitted
@@ -158,9 +166,8 @@ class NARGP(AbstractMultifidelity):
 
     linear: bool = True
 
-    @property
-    def link(self) -> LinkKernel:
-        return AutoregressiveKernel(linear=self.linear)
+    def link(self, lengths: tuple[float, ...]) -> LinkKernel:
+        return AutoregressiveKernel(linear=self.linear, lengths=lengths)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -269,6 +276,7 @@ class FittedNARGP:
         """
         level = self._level(level, lowest=2, what="updated")
         x = checked_inputs(x, what="updated", width=self._width)
+        y = checked_outputs(y, what="updated", rows=len(x), shape="(rows,)", least=1)
         below = self.predict(x, level=level - 1).mean
         process = self.upper[level - 2].updated(np.column_stack([x, below]), y)
         fitted = self._replaced(level, process)
@@ -391,7 +399,9 @@ class _Step:
         return self.process.moments(np.column_stack([x, below]))
 
 
-def _checked_cases(levels: Sequence[Cases], *, first: int, what: str) -> list[Cases]:
+def _checked_cases(
+    levels: Sequence[tuple[ArrayLike, ArrayLike]], *, first: int, what: str
+) -> list[Cases]:
     if len(levels) == 0:
         raise InputError(f"{what}: there is no level to learn. Give (x, y) of each, low to high.")
     cases: list[Cases] = []
@@ -416,6 +426,15 @@ def _observed_below(
             "there."
         )
     return np.array(values)
+
+
+def _lengths_below(fitted: FittedNARGP, x: Float[np.ndarray, "n feature"]) -> tuple[float, ...]:
+    """Log lengths of the lowest level in spreads of these inputs, where it was learned here."""
+    if fitted.lent is not None:
+        return ()
+    lowest = fitted.own[0]
+    log_length = lowest.posterior.log_parameters[1:]
+    return tuple((log_length + np.log(lowest.inputs.unit / Scaling.of(x).unit)).tolist())
 
 
 def _one_per_row(mean: Float[np.ndarray, "n *rest"], *, what: str) -> Float[np.ndarray, " n"]:

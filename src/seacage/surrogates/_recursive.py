@@ -26,6 +26,5 @@ class AR1(AbstractMultifidelity):
     Uncertainty Quantification 4:365-386, for the recursion.
     """
 
-    @property
-    def link(self) -> LinkKernel:
+    def link(self, lengths: tuple[float, ...]) -> LinkKernel:  # noqa: ARG002
         return StraightKernel()

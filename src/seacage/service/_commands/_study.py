@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from seacage.conventions import InputError
 from seacage.service._commands._score import error_rows, error_table
 from seacage.service._console import Json, guarded, progress_bar, tell
 
@@ -270,5 +269,7 @@ def _seeds(written: str) -> range:
     """The seeds of ``5``, or of ``0-9``."""
     first, dash, last = written.partition("-")
     if not first.isdecimal() or (dash and not last.isdecimal()):
+        from seacage.conventions import InputError
+
         raise InputError(f"--seeds {written} is not a range of seeds. Write 0-9, or a single one.")
     return range(int(first), int(last or first) + 1)
