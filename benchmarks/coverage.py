@@ -62,7 +62,7 @@ def pooled(results: list[dict], sensors: str, kind: str) -> str:
     beside = "same_hours" if kind == "online" else "offline"
     ratio = {
         plain: np.mean([one[kind]["crps"] / one[plain]["crps"] for one in rows])
-        for plain in ("plain", "plain_noisy")
+        for plain in ("plain", "plain_noisy", "published", "published_noisy")
     }
     per_seed = [
         np.mean(
@@ -79,7 +79,8 @@ def pooled(results: list[dict], sensors: str, kind: str) -> str:
     text += " ".join(f"{third:.3f}" for third in thirds)
     if kind == "offline":
         text += (
-            f"; CRPS {ratio['plain']:.3f} of plain NARGP's, {ratio['plain_noisy']:.3f} with noise"
+            f"; CRPS {ratio['plain']:.3f} of plain NARGP's, {ratio['plain_noisy']:.3f} with noise, "
+            f"{ratio['published']:.3f} and {ratio['published_noisy']:.3f} of the published kernel's"
         )
     elif kind == "online":
         against = np.mean([one["online"]["crps"] / one[beside]["crps"] for one in rows])
@@ -91,7 +92,7 @@ def tell(results: list[dict]) -> None:
     """Print the table."""
     print(f"95 % intervals against the truth, virtual field, {len(results)} seeds")
     for sensors in ("depth", "shackle"):
-        for kind in ("offline", "same_hours", "online", "plain", "plain_noisy"):
+        for kind in ("offline", "same_hours", "online", "plain", "plain_noisy", "published"):
             print(f"  {sensors:<8} {kind:<12} {pooled(results, sensors, kind)}")
     names = [one["sensor"] for one in results[0]["sensors"]]
     for name in names:

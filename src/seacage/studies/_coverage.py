@@ -67,6 +67,8 @@ class SensorCoverage:
     plain, plain_noisy
         A NARGP alone on the same points, as it answers for what lies behind a reading, and with
         the noise that it found.
+    published, published_noisy
+        The same of a NARGP with the kernel as published.
     low_mae, multi_mae
         Mean absolute errors [N] or [m].
     """
@@ -78,6 +80,8 @@ class SensorCoverage:
     online: Held | None
     plain: Held
     plain_noisy: Held
+    published: Held
+    published_noisy: Held
     low_mae: float
     multi_mae: float
 
@@ -126,7 +130,16 @@ def truth_coverage(
                 said.std[rows],
                 answer.sensor_low.mean[rows, column],
                 true[kept],
-                _plain(twin, field, name, training, water, rows),
+                _alone(NARGP(restarts=training.restarts), twin, field, name, training, water, rows),
+                _alone(
+                    NARGP(linear=False, restarts=training.restarts),
+                    twin,
+                    field,
+                    name,
+                    training,
+                    water,
+                    rows,
+                ),
                 _read(field, name, time[kept]),
                 noise,
             )
@@ -142,10 +155,10 @@ def _scored(
     low: Series,
     true: Series,
     plain: tuple[Prediction, float],
+    published: tuple[Prediction, float],
     reading: Series,
     noise: float,
 ) -> SensorCoverage:
-    alone, alone_noise = plain
     labelled = np.isfinite(reading)
     online = same = None
     if labelled.sum() >= LEAST_LABELS:
@@ -159,8 +172,10 @@ def _scored(
         offline=held(true, mean, std),
         same_hours=same,
         online=online,
-        plain=held(true, alone.mean, alone.std),
-        plain_noisy=held(true, alone.mean, np.sqrt(alone.std**2 + alone_noise)),
+        plain=_held_alone(true, plain, noisy=False),
+        plain_noisy=_held_alone(true, plain, noisy=True),
+        published=_held_alone(true, published, noisy=False),
+        published_noisy=_held_alone(true, published, noisy=True),
         low_mae=mae(true, low),
         multi_mae=mae(true, mean),
     )
@@ -221,7 +236,13 @@ def _read(field: FieldRecord, sensor: str, time: Shaped[np.ndarray, " t"]) -> Se
     return np.where(pairs.time[place] == time, pairs.value[place], np.nan)
 
 
-def _plain(
+def _held_alone(true: Series, alone: tuple[Prediction, float], *, noisy: bool) -> Held:
+    said, noise = alone
+    return held(true, said.mean, np.sqrt(said.std**2 + noisy * noise))
+
+
+def _alone(
+    model: NARGP,
     twin: Twin,
     field: FieldRecord,
     sensor: str,
@@ -233,10 +254,10 @@ def _plain(
     lesson, inputs = twin.provenance.lessons[sensor], twin.models.inputs
     pairs = align(field, sensor, start=lesson.start, end=lesson.end, mean_s=training.mean_s)
     chosen = spread_out(pairs, training.high_fidelity_points, seed=training.seed)
-    model = NARGP(restarts=training.restarts).fit(
+    fitted = model.fit(
         [(chosen.metocean.features(inputs), chosen.value)],
         seed=training.seed,
         lower=twin.models.lower(sensor),
     )
-    said = model.predict(water.features(inputs))
-    return Prediction(mean=said.mean[rows], std=said.std[rows]), float(model.upper[-1].noise[0])
+    said = fitted.predict(water.features(inputs))
+    return Prediction(mean=said.mean[rows], std=said.std[rows]), float(fitted.upper[-1].noise[0])
