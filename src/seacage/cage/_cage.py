@@ -1,5 +1,6 @@
 """A moored net cage: its parts, and the graph of nodes that they span."""
 
+import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from functools import cached_property
@@ -118,6 +119,11 @@ class Cage:
     def to_toml(self) -> str:
         """TOML text with the unit in every key and the meaning beside it."""
         return written(self)
+
+    @property
+    def sha256(self) -> str:
+        """Hash of the whole cage."""
+        return hashlib.sha256(self.to_toml().encode()).hexdigest()
 
     def write(self, path: str | Path) -> None:
         """Write a TOML file that ``read`` takes back."""

@@ -16,7 +16,7 @@ from seacage.campaigns._cases import Answers, Block, Simulator, answered
 from seacage.campaigns._cluster import mapped_on_cluster
 from seacage.campaigns._plan import Plan
 from seacage.campaigns._pool import available_cores, mapped
-from seacage.conventions import InputError, Origin, Progress
+from seacage.conventions import InputError, Origin, Progress, unheard
 from seacage.dynamics import Mooring, MovingLaw
 from seacage.records import (
     NOT_RUN,
@@ -136,7 +136,7 @@ def run_share(
     cases = [case for first in firsts for case in range(len(plan))[first : first + size]]
     blocks = _blocks(cage, plan, by, size, [at for at in firsts if result[at] == NOT_RUN])
     done = sum(int(result[case]) != NOT_RUN for case in cases)
-    report = progress or _unheard
+    report = progress or unheard
     report("campaign", done, len(cases))
     with closing(_mapped(blocks, workers=workers, cluster=cluster)) as finished:
         for block, answers in finished:
@@ -263,7 +263,3 @@ def _attributes(cage: Cage, plan: Plan, by: Simulator) -> dict[str, Any]:
         "duration_s": plan.duration,
         **by.attributes,
     }
-
-
-def _unheard(stage: str, done: int, total: int) -> None:
-    """Nobody asked for progress."""

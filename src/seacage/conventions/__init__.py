@@ -5,7 +5,7 @@ from seacage.conventions._constants import GRAVITY, WATER_DENSITY, WATER_VISCOSI
 from seacage.conventions._directions import compass, folded, towards
 from seacage.conventions._errors import InputError, ModelError, RecordError, SeacageError
 from seacage.conventions._origin import Origin
-from seacage.conventions._progress import Progress
+from seacage.conventions._progress import Progress, unheard
 
 __all__ = [
     "GRAVITY",
@@ -23,4 +23,5 @@ __all__ = [
     "compass",
     "folded",
     "towards",
+    "unheard",
 ]

@@ -4,3 +4,7 @@ from collections.abc import Callable
 
 Progress = Callable[[str, int, int], None]
 """Called as (stage, done, total), from the caller's own thread."""
+
+
+def unheard(stage: str, done: int, total: int) -> None:
+    """Where nobody asked for progress."""

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from seacage.conventions import InputError, Progress
+from seacage.conventions import InputError, Progress, unheard
 from seacage.studies._benchmark_methods import OURS, Method, own_methods, peer_methods
 from seacage.studies._benchmark_problems import CAGE_SIZE, PROBLEMS, Problem
 from seacage.studies._benchmark_report import BenchmarkReport
@@ -80,7 +80,7 @@ def benchmark_study(
     InputError
         No report seed among the seeds, or no environment of peers where one is named.
     """
-    out, heard = Path(out), progress or _unheard
+    out, heard = Path(out), progress or unheard
     tuning, report = _parted(seeds, quick=quick)
     problems = PROBLEMS if quick else (*PROBLEMS, CAGE_SIZE)
     methods = (*own_methods(), *(peer_methods(peers) if peers is not None else ()))
@@ -193,7 +193,3 @@ def _locked(lock: Path, packages: set[str]) -> list[tuple[str, str]]:
     lines = (line.split()[0] for line in lock.read_text("utf-8").splitlines() if "==" in line)
     pins = (line.split("==") for line in lines)
     return [(name, found) for name, found in pins if name in packages]
-
-
-def _unheard(stage: str, done: int, total: int) -> None:
-    """Nobody asked for progress."""

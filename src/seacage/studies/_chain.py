@@ -134,6 +134,11 @@ class Chain:
         """The simulations that judge level 1."""
         return self._campaigns[1]
 
+    @property
+    def in_waves(self) -> bool:
+        """Whether the simulations have waves."""
+        return any(sea.hs > 0.0 for sea in self.campaign.seas)
+
     @cached_property
     def field(self) -> FieldRecord:
         """A current record and the virtual sensors that it drove."""

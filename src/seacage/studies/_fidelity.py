@@ -1,6 +1,5 @@
 """The fidelity study: a virtual field held against the rules that keep it honest."""
 
-import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,7 +8,7 @@ import numpy as np
 
 from seacage.cage import Cage
 from seacage.campaigns import Hidden
-from seacage.conventions import InputError, Origin, Progress
+from seacage.conventions import InputError, Origin, Progress, unheard
 from seacage.records import FieldRecord
 from seacage.studies._chain import Chain, Recipe
 from seacage.studies._fidelity_claims import Claim, claims
@@ -102,7 +101,7 @@ def fidelity_study(
     InputError
         The field is not virtual, was made with other hidden parameters, or is too short.
     """
-    out, report = Path(out), progress or _unheard
+    out, report = Path(out), progress or unheard
     stages = Stages(folder=out / "stages")
     hidden = Hidden.read() if hidden is None else hidden
     record, truth, cage = _field(out, field, cage, seed, workers, report)
@@ -211,7 +210,7 @@ def _provenance(record: FieldRecord, cage: Cage, seed: int) -> dict[str, str]:
     return {
         "seacage": version("seacage"),
         "Seed": str(seed),
-        "Cage": f"{cage.name}, sha256 {hashlib.sha256(cage.to_toml().encode()).hexdigest()}",
+        "Cage": f"{cage.name}, sha256 {cage.sha256}",
         "Hidden parameters": f"sha256 {record.hidden_sha256}",
         "Notes": "\n".join(record.notes),
     }
@@ -229,7 +228,3 @@ def _write(study: FidelityStudy, page: str, about: Mapping[str, object]) -> None
     }
     write_scores(study.scores, scores)
     study.report.write_text(page, encoding="utf-8")
-
-
-def _unheard(stage: str, done: int, total: int) -> None:
-    """Nobody asked for progress."""

@@ -7,7 +7,7 @@ from jaxtyping import Float
 
 from seacage.cage import Cage
 from seacage.campaigns import Hidden, Plan
-from seacage.conventions import Progress
+from seacage.conventions import Progress, unheard
 from seacage.dynamics import Law
 from seacage.studies._fidelity_windows import Windows, kept_campaign
 from seacage.studies._stages import Stages
@@ -100,7 +100,7 @@ def fouling_gap(
 
     def settled(cage: Cage, law: Law) -> Float[np.ndarray, "speed sensor"]:
         record = kept_campaign(
-            "fouling", cage, plan, stages, law=law, workers=workers, progress=_unheard
+            "fouling", cage, plan, stages, law=law, workers=workers, progress=unheard
         )
         return sensors.computed(record.node_position, record.bridle_tension)
 
@@ -136,7 +136,3 @@ def _met(windows: Windows, growth: Float[np.ndarray, " window"]) -> tuple[MetGap
         for here in (share == number for number in range(_BINS))
         if np.sum(here) >= _LEAST
     )
-
-
-def _unheard(stage: str, done: int, total: int) -> None:
-    """The growths are counted, not the currents."""

@@ -1,6 +1,5 @@
 """The paper's study: simulations, sensors and the twin between them, scored and told."""
 
-import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -205,7 +204,7 @@ def _check(chain: Chain) -> None:
 
 
 def _shapes(chain: Chain, *, networks: bool) -> ShapeStudy:
-    waves = any(sea.hs > 0.0 for sea in chain.campaign.seas)
+    waves = chain.in_waves
     models, left_out = shape_models(chain.cage, waves=waves, networks=networks)
     return shape_study(
         models,
@@ -223,7 +222,7 @@ def _shapes(chain: Chain, *, networks: bool) -> ShapeStudy:
 
 def _recipe(chain: Chain, judged: Judged, shapes: ShapeStudy) -> dict[str, str]:
     recipe, campaign, field = chain.recipe, chain.campaign, chain.field
-    waves = any(sea.hs > 0.0 for sea in campaign.seas)
+    waves = chain.in_waves
     what = "half-hours in waves and currents" if waves else "currents settled"
     told = sum(len(sensor) for sensor in field.sensors.values())
     begin, end = (str(time)[:10] for time in field.buoy.time[[0, -1]])
@@ -255,13 +254,9 @@ def _provenance(chain: Chain, judged: Judged) -> dict[str, str]:
     return {
         "seacage": provenance.version,
         "Seed": str(chain.recipe.seed),
-        "Cage": f"{chain.cage.name}, sha256 {_sha256(chain.cage.to_toml())}",
+        "Cage": f"{chain.cage.name}, sha256 {chain.cage.sha256}",
         "Campaign": f"seed {provenance.campaign_seed}, sha256 {provenance.campaign_sha256}",
         "Hidden parameters": f"sha256 {provenance.hidden_sha256}",
         "Sensors": str(provenance.origin),
         "Notes": "\n".join(chain.field.notes),
     }
-
-
-def _sha256(text: str) -> str:
-    return hashlib.sha256(text.encode()).hexdigest()

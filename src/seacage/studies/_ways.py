@@ -97,7 +97,7 @@ def ways_of(recipe: Recipe, *, waves: bool) -> tuple[Way, ...]:
 
 def has_waves(chain: Chain) -> bool:
     """Whether a twin of this chain can hear waves: the buoy has them and the campaign, too."""
-    return "hs_m" in chain.field.buoy.values and any(sea.hs > 0.0 for sea in chain.campaign.seas)
+    return "hs_m" in chain.field.buoy.values and chain.in_waves
 
 
 def judge(chain: Chain, ways: Sequence[Way]) -> Judged:

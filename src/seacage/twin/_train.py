@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.cage import Cage
-from seacage.conventions import InputError, Origin, Progress
+from seacage.conventions import InputError, Origin, Progress, unheard
 from seacage.records import CampaignRecord, FieldRecord, moment
 from seacage.surrogates import (
     Domain,
@@ -112,7 +112,7 @@ def train(
         Called after each model.
     """
     training = Training() if training is None else training
-    report: Progress = progress or (lambda _stage, _done, _total: None)
+    report: Progress = progress or unheard
     begun = _begun(cage, campaign, field, base, training, report)
     kept = begun.models.upper
     asked = [name for name in cage.sensor_names if field and name in field.sensors]
@@ -167,7 +167,7 @@ def update(twin: Twin, field: FieldRecord, *, points: int = 60, mean_s: float = 
         if name not in field.sensors:
             continue
         pairs = align(field, name, start=lessons[name].end, mean_s=mean_s)
-        pairs = pairs.rows(pairs.metocean.known(models.inputs))
+        pairs = _known(pairs, models.inputs)
         if len(pairs) == 0:
             continue
         end = moment(pairs.time[-1]) + timedelta(seconds=mean_s)
@@ -311,7 +311,7 @@ def _taught(field: FieldRecord, sensor: str, training: Training) -> Taught | Non
         return None
     start, end = window
     if training.choice == "paper":
-        pairs = _known(align(field, sensor, start=start, end=end), training)
+        pairs = _known(align(field, sensor, start=start, end=end), training.inputs)
         span = PAPER_WINDOW_S[next(iter(record.values))]
         second = (pairs.time - pairs.time[:1]) / np.timedelta64(1, "s")
         most = max(training.high_fidelity_points, PAPER_LEAST)
@@ -322,7 +322,8 @@ def _taught(field: FieldRecord, sensor: str, training: Training) -> Taught | Non
         end = _after(pairs)
         lesson = Lesson(start=start, end=end, points=len(pairs))
         return Taught(lesson=lesson, pairs=pairs, chosen=pairs, calibrates=False)
-    pairs = _known(align(field, sensor, start=start, end=end, mean_s=training.mean_s), training)
+    pairs = align(field, sensor, start=start, end=end, mean_s=training.mean_s)
+    pairs = _known(pairs, training.inputs)
     if len(pairs) < LEAST_PAIRS:
         return None
     chosen = _chosen(pairs, training)
@@ -330,8 +331,8 @@ def _taught(field: FieldRecord, sensor: str, training: Training) -> Taught | Non
     return Taught(lesson=lesson, pairs=pairs, chosen=chosen, calibrates=True)
 
 
-def _known(pairs: Pairs, training: Training) -> Pairs:
-    return pairs.rows(pairs.metocean.known(training.inputs))
+def _known(pairs: Pairs, inputs: tuple[Input, ...]) -> Pairs:
+    return pairs.rows(pairs.metocean.known(inputs))
 
 
 def _after(pairs: Pairs) -> datetime:
