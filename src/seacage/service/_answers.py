@@ -1,5 +1,6 @@
 """From the twin's answers to the JSON of the doors: the one place where SI is left."""
 
+import hashlib
 import math
 from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
@@ -14,7 +15,6 @@ from seacage.records import Amendment, Record, Sample
 from seacage.service._schemas import (
     Amended,
     BridleState,
-    Frame,
     History,
     Interval,
     Measured,
@@ -33,6 +33,7 @@ from seacage.twin import Answer, Answered, Metocean, Twin, TwinState
 
 _UNUSABLE = (Flag.FAIL, Flag.MISSING)
 _DOOR_UNIT = {"N": ("kN", 1e-3), "m": ("m", 1.0)}
+_ID_DIGITS = 16  # of the hash of a topology: enough that two never meet by chance
 _DECIMALS = 3  # a newton, a millimetre: below what any sensor here resolves
 
 Table = Float[np.ndarray, "case output"]
@@ -138,23 +139,11 @@ def shape_of(answered: Answered) -> Shape:
     )
 
 
-def frame_of(state: State, answered: Answered) -> Frame:
-    """Say all that changes on the page; the net in whole millimetres, as short as JSON gets."""
-    answer = answered.answer
-    if not state.valid:
-        return Frame(state=state, position_mm=None, sigma_mm=None)
-    return Frame(
-        state=state,
-        position_mm=np.rint(answer.node_position[0] * 1e3).astype(int).ravel().tolist(),
-        sigma_mm=np.rint(answer.node_sigma[0] * 1e3).astype(int).tolist(),
-    )
-
-
 def topology_of(name: str, twin: Twin, *, speed: float) -> Topology:
     """Say what of a cage does not change."""
     cage = twin.cage
     rest = twin.predict(SeaState(current_speed=0.0, current_to=0.0))
-    return Topology(
+    topology = Topology(
         cage=name,
         origin=str(twin.origin),
         spokes=cage.spokes,
@@ -171,6 +160,8 @@ def topology_of(name: str, twin: Twin, *, speed: float) -> Topology:
         stale_after_s=twin.watch.stale_after_s,
         speed=speed,
     )
+    digest = hashlib.sha256(topology.model_dump_json().encode()).hexdigest()
+    return topology.model_copy(update={"topology_id": digest[:_ID_DIGITS]})
 
 
 def history_of(

@@ -8,11 +8,14 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import assert_never
 
+import numpy as np
 import structlog
+from jaxtyping import Float
 
 from seacage.records import Amendment, QualityState, Sample, check_sample
-from seacage.service._answers import frame_of, state_of, topology_of
+from seacage.service._answers import state_of, topology_of
 from seacage.service._clock import Clock
+from seacage.service._frame import frame_of
 from seacage.service._mailbox import Mailbox
 from seacage.service._metrics import Metrics
 from seacage.service._past import REMEMBERED, answered_in, state_at, streams_of
@@ -31,11 +34,12 @@ class Snapshot:
 
     answered: Answered
     state: State
+    rest_position: Float[np.ndarray, "node 3"]
 
     @cached_property
-    def frame(self) -> str:
+    def frame(self) -> bytes:
         """The same as one message to the page."""
-        return frame_of(self.state, self.answered).model_dump_json()
+        return frame_of(self.state, self.answered, self.rest_position)
 
 
 class LiveCage:
@@ -73,7 +77,8 @@ class LiveCage:
         self._arrived = asyncio.Event()
         self._stepping = asyncio.Lock()
         self._mailboxes: set[Mailbox[Snapshot]] = set()
-        self._topology: Topology | None = None
+        self._topology = topology_of(name, twin, speed=clock.speed)
+        self.rest_position = np.array(self._topology.rest_position_m)
         self._state, answered = state_at(twin, store, name, clock.now(), remembered=REMEMBERED)
         self._quality = {stream: taken[-1].quality for stream, taken in self._state.streams.items()}
         self.snapshot = self._shown(answered)
@@ -86,8 +91,6 @@ class LiveCage:
     @property
     def topology(self) -> Topology:
         """What of the cage does not change."""
-        if self._topology is None:
-            self._topology = topology_of(self.name, self.twin, speed=self.clock.speed)
         return self._topology
 
     async def take(self, samples: Sequence[Sample]) -> tuple[bool, ...]:
@@ -196,7 +199,7 @@ class LiveCage:
 
     def _shown(self, answered: Answered) -> Snapshot:
         state = state_of(self.name, self.twin, answered, self._state)
-        return Snapshot(answered=answered, state=state)
+        return Snapshot(answered=answered, state=state, rest_position=self.rest_position)
 
 
 def _quantities(twin: Twin) -> dict[str, tuple[str, ...]]:

@@ -135,6 +135,19 @@ class Amended(_Answered):
     reason: str
 
 
+class AlarmBrief(_Answered):
+    """An alarm that is active or not acknowledged; from severity 800 on it is critical."""
+
+    id: str
+    severity: Annotated[int, Field(ge=1, le=1000)]
+    title: str
+    message: str
+    active: bool
+    acknowledged: bool
+    shelved: bool
+    since: datetime | None
+
+
 class State(_Answered):
     """A cage at one time.
 
@@ -158,6 +171,7 @@ class State(_Answered):
     volume_fraction: float | None
     silent: list[str]
     amended: list[Amended]
+    alarms: list[AlarmBrief] = []
 
 
 class Shape(_Answered):
@@ -220,10 +234,12 @@ class Topology(_Answered):
     """What does not change: the graph of the net, its mooring, sensors and limits.
 
     Edges join nodes; a bridle runs from a frame corner to a collar node. Positions are x east,
-    y north, z up, and ``rest_position_m`` is the shape in still water.
+    y north, z up, and ``rest_position_m`` is the shape in still water. ``topology_id`` is a hash
+    of all the rest.
     """
 
     kind: Literal["topology"] = "topology"
+    topology_id: str = ""
     cage: str
     origin: str
     spokes: int
@@ -239,15 +255,6 @@ class Topology(_Answered):
     shackles: list[ShacklePlace]
     stale_after_s: float
     speed: Annotated[float, Field(description="Seconds at the cage per second here.")]
-
-
-class Frame(_Answered):
-    """What changes on the page: x, y and z of each node in turn, null without valid input."""
-
-    kind: Literal["state"] = "state"
-    state: State
-    position_mm: list[int] | None
-    sigma_mm: list[int] | None
 
 
 class CageSummary(_Answered):

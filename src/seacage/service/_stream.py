@@ -32,7 +32,6 @@ async def live(socket: WebSocket, cage: str) -> None:
         await socket.close(*refusal)
         return
     one: LiveCage = socket.app.state.service.cages[cage]
-    await socket.send_text(one.topology.model_dump_json())
     sending = asyncio.create_task(_send(socket, one))
     try:
         while True:  # nothing more is asked; this only notices that the client has left
@@ -45,9 +44,14 @@ async def live(socket: WebSocket, cage: str) -> None:
 
 
 async def _send(socket: WebSocket, one: LiveCage) -> None:
+    known = ""
     with one.watched() as mailbox:
         while True:
-            await socket.send_text((await mailbox.take()).frame)
+            snapshot = await mailbox.take()
+            if one.topology.topology_id != known:
+                known = one.topology.topology_id
+                await socket.send_text(one.topology.model_dump_json())
+            await socket.send_bytes(snapshot.frame)
 
 
 async def _refusal(socket: WebSocket, cage: str) -> tuple[int, str] | None:

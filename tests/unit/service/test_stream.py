@@ -5,6 +5,7 @@ import pytest
 from websockets.exceptions import ConnectionClosedError, InvalidStatus
 from websockets.sync.client import connect
 
+from framed import decoded
 from serviced import Running, buoy
 
 
@@ -17,7 +18,8 @@ def token(live: Running, *scopes):
 
 
 def received(socket):
-    return json.loads(socket.recv(timeout=5))
+    message = socket.recv(timeout=5)
+    return json.loads(message) if isinstance(message, str) else decoded(message)
 
 
 def closed_with(socket):
@@ -31,9 +33,8 @@ def test_what_never_changes_comes_first_and_then_the_state(idle: Running):
         socket.send(token(idle, "read"))
         topology, frame = received(socket), received(socket)
     assert topology["kind"] == "topology"
-    assert frame["kind"] == "state"
-    assert not frame["state"]["valid"]
-    assert frame["position_mm"] is None
+    assert not frame.state["valid"]
+    assert frame.displacement.size == 0
 
 
 def test_a_reading_reaches_the_page(live: Running):
@@ -42,10 +43,21 @@ def test_a_reading_reaches_the_page(live: Running):
         topology = received(socket)
         live.post(buoy())
         end = time.monotonic() + 5
-        while not (frame := received(socket))["state"]["valid"]:
+        while not (frame := received(socket)).state["valid"]:
             assert time.monotonic() < end
-    assert len(frame["position_mm"]) == 3 * len(topology["rest_position_m"])
-    assert len(frame["sigma_mm"]) == len(topology["rest_position_m"])
+    assert frame.displacement.shape == (len(topology["rest_position_m"]), 3)
+    assert frame.sigma.shape == (len(topology["rest_position_m"]),)
+
+
+def test_a_topology_that_changes_is_sent_again_before_the_next_frame(live: Running):
+    with opened(live) as socket:
+        socket.send(token(live, "read"))
+        first = received(socket)
+        live.cage._topology = live.cage.topology.model_copy(update={"topology_id": "another"})
+        end = time.monotonic() + 5
+        while not isinstance(again := received(socket), dict):
+            assert time.monotonic() < end
+    assert again == first | {"topology_id": "another"}
 
 
 def test_a_reader_that_lags_gets_the_newest_state_and_not_all_that_it_missed(live: Running):

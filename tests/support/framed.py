@@ -1,0 +1,48 @@
+"""The page's binary message read back, as the page reads it."""
+
+import json
+import struct
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+
+@dataclass(frozen=True, kw_only=True)
+class Decoded:
+    """What a frame says, in metres."""
+
+    version: int
+    flags: int
+    t_ms: float
+    displacement: np.ndarray
+    sigma: np.ndarray
+    unit: float
+    sigma_unit: float
+    state: dict[str, Any]
+
+
+def decoded(message: bytes) -> Decoded:
+    magic, version, flags, t, nodes, words, unit, sigma_unit = struct.unpack_from(
+        "<4sHHdIIff", message
+    )
+    assert magic == b"SCFR"
+    moved = 32
+    spread = moved + aligned(6 * nodes)
+    said = spread + aligned(nodes)
+    assert len(message) == said + words
+    displacement = np.frombuffer(message, "<i2", 3 * nodes, moved).reshape(-1, 3)
+    return Decoded(
+        version=version,
+        flags=flags,
+        t_ms=t,
+        displacement=displacement * unit,
+        sigma=np.frombuffer(message, "u1", nodes, spread) * sigma_unit,
+        unit=unit,
+        sigma_unit=sigma_unit,
+        state=json.loads(message[said:]),
+    )
+
+
+def aligned(size: int) -> int:
+    return size + -size % 8
