@@ -129,21 +129,38 @@ def _chunks(count: int) -> Iterator[slice]:
 
 
 def _nearest(point: Float[np.ndarray, "point 3"], surface: _Surface) -> Nearest:
-    to_ball = point @ (-2.0 * surface.centre.T)
-    to_ball += np.sum(point**2, axis=1)[:, None]
-    to_ball += np.sum(surface.centre**2, axis=1)
-    np.sqrt(np.maximum(to_ball, 0.0, out=to_ball), out=to_ball)
-    to_ball -= surface.radius
-    # No triangle whose ball is farther than the likeliest one itself can be nearest.
-    likeliest = np.argmin(to_ball, axis=1)
-    bound = _Touch.of(point, likeliest, surface).distance + ROUNDING
-    which, triangle = np.nonzero(to_ball <= bound[:, None])
+    which, triangle = _candidates(point, surface)
     touch = _Touch.of(point[which], triangle, surface)
     begin = np.searchsorted(which, np.arange(len(point)))
     least = np.minimum.reduceat(touch.distance, begin) if len(point) else touch.distance
     first = np.flatnonzero(touch.distance == least[which])
     first = first[np.unique(which[first], return_index=True)[1]]
     return touch.rows(first).answer(point, surface)
+
+
+def _candidates(
+    point: Float[np.ndarray, "point 3"], surface: _Surface
+) -> tuple[Int[np.ndarray, " pair"], Int[np.ndarray, " pair"]]:
+    """Pairs of a point and a triangle that may be the nearest to it, sorted by point.
+
+    Left out is a triangle whose ball, or whose disc around its centre, lies farther off than
+    the likeliest triangle itself.
+    """
+    to_centre2 = point @ (-2.0 * surface.centre.T)
+    to_centre2 += np.sum(point**2, axis=1)[:, None]
+    to_centre2 += np.sum(surface.centre**2, axis=1)
+    np.maximum(to_centre2, 0.0, out=to_centre2)
+    to_ball = np.sqrt(to_centre2)
+    to_ball -= surface.radius
+    likeliest = np.argmin(to_ball, axis=1)
+    bound = _Touch.of(point, likeliest, surface).distance + ROUNDING
+    which, triangle = np.divmod(np.flatnonzero(to_ball <= bound[:, None]), len(surface.corner))
+    # A triangle lies in its plane, within its radius of its centre.
+    height = np.einsum("pj,pj->p", point[which] - surface.centre[triangle], surface.face[triangle])
+    beside = np.sqrt(np.maximum(to_centre2[which, triangle] - height**2, 0.0))
+    short = np.maximum(beside - surface.radius[triangle] - ROUNDING, 0.0)
+    near = height**2 + short**2 <= (bound[which] + ROUNDING) ** 2
+    return which[near], triangle[near]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from brute import brute_distance
 from seacage.cage import Cage
 from seacage.cage._nearest import nearest_on_net
 
@@ -83,3 +84,15 @@ def test_a_point_on_the_net_is_at_distance_nought_and_many_points_answer_as_one(
     alone = [CAGE.nearest(one[None], shape).distance[0] for one in point[-20:]]
     np.testing.assert_allclose(alone, near.distance[-20:], rtol=1e-12)
     assert len(CAGE.nearest(point[:0], shape).distance) == 0
+
+
+def test_ten_thousand_distances_are_those_to_every_triangle_in_turn():
+    shape = bent_net(6)
+    random = np.random.default_rng(7)
+    far = random.uniform([-60.0, -60.0, -45.0], [60.0, 60.0, 0.0], (5000, 3))
+    # Half of them at the net itself, where an ROV is.
+    close = shape[random.integers(len(shape), size=5000)] + random.normal(size=(5000, 3))
+    point = np.concatenate([far, close])
+    slow = brute_distance(point, shape, CAGE.panels)
+    # Two ways of rounding; a millimetre is what people ask for.
+    np.testing.assert_allclose(CAGE.nearest(point, shape).distance, slow, atol=1e-6)
