@@ -119,10 +119,11 @@ def calibrated(model: Correction, lessons: Lessons, sensor: str) -> Correction:
     judging = evenly(pairs)
     x = judging.metocean.features(lessons.models.inputs)
     mean, doubt = without_in_turn(model, lessons.taught[sensor].chosen, judging, x)
+    column = lessons.models.cage.sensor_names.index(sensor)
     kept = Judged(
         error=judging.value - mean,
         doubt=doubt,
-        steepness=model.gain * lessons.models.steepness(sensor, judging.metocean),
+        steepness=model.gain * lessons.models.steepness(judging.metocean)[:, column],
         white=model.spread.white,
     )
     return replace(model, spread=own_spread(model, kept, blocks))

@@ -80,6 +80,17 @@ class Metocean:
             wave_direction=self.wave_direction[index],
         )
 
+    def same(self, other: Self) -> bool:
+        """Whether the other holds the same numbers; what neither knows is the same."""
+        return all(
+            np.array_equal(mine, theirs, equal_nan=True)
+            for mine, theirs in (
+                (self.current_velocity, other.current_velocity),
+                (self.hs, other.hs),
+                (self.wave_direction, other.wave_direction),
+            )
+        )
+
     def limited(self, *, current_speed: float, hs: float) -> Self:
         """Return the nearest milder water: slower and lower, in the same directions.
 

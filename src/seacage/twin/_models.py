@@ -95,13 +95,17 @@ class Models:
         """Return a copy that has level 2 of one more sensor."""
         return replace(self, upper={**self.upper, sensor: model})
 
-    def steepness(self, sensor: str, water: Metocean) -> Float[np.ndarray, " case"]:
-        """Length of the gradient of a sensor's level 1 over the current [N s/m] or [s]."""
+    def steepness(self, water: Metocean) -> Float[np.ndarray, "case sensor"]:
+        """Length of the gradient of each sensor's level 1 over the current [N s/m] or [s]."""
         ways = STRIDE * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
         around = water.rows(np.tile(np.arange(len(water)), len(ways)))
         velocity = around.current_velocity + np.repeat(ways, len(water), axis=0)
         x = replace(around, current_velocity=velocity).features(self.inputs)
-        east, west, north, south = self.lower(sensor).predict(x).mean.reshape(len(ways), -1)
+        nodes = np.array([one.node for one in self.cage.depth_sensors], dtype=int)
+        lines = [one.bridle for one in self.cage.shackles]
+        depth = -self.shape.predict_nodes(x, nodes).mean[:, :, 2]
+        low = np.hstack([depth, self.bridles.predict(x).mean[:, lines]])
+        east, west, north, south = low.reshape(len(ways), len(water), -1)
         return np.hypot(east - west, north - south) / (2.0 * STRIDE)
 
     def answer(self, water: Metocean, trouble: Sequence[str]) -> Answer:
@@ -201,12 +205,13 @@ class Models:
         """
         bridle, sensor = _copied(bridle_low), _copied(sensor_low)
         lines, x = self._lines(), water.features(self.inputs)
+        uneven = any(model.spread.water_sd for model in self.upper.values())
+        steepness = self.steepness(water) if uneven else np.zeros_like(sensor_low.mean)
         for column, name in enumerate(self.cage.sensor_names):
             if name in self.upper:
                 model = self.upper[name]
                 low = Prediction(mean=sensor_low.mean[:, column], std=sensor_low.std[:, column])
-                steep = self.steepness(name, water) if model.spread.water_sd else None
-                behind = model.behind(x, low, steep)
+                behind = model.behind(x, low, steepness[:, column])
                 sensor.mean[:, column] = behind.mean
                 sensor.std[:, column] = np.sqrt(behind.std**2 + model.noise)
                 if name in lines:

@@ -7,6 +7,7 @@ from datetime import datetime, timedelta
 
 from seacage.conventions import Flag
 from seacage.records import Amendment, QualityState, Sample, check_sample
+from seacage.twin._held import Held
 from seacage.twin._online import Tracked
 
 
@@ -78,12 +79,15 @@ class TwinState:
         Those that have fallen silent.
     tracked
         How well the intervals of each sensor that has taught have held.
+    held
+        What was last answered, to be said again while the water is the same.
     """
 
     clock: datetime | None = None
     streams: Mapping[str, Stream] = field(default_factory=dict[str, Stream])
     silent: frozenset[str] = frozenset()
     tracked: Mapping[str, Tracked] = field(default_factory=dict[str, Tracked])
+    held: Held | None = field(default=None, compare=False)
 
     def latest(self, stream: str) -> Sample | None:
         """Return the newest sample of a stream, with its flags; None before the first."""

@@ -15,6 +15,7 @@ from seacage.records import Record, Sample
 from seacage.twin._answer import Answer
 from seacage.twin._events import Answered, Event
 from seacage.twin._folder import read_folder, write_folder
+from seacage.twin._held import Held
 from seacage.twin._metocean import INPUT_KEYS, Metocean
 from seacage.twin._models import Models
 from seacage.twin._online import answered_with, judged_by
@@ -183,8 +184,14 @@ class Twin:
         )
         unknown = Metocean.from_columns({}, 1)
         water = unknown if reading.metocean is None else reading.metocean
-        answer = self.models.answer(water, [reading.trouble])
-        state = replace(state, tracked=answered_with(state.tracked, self._said(answer)))
+        held = None if reading.trouble else state.held
+        if held is not None and held.answers(self.models, water):
+            answer = held.answer
+        else:
+            answer = self.models.answer(water, [reading.trouble])
+            held = Held(models=self.models, water=water, answer=answer)
+        tracked = answered_with(state.tracked, self._said(answer))
+        state = replace(state, tracked=tracked, held=None if reading.trouble else held)
         answer = self._adapted(answer, state)
         return state, Answered(
             t=now, answer=answer, metocean=reading.metocean, input_age_s=reading.age_s

@@ -53,3 +53,13 @@ def test_limited_water_is_milder_and_keeps_its_direction():
     assert milder.current_velocity[1] == pytest.approx([0.0, 0.0])
     assert milder.hs.tolist() == [3.0, 0.5]
     assert milder.wave_direction == pytest.approx(water.wave_direction)
+
+
+def test_the_same_water_is_known_again_also_where_nobody_knows_its_waves():
+    def water(speed, **rest):
+        columns = {"current_speed_m_s": speed, "current_to_deg": 90.0, **rest}
+        return Metocean.from_columns({key: np.array([v]) for key, v in columns.items()}, 1)
+
+    assert water(0.5).same(water(0.5))
+    assert not water(0.5).same(water(0.51))
+    assert not water(0.5).same(water(0.5, hs_m=1.0))

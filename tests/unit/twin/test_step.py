@@ -1,3 +1,4 @@
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 
 import numpy as np
@@ -65,6 +66,14 @@ def test_before_the_first_reading_there_is_no_number():
     assert event.answer.reason == ("buoy-1 has not said current_speed_m_s yet.",)
     assert event.metocean is None
     assert event.input_age_s is None
+
+
+def test_a_state_handed_to_another_twin_is_answered_by_that_one():
+    state, (answered,) = played(buoy())
+    twin = stand_in_twin()
+    models = replace(twin.models, still_volume=2.0 * twin.models.still_volume)
+    _, (anew,) = replace(twin, models=models).step(state, None, NOON)
+    assert anew.answer.volume_fraction == pytest.approx(answered.answer.volume_fraction / 2.0)
 
 
 def test_a_buoys_value_is_held_until_it_is_stale():
