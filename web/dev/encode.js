@@ -1,0 +1,31 @@
+// A frame as the service writes it, for the stand-in service and for tests.
+
+const aligned = (at) => Math.ceil(at / 8) * 8;
+
+/** Encode; displacement x y z of each node in turn and sigma [m] are null without valid input. */
+export function encodeFrame({ t, flags, state, displacement, sigma }) {
+  const words = new TextEncoder().encode(JSON.stringify(state));
+  const nodes = sigma?.length ?? 0;
+  const spreadAt = aligned(40 + 6 * nodes);
+  const wordsAt = aligned(spreadAt + nodes);
+  const buffer = new ArrayBuffer(wordsAt + words.length);
+  const view = new DataView(buffer);
+  const moved = unit(displacement ?? [], 32767);
+  const spread = unit(sigma ?? [], 255);
+  [..."SCFR"].forEach((letter, k) => view.setUint8(k, letter.charCodeAt(0)));
+  view.setUint16(4, 1, true);
+  view.setUint16(6, flags, true);
+  view.setFloat64(8, t, true);
+  view.setUint32(16, nodes, true);
+  view.setUint32(20, words.length, true);
+  view.setFloat32(24, moved, true);
+  view.setFloat32(28, spread, true);
+  displacement?.forEach((metres, k) =>
+    view.setInt16(40 + 2 * k, Math.round(metres / moved), true));
+  sigma?.forEach((metres, k) => view.setUint8(spreadAt + k, Math.round(metres / spread)));
+  new Uint8Array(buffer, wordsAt).set(words);
+  return buffer;
+}
+
+const unit = (metres, most) =>
+  metres.reduce((largest, one) => Math.max(largest, Math.abs(one)), 1e-6 * most) / most;

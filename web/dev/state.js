@@ -1,0 +1,66 @@
+// The stand-in service's states: what is so at a time, and what would be in a sea.
+
+import { answersIn, seaAt, shapeIn } from "./cage.js";
+import { encodeFrame } from "./encode.js";
+
+const BEYOND_M_S = 0.9; // what the made-up twin has learned
+
+const iso = (t) => new Date(t).toISOString();
+
+/** A cage's state as JSON. `one` says how the cage fares: {name, strength, trouble}. */
+export function stateOf(one, t, sea, alarms) {
+  const valid = one.trouble !== "silent";
+  const { bridles, sensors } = answersIn(sea, t, one.trouble === "load");
+  if (!valid) {
+    for (const bridle of bridles) {
+      Object.assign(bridle, { tension_kn: { mean: null, lower: null, upper: null },
+        low_fidelity_kn: null, utilisation: null });
+    }
+    for (const sensor of sensors) {
+      Object.assign(sensor, { mean: null, lower: null, upper: null, low_fidelity: null });
+    }
+  }
+  return {
+    cage: one.name, t: iso(t), age_s: valid ? (t / 1e3) % 600 : 7300, valid,
+    in_domain: valid && sea.current_speed_m_s < BEYOND_M_S,
+    reason: valid ? "" : "buoy-1 has been silent for 2.0 h, longer than 0.5 h.",
+    origin: "virtual field", water: valid ? sea : null, bridles, sensors, shape_level: 1,
+    volume_fraction: valid ? 1 - 0.22 * sea.current_speed_m_s ** 2 : null,
+    silent: valid ? [] : ["buoy-1"], amended: [], alarms,
+  };
+}
+
+/** A cage's frame; flags are added to those that follow from the state. */
+export function frameOf(one, t, sea, alarms, flags = 0) {
+  const state = stateOf(one, t, sea, alarms);
+  const shape = state.valid ? shapeIn(sea) : {};
+  const said = (state.valid ? 1 : 0) | (state.in_domain ? 2 : 0) | flags;
+  return encodeFrame({ t, flags: said, state, ...shape });
+}
+
+/** A cage's history between two times, in so many steps. */
+export function historyOf(one, from, to, limit) {
+  const count = Math.max(2, Math.min(limit, 500));
+  const times = Array.from({ length: count }, (_, k) => from + ((to - from) * k) / (count - 1));
+  const states = times.map((t) => stateOf(one, t, seaAt(t, one.strength), []));
+  const of = (list, key, pick) => Object.fromEntries(states[0][list].map(({ name, unit, level }, k) =>
+    [name, { unit: unit ?? "kN", level, ...Object.fromEntries(Object.entries(pick).map(
+      ([to_, read]) => [to_, states.map((state) => read(state[list][k]))])) }]));
+  return {
+    t: times.map(iso), valid: states.map(({ valid }) => valid),
+    in_domain: states.map(({ in_domain }) => in_domain),
+    current_speed_m_s: states.map(({ water }) => water?.current_speed_m_s ?? null),
+    current_to_deg: states.map(({ water }) => water?.current_to_deg ?? null),
+    bridles: of("bridles", "name", {
+      low_fidelity: (b) => b.low_fidelity_kn, mean: (b) => b.tension_kn.mean,
+      lower: (b) => b.tension_kn.lower, upper: (b) => b.tension_kn.upper,
+    }),
+    sensors: of("sensors", "name", {
+      low_fidelity: (s) => s.low_fidelity, mean: (s) => s.mean,
+      lower: (s) => s.lower, upper: (s) => s.upper,
+    }),
+    measured: Object.fromEntries(states[0].sensors.map(({ name }, k) =>
+      [name, { t: times.map(iso), value: states.map(({ sensors }) => sensors[k].measured) }])),
+    volume_fraction: states.map(({ volume_fraction }) => volume_fraction),
+  };
+}

@@ -1,0 +1,28 @@
+// The page: a model, and what shows it.
+
+import "./style/tokens.css";
+import "./style/base.css";
+import "./style/layout.css";
+import "./style/scene.css";
+import "./style/ask.css";
+import "./theme.js";
+
+import { mountAsk } from "./ask.js";
+import { Model } from "./model.js";
+import { mountPanels } from "./panels/index.js";
+import { mountScene } from "./scene/index.js";
+
+const model = new Model();
+const { dataset } = document.body;
+
+model.on("connection", (connection) => { dataset.connection = connection; });
+model.on("view", (view) => {
+  dataset.mode = view.mode;
+  dataset.valid = view.state.valid;
+});
+model.on("age", (view) => { dataset.stale = Boolean(view?.stale); });
+
+mountAsk(model);
+mountScene(model, document.getElementById("scene"));
+mountPanels(model);
+model.open();

@@ -1,0 +1,220 @@
+// What the page knows: the one place that the scene and the panels read and ask.
+
+import { call, Refusal } from "./calls.js";
+import { latestOnly } from "./latest.js";
+import { connect } from "./link.js";
+import { dropToken, keepToken, token } from "./token.js";
+import { readFrame } from "./wire.js";
+
+const LOOK_ROUND_MS = 10_000;
+const STALE_UNKNOWN_S = 3600;
+
+/**
+ * The page's model.
+ *
+ * Names to listen to: `connection`, `topology`, `view` (what is shown), `live` (what is so now,
+ * whatever is shown), `cages`, `selection`, `age` (each second), `trouble` (an Error to tell).
+ */
+export class Model {
+  /** "connecting" | "live" | "lost" | "refused" | "asking" */
+  connection = "connecting";
+  /** Why, in a sentence, where the connection is not live. */
+  why = "";
+  /** Of the cage, as the service sent it, with `rest` (Float32Array). */
+  topology = null;
+  /** What is shown; null until the first frame. */
+  view = null;
+  /** What is so now; the same object as `view` in live mode. */
+  live = null;
+  cages = [];
+  cageName = null;
+  /** {bridle: name} | {node: index} | {sensor: name} | null */
+  selection = null;
+
+  #listeners = new Map();
+  #link = null;
+  #wanted = null; // what the reader asked for: a Date, an input of a what-if, or null for live
+  #frameOfPast = latestOnly((at) =>
+    this.call("GET", `${this.#path()}/frame?at=${encodeURIComponent(at.toISOString())}`));
+  #frameOfWhatIf = latestOnly((input) => this.call("POST", `${this.#path()}/whatif`, input));
+
+  /** Call `fn` with what changed, from now on; the answer stops it. */
+  on(name, fn) {
+    const all = this.#listeners.get(name) ?? new Set();
+    this.#listeners.set(name, all.add(fn));
+    return () => all.delete(fn);
+  }
+
+  #tell(name, value) {
+    for (const fn of this.#listeners.get(name) ?? []) fn(value);
+  }
+
+  /** Begin: find the cages, choose one, and listen. */
+  async open() {
+    if (!token()) return this.#connected("asking");
+    this.#connected("connecting");
+    try {
+      await this.#lookRound();
+    } catch (error) {
+      if (error.status === 401 || error.status === 403) return this.#refused("unknown");
+      this.#connected("lost", "The service does not answer; trying again.");
+      return setTimeout(() => this.open(), 3000);
+    }
+    clearInterval(this.round);
+    this.round = setInterval(() => this.#lookRound().catch(() => {}), LOOK_ROUND_MS);
+    clearInterval(this.second);
+    this.second = setInterval(() => this.#tell("age", this.view), 1000);
+    const wanted = new URLSearchParams(location.search).get("cage");
+    const names = this.cages.map(({ name }) => name);
+    return this.cage(names.includes(wanted) ? wanted : names[0]);
+  }
+
+  async #lookRound() {
+    if (document.hidden && this.cages.length) return;
+    this.cages = (await call("GET", "cages")).cages;
+    this.#tell("cages", this.cages);
+  }
+
+  /** Use a token that the reader typed. */
+  enter(given) {
+    keepToken(given);
+    return this.open();
+  }
+
+  /** Show another cage. */
+  cage(name) {
+    this.#link?.close();
+    Object.assign(this, { cageName: name, view: null, live: null, topology: null });
+    this.#wanted = null;
+    this.select(null);
+    const search = new URLSearchParams(location.search);
+    if (this.cages.length > 1) search.set("cage", name);
+    history.replaceState(null, "", `${location.pathname}${search.size ? `?${search}` : ""}`);
+    this.#connected("connecting");
+    this.#link = connect(name, {
+      topology: (message) => this.#setTopology(message),
+      frame: (buffer) => this.#setLive(buffer),
+      lost: (seconds) =>
+        this.#connected("lost", `Connection lost; trying again in ${seconds} s.`),
+      refused: (why) => this.#refused(why),
+    });
+  }
+
+  /** Try to connect at once. */
+  retry() {
+    if (this.#link) this.#link.again();
+    else this.open();
+  }
+
+  #setTopology(message) {
+    if (message.topology_id && message.topology_id === this.topology?.topology_id) return;
+    this.topology = { ...message, rest: Float32Array.from(message.rest_position_m.flat()) };
+    this.#tell("topology", this.topology);
+  }
+
+  #setLive(buffer) {
+    this.live = this.#viewOf(buffer, "live");
+    if (this.connection !== "live") this.#connected("live");
+    this.#tell("live", this.live);
+    if (this.#wanted === null) this.#show(this.live);
+  }
+
+  #viewOf(buffer, mode) {
+    const frame = readFrame(buffer, this.topology.rest);
+    return viewOf(frame, mode, {
+      staleAfterS: this.topology.stale_after_s,
+      speed: mode === "live" ? this.topology.speed : 0,
+      isLost: () => this.connection !== "live",
+    });
+  }
+
+  #show(view) {
+    this.view = view;
+    this.#tell("view", view);
+  }
+
+  /** Show the cage at a time past; null goes back to now. Rejects with a Refusal. */
+  travel(date) {
+    return this.#go(date, "past", this.#frameOfPast);
+  }
+
+  /** Show what would be in another sea; null goes back to now. Rejects with a Refusal. */
+  whatIf(input) {
+    return this.#go(input, "whatif", this.#frameOfWhatIf);
+  }
+
+  async #go(wanted, mode, ask) {
+    this.#wanted = wanted;
+    if (wanted === null) {
+      if (this.live) this.#show(this.live);
+      return;
+    }
+    const buffer = await ask(wanted);
+    // Overtaken by another wish, or by another cage.
+    if (!buffer || this.#wanted !== wanted || !this.topology) return;
+    this.#show(this.#viewOf(buffer, mode));
+  }
+
+  /** Point at a bridle, node or sensor, in every part of the page; null at none. */
+  select(selection) {
+    if (JSON.stringify(selection) === JSON.stringify(this.selection)) return;
+    this.selection = selection;
+    this.#tell("selection", selection);
+  }
+
+  /** Call the service: a path under /api/v1, such as `cages/ace/alarms`. Rejects with a Refusal. */
+  async call(method, path, body) {
+    try {
+      return await call(method, path.replace(/^\//, ""), body);
+    } catch (error) {
+      if (error instanceof Refusal && error.status === 401) this.#refused("unknown");
+      throw error;
+    }
+  }
+
+  /** Tell the reader of something that did not work. */
+  complain(error) {
+    this.#tell("trouble", error);
+  }
+
+  #path() {
+    return `cages/${encodeURIComponent(this.cageName)}`;
+  }
+
+  #connected(connection, why = "") {
+    Object.assign(this, { connection, why });
+    this.#tell("connection", connection);
+  }
+
+  #refused(why) {
+    this.#link?.close();
+    this.#link = null;
+    if (why === "cage") return this.#connected("refused", "No cage has this name any more.");
+    if (why === "scope") {
+      return this.#connected("refused", "This token may not read this cage. Take one with the " +
+        "scope read.");
+    }
+    dropToken();
+    return this.#connected("asking", "This token does not open the service. It may have been " +
+      "made for an earlier start.");
+  }
+}
+
+/** A frame with what the page adds: how it came about, and how old its input is by now. */
+export function viewOf(frame, mode, { staleAfterS = STALE_UNKNOWN_S, speed, isLost }) {
+  const came = performance.now();
+  return {
+    ...frame,
+    mode,
+    /** Age of the input [s]; null where there is none. */
+    get ageS() {
+      const { age_s: age } = frame.state;
+      return age === null ? null : age + (speed * (performance.now() - came)) / 1000;
+    },
+    /** Whether what is shown is too old to trust as now. */
+    get stale() {
+      if (mode !== "live") return false;
+      return isLost() || (this.ageS !== null && this.ageS > staleAfterS);
+    },
+  };
+}

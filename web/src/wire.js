@@ -1,0 +1,56 @@
+// What the service sends: one little-endian binary frame per state of a cage.
+
+const MAGIC = 0x52464353; // "SCFR"
+const HEADER = 40;
+const aligned = (at) => Math.ceil(at / 8) * 8;
+
+export const VALID = 1;
+export const IN_DOMAIN = 2;
+export const PAST = 4;
+export const WHAT_IF = 8;
+
+/**
+ * Read a frame.
+ *
+ * @param {ArrayBuffer} buffer
+ * @param {Float32Array} rest where the nodes are in still water, x y z of each in turn [m]
+ * @returns {{t: number, flags: number, state: object, position: Float32Array|null,
+ *   sigma: Float32Array|null}} t in ms since 1970 UTC; positions and sigma in metres, null
+ *   without valid input
+ */
+export function readFrame(buffer, rest) {
+  const view = new DataView(buffer);
+  if (buffer.byteLength < HEADER || view.getUint32(0, true) !== MAGIC) {
+    throw new Error(`A frame begins with SCFR; these ${buffer.byteLength} bytes do not.`);
+  }
+  const version = view.getUint16(4, true);
+  if (version !== 1) {
+    throw new Error(`The service sends frames of version ${version}; this page reads 1. Load ` +
+      "the page again.");
+  }
+  const nodes = view.getUint32(16, true);
+  const spreadAt = aligned(HEADER + 6 * nodes);
+  const wordsAt = aligned(spreadAt + nodes);
+  const words = new Uint8Array(buffer, wordsAt, view.getUint32(20, true));
+  const flags = view.getUint16(6, true);
+  const valid = (flags & VALID) !== 0;
+  if (valid && 3 * nodes !== rest.length) {
+    throw new Error(`A frame of ${nodes} nodes does not fit a net of ${rest.length / 3}.`);
+  }
+  return {
+    t: view.getFloat64(8, true),
+    flags,
+    state: JSON.parse(new TextDecoder().decode(words)),
+    position: valid ? moved(view, rest) : null,
+    sigma: valid ? spread(new Uint8Array(buffer, spreadAt, nodes), view.getFloat32(28, true)) : null,
+  };
+}
+
+function moved(view, rest) {
+  const unit = view.getFloat32(24, true);
+  return rest.map((metres, k) => metres + unit * view.getInt16(HEADER + 2 * k, true));
+}
+
+function spread(units, unit) {
+  return Float32Array.from(units, (count) => unit * count);
+}
