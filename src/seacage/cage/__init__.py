@@ -16,6 +16,7 @@ from seacage.cage._parts import (
 )
 from seacage.cage._structure import Structure
 from seacage.cage._structure_parts import Anchor, Line, Net, Point, Ring, Section, Tie, Twine
+from seacage.cage._tangent_plane import TangentPlane
 
 __all__ = [
     "Anchor",
@@ -38,6 +39,7 @@ __all__ = [
     "SinkerTube",
     "Site",
     "Structure",
+    "TangentPlane",
     "Tie",
     "Tip",
     "Twine",

@@ -30,6 +30,7 @@ from seacage.cage._parts import (
     check_bounds,
     quantity,
 )
+from seacage.cage._tangent_plane import TangentPlane
 from seacage.cage._toml import altered, parsed, written
 from seacage.cage._volume import enclosed_volume
 from seacage.conventions import InputError, towards
@@ -229,6 +230,16 @@ class Cage:
     ) -> Nearest:
         """Where a shape of the net is nearest to each point [m]."""
         return nearest_on_net(point, node_position, self.panels)
+
+    @property
+    def plane(self) -> TangentPlane:
+        """Where the cage lies on the Earth; refused where its file does not say."""
+        if self.site.latitude is None or self.site.longitude is None:
+            raise InputError(
+                f"Cage {self.name}: its file does not say where it lies. Add latitude_deg and "
+                "longitude_deg of its centre to [site]."
+            )
+        return TangentPlane(latitude=self.site.latitude, longitude=self.site.longitude)
 
     # Mooring
 

@@ -240,6 +240,25 @@ class Site(_Part):
 
     water_depth: float = quantity("m", "still water to sea bed", above=True)
     current_to: float = quantity("deg", "where the prevailing current goes, compass")
+    latitude: float | None = quantity(
+        "deg", "of the cage's centre, north positive, WGS84", low=-90.0, default=None
+    )
+    longitude: float | None = quantity(
+        "deg", "of the cage's centre, east positive, WGS84", low=-180.0, default=None
+    )
+
+    def __post_init__(self) -> None:
+        super(Site, self).__post_init__()
+        if (self.latitude is None) != (self.longitude is None):
+            raise InputError(
+                "Cage, Site: latitude_deg and longitude_deg belong together. Give both or none."
+            )
+        if abs(self.latitude or 0.0) >= 90.0 or abs(self.longitude or 0.0) > 180.0:
+            raise InputError(
+                f"Cage, Site: latitude_deg = {self.latitude} with longitude_deg = "
+                f"{self.longitude} is no place for a cage. Latitude lies between -90 and 90, "
+                "longitude within -180 to 180."
+            )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

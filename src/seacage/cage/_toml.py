@@ -6,6 +6,7 @@ import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, Field, fields, is_dataclass, replace
 from numbers import Integral, Real
+from types import UnionType
 from typing import Any, get_args, get_origin
 
 from seacage.cage._parts import key_of
@@ -65,6 +66,9 @@ def _values(
 
 
 def _value(kind: Any, value: Any, where: str) -> Any:
+    if isinstance(kind, UnionType):
+        # What may be absent has a key only where it is there.
+        kind = get_args(kind)[0]
     if get_origin(kind) is tuple:
         items = value if isinstance(value, tuple) else _typed(list, value, where)
         return tuple(_value(get_args(kind)[0], item, where) for item in items)
@@ -115,6 +119,7 @@ def _lines(part: Any) -> list[str]:
     return [
         f"{f'{key_of(p)} = {_literal(getattr(part, p.name))}':<44} # {p.metadata['meaning']}"
         for p in fields(part)
+        if getattr(part, p.name) is not None
     ]
 
 

@@ -1,0 +1,116 @@
+"""Where a cage lies on the Earth: latitude and longitude against its own east and north."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.conventions import InputError
+
+EQUATOR_RADIUS = 6378137.0
+"""Of the WGS84 ellipsoid [m]."""
+
+FLATTENING = 1.0 / 298.257223563
+"""Of the WGS84 ellipsoid [-]."""
+
+REACH = 5000.0
+"""Farthest from the cage that positions are turned into metres [m]."""
+
+_ECCENTRICITY2 = FLATTENING * (2.0 - FLATTENING)
+_ROUNDS = 4  # of Newton's way back; each squares an error of metres in thousands of kilometres
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TangentPlane:
+    """The plane that touches the WGS84 ellipsoid at a cage's centre.
+
+    A place at a latitude, longitude and depth lies east and north of the centre where the sea's
+    surface above it does, and as far below the still water as it is deep. Against the straight
+    axes x, y, z this leaves out the Earth's roundness: at a distance d, sideways depth · d / R
+    (8 mm at 31 m and 1.6 km), upwards d² / 2R (5 mm at 250 m, 8 cm at 1 km). Tides and the
+    geoid are left out: a depth is below the water as it stands.
+
+    Parameters
+    ----------
+    latitude, longitude
+        Of the centre, WGS84 [deg].
+    """
+
+    latitude: float
+    longitude: float
+
+    def local(
+        self,
+        latitude: Float[np.ndarray, " point"],
+        longitude: Float[np.ndarray, " point"],
+        depth: Float[np.ndarray, " point"],
+    ) -> Float[np.ndarray, "point 3"]:
+        """East, north and up of places at a latitude, a longitude [deg] and a depth [m]."""
+        away = _on_ellipsoid(latitude, longitude) - self._centre
+        east, north, _ = (away @ self._axes.T).T
+        return self._near(np.column_stack([east, north, -depth]))
+
+    def geographic(
+        self, position: Float[np.ndarray, "point 3"]
+    ) -> tuple[
+        Float[np.ndarray, " point"], Float[np.ndarray, " point"], Float[np.ndarray, " point"]
+    ]:
+        """Latitude, longitude [deg] and depth [m] of places east, north and up of the centre."""
+        position = self._near(position)
+        latitude = np.full(len(position), self.latitude)
+        longitude = np.full(len(position), self.longitude)
+        meridian, parallel = _radii(self.latitude)
+        for _ in range(_ROUNDS):
+            miss = position - self.local(latitude, longitude, -position[:, 2])
+            latitude = latitude + np.rad2deg(miss[:, 1] / meridian)
+            longitude = longitude + np.rad2deg(miss[:, 0] / parallel)
+        return latitude, (longitude + 180.0) % 360.0 - 180.0, -position[:, 2]
+
+    @property
+    def _centre(self) -> Float[np.ndarray, " 3"]:
+        return _on_ellipsoid(np.array([self.latitude]), np.array([self.longitude]))[0]
+
+    @property
+    def _axes(self) -> Float[np.ndarray, "3 3"]:
+        """East, north and up at the centre, in the Earth's own axes."""
+        phi, lam = math.radians(self.latitude), math.radians(self.longitude)
+        return np.array(
+            [
+                [-math.sin(lam), math.cos(lam), 0.0],
+                [-math.sin(phi) * math.cos(lam), -math.sin(phi) * math.sin(lam), math.cos(phi)],
+                [math.cos(phi) * math.cos(lam), math.cos(phi) * math.sin(lam), math.sin(phi)],
+            ]
+        )
+
+    def _near(self, position: Float[np.ndarray, "point 3"]) -> Float[np.ndarray, "point 3"]:
+        far = np.hypot(position[:, 0], position[:, 1])
+        if (far > REACH).any():
+            raise InputError(
+                f"TangentPlane: a point is {far.max() / 1e3:.1f} km from the cage at "
+                f"{self.latitude:.5f}, {self.longitude:.5f} deg; {REACH / 1e3:g} km is the limit. "
+                "Check that latitude and longitude are not exchanged."
+            )
+        return position
+
+
+def _on_ellipsoid(
+    latitude: Float[np.ndarray, " point"], longitude: Float[np.ndarray, " point"]
+) -> Float[np.ndarray, "point 3"]:
+    phi, lam = np.deg2rad(latitude), np.deg2rad(longitude)
+    across = EQUATOR_RADIUS / np.sqrt(1.0 - _ECCENTRICITY2 * np.sin(phi) ** 2)
+    return np.column_stack(
+        [
+            across * np.cos(phi) * np.cos(lam),
+            across * np.cos(phi) * np.sin(lam),
+            across * (1.0 - _ECCENTRICITY2) * np.sin(phi),
+        ]
+    )
+
+
+def _radii(latitude: float) -> tuple[float, float]:
+    """Of the meridian's curve and of the parallel [m]."""
+    phi = math.radians(latitude)
+    root = math.sqrt(1.0 - _ECCENTRICITY2 * math.sin(phi) ** 2)
+    meridian = EQUATOR_RADIUS * (1.0 - _ECCENTRICITY2) / root**3
+    return meridian, EQUATOR_RADIUS * math.cos(phi) / root
