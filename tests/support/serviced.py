@@ -69,14 +69,14 @@ def at(minutes: float) -> str:
 
 
 @contextmanager
-def running(folder: Path) -> Iterator[Running]:
-    """Serve a cage until the block ends."""
+def running(folder: Path, **service) -> Iterator[Running]:
+    """Serve a cage until the block ends; what else the service is told goes through."""
     clock, metrics = HandClock(), Metrics()
     store, tokens = Store(folder / "samples.sqlite"), Tokens(folder)
     cage = LiveCage(
         name="ace", twin=stand_in_twin(), store=store, clock=clock, metrics=metrics, tick_s=0.3
     )
-    service = Service(cages={"ace": cage}, store=store, tokens=tokens, metrics=metrics)
+    service = Service(cages={"ace": cage}, store=store, tokens=tokens, metrics=metrics, **service)
     listener = socket.create_server(("127.0.0.1", 0))
     config = uvicorn.Config(create_app(service), ws="websockets-sansio", log_config=None)
     server = uvicorn.Server(config)

@@ -15,6 +15,7 @@ from seacage.records import Amendment, Record, Sample
 from seacage.service._schemas import (
     Amended,
     BridleState,
+    CageSummary,
     History,
     Interval,
     Measured,
@@ -67,6 +68,29 @@ def state_of(name: str, twin: Twin, answered: Answered, memory: TwinState) -> St
         volume_fraction=_number(answer.volume_fraction[0], 4),
         silent=sorted(memory.silent),
         amended=[_amended(one) for one in memory.amended],
+    )
+
+
+def summary_of(name: str, state: State) -> CageSummary:
+    """Say in one line how a cage is."""
+    waiting = [alarm for alarm in state.alarms if not alarm.shelved]
+    worst = max(waiting, key=lambda alarm: alarm.severity, default=None)
+    loads = [one.utilisation for one in state.bridles if one.utilisation is not None]
+    return CageSummary(
+        name=name,
+        origin=state.origin,
+        valid=state.valid,
+        in_domain=state.in_domain,
+        t=state.t,
+        age_s=state.age_s,
+        reason=state.reason,
+        max_utilisation=max(loads, default=None),
+        volume_fraction=state.volume_fraction,
+        current_speed_m_s=state.water.current_speed_m_s if state.water else None,
+        current_to_deg=state.water.current_to_deg if state.water else None,
+        waiting=len(waiting),
+        worst_severity=worst.severity if worst else None,
+        worst_title=worst.title if worst else None,
     )
 
 

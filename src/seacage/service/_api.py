@@ -8,19 +8,26 @@ from pathlib import Path
 
 import structlog
 from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
 from fastapi.responses import FileResponse, JSONResponse
 from fastapi.staticfiles import StaticFiles
 
 from seacage.conventions import InputError
-from seacage.service._guard import Shield
+from seacage.service._audit import Audit
+from seacage.service._guard import Gate
+from seacage.service._limits import Limits
 from seacage.service._live import LiveCage
 from seacage.service._metrics import Metrics
 from seacage.service._routes import around, cages
+from seacage.service._session_routes import sessions
+from seacage.service._shield import Shield
 from seacage.service._store import Store, StoreError
 from seacage.service._stream import sockets
 from seacage.service._tokens import Tokens
+from seacage.service._whatif import what_if
 
 _PAGE = Path(__file__).parent / "page"
+_FAULTS = 5  # of a request, as many as anyone reads
 _log = structlog.get_logger(__name__)
 
 
@@ -35,6 +42,8 @@ class Service:
         Shared by all cages.
     feeds
         What runs beside the cages, such as a replay.
+    limits, site, audit
+        How much one asker may ask, where the cages lie, and where it is written who did what.
     """
 
     def __init__(
@@ -45,8 +54,12 @@ class Service:
         tokens: Tokens,
         metrics: Metrics,
         feeds: Sequence[Callable[[], Coroutine[None, None, None]]] = (),
+        limits: Limits | None = None,
+        site: str = "",
+        audit: Audit | None = None,
     ) -> None:
         self.cages, self.store, self.tokens, self.metrics = cages, store, tokens, metrics
+        self.gate = Gate(tokens, limits=limits, audit=audit, site=site)
         self._feeds = feeds
         self._tasks: list[asyncio.Task[None]] = []
 
@@ -94,12 +107,14 @@ def create_app(service: Service) -> FastAPI:
         lifespan=lifespan,
         docs_url=None,  # their pages load scripts from elsewhere
         redoc_url=None,
+        openapi_url=None,  # its own call asks for a token from elsewhere
     )
     app.state.service = service
     app.add_middleware(Shield)
     app.add_exception_handler(StoreError, _unavailable)
     app.add_exception_handler(InputError, _refused)
-    for router in (around, cages, sockets):
+    app.add_exception_handler(RequestValidationError, _malformed)
+    for router in (around, sessions, cages, what_if, sockets):
         app.include_router(router)
     app.mount("/page", StaticFiles(directory=_PAGE), name="page")
 
@@ -116,3 +131,14 @@ def _unavailable(_: Request, error: Exception) -> JSONResponse:
 
 def _refused(_: Request, error: Exception) -> JSONResponse:
     return JSONResponse({"detail": str(error)}, status_code=422)
+
+
+def _malformed(_: Request, error: Exception) -> JSONResponse:
+    assert isinstance(error, RequestValidationError)
+    faults = [
+        f"{'.'.join(map(str, fault['loc'][1:])) or 'body'}: {fault['msg']}."
+        for fault in error.errors()[:_FAULTS]
+    ]
+    # A key that was sent may hold half a character, which no answer can.
+    sentence = " ".join(faults).encode("utf-8", "backslashreplace").decode()
+    return JSONResponse({"detail": sentence}, status_code=422)

@@ -93,6 +93,11 @@ class LiveCage:
         """What of the cage does not change."""
         return self._topology
 
+    @property
+    def watchers(self) -> int:
+        """How many live connections there are."""
+        return len(self._mailboxes)
+
     async def take(self, samples: Sequence[Sample]) -> tuple[bool, ...]:
         """Check, store and queue samples; returns after the commit.
 

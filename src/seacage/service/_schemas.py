@@ -9,9 +9,14 @@ Name = Annotated[str, Field(min_length=1, max_length=64)]
 """Of a cage, a stream, a sensor."""
 
 
+_YEARS = range(1900, 2200)
+
+
 def _with_zone(t: datetime) -> datetime:
     if t.tzinfo is None:
         raise ValueError("a time says its zone, as in 2018-01-26T23:08:00Z")
+    if t.year not in _YEARS:  # at the ends of the calendar, another zone's time does not exist
+        raise ValueError(f"no time here is from the year {t.year}; check the source's clock")
     return t
 
 
@@ -258,18 +263,69 @@ class Topology(_Answered):
 
 
 class CageSummary(_Answered):
-    """A cage of this service, and whether it answers."""
+    """A cage of this service: whether it answers, its largest load and its worst alarm.
+
+    ``waiting`` counts the alarms that somebody should look at: those neither shelved nor both
+    cleared and acknowledged.
+    """
 
     name: str
     origin: str
     valid: bool
-    t: datetime | None
+    in_domain: bool
+    t: datetime
+    age_s: float | None
+    reason: str
+    max_utilisation: float | None
+    volume_fraction: float | None
+    current_speed_m_s: float | None
+    current_to_deg: float | None
+    waiting: int
+    worst_severity: int | None
+    worst_title: str | None
 
 
 class Cages(_Answered):
     """The cages of this service."""
 
     cages: list[CageSummary]
+
+
+class WhatIf(_Asked):
+    """Water that is only imagined; ``tp_s`` null takes the steepest sea of the height."""
+
+    model_config = ConfigDict(
+        json_schema_extra={
+            "example": {
+                "current_speed_m_s": 0.8,
+                "current_to_deg": 90.0,
+                "hs_m": 1.5,
+                "tp_s": None,
+                "wave_from_deg": 270.0,
+            }
+        }
+    )
+
+    current_speed_m_s: Annotated[float, Field(ge=0.0, le=3.0)]
+    current_to_deg: Annotated[float, Field(ge=0.0, le=360.0)]
+    hs_m: Annotated[float, Field(ge=0.0, le=20.0)] = 0.0
+    tp_s: Annotated[float | None, Field(gt=0.0, le=60.0)] = None
+    wave_from_deg: Annotated[float, Field(ge=0.0, le=360.0)] = 0.0
+
+
+class SignIn(_Asked):
+    """A token, given once for a session."""
+
+    token: Annotated[str, Field(min_length=1, max_length=200)]
+
+
+class SessionOut(_Answered):
+    """Who is signed in, and what a write has to repeat in the header X-CSRF-Token."""
+
+    who: str
+    scopes: list[str]
+    csrf: str
+    expires: datetime
 
 
 class Problem(_Answered):

@@ -3,15 +3,14 @@
 import asyncio
 import json
 
-from fastapi import APIRouter, WebSocket, WebSocketDisconnect
+from fastapi import APIRouter, HTTPException, WebSocket, WebSocketDisconnect
 
-from seacage.service._guard import same_origin
+from seacage.service._guard import COOKIE, gate_of, source_of
 from seacage.service._live import LiveCage
-from seacage.service._tokens import Tokens
 
 _FIRST_MESSAGE_S = 5.0
 _FIRST_MESSAGE_BYTES = 1000
-UNKNOWN_TOKEN, NO_SCOPE, NO_CAGE = 4401, 4403, 4404
+UNKNOWN_TOKEN, NO_SCOPE, NO_CAGE, TOO_OFTEN = 4401, 4403, 4404, 4429
 """Codes of a closing: the page tells its reader which it was."""
 
 sockets = APIRouter()
@@ -21,9 +20,10 @@ sockets = APIRouter()
 async def live(socket: WebSocket, cage: str) -> None:
     """Send what does not change once, then the newest state whenever the reader is ready.
 
-    The first message of the client is ``{"token": …}``: a URL would end up in logs.
+    The first message of the client is ``{"token": …}``: a URL would end up in logs. A page that
+    has signed in sends null.
     """
-    if not same_origin(socket.headers.get("origin"), socket.headers.get("host")):
+    if not gate_of(socket).from_our_page(socket):
         await socket.close()  # before it is accepted: the browser gets a 403
         return
     await socket.accept()
@@ -55,22 +55,34 @@ async def _send(socket: WebSocket, one: LiveCage) -> None:
 
 
 async def _refusal(socket: WebSocket, cage: str) -> tuple[int, str] | None:
-    tokens: Tokens = socket.app.state.service.tokens
-    token = await _token(socket)
-    grant = tokens.grant(token) if token else None
-    if grant is None:
-        return UNKNOWN_TOKEN, 'The first message is {"token": …} with a token that is known.'
-    if not grant.allows("read", cage):
+    gate, cages = gate_of(socket), socket.app.state.service.cages
+    if sum(one.watchers for one in cages.values()) >= gate.limits.live_clients:
+        return TOO_OFTEN, "There are as many live connections as may be. Try again later."
+    said, token = await _first_message(socket)
+    found = gate.known(token, socket.cookies.get(COOKIE)) if said else None
+    if found is None:
+        return _not_known(socket)
+    if not found[0].allows("read", cage, site=gate.site):
         return NO_SCOPE, "This token does not have the scope read."
-    if cage not in socket.app.state.service.cages:
+    if cage not in cages:
         return NO_CAGE, f"No cage is called {cage!r}."[:100]
     return None
 
 
-async def _token(socket: WebSocket) -> str | None:
+def _not_known(socket: WebSocket) -> tuple[int, str]:
+    try:
+        gate_of(socket).refuse(source_of(socket))
+    except HTTPException as error:
+        if error.status_code == 429:
+            return TOO_OFTEN, error.detail
+    return UNKNOWN_TOKEN, 'The first message is {"token": …} with a token that is known.'
+
+
+async def _first_message(socket: WebSocket) -> tuple[bool, str | None]:
+    """Read whether a first message came, and its token; null stands for the page's session."""
     try:
         text = await asyncio.wait_for(socket.receive_text(), _FIRST_MESSAGE_S)
         token = json.loads(text[:_FIRST_MESSAGE_BYTES])["token"]
     except (TimeoutError, WebSocketDisconnect, ValueError, KeyError, TypeError):
-        return None
-    return token if isinstance(token, str) else None
+        return False, None
+    return token is None or isinstance(token, str), token

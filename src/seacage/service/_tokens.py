@@ -6,13 +6,17 @@ import json
 import os
 import re
 import secrets
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass
+from datetime import UTC, datetime
 from pathlib import Path
+from typing import Any
 
 from seacage.conventions import InputError
 
 _SCOPE = re.compile(r"admin|(read|ingest|ack)(:[A-Za-z0-9][A-Za-z0-9_.-]{0,63})?")
+_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._@-]{0,63}")
+_ID_DIGITS = 12
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -24,16 +28,32 @@ class Grant:
     sha256
         Of the token; a token is 256 random bits, so that a plain hash cannot be guessed back.
     scopes
-        ``read``, ``ingest``, ``ack``, each for all cages or as ``ingest:ace`` for one;
-        ``admin`` for everything.
+        ``read``, ``ingest``, ``ack``, each for all cages or as ``ingest:ace`` for one cage, or
+        for all of the site ``ace``; ``admin`` for everything.
+    name
+        Of whoever holds it, as the alarms' journal and the audit log name them.
+    made
+        When; empty for a token that ends with the process.
     """
 
     sha256: str
     scopes: tuple[str, ...]
+    name: str = ""
+    made: str = ""
 
-    def allows(self, action: str, cage: str | None) -> bool:
-        """Whether the token may do this to a cage, or to none in particular."""
-        wanted = {"admin", action, f"{action}:{cage}"}
+    @property
+    def id(self) -> str:
+        """Names the token without opening anything."""
+        return self.sha256[:_ID_DIGITS]
+
+    @property
+    def who(self) -> str:
+        """The name, or the id where there is none."""
+        return self.name or f"token {self.id}"
+
+    def allows(self, action: str, cage: str | None, *, site: str = "") -> bool:
+        """Whether the token may do this to a cage of a site, or to none in particular."""
+        wanted = {"admin", action, f"{action}:{cage}", f"{action}:{site}"}
         anywhere = cage is None and any(s.startswith(f"{action}:") for s in self.scopes)
         return anywhere or not wanted.isdisjoint(self.scopes)
 
@@ -41,8 +61,8 @@ class Grant:
 class Tokens:
     """The tokens of a data folder, and those that live only as long as this service.
 
-    The file grows by one line per token, so that ``seacage token new`` needs no lock and a
-    running service sees the new line.
+    The file grows by one line per token made or revoked, so that the commands need no lock and
+    a running service sees the new line.
 
     Parameters
     ----------
@@ -56,7 +76,7 @@ class Tokens:
         self._kept: list[Grant] = []
         self._seen: tuple[int, int] | None = None
 
-    def mint(self, scopes: Iterable[str], *, keep: bool) -> str:
+    def mint(self, scopes: Iterable[str], *, keep: bool, name: str = "") -> str:
         """Make a token and return it; nobody can read it again.
 
         Parameters
@@ -65,43 +85,93 @@ class Tokens:
             See ``Grant``.
         keep
             Write its hash down, so that it outlives this process.
+        name
+            Of whoever will hold it.
 
         Raises
         ------
         InputError
-            A scope that does not exist.
+            A scope that does not exist, or a name that is too long or already another's.
         """
         token = secrets.token_urlsafe(32)
-        grant = Grant(sha256=_sha256(token), scopes=checked_scopes(scopes))
+        grant = Grant(
+            sha256=digest(token),
+            scopes=checked_scopes(scopes),
+            name=self._checked_name(name),
+            made=datetime.now(UTC).isoformat(timespec="seconds") if keep else "",
+        )
         if keep:
-            self._append(grant)
+            self._append(asdict(grant))
         else:
             self._passing.append(grant)
         return token
 
     def grant(self, token: str) -> Grant | None:
         """Find what a token may do; the time taken does not tell how near a guess came."""
-        presented = _sha256(token)
+        return self.kept(digest(token))
+
+    def kept(self, sha256: str) -> Grant | None:
+        """Find what the token of a hash may do."""
         found = None
-        for grant in (*self._passing, *self._current()):
-            if hmac.compare_digest(grant.sha256, presented):
+        for grant in (*self._passing, *self.all()):
+            if hmac.compare_digest(grant.sha256, sha256):
                 found = grant
         return found
 
-    def _current(self) -> list[Grant]:
+    def all(self) -> list[Grant]:
+        """Return the tokens that were written down and not revoked."""
         try:
             status = self._path.stat()
         except FileNotFoundError:
             return []
         if self._seen != (status.st_mtime_ns, status.st_size):
-            lines = self._path.read_text("utf-8").splitlines()
-            self._kept = [_grant(line, self._path) for line in lines if line]
+            self._kept = _standing(self._path)
             self._seen = (status.st_mtime_ns, status.st_size)
         return self._kept
 
-    def _append(self, grant: Grant) -> None:
+    @property
+    def lacks_admin(self) -> bool:
+        """Whether nobody holds everything."""
+        return not any("admin" in grant.scopes for grant in self.all())
+
+    def revoke(self, named: str) -> Grant:
+        """Let a token open nothing from now on.
+
+        Parameters
+        ----------
+        named
+            The name or the id of the token.
+
+        Raises
+        ------
+        InputError
+            No token is called so, or more than one.
+        """
+        found = [grant for grant in self.all() if named in {grant.name, grant.id}]
+        if len(found) != 1:
+            there = ", ".join(grant.who for grant in self.all()) or "none"
+            raise InputError(
+                f"{len(found)} tokens are called {named!r}. There are {there}; `seacage token "
+                "list` shows their ids."
+            )
+        self._append({"revoked": found[0].sha256})
+        return found[0]
+
+    def _checked_name(self, name: str) -> str:
+        if name and _NAME.fullmatch(name) is None:
+            raise InputError(
+                f"{name!r} is no name for a token. Give letters, digits, blanks and . _ @ -, at "
+                "most 64."
+            )
+        if name and any(grant.name == name for grant in self.all()):
+            raise InputError(
+                f"A token is called {name!r} already. Choose another name, or revoke that one."
+            )
+        return name
+
+    def _append(self, entry: Mapping[str, object]) -> None:
         self._path.parent.mkdir(parents=True, exist_ok=True)
-        line = json.dumps({"sha256": grant.sha256, "scopes": grant.scopes}) + "\n"
+        line = json.dumps(entry) + "\n"
         file = os.open(self._path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
         try:
             os.write(file, line.encode())
@@ -129,15 +199,33 @@ def checked_scopes(scopes: Iterable[str]) -> tuple[str, ...]:
     return asked
 
 
-def _grant(line: str, path: Path) -> Grant:
-    try:
-        entry = json.loads(line)
-        return Grant(sha256=str(entry["sha256"]), scopes=checked_scopes(entry["scopes"]))
-    except (ValueError, KeyError, TypeError) as error:
-        raise InputError(
-            f"{path} holds a line that is no token ({error}). Delete the line."
-        ) from error
-
-
-def _sha256(token: str) -> str:
+def digest(token: str) -> str:
+    """Hash a token or a cookie."""
     return hashlib.sha256(token.encode()).hexdigest()
+
+
+def _standing(path: Path) -> list[Grant]:
+    grants, revoked = list[Grant](), set[str]()
+    for line in path.read_text("utf-8").splitlines():
+        if not line:
+            continue
+        try:
+            entry = json.loads(line)
+            if "revoked" in entry:
+                revoked.add(str(entry["revoked"]))
+            else:
+                grants.append(_grant(entry))
+        except (ValueError, KeyError, TypeError) as error:
+            raise InputError(
+                f"{path} holds a line that is no token ({error}). Delete the line."
+            ) from error
+    return [grant for grant in grants if grant.sha256 not in revoked]
+
+
+def _grant(entry: Mapping[str, Any]) -> Grant:
+    return Grant(
+        sha256=str(entry["sha256"]),
+        scopes=checked_scopes(entry["scopes"]),
+        name=str(entry.get("name", "")),
+        made=str(entry.get("made", "")),
+    )

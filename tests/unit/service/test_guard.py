@@ -2,7 +2,8 @@ import httpx
 import pytest
 
 from seacage.service._guard import same_origin
-from serviced import Running, buoy
+from seacage.service._limits import Limits
+from serviced import Running, buoy, running
 
 READING = ["cages", "cages/ace/state", "cages/ace/samples", "cages/ace/history", "cages/ace/shape"]
 
@@ -35,6 +36,46 @@ def test_a_token_for_one_cage_does_not_open_another(idle: Running):
     headers = {"Authorization": f"Bearer {token}"}
     answer = httpx.get(f"{idle.address}/api/v1/cages/ace/state", headers=headers)
     assert answer.status_code == 403
+
+
+def test_a_token_for_a_site_opens_each_of_its_cages(tmp_path):
+    with running(tmp_path, site="bay") as one:
+        headers = {"Authorization": f"Bearer {one.service.tokens.mint(['read:bay'], keep=False)}"}
+        assert httpx.get(f"{one.address}/api/v1/cages/ace/state", headers=headers).is_success
+        headers = {"Authorization": f"Bearer {one.service.tokens.mint(['read:sea'], keep=False)}"}
+        answer = httpx.get(f"{one.address}/api/v1/cages/ace/state", headers=headers)
+        assert answer.status_code == 403
+
+
+def test_whoever_asks_too_often_is_told_when_to_ask_again(tmp_path):
+    with running(tmp_path, limits=Limits(requests_per_s=0.1, burst=3)) as one:
+        answers = [one.reader.get("/api/v1/cages") for _ in range(4)]
+        assert [answer.status_code for answer in answers] == [200, 200, 200, 429]
+        assert 1 <= int(answers[3].headers["retry-after"]) <= 10
+        assert one.post(buoy()).status_code == 201, "another token has a bucket of its own"
+
+
+def test_nobody_guesses_tokens_for_long(tmp_path):
+    with running(tmp_path, limits=Limits(refusals_per_s=0.1, refusal_burst=2)) as one:
+        guess = {"url": f"{one.address}/api/v1/cages", "headers": {"Authorization": "Bearer guess"}}
+        answers = [httpx.get(**guess).status_code for _ in range(4)]
+        assert answers == [401, 401, 429, 429]
+        assert one.reader.get("/api/v1/cages").status_code == 200, "who is known still passes"
+
+
+ODD = ["..", "%2e%2e", "..%2f..%2fetc%2fpasswd", "%00", "a%00b", "%ff", "a" * 65, "ace%2f.."]
+
+
+@pytest.mark.parametrize("odd", ODD)
+@pytest.mark.parametrize("path", ["{}/state", "{}/samples", "{}/frame", "{}/topology"])
+def test_no_name_of_a_cage_leads_anywhere_else(idle: Running, odd, path):
+    answer = idle.reader.get(f"/api/v1/cages/{path.format(odd)}")
+    assert answer.status_code in {404, 422}
+
+
+@pytest.mark.parametrize("odd", ["../x", "%00", "-", "a b", "a" * 65, "%ed%a0%80"])
+def test_no_name_of_a_stream_is_taken_that_no_stream_can_have(idle: Running, odd):
+    assert idle.reader.get(f"/api/v1/cages/ace/samples?stream={odd}").status_code == 422
 
 
 @pytest.mark.parametrize("path", ["", "page/main.js", "healthz", "api/v1/cages", "no-such"])
