@@ -1,7 +1,20 @@
 """The live loop as pure functions: sample in, events out."""
 
+from seacage.twin._alarm import Action, Alarm, Changed, Happened, Limit
+from seacage.twin._alarm_book import AlarmBook
+from seacage.twin._alarm_handled import (
+    acknowledge,
+    put_in_service,
+    remark,
+    shelve,
+    take_out_of_service,
+    unshelve,
+)
+from seacage.twin._alarm_policy import AlarmPolicy
+from seacage.twin._alarm_text import AlarmText, described
 from seacage.twin._align import Pairs, align, spread_out, teaching_window
 from seacage.twin._answer import Answer
+from seacage.twin._assess import assess
 from seacage.twin._correction import Correction, Said, Spread
 from seacage.twin._events import Answered, Event, Flagged, StreamBack, StreamSilent
 from seacage.twin._metocean import Metocean
@@ -14,12 +27,20 @@ from seacage.twin._train import Training, train, update
 from seacage.twin._twin import Twin
 
 __all__ = [
+    "Action",
+    "Alarm",
+    "AlarmBook",
+    "AlarmPolicy",
+    "AlarmText",
     "Answer",
     "Answered",
+    "Changed",
     "Correction",
     "Event",
     "Flagged",
+    "Happened",
     "Lesson",
+    "Limit",
     "Loads",
     "Metocean",
     "Models",
@@ -34,10 +55,18 @@ __all__ = [
     "Twin",
     "TwinState",
     "Watch",
+    "acknowledge",
     "align",
+    "assess",
+    "described",
+    "put_in_service",
+    "remark",
     "replay",
+    "shelve",
     "spread_out",
+    "take_out_of_service",
     "teaching_window",
     "train",
+    "unshelve",
     "update",
 ]

@@ -102,7 +102,7 @@ class Alarm:
     Parameters
     ----------
     name
-        Of the alarm, e.g. ``load/bridle-3``.
+        Its kind and its source, e.g. ``load.bridle-3``.
     active, acknowledged
         Whether its cause is there, and whether somebody has seen it.
     since
@@ -119,6 +119,8 @@ class Alarm:
         Whether it is judged for anyone to hear.
     comment
         The last that somebody wrote.
+    detail
+        What the assessment adds to the number, in a sentence; empty for nothing.
 
     References
     ----------
@@ -137,6 +139,17 @@ class Alarm:
     shelved_once: bool = False
     in_service: bool = True
     comment: str = ""
+    detail: str = ""
+
+    @property
+    def kind(self) -> str:
+        """What is judged, e.g. ``load``."""
+        return self.name.partition(".")[0]
+
+    @property
+    def source(self) -> str:
+        """Of what it is judged, e.g. ``bridle-3``."""
+        return self.name.partition(".")[2]
 
     @property
     def shelved(self) -> bool:

@@ -1,0 +1,117 @@
+"""The numbers that alarms are judged by: what is known now, and nothing where nothing is."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+
+from seacage.conventions import Flag
+from seacage.twin._events import Answered
+from seacage.twin._state import Stream, TwinState
+from seacage.twin._twin import Twin
+
+MEASURED_S = 60.0
+"""A shackle's load is its mean over the last so long [s]: a wave's peak is not the line's load."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Number:
+    """What an alarm is judged by.
+
+    Parameters
+    ----------
+    alarm
+        Its name.
+    value
+        None where it is not known: it then neither raises nor clears.
+    detail
+        What there is to add, in a sentence.
+    """
+
+    alarm: str
+    value: float | None
+    detail: str = ""
+
+
+def numbers(
+    twin: Twin, state: TwinState, answered: Answered, *, distrusted: frozenset[str]
+) -> Iterator[Number]:
+    """Say what is judged now, but for what the tests for irregularity say.
+
+    Parameters
+    ----------
+    twin, state, answered
+        The twin, what it remembers, and what it said last.
+    distrusted
+        Sensors whose readings are not to be believed.
+    """
+    yield from _loads(twin, state, answered, distrusted)
+    yield _volume(answered)
+    yield from _silences(state, answered.t)
+    yield _input(twin, state, answered)
+    yield _domain(answered)
+
+
+def _loads(
+    twin: Twin, state: TwinState, answered: Answered, distrusted: frozenset[str]
+) -> Iterator[Number]:
+    answer = answered.answer
+    valid = bool(answer.valid[0])
+    detail = answer.reason[0] if valid and not answer.in_domain[0] else ""
+    mean = answer.bridle_tension.mean[0]
+    capacity = twin.cage.bridle_capacity
+    measured = dict[int, float]()
+    for shackle in twin.cage.shackles:
+        if shackle.name in distrusted or shackle.name in state.silent:
+            continue
+        load = _recent_mean(state.streams.get(shackle.name, ()), answered.t)
+        if load is not None:
+            measured[shackle.bridle] = load
+    for bridle, name in enumerate(twin.bridle_names):
+        known = [float(mean[bridle])] if valid else []
+        known += [measured[bridle]] if bridle in measured else []
+        value = max(known) / float(capacity[bridle]) if known else None
+        yield Number(alarm=f"load.{name}", value=value, detail=detail)
+
+
+def _recent_mean(stream: Stream, now: datetime) -> float | None:
+    """Mean of a shackle's good readings of late [N]; None without any."""
+    since, total, count = now - timedelta(seconds=MEASURED_S), 0.0, 0
+    for taken in reversed(stream):
+        sample = taken.sample
+        if sample.t < since:
+            break
+        # A suspect reading never wakes anyone.
+        if sample.flags["tension_kn"] == Flag.GOOD:
+            total, count = total + sample.values["tension_kn"], count + 1
+    return 1000.0 * total / count if count else None
+
+
+def _volume(answered: Answered) -> Number:
+    answer = answered.answer
+    if not answer.valid[0]:
+        return Number(alarm="volume.net", value=None)
+    detail = "" if answer.in_domain[0] else answer.reason[0]
+    return Number(alarm="volume.net", value=1.0 - float(answer.volume_fraction[0]), detail=detail)
+
+
+def _silences(state: TwinState, now: datetime) -> Iterator[Number]:
+    for name, stream in state.streams.items():
+        age_s = (now - stream[-1].sample.t).total_seconds()
+        yield Number(alarm=f"silent.{name}", value=max(0.0, age_s))
+
+
+def _input(twin: Twin, state: TwinState, answered: Answered) -> Number:
+    """Whether there is no input; where the buoy is silent, that is said already."""
+    name, answer = f"input.{twin.buoy}", answered.answer
+    if answer.valid[0]:
+        return Number(alarm=name, value=0.0)
+    value = None if twin.buoy in state.silent else 1.0
+    return Number(alarm=name, value=value, detail=answer.reason[0])
+
+
+def _domain(answered: Answered) -> Number:
+    answer = answered.answer
+    if not answer.valid[0]:
+        return Number(alarm="domain.input", value=None)
+    inside = bool(answer.in_domain[0])
+    return Number(alarm="domain.input", value=0.0 if inside else 1.0, detail=answer.reason[0])

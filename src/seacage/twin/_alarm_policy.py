@@ -1,0 +1,189 @@
+"""By which limits a cage's alarms are judged."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+from typing import Any, Self, cast
+
+from seacage.cage import Cage
+from seacage.conventions import InputError
+from seacage.twin._alarm import Limit
+from seacage.twin._state import Watch
+
+USUAL: Mapping[str, Limit] = {
+    # Of the capacity, which the material factor has divided already: reached, the line has used
+    # up what its designer allowed. A fifth below it there is time to act.
+    "load": Limit(
+        raise_at=0.8,
+        clear_at=0.7,
+        on_delay_s=60.0,
+        off_delay_s=300.0,
+        repeat_after_s=1800.0,
+        severity=700,
+    ),
+    # Of the volume in still water. It comes and goes with every tide, so only what lasts counts.
+    "volume": Limit(
+        raise_at=0.5,
+        clear_at=0.4,
+        on_delay_s=1200.0,
+        off_delay_s=1200.0,
+        repeat_after_s=7200.0,
+        severity=600,
+    ),
+    # Since a stream last spoke [s]; how long it may be quiet is the twin's to say.
+    "silent": Limit(raise_at=900.0, clear_at=600.0, on_delay_s=60.0, severity=500),
+    # One bad reading of a buoy that speaks every quarter of an hour is not worth a call.
+    "input": Limit(
+        raise_at=1.0, clear_at=0.0, on_delay_s=1800.0, repeat_after_s=7200.0, severity=600
+    ),
+    "domain": Limit(raise_at=1.0, clear_at=0.0, on_delay_s=600.0, off_delay_s=1800.0, severity=400),
+    # Of the test's own limit; the averaging that delays belong to is in the test.
+    "irregular": Limit(raise_at=1.0, clear_at=0.5, severity=500),
+    "bridle": Limit(raise_at=1.0, clear_at=0.5, repeat_after_s=600.0, severity=900),
+    "net": Limit(raise_at=1.0, clear_at=0.5, repeat_after_s=600.0, severity=900),
+    "history": Limit(raise_at=1.0, clear_at=0.0, repeat_after_s=3600.0, severity=800),
+}
+"""By kind of alarm."""
+
+FAULT = "history"
+"""The kind whose limit serves for faults of the service that have none of their own."""
+
+_WHOLE = ("severity",)
+_KEYS = tuple(one.name for one in fields(Limit))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AlarmPolicy:
+    """Limits of a cage's alarms.
+
+    Parameters
+    ----------
+    limits
+        By kind (``load``) or by name (``load.bridle-3``), which goes first. Loads are shares of
+        the bridle's capacity, volumes are losses as shares of the volume in still water,
+        silences are seconds; the others are 0 or 1, or shares of a test's limit.
+    names
+        What alarms there can be of the cage; empty where no cage was given.
+    jump_s
+        A clock that goes further between two looks has jumped, and what waits on a delay begins
+        to wait anew [s].
+    """
+
+    limits: Mapping[str, Limit]
+    names: frozenset[str] = frozenset()
+    jump_s: float = 1800.0
+
+    @classmethod
+    def default(
+        cls, cage: Cage | None = None, *, buoy: str = "buoy-1", watch: Watch | None = None
+    ) -> Self:
+        """Return the usual limits.
+
+        Parameters
+        ----------
+        cage
+            Names the bridles and sensors that limits may be given for.
+        buoy
+            The stream that the inputs come from.
+        watch
+            How long streams may be quiet; None for the usual.
+        """
+        watch = Watch() if watch is None else watch
+        limits = dict(USUAL)
+        limits["silent"] = _silence(limits["silent"], watch.sensor_silent_after_s)
+        limits[f"silent.{buoy}"] = _silence(
+            replace(limits["silent"], severity=600), watch.stale_after_s
+        )
+        return cls(limits=limits, names=alarm_names(cage, buoy) if cage else frozenset())
+
+    @classmethod
+    def from_dict(
+        cls,
+        table: Mapping[str, object],
+        cage: Cage | None = None,
+        *,
+        buoy: str = "buoy-1",
+        watch: Watch | None = None,
+    ) -> Self:
+        """Return the usual limits, but for what a table says.
+
+        ``{"load": {"raise_at": 0.7, "clear_at": 0.6}, "load.bridle-3": {"raise_at": 0.6}}``;
+        what a table leaves out stays as it is for the kind.
+
+        Raises
+        ------
+        InputError
+            A kind, a name or a key that is unknown, a value that is no number, or limits that
+            ``Limit`` refuses.
+        """
+        policy = cls.default(cage, buoy=buoy, watch=watch)
+        limits = dict(policy.limits)
+        for name in sorted(table, key=lambda one: "." in one):  # a name starts from its kind
+            _check_name(name, policy.names)
+            limits[name] = _altered(
+                limits.get(name, limits[name.partition(".")[0]]), table[name], name
+            )
+        return replace(policy, limits=limits)
+
+    def limit(self, name: str) -> Limit:
+        """By which an alarm is judged."""
+        limits = self.limits
+        if name in limits:
+            return limits[name]
+        return limits.get(name.partition(".")[0], limits[FAULT])
+
+
+def alarm_names(cage: Cage, buoy: str) -> frozenset[str]:
+    """Name the alarms that there can be of a cage."""
+    by_kind = {
+        "load": cage.bridle_names,
+        "bridle": cage.bridle_names,
+        "volume": ("net",),
+        "net": ("net",),
+        "silent": (buoy, *cage.sensor_names),
+        "irregular": cage.sensor_names,
+        "input": (buoy,),
+        "domain": ("input",),
+        "history": ("store",),
+    }
+    return frozenset(f"{kind}.{source}" for kind, sources in by_kind.items() for source in sources)
+
+
+def _silence(limit: Limit, after_s: float) -> Limit:
+    return replace(limit, raise_at=after_s, clear_at=after_s / 1.5)
+
+
+def _altered(limit: Limit, entry: object, name: str) -> Limit:
+    if not isinstance(entry, Mapping):
+        raise InputError(
+            f"alarms: {name} = {entry!r} is no table of limits. "
+            f'Write e.g. [alarms."{name}"] and below it raise_at = {limit.raise_at:g}.'
+        )
+    table = cast("Mapping[str, Any]", entry)
+    unknown = [key for key in table if key not in _KEYS]
+    if unknown:
+        raise InputError(
+            f"alarms, {name}: the key {unknown[0]!r} is unknown. There are: {', '.join(_KEYS)}."
+        )
+    for key, value in table.items():
+        kinds = int if key in _WHOLE else (int, float)
+        if isinstance(value, bool) or not isinstance(value, kinds) or math.isnan(value):
+            whole = "whole " if key in _WHOLE else ""
+            raise InputError(f"alarms, {name}: {key} = {value!r} is no {whole}number.")
+    try:
+        return replace(limit, **table)
+    except InputError as error:
+        raise InputError(f"alarms, {name}: {error}") from error
+
+
+def _check_name(name: str, names: frozenset[str]) -> None:
+    kind, dot, _ = name.partition(".")
+    if kind not in USUAL:
+        raise InputError(
+            f"alarms: there is no kind of alarm {kind!r}. There are: {', '.join(USUAL)}."
+        )
+    if dot and names and name not in names:
+        others = sorted(one for one in names if one.startswith(f"{kind}."))
+        raise InputError(
+            f"alarms: there is no alarm {name!r} here. There are: {', '.join(others)}."
+        )

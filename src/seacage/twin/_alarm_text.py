@@ -1,0 +1,184 @@
+"""Alarms in plain words."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from seacage.twin._alarm import Alarm, Limit
+from seacage.twin._alarm_policy import AlarmPolicy
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AlarmText:
+    """What an operator reads.
+
+    Parameters
+    ----------
+    title
+        A few words.
+    message
+        What is known, in a sentence or two.
+    advice
+        What to do.
+    unit
+        Of the alarm's number and limits; "1" where it has none.
+    """
+
+    title: str
+    message: str
+    advice: str
+    unit: str
+
+
+def described(alarm: Alarm, policy: AlarmPolicy) -> AlarmText:
+    """Say what an alarm means and what to do about it."""
+    words = _WORDS.get(alarm.kind, _FAULT)
+    limit = policy.limit(alarm.name)
+    message = words.message(alarm, limit)
+    if alarm.detail and alarm.detail not in message:
+        message = f"{message} {alarm.detail}".strip()
+    return AlarmText(
+        title=words.title.format(source=_said(alarm.source)),
+        message=message,
+        advice=words.advice,
+        unit=words.unit,
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Words:
+    title: str
+    message: Callable[[Alarm, Limit], str]
+    advice: str
+    unit: str = "1"
+
+
+def _load(alarm: Alarm, limit: Limit) -> str:
+    if alarm.value is None:
+        return "Its load is not known."
+    worst = f", {alarm.worst:.0%} at worst" if alarm.worst is not None and alarm.active else ""
+    return (
+        f"{_said(alarm.source)} bears {alarm.value:.0%} of what it may bear{worst}; the alarm "
+        f"is raised at {limit.raise_at:.0%} and clears at {limit.clear_at:.0%}."
+    )
+
+
+def _volume(alarm: Alarm, limit: Limit) -> str:
+    if alarm.value is None:
+        return "The net's volume is not known."
+    return (
+        f"The net has lost {alarm.value:.0%} of its volume in still water; the alarm is raised "
+        f"at {limit.raise_at:.0%}."
+    )
+
+
+def _silent(alarm: Alarm, limit: Limit) -> str:
+    if alarm.value is None:
+        return f"{_said(alarm.source)} has never spoken."
+    if not alarm.active:
+        return f"{_said(alarm.source)} speaks; it last did {_time(alarm.value)} ago."
+    return (
+        f"{_said(alarm.source)} has said nothing for {_time(alarm.value)}; "
+        f"{_time(limit.raise_at)} is the limit."
+    )
+
+
+def _either(*, active: str, calm: str) -> Callable[[Alarm, Limit], str]:
+    """Words for an alarm whose number says no more than whether it is there."""
+
+    def message(alarm: Alarm, _: Limit) -> str:
+        words = active if alarm.active else calm
+        return words.format(source=_said(alarm.source))
+
+    return message
+
+
+_WORDS: Mapping[str, _Words] = {
+    "load": _Words(
+        title="High load on {source}",
+        message=_load,
+        advice="Keep people and boats away from the line. Look at the forecast and at the "
+        "neighbouring lines; slacken or relieve it if the load stays.",
+    ),
+    "volume": _Words(
+        title="The net is losing volume",
+        message=_volume,
+        advice="Stop feeding and watch the fish. The volume comes back as the current falls.",
+    ),
+    "silent": _Words(
+        title="{source} is silent",
+        message=_silent,
+        advice="Check its power, its radio and its clock.",
+        unit="s",
+    ),
+    "input": _Words(
+        title="No valid input from {source}",
+        message=_either(
+            active="The twin has no valid input, so it gives no numbers.",
+            calm="There is valid input.",
+        ),
+        advice="Look at what the buoy says; clean or replace its sensor if its readings go on "
+        "failing their checks.",
+    ),
+    "domain": _Words(
+        title="Water beyond what the twin has learned",
+        message=_either(
+            active="The water is beyond what the twin was trained on, so its numbers are "
+            "less sure.",
+            calm="The water is as the twin has learned it.",
+        ),
+        advice="Trust measured loads more than computed ones. If such water is common, train "
+        "the twin with a wider campaign.",
+    ),
+    "irregular": _Words(
+        title="{source} reads irregularly",
+        message=_either(
+            active="{source} does not read as the twin and the other sensors expect.",
+            calm="{source} reads as the twin and the other sensors expect.",
+        ),
+        advice="Compare it with a reading by hand. Calibrate or replace the sensor if it is "
+        "wrong; inspect the cage near it if it is right.",
+    ),
+    "bridle": _Words(
+        title="{source} has probably parted",
+        message=_either(
+            active="{source} seems to bear nothing, and the other bridles of its corner bear "
+            "its share.",
+            calm="{source} bears what is expected of it.",
+        ),
+        advice="Look at the line at once, from a boat that keeps clear of its corner. Its "
+        "neighbours carry more until it is mended.",
+    ),
+    "net": _Words(
+        title="The net may be torn",
+        message=_either(
+            active="The current pulls less at the net than before: loads fall, or depths "
+            "grow, together.",
+            calm="The current pulls at the net as expected.",
+        ),
+        advice="Send a camera or a diver to look for a hole. A net that was cleaned looks the "
+        "same to these sensors: if it was, say so in the comment.",
+    ),
+    "history": _Words(
+        title="History is not being kept as it should",
+        message=_either(active="", calm="Nothing is wrong."),
+        advice="Look at the disk and at the service's log.",
+    ),
+}
+_FAULT = _Words(
+    title="The service has a fault: {source}",
+    message=_either(active="", calm="Nothing is wrong."),
+    advice="Look at the service's log.",
+)
+
+
+def _said(source: str) -> str:
+    """Begin a sentence with a source's name."""
+    return source[:1].upper() + source[1:]
+
+
+def _time(seconds: float) -> str:
+    if seconds < 120.0:
+        return f"{seconds:.0f} s"
+    if seconds < 7200.0:
+        return f"{seconds / 60.0:.0f} min"
+    return f"{seconds / 3600.0:.1f} h"

@@ -1,0 +1,86 @@
+"""What is wrong with a cage now: every alarm judged once, with no clock but the twin's."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from types import MappingProxyType
+
+from seacage.twin._alarm import Alarm, Happened
+from seacage.twin._alarm_book import AlarmBook
+from seacage.twin._alarm_judged import judged
+from seacage.twin._alarm_numbers import Number, numbers
+from seacage.twin._alarm_policy import USUAL, AlarmPolicy
+from seacage.twin._events import Answered
+from seacage.twin._state import TwinState
+from seacage.twin._twin import Twin
+
+_NO_TROUBLE: Mapping[str, str] = MappingProxyType({})
+
+
+def assess(
+    book: AlarmBook,
+    *,
+    twin: Twin,
+    state: TwinState,
+    answered: Answered,
+    policy: AlarmPolicy,
+    trouble: Mapping[str, str] = _NO_TROUBLE,
+) -> tuple[AlarmBook, tuple[Happened, ...]]:
+    """Judge every alarm after a step of the twin.
+
+    Nothing is read but the arguments. A number that is not known neither raises nor clears,
+    and where the clock has jumped all delays begin anew.
+
+    Parameters
+    ----------
+    book
+        From ``AlarmBook.new`` or from the last call.
+    twin, state, answered
+        The twin, its state after a step, and the answer of that step.
+    policy
+        The limits.
+    trouble
+        The service's own faults: a sentence by the alarm's name, such as ``history.store``. A
+        fault that is not named any more is over.
+
+    Returns
+    -------
+    book, happened
+        The journal's lines in order.
+    """
+    now = answered.t
+    book = book.at(now, jump_s=policy.jump_s)
+    alarms, lines = dict(book.alarms), list[Happened]()
+    for number in _all_numbers(book, twin, state, answered, trouble):
+        alarm = alarms.get(number.alarm) or Alarm(name=number.alarm)
+        before = alarm.active
+        alarm, changed = judged(alarm, number.value, policy.limit(alarm.name), now)
+        # What was said when it was raised stays: the cause, not the latest weather.
+        if alarm.active and not before and number.detail != alarm.detail:
+            alarm = replace(alarm, detail=number.detail)
+        alarms[alarm.name] = alarm
+        lines += changed
+    return replace(book, alarms=alarms), tuple(lines)
+
+
+def _all_numbers(
+    book: AlarmBook,
+    twin: Twin,
+    state: TwinState,
+    answered: Answered,
+    trouble: Mapping[str, str],
+) -> Iterator[Number]:
+    yield from numbers(twin, state, answered, distrusted=frozenset())
+    yield from _faults(book, trouble)
+
+
+def _faults(book: AlarmBook, trouble: Mapping[str, str]) -> Iterator[Number]:
+    for name, sentence in trouble.items():
+        yield Number(alarm=name, value=1.0, detail=sentence)
+    for name, alarm in book.alarms.items():
+        if name not in trouble and _is_fault(alarm):
+            yield Number(alarm=name, value=0.0)
+
+
+def _is_fault(alarm: Alarm) -> bool:
+    """Whether an alarm is the service's, as all are that the twin does not judge."""
+    return alarm.kind == "history" or alarm.kind not in USUAL
