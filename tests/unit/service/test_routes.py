@@ -1,9 +1,18 @@
 import time
 
 import httpx
+import numpy as np
 import pytest
 
+from framed import decoded
+from seacage.ocean import SeaState
+from seacage.service._answers import summary_of
+from seacage.service._frame import Flags
+from seacage.service._schemas import AlarmBrief
 from serviced import Running, at, buoy, depth
+
+
+JSON = {"Content-Type": "application/json"}
 
 
 def eventually(ask, accept, *, seconds=5.0):
@@ -183,7 +192,7 @@ def test_a_sample_that_cannot_be_kept_is_rejected_alone_with_a_reason(live: Runn
     ids=["no JSON", "no object", "no samples", "no time", "no zone", "unknown key"],
 )
 def test_a_malformed_body_is_refused_as_documented(idle: Running, body):
-    answer = idle.logger.post("/api/v1/cages/ace/samples", content=body)
+    answer = idle.logger.post("/api/v1/cages/ace/samples", content=body, headers=JSON)
     assert answer.status_code == 422
     assert idle.reader.get("/api/v1/cages/ace/samples").json()["samples"] == []
 
@@ -239,6 +248,87 @@ def test_the_cages_and_their_unchanging_parts_are_listed(idle: Running):
     nodes = len(topology["rest_position_m"])
     assert all(0 <= node < nodes for edge in topology["edges"] for node in edge)
     assert len(topology["bridle_names"]) == len(topology["bridle_capacity_kn"]) == 12
+
+
+def test_a_cage_is_summed_up_with_its_largest_load_and_its_alarms(live: Running):
+    live.post(buoy())
+    state = eventually(live.state, lambda one: one["valid"])
+    (cage,) = live.reader.get("/api/v1/cages").json()["cages"]
+    assert cage["max_utilisation"] == max(one["utilisation"] for one in state["bridles"])
+    assert cage["current_speed_m_s"] == pytest.approx(0.5)
+    assert (cage["valid"], cage["in_domain"], cage["reason"]) == (True, True, "")
+
+
+def test_the_worst_alarm_that_is_not_shelved_stands_for_its_cage(idle: Running):
+    alarm = {
+        "id": "load.bridle-3",
+        "severity": 900,
+        "title": "Bridle 3 is overloaded",
+        "message": "Bridle 3 carries 150 kN.",
+        "active": True,
+        "acknowledged": False,
+        "shelved": True,
+        "since": None,
+    }
+    other = alarm | {"id": "silent.depth-2", "severity": 300, "title": "quiet", "shelved": False}
+    alarms = [AlarmBrief(**alarm), AlarmBrief(**other)]
+    state = idle.cage.snapshot.state.model_copy(update={"alarms": alarms})
+    summary = summary_of("ace", state)
+    assert (summary.waiting, summary.worst_severity, summary.worst_title) == (1, 300, "quiet")
+
+
+def frame_of(answer):
+    assert answer.status_code == 200, answer.text
+    assert answer.headers["content-type"] == "application/vnd.seacage.frame"
+    return decoded(answer.content)
+
+
+def test_the_pages_message_can_be_asked_for_now_and_in_the_past(live: Running):
+    live.post(buoy(-120, speed=0.2), buoy(0, speed=0.6))
+    ask = lambda **at: frame_of(live.reader.get("/api/v1/cages/ace/frame", params=at))  # noqa: E731
+    now = eventually(ask, lambda frame: frame.state["valid"])
+    assert now.flags == Flags.VALID | Flags.IN_DOMAIN
+    past = ask(at=at(-60))
+    assert past.flags == Flags.VALID | Flags.IN_DOMAIN | Flags.PAST
+    assert past.state["water"]["current_speed_m_s"] == pytest.approx(0.2)
+    assert np.abs(past.displacement).max() < np.abs(now.displacement).max()
+
+
+def test_water_that_is_only_imagined_is_answered_and_leaves_no_trace(live: Running):
+    asked = {"current_speed_m_s": 0.5, "current_to_deg": 90.0}
+    frame = frame_of(live.reader.post("/api/v1/cages/ace/whatif", json=asked))
+    assert frame.flags == Flags.VALID | Flags.IN_DOMAIN | Flags.WHAT_IF
+    expected = live.cage.twin.predict(SeaState(current_speed=0.5, current_to=90.0))
+    assert frame.state["bridles"][0]["tension_kn"]["mean"] == pytest.approx(
+        expected.bridle_tension.mean[0, 0] / 1e3, abs=5e-4
+    )
+    assert not live.state()["valid"]
+    faster = frame_of(
+        live.reader.post("/api/v1/cages/ace/whatif", json=asked | {"current_speed_m_s": 1.4})
+    )
+    assert not faster.flags & Flags.IN_DOMAIN
+
+
+@pytest.mark.parametrize(
+    ("sea", "why"),
+    [
+        ({"current_speed_m_s": 4.0, "current_to_deg": 0.0}, "less than or equal to 3"),
+        ({"current_speed_m_s": 1.0}, "current_to_deg"),
+        ({"current_speed_m_s": False, "current_to_deg": 0.0}, "valid number"),
+        ({"current_speed_m_s": 0.5, "current_to_deg": 0.0, "hs_m": 3.0, "tp_s": 2.0}, "steep"),
+    ],
+)
+def test_water_that_cannot_be_is_refused_in_one_sentence(idle: Running, sea, why):
+    answer = idle.reader.post("/api/v1/cages/ace/whatif", json=sea)
+    assert answer.status_code == 422
+    assert why in answer.json()["detail"]
+
+
+def test_a_key_of_half_a_character_is_refused_and_breaks_no_answer(idle: Running):
+    body = b'{"samples": [{"stream": "buoy-1", "\\ud800": 1}]}'
+    answer = idle.logger.post("/api/v1/cages/ace/samples", content=body, headers=JSON)
+    assert answer.status_code == 422
+    assert "ud800" in answer.json()["detail"]
 
 
 def test_a_cage_that_is_not_there_is_not_found(idle: Running):
