@@ -9,7 +9,7 @@ from pathlib import Path
 import structlog
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
-from fastapi.responses import FileResponse, JSONResponse
+from fastapi.responses import FileResponse, JSONResponse, PlainTextResponse, Response
 from fastapi.staticfiles import StaticFiles
 
 from seacage.conventions import InputError
@@ -116,13 +116,21 @@ def create_app(service: Service) -> FastAPI:
     app.add_exception_handler(RequestValidationError, _malformed)
     for router in (around, sessions, cages, what_if, sockets):
         app.include_router(router)
-    app.mount("/page", StaticFiles(directory=_PAGE), name="page")
-
-    @app.get("/", include_in_schema=False)
-    def page() -> FileResponse:  # pyright: ignore[reportUnusedFunction]
-        return FileResponse(_PAGE / "index.html")
-
+    if _PAGE.is_dir():
+        app.mount("/page", StaticFiles(directory=_PAGE), name="page")
+    app.add_api_route("/", _page, include_in_schema=False)
     return app
+
+
+def _page() -> Response:
+    index = _PAGE / "index.html"
+    if index.is_file():
+        return FileResponse(index)
+    return PlainTextResponse(
+        "The page is not built here: run `make page`, or install a wheel, which brings it. "
+        "The interface is described at /openapi.json.\n",
+        status_code=404,
+    )
 
 
 def _unavailable(_: Request, error: Exception) -> JSONResponse:
