@@ -87,10 +87,32 @@ def test_every_answer_carries_the_browsers_rules(idle: Running, path):
     assert headers["x-content-type-options"] == "nosniff"
 
 
-def test_the_page_lies_at_the_root_and_its_folder_gives_nothing_else_away(idle: Running):
-    assert "<title>seacage</title>" in httpx.get(idle.address).text
-    assert httpx.get(f"{idle.address}/page/%2e%2e/_tokens.py").status_code == 404
-    assert httpx.get(f"{idle.address}/page/").status_code == 404
+@pytest.fixture
+def built(tmp_path, monkeypatch):
+    """A page as its build leaves it."""
+    folder = tmp_path / "page"
+    folder.mkdir()
+    (folder / "index.html").write_text("<title>seacage</title>")
+    monkeypatch.setattr("seacage.service._api._PAGE", folder)
+    return folder
+
+
+def test_the_page_lies_at_the_root_and_its_folder_gives_nothing_else_away(built, tmp_path):
+    (tmp_path / "secret.txt").write_text("secret")
+    with running(tmp_path) as one:
+        assert "<title>seacage</title>" in httpx.get(one.address).text
+        for odd in ("%2e%2e/secret.txt", "..%2fsecret.txt", "%2e%2e%2fsecret.txt", ""):
+            assert httpx.get(f"{one.address}/page/{odd}").status_code == 404
+
+
+def test_a_service_whose_page_was_not_built_serves_all_else_and_says_so(built, tmp_path):
+    (built / "index.html").unlink()
+    built.rmdir()
+    with running(tmp_path) as one:
+        answer = httpx.get(one.address)
+        assert answer.status_code == 404
+        assert "make page" in answer.text
+        assert one.reader.get("/api/v1/cages").is_success
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,3 @@
-import time
-
 import httpx
 import numpy as np
 import pytest
@@ -9,18 +7,9 @@ from seacage.ocean import SeaState
 from seacage.service._answers import summary_of
 from seacage.service._frame import Flags
 from seacage.service._schemas import AlarmBrief
-from serviced import Running, at, buoy, depth
-
+from serviced import Running, at, buoy, depth, eventually
 
 JSON = {"Content-Type": "application/json"}
-
-
-def eventually(ask, accept, *, seconds=5.0):
-    """What is asked, once it is as it should be; the live loop takes a moment."""
-    end = time.monotonic() + seconds
-    while not accept(answer := ask()) and time.monotonic() < end:
-        time.sleep(0.02)
-    return answer
 
 
 def numbers(value):
@@ -324,11 +313,14 @@ def test_water_that_cannot_be_is_refused_in_one_sentence(idle: Running, sea, why
     assert why in answer.json()["detail"]
 
 
-def test_a_key_of_half_a_character_is_refused_and_breaks_no_answer(idle: Running):
-    body = b'{"samples": [{"stream": "buoy-1", "\\ud800": 1}]}'
-    answer = idle.logger.post("/api/v1/cages/ace/samples", content=body, headers=JSON)
+@pytest.mark.parametrize("name", ["stream", "values"])
+def test_half_a_character_is_refused_and_breaks_no_answer(idle: Running, name):
+    half = {"stream": "\ud800", "values": {"\ud800": 1.0}}
+    sample = depth(minutes=-1) | {name: half[name]}
+    content = json.dumps({"samples": [sample]})
+    answer = idle.logger.post("/api/v1/cages/ace/samples", content=content, headers=JSON)
     assert answer.status_code == 422
-    assert "ud800" in answer.json()["detail"]
+    assert "unicode" in answer.json()["detail"]
 
 
 def test_a_cage_that_is_not_there_is_not_found(idle: Running):
