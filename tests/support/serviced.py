@@ -3,6 +3,7 @@
 import asyncio
 import socket
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -66,6 +67,14 @@ def depth(minutes=0.0, metres=14.0, stream="depth-2"):
 
 def at(minutes: float) -> str:
     return (NOON + timedelta(minutes=minutes)).isoformat()
+
+
+def eventually(ask, accept, *, seconds=5.0):
+    """What is asked, once it is as it should be; the live loop takes a moment."""
+    end = time.monotonic() + seconds
+    while not accept(answer := ask()) and time.monotonic() < end:
+        time.sleep(0.02)
+    return answer
 
 
 @contextmanager
