@@ -1,0 +1,172 @@
+// The net from the side and from above, drawn flat, with a table: for browsers without WebGL,
+// and for readers who like it better.
+
+import { draw, make } from "../dom.js";
+import { onTheme } from "../theme.js";
+import { extent, ringNodes, towards, tubeRing } from "./geometry.js";
+import { sensorPlaces } from "./places.js";
+import { bridleColours, sensorColour } from "./paint.js";
+import { fixed, wordsFor } from "./words.js";
+import { Tip } from "./tip.js";
+
+const PAD = 8; // metres around the drawing
+
+export class FlatView {
+  constructor(model, options, holder) {
+    Object.assign(this, { model, options, holder });
+    this.side = drawing("Side view, seen from the south: east to the right");
+    this.plan = drawing("From above: north up");
+    this.table = make("table", { className: "flat-table" });
+    this.element = make("div", { className: "flat", tabIndex: 0, role: "group",
+      "aria-label": "The net from the side and from above" },
+    this.side.figure, this.plan.figure,
+    make("div", { className: "flat-words" }, this.table));
+    holder.append(this.element);
+    this.tip = new Tip(holder);
+    this.forget = [
+      model.on("topology", (topology) => this.build(topology)),
+      model.on("view", () => this.show()),
+      model.on("selection", () => this.show()),
+      options.on(() => this.show()),
+      onTheme(() => this.show()),
+    ];
+    if (model.topology) this.build(model.topology);
+  }
+
+  build(topology) {
+    this.topology = topology;
+    const { frame, depth } = extent(topology);
+    const reach = Math.max(...topology.corner_position_m.map(([x, y]) => Math.max(Math.abs(x), Math.abs(y))),
+      0.72 * frame) + PAD;
+    this.side.svg.setAttribute("viewBox", `${-reach} ${-PAD} ${2 * reach} ${1.25 * depth + PAD}`);
+    this.plan.svg.setAttribute("viewBox", `${-reach} ${-reach} ${2 * reach} ${2 * reach}`);
+    this.show();
+  }
+
+  show() {
+    const { topology, model } = this;
+    if (!topology) return;
+    const view = model.view;
+    const position = view?.position ?? topology.rest;
+    const seen = { topology, view, position, options: this.options, chosen: model.selection };
+    this.side.svg.replaceChildren(...sketch(seen, ([x, , z]) => [x, -z], "side"));
+    this.plan.svg.replaceChildren(...sketch(seen, ([x, y]) => [x, -y], "plan"));
+    this.fill(view);
+    for (const { svg } of [this.side, this.plan]) {
+      for (const target of svg.querySelectorAll("[data-name]")) this.listen(target);
+    }
+  }
+
+  listen(target) {
+    const { kind, name } = target.dataset;
+    target.addEventListener("click", () => this.model.select({ [kind]: name }));
+    target.addEventListener("pointerenter", (event) => {
+      const box = this.holder.getBoundingClientRect();
+      this.tip.show(wordsFor({ [kind]: name }, this.topology, this.model.view),
+        [event.clientX - box.left, event.clientY - box.top]);
+    });
+    target.addEventListener("pointerleave", () => this.tip.show(null));
+  }
+
+  /** Where the net is, in numbers. */
+  fill(view) {
+    const { topology } = this;
+    const { spokes, rings, rest } = topology;
+    const places = [["Collar", 0], ["Sinker tube", tubeRing(topology)], ["Tip", null]];
+    const rows = places.map(([name, ring]) => {
+      const nodes = ring === null ? [spokes * rings] : ringNodes(topology, ring);
+      const mean = (array, axis) =>
+        nodes.reduce((sum, node) => sum + array[3 * node + axis], 0) / nodes.length;
+      const position = view?.position;
+      const moved = position && [0, 1, 2].map((axis) => mean(position, axis) - mean(rest, axis));
+      const sigma = position
+        && nodes.reduce((most, node) => Math.max(most, view.sigma[node]), 0);
+      return [name, fixed(position && -mean(position, 2), 1), fixed(moved && Math.hypot(moved[0], moved[1]), 1),
+        fixed(moved && moved[2], 1), fixed(sigma, 2)];
+    });
+    const heads = ["Where", "Depth [m]", "Moved aside [m]", "Raised [m]", "σ [m]"];
+    this.table.replaceChildren(
+      make("caption", { className: "unseen" }, "Where the net is, on average over each ring"),
+      make("thead", {}, make("tr", {}, ...heads.map((head) => make("th", { scope: "col" }, head)))),
+      make("tbody", {}, ...rows.map(([name, ...cells]) => make("tr", {},
+        make("th", { scope: "row" }, name), ...cells.map((cell) => make("td", {}, cell))))));
+  }
+
+  look() {}
+
+  close() {
+    for (const stop of this.forget) stop();
+    this.holder.replaceChildren();
+  }
+}
+
+function drawing(caption) {
+  const svg = draw("svg", { role: "img", "aria-label": caption, class: "flat-drawing",
+    preserveAspectRatio: "xMidYMid meet" });
+  return { svg, figure: make("figure", {}, svg, make("figcaption", {}, caption)) };
+}
+
+function sketch({ topology, view, position, options, chosen }, project, kind) {
+  const at = (array, node) => project([array[3 * node], array[3 * node + 1], array[3 * node + 2]]);
+  const path = (array, edges) => edges.map(([a, b]) =>
+    `M${at(array, a).map(short).join(" ")}L${at(array, b).map(short).join(" ")}`).join("");
+  const loop = (ring) => `M${ringNodes(topology, ring)
+    .map((node) => at(position, node).map(short).join(" ")).join("L")}Z`;
+  const parts = [];
+  if (kind === "side") {
+    const { frame } = extent(topology);
+    parts.push(draw("line", { x1: -2 * frame, x2: 2 * frame, y1: 0, y2: 0, class: "flat-sea" }));
+  }
+  parts.push(mooring(topology, project));
+  if (options.ghost && view?.position) {
+    parts.push(draw("path", { d: path(topology.rest, topology.edges), class: "flat-ghost" }));
+  }
+  parts.push(draw("path", { d: path(position, topology.edges), class: "flat-net" }),
+    draw("path", { d: loop(tubeRing(topology)), class: "flat-tube" }));
+  parts.push(draw("path", { d: loop(0), class: "flat-collar" }));
+  const colours = bridleColours(topology, view, options);
+  topology.bridle_names.forEach((name, k) => {
+    const from = project(topology.corner_position_m[topology.bridle_corners[k]]);
+    const to = at(position, topology.bridle_nodes[k]);
+    const line = draw("line", { x1: from[0], y1: from[1], x2: to[0], y2: to[1],
+      class: `flat-bridle ${chosen?.bridle === name ? "chosen" : ""}`, stroke: colours[k],
+      "data-kind": "bridle", "data-name": name });
+    parts.push(line);
+  });
+  for (const { name, at: place } of sensorPlaces(topology, position)) {
+    const [cx, cy] = project(place);
+    parts.push(draw("circle", { cx, cy, r: chosen?.sensor === name ? 1.7 : 1.1, class: "flat-sensor",
+      fill: sensorColour(view, name), "data-kind": "sensor", "data-name": name }));
+  }
+  const water = view?.state.valid ? view.state.water : null;
+  if (water?.current_speed_m_s > 0.03) parts.push(arrow(topology, water, project));
+  return parts;
+}
+
+function mooring({ corner_position_m: corners }, project) {
+  const d = corners.map((corner, k) => {
+    const [a, b] = [project(corner), project(corners[(k + 1) % corners.length])];
+    const top = project([corner[0], corner[1], 0]);
+    return `M${a.map(short).join(" ")}L${b.map(short).join(" ")}M${a.map(short).join(" ")}L${top.map(short).join(" ")}`;
+  }).join("");
+  return draw("path", { d, class: "flat-frame" });
+}
+
+function arrow(topology, water, project) {
+  const { reach, depth } = extent(topology);
+  const [east, north] = towards(water.current_to_deg);
+  const length = Math.max(4, 22 * water.current_speed_m_s);
+  const along = (metres) => project([metres * east, metres * north, -0.3 * depth]);
+  const [from, to] = [along(-reach - 3 - length), along(-reach - 3)];
+  const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
+  const size = Math.hypot(dx, dy);
+  if (size < 1) return draw("g");
+  const [u, v] = [dx / size, dy / size];
+  const head = `M${to.map(short).join(" ")}L${short(to[0] - 3 * u + 1.4 * v)} ${short(to[1] - 3 * v - 1.4 * u)}` +
+    `L${short(to[0] - 3 * u - 1.4 * v)} ${short(to[1] - 3 * v + 1.4 * u)}Z`;
+  return draw("g", { class: "flat-current" },
+    draw("line", { x1: from[0], y1: from[1], x2: to[0] - 2.4 * u, y2: to[1] - 2.4 * v }),
+    draw("path", { d: head }));
+}
+
+const short = (metres) => metres.toFixed(2);

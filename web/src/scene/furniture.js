@@ -1,0 +1,73 @@
+// What lies over the drawing: names, compass and scale bar.
+
+import { draw, make } from "../dom.js";
+
+const BAR_PX = [60, 150];
+
+/** Names pinned to points of the scene. */
+export class Labels {
+  constructor(holder) {
+    this.layer = make("div", { className: "scene-labels", "aria-hidden": "true" });
+    this.all = new Map();
+    holder.append(this.layer);
+  }
+
+  /** Pin a text at a place on the screen [px], or hide it where `at` is null. */
+  pin(name, text, at) {
+    let label = this.all.get(name);
+    if (!label) {
+      label = make("span", { className: `scene-label ${name}` });
+      this.all.set(name, label);
+      this.layer.append(label);
+    }
+    label.hidden = !at || !text;
+    if (label.hidden) return;
+    if (label.textContent !== text) {
+      label.textContent = text;
+      label.half = label.offsetWidth / 2 + 6;
+    }
+    // A name whose point is in sight stays whole.
+    const width = this.layer.clientWidth;
+    const inside = at[0] > 0 && at[0] < width;
+    const x = inside ? Math.min(Math.max(at[0], label.half), width - label.half) : at[0];
+    label.style.transform =
+      `translate(${Math.round(x)}px, ${Math.round(at[1])}px) translate(-50%, -50%)`;
+  }
+}
+
+/** A compass whose needle keeps to the north. */
+export function compass(onClick) {
+  const needle = draw("g", {},
+    draw("path", { d: "M0 -15 L5 0 L0 -3.500 L-5 0 Z", class: "needle-north" }),
+    draw("path", { d: "M0 15 L5 0 L0 3.500 L-5 0 Z", class: "needle-south" }),
+    draw("text", { y: -18, class: "needle-name" }, "N"));
+  const button = make("button", {
+    type: "button", className: "scene-compass", title: "Look north", "aria-label": "Look north",
+  }, draw("svg", { viewBox: "-30 -30 60 60", "aria-hidden": "true" },
+    draw("circle", { r: 27, class: "compass-face" }), needle));
+  button.addEventListener("click", onClick);
+  return { element: button, turn: (degrees) => needle.setAttribute("transform", `rotate(${degrees})`) };
+}
+
+/** A bar of a round length. */
+export function scaleBar() {
+  const words = make("span");
+  const bar = make("span", { className: "scale-line" });
+  const element = make("div", { className: "scene-scale" }, bar, words);
+  return {
+    element,
+    show(pxPerMetre) {
+      const metres = roundLength(pxPerMetre);
+      element.hidden = !Number.isFinite(metres);
+      bar.style.width = `${Math.round(metres * pxPerMetre)}px`;
+      words.textContent = `${metres} m`;
+    },
+  };
+}
+
+/** The longest round length that fits the bar [m]. */
+export function roundLength(pxPerMetre) {
+  const most = BAR_PX[1] / pxPerMetre;
+  const power = 10 ** Math.floor(Math.log10(most));
+  return [5, 2, 1].map((one) => one * power).find((one) => one <= most);
+}

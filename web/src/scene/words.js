@@ -1,0 +1,84 @@
+// What is said of a node, a bridle or a sensor that the reader points at.
+
+import { bearingOf } from "./geometry.js";
+
+const MINUS = "−";
+
+/** A number with its unit; a dash where there is none. */
+export const fixed = (value, decimals, unit = "") =>
+  value === null || value === undefined || !Number.isFinite(value)
+    ? "–" : `${value.toFixed(decimals).replace("-", MINUS)}${unit && ` ${unit}`}`;
+
+/** Degrees in three figures, as on a bridge. */
+export const bearing = (degrees) => `${String(Math.round(degrees) % 360).padStart(3, "0")}°`;
+
+/** How long, in the largest unit that says something. */
+export function lasting(seconds) {
+  if (seconds === null || seconds === undefined) return "–";
+  if (seconds < 90) return `${Math.round(seconds)} s`;
+  if (seconds < 5400) return `${Math.round(seconds / 60)} min`;
+  return seconds < 172800 ? `${(seconds / 3600).toFixed(1)} h` : `${Math.round(seconds / 86400)} d`;
+}
+
+const range = ({ lower, upper }, decimals, unit) =>
+  lower === null ? "–" : `${fixed(lower, decimals)} to ${fixed(upper, decimals, unit)}`;
+
+/** {title, rows: [[name, value]], note} of what a selection names; null where it names nothing. */
+export function wordsFor(selection, topology, view) {
+  if (!selection || !topology || !view) return null;
+  if (selection.bridle !== undefined) return ofBridle(selection.bridle, topology, view.state);
+  if (selection.sensor !== undefined) return ofSensor(selection.sensor, topology, view.state);
+  return ofNode(selection.node, topology, view);
+}
+
+function ofNode(node, { rest, rings, spokes }, { position, sigma }) {
+  const tip = node === rings * spokes;
+  const at = [0, 1, 2].map((axis) => (position ?? rest)[3 * node + axis]);
+  const still = [0, 1, 2].map((axis) => rest[3 * node + axis]);
+  const side = bearing(bearingOf(still[0], still[1]));
+  const title = tip ? "Tip of the cone"
+    : `Net, ring ${Math.floor(node / spokes) + 1} of ${rings}, towards ${side}`;
+  const rows = [["Depth", fixed(-at[2], 2, "m")],
+    ["East, north", `${fixed(at[0], 1)}, ${fixed(at[1], 1, "m")}`]];
+  if (!position) return { title, rows, note: "In still water: there is no valid input." };
+  rows.push(["Moved from rest", fixed(Math.hypot(...at.map((x, k) => x - still[k])), 2, "m")],
+    ["Uncertainty, σ", fixed(sigma[node], 2, "m")]);
+  return { title, rows };
+}
+
+function ofBridle(name, topology, state) {
+  const k = topology.bridle_names.indexOf(name);
+  const bridle = state.bridles[k];
+  if (!bridle) return null;
+  const kn = bridle.tension_kn;
+  const rows = [["Tension", fixed(kn.mean, 1, "kN")], ["95 % interval", range(kn, 1, "kN")],
+    ["Of its capacity", bridle.utilisation === null ? "–"
+      : `${fixed(100 * bridle.utilisation, 0)} % of ${fixed(topology.bridle_capacity_kn[k], 0, "kN")}`]];
+  const shackle = topology.shackles.find((one) => one.bridle === k);
+  const sensor = shackle && state.sensors.find((one) => one.name === shackle.name);
+  if (sensor) rows.push([`Measured, ${shackle.name}`, fixed(sensor.measured, 1, "kN")]);
+  return { title: name, rows, note: level(bridle.level, state) };
+}
+
+function ofSensor(name, topology, state) {
+  const sensor = state.sensors.find((one) => one.name === name);
+  if (!sensor) return null;
+  const decimals = sensor.unit === "m" ? 2 : 1;
+  const age = sensor.measured_age_s;
+  const rows = [
+    ["Measured", sensor.measured === null ? "– (silent)"
+      : `${fixed(sensor.measured, decimals, sensor.unit)}${age === null ? "" : `, ${lasting(age)} ago`}`],
+    ["Predicted", fixed(sensor.mean, decimals, sensor.unit)],
+    ["95 % interval", range(sensor, decimals, sensor.unit)],
+    ["Simulation alone", fixed(sensor.low_fidelity, decimals, sensor.unit)],
+  ];
+  const bridle = topology.shackles.find((one) => one.name === name)?.bridle;
+  const on = bridle === undefined ? "depth sensor on the net" : `on ${topology.bridle_names[bridle]}`;
+  return { title: `${name}, ${on}`, rows, note: level(sensor.level, state) };
+}
+
+function level(number, { valid, in_domain: inDomain, reason }) {
+  if (!valid) return reason || "There is no valid input.";
+  if (!inDomain) return "Extrapolated beyond what was learned.";
+  return number > 1 ? "Learned from measurements." : "From simulations alone.";
+}
