@@ -1,0 +1,80 @@
+// The alarms as the service has them, and what people do with them.
+
+import { waits } from "./ranks.js";
+
+const LOOK_MS = 15_000;
+const FORBIDDEN = 403;
+
+export class AlarmDesk {
+  #listeners = new Set();
+  #seen = "";
+  #turn = 0;
+
+  constructor(model) {
+    this.model = model;
+    this.forget();
+    model.on("topology", () => this.forget());
+    model.on("live", ({ state }) => this.compare(state.alarms ?? []));
+    setInterval(() => this.look(), LOOK_MS);
+  }
+
+  /** Call `fn` whenever the alarms are other than they were. */
+  on(fn) {
+    this.#listeners.add(fn);
+  }
+
+  forget() {
+    Object.assign(this, { alarms: null, fault: null, denied: false });
+    this.#seen = "";
+    this.#tell();
+  }
+
+  #tell() {
+    for (const fn of this.#listeners) fn();
+  }
+
+  /** Ask anew where the live state says that something changed. */
+  compare(alarms) {
+    const seen = JSON.stringify(alarms.map(({ id, active, acknowledged, shelved, severity }) =>
+      [id, active, acknowledged, shelved, severity]));
+    if (seen === this.#seen && this.alarms) return;
+    this.#seen = seen;
+    this.look();
+  }
+
+  async look() {
+    if (this.model.connection !== "live" || document.hidden) return;
+    const turn = ++this.#turn;
+    try {
+      const { alarms } = await this.model.call("GET", this.path("alarms"));
+      if (turn !== this.#turn) return;
+      Object.assign(this, { alarms, fault: null });
+    } catch (error) {
+      if (turn !== this.#turn) return;
+      this.fault = error.message;
+    }
+    this.#tell();
+  }
+
+  get waiting() {
+    return (this.alarms ?? []).filter(waits);
+  }
+
+  /** Do something with an alarm; rejects with a Refusal that says why not. */
+  async act(id, action, { why, seconds = null }) {
+    try {
+      await this.model.call("POST", this.path(`alarms/${encodeURIComponent(id)}/${action}`), { why, seconds });
+    } catch (error) {
+      if (error.status === FORBIDDEN) {
+        this.denied = true;
+        this.#tell();
+      }
+      throw error;
+    }
+    await this.look();
+  }
+
+  path(rest) {
+    return `cages/${encodeURIComponent(this.model.cageName)}/${rest}`;
+  }
+}

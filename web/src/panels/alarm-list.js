@@ -1,0 +1,105 @@
+// The alarms, worst first, each with what can be done.
+
+import { make } from "../dom.js";
+import { ACTIONS, actionsFor } from "./alarm-actions.js";
+import { empty, write } from "./dom.js";
+import { fixed, moment } from "./format.js";
+import { icon, rankIcon } from "./icons.js";
+import { sourceOf } from "./load-rows.js";
+import { ordered, rank, standing, waits } from "./ranks.js";
+
+export class AlarmList {
+  constructor(holder, model, desk, { ask }) {
+    Object.assign(this, { model, desk, ask });
+    this.denied = make("p", { className: "denied", hidden: true },
+      "This token may read but not handle alarms. Ask for one with the scope ack.");
+    this.list = make("ol", { className: "alarms" });
+    this.none = make("div");
+    holder.append(this.denied, this.none, this.list);
+    desk.on(() => this.show());
+    model.on("connection", () => this.show());
+    this.show();
+  }
+
+  show() {
+    const { alarms, fault, denied } = this.desk;
+    this.denied.hidden = !denied;
+    const told = (alarms ?? []).filter((alarm) =>
+      alarm.active || !alarm.acknowledged || alarm.shelved || alarm.in_service === false);
+    this.none.replaceChildren(...nothing(alarms, told, fault));
+    const kept = document.activeElement?.dataset?.act;
+    this.list.replaceChildren(...ordered(told).map((alarm) => this.item(alarm)));
+    // The list is made anew; whoever stood on a button still stands there.
+    if (kept) this.list.querySelector(`[data-act="${CSS.escape(kept)}"]`)?.focus();
+  }
+
+  item(alarm) {
+    const how = rank(alarm.severity);
+    const words = make("div", { className: "alarm-words" },
+      make("h3", {}, alarm.title),
+      make("p", { className: "alarm-standing" }, facts(alarm)),
+      make("p", { className: "alarm-message" }, alarm.message),
+      ...[alarm.advice, alarm.comment && `“${alarm.comment}”`].filter(Boolean)
+        .map((text) => make("p", { className: "alarm-more" }, text)));
+    const buttons = make("div", { className: "alarm-buttons" },
+      ...actionsFor(alarm).map((name) => this.button(alarm, name)), ...this.pointer(alarm));
+    const item = make("li", { className: "alarm" },
+      make("span", { className: "alarm-mark" }, rankIcon(how), make("span", { className: "unseen" }, how)),
+      words, buttons);
+    item.dataset.rank = waits(alarm) ? how : "quiet";
+    item.dataset.seen = alarm.acknowledged;
+    return item;
+  }
+
+  button(alarm, name) {
+    const main = name === "acknowledge" ? " main" : "";
+    const button = make("button", {
+      type: "button", className: `button small${main}`, ariaLabel: `${ACTIONS[name].word}: ${alarm.title}`,
+      onclick: () => (this.desk.denied ? this.refuse() : this.ask(alarm, name)),
+    }, ACTIONS[name].word);
+    button.dataset.act = `${alarm.id} ${name}`;
+    if (this.desk.denied) {
+      button.ariaDisabled = "true";
+      button.title = this.denied.textContent;
+    }
+    return button;
+  }
+
+  refuse() {
+    this.denied.setAttribute("role", "alert");
+    const words = this.denied.textContent;
+    write(this.denied, "");
+    write(this.denied, words);
+  }
+
+  /** A way to where the alarm is about, if that is drawn. */
+  pointer({ id, title }) {
+    const source = sourceOf(id);
+    const { topology } = this.model;
+    const there = topology?.bridle_names.includes(source) ? { bridle: source }
+      : [...(topology?.depth_sensors ?? []), ...(topology?.shackles ?? [])]
+        .some(({ name }) => name === source) ? { sensor: source } : null;
+    if (!there) return [];
+    return [make("button", {
+      type: "button", className: "button small quiet", ariaLabel: `Show on the net: ${title}`,
+      onclick: () => this.model.select(there),
+    }, "Show")];
+  }
+}
+
+function facts(alarm) {
+  const since = alarm.since ? ` · since ${moment(Date.parse(alarm.since))}` : "";
+  const number = Number.isFinite(alarm.value)
+    ? ` · ${fixed(alarm.value, 2)}${alarm.unit ? ` ${alarm.unit}` : ""}` : "";
+  const until = alarm.shelved_until ? ` until ${moment(Date.parse(alarm.shelved_until))}` : "";
+  return `${standing(alarm)}${until}${since}${number}`;
+}
+
+function nothing(alarms, told, fault) {
+  if (fault) return [empty("The alarms did not come", fault)];
+  if (!alarms) return [empty("Looking", "Asking the service for the alarms.")];
+  if (told.length) return [];
+  const calm = empty("No alarms", "Nothing is active, shelved or waiting to be seen.");
+  calm.prepend(icon("well"));
+  return [calm];
+}

@@ -1,0 +1,51 @@
+// A cage among others: what it does in three seconds, in a tile.
+
+import { make } from "../dom.js";
+import { bearing, counted, fixed, known, percent, span } from "./format.js";
+import { icon } from "./icons.js";
+import { rank } from "./ranks.js";
+import { waterArrow } from "./water-arrow.js";
+
+/** What a tile says: {kind, icon, words, detail}. */
+export function tileVerdict({ waiting, worst_severity: severity, worst_title: title, valid, in_domain: within, reason }) {
+  if (waiting) {
+    const kind = rank(severity);
+    return { kind, icon: kind, words: counted(waiting, "alarm"), detail: title ?? "" };
+  }
+  if (!valid) return { kind: "none", icon: "none", words: "No valid input", detail: reason ?? "" };
+  if (!within) return { kind: "beyond", icon: "beyond", words: "Extrapolating", detail: reason ?? "" };
+  return { kind: "well", icon: "well", words: "All well", detail: "" };
+}
+
+const PLACE = { critical: 0, warning: 1, none: 2, note: 3, beyond: 4, well: 5 };
+
+/** The worst first, then by name. */
+export function byNeed(cages) {
+  return [...cages].sort((a, b) => PLACE[tileVerdict(a).kind] - PLACE[tileVerdict(b).kind]
+    || (b.worst_severity ?? 0) - (a.worst_severity ?? 0) || a.name.localeCompare(b.name, "en", { numeric: true }));
+}
+
+/** Make a tile; `enter` is called when it is chosen. */
+export function tile(cage, { present, enter }) {
+  const { kind, icon: shape, words, detail } = tileVerdict(cage);
+  const { arrow, turn } = waterArrow("current");
+  turn(cage.valid ? cage.current_to_deg : null);
+  const fill = make("span", { className: "share-fill" });
+  fill.style.width = `${Math.min(100, 100 * (cage.max_utilisation ?? 0))}%`;
+  const current = cage.valid && known(cage.current_speed_m_s)
+    ? `${fixed(cage.current_speed_m_s, 2)} m/s to ${bearing(cage.current_to_deg)}` : "current not known";
+  const button = make("button", { type: "button", className: "tile", onclick: () => enter(cage.name) },
+    make("span", { className: "tile-name" }, cage.name,
+      cage.origin === "measured" ? "" : make("span", { className: "badge origin" }, cage.origin)),
+    make("span", { className: "tile-verdict" }, icon(shape), make("span", {},
+      make("strong", {}, words), make("span", { className: "tile-detail" }, detail))),
+    make("span", { className: "tile-load" },
+      make("span", { className: "share-line" }, make("span", { className: "share-bar" }, fill),
+        make("span", { className: "share" }, percent(cage.max_utilisation))),
+      make("span", { className: "tile-note" }, "largest load, of capacity")),
+    make("span", { className: "tile-sea" }, arrow, current),
+    make("span", { className: "tile-age" }, known(cage.age_s) ? `input ${span(cage.age_s)} old` : "no input yet"));
+  button.dataset.kind = kind;
+  if (present) button.setAttribute("aria-current", "true");
+  return button;
+}

@@ -1,0 +1,79 @@
+// Numbers and times as people read them: no number without a value behind it, no value
+// without its unit.
+
+export const DASH = "–";
+const POINTS = [
+  "N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE", "S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW",
+];
+const NAMES = ["north", "north-east", "east", "south-east", "south", "south-west", "west", "north-west"];
+
+/** Whether there is a number. */
+export const known = (value) => Number.isFinite(value);
+
+/** A number with so many decimals; a dash where there is none. */
+export const fixed = (value, decimals = 1) =>
+  known(value) ? value.toFixed(decimals).replace("-", "−") : DASH;
+
+/** A number with its unit. */
+export const withUnit = (value, unit, decimals = 1) =>
+  known(value) ? `${fixed(value, decimals)} ${unit}` : DASH;
+
+/** A share as a percentage. */
+export const percent = (share) => (known(share) ? `${Math.round(100 * share)} %` : DASH);
+
+/** Half the width of an interval, as what follows the mean. */
+export const half = (interval, decimals = 1) =>
+  known(interval?.lower) && known(interval?.upper)
+    ? `± ${((interval.upper - interval.lower) / 2).toFixed(decimals)}`
+    : "";
+
+/** A compass direction as its point, e.g. WSW. */
+export const compass = (degrees) =>
+  known(degrees) ? POINTS[Math.round(turned(degrees) / 22.5) % 16] : "";
+
+/** A compass direction in a word, for those who listen. */
+export const spoken = (degrees) =>
+  known(degrees) ? NAMES[Math.round(turned(degrees) / 45) % 8] : "unknown";
+
+/** Degrees with three figures, as on a bridge. */
+export const bearing = (degrees) =>
+  known(degrees) ? `${String(Math.round(turned(degrees)) % 360).padStart(3, "0")}°` : DASH;
+
+/** An angle brought into 0 to 360. */
+export const turned = (degrees) => ((degrees % 360) + 360) % 360;
+
+/** A length of time in the largest unit that says something. */
+export function span(seconds) {
+  if (!known(seconds)) return DASH;
+  if (seconds < 90) return `${Math.round(seconds)} s`;
+  if (seconds < 5400) return `${Math.round(seconds / 60)} min`;
+  if (seconds < 172800) return `${(seconds / 3600).toFixed(1).replace(".0", "")} h`;
+  return `${Math.round(seconds / 86400)} days`;
+}
+
+const two = (number) => String(number).padStart(2, "0");
+
+/** The day, UTC, as in ISO 8601. */
+export function day(t) {
+  const when = new Date(t);
+  return `${when.getUTCFullYear()}-${two(when.getUTCMonth() + 1)}-${two(when.getUTCDate())}`;
+}
+
+/** The time of day, UTC. */
+export function time(t, seconds = false) {
+  const when = new Date(t);
+  const minutes = `${two(when.getUTCHours())}:${two(when.getUTCMinutes())}`;
+  return seconds ? `${minutes}:${two(when.getUTCSeconds())}` : minutes;
+}
+
+/** Day and time, UTC. */
+export const moment = (t) => `${day(t)} ${time(t)} UTC`;
+
+/** A name as people write it: bridle-3 is "bridle 3". */
+export const plain = (name) => name.replaceAll("-", " ");
+
+/** The same with a large first letter, to begin a line. */
+export const titled = (name) => plain(name).replace(/^./, (letter) => letter.toUpperCase());
+
+/** So many of something. */
+export const counted = (count, noun) => `${count} ${noun}${count === 1 ? "" : "s"}`;

@@ -1,0 +1,40 @@
+// What the page shows and which keys it knows.
+
+import { make } from "../dom.js";
+import { icon } from "./icons.js";
+
+const KEYS = [
+  ["1 2 3 4", "loads, charts, alarms, what if"], ["L", "back to live"],
+  ["Space", "play or pause the past"], [", and .", "a step back or on in time"],
+  ["F", "the farm: all cages"], ["T", "light or dark"], ["Esc", "close, or let go of what is chosen"],
+  ["?", "this page"],
+];
+const WORDS = [
+  ["Twin", "what the digital twin says, with its 95 % interval: the truth lies inside 19 times out of 20."],
+  ["Level", "2 where a sensor on the cage has taught the twin, 1 where it is simulation alone."],
+  ["Extrapolating", "the sea is beyond what the twin has learned; its intervals are wider, and it may err more."],
+  ["No valid input", "nothing usable has been measured of the sea, so nothing is computed: a dash is no zero."],
+  ["Directions", "currents go towards, waves come from; degrees clockwise from true north. Times are UTC."],
+];
+
+export class Help {
+  constructor() {
+    const close = make("button", { type: "button", className: "round", ariaLabel: "Close",
+      onclick: () => this.dialog.close() }, icon("close"));
+    this.dialog = make("dialog", { className: "sheet", "aria-labelledby": "help-title" },
+      make("header", { className: "sheet-head" }, make("h2", { id: "help-title" }, "Help and keys"), close),
+      make("h3", {}, "Keys"),
+      make("dl", { className: "keys" }, ...KEYS.flatMap(([keys, words]) =>
+        [make("dt", {}, make("kbd", {}, keys)), make("dd", {}, words)])),
+      make("h3", {}, "Words"),
+      make("dl", { className: "words" }, ...WORDS.flatMap(([word, words]) =>
+        [make("dt", {}, word), make("dd", {}, words)])),
+      make("p", { className: "aside" },
+        "The page watches; it moves nothing at the cage. It supports inspection and is no proof of compliance."));
+    document.body.append(this.dialog);
+  }
+
+  open() {
+    if (!this.dialog.open) this.dialog.showModal();
+  }
+}

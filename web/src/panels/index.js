@@ -1,0 +1,66 @@
+// What the net says, beside it: the top line, the panels, the time below, and the dialogs.
+
+import "uplot/dist/uPlot.min.css";
+import "./panels.css";
+
+import { make } from "../dom.js";
+import { AlarmDesk } from "./alarm-desk.js";
+import { Alarms } from "./alarms.js";
+import { Banner } from "./banner.js";
+import { Bar } from "./bar.js";
+import { Charts } from "./charts.js";
+import { Farm } from "./farm.js";
+import { counted } from "./format.js";
+import { Help } from "./help.js";
+import { Loads } from "./loads.js";
+import { Now } from "./now.js";
+import { Past } from "./past.js";
+import { rank, worst } from "./ranks.js";
+import { listenForKeys } from "./shortcuts.js";
+import { Tabs } from "./tabs.js";
+import { otherTheme } from "./theme-switch.js";
+import { Timeline } from "./timeline.js";
+import { Toasts } from "./toasts.js";
+import { WhatIf } from "./whatif.js";
+
+const TABS = [
+  { name: "loads", title: "Loads", key: 1 }, { name: "charts", title: "Charts", key: 2 },
+  { name: "alarms", title: "Alarms", key: 3 }, { name: "whatif", title: "What if", key: 4 },
+];
+
+/** Fill the regions around the scene. */
+export function mountPanels(model) {
+  const region = (id) => document.getElementById(id);
+  const [past, desk, farm, help] = [new Past(model), new AlarmDesk(model), new Farm(model), new Help()];
+  const bar = make("div", { className: "bar-line" });
+  region("bar").append(bar);
+  new Bar(bar, model, { openFarm: () => farm.open(), openHelp: () => help.open() });
+  new Banner(region("bar"), model);
+
+  const now = make("section", { className: "now", ariaLabel: "Now" });
+  region("panels").append(now);
+  new Now(now, model);
+  const parts = {};
+  const tabs = new Tabs(region("panels"), TABS, {
+    label: "Panels",
+    seen: (shown) => Object.entries(parts).forEach(([name, part]) => part.visible?.(name === shown)),
+  });
+  Object.assign(parts, {
+    loads: new Loads(tabs.panel("loads"), model),
+    charts: new Charts(tabs.panel("charts"), model, past),
+    alarms: new Alarms(tabs.panel("alarms"), model, desk, past),
+    whatif: new WhatIf(tabs.panel("whatif"), model),
+  });
+  desk.on(() => {
+    const first = worst(desk.waiting);
+    tabs.badge("alarms", desk.waiting.length, counted(desk.waiting.length, "alarm"), first && rank(first.severity));
+  });
+  new Toasts(model, { look: () => tabs.show("alarms", { focus: true }) });
+  const timeline = new Timeline(region("timeline"), model, past, desk);
+  listenForKeys({
+    ...Object.fromEntries(TABS.map(({ name, key }) => [key, () => tabs.show(name, { focus: true })])),
+    l: () => timeline.live(), " ": () => timeline.play(), ",": () => timeline.step(-1),
+    ".": () => timeline.step(1), f: () => farm.open(), t: otherTheme, "?": () => help.open(),
+    Escape: () => model.select(null),
+  });
+}

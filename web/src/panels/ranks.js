@@ -1,0 +1,36 @@
+// How bad an alarm is, and which comes first.
+
+const CRITICAL = 800;
+const WARNING = 500;
+
+/** critical, warning or note, of a severity from 1 to 1000. */
+export function rank(severity) {
+  if (severity >= CRITICAL) return "critical";
+  return severity >= WARNING ? "warning" : "note";
+}
+
+/** Whether somebody should look at it: its cause is there, or was and nobody has seen it. */
+export const waits = (alarm) =>
+  (alarm.active || !alarm.acknowledged) && !alarm.shelved && alarm.in_service !== false;
+
+/** What an alarm is doing, in words. */
+export function standing(alarm) {
+  if (alarm.in_service === false) return "out of service";
+  if (alarm.shelved) return "shelved";
+  if (alarm.active) return alarm.acknowledged ? "active, acknowledged" : "active, not acknowledged";
+  return alarm.acknowledged ? "cleared" : "cleared, not acknowledged";
+}
+
+/** Order: those that wait first, of these those nobody has seen, then by severity, then newest. */
+export function ordered(alarms) {
+  const place = (alarm) => (waits(alarm) ? (alarm.acknowledged ? 1 : 0) : 2);
+  const since = (alarm) => (alarm.since ? Date.parse(alarm.since) : 0);
+  return [...alarms].sort(
+    (a, b) => place(a) - place(b) || b.severity - a.severity || since(b) - since(a));
+}
+
+/** The worst of those that wait; null if none does. */
+export function worst(alarms) {
+  const waiting = alarms.filter(waits);
+  return waiting.length ? waiting.reduce((a, b) => (b.severity > a.severity ? b : a)) : null;
+}

@@ -1,0 +1,98 @@
+// The rose: every bridle where it leaves the collar, as long as its load.
+
+import { draw } from "../dom.js";
+import { known, percent, titled, withUnit } from "./format.js";
+import { INNER, OUTER, across, azimuths, polar, radius, wedge, whisker } from "./rose-shape.js";
+import { ringsOf } from "./scale.js";
+
+const WINDS = [["N", 0], ["E", 90], ["S", 180], ["W", 270]];
+
+export class Rose {
+  /** `pick` is told the name of the bridle that was chosen. */
+  constructor({ pick }) {
+    this.pick = pick;
+    this.rings = draw("g", { class: "rings" });
+    this.bars = draw("g", { class: "bars" });
+    this.current = draw("path", { class: "rose-current", d: "M0 -17 8 12 0 6 -8 12Z" });
+    this.wave = draw("path", { class: "rose-wave", d: "M0 -110 4.5 -119 -4.5 -119Z" });
+    this.drawing = draw("svg", { viewBox: "-122 -121 244 242", class: "rose", role: "img" },
+      this.rings, draw("g", { class: "winds" }, ...WINDS.map(wind)), this.bars, this.current,
+      this.wave);
+  }
+
+  topology(topology) {
+    this.directions = azimuths(topology);
+    this.parts = topology.bridle_names.map((name, k) => this.bar(name, k));
+    this.bars.replaceChildren(...this.parts.map(({ group }) => group));
+  }
+
+  bar(name, k) {
+    const direction = this.directions[k];
+    const part = (shape) => draw("path", { class: shape });
+    const [space, fill, low, interval] = ["space", "fill", "low", "interval"].map(part);
+    space.setAttribute("d", wedge(direction, OUTER));
+    const measured = draw("circle", { class: "measured", r: 3 });
+    const [x, y] = polar(direction, OUTER + 11);
+    const label = draw("text", { x, y, class: "which" }, name.replace(/^\D+/, "") || name);
+    const title = draw("title");
+    const group = draw("g", { class: "bar" }, title, space, fill, low, interval, measured, label);
+    group.addEventListener("click", () => this.pick(name));
+    return { name, group, title, fill, low, interval, measured };
+  }
+
+  /** `loads` are shares of capacity by bridle, with what else is said of it. */
+  show({ loads, end, current, wave, words }) {
+    this.ring(end);
+    loads.forEach((load, k) => this.fill(this.parts[k], load, k, end));
+    place(this.current, current);
+    place(this.wave, wave);
+    this.drawing.setAttribute("aria-label", words);
+  }
+
+  fill({ group, title, fill, low, interval, measured }, load, k, end) {
+    const at = this.directions[k];
+    const there = known(load.mean);
+    outline(fill, there && wedge(at, radius(load.mean, end)));
+    fill.style.fill = there ? load.colour : "";
+    outline(interval, there && known(load.lower) &&
+      whisker(at, radius(load.lower, end), radius(load.upper, end)));
+    outline(low, known(load.low) && load.level > 1 && across(at, radius(load.low, end)));
+    const [x, y] = known(load.measured) ? polar(at, radius(load.measured, end)) : [0, 0];
+    measured.toggleAttribute("hidden", !known(load.measured));
+    measured.setAttribute("cx", x);
+    measured.setAttribute("cy", y);
+    group.dataset.rank = load.rank ?? "";
+    title.textContent = `${titled(load.name)}: ${withUnit(load.kn, "kN")}, ${percent(load.mean)} of capacity`;
+  }
+
+  ring(end) {
+    if (this.end === end) return;
+    this.end = end;
+    const circles = ringsOf(end).flatMap((share) => {
+      const r = radius(share, end);
+      const capacity = share === 1 ? " capacity" : "";
+      return [draw("circle", { r, class: `ring${capacity}` }),
+        draw("text", { x: 0, y: -r, class: "ring-label" }, `${Math.round(100 * share)} %`)];
+    });
+    this.rings.replaceChildren(draw("circle", { r: INNER, class: "ring" }), ...circles);
+  }
+
+  select(chosen) {
+    this.parts?.forEach(({ name, group }) => group.toggleAttribute("data-chosen", name === chosen));
+  }
+}
+
+function wind([name, degrees]) {
+  const [x, y] = polar(degrees, OUTER + 13);
+  return draw("text", { x, y, class: "wind" }, name);
+}
+
+function outline(path, d) {
+  path.toggleAttribute("hidden", !d);
+  if (d) path.setAttribute("d", d);
+}
+
+function place(shape, degrees) {
+  shape.toggleAttribute("hidden", !known(degrees));
+  if (known(degrees)) shape.setAttribute("transform", `rotate(${degrees})`);
+}

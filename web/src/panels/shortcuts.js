@@ -1,0 +1,20 @@
+// Single keys, wherever the reader does not write.
+
+const WRITES = "input, textarea, select, [role=slider]";
+const PRESSES = "button, a, summary, [role=tab]";
+
+/** Call what belongs to a key; `keys` maps what the keyboard says to functions. */
+export function listenForKeys(keys) {
+  document.addEventListener("keydown", (event) => {
+    if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (document.querySelector("dialog[open]")) return;
+    const { target } = event;
+    if (target.closest?.(WRITES)) return;
+    // A space on a button presses the button.
+    if (event.key === " " && target.closest?.(PRESSES)) return;
+    const act = keys[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+    if (!act) return;
+    event.preventDefault();
+    act();
+  });
+}

@@ -1,0 +1,56 @@
+// What has just happened, said once at the edge of the page.
+
+import { make } from "../dom.js";
+import { fresh } from "./fresh.js";
+import { icon, rankIcon } from "./icons.js";
+import { rank } from "./ranks.js";
+import { sound } from "./sound.js";
+
+const STAY_MS = 12_000;
+const MOST = 4;
+
+export class Toasts {
+  /** `look` brings the alarms into view. */
+  constructor(model, { look }) {
+    this.look = look;
+    this.before = null;
+    this.polite = make("div", { role: "status" });
+    this.urgent = make("div", { role: "alert" });
+    this.stack = make("div", { className: "toasts" }, this.urgent, this.polite);
+    document.body.append(this.stack);
+    model.on("topology", () => { this.before = null; });
+    model.on("live", ({ state }) => this.compare(state.alarms ?? []));
+    model.on("trouble", (error) => this.put("note", "That did not work", error.message));
+  }
+
+  /** Tell of new alarms; those that were there when the page opened are no news. */
+  compare(alarms) {
+    const news = this.before ? fresh(this.before, alarms) : [];
+    this.before = alarms;
+    for (const alarm of news) this.put(rank(alarm.severity), alarm.title, alarm.message, true);
+    const worst = ["critical", "warning", "note"]
+      .find((one) => news.some(({ severity }) => rank(severity) === one));
+    if (worst) sound(worst);
+  }
+
+  put(how, title, words, isAlarm = false) {
+    const close = make("button", { type: "button", className: "round", ariaLabel: "Close" }, icon("close"));
+    const toast = make("div", { className: "toast" }, rankIcon(how),
+      make("div", {}, make("strong", {}, title), make("p", {}, words)));
+    toast.dataset.rank = isAlarm ? how : "trouble";
+    const gone = () => toast.remove();
+    close.addEventListener("click", gone);
+    if (isAlarm) {
+      toast.append(make("button", { type: "button", className: "button small", onclick: () => {
+        gone();
+        this.look();
+      } }, "Look"));
+    }
+    toast.append(close);
+    (how === "critical" ? this.urgent : this.polite).append(toast);
+    // A critical one stays until somebody takes it away.
+    if (how !== "critical") setTimeout(gone, STAY_MS);
+    const all = this.stack.querySelectorAll(".toast");
+    if (all.length > MOST) all[0].remove();
+  }
+}

@@ -1,0 +1,134 @@
+// What if: another sea, and what the net and the loads would do in it.
+
+import { make } from "../dom.js";
+import { dial } from "./dial.js";
+import { write } from "./dom.js";
+import { bearing, compass, fixed, known, titled } from "./format.js";
+import { icon } from "./icons.js";
+import { highest } from "./now.js";
+import { CHOICES, change, seaNow } from "./sea-wanted.js";
+
+export class WhatIf {
+  constructor(holder, model) {
+    this.model = model;
+    this.sea = seaNow(null);
+    this.sliders = CHOICES.map((choice) => this.slider(choice));
+    this.usual = make("input", { type: "checkbox", checked: true });
+    this.usual.addEventListener("change", () => this.take({ tp_s: this.usual.checked ? null : 6 }));
+    this.to = dial({ name: "Current towards", kind: "to", says: (d) => `${bearing(d)} ${compass(d)}`,
+      turn: (degrees) => this.take({ current_to_deg: degrees }) });
+    this.from = dial({ name: "Waves from", kind: "from", says: (d) => `${bearing(d)} ${compass(d)}`,
+      turn: (degrees) => this.take({ wave_from_deg: degrees }) });
+    this.warning = make("p", { className: "beyond-note", role: "status", hidden: true });
+    this.fault = make("p", { className: "dialog-fault", role: "alert", hidden: true });
+    this.table = make("tbody");
+    this.back = make("button", { type: "button", className: "button main", disabled: true,
+      onclick: () => model.travel(null) }, "Back to the sea now");
+    const [speed, height, period] = this.sliders;
+    holder.append(
+      make("p", { className: "aside" }, "Move the current and the waves: the net and the loads answer at once. Nothing here touches the cage."),
+      make("div", { className: "whatif-sea" }, speed.box, this.to.box, height.box, this.from.box,
+        make("div", {}, period.box,
+          make("label", { className: "usual" }, this.usual, " as goes with the height"))),
+      this.fault, this.warning,
+      make("table", { className: "compared" },
+        make("caption", { className: "unseen" }, "The sea now and the sea you chose"),
+        make("thead", {}, make("tr", {}, ...["", "Now", "What if", "Change"]
+          .map((head) => make("th", { scope: "col" }, head)))), this.table),
+      make("div", { className: "whatif-buttons" }, this.back,
+        make("button", { type: "button", className: "button", onclick: () => this.reset() }, "Start from the sea now")));
+    for (const name of ["view", "live"]) model.on(name, () => this.show());
+    model.on("topology", () => { this.begun = false; });
+    this.fill();
+  }
+
+  slider({ key, name, unit, least, most, step, decimals }) {
+    const input = make("input", { type: "range", min: least, max: most, step, id: `whatif-${key}` });
+    const words = make("output", { className: "slider-words", htmlFor: input.id });
+    input.addEventListener("input", () => this.take({ [key]: Number(input.value) }));
+    const box = make("div", { className: "slider" },
+      make("label", { htmlFor: input.id }, name), words, input);
+    const show = (value) => {
+      if (known(value)) input.value = value;
+      input.disabled = !known(value);
+      const text = known(value) ? `${fixed(value, decimals)} ${unit}` : "as usual";
+      input.setAttribute("aria-valuetext", text);
+      write(words, text);
+    };
+    return { key, box, show };
+  }
+
+  /** Change the sea and ask what it does; the model keeps only the newest question. */
+  async take(changed) {
+    this.sea = { ...this.sea, ...changed };
+    this.begun = true;
+    this.fill();
+    const asked = this.sea;
+    try {
+      await this.model.whatIf(asked);
+      this.say("");
+    } catch (error) {
+      if (asked === this.sea) this.say(error.message);
+    }
+  }
+
+  say(fault) {
+    this.fault.hidden = !fault;
+    write(this.fault, fault);
+  }
+
+  reset() {
+    this.take(seaNow(this.model.live?.state.water));
+  }
+
+  /** Begin with the sea of now, until the reader has moved something. */
+  visible(shown) {
+    if (!shown || this.begun) return;
+    this.sea = seaNow(this.model.live?.state.water);
+    this.fill();
+  }
+
+  fill() {
+    for (const { key, show } of this.sliders) show(this.sea[key]);
+    this.usual.checked = this.sea.tp_s === null;
+    this.to.show(this.sea.current_to_deg);
+    this.from.show(this.sea.wave_from_deg);
+    this.show();
+  }
+
+  show() {
+    const { view, live } = this.model;
+    const then = view?.mode === "whatif" ? view.state : null;
+    this.back.disabled = !then;
+    this.warning.hidden = !then || (then.valid && then.in_domain);
+    if (!this.warning.hidden) {
+      const why = then.valid ? `Extrapolating: ${then.reason || "this sea is beyond what the twin has learned."}`
+        : `No answer: ${then.reason}`;
+      if (this.warning.textContent !== why) this.warning.replaceChildren(icon("beyond"), why);
+    }
+    this.table.replaceChildren(...compared(live?.state, then));
+  }
+}
+
+function compared(now, then) {
+  const load = [highest(now), highest(then)];
+  const share = (state) => (state?.valid && known(state.volume_fraction) ? 100 * state.volume_fraction : NaN);
+  const least = (state) => (state?.valid ? Math.min(...depths(state)) : NaN);
+  return [
+    row("Largest load", load.map((one) => one?.tension_kn.mean), "kN", 1),
+    row("Of its capacity", load.map((one) => 100 * (one?.utilisation ?? NaN)), "%", 0,
+      load.map((one) => (one ? titled(one.name) : ""))),
+    row("Cage volume", [share(now), share(then)], "%", 1),
+    row("Shallowest depth sensor", [least(now), least(then)], "m", 1),
+  ];
+}
+
+const depths = ({ sensors }) => sensors.filter(({ unit }) => unit === "m").map(({ mean }) => mean);
+
+function row(name, [now, then], unit, decimals, notes = []) {
+  const cell = (value, note) => make("td", { className: "number" },
+    known(value) ? `${fixed(value, decimals)} ${unit}` : "–",
+    note ? make("small", {}, ` ${note}`) : "");
+  return make("tr", {}, make("th", { scope: "row" }, name), cell(now, notes[0]), cell(then, notes[1]),
+    make("td", { className: "number change" }, change(now, then, decimals)));
+}

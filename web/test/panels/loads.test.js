@@ -1,0 +1,93 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { byNeed, tileVerdict } from "../../src/panels/farm-tile.js";
+import { largest, loadRows } from "../../src/panels/load-rows.js";
+import { INNER, OUTER, azimuths, polar, radius } from "../../src/panels/rose-shape.js";
+import { ringsOf, scaleFor } from "../../src/panels/scale.js";
+import { change, seaNow } from "../../src/panels/sea-wanted.js";
+import { highest } from "../../src/panels/now.js";
+
+const near = (a, b) => assert.ok(Math.abs(a - b) < 1e-9, `${a} is not ${b}`);
+
+test("north is up and east is to the right on the rose", () => {
+  const [[north, up], [east, level]] = [polar(0, 10), polar(90, 10)];
+  near(north, 0);
+  near(up, -10);
+  near(east, 10);
+  near(level, 0);
+});
+
+test("a bridle stands where it leaves the collar, x east and y north", () => {
+  const [a, b] = azimuths({ bridle_nodes: [0, 1], rest_position_m: [[1, 0, 0], [-1, 0, 0]] });
+  near(a, 90);
+  near(b, 270);
+});
+
+test("a load's length begins at the middle ring and ends just outside the scale", () => {
+  assert.equal(radius(0, 1), INNER);
+  assert.equal(radius(1, 1), OUTER);
+  assert.ok(radius(7, 1) < OUTER + 10);
+});
+
+test("the scale holds the largest load and does not jump at its edge", () => {
+  assert.equal(scaleFor(0.31), 0.5);
+  assert.equal(scaleFor(0.29, 0.5), 0.5);
+  assert.equal(scaleFor(0.2, 0.5), 0.3);
+  assert.equal(scaleFor(99), 5);
+});
+
+test("the last ring is the end of the scale", () => {
+  for (const end of [0.1, 0.75, 1, 5]) near(ringsOf(end).at(-1), end);
+});
+
+const topology = { bridle_capacity_kn: [100, 200], shackles: [{ name: "shackle-1", bridle: 1 }] };
+const state = {
+  valid: true, alarms: [{ id: "load.bridle-1", severity: 900, active: true, acknowledged: false }],
+  sensors: [{ name: "shackle-1", measured: 60 }],
+  bridles: [
+    { name: "bridle-1", level: 1, utilisation: 0.5, low_fidelity_kn: 50, tension_kn: { mean: 50, lower: 40, upper: 60 } },
+    { name: "bridle-2", level: 2, utilisation: 0.25, low_fidelity_kn: 40, tension_kn: { mean: 50, lower: 45, upper: 55 } },
+  ],
+};
+
+test("a row says what twin, simulation and shackle say of a bridle", () => {
+  const [one, two] = loadRows(topology, state);
+  assert.deepEqual([one.lower, one.upper, one.measured, one.rank], [0.4, 0.6, null, "critical"]);
+  assert.deepEqual([two.measured, two.measuredKn, two.low, two.rank], [0.3, 60, 0.2, null]);
+  assert.equal(largest([one, two]), 0.6);
+});
+
+test("without valid input a row has no number", () => {
+  const nothing = { mean: null, lower: null, upper: null };
+  const bridles = state.bridles.map((one) => ({ ...one, utilisation: null, low_fidelity_kn: null, tension_kn: nothing }));
+  const [one] = loadRows(topology, { ...state, bridles });
+  assert.deepEqual([one.mean, one.lower, one.upper, one.low], [null, null, null, null]);
+  assert.equal(highest({ ...state, valid: false }), null);
+});
+
+test("the highest load is the one nearest its own capacity", () => {
+  assert.equal(highest(state).name, "bridle-1");
+});
+
+test("a what-if begins with the sea of now, within what can be chosen", () => {
+  const sea = seaNow({ current_speed_m_s: 9, current_to_deg: 359.8, hs_m: 1.234, wave_from_deg: 10 });
+  assert.deepEqual(sea, { current_speed_m_s: 1.5, current_to_deg: 0, hs_m: 1.25, tp_s: null, wave_from_deg: 10 });
+  assert.ok(Object.values(seaNow(null)).every((value) => value === null || Number.isFinite(value)));
+});
+
+test("a change has its sign, and none is said where a side is not known", () => {
+  assert.equal(change(1, 3.04, 1), "+2.0");
+  assert.equal(change(3, 1, 1), "−2.0");
+  assert.equal(change(1, 1.01, 1), "no change");
+  assert.equal(change(null, 1, 1), "");
+});
+
+test("the cage in the greatest need comes first on the farm", () => {
+  const cage = (name, changes = {}) => ({ name, waiting: 0, valid: true, in_domain: true, ...changes });
+  const cages = [cage("b"), cage("a"), cage("odd", { in_domain: false }),
+    cage("mute", { valid: false }), cage("bad", { waiting: 2, worst_severity: 900, worst_title: "Load" })];
+  assert.deepEqual(byNeed(cages).map(({ name }) => name), ["bad", "mute", "odd", "a", "b"]);
+  assert.deepEqual(tileVerdict(cages[4]),
+    { kind: "critical", icon: "critical", words: "2 alarms", detail: "Load" });
+});
