@@ -1,93 +1,70 @@
 """The live store: every sample once, on disk before it is acknowledged."""
 
-import json
-import queue
-import sqlite3
-import threading
-from collections.abc import Generator, Sequence
+import time
+from collections.abc import Sequence
 from concurrent.futures import Future
-from contextlib import closing, contextmanager
-from dataclasses import dataclass
-from datetime import UTC, datetime, timedelta
+from datetime import datetime
 from pathlib import Path
 
-from seacage.conventions import Flag, SeacageError
 from seacage.records import Amendment, Sample
+from seacage.service._aggregates import Aggregate, check_aggregate
+from seacage.service._store_aggregates import aggregates_between, renew_rested
+from seacage.service._store_alarms import alarm_book, journal_between, keep_alarms
+from seacage.service._store_rows import row_of
+from seacage.service._store_samples import Append, latest_samples, samples_between
+from seacage.service._store_session import AbstractDatabase, AbstractSession, StoreError
+from seacage.service._store_sqlite import SqliteDatabase
+from seacage.service._store_writer import Writer
+from seacage.twin import Happened
 
-_EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
-_MICROSECOND = timedelta(microseconds=1)
-_NO_SEQ = -1
+__all__ = ["Store", "StoreError", "open_store"]
 
-_SCHEMA = """
-CREATE TABLE IF NOT EXISTS sample (
-    cage TEXT NOT NULL,
-    stream TEXT NOT NULL,
-    t INTEGER NOT NULL,          -- of the source, microseconds since 1970 UTC
-    seq INTEGER NOT NULL,        -- of the source; -1 where it does not count
-    readings TEXT NOT NULL,      -- {key: [value, flag]}, raw values
-    remarks TEXT NOT NULL,       -- [sentence]: why a value is not good
-    t_ingest INTEGER NOT NULL,   -- of this service
-    PRIMARY KEY (cage, stream, t, seq)
-) WITHOUT ROWID, STRICT;
-"""
-
-_INSERT = "INSERT INTO sample VALUES (?, ?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING"
-
-# A flag only ever grows worse, so an amendment made twice is made once.
-_AMEND = """
-UPDATE sample SET readings = with_flag(readings, ?1, ?2), remarks = with_remark(remarks, ?3)
-WHERE cage = ?4 AND stream = ?5 AND t = ?6 AND flag_of(readings, ?1) < ?2
-"""
+_TABLES = ("sample", "aggregate", "mark", "sealed", "alarm_book", "journal")
 
 
-class StoreError(SeacageError):
-    """The disk does not take samples, or the database cannot be read."""
-
-
-@dataclass(frozen=True, slots=True)
-class _Work:
-    """What the writer is asked: statements for one transaction, and who waits for it."""
-
-    statements: tuple[tuple[str, tuple[object, ...]], ...]
-    done: "Future[tuple[int, ...]]"
-
-
-class Store:
-    """Samples in SQLite: one writing connection in its own thread, readers beside it.
-
-    The writer takes whatever has queued up into one transaction (group commit) and answers
-    after the commit has reached the disk. It is the only connection that writes or
-    checkpoints, which keeps clear of a WAL-reset fault in SQLite before 3.51.3.
+def open_store(place: Path | str) -> "Store":
+    """Open the store of samples and alarms.
 
     Parameters
     ----------
-    path
-        Of the database; made where there is none.
+    place
+        A path, for SQLite; or ``postgresql://user@host/name``, which several processes may
+        share.
 
     Raises
     ------
     StoreError
-        The file cannot be opened as a database.
+        It cannot be opened, or the driver of PostgreSQL is not installed.
+    """
+    return Store(place)
+
+
+class Store:
+    """Samples, their aggregates and alarms, by cage.
+
+    What is written waits for the one writer, which takes all that has queued up into one
+    transaction (group commit) and answers after the commit has reached the disk. Reading waits
+    for nobody.
+
+    Parameters
+    ----------
+    place
+        As for ``open_store``.
     """
 
-    def __init__(self, path: Path) -> None:
-        self._path = path
-        self._fault: str | None = None
-        self._work: queue.SimpleQueue[_Work | None] = queue.SimpleQueue()
-        try:
-            self._connection = _opened(path)
-        except sqlite3.Error as error:
-            raise StoreError(
-                f"{path} does not open as the store of samples ({error}). "
-                "Check the disk and its rights; move a damaged file aside to start anew."
-            ) from error
-        self._writer = threading.Thread(target=self._write, name="store", daemon=True)
-        self._writer.start()
+    def __init__(self, place: Path | str) -> None:
+        self._database = _database(place)
+        self._writer = Writer(self._database, chore=_chore)
 
     @property
     def fault(self) -> str | None:
         """Why the last write failed; None while all is well."""
-        return self._fault
+        return self._writer.fault
+
+    @property
+    def lost(self) -> str | None:
+        """Why history was moved aside; None where nothing was."""
+        return self._database.lost
 
     def append(
         self,
@@ -113,23 +90,8 @@ class Store:
         new
             For each sample whether it was not known before.
         """
-        stamp = _microseconds(ingested)
-        inserts = tuple((_INSERT, _row(cage, sample, stamp)) for sample in samples)
-        asked = self._ask(inserts + tuple((_AMEND, _change(cage, one)) for one in amendments))
-        answer: Future[tuple[bool, ...]] = Future()
-
-        def resolve(asked: "Future[tuple[int, ...]]") -> None:
-            if error := asked.exception():
-                answer.set_exception(error)
-            else:
-                answer.set_result(tuple(n == 1 for n in asked.result()[: len(inserts)]))
-
-        asked.add_done_callback(resolve)
-        return answer
-
-    def forget(self, cage: str) -> None:
-        """Delete all samples of a cage; only a replay does so, before it begins anew."""
-        self._ask((("DELETE FROM sample WHERE cage = ?", (cage,)),)).result()
+        rows = tuple(row_of(cage, sample, ingested) for sample in samples)
+        return self._writer.append(Append(cage, rows, tuple(amendments)))
 
     def samples(
         self,
@@ -154,141 +116,128 @@ class Store:
         newest
             Of more than ``limit`` the last rather than the first.
         """
-        where, values = ["cage = ?"], [cage]
-        bounds = (
-            ("stream = ?", stream),
-            ("t >= ?", start and _microseconds(start)),
-            ("t < ?", end and _microseconds(end)),
-        )
-        for clause, value in bounds:
-            if value is not None:
-                where.append(clause)
-                values.append(value)  # pyright: ignore[reportArgumentType]
-        order = "DESC" if newest else "ASC"
-        query = (
-            f"SELECT stream, t, seq, readings, remarks FROM sample WHERE {' AND '.join(where)} "  # noqa: S608
-            f"ORDER BY t {order}, stream {order}, seq {order} LIMIT ?"
-        )
-        with self._reader() as reader:
-            rows = reader.execute(query, (*values, limit)).fetchall()
-        return [_sample(row) for row in (reversed(rows) if newest else rows)]
+        with self._database.reading() as session:
+            return samples_between(
+                session, cage, stream=stream, start=start, end=end, limit=limit, newest=newest
+            )
+
+    def latest(self, cage: str, *, at: datetime | None = None) -> dict[str, Sample]:
+        """Read the newest sample of each stream, or the newest until a time, it included."""
+        with self._database.reading() as session:
+            return latest_samples(session, cage, at=at)
+
+    def aggregates(
+        self,
+        cage: str,
+        *,
+        stream: str,
+        key: str,
+        width_s: int,
+        start: datetime | None = None,
+        end: datetime | None = None,
+        limit: int,
+    ) -> list[Aggregate]:
+        """Read what the usable readings of each span were, of spans that begin in start <= t < end.
+
+        A current has no mean direction: it is aggregated as ``current_east_m_s`` and
+        ``current_north_m_s``. Aggregates outlive the samples that they were made from.
+
+        Parameters
+        ----------
+        cage, stream, key
+            Of which quantity.
+        width_s
+            60 or 600 [s].
+        start, end
+            Bounds of the spans' begins; open where None.
+        limit
+            At most so many, the first.
+
+        Raises
+        ------
+        InputError
+            A direction, no quantity, or a width that is not kept.
+        """
+        check_aggregate(key, width_s)
+        with self._database.reading() as session:
+            return aggregates_between(
+                session,
+                cage,
+                stream=stream,
+                key=key,
+                width_s=width_s,
+                start=start,
+                end=end,
+                limit=limit,
+            )
+
+    def keep_alarms(self, cage: str, *, book: str, journal: Sequence[Happened]) -> "Future[None]":
+        """Keep the book of alarms and what happened to them, both or neither.
+
+        Parameters
+        ----------
+        cage
+            Whose.
+        book
+            As JSON; it takes the place of the one before.
+        journal
+            Lines to add.
+        """
+        lines = tuple(journal)
+        return self._writer.ask(lambda session: keep_alarms(session, cage, book, lines))
+
+    def alarm_book(self, cage: str) -> str | None:
+        """Read the book that was kept last; None where there was none."""
+        with self._database.reading() as session:
+            return alarm_book(session, cage)
+
+    def journal(
+        self,
+        cage: str,
+        *,
+        start: datetime | None = None,
+        end: datetime | None = None,
+        limit: int,
+        newest: bool = False,
+    ) -> list[Happened]:
+        """Read what happened to alarms, in time order, start <= t < end.
+
+        Parameters
+        ----------
+        cage
+            Whose.
+        start, end
+            Bounds; open where None.
+        limit
+            At most so many.
+        newest
+            Of more than ``limit`` the last rather than the first.
+        """
+        with self._database.reading() as session:
+            return journal_between(session, cage, start=start, end=end, limit=limit, newest=newest)
+
+    def forget(self, cage: str) -> None:
+        """Delete all that is kept of a cage; only a replay does so, before it begins anew."""
+
+        def delete(session: AbstractSession) -> None:
+            for table in _TABLES:
+                session.rows(f"DELETE FROM {table} WHERE cage = ?", (cage,))  # noqa: S608
+
+        self._writer.ask(delete).result()
 
     def close(self) -> None:
-        """Finish what was asked and close the file."""
-        self._work.put(None)
-        self._writer.join()
-        self._connection.close()
-
-    @contextmanager
-    def _reader(self) -> Generator[sqlite3.Connection]:
-        try:
-            with closing(
-                sqlite3.connect(f"{self._path.resolve().as_uri()}?mode=ro", uri=True)
-            ) as c:
-                yield c
-        except sqlite3.Error as error:
-            raise StoreError(f"{self._path} cannot be read ({error}).") from error
-
-    def _ask(
-        self, statements: tuple[tuple[str, tuple[object, ...]], ...]
-    ) -> "Future[tuple[int, ...]]":
-        done: Future[tuple[int, ...]] = Future()
-        self._work.put(_Work(statements, done))
-        return done
-
-    def _write(self) -> None:
-        going = True
-        while going:
-            batch, going = self._queued()
-            try:
-                counts = self._committed(batch)
-            except sqlite3.Error as error:
-                self._fault = f"{self._path} takes no samples ({error}). Free the disk and retry."
-                for work in batch:
-                    work.done.set_exception(StoreError(self._fault))
-            else:
-                self._fault = None
-                for work, count in zip(batch, counts, strict=True):
-                    work.done.set_result(count)
-
-    def _queued(self) -> tuple[list[_Work], bool]:
-        """Wait for work, then take all there is; False when asked to end."""
-        batch: list[_Work] = []
-        work = self._work.get()
-        while work is not None:
-            batch.append(work)
-            try:
-                work = self._work.get_nowait()
-            except queue.Empty:
-                return batch, True
-        return batch, False
-
-    def _committed(self, batch: Sequence[_Work]) -> list[tuple[int, ...]]:
-        connection = self._connection
-        connection.execute("BEGIN IMMEDIATE")
-        try:
-            counts = [
-                tuple(connection.execute(sql, values).rowcount for sql, values in work.statements)
-                for work in batch
-            ]
-            connection.execute("COMMIT")
-        except sqlite3.Error:
-            if connection.in_transaction:
-                connection.execute("ROLLBACK")
-            raise
-        return counts
+        """Finish what was asked and close the database."""
+        self._writer.close()
+        self._database.close()
 
 
-def _opened(path: Path) -> sqlite3.Connection:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    connection = sqlite3.connect(path, isolation_level=None, check_same_thread=False)
-    connection.execute("PRAGMA journal_mode = WAL")
-    connection.execute("PRAGMA synchronous = FULL")
-    connection.executescript(_SCHEMA)
-    # SQLite's own JSON functions know no NaN, which raw values may be.
-    connection.create_function("flag_of", 2, _flag_of)
-    connection.create_function("with_flag", 3, _with_flag)
-    connection.create_function("with_remark", 2, _with_remark)
-    return connection
+def _database(place: Path | str) -> AbstractDatabase:
+    if isinstance(place, str) and place.startswith(("postgresql://", "postgres://")):
+        from seacage.service._store_postgres import PostgresDatabase
+
+        return PostgresDatabase(place)
+    return SqliteDatabase(Path(place))
 
 
-def _flag_of(readings: str, key: str) -> int | None:
-    pair = json.loads(readings).get(key)
-    return None if pair is None else pair[1]
-
-
-def _with_flag(readings: str, key: str, flag: int) -> str:
-    pairs = json.loads(readings)
-    return json.dumps({**pairs, key: [pairs[key][0], flag]})
-
-
-def _with_remark(remarks: str, remark: str) -> str:
-    return json.dumps([*json.loads(remarks), remark])
-
-
-def _row(cage: str, sample: Sample, stamp: int) -> tuple[object, ...]:
-    readings = {key: [value, int(sample.flags[key])] for key, value in sample.values.items()}
-    seq = _NO_SEQ if sample.seq is None else sample.seq
-    t = _microseconds(sample.t)
-    return (cage, sample.stream, t, seq, json.dumps(readings), json.dumps(sample.remarks), stamp)
-
-
-def _change(cage: str, one: Amendment) -> tuple[object, ...]:
-    return (one.key, int(one.flag), one.remark, cage, one.stream, _microseconds(one.t))
-
-
-def _sample(row: tuple[str, int, int, str, str]) -> Sample:
-    stream, t, seq, readings, remarks = row
-    pairs: dict[str, tuple[float, int]] = json.loads(readings)
-    return Sample(
-        stream=stream,
-        t=_EPOCH + t * _MICROSECOND,
-        values={key: value for key, (value, _) in pairs.items()},
-        flags={key: Flag(flag) for key, (_, flag) in pairs.items()},
-        remarks=tuple(json.loads(remarks)),
-        seq=None if seq == _NO_SEQ else seq,
-    )
-
-
-def _microseconds(t: datetime) -> int:
-    return (t - _EPOCH) // _MICROSECOND
+def _chore(session: AbstractSession) -> None:
+    renew_rested(session, now_us=time.time_ns() // 1000)

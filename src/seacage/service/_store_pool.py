@@ -1,0 +1,61 @@
+"""Connections that are lent to readers and taken back."""
+
+import threading
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
+from typing import Generic, Protocol, TypeVar, runtime_checkable
+
+
+@runtime_checkable
+class _Closable(Protocol):
+    def close(self) -> None: ...
+
+
+C = TypeVar("C", bound=_Closable)
+
+
+class Pool(Generic[C]):
+    """So many connections at most; who finds none free waits.
+
+    Parameters
+    ----------
+    opened
+        Opens one.
+    size
+        How many there may be: opening one costs more than a query, and a server has no end of
+        them.
+    """
+
+    def __init__(self, opened: Callable[[], C], *, size: int = 8) -> None:
+        self._opened = opened
+        self._places = threading.BoundedSemaphore(size)
+        self._idle: list[C] = []
+        self._round = 0
+
+    @contextmanager
+    def lent(self) -> Generator[C]:
+        """Lend a connection; where its block fails all are closed, as all may be broken."""
+        with self._places:
+            begun, one = self._round, self._taken() or self._opened()
+            try:
+                yield one
+            except BaseException:
+                one.close()
+                self.close()
+                raise
+            if begun == self._round:
+                self._idle.append(one)
+            else:
+                one.close()
+
+    def close(self) -> None:
+        """Close all that are idle, and the others when they come back."""
+        self._round += 1
+        while one := self._taken():
+            one.close()
+
+    def _taken(self) -> C | None:
+        try:
+            return self._idle.pop()
+        except IndexError:
+            return None
