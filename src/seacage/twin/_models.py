@@ -105,7 +105,7 @@ class Models:
         lines = [one.bridle for one in self.cage.shackles]
         depth = -self.shape.predict_nodes(x, nodes).mean[:, :, 2]
         low = np.hstack([depth, self.bridles.predict(x).mean[:, lines]])
-        east, west, north, south = low.reshape(len(ways), len(water), -1)
+        east, west, north, south = low.reshape(len(ways), len(water), low.shape[1])
         return np.hypot(east - west, north - south) / (2.0 * STRIDE)
 
     def answer(self, water: Metocean, trouble: Sequence[str]) -> Answer:

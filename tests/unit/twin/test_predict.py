@@ -169,3 +169,9 @@ def test_a_record_without_an_input_of_the_twin_is_refused():
     speed = {"current_speed_m_s": buoy.values["current_speed_m_s"]}
     with pytest.raises(InputError, match="has no current_to_deg"):
         twin.predict_record(replace(buoy, values=speed))
+
+
+def test_no_rows_of_water_are_answered_with_none():
+    twin, nothing = stand_in_twin(), Metocean.from_columns({}, 0)
+    assert twin.predict(nothing).valid.tolist() == []
+    assert twin.models.steepness(nothing).shape == (0, len(twin.sensor_names))
