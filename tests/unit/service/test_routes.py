@@ -340,12 +340,12 @@ def test_this_machine_may_look_after_the_service_without_a_token(idle: Running, 
 
 
 def test_readiness_ends_when_the_disk_takes_no_samples(live: Running):
-    live.service.store._connection.execute("PRAGMA query_only = ON")
+    live.service.store._database._writer.execute("PRAGMA query_only = ON")
     assert live.post(buoy()).status_code == 503
     answer = httpx.get(f"{live.address}/readyz")
     assert answer.status_code == 503
     assert "takes no samples" in answer.json()["status"]
-    live.service.store._connection.execute("PRAGMA query_only = OFF")
+    live.service.store._database._writer.execute("PRAGMA query_only = OFF")
     assert live.post(buoy()).status_code == 201
     assert httpx.get(f"{live.address}/readyz").status_code == 200
 

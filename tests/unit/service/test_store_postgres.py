@@ -110,7 +110,7 @@ def test_an_answered_sample_is_on_disk_whatever_the_servers_default(url, pair):
 
 
 def test_a_server_that_does_not_answer_is_named_without_the_password():
-    with pytest.raises(StoreError, match="farm on .* does not open") as refused:
+    with pytest.raises(StoreError, match=r"farm on .* does not open") as refused:
         open_store("postgresql://keeper:secret@127.0.0.1:1/farm")
     assert "secret" not in str(refused.value)
 
