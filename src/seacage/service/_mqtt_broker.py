@@ -1,0 +1,134 @@
+"""Where a broker is and how it is spoken to."""
+
+import ssl
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Self
+from urllib.parse import unquote, urlsplit
+
+from paho.mqtt.client import Client
+from paho.mqtt.enums import CallbackAPIVersion, MQTTProtocolVersion
+from paho.mqtt.packettypes import PacketTypes
+from paho.mqtt.properties import Properties
+
+from seacage.conventions import InputError
+
+_PORTS = {"mqtt": 1883, "mqtts": 8883}
+_LARGEST_PACKET = 1 << 20  # bytes; the broker keeps longer ones to itself
+
+KEEPALIVE_S = 30
+"""A connection on which nothing came for so long is dead."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Broker:
+    """A broker's place and what it asks of its clients.
+
+    Parameters
+    ----------
+    host, port
+        Where it listens.
+    tls
+        Whether it speaks TLS, and shows a certificate.
+    user, password
+        None where it asks for none; never shown.
+    ca
+        File of the authority that signed its certificate; the system's where None.
+    """
+
+    host: str
+    port: int
+    tls: bool = False
+    user: str | None = None
+    password: str | None = field(default=None, repr=False)
+    ca: Path | None = None
+
+    @classmethod
+    def parse(cls, url: str, *, ca: Path | None = None) -> Self:
+        """Read ``mqtt://host:1883`` or ``mqtts://user:password@host:8883``.
+
+        A user's name and password say ``%40`` for ``@`` and the like.
+
+        Raises
+        ------
+        InputError
+            Another scheme, no host, a port that is none, a CA file without TLS.
+        """
+        try:
+            place = urlsplit(url)
+            host, port = place.hostname, place.port
+        except ValueError as error:
+            raise InputError(f"{_hidden(url)} is no broker's address ({error}).") from error
+        if place.scheme not in _PORTS or not host or place.path.strip("/"):
+            raise InputError(
+                f"{_hidden(url)} is no broker's address. Give one as mqtt://127.0.0.1:1883, or "
+                "mqtts://user:password@host:8883 with TLS."
+            )
+        if ca is not None and place.scheme != "mqtts":
+            raise InputError(
+                f"{ca}: a broker at mqtt:// shows no certificate. Use mqtts://, or leave the CA "
+                "file out."
+            )
+        return cls(
+            host=host,
+            port=port or _PORTS[place.scheme],
+            tls=place.scheme == "mqtts",
+            user=None if place.username is None else unquote(place.username),
+            password=None if place.password is None else unquote(place.password),
+            ca=ca,
+        )
+
+    def __str__(self) -> str:
+        """Say where it is, without the password."""
+        return f"{'mqtts' if self.tls else 'mqtt'}://{self.host}:{self.port}"
+
+    def client(self, client_id: str, *, manual_ack: bool = False) -> Client:
+        """Make a client of MQTT 5 that is not yet connected.
+
+        Raises
+        ------
+        InputError
+            The CA file cannot be read.
+        """
+        made = Client(
+            CallbackAPIVersion.VERSION2,
+            client_id=client_id,
+            protocol=MQTTProtocolVersion.MQTTv5,
+            manual_ack=manual_ack,
+        )
+        if self.user is not None:
+            made.username_pw_set(self.user, self.password)
+        if self.tls:
+            made.tls_set_context(self._trust())  # pyright: ignore[reportUnknownMemberType]
+        return made
+
+    def _trust(self) -> ssl.SSLContext:
+        try:
+            return ssl.create_default_context(cafile=self.ca)
+        except OSError as error:  # ssl.SSLError is one
+            raise InputError(
+                f"{self.ca}: the CA file cannot be read ({error}). Give a PEM file."
+            ) from error
+
+
+def connecting(*, receive_maximum: int, session_s: int) -> Properties:
+    """What a client asks of its connection.
+
+    Parameters
+    ----------
+    receive_maximum
+        The broker sends at most so many messages ahead of their acknowledgements.
+    session_s
+        It keeps what comes for the client so long after the connection ended [s].
+    """
+    asked = Properties(PacketTypes.CONNECT)
+    asked.ReceiveMaximum = receive_maximum
+    asked.SessionExpiryInterval = session_s
+    asked.MaximumPacketSize = _LARGEST_PACKET
+    return asked
+
+
+def _hidden(url: str) -> str:
+    """An address as it may be shown: without what stands before the @."""
+    scheme, _, rest = url.rpartition("://")
+    return f"{scheme}://{rest.rpartition('@')[2]}"
