@@ -12,7 +12,7 @@ export class Alarms {
   constructor(holder, model, desk, past) {
     const views = [
       { name: "alarm-list", title: "Now" }, { name: "journal", title: "Journal" },
-      { name: "kpi", title: "How they do" },
+      { name: "kpi", title: "Key figures" },
     ];
     const tabs = new Tabs(holder, views, { label: "Alarms", seen: () => this.refresh() });
     tabs.list.classList.add("minor");

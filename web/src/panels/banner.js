@@ -29,7 +29,7 @@ export class Banner {
     if (mode === "past") {
       const ago = live ? `, ${span((live.t - view.t) / 1000)} before now` : "";
       write(this.head, "The past.");
-      write(this.words, `What you see is of ${moment(view.t)}${ago}.`);
+      write(this.words, `You see ${moment(view.t)}${ago}.`);
     } else {
       write(this.head, "What if.");
       write(this.words, "This is not the sea now: loads and net answer the sea you chose.");

@@ -38,7 +38,11 @@ export class Bar {
       make("div", { className: "bar-who" }, make("h1", {}, this.cages), this.origin), this.verdict,
       time, make("div", { className: "bar-tools" }, this.link, themeSwitch(), help));
     model.on("topology", () => this.topology());
-    for (const name of ["live", "connection", "age"]) model.on(name, () => this.show());
+    for (const name of ["live", "view", "connection", "age"]) model.on(name, () => this.show());
+    // On a phone the tabs stop beneath the bar, however high that is.
+    new ResizeObserver(([{ target }]) =>
+      document.documentElement.style.setProperty("--bar-height", `${target.offsetHeight}px`))
+      .observe(holder.parentElement);
     this.topology();
     this.show();
   }
@@ -67,10 +71,12 @@ export class Bar {
   }
 
   judge({ kind, icon: shape, headline, detail }) {
+    const elsewhere = (this.model.view?.mode ?? "live") !== "live";
     this.verdict.dataset.kind = kind;
     if (this.mark.dataset.shape !== shape) this.mark.replaceChildren(icon(shape));
     this.mark.dataset.shape = shape;
-    write(this.headline, headline);
+    // The verdict is on the sea now, even while the reader looks at another.
+    write(this.headline, elsewhere ? `Now: ${headline}` : headline);
     write(this.detail, detail);
     this.detail.title = detail;
   }

@@ -41,7 +41,7 @@ export class Chart {
       grid: { stroke: () => styled("--edge"), width: 1 }, ticks: { show: false },
     };
     return {
-      width: 320, height: HEIGHT, padding: [8, 8, 0, 0],
+      width: 320, height: HEIGHT, padding: [8, 24, 0, 0],
       tzDate: (t) => uPlot.tzDate(new Date(t * 1000), "Etc/UTC"),
       legend: { show: false },
       cursor: { y: false, drag: { x: false, y: false }, sync: { key: sync }, points: { size: 7 } },

@@ -26,6 +26,7 @@ export class Charts {
     model.on("topology", () => this.topology());
     for (const name of ["view", "connection"]) model.on(name, () => this.paint());
     past.on(() => this.paint());
+    model.on("selection", () => this.mark());
     onTheme(() => this.charts.forEach((chart) => chart.repaint()));
     this.topology();
   }
@@ -82,8 +83,17 @@ export class Charts {
       return chart.card;
     });
     this.grid.replaceChildren(...cards);
+    this.mark();
     this.count.textContent = `${cards.length} of ${this.all.length}`;
     this.paint();
+  }
+
+  /** Mark the charts of what is chosen on the net. */
+  mark() {
+    const { bridle, sensor } = this.model.selection ?? {};
+    for (const [key, { card }] of this.charts) {
+      card.toggleAttribute("data-chosen", key === `bridle:${bridle}` || key === `sensor:${sensor}`);
+    }
   }
 
   show() {

@@ -30,7 +30,7 @@ export class Farm {
   open() {
     this.show();
     if (!this.dialog.open) this.dialog.showModal();
-    this.tiles.querySelector("[aria-current]")?.focus();
+    (this.tiles.querySelector("[aria-current]") ?? this.tiles.firstElementChild)?.focus();
   }
 
   show() {

@@ -10,7 +10,7 @@ const KEYS = [
   ["?", "this page"],
 ];
 const WORDS = [
-  ["Twin", "what the digital twin says, with its 95 % interval: the truth lies inside 19 times out of 20."],
+  ["Twin", "what the digital twin says, with its 95 % interval, made to hold the truth 19 times out of 20."],
   ["Level", "2 where a sensor on the cage has taught the twin, 1 where it is simulation alone."],
   ["Extrapolating", "the sea is beyond what the twin has learned; its intervals are wider, and it may err more."],
   ["No valid input", "nothing usable has been measured of the sea, so nothing is computed: a dash is no zero."],

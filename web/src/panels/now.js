@@ -34,14 +34,14 @@ export class Now {
       ? `${plain(top.name)}, ${percent(top.utilisation)} of capacity` : "");
     const share = state?.valid ? state.volume_fraction : null;
     this.volume.say(known(share) ? String(Math.round(100 * share)) : DASH, "%",
-      known(share) ? "of still water's" : "");
+      known(share) ? "of that in still water" : "");
     this.explain(state);
   }
 
   sayWaves(water) {
     const period = known(water?.tp_s) ? `${fixed(water.tp_s)} s, ` : "";
     this.waves.say(fixed(water?.hs_m), "m",
-      known(water?.hs_m) ? `${period}${towards("from", water.wave_from_deg)}` : "not known");
+      known(water?.hs_m) ? `${period}${towards("from", water.wave_from_deg)}` : water ? "not known" : "");
     this.waves.turn(known(water?.wave_from_deg) ? water.wave_from_deg + 180 : null);
   }
 

@@ -21,7 +21,7 @@ export function quantities(topology) {
     { key: "water:speed", name: "current", kind: "Sea and cage", unit: "m/s", downwards: false,
       sensor: null, place: "as the answer has it" },
     { key: "cage:volume", name: "volume", kind: "Sea and cage", unit: "%", downwards: false,
-      sensor: null, place: "of still water's" },
+      sensor: null, place: "of that in still water" },
   ];
 }
 

@@ -1,6 +1,6 @@
 // The panels as tabs: one is seen, arrow keys go round.
 
-import { make } from "../dom.js";
+import { make, still } from "../dom.js";
 
 export class Tabs {
   /** `all` are {name, title, key}; `seen` is told the name of the one that is shown. */
@@ -18,7 +18,7 @@ export class Tabs {
     const badge = make("span", { className: "tab-badge", hidden: true });
     const tab = make("button", {
       type: "button", role: "tab", id: `tab-${name}`, "aria-controls": `panel-${name}`,
-      title: key ? `Key ${key}` : "", onclick: () => this.show(name),
+      title: key ? `Key ${key}` : "", onclick: () => this.chosen(name),
     }, title, badge);
     const panel = make("div", {
       role: "tabpanel", id: `panel-${name}`, className: "tab-panel", "aria-labelledby": tab.id,
@@ -39,6 +39,14 @@ export class Tabs {
     badge.ariaLabel = count ? `, ${words}` : "";
     badge.setAttribute("role", "img");
     badge.dataset.rank = rank ?? "";
+  }
+
+  /** On a phone the panel lies below what is seen: bring it up. */
+  chosen(name) {
+    this.show(name);
+    if (matchMedia("(max-width: 860px)").matches) {
+      this.panel(name).scrollIntoView({ block: "start", behavior: still() ? "auto" : "smooth" });
+    }
   }
 
   show(name, { focus = false } = {}) {

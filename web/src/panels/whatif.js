@@ -33,7 +33,7 @@ export class WhatIf {
       this.fault, this.warning,
       make("table", { className: "compared" },
         make("caption", { className: "unseen" }, "The sea now and the sea you chose"),
-        make("thead", {}, make("tr", {}, ...["", "Now", "What if", "Change"]
+        make("thead", {}, make("tr", {}, ...["Of the cage", "Now", "What if", "Change"]
           .map((head) => make("th", { scope: "col" }, head)))), this.table),
       make("div", { className: "whatif-buttons" }, this.back,
         make("button", { type: "button", className: "button", onclick: () => this.reset() }, "Start from the sea now")));
