@@ -13,6 +13,7 @@ import structlog
 from jaxtyping import Float
 
 from seacage.records import Amendment, QualityState, Sample, check_sample
+from seacage.service._alarm_desk import AlarmDesk
 from seacage.service._answers import state_of, topology_of
 from seacage.service._clock import Clock
 from seacage.service._frame import frame_of
@@ -22,7 +23,16 @@ from seacage.service._past import REMEMBERED, answered_in, state_at, streams_of
 from seacage.service._samples import BUOY_KEYS
 from seacage.service._schemas import State, Topology
 from seacage.service._store import Store
-from seacage.twin import Answered, Event, Flagged, StreamBack, StreamSilent, Twin
+from seacage.twin import (
+    Alarm,
+    AlarmPolicy,
+    Answered,
+    Event,
+    Flagged,
+    StreamBack,
+    StreamSilent,
+    Twin,
+)
 
 _log = structlog.get_logger(__name__)
 
@@ -58,6 +68,8 @@ class LiveCage:
         Where steps and samples are counted.
     tick_s
         Longest pause between two looks at the clock [s of the wall].
+    policy
+        Limits of the alarms; None for the usual.
     """
 
     def __init__(
@@ -69,6 +81,7 @@ class LiveCage:
         clock: Clock,
         metrics: Metrics,
         tick_s: float = 2.0,
+        policy: AlarmPolicy | None = None,
     ) -> None:
         self.name, self.twin, self.store, self.clock = name, twin, store, clock
         self._metrics, self._tick_s = metrics, tick_s
@@ -79,6 +92,8 @@ class LiveCage:
         self._mailboxes: set[Mailbox[Snapshot]] = set()
         self._topology = topology_of(name, twin, speed=clock.speed)
         self.rest_position = np.array(self._topology.rest_position_m)
+        limits = policy or AlarmPolicy.default(twin.cage, buoy=twin.buoy, watch=twin.watch)
+        self.desk = AlarmDesk(cage=name, twin=twin, store=store, policy=limits)
         self._state, answered = state_at(twin, store, name, clock.now(), remembered=REMEMBERED)
         self._quality = {stream: taken[-1].quality for stream, taken in self._state.streams.items()}
         self.snapshot = self._shown(answered)
@@ -120,6 +135,7 @@ class LiveCage:
         """Forget everything and stand where a backlog ends, as a replay does at its start."""
         async with self._stepping:
             await asyncio.to_thread(self.store.forget, self.name)
+            self.desk.begin_anew()
             self._quality.clear()
             self._pending.clear()
             await self._stored(backlog)
@@ -141,6 +157,32 @@ class LiveCage:
                 answered, events = await asyncio.to_thread(self._stepped, samples)
                 self._note(events)
                 self._publish(answered)
+
+    async def handle(
+        self, alarm: str, how: str, *, who: str, why: str, seconds: float | None
+    ) -> Alarm:
+        """Do what a person asks with an alarm; returns when that is on disk.
+
+        Parameters
+        ----------
+        alarm, how
+            Its name, and one of ``HANDLES``.
+        who, why, seconds
+            For the journal, and how long to shelve [s].
+
+        Raises
+        ------
+        InputError
+            The action makes no sense as the alarm stands.
+        StoreError
+            The disk did not take it.
+        """
+        async with self._stepping:
+            now = self.clock.now()
+            after, kept = self.desk.handle(alarm, how, who=who, now=now, why=why, seconds=seconds)
+            self._publish(self.snapshot.answered)
+        await asyncio.wrap_future(kept)
+        return after
 
     @contextmanager
     def watched(self) -> Generator[Mailbox[Snapshot]]:
@@ -178,6 +220,7 @@ class LiveCage:
             noticed += [event for event in events if not isinstance(event, Answered)]
         answered = answered_in(events)
         assert answered is not None  # a tick is always answered
+        self.desk.look(self._state, answered)
         return answered, noticed
 
     def _note(self, events: Sequence[Event]) -> None:
@@ -204,6 +247,7 @@ class LiveCage:
 
     def _shown(self, answered: Answered) -> Snapshot:
         state = state_of(self.name, self.twin, answered, self._state)
+        state = state.model_copy(update={"alarms": self.desk.waiting()})
         return Snapshot(answered=answered, state=state, rest_position=self.rest_position)
 
 
