@@ -34,6 +34,9 @@ from seacage.twin import (
     Twin,
 )
 
+_GATHERED_S = 0.1
+"""What comes within so long is stepped through together, and shown once [s]."""
+
 _log = structlog.get_logger(__name__)
 
 
@@ -157,6 +160,7 @@ class LiveCage:
                 answered, events = await asyncio.to_thread(self._stepped, samples)
                 self._note(events)
                 self._publish(answered)
+            await asyncio.sleep(_GATHERED_S)
 
     async def handle(
         self, alarm: str, how: str, *, who: str, why: str, seconds: float | None
