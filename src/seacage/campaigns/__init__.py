@@ -9,6 +9,7 @@ from seacage.campaigns._plan import Plan
 from seacage.campaigns._run import run_campaign, run_share
 from seacage.campaigns._status import CampaignStatus, campaign_status
 from seacage.campaigns._timetable import Timetable
+from seacage.campaigns._true_shapes import TrueShapes, true_shapes
 from seacage.campaigns._waves import generated_waves, waves_at_site
 
 __all__ = [
@@ -18,6 +19,7 @@ __all__ = [
     "Plan",
     "Simulator",
     "Timetable",
+    "TrueShapes",
     "VirtualField",
     "campaign_status",
     "generated_current",
@@ -25,6 +27,7 @@ __all__ = [
     "read_events",
     "run_campaign",
     "run_share",
+    "true_shapes",
     "virtual_field",
     "virtual_field_share",
     "waves_at_site",

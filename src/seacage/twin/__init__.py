@@ -15,10 +15,14 @@ from seacage.twin._alarm_text import AlarmText, described
 from seacage.twin._align import Pairs, align, spread_out, teaching_window
 from seacage.twin._answer import Answer
 from seacage.twin._assess import assess
+from seacage.twin._clearance import Clearance, PathClearance
 from seacage.twin._correction import Correction, Said, Spread
+from seacage.twin._discrepancy import Discrepancy
 from seacage.twin._events import Answered, Event, Flagged, StreamBack, StreamSilent
+from seacage.twin._inspection import InspectionPath, Pattern, Side, inspection_path
 from seacage.twin._metocean import Metocean
 from seacage.twin._models import Models
+from seacage.twin._predicted_net import PredictedNet, StaleError
 from seacage.twin._provenance import Lesson, Provenance
 from seacage.twin._replay import replay
 from seacage.twin._state import TwinState, Watch
@@ -35,19 +39,27 @@ __all__ = [
     "Answer",
     "Answered",
     "Changed",
+    "Clearance",
     "Correction",
+    "Discrepancy",
     "Event",
     "Flagged",
     "Happened",
+    "InspectionPath",
     "Lesson",
     "Limit",
     "Loads",
     "Metocean",
     "Models",
     "Pairs",
+    "PathClearance",
+    "Pattern",
+    "PredictedNet",
     "Provenance",
     "Said",
+    "Side",
     "Spread",
+    "StaleError",
     "StreamBack",
     "StreamSilent",
     "TabulatedTwin",
@@ -59,6 +71,7 @@ __all__ = [
     "align",
     "assess",
     "described",
+    "inspection_path",
     "put_in_service",
     "remark",
     "replay",

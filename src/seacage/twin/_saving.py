@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from seacage.cage import Cage
-from seacage.conventions import ModelError, SeacageError
+from seacage.conventions import ModelError, Origin, SeacageError
 from seacage.surrogates import (
     Domain,
     Fitted,
@@ -19,6 +19,7 @@ from seacage.surrogates import (
     encode,
 )
 from seacage.twin._correction import Correction, Spread
+from seacage.twin._discrepancy import Discrepancy
 from seacage.twin._metocean import Input
 from seacage.twin._models import Models
 from seacage.twin._provenance import Provenance
@@ -29,6 +30,11 @@ VERSION = 2
 
 UPPER = "upper/"
 """Before the sensor's name, in the names of level 2's parts."""
+
+DISCREPANCY = "discrepancy:"
+"""Before the names of what is known of the shapes' errors."""
+
+_ERRORS = ("current_velocity", "ring", "rest")
 
 Kind = TypeVar("Kind", FittedGaussianProcess, FittedNARGP, FittedShapeGP)
 
@@ -52,7 +58,11 @@ class Header:
 
 
 def saved(
-    models: Models, provenance: Provenance, buoy: str, watch: Watch
+    models: Models,
+    provenance: Provenance,
+    buoy: str,
+    watch: Watch,
+    discrepancy: Discrepancy | None,
 ) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
     """Return a twin's settings and arrays."""
     from pydantic import TypeAdapter
@@ -81,6 +91,9 @@ def saved(
         for name, (_, arrays) in encoded.items()
         for key, values in arrays.items()
     }
+    if discrepancy is not None:
+        settings["discrepancy"] = {"origin": str(discrepancy.origin)}
+        arrays |= {f"{DISCREPANCY}{key}": getattr(discrepancy, key) for key in _ERRORS}
     return settings, arrays
 
 
@@ -94,7 +107,7 @@ def restored(
     ModelError
         Another format or version, or parts that do not fit together.
     """
-    from pydantic import TypeAdapter, ValidationError
+    from pydantic import TypeAdapter
 
     if (settings.get("format"), settings.get("version")) != (FORMAT, VERSION):
         raise ModelError(
@@ -104,7 +117,8 @@ def restored(
     try:
         header = TypeAdapter(Header).validate_python(dict(settings))
         models = _models(header, settings["models"], arrays)
-    except (KeyError, TypeError, ValidationError, SeacageError) as error:
+        discrepancy = _discrepancy(settings.get("discrepancy"), arrays, models.cage)
+    except (KeyError, TypeError, ValueError, SeacageError) as error:
         raise ModelError(
             f"{source}: its parts do not fit together ({error}). Train the twin anew."
         ) from error
@@ -113,7 +127,24 @@ def restored(
         "provenance": header.provenance,
         "buoy": header.buoy,
         "watch": header.watch,
+        "discrepancy": discrepancy,
     }
+
+
+def _discrepancy(
+    settings: Mapping[str, Any] | None, arrays: Mapping[str, np.ndarray], cage: Cage
+) -> Discrepancy | None:
+    if settings is None:
+        return None
+    own = {key: arrays[f"{DISCREPANCY}{key}"] for key in _ERRORS}
+    cases = len(own["ring"])
+    shapes = {"current_velocity": (cases, 2)} | dict.fromkeys(
+        ("ring", "rest"), (cases, cage.rings + 1, 3)
+    )
+    for key, shape in shapes.items():
+        if own[key].shape != shape:
+            raise ModelError(f"its {key} is {own[key].shape}, not {shape}.")
+    return Discrepancy(origin=Origin(settings["origin"]), **own)
 
 
 def _models(

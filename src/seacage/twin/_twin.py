@@ -13,6 +13,7 @@ from seacage.conventions import InputError, Origin
 from seacage.ocean import SeaState
 from seacage.records import Record, Sample
 from seacage.twin._answer import Answer
+from seacage.twin._discrepancy import Discrepancy
 from seacage.twin._events import Answered, Event
 from seacage.twin._folder import read_folder, write_folder
 from seacage.twin._held import Held
@@ -41,12 +42,15 @@ class Twin:
         The stream that the inputs come from.
     watch
         How long streams may be quiet, late or ahead.
+    discrepancy
+        How far real nets were from its shapes; None where nobody has looked.
     """
 
     models: Models
     provenance: Provenance
     buoy: str = "buoy-1"
     watch: Watch = field(default_factory=Watch)
+    discrepancy: Discrepancy | None = None
 
     @classmethod
     def read(cls, folder: str | Path) -> Self:
@@ -69,7 +73,8 @@ class Twin:
         ModelError
             The folder holds something else.
         """
-        write_folder(Path(folder), *saved(self.models, self.provenance, self.buoy, self.watch))
+        parts = self.models, self.provenance, self.buoy, self.watch, self.discrepancy
+        write_folder(Path(folder), *saved(*parts))
 
     @property
     def cage(self) -> Cage:

@@ -1,0 +1,157 @@
+"""The true cage's shapes beside what a buoy reported: what a twin's shape answers miss."""
+
+from collections.abc import Sequence
+from contextlib import closing
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
+from importlib.metadata import version
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.cage import Cage
+from seacage.campaigns._cases import Block, Simulator, answered
+from seacage.campaigns._current import generated_current
+from seacage.campaigns._hidden import Hidden
+from seacage.campaigns._pool import available_cores, mapped
+from seacage.campaigns._weather import current_at_cage
+from seacage.conventions import InputError, Progress, Result, compass, towards, unheard
+from seacage.ocean import SeaState
+from seacage.records import Record
+
+_START = datetime(2020, 1, 18, tzinfo=UTC)  # of the records; no tide here knows the year
+_DAYS = 50.0
+_EVERY_S = 60.0
+_GROWTH_STEP = 0.25
+"""Growth is rounded to this, so that many cases share a cage and settle together [-]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class TrueShapes:
+    """Shapes of a virtual field's cage, and the currents that its buoy reported meanwhile.
+
+    Parameters
+    ----------
+    current_velocity
+        As reported, (east, north) [m/s].
+    node_position
+        As they truly were [m].
+    """
+
+    current_velocity: Float[np.ndarray, "case 2"]
+    node_position: Float[np.ndarray, "case node 3"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Moments:
+    """Times at which a virtual field is looked at, and the cage's lines, which are of its seed."""
+
+    hidden: Hidden
+    reported: Float[np.ndarray, "case 2"]
+    velocity: Float[np.ndarray, "case 2"]
+    growth: Float[np.ndarray, " case"]
+
+
+def true_shapes(
+    cage: Cage,
+    *,
+    hidden: Hidden,
+    seeds: Sequence[int],
+    cases: int,
+    workers: int | None = None,
+    progress: Progress | None = None,
+) -> TrueShapes:
+    """Settle the true cage at times of several generated records.
+
+    Each seed draws a record, turned to a direction of its own, the buoy's errors and the
+    eddies that it does not see, and how uneven the bridles are. The times are spread evenly
+    over the speeds, for a record's own are mostly slow. Left out, as in every settled field:
+    waves, the current's profile, and that a cage takes time to follow. Growth is rounded to a
+    quarter of the whole.
+
+    Parameters
+    ----------
+    cage
+        As drawn.
+    hidden
+        How it truly is.
+    seeds
+        One record each.
+    cases
+        Times of each record.
+    workers
+        Processes; None for one per available core. The numbers do not depend on it.
+    progress
+        Called as ("shape error", done, total) in cases.
+    """
+    if cases < 1 or not seeds:
+        raise InputError(f"true_shapes: {len(seeds)} seeds of {cases} cases hold none. Ask for 1.")
+    moments = [_moments(hidden, seed, cases) for seed in seeds]
+    reported = np.concatenate([one.reported for one in moments])
+    position = np.full((len(reported), cage.node_count, 3), np.nan)
+    report, done = progress or unheard, 0
+    blocks = _blocks(cage, moments)
+    running = mapped(answered, list(blocks), workers=workers or available_cores())
+    with closing(running) as finished:
+        for block, answers in finished:
+            rows = blocks[block]
+            kept = answers.values["result"] != Result.DIVERGED
+            position[rows[kept]] = answers.values["node_position"][kept]
+            done += len(rows)
+            report("shape error", done, len(reported))
+    whole = np.isfinite(position).all(axis=(1, 2))
+    return TrueShapes(current_velocity=reported[whole], node_position=position[whole])
+
+
+def _moments(hidden: Hidden, seed: int, cases: int) -> _Moments:
+    # The word keeps these draws apart from those of a field that has the same seed.
+    weather, choice, turn = np.random.default_rng([seed, *b"shapes"]).spawn(3)
+    strung = replace(hidden, bridles=replace(hidden.bridles, seed=int(turn.integers(2**31))))
+    buoy = _turned(generated_current(seed, start=_START, days=_DAYS), turn.uniform(0.0, 360.0))
+    at = (buoy.time - buoy.time[0]) / np.timedelta64(1, "s")
+    seconds = np.arange(0.0, at[-1] + _EVERY_S, _EVERY_S)
+    current = current_at_cage(buoy, seconds, hidden=strung, rng=weather)
+    speed = buoy.values["current_speed_m_s"]
+    wanted = choice.uniform(0.0, speed.max(), cases)
+    # Of the ten rows nearest to a speed any one, lest the fastest hour be all there is.
+    nearest = np.argsort(np.abs(speed - wanted[:, None]), axis=1)[:, :10]
+    rows = choice.permuted(nearest, axis=1)[:, 0]
+    grown = hidden.fouling.grown(at[rows] / 86400.0)
+    return _Moments(
+        hidden=strung,
+        reported=towards(speed[rows], buoy.values["current_to_deg"][rows]),
+        velocity=current[np.searchsorted(seconds, at[rows])],
+        growth=np.rint(grown / _GROWTH_STEP) * _GROWTH_STEP,
+    )
+
+
+def _turned(buoy: Record, degrees: float) -> Record:
+    values = dict(buoy.values)
+    values["current_to_deg"] = (values["current_to_deg"] + degrees) % 360.0
+    return replace(buoy, values=values)
+
+
+def _blocks(cage: Cage, moments: Sequence[_Moments]) -> dict[Block, np.ndarray]:
+    """Cases that share a cage, a campaign's block at a time, and their rows."""
+    by, blocks, before = Simulator(method="settle", law=moments[0].hidden.law), {}, 0
+    for one in moments:
+        for growth in np.unique(one.growth):
+            toml = one.hidden.true_cage(cage, float(growth)).to_toml()
+            rows = np.flatnonzero(one.growth == growth)
+            for part in np.split(rows, range(by.block, len(rows), by.block)):
+                block = Block(
+                    first=before + int(part[0]),
+                    cage_toml=toml,
+                    seas=tuple(_sea(velocity) for velocity in one.velocity[part]),
+                    wave_seeds=(0,) * len(part),
+                    duration=0.0,
+                    simulator=by,
+                    version=version("seacage"),
+                )
+                blocks[block] = before + part
+        before += len(one.growth)
+    return blocks
+
+
+def _sea(velocity: Float[np.ndarray, " 2"]) -> SeaState:
+    return SeaState(current_speed=float(np.hypot(*velocity)), current_to=float(compass(velocity)))

@@ -1,0 +1,175 @@
+"""How far real nets were from a twin's shapes: what it knows of its own error."""
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from seacage.cage import Cage, Nearest
+from seacage.conventions import InputError, Origin, compass
+
+ALIKE_SPEED = 0.15
+"""Currents whose speeds differ by so much are alike [m/s]: the sd of a bell."""
+
+ALIKE_DIRECTION = 35.0
+"""And those whose directions differ by so much [deg]; slack water has none."""
+
+NEGLIGIBLE = 0.02
+"""Of the likeliest case's weight: what weighs less is left out."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Discrepancy:
+    """Errors of a twin's shapes, case by case and ring by ring.
+
+    Each case holds how far the net was from the twin's answer to what the buoy reported: the
+    mean over each ring's nodes, and the scatter of nodes about it. Asked about a current, the
+    cases whose currents were alike stand for what the error may be now; as each is a whole
+    net, errors hang together along it as they did there.
+
+    Parameters
+    ----------
+    current_velocity
+        As reported, (east, north) [m/s].
+    ring
+        True less predicted, east, north and up [m]; the last "ring" is the tip.
+    rest
+        Standard deviation of the nodes about their ring's mean, along the same axes [m].
+    origin
+        How the true shapes were made.
+    """
+
+    current_velocity: Float[np.ndarray, "case 2"]
+    ring: Float[np.ndarray, "case ring 3"]
+    rest: Float[np.ndarray, "case ring 3"]
+    origin: Origin
+
+    def __post_init__(self) -> None:
+        if not len(self.ring):
+            raise InputError("Discrepancy: there is no case to learn from. Give at least one.")
+
+    @classmethod
+    def learned(
+        cls,
+        cage: Cage,
+        current_velocity: Float[np.ndarray, "case 2"],
+        *,
+        predicted: Float[np.ndarray, "case node 3"],
+        true: Float[np.ndarray, "case node 3"],
+        origin: Origin,
+    ) -> Self:
+        """Learn from predicted and true node positions [m] under reported currents [m/s]."""
+        error = true - predicted
+        tip = error[:, cage.bottom_node :]
+        rings = error[:, : cage.bottom_node].reshape(len(error), cage.rings, cage.spokes, 3)
+        scatter = rings.std(axis=2)
+        return cls(
+            current_velocity=current_velocity,
+            ring=np.concatenate([rings.mean(axis=2), tip], axis=1),
+            # A ring of one node has no scatter: what is near it stands for it.
+            rest=np.concatenate([scatter, scatter[:, -1:]], axis=1),
+            origin=origin,
+        )
+
+    def at(self, cage: Cage, current_velocity: Float[np.ndarray, " 2"]) -> "ShapeError":
+        """What the error may be in a current (east, north) [m/s].
+
+        A current faster than all that were met counts as the fastest.
+        """
+        speed, top = np.hypot(*current_velocity), np.hypot(*self.current_velocity.T).max()
+        slower = current_velocity * min(1.0, top / speed) if speed > 0.0 else current_velocity
+        likelihood = self._likelihood(slower)
+        rows = np.flatnonzero(likelihood > NEGLIGIBLE * likelihood.max())
+        weight = likelihood[rows] / likelihood[rows].sum()
+        mean = np.einsum("c,crj->rj", weight, self.ring[rows])
+        return ShapeError(
+            ring_of=_rings(cage),
+            weight=weight,
+            mean=mean,
+            deviation=self.ring[rows] - mean,
+            rest=np.sqrt(np.einsum("c,crj->rj", weight, self.rest[rows] ** 2)),
+        )
+
+    def _likelihood(self, velocity: Float[np.ndarray, " 2"]) -> Float[np.ndarray, " case"]:
+        speed, here = np.hypot(*self.current_velocity.T), np.hypot(*velocity)
+        turned = compass(self.current_velocity) - compass(velocity)
+        turned = (turned + 180.0) % 360.0 - 180.0
+        # Where either is slack, directions mean less and less.
+        sense = np.minimum(np.minimum(speed, here) / ALIKE_SPEED, 1.0)
+        off = ((speed - here) / ALIKE_SPEED) ** 2 + (sense * turned / ALIKE_DIRECTION) ** 2
+        return np.exp(-0.5 * (off - off.min()))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ShapeError:
+    """What the error of one predicted shape may be: weighed cases about their mean.
+
+    Parameters
+    ----------
+    ring_of
+        The ring of each node.
+    weight
+        Of each case; they sum to 1.
+    mean
+        True less predicted, to be expected, by ring [m].
+    deviation
+        Of each case from that [m].
+    rest
+        Standard deviation of a node about its ring, along each axis [m].
+    """
+
+    ring_of: Int[np.ndarray, " node"]
+    weight: Float[np.ndarray, " case"]
+    mean: Float[np.ndarray, "ring 3"]
+    deviation: Float[np.ndarray, "case ring 3"]
+    rest: Float[np.ndarray, "ring 3"]
+
+    @classmethod
+    def none(cls, cage: Cage) -> Self:
+        """Of a twin that knows nothing of its error beyond its surrogates' spread."""
+        ring_of = _rings(cage)
+        rings = int(ring_of[-1]) + 1
+        nothing = np.zeros((rings, 3))
+        return cls(
+            ring_of=ring_of,
+            weight=np.ones(1),
+            mean=nothing,
+            deviation=nothing[None],
+            rest=nothing,
+        )
+
+    @property
+    def shift(self) -> Float[np.ndarray, "node 3"]:
+        """How far each node is expected to be from the prediction [m]."""
+        return self.mean[self.ring_of]
+
+    def moved(self, near: Nearest) -> Float[np.ndarray, "point case"]:
+        """How far outwards the net lies in each case, at some points of it [m]."""
+        cases, rings, _ = self.deviation.shape
+        share = np.zeros((len(near.distance), rings))
+        for corner in range(3):
+            ring = self.ring_of[near.node[:, corner]]
+            np.add.at(share, (np.arange(len(share)), ring), near.weight[:, corner])
+        along = (share[:, :, None] * near.normal[:, None]).reshape(len(share), -1)
+        return along @ self.deviation.reshape(cases, -1).T
+
+    def scatter(
+        self, near: Nearest, node_sigma: Float[np.ndarray, " node"]
+    ) -> Float[np.ndarray, " point"]:
+        """Standard deviation across the net that the cases leave, and the surrogate's [m].
+
+        Parameters
+        ----------
+        near
+            The points of the net.
+        node_sigma
+            Of the surrogate [m].
+        """
+        variance = np.einsum("pkj,pj->pk", self.rest[self.ring_of[near.node]] ** 2, near.normal**2)
+        variance += node_sigma[near.node] ** 2
+        return np.sqrt(np.einsum("pk,pk->p", near.weight, variance))
+
+
+def _rings(cage: Cage) -> Int[np.ndarray, " node"]:
+    return np.append(np.repeat(np.arange(cage.rings), cage.spokes), cage.rings)

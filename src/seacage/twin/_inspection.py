@@ -1,0 +1,235 @@
+"""A way along the net for a camera: rows or a spiral at a stand-off, facing the twines."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from seacage.cage import Cage, Nearest
+from seacage.conventions import InputError, compass
+from seacage.twin._clearance import Clearance
+from seacage.twin._predicted_net import PredictedNet
+
+Side = Literal["inside", "outside"]
+Pattern = Literal["rows", "spiral"]
+
+MOST = 20_000
+"""Waypoints at most."""
+
+_ROUNDS = 8  # of moving waypoints to their stand-off; in a corner of the net each helps a little
+_TOO_NEAR = 0.9
+"""Of the stand-off: a waypoint that cannot be brought so far off is left out."""
+
+_STRIDES = 3.0
+"""Steps, or rows, that two neighbours of a part lie apart at most."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class InspectionPath:
+    """Waypoints along a net.
+
+    Parameters
+    ----------
+    position
+        East, north, up [m].
+    facing
+        Unit vector from each waypoint to the net.
+    row
+        The row, or turn of the spiral, that it belongs to, from the top.
+    part
+        Parts that the way falls into where waypoints were left out, or where the straight way
+        to the next would come nearer to the net than half the stand-off.
+    clearance
+        Of each waypoint.
+    left_out
+        Waypoints that no stand-off could be kept at: near the tip from inside, in a narrow
+        fold, or at the surface.
+    """
+
+    position: Float[np.ndarray, "waypoint 3"]
+    facing: Float[np.ndarray, "waypoint 3"]
+    row: Int[np.ndarray, " waypoint"]
+    part: Int[np.ndarray, " waypoint"]
+    clearance: Clearance
+    left_out: int
+
+    def __len__(self) -> int:
+        return len(self.position)
+
+    @property
+    def heading(self) -> Float[np.ndarray, " waypoint"]:
+        """Where to look, clockwise from true north [deg]."""
+        return compass(self.facing[:, :2])
+
+    @property
+    def pitch(self) -> Float[np.ndarray, " waypoint"]:
+        """And how far upwards [deg]."""
+        return np.rad2deg(np.arcsin(np.clip(self.facing[:, 2], -1.0, 1.0)))
+
+
+def inspection_path(
+    net: PredictedNet,
+    *,
+    stand_off: float = 2.0,
+    side: Side = "inside",
+    pattern: Pattern = "rows",
+    row_spacing: float = 2.0,
+    step: float = 1.0,
+    top: float = 1.0,
+    below: float = 1.0,
+) -> InspectionPath:
+    """Lay a way along a net, from its top to its tip.
+
+    It follows the net that is to be expected, the twin's known error taken off, and keeps the
+    stand-off to all of it; the clearance of each waypoint says how sure that is. Rows go round
+    and come back, each a little deeper; a spiral goes down as it goes round. The way between
+    two waypoints of a part is straight.
+
+    Parameters
+    ----------
+    net
+        As predicted.
+    stand_off
+        Distance to keep [m].
+    side
+        Of the net.
+    pattern
+        Rows or a spiral.
+    row_spacing
+        Between rows, along the net [m].
+    step
+        Between waypoints, along the net [m].
+    top
+        Depth of the first row, and of the shallowest waypoint [m].
+    below
+        The distance that the waypoints' probability is about [m].
+
+    Raises
+    ------
+    InputError
+        Sizes that are no sizes, more waypoints than can be laid, or none that keeps off.
+    """
+    _check(stand_off=stand_off, row_spacing=row_spacing, step=step)
+    shape = net.expected_position
+    turn, spoke, row = _course(net.cage, shape, pattern, row_spacing, step, top)
+    sign = -1.0 if side == "inside" else 1.0
+    position = _kept_off(net.cage, shape, _on_net(net.cage, shape, turn, spoke), stand_off, sign)
+    near = net.cage.nearest(position, shape)
+    keep = (_room(near, sign) > _TOO_NEAR * stand_off) & (position[:, 2] <= -0.5 * top)
+    if not keep.any():
+        raise InputError(
+            f"No waypoint {side} the net keeps {stand_off:g} m off it. Ask for a smaller stand-off."
+        )
+    to_net = (near.position - position)[keep]
+    longest = _STRIDES * max(step, row_spacing)
+    return InspectionPath(
+        position=position[keep],
+        facing=to_net / np.linalg.norm(to_net, axis=1, keepdims=True),
+        row=row[keep],
+        part=_parts(net.cage, shape, position[keep], stand_off, sign, longest),
+        clearance=net.clearance(position[keep], below=below),
+        left_out=int(np.sum(~keep)),
+    )
+
+
+def _check(**sizes: float) -> None:
+    for name, size in sizes.items():
+        if not (np.isfinite(size) and size > 0.0):
+            raise InputError(f"inspection: {name} = {size:g} m must be above 0 m.")
+
+
+def _course(
+    cage: Cage,
+    shape: Float[np.ndarray, "node 3"],
+    pattern: Pattern,
+    row_spacing: float,
+    step: float,
+    top: float,
+) -> tuple[
+    Float[np.ndarray, " waypoint"], Float[np.ndarray, " waypoint"], Int[np.ndarray, " waypoint"]
+]:
+    """Place of each waypoint on the net, in rings down and spokes round, and its row."""
+    rings = _rings(cage, shape)
+    middle = rings.mean(axis=1)
+    down = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(rings, axis=0), axis=2).mean(axis=1)))
+    start = float(np.interp(top, -middle[:, 2], down))
+    rows = max(2, 1 + round((down[-1] - start) / row_spacing))
+    side = np.linalg.norm(rings - np.roll(rings, 1, axis=1), axis=2)
+    around: Float[np.ndarray, " ring"] = side.sum(axis=1)
+    if rows * around.max() / step > MOST:
+        raise InputError(
+            f"inspection: {rows} rows with a waypoint every {step:g} m are more than {MOST} "
+            "waypoints. Ask for a longer step or wider rows."
+        )
+    at = start + (float(down[-1]) - start) * np.arange(rows) / (rows - 1)
+    counts = np.maximum(np.ceil(np.interp(at, down, around) / step), 1).astype(int)
+    row = np.repeat(np.arange(rows), counts)
+    share = (np.arange(len(row)) - (np.cumsum(counts) - counts)[row]) / counts[row]
+    if pattern == "spiral":
+        deeper = share * (at[1] - at[0])
+    else:
+        share = np.where(row % 2 == 1, 1.0 - share, share)
+        deeper = np.zeros(len(row))
+    turn = np.interp(at[row] + deeper, down, np.arange(len(down)))
+    return turn, cage.spokes * share, row
+
+
+def _rings(cage: Cage, shape: Float[np.ndarray, "node 3"]) -> Float[np.ndarray, "ring spoke 3"]:
+    """Every ring's nodes, and the tip as a ring of its own."""
+    rings = shape[: cage.bottom_node].reshape(cage.rings, cage.spokes, 3)
+    tip = np.broadcast_to(shape[cage.bottom_node], (1, cage.spokes, 3))
+    return np.concatenate([rings, tip])
+
+
+def _on_net(
+    cage: Cage,
+    shape: Float[np.ndarray, "node 3"],
+    turn: Float[np.ndarray, " waypoint"],
+    spoke: Float[np.ndarray, " waypoint"],
+) -> Float[np.ndarray, "waypoint 3"]:
+    """Points of the net between its nodes, bilinearly."""
+    rings = _rings(cage, shape)
+    upper = np.minimum(turn.astype(int), cage.rings - 1)
+    left = spoke.astype(int) % cage.spokes
+    right = (left + 1) % cage.spokes
+    down, over = (turn - upper)[:, None], (spoke - np.floor(spoke))[:, None]
+    above = rings[upper, left] * (1.0 - over) + rings[upper, right] * over
+    beneath = rings[upper + 1, left] * (1.0 - over) + rings[upper + 1, right] * over
+    return above * (1.0 - down) + beneath * down
+
+
+def _kept_off(
+    cage: Cage,
+    shape: Float[np.ndarray, "node 3"],
+    base: Float[np.ndarray, "waypoint 3"],
+    stand_off: float,
+    sign: float,
+) -> Float[np.ndarray, "waypoint 3"]:
+    """Points beside the net, moved until each is as far from all of it as it should be."""
+    position = base + sign * stand_off * cage.nearest(base, shape).normal
+    for _ in range(_ROUNDS):
+        near = cage.nearest(position, shape)
+        position = position + sign * (stand_off - _room(near, sign))[:, None] * near.normal
+    return position
+
+
+def _room(near: Nearest, sign: float) -> Float[np.ndarray, " point"]:
+    """Distance to the net, negative on the wrong side of it [m]."""
+    return -sign * np.where(near.inside, near.distance, -near.distance)
+
+
+def _parts(
+    cage: Cage,
+    shape: Float[np.ndarray, "node 3"],
+    position: Float[np.ndarray, "waypoint 3"],
+    stand_off: float,
+    sign: float,
+    longest: float,
+) -> Int[np.ndarray, " waypoint"]:
+    """Number the parts that can be swum from waypoint to waypoint."""
+    leg = np.diff(position, axis=0)
+    middle = position[:-1] + leg / 2.0
+    tight = _room(cage.nearest(middle, shape), sign) < stand_off / 2.0
+    broken = tight | (np.linalg.norm(leg, axis=1) > longest)
+    return np.append(0, np.cumsum(broken))

@@ -1,0 +1,249 @@
+"""The net as a twin predicts it, and how far one is from it, and how surely."""
+
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Self
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from seacage.cage import Cage, Nearest
+from seacage.conventions import InputError, Origin, SeacageError
+from seacage.twin._answer import Answer
+from seacage.twin._clearance import Clearance, PathClearance, sampled
+from seacage.twin._discrepancy import ShapeError
+from seacage.twin._events import Answered
+from seacage.twin._twin import Twin
+
+PATCH_RINGS = 3
+"""Height of a patch of the net over which what the cases leave is one number."""
+
+BLOCK = 2000
+"""Points answered at once: each meets every case of the error."""
+
+
+class StaleError(SeacageError):
+    """The twin has no net to measure from, or only that of an old reading."""
+
+
+# The expected net and its error's spread at some points, case by case.
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Expected:
+    near: Nearest
+    room: Float[np.ndarray, "point case"]
+    scatter: Float[np.ndarray, " point"]
+
+    def p_below(self, below: float) -> Float[np.ndarray, "point case"]:
+        """Probability in each case that the net is nearer than a distance [m], either side."""
+        spread = np.maximum(self.scatter, 1e-9)[:, None]
+        return _normal((below - self.room) / spread) - _normal((-below - self.room) / spread)
+
+    def p_inside(self) -> Float[np.ndarray, "point case"]:
+        """Probability in each case that a point is within the net."""
+        return _normal(self.room / np.maximum(self.scatter, 1e-9)[:, None])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PredictedNet:
+    """The net as a twin predicts it at one time.
+
+    Parameters
+    ----------
+    cage
+        Whose net.
+    node_position
+        As predicted [m].
+    node_sigma
+        Standard deviation of the surrogate [m].
+    error
+        What the prediction's error may be, beyond the surrogate's.
+    learned
+        How the true shapes were made that the error was learned from; None where it was not.
+    t, age_s
+        The time of the prediction, and the age of the reading it rests on [s].
+    in_domain
+        Whether the twin had learned about such a current.
+    """
+
+    cage: Cage
+    node_position: Float[np.ndarray, "node 3"]
+    node_sigma: Float[np.ndarray, " node"]
+    error: ShapeError
+    learned: Origin | None
+    t: datetime
+    age_s: float
+    in_domain: bool
+
+    @classmethod
+    def of(
+        cls,
+        twin: Twin,
+        answered: Answered,
+        *,
+        allow_stale: bool = False,
+        most_age_s: float | None = None,
+    ) -> Self:
+        """Take the net from a twin's answer.
+
+        Parameters
+        ----------
+        twin, answered
+            Who answered, and what.
+        allow_stale
+            Take the last reading however old it is, as long as there was a sound one.
+        most_age_s
+            Refuse a reading older than this [s]; None for what the twin itself takes.
+
+        Raises
+        ------
+        StaleError
+            There is no valid answer, or it rests on too old a reading.
+        """
+        answer, age_s = answered.answer, answered.input_age_s
+        water = answered.metocean
+        if water is None or age_s is None or not water.known(twin.models.inputs).all():
+            raise StaleError(f"There is no net to measure from. {answer.reason[0]}")
+        if not allow_stale:
+            _check_fresh(answer, age_s, most_age_s)
+        if not answer.valid[0]:
+            answer = twin.predict(water)
+        velocity = water.current_velocity[0]
+        known = twin.discrepancy
+        return cls(
+            cage=twin.cage,
+            node_position=answer.node_position[0],
+            node_sigma=answer.node_sigma[0],
+            error=known.at(twin.cage, velocity) if known else ShapeError.none(twin.cage),
+            learned=known.origin if known else None,
+            t=answered.t,
+            age_s=age_s,
+            in_domain=bool(answer.in_domain[0]),
+        )
+
+    @property
+    def expected_position(self) -> Float[np.ndarray, "node 3"]:
+        """Where the nodes are to be expected: as predicted, less the twin's known error [m]."""
+        return self.node_position + self.error.shift
+
+    def clearance(self, point: Float[np.ndarray, "point 3"], *, below: float = 1.0) -> Clearance:
+        """How far points are from the net.
+
+        The distance is exact, to the predicted net as ``Cage.nearest`` has it. Probabilities
+        are about the expected net, displaced case by case along its normal: right to first
+        order in how far a case differs from what is expected.
+
+        Parameters
+        ----------
+        point
+            East, north and up of the cage's centre [m].
+        below
+            The distance asked about [m].
+        """
+        _check(point, below)
+        blocks = np.array_split(np.arange(len(point)), 1 + len(point) // BLOCK)
+        return Clearance.joined([self._clearance(point[rows], below) for rows in blocks])
+
+    def along(self, path: Float[np.ndarray, "corner 3"], *, below: float = 1.0) -> PathClearance:
+        """How far a path of straight lines is from the net, looked at all along.
+
+        Parameters
+        ----------
+        path
+            Its corners, in order [m].
+        below
+            The distance asked about [m].
+        """
+        _check(path, below)
+        point, along = sampled(path)
+        parts = [
+            (self._expected(point[rows]), rows)
+            for rows in np.array_split(np.arange(len(point)), 1 + len(point) // BLOCK)
+        ]
+        p = np.concatenate([part.p_below(below) for part, _ in parts])
+        patch = np.concatenate([self._patch(part.near) for part, _ in parts])
+        weight = self.error.weight
+        return PathClearance(
+            point=point,
+            along=along,
+            clearance=self.clearance(point, below=below),
+            p_below=float(_any(_by_patch(p, patch)) @ weight),
+            p_least=float(p.max(axis=0) @ weight),
+            p_most=float(_any(p) @ weight),
+        )
+
+    def _patch(self, near: Nearest) -> Int[np.ndarray, " point"]:
+        """The patch of the net that each of its points is on."""
+        node = near.node[np.arange(len(near.node)), np.argmax(near.weight, axis=1)]
+        quarter = 4 * (node % self.cage.spokes) // self.cage.spokes
+        return 4 * (self.error.ring_of[node] // PATCH_RINGS) + quarter
+
+    def _expected(self, point: Float[np.ndarray, "point 3"]) -> _Expected:
+        near = self.cage.nearest(point, self.expected_position)
+        room = np.where(near.inside, near.distance, -near.distance)
+        return _Expected(
+            near=near,
+            room=room[:, None] + self.error.moved(near),
+            scatter=self.error.scatter(near, self.node_sigma),
+        )
+
+    def _clearance(self, point: Float[np.ndarray, "point 3"], below: float) -> Clearance:
+        near = self.cage.nearest(point, self.node_position)
+        expected, weight = self._expected(point), self.error.weight
+        room = expected.room @ weight
+        variance = (expected.room - room[:, None]) ** 2 @ weight
+        p_inside = expected.p_inside() @ weight
+        return Clearance(
+            distance=near.distance,
+            inside=near.inside,
+            position=near.position,
+            normal=near.normal,
+            expected=np.where(near.inside, room, -room),
+            sigma=np.sqrt(variance + expected.scatter**2),
+            below=below,
+            p_below=np.clip(expected.p_below(below) @ weight, 0.0, 1.0),
+            p_through=np.clip(np.where(near.inside, 1.0 - p_inside, p_inside), 0.0, 1.0),
+        )
+
+
+def _check_fresh(answer: Answer, age_s: float, most_age_s: float | None) -> None:
+    if not answer.valid[0]:
+        raise StaleError(
+            f"The net is not known now. {answer.reason[0]} Allow a stale state to measure from "
+            "the last reading."
+        )
+    if most_age_s is not None and age_s > most_age_s:
+        raise StaleError(
+            f"The net rests on a reading of {age_s:.0f} s ago; {most_age_s:.0f} s is the limit "
+            "asked for. Wait for the next reading, or allow a stale state."
+        )
+
+
+def _check(point: Float[np.ndarray, "point 3"], below: float) -> None:
+    if not len(point) or not np.isfinite(point).all():
+        raise InputError(
+            f"{len(point)} points, {np.sum(~np.isfinite(point))} of their coordinates not finite: "
+            "give at least one point, each with three numbers in metres."
+        )
+    if not (np.isfinite(below) and below >= 0.0):
+        raise InputError(f"The distance asked about, {below:g} m, must be 0 m or more.")
+
+
+def _by_patch(
+    p: Float[np.ndarray, "point case"], patch: Int[np.ndarray, " point"]
+) -> Float[np.ndarray, "visited case"]:
+    """The largest probability in each patch that a path passes, case by case."""
+    order = np.argsort(patch, kind="stable")
+    _, begin = np.unique(patch[order], return_index=True)
+    return np.maximum.reduceat(p[order], begin, axis=0)
+
+
+def _normal(z: Float[np.ndarray, "*n"]) -> Float[np.ndarray, "*n"]:
+    """Share of a normal distribution below z."""
+    from scipy.special import ndtr  # pyright: ignore[reportMissingTypeStubs]
+
+    return ndtr(z)
+
+
+def _any(p: Float[np.ndarray, "event case"]) -> Float[np.ndarray, " case"]:
+    """Probability that at least one of independent events happens."""
+    return 1.0 - np.prod(1.0 - np.clip(p, 0.0, 1.0), axis=0)

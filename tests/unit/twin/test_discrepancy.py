@@ -1,0 +1,94 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from netted import CAGE, erring_twin, net_in
+from seacage.conventions import InputError, ModelError, Origin
+from seacage.testing import stand_in_twin
+from seacage.twin import Discrepancy, Twin
+
+
+def known(velocity, drift) -> Discrepancy:
+    """Return what is learned from nets that drift as wholes, each by its own vector."""
+    velocity, drift = np.array(velocity, dtype=float), np.array(drift, dtype=float)
+    predicted = np.broadcast_to(CAGE.design_position, (len(velocity), CAGE.node_count, 3))
+    return Discrepancy.learned(
+        CAGE,
+        velocity,
+        predicted=predicted,
+        true=predicted + drift[:, None],
+        origin=Origin.VIRTUAL_FIELD,
+    )
+
+
+def test_a_net_that_always_drifts_alike_is_expected_there_and_nowhere_else():
+    error = known([[0.5, 0.0], [0.5, 0.0]], [[1.0, 2.0, 3.0]] * 2).at(CAGE, np.array([0.5, 0.0]))
+    np.testing.assert_allclose(error.shift, np.tile([1.0, 2.0, 3.0], (CAGE.node_count, 1)))
+    near = CAGE.nearest(np.array([[0.0, 0.0, -5.0]]), CAGE.design_position)
+    np.testing.assert_allclose(error.moved(near), 0.0, atol=1e-12)
+    assert error.scatter(near, np.full(CAGE.node_count, 0.2)) == pytest.approx(0.2)
+
+
+@pytest.mark.parametrize(
+    ("asked", "drift"),
+    [
+        ([0.8, 0.0], 1.0),
+        ([0.0, 0.8], 2.0),
+        ([0.2, 0.0], 3.0),
+        ([5.0, 0.0], 1.0),  # faster than any that was met
+    ],
+)
+def test_the_cases_whose_currents_were_alike_speak(asked, drift):
+    one = known([[0.8, 0.0], [0.0, 0.8], [0.2, 0.0]], [[1.0, 0, 0], [2.0, 0, 0], [3.0, 0, 0]])
+    error = one.at(CAGE, np.array(asked))
+    assert error.mean[0, 0] == pytest.approx(drift, abs=0.05)
+    assert error.weight.sum() == pytest.approx(1.0)
+
+
+def test_in_slack_water_no_direction_counts():
+    one = known([[0.0, 0.0], [0.01, 0.0], [0.0, -0.01]], [[1.0, 0, 0], [2.0, 0, 0], [3.0, 0, 0]])
+    error = one.at(CAGE, np.zeros(2))
+    np.testing.assert_allclose(error.weight, 1.0 / 3.0, rtol=0.02)
+
+
+def test_an_outward_drift_takes_the_net_outwards_on_one_side_and_inwards_on_the_other():
+    one = known([[0.5, 0.0]] * 2, [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]])
+    error = one.at(CAGE, np.array([0.5, 0.0]))
+    sides = np.array([[20.0, 0.0, -5.0], [-20.0, 0.0, -5.0]])
+    moved = error.moved(CAGE.nearest(sides, CAGE.design_position))
+    # Of eight spokes the panels beside the east lie askew, by the cosine of 22.5 degrees.
+    np.testing.assert_allclose(moved, [[0.92, -0.92], [-0.92, 0.92]], atol=0.01)
+
+
+def test_a_twins_known_error_is_saved_with_it_and_an_older_twin_has_none(tmp_path):
+    twin = erring_twin(cases=30)
+    twin.write(tmp_path / "twin")
+    was, now = twin.discrepancy, Twin.read(tmp_path / "twin").discrepancy
+    assert was is not None
+    assert now is not None
+    assert now.origin == "virtual field"
+    for key in ("current_velocity", "ring", "rest"):
+        np.testing.assert_array_equal(getattr(now, key), getattr(was, key))
+    stand_in_twin().write(tmp_path / "older")
+    assert Twin.read(tmp_path / "older").discrepancy is None
+
+
+def test_a_known_error_of_another_mesh_is_refused(tmp_path):
+    twin = erring_twin(cases=10)
+    assert twin.discrepancy is not None
+    ring, rest = twin.discrepancy.ring[:, 1:], twin.discrepancy.rest[:, 1:]
+    other = replace(twin.discrepancy, ring=ring, rest=rest)
+    replace(twin, discrepancy=other).write(tmp_path / "twin")
+    with pytest.raises(ModelError, match="ring"):
+        Twin.read(tmp_path / "twin")
+
+
+def test_nothing_teaches_nothing():
+    with pytest.raises(InputError, match="no case"):
+        known(np.empty((0, 2)), np.empty((0, 3)))
+
+
+def test_what_was_learned_is_told_apart_from_what_was_not():
+    assert net_in(erring_twin(cases=10), 0.4, 0.1).learned == "virtual field"
+    assert net_in(stand_in_twin(), 0.4, 0.1).learned is None
