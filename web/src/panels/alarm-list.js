@@ -17,12 +17,15 @@ export class AlarmList {
     this.none = make("div");
     holder.append(this.denied, this.none, this.list);
     desk.on(() => this.show());
-    model.on("connection", () => this.show());
     this.show();
   }
 
   show() {
     const { alarms, fault, denied } = this.desk;
+    // Made anew only where something changed, so that nobody's button goes from under a finger.
+    const seen = JSON.stringify([alarms, fault, denied]);
+    if (seen === this.seen) return;
+    this.seen = seen;
     this.denied.hidden = !denied;
     const told = (alarms ?? []).filter((alarm) =>
       alarm.active || !alarm.acknowledged || alarm.shelved || alarm.in_service === false);

@@ -4,7 +4,8 @@ import { make } from "../dom.js";
 import { empty } from "./dom.js";
 import { fixed, moment } from "./format.js";
 
-const LINES = 500;
+const ASKED = 5000;
+const SHOWN = 500; // lines; more nobody reads, and the browser would feel them
 
 export class Journal {
   constructor(holder, model, desk, past) {
@@ -26,7 +27,7 @@ export class Journal {
       make("caption", { className: "unseen" }, "Journal of alarms, newest first"),
       make("thead", {}, make("tr", {}, ...["When, UTC", "Alarm", "What", "Who and why"]
         .map((head) => make("th", { scope: "col" }, head)))),
-      make("tbody", {}, ...words.reverse().map(row))));
+      make("tbody", {}, ...words.reverse().slice(0, SHOWN).map(row))));
   }
 }
 
@@ -35,7 +36,7 @@ export async function linesOf(desk, past) {
   if (past.end === undefined) return [];
   const [from, to] = [past.start, past.end + 1].map((t) => encodeURIComponent(new Date(t).toISOString()));
   const { lines } = await desk.model.call("GET",
-    desk.path(`journal?from=${from}&to=${to}&limit=${LINES}`));
+    desk.path(`journal?from=${from}&to=${to}&limit=${ASKED}`));
   return [...lines].sort((a, b) => Date.parse(a.t) - Date.parse(b.t));
 }
 

@@ -26,7 +26,8 @@ export class WhatIf {
       onclick: () => model.travel(null) }, "Back to the sea now");
     const [speed, height, period] = this.sliders;
     holder.append(
-      make("p", { className: "aside" }, "Move the current and the waves: the net and the loads answer at once. Nothing here touches the cage."),
+      make("p", { className: "aside" }, "Move the current and the waves: the net and the loads answer at once. The twin has learned " +
+        "from seas whose period goes with their height. Nothing here touches the cage."),
       make("div", { className: "whatif-sea" }, speed.box, this.to.box, height.box, this.from.box,
         make("div", {}, period.box,
           make("label", { className: "usual" }, this.usual, " as goes with the height"))),
