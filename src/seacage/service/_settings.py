@@ -1,41 +1,184 @@
-"""What a service is told: by its command line, else the environment, else by default."""
+"""What a service is told: by its command line, else its environment, a file, or by default."""
 
+import tomllib
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field
-from pydantic_settings import BaseSettings, SettingsConfigDict
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic_settings import (
+    BaseSettings,
+    InitSettingsSource,
+    PydanticBaseSettingsSource,
+    SettingsConfigDict,
+)
 
 from seacage.conventions import InputError
+from seacage.service._limits import Limits
 
 _LOOPBACK = ("127.0.0.1", "::1", "localhost")
+
+Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_.\-]{0,63}$")]
+"""Of a site, a cage, a worker: it becomes part of addresses and topics."""
+
+
+class _Section(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class StoreSection(_Section):
+    """The section ``[store]``.
+
+    Parameters
+    ----------
+    url
+        ``postgresql://user@host/name``, or a path for SQLite; in the data folder if left out.
+    keep_days
+        Samples older than this are deleted [d]; all are kept if left out.
+    archive
+        Folder that samples are written to as Parquet before they are deleted.
+    """
+
+    url: str | None = None
+    keep_days: float | None = Field(default=None, gt=0.0, le=36_525.0)
+    archive: Path | None = None
+
+    @model_validator(mode="after")
+    def _archive_needs_an_age(self) -> Self:
+        if self.archive is not None and self.keep_days is None:
+            raise ValueError("archive is used when samples leave the store; give keep_days too")
+        return self
+
+
+class MqttSection(_Section):
+    """The section ``[mqtt]``.
+
+    Parameters
+    ----------
+    url
+        ``mqtt://host:1883`` or ``mqtts://user:password@host:8883``; a password is better given
+        in the environment, as ``SEACAGE_MQTT__URL``.
+    ca
+        Certificate of the authority that the broker's is signed by; the system's if left out.
+    client_id
+        Of this process; two processes never share one. ``seacage-`` and the site if left out.
+    group
+        Processes of one group share the samples of the cages that each of them serves.
+    state_every_s
+        How often a cage's state is published [s].
+    """
+
+    url: str
+    ca: Path | None = None
+    client_id: Name | None = None
+    group: Name | None = None
+    state_every_s: float = Field(default=10.0, ge=1.0, le=3600.0)
+
+
+class CageSection(_Section):
+    """One ``[[cages]]``.
+
+    Parameters
+    ----------
+    name
+        Under which it is served; the twin's own name for its cage if left out.
+    twin
+        Folder of its trained twin.
+    tail
+        Files that grow by lines of CSV or JSON, read as they grow.
+    alarms
+        As ``[alarms]``, for this cage alone.
+    """
+
+    twin: Path
+    name: Name | None = None
+    tail: tuple[Path, ...] = ()
+    alarms: dict[str, Any] = Field(default_factory=dict)
+
+
+class WebhookSection(_Section):
+    """One ``[[webhooks]]``: an address that alarms are posted to.
+
+    Parameters
+    ----------
+    url
+        ``http://`` or ``https://``.
+    severity
+        The least that is told.
+    after_s
+        Only where nobody has acknowledged the alarm for so long [s].
+    secret
+        Signs each message.
+    cages
+        Whose alarms; all cages' if left out.
+    """
+
+    url: str = Field(pattern=r"^https?://")
+    severity: int = Field(default=500, ge=1, le=1000)
+    after_s: float = Field(default=0.0, ge=0.0, le=86_400.0)
+    secret: str = Field(default="", repr=False)
+    cages: tuple[Name, ...] = ()
 
 
 class Settings(BaseSettings):
     """Settings of ``seacage serve``; each is also an environment variable, ``SEACAGE_PORT``.
 
+    A variable of a section has two underscores: ``SEACAGE_STORE__URL``.
+
     Parameters
     ----------
+    site
+        Where the cages lie, as topics and scopes name it.
     data
         The folder that keeps everything the service writes.
     host, port
         Where it listens.
+    certificate, key
+        PEM files: with them it speaks HTTPS.
     insecure_http
         Listen without TLS where others can hear.
     tick_s
         Longest pause between two looks at the clock [s of the wall].
     log
         Lines for people or JSON for machines.
+    store, mqtt, cages, webhooks, limits
+        See their sections.
+    alarms
+        Limits by kind or name, as ``seacage.twin.AlarmPolicy.from_dict`` takes them.
     """
 
-    model_config = SettingsConfigDict(env_prefix="SEACAGE_", extra="ignore", frozen=True)
+    model_config = SettingsConfigDict(
+        env_prefix="SEACAGE_", env_nested_delimiter="__", extra="ignore", frozen=True
+    )
 
+    site: Name = "site"
     data: Path = Path("var")
     host: str = "127.0.0.1"
     port: int = Field(default=8000, ge=0, le=65535)
+    certificate: Path | None = None
+    key: Path | None = None
     insecure_http: bool = False
     tick_s: float = Field(default=2.0, gt=0.0, le=60.0)
     log: Literal["lines", "json"] = "lines"
+    store: StoreSection = StoreSection()
+    mqtt: MqttSection | None = None
+    cages: tuple[CageSection, ...] = ()
+    alarms: dict[str, Any] = Field(default_factory=dict)
+    webhooks: tuple[WebhookSection, ...] = ()
+    limits: Limits = Limits()
+
+    @model_validator(mode="after")
+    def _certificate_needs_its_key(self) -> Self:
+        if (self.certificate is None) != (self.key is None):
+            raise ValueError("TLS takes both a certificate and its key")
+        return self
+
+    @model_validator(mode="after")
+    def _cages_have_names_of_their_own(self) -> Self:
+        names = [cage.name for cage in self.cages]
+        if len(names) > 1 and (None in names or len(set(names)) < len(names)):
+            raise ValueError("several cages take a name each, and no two the same")
+        return self
 
     def check_host(self) -> None:
         """Refuse to speak plain HTTP where others can hear.
@@ -43,10 +186,89 @@ class Settings(BaseSettings):
         Raises
         ------
         InputError
-            An address beyond loopback without ``--insecure-http``.
+            An address beyond loopback without a certificate or ``--insecure-http``.
         """
-        if self.host not in _LOOPBACK and not self.insecure_http:
+        safe = self.host in _LOOPBACK or self.certificate is not None
+        if not safe and not self.insecure_http:
             raise InputError(
-                f"serve: {self.host} is reachable from outside, and this service speaks plain "
-                "HTTP. Listen on 127.0.0.1 behind a TLS proxy, or pass --insecure-http."
+                f"serve: {self.host} is reachable from outside, and this service would speak "
+                "plain HTTP. Give --certificate and --key, listen on 127.0.0.1 behind a TLS "
+                "proxy, or pass --insecure-http."
             )
+
+
+def read_settings(file: Path | None = None, **given: object) -> Settings:
+    """Put together what was given, the environment, a file and the defaults.
+
+    Parameters
+    ----------
+    file
+        TOML; paths in it are taken from where the service is started.
+    given
+        By the command line; None is not given.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or a setting is unknown or does not do.
+    """
+    sources = _above({} if file is None else _read(file))
+    try:
+        return sources.model_validate({key: v for key, v in given.items() if v is not None})
+    except ValidationError as error:
+        first = error.errors()[0]
+        name = ".".join(map(str, first["loc"])) or "the settings"
+        said = f" = {first['input']!r}" if _may_be_shown(name, first["input"]) else ""
+        where = f"{file}, the option" if file else "the option"
+        raise InputError(
+            f"serve: {name}{said} does not do: {first['msg'].removeprefix('Value error, ')}. "
+            f"Mend {where} or its variable SEACAGE_…"
+        ) from error
+
+
+def _above(table: Mapping[str, Any]) -> type[Settings]:
+    """Settings that take what neither the command line nor the environment says from a table."""
+
+    class FromFile(Settings):
+        @classmethod
+        def settings_customise_sources(
+            cls,
+            settings_cls: type[BaseSettings],
+            init_settings: PydanticBaseSettingsSource,
+            env_settings: PydanticBaseSettingsSource,
+            dotenv_settings: PydanticBaseSettingsSource,
+            file_secret_settings: PydanticBaseSettingsSource,
+        ) -> tuple[PydanticBaseSettingsSource, ...]:
+            del dotenv_settings, file_secret_settings
+            file = InitSettingsSource(settings_cls, init_kwargs=dict(table))
+            return init_settings, env_settings, file
+
+    return FromFile
+
+
+def _may_be_shown(name: str, value: object) -> bool:
+    """Whether a value holds no secret: neither a key, an address with a password, nor a table."""
+    secret = any(part in name for part in ("secret", "url"))
+    return isinstance(value, str | int | float) and not secret
+
+
+def _read(file: Path) -> dict[str, Any]:
+    try:
+        table = tomllib.loads(file.read_text("utf-8"))
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"{file} is not TOML: {error}.") from error
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{file} cannot be read ({error}).") from error
+    unknown = sorted(table.keys() - Settings.model_fields.keys())
+    if unknown:
+        raise InputError(
+            f"{file}: the setting {unknown[0]!r} is unknown. There are: "
+            f"{', '.join(Settings.model_fields)}."
+        )
+    return table
+
+
+def without_password(address: str) -> str:
+    """Leave out of an address what stands before the ``@``."""
+    scheme, found, rest = address.rpartition("://")
+    return f"{scheme}{found}{rest.rpartition('@')[2]}"

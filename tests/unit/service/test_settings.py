@@ -1,29 +1,104 @@
 import pytest
 
 from seacage.conventions import InputError
-from seacage.service._commands._serve import _settings
-from seacage.service._settings import Settings
+from seacage.service._settings import Settings, read_settings, without_password
 
 
-def test_the_command_line_goes_before_the_environment_and_that_before_the_default(monkeypatch):
+@pytest.fixture
+def file(tmp_path):
+    """A file of settings that a test writes."""
+
+    def written(text):
+        path = tmp_path / "seacage.toml"
+        path.write_text(text)
+        return path
+
+    return written
+
+
+def test_the_command_line_goes_before_the_environment_and_that_before_the_file(monkeypatch, file):
     monkeypatch.setenv("SEACAGE_PORT", "9001")
     monkeypatch.setenv("SEACAGE_HOST", "localhost")
-    settings = _settings(port=9002, host=None)
-    assert (settings.port, settings.host) == (9002, "localhost")
+    settings = read_settings(file('port = 9000\nsite = "bay"\n'), host="::1", data=None)
+    assert (settings.host, settings.port, settings.site) == ("::1", 9001, "bay")
     assert settings.tick_s == 2.0
 
 
-def test_a_setting_that_does_not_do_is_named(monkeypatch):
-    monkeypatch.setenv("SEACAGE_TICK_S", "often")
-    with pytest.raises(InputError, match="tick_s = 'often'"):
-        _settings()
+def test_a_section_can_come_in_parts_from_everywhere(monkeypatch, file):
+    monkeypatch.setenv("SEACAGE_STORE__URL", "postgresql://from-the-environment")
+    text = '[store]\nkeep_days = 30\narchive = "parquet"\n'
+    store = read_settings(file(text), store={"keep_days": 10}).store
+    assert (store.url, store.keep_days) == ("postgresql://from-the-environment", 10.0)
+    assert str(store.archive) == "parquet"
+
+
+def test_a_whole_farm_fits_in_a_file(file):
+    settings = read_settings(
+        file(
+            """
+            site = "bay"
+            [mqtt]
+            url = "mqtts://broker.example"
+            group = "farm"
+            [[cages]]
+            name = "north"
+            twin = "twins/north"
+            [cages.alarms."load.bridle-3"]
+            raise_at = 0.6
+            [[cages]]
+            name = "south"
+            twin = "twins/south"
+            [alarms.load]
+            raise_at = 0.7
+            [[webhooks]]
+            url = "https://phone.example/alarm"
+            after_s = 600
+            [limits]
+            requests_per_s = 50
+            """
+        )
+    )
+    assert [cage.name for cage in settings.cages] == ["north", "south"]
+    assert settings.cages[0].alarms == {"load.bridle-3": {"raise_at": 0.6}}
+    assert settings.alarms == {"load": {"raise_at": 0.7}}
+    assert settings.limits.requests_per_s == 50.0
+    assert settings.webhooks[0].after_s == 600.0
+
+
+@pytest.mark.parametrize(
+    ("text", "named"),
+    [
+        ('tick_s = "often"', "tick_s = 'often'"),
+        ("prot = 8000", "'prot' is unknown"),
+        ("port = ", "not TOML"),
+        ("[store]\nkeep = 3", "store.keep"),
+        ('[store]\narchive = "parquet"', "keep_days too"),
+        ('certificate = "c.pem"', "its key"),
+        ('[[cages]]\ntwin = "a"\n[[cages]]\ntwin = "b"', "a name each"),
+        ('[[cages]]\ntwin = "a"\nname = "../a"', "cages.0.name"),
+        ("[limits]\nburst = 0", "limits.burst = 0"),
+        ('[[webhooks]]\nurl = "ftp://x"', "webhooks.0.url"),
+    ],
+)
+def test_a_setting_that_does_not_do_is_named(file, text, named):
+    with pytest.raises(InputError, match=named.replace("[", "\\[")):
+        read_settings(file(text))
+
+
+def test_a_fault_does_not_show_a_password(file):
+    with pytest.raises(InputError) as error:
+        read_settings(file('[mqtt]\nurl = ["mqtt://u:secret@h"]\n'))
+    assert "secret" not in str(error.value)
+    assert without_password("mqtts://user:secret@host:8883") == "mqtts://host:8883"
+    assert without_password("/var/lib/a.sqlite") == "/var/lib/a.sqlite"
 
 
 @pytest.mark.parametrize("host", ["0.0.0.0", "::", "cage.example"])
-def test_plain_http_beyond_this_machine_takes_a_decision(host):
+def test_plain_http_beyond_this_machine_takes_a_decision(host, tmp_path):
     with pytest.raises(InputError, match="--insecure-http"):
         Settings(host=host).check_host()
     Settings(host=host, insecure_http=True).check_host()
+    Settings(host=host, certificate=tmp_path / "c.pem", key=tmp_path / "k.pem").check_host()
 
 
 @pytest.mark.parametrize("host", ["127.0.0.1", "::1", "localhost"])

@@ -2,6 +2,7 @@
 
 import socket
 from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -19,6 +20,10 @@ if TYPE_CHECKING:
 @guarded
 def serve(
     *,
+    config: Annotated[
+        Path | None,
+        typer.Option(exists=True, dir_okay=False, help="Settings as TOML; options go before it."),
+    ] = None,
     data: Annotated[
         Path | None, typer.Option(help="Folder for everything the service writes. [default: var]")
     ] = None,
@@ -37,6 +42,22 @@ def serve(
     port: Annotated[
         int | None, typer.Option(help="Port to listen on; 0 takes a free one. [default: 8000]")
     ] = None,
+    site: Annotated[
+        str | None, typer.Option(help="Where the cages lie, in topics and scopes. [default: site]")
+    ] = None,
+    store: Annotated[
+        str | None,
+        typer.Option(help="postgresql://user@host/name, or a file of SQLite. [default: in --data]"),
+    ] = None,
+    mqtt: Annotated[
+        str | None, typer.Option(help="Broker that samples come by, as mqtt://host:1883.")
+    ] = None,
+    certificate: Annotated[
+        Path | None, typer.Option(exists=True, dir_okay=False, help="PEM, to speak HTTPS.")
+    ] = None,
+    key: Annotated[
+        Path | None, typer.Option(exists=True, dir_okay=False, help="PEM, of the certificate.")
+    ] = None,
     demo: Annotated[
         bool, typer.Option("--demo", help="Feed the demonstration: a buoy and virtual sensors.")
     ] = False,
@@ -53,56 +74,52 @@ def serve(
     ] = False,
     as_json: Json = False,
 ) -> None:
-    """Serve a cage live: its page and its interface.
+    """Serve cages live: their page and their interface.
 
     Without --twin the demonstration twin of cage ace is served, and made first if there is
-    none, which takes a few minutes. Samples then come by HTTP; with --demo or --record they
-    are replayed on the record's own clock, from the beginning again at the end.
+    none, which takes a few minutes. Samples then come by HTTP, and by MQTT from a broker; with
+    --demo or --record they are replayed on the record's own clock, from the beginning again at
+    the end.
 
     Example: watch a demonstration, a minute per second.
         seacage serve --data var --demo
     Example: let a logger send samples to your own twin.
         seacage token new --data var --scope ingest
         seacage serve --data var --twin twin
+    Example: serve a farm as its file says.
+        seacage serve --config seacage.toml
     """
     from seacage.conventions import InputError
+    from seacage.service._assembly import assembled
     from seacage.service._logs import begin_logs
+    from seacage.service._settings import read_settings
 
-    if demo and twin:
+    settings = read_settings(
+        config,
+        data=data,
+        site=site,
+        host=host,
+        port=port,
+        certificate=certificate,
+        key=key,
+        insecure_http=insecure_http or None,
+        store={"url": store} if store else None,
+        mqtt={"url": mqtt} if mqtt else None,
+        cages=[{"twin": twin, "name": cage}] if twin else None,
+    )
+    if demo and settings.cages:
         raise InputError("serve: --demo shows the demonstration's own twin. Leave --twin out.")
-    settings = _settings(data=data, host=host, port=port, insecure_http=insecure_http or None)
     settings.check_host()
     begin_logs(settings.log)
     # The port first: minutes of preparation should not end at a port that is taken.
     with _listening(settings.host, settings.port) as listener:
-        trained, replay = _prepared(settings.data, twin=twin, demo=demo, record=record)
-        name = cage or trained.cage.name
-        service = assembled(settings, name, trained, replay, speed)
-        token = service.tokens.mint(["read"], keep=False)
-        address = f"http://{settings.host}:{listener.getsockname()[1]}/"
-        tell(
-            {"address": address, "token": token, "cage": name},
-            as_json=as_json,
-            rows=_greeting(address, token, name, speed if replay else None),
-        )
-        _run(service, listener)
-
-
-def _settings(**given: object) -> "Settings":
-    """What was given on the command line, over the environment, over the defaults."""
-    from pydantic import ValidationError
-
-    from seacage.conventions import InputError
-    from seacage.service._settings import Settings
-
-    try:
-        return Settings.model_validate({key: v for key, v in given.items() if v is not None})
-    except ValidationError as error:
-        first = error.errors()[0]
-        raise InputError(
-            f"serve: {'.'.join(map(str, first['loc']))} = {first['input']!r} does not do: "
-            f"{first['msg']}. Mend the option or its variable SEACAGE_…"
-        ) from error
+        twins, replay = _prepared(settings, demo=demo, record=record)
+        if cage and not settings.cages:
+            twins = dict.fromkeys([cage], next(iter(twins.values())))
+        service = assembled(settings, twins, replay=replay, speed=speed)
+        greeting = _greeting(settings, service, listener, speed if replay else None)
+        tell(greeting.said, as_json=as_json, rows=greeting.rows)
+        _run(service, settings, listener)
 
 
 def _listening(host: str, port: int) -> socket.socket:
@@ -117,67 +134,62 @@ def _listening(host: str, port: int) -> socket.socket:
 
 
 def _prepared(
-    data: Path, *, twin: Path | None, demo: bool, record: Path | None
-) -> tuple["Twin", "Replay | None"]:
-    """Read or make the twin, and what feeds it."""
+    settings: "Settings", *, demo: bool, record: Path | None
+) -> tuple[dict[str, "Twin"], "Replay | None"]:
+    """Read or make the twins, and what feeds them."""
     from seacage.records import read_record
+    from seacage.service._assembly import read_twins
     from seacage.service._replay import replay_of
     from seacage.studies import prepare_demonstration
     from seacage.twin import Twin
 
     buoy = read_record(record) if record else None
-    if twin is not None:
-        return Twin.read(twin), replay_of(buoy) if buoy else None
+    if settings.cages:
+        return read_twins(settings.cages), replay_of(buoy) if buoy else None
     with progress_bar() as progress:
         made = prepare_demonstration(
-            data / "demonstration", record=buoy if demo else None, progress=progress
+            settings.data / "demonstration", record=buoy if demo else None, progress=progress
         )
+    twin = Twin.read(made.twin_folder)
     if demo:
-        return Twin.read(made.twin_folder), replay_of(made.buoy, made.field)
-    return Twin.read(made.twin_folder), replay_of(buoy) if buoy else None
+        return {twin.cage.name: twin}, replay_of(made.buoy, made.field)
+    return {twin.cage.name: twin}, replay_of(buoy) if buoy else None
 
 
-def assembled(
-    settings: "Settings", name: str, twin: "Twin", replay: "Replay | None", speed: float
-) -> "Service":
-    from functools import partial
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Greeting:
+    """What a start tells a program, and what it tells a person."""
 
-    from seacage.service._api import Service
-    from seacage.service._clock import Clock, ReplayClock, WallClock
-    from seacage.service._live import LiveCage
-    from seacage.service._metrics import Metrics
-    from seacage.service._store import Store
-    from seacage.service._tokens import Tokens
-
-    # What is replayed lies apart: it is forgotten at each start, what was measured never is.
-    store = Store(settings.data / ("replay.sqlite" if replay else "samples.sqlite"))
-    metrics, tokens, tick_s = Metrics(), Tokens(settings.data), settings.tick_s
-
-    def live(clock: Clock) -> LiveCage:
-        return LiveCage(
-            name=name, twin=twin, store=store, clock=clock, metrics=metrics, tick_s=tick_s
-        )
-
-    if replay is None:
-        cages = {name: live(WallClock())}
-        return Service(cages=cages, store=store, tokens=tokens, metrics=metrics)
-    clock = ReplayClock(replay.start, speed=speed)
-    cage = live(clock)
-    feeds = [partial(replay.feed, cage, clock)]
-    return Service(cages={name: cage}, store=store, tokens=tokens, metrics=metrics, feeds=feeds)
+    said: dict[str, object]
+    rows: list[tuple[str, str]]
 
 
-def _greeting(address: str, token: str, name: str, speed: float | None) -> list[tuple[str, str]]:
-    came = "samples by HTTP" if speed is None else f"a replay at {speed:g} × real time"
-    return [
-        ("Cage", f"{name}, fed by {came}"),
+def _greeting(
+    settings: "Settings", service: "Service", listener: socket.socket, speed: float | None
+) -> _Greeting:
+    scheme = "https" if settings.certificate else "http"
+    host = f"[{settings.host}]" if ":" in settings.host else settings.host
+    address = f"{scheme}://{host}:{listener.getsockname()[1]}/"
+    token, cages = service.tokens.mint(["read"], keep=False, name="this start"), list(service.cages)
+    came = _sources(settings) if speed is None else f"a replay at {speed:g} × real time"
+    said: dict[str, object] = {"address": address, "token": token, "cage": cages[0], "cages": cages}
+    rows = [
+        ("Cage" if len(cages) == 1 else "Cages", f"{', '.join(cages)}, fed by {came}"),
         ("Page", f"{address}#token={token}"),
         ("Token", f"{token}  (reads; good until this service stops)"),
-        ("Stop", "Ctrl-C"),
     ]
+    if service.tokens.lacks_admin:
+        admin = service.tokens.mint(["admin"], keep=True, name="first start")
+        said["admin_token"] = admin
+        rows.append(("Admin", f"{admin}  (opens everything; keep it, it is shown this once)"))
+    return _Greeting(said=said, rows=[*rows, ("Stop", "Ctrl-C")])
 
 
-def _run(service: "Service", listener: socket.socket) -> None:
+def _sources(settings: "Settings") -> str:
+    return "samples by HTTP and MQTT" if settings.mqtt else "samples by HTTP"
+
+
+def _run(service: "Service", settings: "Settings", listener: socket.socket) -> None:
     import uvicorn
 
     from seacage.service._api import create_app
@@ -190,6 +202,8 @@ def _run(service: "Service", listener: socket.socket) -> None:
         access_log=False,
         server_header=False,
         timeout_graceful_shutdown=3,
+        ssl_certfile=settings.certificate,
+        ssl_keyfile=settings.key,
     )
     with suppress(KeyboardInterrupt):  # Ctrl-C is how a service is stopped
         uvicorn.Server(config).run(sockets=[listener])

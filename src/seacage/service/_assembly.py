@@ -1,0 +1,149 @@
+"""From settings and twins to a service: its store, cages, guard and feeds put together."""
+
+from collections.abc import Callable, Coroutine, Mapping
+from functools import partial
+from pathlib import Path
+
+from seacage.conventions import InputError
+from seacage.service._api import Service
+from seacage.service._audit import Audit
+from seacage.service._clock import Clock, ReplayClock, WallClock
+from seacage.service._live import LiveCage
+from seacage.service._metrics import Metrics
+from seacage.service._mqtt_feed import MqttFeed
+from seacage.service._notify import Herald, Webhook
+from seacage.service._quarantine import Quarantine
+from seacage.service._replay import Replay
+from seacage.service._settings import CageSection, Settings
+from seacage.service._store import Store, open_store
+from seacage.service._tokens import Tokens
+from seacage.twin import AlarmPolicy, Twin
+
+Feed = Callable[[], Coroutine[None, None, None]]
+
+
+def read_twins(cages: tuple[CageSection, ...]) -> dict[str, Twin]:
+    """Read the twin of each cage, by the name under which it is served.
+
+    Raises
+    ------
+    ModelError
+        A folder is no twin's, or changed by as little as a byte.
+    """
+    twins = [(section.name, Twin.read(section.twin)) for section in cages]
+    return {name or twin.cage.name: twin for name, twin in twins}
+
+
+def policy_of(settings: Settings, name: str, twin: Twin) -> AlarmPolicy:
+    """Take the limits of a cage's alarms from ``[alarms]`` and from its own table.
+
+    Raises
+    ------
+    InputError
+        A limit for an alarm that there cannot be, or one that makes no sense.
+    """
+    own = [cage.alarms for cage in settings.cages if (cage.name or twin.cage.name) == name]
+    table = {**settings.alarms, **(own[0] if own else {})}
+    return AlarmPolicy.from_dict(table, twin.cage, buoy=twin.buoy, watch=twin.watch)
+
+
+def store_place(settings: Settings, *, replayed: bool = False) -> Path | str:
+    """Where the samples lie.
+
+    What is replayed lies apart: it is forgotten at each start, what was measured never is.
+    """
+    if settings.store.url is None or replayed:
+        return settings.data / ("replay.sqlite" if replayed else "samples.sqlite")
+    return settings.store.url if "://" in settings.store.url else Path(settings.store.url)
+
+
+def assembled(
+    settings: Settings,
+    twins: Mapping[str, Twin],
+    *,
+    replay: Replay | None = None,
+    speed: float = 60.0,
+) -> Service:
+    """Put a service together; it does not run yet.
+
+    Parameters
+    ----------
+    settings
+        What it is told.
+    twins
+        Of its cages, by name.
+    replay, speed
+        What feeds its one cage, and how fast against real time.
+
+    Raises
+    ------
+    InputError
+        A replay for more than one cage, or settings that cannot be.
+    StoreError
+        The store does not open.
+    """
+    if replay is not None and len(twins) != 1:
+        raise InputError(f"serve: a record is replayed into one cage, and there are {len(twins)}.")
+    policies = {name: policy_of(settings, name, twin) for name, twin in twins.items()}
+    store = open_store(store_place(settings, replayed=replay is not None))
+    metrics, clock = Metrics(), _clock(replay, speed)
+    cages = {
+        name: LiveCage(
+            name=name,
+            twin=twin,
+            store=store,
+            clock=clock,
+            metrics=metrics,
+            tick_s=settings.tick_s,
+            policy=policies[name],
+        )
+        for name, twin in twins.items()
+    }
+    feeds = _feeds(settings, cages, metrics)
+    if replay is not None and isinstance(clock, ReplayClock):
+        feeds.append(partial(replay.feed, next(iter(cages.values())), clock))
+    return _guarded(settings, cages, store, metrics, feeds)
+
+
+def _clock(replay: Replay | None, speed: float) -> Clock:
+    return WallClock() if replay is None else ReplayClock(replay.start, speed=speed)
+
+
+def _feeds(settings: Settings, cages: Mapping[str, LiveCage], metrics: Metrics) -> list[Feed]:
+    feeds, hooks = list[Feed](), [Webhook(**hook.model_dump()) for hook in settings.webhooks]
+    if hooks:
+        feeds.append(Herald(hooks, cages).run)
+    if settings.mqtt is not None:
+        mqtt = settings.mqtt
+        feed = MqttFeed(
+            mqtt.url,
+            site=settings.site,
+            cages=cages,
+            client_id=mqtt.client_id or f"seacage-{settings.site}",
+            metrics=metrics,
+            quarantine=Quarantine(settings.data / "quarantine.jsonl"),
+            group=mqtt.group,
+            ca=mqtt.ca,
+            state_every_s=mqtt.state_every_s,
+        )
+        feeds.append(feed.run)
+    return feeds
+
+
+def _guarded(
+    settings: Settings,
+    cages: Mapping[str, LiveCage],
+    store: Store,
+    metrics: Metrics,
+    feeds: list[Feed],
+) -> Service:
+    return Service(
+        cages=cages,
+        store=store,
+        tokens=Tokens(settings.data),
+        metrics=metrics,
+        feeds=feeds,
+        limits=settings.limits,
+        site=settings.site,
+        audit=Audit(settings.data / "audit.jsonl"),
+    )
