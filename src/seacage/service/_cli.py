@@ -6,6 +6,7 @@ import typer
 
 from seacage.service._commands import (
     _campaign,
+    _config,
     _doctor,
     _field,
     _replay,
@@ -43,6 +44,7 @@ app.add_typer(_study.group, name="study")
 app.command()(_serve.serve)
 app.command()(_replay.replay)
 app.add_typer(_token.group, name="token")
+app.add_typer(_config.group, name="config")
 app.command()(_doctor.doctor)
 
 
