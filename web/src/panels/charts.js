@@ -41,9 +41,9 @@ export class Charts {
     const { topology } = this.model;
     if (!topology) return;
     this.all = quantities(topology);
-    const kept = JSON.parse(localStorage.getItem(KEY) ?? "null");
-    const known = kept?.filter((key) => this.all.some((one) => one.key === key));
-    this.chosen = new Set(known?.length ? known
+    const kept = (localStorage.getItem(KEY) ?? "").split(" ");
+    const known = kept.filter((key) => this.all.some((one) => one.key === key));
+    this.chosen = new Set(known.length ? known
       : this.all.filter(({ kind }) => DEFAULT_KINDS.has(kind)).map(({ key }) => key));
     this.charts.forEach((chart) => chart.remove());
     this.charts.clear();
@@ -63,7 +63,7 @@ export class Charts {
     input.addEventListener("change", () => {
       if (input.checked) this.chosen.add(key);
       else this.chosen.delete(key);
-      localStorage.setItem(KEY, JSON.stringify([...this.chosen]));
+      localStorage.setItem(KEY, [...this.chosen].join(" "));
       this.arrange();
     });
     return make("label", { className: "pill" }, input, make("span", {}, titled(name)));
