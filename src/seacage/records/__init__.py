@@ -38,6 +38,7 @@ from seacage.records._maps import read_map
 from seacage.records._netcdf import write_record
 from seacage.records._reader import known_map, read_record
 from seacage.records._record import Record
+from seacage.records._rows import check_rows, read_rows
 from seacage.records._sample import Sample
 from seacage.records._shipped import shipped_maps
 from seacage.records._times import instant, moment
@@ -74,6 +75,7 @@ __all__ = [
     "campaign_unsummed",
     "campaign_variable",
     "check_record",
+    "check_rows",
     "check_sample",
     "create_campaign",
     "export_campaign",
@@ -87,6 +89,7 @@ __all__ = [
     "read_limits",
     "read_map",
     "read_record",
+    "read_rows",
     "shipped_maps",
     "verdicts_on",
     "write_cases",

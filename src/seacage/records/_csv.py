@@ -25,6 +25,11 @@ _NO_VALUE = frozenset({"", "nan", "na", "n/a", "null", "none", "mm", "-"})
 def read_csv(path: Path, columns: ColumnMap | None, *, stream: str) -> Record:
     """Read a table, unchecked but for what only its file shows; see ``read_record``."""
     table, columns = understood(path, columns)
+    return record_in(table, columns, stream=stream)
+
+
+def record_in(table: Table, columns: ColumnMap, *, stream: str) -> Record:
+    """Read a table by its map, unchecked but for what only its file shows."""
     values: dict[str, np.ndarray] = {}
     notes: list[str] = []
     for column in columns.taken:
@@ -51,7 +56,7 @@ def understood(path: Path, columns: ColumnMap | None) -> tuple[Table, ColumnMap]
     table = read_table(path, columns)
     if columns is None:
         return table, recognised(table)
-    _check_header(table, columns)
+    check_header(table, columns)
     return table, columns
 
 
@@ -124,7 +129,7 @@ def recognised(table: Table) -> ColumnMap:
     )
 
 
-def _check_header(table: Table, columns: ColumnMap) -> None:
+def check_header(table: Table, columns: ColumnMap) -> None:
     if columns.names != frozenset(table.header):
         raise RecordError(
             f"{table.path}, line 1: the map {columns.title!r} {_difference(table, columns)}. "

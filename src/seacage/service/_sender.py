@@ -2,7 +2,6 @@
 
 import http.client
 import json
-import math
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,9 +9,10 @@ from urllib.parse import urlsplit
 
 from seacage.conventions import InputError, SeacageError
 from seacage.records import Sample
+from seacage.service._mqtt_messages import said
 from seacage.service._schemas import BATCH_LIMIT, Receipt
 
-_PATIENCE_S = (0.5, 1.0, 2.0, 4.0, 8.0)
+_LATER = (429, 503)
 
 
 class SendError(SeacageError):
@@ -31,11 +31,14 @@ class Sender:
         Its name there.
     token
         With the scope ingest.
+    patience_s
+        Pauses between tries while the service is away or has too much to do [s].
     """
 
     address: str
     cage: str
     token: str
+    patience_s: tuple[float, ...] = (0.5, 1.0, 2.0, 4.0, 8.0)
 
     def send(self, samples: Sequence[Sample]) -> Receipt:
         """Send samples, again where the service is away for a moment; once each is kept.
@@ -58,16 +61,16 @@ class Sender:
         )
 
     def _sent(self, samples: Sequence[Sample]) -> Receipt:
-        body = json.dumps({"samples": [_said(sample) for sample in samples]})
+        body = json.dumps({"samples": [{"stream": one.stream} | said(one) for one in samples]})
         answer = ""
-        for patience_s in (*_PATIENCE_S, None):
+        for patience_s in (*self.patience_s, None):
             try:
                 status, answer = self._asked(body)
             except (OSError, http.client.HTTPException) as error:
                 status, answer = 503, str(error)
             if status == 201:
                 return Receipt.model_validate_json(answer)
-            if status != 503:
+            if status not in _LATER:
                 raise InputError(f"{self.address} refused the samples ({status}): {answer[:300]}")
             if patience_s is not None:
                 time.sleep(patience_s)
@@ -87,13 +90,3 @@ class Sender:
             return answer.status, answer.read().decode("utf-8", "replace")
         finally:
             connection.close()
-
-
-def _said(sample: Sample) -> dict[str, object]:
-    values = {key: v if math.isfinite(v) else None for key, v in sample.values.items()}
-    said: dict[str, object] = {
-        "stream": sample.stream,
-        "t": sample.t.isoformat(),
-        "values": values,
-    }
-    return said if sample.seq is None else said | {"seq": sample.seq}

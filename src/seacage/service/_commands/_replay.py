@@ -1,8 +1,6 @@
 """``seacage replay``: a record through a twin into files, or into a running service."""
 
 import time
-from collections.abc import Iterator
-from datetime import timedelta
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -12,7 +10,7 @@ from seacage.service._console import Json, guarded, progress_bar, tell
 
 if TYPE_CHECKING:
     from seacage.conventions import Progress
-    from seacage.records import Record, Sample
+    from seacage.records import Record
     from seacage.twin import Answer, Twin
 
 
@@ -123,6 +121,7 @@ def _send(
     record: Path, to: str, cage: str, token: str, speed: float | None, *, as_json: bool
 ) -> None:
     from seacage.service._sender import Sender
+    from seacage.service._sources import paced
 
     streams = _streams(record)
     total = sum(len(one) for one in streams)
@@ -130,7 +129,7 @@ def _send(
     accepted, duplicates, rejected = 0, 0, list[str]()
     began = time.perf_counter()
     with progress_bar() as progress:
-        for batch in _due(streams, speed):
+        for batch in paced(streams, speed=speed):
             receipt = sender.send(batch)
             sent += len(batch)
             accepted += receipt.accepted
@@ -159,25 +158,3 @@ def _streams(path: Path) -> "list[Record]":
         field = FieldRecord.read(path)
         return [field.buoy, *field.sensors.values()]
     return [read_record(path)]
-
-
-def _due(streams: "list[Record]", speed: float | None) -> "Iterator[list[Sample]]":
-    """Samples in time order, in batches: those that are due, or as many as one request takes."""
-    import heapq
-
-    from seacage.service._schemas import BATCH_LIMIT
-
-    merged = heapq.merge(*(one.samples() for one in streams), key=lambda sample: sample.t)
-    began, start, batch = time.monotonic(), None, list["Sample"]()
-    for sample in merged:
-        start = start or sample.t
-        due_s = 0.0 if speed is None else (sample.t - start) / timedelta(seconds=1) / speed
-        ahead_s = due_s - (time.monotonic() - began)
-        if batch and (ahead_s > 0.0 or len(batch) == BATCH_LIMIT):
-            yield batch
-            batch = []
-        if ahead_s > 0.0:
-            time.sleep(max(0.0, due_s - (time.monotonic() - began)))
-        batch.append(sample)
-    if batch:
-        yield batch
