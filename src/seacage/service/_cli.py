@@ -9,6 +9,7 @@ from seacage.service._commands import (
     _config,
     _doctor,
     _field,
+    _publish,
     _replay,
     _score,
     _serve,
@@ -43,6 +44,7 @@ app.command()(_score.score)
 app.add_typer(_study.group, name="study")
 app.command()(_serve.serve)
 app.command()(_replay.replay)
+app.command()(_publish.publish)
 app.add_typer(_token.group, name="token")
 app.add_typer(_config.group, name="config")
 app.command()(_doctor.doctor)
