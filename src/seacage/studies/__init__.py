@@ -9,6 +9,12 @@ from seacage.studies._paper import PaperStudy, paper_study
 from seacage.studies._paper_claims import PaperClaim
 from seacage.studies._quality import quality_page
 from seacage.studies._sensor_scores import Errors, SensorScore
+from seacage.studies._shape_error import (
+    Judged,
+    judged_paths,
+    judged_points,
+    learned_discrepancy,
+)
 from seacage.studies._shape_scores import ShapeScore
 from seacage.studies._ways import WayScore
 
@@ -17,6 +23,7 @@ __all__ = [
     "Demonstration",
     "Errors",
     "FidelityStudy",
+    "Judged",
     "LevelOneScore",
     "PaperClaim",
     "PaperStudy",
@@ -25,6 +32,9 @@ __all__ = [
     "WayScore",
     "benchmark_study",
     "fidelity_study",
+    "judged_paths",
+    "judged_points",
+    "learned_discrepancy",
     "paper_study",
     "prepare_demonstration",
     "quality_page",

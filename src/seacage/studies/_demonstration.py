@@ -1,12 +1,15 @@
 """The demonstration: a twin of cage ``ace`` that anyone can make and watch within minutes."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from seacage.cage import Cage
+from seacage.campaigns import Hidden
 from seacage.conventions import Progress
 from seacage.records import FieldRecord, Record
-from seacage.studies._chain import Chain, Recipe
+from seacage.studies._chain import TRAINING, Chain, Recipe
+from seacage.studies._shape_error import CASES, SEEDS, learned_discrepancy
+from seacage.twin import Twin
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -38,7 +41,7 @@ def prepare_demonstration(
     workers: int | None = None,
     progress: Progress | None = None,
 ) -> Demonstration:
-    """Make the demonstration twin, or find it made: campaign, virtual field, training.
+    """Make the demonstration twin, or find it made: campaign, field, training, shape error.
 
     The twin learns from a generated current record. Another buoy's record may drive the show
     instead: the twin stays the same, and the sensors beside that record are virtual too.
@@ -61,6 +64,25 @@ def prepare_demonstration(
         workers=workers,
         progress=progress,
     )
-    twin_folder = chain.twin_folder
+    twin_folder = _with_discrepancy(chain)
     field = chain.field if record is None else chain.driven_by(record)
     return Demonstration(cage=chain.cage, twin_folder=twin_folder, buoy=field.buoy, field=field)
+
+
+def _with_discrepancy(chain: Chain) -> Path:
+    """The folder of the chain's twin, once it also knows how far its shapes are off."""
+    plain = chain.twin_folder
+
+    def make(begun: Path) -> None:
+        twin = Twin.read(plain)
+        error = learned_discrepancy(twin, workers=chain.workers, progress=chain.progress)
+        replace(twin, discrepancy=error).write(begun / "twin")
+
+    settings = {
+        "twin": plain.parent.name,
+        "hidden_sha256": Hidden.read().sha256,
+        "seeds": list(SEEDS),
+        "cases": CASES,
+    }
+    rooms = TRAINING
+    return chain.stages.made("demonstration", settings, make, rooms=rooms) / "twin"

@@ -14,7 +14,7 @@ from seacage.twin._predicted_net import PredictedNet
 Side = Literal["inside", "outside"]
 Pattern = Literal["rows", "spiral"]
 
-MOST = 20_000
+MOST = 10_000
 """Waypoints at most."""
 
 _ROUNDS = 8  # of moving waypoints to their stand-off; in a corner of the net each helps a little

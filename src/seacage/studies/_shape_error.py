@@ -1,0 +1,178 @@
+"""What a twin's shapes miss of a virtual field's true ones, learned and judged."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from seacage.campaigns import Hidden, TrueShapes, true_shapes
+from seacage.conventions import Origin, Progress
+from seacage.twin import Answered, Discrepancy, Metocean, PredictedNet, Twin
+
+SEEDS = tuple(range(6))
+CASES = 120
+"""Of the virtual field, and times of each, that a demonstration's twin learns its error from."""
+
+SCATTERED = 4.0
+"""Of the points that judge, about the predicted net [m]: an ROV's distances."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Judged:
+    """Probabilities that were foretold of some events, and what happened.
+
+    Parameters
+    ----------
+    p
+        That the true net would be nearer than the distance asked about [-].
+    happened
+        Whether it was.
+    speed
+        Of the current that the buoy reported [m/s].
+    """
+
+    p: Float[np.ndarray, " event"]
+    happened: Bool[np.ndarray, " event"]
+    speed: Float[np.ndarray, " event"]
+
+    def table(self, *, bins: int = 10) -> list[tuple[int, float, float]]:
+        """Reliability: events, mean probability and share that happened, by probability."""
+        number = np.minimum((self.p * bins).astype(int), bins - 1)
+        rows = (number == one for one in np.unique(number))
+        return [
+            (int(row.sum()), float(self.p[row].mean()), float(self.happened[row].mean()))
+            for row in rows
+        ]
+
+
+def learned_discrepancy(
+    twin: Twin,
+    *,
+    hidden: Hidden | None = None,
+    seeds: Sequence[int] = SEEDS,
+    cases: int = CASES,
+    workers: int | None = None,
+    progress: Progress | None = None,
+) -> Discrepancy:
+    """Learn how far a virtual field's true nets are from a twin's shapes.
+
+    Virtual field: at a farm the truth would have to be measured, by sonar or by divers; until
+    it is, this is an assumption about how such shapes err.
+
+    Parameters
+    ----------
+    twin
+        Whose shapes.
+    hidden
+        How the true cage differs; None for that of cage ``ace``.
+    seeds, cases, workers, progress
+        As for ``true_shapes``.
+    """
+    shapes = true_shapes(
+        twin.cage,
+        hidden=hidden or Hidden.read(),
+        seeds=seeds,
+        cases=cases,
+        workers=workers,
+        progress=progress,
+    )
+    velocity = shapes.current_velocity
+    return Discrepancy.learned(
+        twin.cage,
+        velocity,
+        predicted=twin.predict(_water(velocity)).node_position,
+        true=shapes.node_position,
+        origin=Origin.VIRTUAL_FIELD,
+    )
+
+
+def judged_points(
+    twin: Twin, shapes: TrueShapes, *, points: int = 60, below: float = 1.0, seed: int = 0
+) -> Judged:
+    """Ask a twin about points near its net, and see how near the true nets are.
+
+    Parameters
+    ----------
+    twin
+        Asked with what the buoy reported.
+    shapes
+        That did not teach it.
+    points
+        For each shape, scattered about the predicted net.
+    below
+        The distance asked about [m].
+    seed
+        Of the points.
+    """
+    random = np.random.default_rng(seed)
+    foretold, happened, speed = list[np.ndarray](), list[np.ndarray](), list[float]()
+    for velocity, true in zip(shapes.current_velocity, shapes.node_position, strict=True):
+        net = _net(twin, velocity)
+        point = _near(net, random, points)
+        foretold.append(net.clearance(point, below=below).p_below)
+        happened.append(twin.cage.nearest(point, true).distance < below)
+        speed += [float(np.hypot(*velocity))] * len(point)
+    return Judged(
+        p=np.concatenate(foretold), happened=np.concatenate(happened), speed=np.array(speed)
+    )
+
+
+def judged_paths(
+    twin: Twin, shapes: TrueShapes, *, paths: int = 6, below: float = 1.0, seed: int = 0
+) -> Judged:
+    """Ask a twin about straight paths through and around its net, as ``judged_points`` does.
+
+    A path begins somewhere near the cage and ends some 15 m off.
+    """
+    random = np.random.default_rng(seed)
+    foretold, happened, speed = list[float](), list[bool](), list[float]()
+    for velocity, true in zip(shapes.current_velocity, shapes.node_position, strict=True):
+        net = _net(twin, velocity)
+        for _ in range(paths):
+            along = net.along(_path(net, random), below=below)
+            foretold.append(along.p_below)
+            happened.append(bool(twin.cage.nearest(along.point, true).distance.min() < below))
+            speed.append(float(np.hypot(*velocity)))
+    return Judged(p=np.array(foretold), happened=np.array(happened), speed=np.array(speed))
+
+
+def _water(velocity: Float[np.ndarray, "case 2"]) -> Metocean:
+    still = np.zeros(len(velocity))
+    return Metocean(
+        current_velocity=velocity,
+        hs=still,
+        wave_direction=np.column_stack([still, still + 1.0]),
+    )
+
+
+def _net(twin: Twin, velocity: Float[np.ndarray, " 2"]) -> PredictedNet:
+    water = _water(velocity[None])
+    answered = Answered(
+        t=datetime(2020, 1, 18, tzinfo=UTC),
+        answer=twin.predict(water),
+        metocean=water,
+        input_age_s=0.0,
+    )
+    return PredictedNet.of(twin, answered)
+
+
+def _near(
+    net: PredictedNet, random: np.random.Generator, points: int
+) -> Float[np.ndarray, "point 3"]:
+    corners = net.node_position[net.cage.panels[random.integers(len(net.cage.panels), size=points)]]
+    share = random.dirichlet(np.ones(4), points)
+    point = np.einsum("pk,pkj->pj", share, corners) + SCATTERED * random.normal(size=(points, 3))
+    # Where an ROV swims.
+    return np.minimum(point, [np.inf, np.inf, -0.5])
+
+
+def _path(net: PredictedNet, random: np.random.Generator) -> Float[np.ndarray, "corner 3"]:
+    radius, depth = net.cage.collar.radius, net.cage.mesh.tip_depth
+    angle, away = random.uniform(0.0, 2.0 * np.pi), random.uniform(0.2, 1.4) * radius
+    start = np.array(
+        [away * np.cos(angle), away * np.sin(angle), -random.uniform(0.05, 0.8) * depth]
+    )
+    end = start + random.normal(size=3) * [10.0, 10.0, 3.0]
+    return np.minimum(np.stack([start, end]), [np.inf, np.inf, -1.0])
