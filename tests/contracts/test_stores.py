@@ -3,6 +3,7 @@
 import math
 import statistics
 import threading
+from contextlib import closing, contextmanager
 from datetime import timedelta
 
 import pytest
@@ -13,6 +14,8 @@ from seacage.conventions import Flag, InputError
 from seacage.records import Amendment, Sample
 from seacage.service._store import StoreError, open_store
 from seacage.service._store_aggregates import renew_rested
+from seacage.service._store_days import delete, rows_of_day
+from seacage.service._store_rows import DAY_US, microseconds
 from seacage.twin import Action, Happened
 from stores import NOON, put, sample, schema
 
@@ -33,17 +36,23 @@ def store(request, tmp_path):
 
 
 @pytest.fixture(params=BOTH, scope="module")
-def lasting(request, tmp_path_factory):
-    """A store that the examples of hypothesis share, and forget after each."""
+def place(request, tmp_path_factory):
+    """Where the examples of hypothesis open a store one after the other.
+
+    None is open while an example is drawn: checked shapes use chance, also the writer's.
+    """
     if request.param == "sqlite":
-        one = open_store(tmp_path_factory.mktemp("store") / "samples.sqlite")
-        yield one
-        one.close()
+        yield tmp_path_factory.mktemp("store") / "samples.sqlite"
     else:
         with schema(request.getfixturevalue("postgres")) as url:
-            one = open_store(url)
-            yield one
-            one.close()
+            yield url
+
+
+@contextmanager
+def emptied(place):
+    with closing(open_store(place)) as store:
+        store.forget("ace")
+        yield store
 
 
 def renewed(store):
@@ -111,11 +120,11 @@ def test_what_a_sample_taught_of_an_earlier_one_is_stored_with_it(store):
     minutes=st.lists(st.integers(0, 12), min_size=1, max_size=30),
     cuts=st.lists(st.integers(0, 30), max_size=4),
 )
-def test_any_order_batching_and_repetition_leaves_the_same_samples(lasting, minutes, cuts):
-    lasting.forget("ace")
+def test_any_order_batching_and_repetition_leaves_the_same_samples(place, minutes, cuts):
     parts = zip([0, *sorted(cuts)], [*sorted(cuts), len(minutes)], strict=True)
-    new = [put(lasting, *map(sample, minutes[a:b])) for a, b in parts]
-    read = lasting.samples("ace", limit=99)
+    with emptied(place) as store:
+        new = [put(store, *map(sample, minutes[a:b])) for a, b in parts]
+        read = store.samples("ace", limit=99)
     assert read == [sample(minute) for minute in sorted(set(minutes))]
     assert sum(map(sum, new)) == len(read)
 
@@ -243,40 +252,45 @@ readings = st.tuples(
 )
 
 
+places = st.lists(st.integers(0, 24), max_size=8)
+
+
 @settings(max_examples=30)
 @given(
     drawn=st.lists(readings, min_size=1, max_size=25, unique_by=lambda one: one[:2]),
-    script=st.data(),
+    script=st.lists(st.tuples(places, places, st.booleans()), max_size=5),
 )
-def test_aggregates_are_those_of_the_stored_samples_whatever_came_when(lasting, drawn, script):
-    lasting.forget("ace")
+def test_aggregates_are_those_of_the_stored_samples_whatever_came_when(place, drawn, script):
     samples = [reading(*one) for one in drawn]
-    times = sorted({one.t for one in samples})
-    order = script.draw(st.permutations([*samples, *samples[:5]]))
-    while order:
-        size = script.draw(st.integers(1, len(order)))
-        amendments = [
-            Amendment(
-                stream="buoy-1", t=t, key="current_speed_m_s", flag=Flag.FAIL, remark="A spike."
+    with emptied(place) as store:
+        for sent, amended, renew in [*script, (range(len(samples)), [], False)]:
+            put(
+                store,
+                *(samples[k % len(samples)] for k in sent),
+                amendments=[spike(samples[k % len(samples)]) for k in amended],
             )
-            for t in script.draw(st.lists(st.sampled_from(times), max_size=2))
-        ]
-        put(lasting, *order[:size], amendments=amendments)
-        order = order[size:]
-        if script.draw(st.booleans()):
-            renewed(lasting)
-    stored = lasting.samples("ace", limit=999)
+            if renew:
+                renewed(store)
+        check_aggregates(store)
+        renewed(store)
+        check_aggregates(store)
+
+
+def spike(one):
+    return Amendment(
+        stream="buoy-1", t=one.t, key="current_speed_m_s", flag=Flag.FAIL, remark="A spike."
+    )
+
+
+def check_aggregates(store):
+    stored = store.samples("ace", limit=999)
     for key in ("current_speed_m_s", "current_east_m_s", "current_north_m_s"):
         for width_s in (60, 600):
-            read = aggregates(lasting, key=key, width_s=width_s, stream="buoy-1")
+            read = aggregates(store, key=key, width_s=width_s, stream="buoy-1")
             told = [(a.t.timestamp(), a.count, a.mean, a.least, a.most) for a in read]
             assert told == expected(stored, key, width_s)
-            few = aggregates(lasting, key=key, width_s=width_s, stream="buoy-1", limit=2)
+            few = aggregates(store, key=key, width_s=width_s, stream="buoy-1", limit=2)
             assert few == read[:2]
-    east = {"stream": "buoy-1", "key": "current_east_m_s"}
-    before = [aggregates(lasting, width_s=width_s, **east) for width_s in (60, 600)]
-    renewed(lasting)
-    assert before == [aggregates(lasting, width_s=width_s, **east) for width_s in (60, 600)]
 
 
 def test_a_mean_across_north_stays_north(store):
@@ -320,6 +334,60 @@ def test_the_spans_asked_for_begin_within_the_bounds(store):
 def test_numbers_whose_sum_is_none_have_a_mean(store):
     put(store, *(sample(0, 1.7e308, seq=seq) for seq in range(3)))
     assert aggregates(store)[0].mean == pytest.approx(1.7e308)
+
+
+# --- days that leave ---
+
+MIDNIGHT = NOON + timedelta(hours=12)
+
+
+def test_a_day_that_leaves_keeps_its_aggregates(store):
+    put(store, *map(sample, range(0, 60 * 14, 7)))
+    before = [aggregates(store, width_s=width_s) for width_s in (60, 600)]
+    assert store.retire("ace", before=MIDNIGHT) == 103
+    assert [aggregates(store, width_s=width_s) for width_s in (60, 600)] == before
+    assert store.samples("ace", limit=999) == [sample(k) for k in range(721, 840, 7)]
+
+
+def test_a_day_that_has_not_ended_stays_whole(store):
+    put(store, sample(0), sample(1, stream="depth-2"))
+    assert store.retire("ace", before=MIDNIGHT - timedelta(seconds=1)) == 0
+    assert store.retire("ice", before=MIDNIGHT) == 0
+    assert len(store.samples("ace", limit=9)) == 2
+
+
+def test_what_comes_after_its_day_has_left_is_kept_but_changes_no_aggregate(store):
+    put(store, sample(0), sample(1), sample(10))
+    store.retire("ace", before=MIDNIGHT)
+    final = [aggregates(store, width_s=width_s) for width_s in (60, 600)]
+    assert put(store, sample(0), sample(2)) == (True, True)
+    renewed(store)
+    assert store.samples("ace", limit=9) == [sample(0), sample(2)]
+    assert [aggregates(store, width_s=width_s) for width_s in (60, 600)] == final
+
+
+def test_a_mark_that_crossed_a_seal_changes_no_aggregate(store):
+    put(store, sample(0), sample(1))
+    store.retire("ace", before=MIDNIGHT)
+    final = aggregates(store)
+    put(store, sample(0))
+    t = int(NOON.timestamp()) * 10**6
+    mark = "INSERT INTO mark VALUES ('ace', 'depth-1', ?, 0)"
+    store._writer.ask(lambda session: session.rows(mark, (t,))).result(timeout=20)
+    assert aggregates(store) == final
+    renewed(store)
+    assert aggregates(store) == final
+
+
+def test_a_sample_amended_while_its_day_leaves_stays_until_the_next_time(store):
+    put(store, sample(0), sample(1))
+    with store._database.reading() as session:
+        rows = rows_of_day(session, "ace", "depth-1", microseconds(NOON) // DAY_US * DAY_US)
+    spike = Amendment(stream="depth-1", t=NOON, key="depth_m", flag=Flag.FAIL, remark="A spike.")
+    put(store, amendments=[spike])
+    store._writer.ask(lambda session: delete(session, "ace", rows)).result(timeout=20)
+    (left,) = store.samples("ace", limit=9)
+    assert left.flags == {"depth_m": Flag.FAIL}
 
 
 # --- alarms ---

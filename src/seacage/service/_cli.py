@@ -5,6 +5,7 @@ import os
 import typer
 
 from seacage.service._commands import (
+    _archive,
     _campaign,
     _config,
     _doctor,
@@ -46,6 +47,7 @@ app.command()(_serve.serve)
 app.command()(_replay.replay)
 app.command()(_publish.publish)
 app.add_typer(_token.group, name="token")
+app.add_typer(_archive.group, name="archive")
 app.add_typer(_config.group, name="config")
 app.command()(_doctor.doctor)
 

@@ -8,21 +8,24 @@ from pathlib import Path
 
 from seacage.records import Amendment, Sample
 from seacage.service._aggregates import Aggregate, check_aggregate
+from seacage.service._archive import Archive
+from seacage.service._archive_found import completed, latest_of
 from seacage.service._store_aggregates import aggregates_between, renew_rested
 from seacage.service._store_alarms import alarm_book, journal_between, keep_alarms
-from seacage.service._store_rows import row_of
+from seacage.service._store_place import database_at, look_into
+from seacage.service._store_retired import retired
+from seacage.service._store_rows import microseconds, row_of
 from seacage.service._store_samples import Append, latest_samples, samples_between
-from seacage.service._store_session import AbstractDatabase, AbstractSession, StoreError
-from seacage.service._store_sqlite import SqliteDatabase
+from seacage.service._store_session import AbstractSession, StoreError
 from seacage.service._store_writer import Writer
 from seacage.twin import Happened
 
-__all__ = ["Store", "StoreError", "open_store"]
+__all__ = ["Store", "StoreError", "look_into", "open_store"]
 
 _TABLES = ("sample", "aggregate", "mark", "sealed", "alarm_book", "journal")
 
 
-def open_store(place: Path | str) -> "Store":
+def open_store(place: Path | str, *, archive: Path | None = None) -> "Store":
     """Open the store of samples and alarms.
 
     Parameters
@@ -30,13 +33,15 @@ def open_store(place: Path | str) -> "Store":
     place
         A path, for SQLite; or ``postgresql://user@host/name``, which several processes may
         share.
+    archive
+        A folder of Parquet files: where old samples go, and where they are still found.
 
     Raises
     ------
     StoreError
         It cannot be opened, or the driver of PostgreSQL is not installed.
     """
-    return Store(place)
+    return Store(place, archive=None if archive is None else Archive(archive))
 
 
 class Store:
@@ -48,12 +53,13 @@ class Store:
 
     Parameters
     ----------
-    place
+    place, archive
         As for ``open_store``.
     """
 
-    def __init__(self, place: Path | str) -> None:
-        self._database = _database(place)
+    def __init__(self, place: Path | str, *, archive: Archive | None = None) -> None:
+        self._archive = archive
+        self._database = database_at(place)
         self._writer = Writer(self._database, chore=_chore)
 
     @property
@@ -117,14 +123,29 @@ class Store:
             Of more than ``limit`` the last rather than the first.
         """
         with self._database.reading() as session:
-            return samples_between(
+            found = samples_between(
                 session, cage, stream=stream, start=start, end=end, limit=limit, newest=newest
             )
+        if self._archive is None:
+            return found
+        return completed(
+            found,
+            self._archive,
+            cage,
+            stream=stream,
+            start=start,
+            end=end,
+            limit=limit,
+            newest=newest,
+        )
 
     def latest(self, cage: str, *, at: datetime | None = None) -> dict[str, Sample]:
         """Read the newest sample of each stream, or the newest until a time, it included."""
         with self._database.reading() as session:
-            return latest_samples(session, cage, at=at)
+            latest = latest_samples(session, cage, at=at)
+        if self._archive is None:
+            return latest
+        return latest_of(latest, self._archive, cage, at=at)
 
     def aggregates(
         self,
@@ -216,6 +237,33 @@ class Store:
         with self._database.reading() as session:
             return journal_between(session, cage, start=start, end=end, limit=limit, newest=newest)
 
+    def retire(self, cage: str, *, before: datetime) -> int:
+        """Delete the samples of whole UTC days before a time; their aggregates stay, final.
+
+        With an archive a day is there before it leaves the store. Ingest goes on meanwhile.
+        Samples that come later for such a day are stored, and archived the next time, but no
+        longer change its aggregates: so one that is sent twice counts once.
+
+        Parameters
+        ----------
+        cage
+            Whose.
+        before
+            Only days that have ended by then.
+
+        Returns
+        -------
+        count
+            How many samples were deleted.
+
+        Raises
+        ------
+        StoreError
+            The archive or the database does not take it; then nothing is deleted that is not
+            archived.
+        """
+        return retired(self._database, self._writer, self._archive, cage, microseconds(before))
+
     def forget(self, cage: str) -> None:
         """Delete all that is kept of a cage; only a replay does so, before it begins anew."""
 
@@ -229,14 +277,6 @@ class Store:
         """Finish what was asked and close the database."""
         self._writer.close()
         self._database.close()
-
-
-def _database(place: Path | str) -> AbstractDatabase:
-    if isinstance(place, str) and place.startswith(("postgresql://", "postgres://")):
-        from seacage.service._store_postgres import PostgresDatabase
-
-        return PostgresDatabase(place)
-    return SqliteDatabase(Path(place))
 
 
 def _chore(session: AbstractSession) -> None:

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from datetime import datetime, timedelta
 
 from seacage.service._aggregates import WIDEST_US, WIDTHS_S, Aggregate, Summary, summaries
-from seacage.service._store_rows import microseconds, moment_of
+from seacage.service._store_rows import DAY_US, microseconds, moment_of
 from seacage.service._store_session import AbstractSession
 
 RESTED = timedelta(seconds=30)
@@ -20,6 +20,7 @@ _AT_ONCE = 20  # spans in one transaction: ten minutes at 2 s are 300 samples ea
 
 _MARKED = "SELECT cage, stream, t FROM mark WHERE touched < ? ORDER BY touched LIMIT ?"
 _MARKED_IN = "SELECT t FROM mark WHERE cage = ? AND stream = ? AND t >= ? AND t < ?"
+_SEALED_IN = "SELECT t FROM sealed WHERE cage = ? AND stream = ? AND t >= ? AND t < ?"
 _UNMARK = "DELETE FROM mark WHERE cage = ? AND stream = ? AND t = ?"
 _SAMPLES = "SELECT t, readings FROM sample WHERE cage = ? AND stream = ? AND t >= ? AND t < ?"
 _CLEAR = "DELETE FROM aggregate WHERE cage = ? AND stream = ? AND t >= ? AND t < ?"
@@ -43,8 +44,7 @@ def renew_rested(session: AbstractSession, *, now_us: int) -> int:
 
 def renew_between(session: AbstractSession, cage: str, stream: str, start: int, end: int) -> None:
     """Sum up every marked span of a stream in start <= t < end [µs]."""
-    marked = session.rows(_MARKED_IN + session.locking, (cage, stream, start, end))
-    _renew(session, [(cage, stream, t) for (t,) in marked])
+    _renew(session, [(cage, stream, t) for t in _marked(session, cage, stream, start, end)])
 
 
 def aggregates_between(
@@ -62,7 +62,7 @@ def aggregates_between(
     first = -(2**62) if start is None else microseconds(start)
     last = 2**62 if end is None else microseconds(end)
     of = (cage, stream)
-    marked = {t for (t,) in session.rows(_MARKED_IN, (*of, first - first % WIDEST_US, last))}
+    marked = _marked(session, *of, first - first % WIDEST_US, last)
     # A marked span may turn out empty, so as many more are read as could fall away.
     enough = limit + len(marked) * WIDTHS_S[-1] // width_s
     spans: dict[int, list[Sequence[float]]] = {t: [] for t in marked}
@@ -84,11 +84,24 @@ def aggregates_between(
     return [_aggregate(row) for row in found[:limit]]
 
 
+def _marked(session: AbstractSession, cage: str, stream: str, start: int, end: int) -> set[int]:
+    """Where the marked spans of a stream begin, but for those of sealed days."""
+    between = (cage, stream, start, end)
+    days = session.rows(_SEALED_IN, (cage, stream, start - start % DAY_US, end))
+    sealed = {t for (t,) in days}
+    marked = {t for (t,) in session.rows(_MARKED_IN, between)}
+    return {t for t in marked if t - t % DAY_US not in sealed} if sealed else marked
+
+
 def _renew(session: AbstractSession, spans: Sequence[Span]) -> None:
-    if not spans:
-        return
-    fresh = [(*span[:2], *summary) for span in spans for summary in _summed(session, span)]
-    session.each(_CLEAR, [(*span, span[2] + WIDEST_US) for span in spans])
+    # A late sample's mark may have crossed a seal on its way.
+    live = [
+        (cage, stream, t)
+        for cage, stream, t in spans
+        if t in _marked(session, cage, stream, t, t + 1)
+    ]
+    fresh = [(*span[:2], *summary) for span in live for summary in _summed(session, span)]
+    session.each(_CLEAR, [(*span, span[2] + WIDEST_US) for span in live])
     session.each(_KEEP, fresh)
     session.each(_UNMARK, spans)
 

@@ -7,6 +7,7 @@ from typing import Any
 from seacage.conventions import Flag, InputError
 from seacage.records import Sample
 
+DAY_US = 86_400_000_000
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 _MICROSECOND = timedelta(microseconds=1)
 _NO_SEQ = -1

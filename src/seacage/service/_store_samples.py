@@ -8,10 +8,8 @@ from datetime import datetime
 from seacage.conventions import SeacageError
 from seacage.records import Amendment, Sample
 from seacage.service._aggregates import WIDEST_US
-from seacage.service._store_rows import Row, microseconds, pairs_of, sample_of_row
+from seacage.service._store_rows import DAY_US, Row, microseconds, pairs_of, sample_of_row
 from seacage.service._store_session import AbstractSession, StoreError
-
-_DAY_US = 86_400_000_000
 
 # A bucket of a sealed day is left as it is: of its samples only the late ones are still here.
 _MARK = """
@@ -136,6 +134,4 @@ def _amend(session: AbstractSession, cage: str, one: Amendment) -> bool:
 def _mark(session: AbstractSession, changed: set[tuple[str, str, int]], touched: int) -> None:
     # In order, so that two processes never wait for each other.
     spans = sorted({(cage, stream, t - t % WIDEST_US) for cage, stream, t in changed})
-    session.each(
-        _MARK, [(*span, touched, *span[:2], span[2] - span[2] % _DAY_US) for span in spans]
-    )
+    session.each(_MARK, [(*span, touched, *span[:2], span[2] - span[2] % DAY_US) for span in spans])

@@ -3,7 +3,7 @@
 import sqlite3
 import time
 from collections.abc import Generator, Iterable, Sequence
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
@@ -134,17 +134,29 @@ class SqliteDatabase(AbstractDatabase):
         )
 
     def _reader(self) -> sqlite3.Connection:
-        connection = sqlite3.connect(
-            f"{self._path.resolve().as_uri()}?mode=ro",
-            uri=True,
-            isolation_level=None,
-            check_same_thread=False,
-        )
-        connection.text_factory = _text
-        return connection
+        return _reading(self._path)
+
+
+@contextmanager
+def sqlite_look(path: Path) -> Generator[AbstractSession]:
+    """Read one moment of a file that another process may be writing."""
+    with _said(path, "cannot be read"), closing(_reading(path)) as connection:
+        connection.execute("BEGIN")
+        yield SqliteSession(connection)
 
 
 _text = partial(str, encoding="utf-8", errors="replace")  # a flipped bit must not stop a query
+
+
+def _reading(path: Path) -> sqlite3.Connection:
+    connection = sqlite3.connect(
+        f"{path.resolve().as_uri()}?mode=ro",
+        uri=True,
+        isolation_level=None,
+        check_same_thread=False,
+    )
+    connection.text_factory = _text
+    return connection
 
 
 def _opened(path: Path) -> sqlite3.Connection:
