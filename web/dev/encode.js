@@ -6,7 +6,7 @@ const aligned = (at) => Math.ceil(at / 8) * 8;
 export function encodeFrame({ t, flags, state, displacement, sigma }) {
   const words = new TextEncoder().encode(JSON.stringify(state));
   const nodes = sigma?.length ?? 0;
-  const spreadAt = aligned(40 + 6 * nodes);
+  const spreadAt = aligned(32 + 6 * nodes);
   const wordsAt = aligned(spreadAt + nodes);
   const buffer = new ArrayBuffer(wordsAt + words.length);
   const view = new DataView(buffer);
@@ -21,7 +21,7 @@ export function encodeFrame({ t, flags, state, displacement, sigma }) {
   view.setFloat32(24, moved, true);
   view.setFloat32(28, spread, true);
   displacement?.forEach((metres, k) =>
-    view.setInt16(40 + 2 * k, Math.round(metres / moved), true));
+    view.setInt16(32 + 2 * k, Math.round(metres / moved), true));
   sigma?.forEach((metres, k) => view.setUint8(spreadAt + k, Math.round(metres / spread)));
   new Uint8Array(buffer, wordsAt).set(words);
   return buffer;

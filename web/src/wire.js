@@ -1,7 +1,7 @@
 // What the service sends: one little-endian binary frame per state of a cage.
 
 const MAGIC = 0x52464353; // "SCFR"
-const HEADER = 40;
+const HEADER = 32;
 const aligned = (at) => Math.ceil(at / 8) * 8;
 
 export const VALID = 1;

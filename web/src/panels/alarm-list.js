@@ -3,10 +3,11 @@
 import { make } from "../dom.js";
 import { ACTIONS, actionsFor } from "./alarm-actions.js";
 import { empty, write } from "./dom.js";
-import { fixed, moment } from "./format.js";
+import { moment } from "./format.js";
 import { icon, rankIcon } from "./icons.js";
 import { sourceOf } from "./load-rows.js";
 import { ordered, rank, standing, waits } from "./ranks.js";
+import { worth } from "./worth.js";
 
 export class AlarmList {
   constructor(holder, model, desk, { ask }) {
@@ -92,10 +93,9 @@ export class AlarmList {
 
 function facts(alarm) {
   const since = alarm.since ? ` · since ${moment(Date.parse(alarm.since))}` : "";
-  const number = Number.isFinite(alarm.value)
-    ? ` · ${fixed(alarm.value, 2)}${alarm.unit ? ` ${alarm.unit}` : ""}` : "";
+  const number = worth(alarm.id, alarm.value);
   const until = alarm.shelved_until ? ` until ${moment(Date.parse(alarm.shelved_until))}` : "";
-  return `${standing(alarm)}${until}${since}${number}`;
+  return `${standing(alarm)}${until}${since}${number && ` · ${number}`}`;
 }
 
 function nothing(alarms, told, fault) {

@@ -2,7 +2,8 @@
 
 import { make } from "../dom.js";
 import { empty } from "./dom.js";
-import { fixed, moment } from "./format.js";
+import { moment } from "./format.js";
+import { worth } from "./worth.js";
 
 const ASKED = 5000;
 const SHOWN = 500; // lines; more nobody reads, and the browser would feel them
@@ -41,9 +42,9 @@ export async function linesOf(desk, past) {
 }
 
 function row({ alarm, action, t, value, who, why, quiet }) {
-  const number = Number.isFinite(value) ? ` at ${fixed(value, 2)}` : "";
+  const number = worth(alarm, value);
   const line = make("tr", {}, make("td", { className: "when" }, moment(Date.parse(t)).replace(" UTC", "")),
-    make("td", {}, alarm), make("td", {}, `${action}${number}${quiet ? ", quietly" : ""}`),
+    make("td", {}, alarm), make("td", {}, `${action}${number && ` at ${number}`}${quiet ? ", quietly" : ""}`),
     make("td", {}, [who, why].filter(Boolean).join(": ") || "–"));
   line.dataset.action = action;
   return line;

@@ -5,6 +5,7 @@ import { actionsFor, shelvesFor } from "../../src/panels/alarm-actions.js";
 import { fresh } from "../../src/panels/fresh.js";
 import { alarmed, sourceOf } from "../../src/panels/load-rows.js";
 import { ordered, rank, standing, worst } from "../../src/panels/ranks.js";
+import { worth } from "../../src/panels/worth.js";
 
 const alarm = (id, changes = {}) => ({
   id, severity: 600, active: true, acknowledged: false, shelved: false, in_service: true,
@@ -68,4 +69,11 @@ test("what an alarm is about has the worst rank of its alarms", () => {
   const ranks = alarmed([alarm("load.bridle-3", { severity: 900 }), alarm("bridle.bridle-3")]);
   assert.equal(ranks.get("bridle-3"), "critical");
   assert.equal(sourceOf("irregular.depth-2"), "depth-2");
+});
+
+test("an alarm's number is told only where it means something", () => {
+  assert.equal(worth("load.bridle-3", 0.96), "96 %");
+  assert.equal(worth("silent.buoy-1", 7200), "2 h");
+  assert.equal(worth("irregular.depth-2", 9.1), "");
+  assert.equal(worth("load.bridle-3", null), "");
 });
