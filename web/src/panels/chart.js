@@ -159,8 +159,9 @@ function widened(low, high) {
   return [low - margin, high + margin];
 }
 
-const places = (marks) =>
-  Math.min(2, Math.max(0, Math.ceil(-Math.log10(Math.abs(marks[1] - marks[0] || 1)) - 1e-9)));
+/** So many decimals as the step between two marks has. */
+const places = ([first, second]) =>
+  String(Number(((second ?? first) - first).toFixed(6))).split(".")[1]?.length ?? 0;
 
 /** Times below a chart: the time of day, and the day where it begins or days are far apart. */
 function stamps(_, marks) {

@@ -1,7 +1,7 @@
 // A cage among others: what it does in three seconds, in a tile.
 
 import { make } from "../dom.js";
-import { bearing, counted, fixed, known, percent, span } from "./format.js";
+import { bearing, beyond, counted, fixed, known, percent, span } from "./format.js";
 import { icon } from "./icons.js";
 import { rank } from "./ranks.js";
 import { waterArrow } from "./water-arrow.js";
@@ -13,7 +13,7 @@ export function tileVerdict({ waiting, worst_severity: severity, worst_title: ti
     return { kind, icon: kind, words: counted(waiting, "alarm"), detail: title ?? "" };
   }
   if (!valid) return { kind: "none", icon: "none", words: "No valid input", detail: reason ?? "" };
-  if (!within) return { kind: "beyond", icon: "beyond", words: "Extrapolating", detail: reason ?? "" };
+  if (!within) return { kind: "beyond", icon: "beyond", words: "Extrapolating", detail: beyond(reason) };
   return { kind: "well", icon: "well", words: "All well", detail: "" };
 }
 

@@ -21,11 +21,18 @@ export const withUnit = (value, unit, decimals = 1) =>
 /** A share as a percentage. */
 export const percent = (share) => (known(share) ? `${Math.round(100 * share)} %` : DASH);
 
-/** Half the width of an interval, as what follows the mean. */
-export const half = (interval, decimals = 1) =>
-  known(interval?.lower) && known(interval?.upper)
-    ? `± ${((interval.upper - interval.lower) / 2).toFixed(decimals)}`
-    : "";
+/** Half the width of an interval, as what follows the mean; never said to be nothing. */
+export function half(interval, decimals = 1) {
+  if (!known(interval?.lower) || !known(interval?.upper)) return "";
+  const text = ((interval.upper - interval.lower) / 2).toFixed(decimals);
+  return Number(text) ? `± ${text}` : `± <${(10 ** -decimals).toFixed(decimals)}`;
+}
+
+/** Why the twin extrapolates, without the word that stands before it anyway. */
+export function beyond(reason) {
+  const words = (reason ?? "").replace(/^Extrapolating:\s*/, "");
+  return words ? words[0].toUpperCase() + words.slice(1) : "The sea is beyond what the twin has learned.";
+}
 
 /** A compass direction as its point, e.g. WSW. */
 export const compass = (degrees) =>

@@ -10,8 +10,9 @@ const KEYS = [
   ["?", "this page"],
 ];
 const WORDS = [
-  ["Twin", "what the digital twin says, with its 95 % interval, made to hold the truth 19 times out of 20."],
-  ["Level", "2 where a sensor on the cage has taught the twin, 1 where it is simulation alone."],
+  ["Twin", "what the digital twin says, with its 95 % interval."],
+  ["Level", "2 where a sensor on the cage has taught the twin, and its interval is for what the sensor reads. " +
+    "1 where it is simulation alone, and its interval is for the simulation only."],
   ["Extrapolating", "the sea is beyond what the twin has learned; its intervals are wider, and it may err more."],
   ["No valid input", "nothing usable has been measured of the sea, so nothing is computed: a dash is no zero."],
   ["Directions", "currents go towards, waves come from; degrees clockwise from true north. Times are UTC."],

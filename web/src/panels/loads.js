@@ -42,7 +42,8 @@ export class Loads {
     const limits = topology.bridle_capacity_kn;
     const [low, high] = [Math.min(...limits), Math.max(...limits)];
     write(this.caption, `Capacity ${low === high ? "" : `${fixed(low, 0)} to `}${fixed(high, 0)} kN ` +
-      "each. Level 2 is taught by a shackle, level 1 is simulation alone. Tensions in kN.");
+      "each; tensions in kN. Level 2 is taught by a shackle. Level 1 is simulation alone: its " +
+      "interval says how surely the simulation is known, not how far it is from the cage.");
     this.show();
     this.select();
   }

@@ -31,7 +31,7 @@ export class Now {
     this.sayWaves(water);
     const top = highest(state);
     this.load.say(fixed(top?.tension_kn.mean), `${half(top?.tension_kn)} kN`, top
-      ? `${plain(top.name)}, ${percent(top.utilisation)} of capacity` : "");
+      ? `${plain(top.name)}, ${percent(top.utilisation)} of capacity${top.level > 1 ? "" : ", simulated"}` : "");
     const share = state?.valid ? state.volume_fraction : null;
     this.volume.say(known(share) ? String(Math.round(100 * share)) : DASH, "%",
       known(share) ? "of that in still water" : "");

@@ -2,11 +2,11 @@
 
 export const CHOICES = [
   { key: "current_speed_m_s", name: "Current", unit: "m/s", least: 0, most: 1.5, step: 0.01, decimals: 2 },
-  { key: "hs_m", name: "Wave height Hs", unit: "m", least: 0, most: 6, step: 0.05, decimals: 2 },
-  { key: "tp_s", name: "Wave period Tp", unit: "s", least: 2, most: 16, step: 0.1, decimals: 1 },
+  { key: "hs_m", name: "Height Hs", unit: "m", least: 0, most: 6, step: 0.05, decimals: 2 },
+  { key: "tp_s", name: "Period Tp", unit: "s", least: 2, most: 16, step: 0.1, decimals: 1 },
 ];
 
-const CALM = { current_speed_m_s: 0.4, current_to_deg: 90, hs_m: 0.5, tp_s: null, wave_from_deg: 270 };
+const CALM = { current_speed_m_s: 0.4, current_to_deg: 90, hs_m: 0, tp_s: null, wave_from_deg: 270 };
 
 /** A sea to begin with: the one of now, and where it is not known, a calm one. */
 export function seaNow(water) {

@@ -1,6 +1,6 @@
 // The first line: what an operator has to know in three seconds.
 
-import { counted, moment, plain, span } from "./format.js";
+import { beyond, counted, moment, plain, span } from "./format.js";
 import { rank, waits, worst } from "./ranks.js";
 
 /**
@@ -36,8 +36,7 @@ function ofLoads(state) {
     return said(kind, kind, counted(alarms.length, "alarm"), `${first.title}${more}.${extra}`);
   }
   if (!state.in_domain) {
-    return said("beyond", "beyond", "Extrapolating",
-      state.reason || "The sea is beyond what the twin has learned.");
+    return said("beyond", "beyond", "Extrapolating", beyond(state.reason));
   }
   const silent = (state.silent ?? []).map(plain);
   return said("well", "well", "All well",

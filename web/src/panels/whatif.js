@@ -3,7 +3,7 @@
 import { make } from "../dom.js";
 import { dial } from "./dial.js";
 import { write } from "./dom.js";
-import { bearing, compass, fixed, known, titled } from "./format.js";
+import { bearing, beyond, compass, fixed, known, titled } from "./format.js";
 import { icon } from "./icons.js";
 import { highest } from "./now.js";
 import { CHOICES, change, seaNow } from "./sea-wanted.js";
@@ -30,7 +30,7 @@ export class WhatIf {
         "from seas whose period goes with their height. Nothing here touches the cage."),
       make("div", { className: "whatif-sea" }, speed.box, this.to.box, height.box, this.from.box,
         make("div", {}, period.box,
-          make("label", { className: "usual" }, this.usual, " as goes with the height"))),
+          make("label", { className: "usual" }, this.usual, " goes with the height"))),
       this.fault, this.warning,
       make("table", { className: "compared" },
         make("caption", { className: "unseen" }, "The sea now and the sea you chose"),
@@ -50,7 +50,7 @@ export class WhatIf {
     const box = make("div", { className: "slider" },
       make("label", { htmlFor: input.id }, name), words, input);
     const show = (value) => {
-      if (known(value)) input.value = value;
+      input.value = known(value) ? value : least;
       input.disabled = !known(value);
       const text = known(value) ? `${fixed(value, decimals)} ${unit}` : "as usual";
       input.setAttribute("aria-valuetext", text);
@@ -103,7 +103,7 @@ export class WhatIf {
     this.back.disabled = !then;
     this.warning.hidden = !then || (then.valid && then.in_domain);
     if (!this.warning.hidden) {
-      const why = then.valid ? `Extrapolating: ${then.reason || "this sea is beyond what the twin has learned."}`
+      const why = then.valid ? `Extrapolating. ${beyond(then.reason)}`
         : `No answer: ${then.reason}`;
       if (this.warning.textContent !== why) this.warning.replaceChildren(icon("beyond"), why);
     }

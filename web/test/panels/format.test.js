@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import {
-  bearing, compass, day, fixed, half, moment, percent, plain, span, spoken, time, titled, turned, withUnit,
+  bearing, beyond, compass, day, fixed, half, moment, percent, plain, span, spoken, time, titled, turned, withUnit,
 } from "../../src/panels/format.js";
 
 test("a number that is not known is a dash and has no unit", () => {
@@ -23,6 +23,7 @@ test("an interval is said by half its width, and not at all where an end is miss
   assert.equal(half({ lower: 1, upper: 4 }), "± 1.5");
   assert.equal(half({ lower: null, upper: 4 }), "");
   assert.equal(half(undefined), "");
+  assert.equal(half({ lower: 1, upper: 1.02 }), "± <0.1");
 });
 
 test("directions go round", () => {
@@ -49,4 +50,9 @@ test("times are UTC, as in ISO 8601", () => {
 test("names lose their hyphens", () => {
   assert.equal(plain("depth-2"), "depth 2");
   assert.equal(titled("bridle-12"), "Bridle 12");
+});
+
+test("extrapolating is not said twice", () => {
+  assert.equal(beyond("Extrapolating: level 1 ends at 1 m/s."), "Level 1 ends at 1 m/s.");
+  assert.match(beyond(""), /beyond what the twin has learned/);
 });
