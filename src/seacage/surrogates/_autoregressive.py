@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.conventions import ModelError
+from seacage.surrogates._bend import BELL, AbstractBend, FreeBend, HeldBend
 from seacage.surrogates._kernels import (
     PUBLIC,
     VARIANCE_PRIOR,
@@ -14,20 +15,20 @@ from seacage.surrogates._kernels import (
     Prior,
     Pullback,
     StationaryKernel,
-    correlation,
-    correlation_slope,
     length_priors,
     prior_of,
     scaled,
-    unit,
 )
 
-BELL = "squared-exponential"
 LOCAL = StationaryKernel(BELL)
 
 RHO_VARIANCE = (0.0, 4.0)
+RHO_SLOPE = (-3.6, 4.0)
 DELTA_VARIANCE = (-5.5, 3.0)
-"""Mean and sd of a log variance, the outputs having unit variance."""
+"""Mean and sd of a log variance, the outputs having unit variance.
+
+With a held bend rho's is that of a slope: the same at the link's median length of 6 spreads.
+"""
 
 RHO_LENGTH = (math.log(8.0), 1.1)
 DELTA_LENGTH = (math.log(3.0), 1.1)
@@ -45,10 +46,11 @@ STRANGE = 2.5
 class AutoregressiveKernel(AbstractKernel):
     """The NARGP's covariance over (x, f), f being the level below: the last feature.
 
-    k_rho(x, x') k_f(f, f') + k_delta(x, x') + s f f', each k a squared exponential with ARD,
-    k_f of unit variance because the product needs only one; without ``linear`` there is no s.
-    Hyperparameters, in logarithms: rho's variance and lengths, f's length, delta's variance
-    and lengths, then s.
+    k_rho(x, x') k_f(f, f') + k_delta(x, x') + s (1 + f f'), k_rho and k_delta squared
+    exponentials with ARD. With ``linear``, k_f is a ``HeldBend``, so that the product is what
+    bends about the line, the same everywhere, that s stands for; without it there is no s, and
+    k_f is a squared exponential. Hyperparameters, in logarithms: rho's variance and lengths,
+    f's length, delta's variance and lengths, then s.
 
     The priors expect the level above to be near a line in the level below, to bend smoothly
     about it, with a bend that hardly changes over the inputs, and to leave little else, which
@@ -57,14 +59,14 @@ class AutoregressiveKernel(AbstractKernel):
     Parameters
     ----------
     linear
-        Whether there is an s.
+        Whether there is a line, and the bend is held.
     lengths
         Log lengths of the lowest level, in spreads of the inputs; empty where they are not
         known. They shape the prior alone.
 
     References
     ----------
-    Perdikaris et al. (2017), eq. (2.14), for the kernel without the linear term.
+    Perdikaris et al. (2017), eq. (2.14), for the kernel without ``linear``.
     """
 
     linear: bool
@@ -72,10 +74,16 @@ class AutoregressiveKernel(AbstractKernel):
 
     @property
     def name(self) -> str:
-        return "autoregressive-linear" if self.linear else "autoregressive"
+        return "line-and-bend" if self.linear else "autoregressive"
+
+    @property
+    def bend(self) -> AbstractBend:
+        """Covariance over the level below alone."""
+        return HeldBend() if self.linear else FreeBend()
 
     def prior(self, width: int) -> Prior:
-        rho = [RHO_VARIANCE, *_lengths(width - 1, *RHO_LENGTH)]
+        size = RHO_SLOPE if self.linear else RHO_VARIANCE
+        rho = [size, *_lengths(width - 1, *RHO_LENGTH)]
         delta = [DELTA_VARIANCE, *self._delta_lengths(width - 1)]
         return prior_of([*rho, *_lengths(1, *LINK_LENGTH), *delta, *[VARIANCE_PRIOR] * self.linear])
 
@@ -85,29 +93,30 @@ class AutoregressiveKernel(AbstractKernel):
         x: Float[np.ndarray, "row feature"],
         z: Float[np.ndarray, "n feature"],
     ) -> Float[np.ndarray, "row n"]:
-        rho, length, delta, slope = self._split(log_parameters)
-        covariance = correlation(BELL, length, x[:, -1:], z[:, -1:])
+        rho, length, delta, line = self._split(log_parameters)
+        covariance = self.bend.covariance(length, x[:, -1:], z[:, -1:])
         covariance *= LOCAL.covariance(rho, x[:, :-1], z[:, :-1])
         covariance += LOCAL.covariance(delta, x[:, :-1], z[:, :-1])
         if self.linear:
-            covariance += (slope * x[:, -1:]) * z[:, -1]
+            covariance += (line * x[:, -1:]) * z[:, -1] + line
         return covariance
 
     def variance(
         self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "row feature"]
     ) -> Float[np.ndarray, " row"]:
-        rho, _, delta, slope = self._split(log_parameters)
-        return np.exp(rho[0]) + np.exp(delta[0]) + slope * x[:, -1] ** 2
+        rho, length, delta, line = self._split(log_parameters)
+        bent = np.exp(rho[0]) * self.bend.variance(length, x[:, -1:])
+        return bent + np.exp(delta[0]) + line * (1.0 + x[:, -1] ** 2)
 
     def with_pullback(
         self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "n feature"]
     ) -> tuple[Float[np.ndarray, "n n"], Pullback]:
-        rho, length, delta, slope = self._split(log_parameters)
+        rho, length, delta, line = self._split(log_parameters)
         local, below = x[:, :-1], x[:, -1:]
         k_rho, pull_rho = scaled(BELL, rho, local)
-        k_f, pull_f = unit(BELL, length, below)
+        k_f, pull_f = self.bend.with_pullback(length, below)
         k_delta, pull_delta = scaled(BELL, delta, local)
-        straight = slope * below * below[:, 0]
+        straight = line * (1.0 + below * below[:, 0])
 
         def pullback(adjoint: Float[np.ndarray, "n n"]) -> Float[np.ndarray, " parameter"]:
             parts = [pull_rho(adjoint * k_f), pull_f(adjoint * k_rho), pull_delta(adjoint)]
@@ -122,20 +131,23 @@ class AutoregressiveKernel(AbstractKernel):
         z: Float[np.ndarray, "n feature"],
         share: Float[np.ndarray, "_ n"],
     ) -> Float[np.ndarray, "row feature"]:
-        rho, length, delta, slope = self._split(log_parameters)
+        rho, length, delta, line = self._split(log_parameters)
         (local, below), (local_z, below_z) = ((at[:, :-1], at[:, -1:]) for at in (x, z))
-        by_x = LOCAL.slope(rho, local, local_z, share * correlation(BELL, length, below, below_z))
+        bend = self.bend.covariance(length, below, below_z)
+        by_x = LOCAL.slope(rho, local, local_z, share * bend)
         by_x += LOCAL.slope(delta, local, local_z, share)
-        of_link = share * LOCAL.covariance(rho, local, local_z)
-        by_below = correlation_slope(BELL, length, below, below_z, of_link)
-        by_below += slope * (share @ below_z)
+        of_bend = share * LOCAL.covariance(rho, local, local_z)
+        by_below = self.bend.slope(length, below, below_z, of_bend)
+        by_below += line * (share @ below_z)
         return np.column_stack([by_x, by_below])
 
     def variance_slope(
         self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "row feature"]
     ) -> Float[np.ndarray, "row feature"]:
+        rho, length, _, line = self._split(log_parameters)
         gradient = np.zeros_like(x)
-        gradient[:, -1] = 2.0 * self._split(log_parameters)[3] * x[:, -1]
+        gradient[:, -1] = np.exp(rho[0]) * self.bend.variance_slope(length, x[:, -1:])
+        gradient[:, -1] += 2.0 * line * x[:, -1]
         return gradient
 
     def _delta_lengths(self, width: int) -> list[tuple[float, float]]:

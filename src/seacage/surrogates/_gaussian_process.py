@@ -53,7 +53,8 @@ class GaussianProcess:
         hyperparameters from their posterior, as one choice of them would be too sure of itself.
         ``"always"`` and ``"never"`` decide it.
     restarts
-        Random starts of the hyperparameter search beside the deterministic one.
+        Starts of the hyperparameter search beside the one at the prior's mean, for more than 40
+        cases; fewer get four times as many.
 
     References
     ----------
@@ -425,10 +426,11 @@ def fitted_process(
     ]
     share = np.full(len(members), 1.0 / len(members))
     # Each output's own variance, held to the shared one by a few points' worth of belief:
-    # the scale of the conjugate posterior, a scaled inverse chi-squared.
+    # the mean of the conjugate posterior, a scaled inverse chi-squared, so that the answer's
+    # variance is that of the Student's t which it leaves.
     own = [np.einsum("no,no->o", y - outputs.centre, member.weights) for member in members]
     variance = (SHARED_POINTS * outputs.spread**2 + share @ np.stack(own)) / (
-        SHARED_POINTS + len(y)
+        SHARED_POINTS + len(y) - 2.0
     )
     return FittedGaussianProcess(
         members=tuple(members),

@@ -22,8 +22,8 @@ Pullback = Callable[[Float[np.ndarray, "n n"]], Float[np.ndarray, " parameter"]]
 VARIANCE_PRIOR = (0.0, 2.0)
 """Mean and sd of a log variance: the outputs have unit variance."""
 
-LENGTH = 2.0
-LENGTH_SPREAD = 1.8
+LENGTH = 3.0
+LENGTH_SPREAD = 1.5
 """Median length in spreads of a feature (which is about 3.5 across), and sd of its log.
 
 The median grows with the root of the number of features, as distances do: without that a

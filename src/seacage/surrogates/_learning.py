@@ -30,6 +30,15 @@ REACH = 4.0
 NOISE_STARTS = (math.log(1e-3), math.log(0.1))
 """Logarithms of the noise's share of the outputs' unit variance."""
 
+SHORT = -2.0
+"""Sd of the prior from its mean at which one start begins, the first variance aside.
+
+From lengths longer than the waves in the points the search often ends at taking them for noise.
+"""
+
+SMALL, MORE = 40, 4
+"""Up to so many points, whose loss has more modes and costs little, so many times the restarts."""
+
 DOUBTING, DOUBTING_ALL = 25, 6
 """Rounds of doubt and learning with Student's t, on the subset and then on all points."""
 
@@ -198,11 +207,13 @@ def learned(evidence: Evidence, *, restarts: int, seed: int) -> Mode:
     evidence
         All points.
     restarts
-        Random starts beside the deterministic one.
+        Starts beside the one at the prior's mean; few points get several times as many.
     seed
         Of the subset and of the starts.
     """
     random = np.random.default_rng(seed)
+    if len(evidence.x) <= SMALL:
+        restarts *= MORE
     rows = np.sort(random.permutation(len(evidence.x))[:SUBSET])
     few = len(rows) == len(evidence.x)
     some = evidence if few else evidence.rows(rows)
@@ -246,7 +257,9 @@ def _starts(
 ) -> Iterator[Float[np.ndarray, " parameter"]]:
     kernel, noise = evidence.kernel.prior(evidence.x.shape[1]), evidence.noise.prior()
     for draw in range(1 + restarts):
-        scatter = random.standard_normal(len(kernel.mean)) if draw else 0.0
+        scatter = random.standard_normal(len(kernel.mean)) if draw else np.zeros(len(kernel.mean))
+        if draw == 1:
+            scatter = np.append(0.0, np.full(len(kernel.mean) - 1, SHORT))
         level = noise.mean.copy()
         level[: evidence.noise.sizes] = NOISE_STARTS[draw % 2]
         yield np.append(kernel.mean + kernel.sd * scatter, level)

@@ -150,13 +150,13 @@ class NARGP(AbstractMultifidelity):
     Parameters
     ----------
     linear
-        Add a term to the kernel that is linear in the level below, the same everywhere, which
-        carries a plain ratio of the two to where nothing was observed; False is the kernel as
-        published.
+        Expect a line in the level below, the same everywhere, which carries a plain ratio of
+        the two to where nothing was observed, and about it a curve that is held to an offset at
+        the mean of the level below; False is the kernel as published.
     noise, ensemble
         Of every level, as for ``GaussianProcess``; a level has one output.
     restarts
-        Random starts of each level's hyperparameter search beside the deterministic one.
+        Of each level, as for ``GaussianProcess``.
 
     References
     ----------

@@ -5,7 +5,7 @@ import pytest
 
 from seacage.conventions import InputError
 from seacage.surrogates import GaussianProcess, coverage, rmse
-from seacage.surrogates._gaussian_process import condensed
+from seacage.surrogates._gaussian_process import SHARED_POINTS, condensed
 
 
 def bumps(rows: int, *, seed: int, noise: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
@@ -165,3 +165,14 @@ def test_what_cannot_be_learned_from_is_refused(x: np.ndarray, y: np.ndarray, me
 def test_a_negative_number_of_restarts_is_refused() -> None:
     with pytest.raises(InputError, match="restarts = -1 is negative"):
         GaussianProcess(restarts=-1)
+
+
+def test_few_points_leave_the_variance_of_a_students_t() -> None:
+    # Its variance is the scale's times nu / (nu - 2), nu being the points and those of belief.
+    x, y = bumps(4, seed=0)
+    fitted = GaussianProcess(ensemble="never").fit(x, y)
+    rough = (y - y.mean()) @ fitted.posterior.weights[:, 0]
+    freedom = SHARED_POINTS + 4.0
+    scale = (SHARED_POINTS * y.var() + rough) / freedom
+    expected = scale * freedom / (freedom - 2.0)
+    np.testing.assert_allclose(fitted.amplitude**2, expected, rtol=1e-9)

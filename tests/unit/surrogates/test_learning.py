@@ -125,3 +125,15 @@ def test_a_doubted_point_says_less(monkeypatch: pytest.MonkeyPatch) -> None:
     assert np.argmax(end.evidence.doubt) == 7
     assert end.evidence.doubt[7] > 1e3
     assert len(end.evidence.x) == 60
+
+
+def test_waves_shorter_than_believed_are_not_taken_for_noise() -> None:
+    # Eight waves over all points have a length 1.7 sd of the prior below its mean, and from the
+    # mean alone the search ends at noise on each of these seeds.
+    for seed in range(3):
+        random = np.random.default_rng(seed)
+        x = (np.arange(80) + random.uniform(size=80))[:, None] / 80.0
+        y = np.sin(16.0 * np.pi * x)
+        of = Evidence.of(SMOOTH, WhiteNoise(), (x - x.mean()) / x.std(), y / y.std())
+        mode = learned(of, restarts=1, seed=seed)
+        assert np.exp(mode.log_parameters[-1]) < 1e-3
