@@ -5,18 +5,16 @@ import { DirectionalLight, HemisphereLight, PerspectiveCamera, Scene, Vector3, W
 import { make, still } from "../dom.js";
 import { onTheme, styled, theme } from "../theme.js";
 import { Arrows } from "./arrows.js";
-import { compass, Labels, scaleBar } from "./furniture.js";
-import { extent, towards } from "./geometry.js";
+import { extent } from "./geometry.js";
 import { Glide } from "./glide.js";
 import { Marks } from "./marks.js";
 import { Mooring } from "./mooring.js";
 import { Net } from "./net.js";
 import { Orbit } from "./orbit.js";
+import { Overlay } from "./overlay.js";
 import { bridleColours, netColours, sensorColour, tintOf } from "./paint.js";
-import { pick } from "./pick.js";
+import { Screen } from "./screen.js";
 import { Sea } from "./sea.js";
-import { Tip } from "./tip.js";
-import { bearing, fixed, wordsFor } from "./words.js";
 
 const ROLL_MS = 50; // twenty pictures a second are enough for a swell
 const SLOW = /swiftshader|llvmpipe|software/i;
@@ -45,11 +43,7 @@ export class View3d {
     this.sun = new DirectionalLight(0xffffff, 1.5);
     this.sun.position.set(-60, -80, 120);
     this.scene.add(this.sky, this.sun);
-    this.labels = new Labels(holder);
-    this.tip = new Tip(holder);
-    this.compass = compass(() => this.orbit.look({ azimuth: 0 }));
-    this.scale = scaleBar();
-    holder.append(this.compass.element, this.scale.element);
+    this.overlay = new Overlay(holder, { lookNorth: () => this.orbit.look({ azimuth: 0 }) });
     this.orbit = new Orbit(this.camera, this.canvas, () => this.wake());
     this.frames = 0;
     this.moves = !SLOW.test(rendererName(this.renderer));
@@ -72,7 +66,7 @@ export class View3d {
     canvas.addEventListener("pointermove", (event) => this.hover(event));
     canvas.addEventListener("pointerleave", () => this.point(null));
     canvas.addEventListener("click", (event) => {
-      if (!this.orbit.dragged) this.model.select(this.under(event));
+      if (!this.orbit.dragged) this.model.select(this.screen?.under(event) ?? null);
     });
     canvas.addEventListener("dblclick", () => this.look("oblique"));
     canvas.addEventListener("keydown", (event) => this.key(event));
@@ -92,6 +86,7 @@ export class View3d {
     this.marks = new Marks(topology);
     this.arrows = new Arrows(size);
     this.sea = new Sea(size.frame);
+    this.screen = new Screen(this);
     this.parts = [this.net, this.mooring, this.marks, this.arrows, this.sea];
     this.scene.add(...this.parts);
     this.applyOptions();
@@ -205,78 +200,14 @@ export class View3d {
     this.frames += 1;
     this.canvas.dataset.frames = this.frames; // what tests wait for
     this.canvas.dataset.bottom = this.glide.position.at(-1).toFixed(3);
-    this.furnish();
-  }
-
-  furnish() {
-    const { ringRadius } = this.sea;
-    for (const [name, degrees] of [["N", 0], ["E", 90], ["S", 180], ["W", 270]]) {
-      const [x, y] = towards(degrees);
-      this.labels.pin(`point-${name}`, name, this.onScreen([1.08 * ringRadius * x, 1.08 * ringRadius * y, 0]));
-    }
-    const water = this.shown?.state.valid ? this.shown.state.water : null;
-    const pin = (name, arrow, at, text) =>
-      this.labels.pin(name, text, arrow.visible && water ? this.onScreen(at.toArray()) : null);
-    pin("current", this.arrows.currents[0], this.arrows.currentLabel, water
-      && `Current ${fixed(water.current_speed_m_s, 2, "m/s")} to ${bearing(water.current_to_deg)}`);
-    pin("waves", this.arrows.wave, this.arrows.waveLabel, water?.hs_m
-      && `Waves ${fixed(water.hs_m, 1, "m")} from ${bearing(water.wave_from_deg)}`);
-    this.compass.turn((this.orbit.now.azimuth * 180) / Math.PI);
-    this.scale.show(this.canvas.clientHeight
-      / (2 * this.orbit.now.distance * Math.tan((this.camera.fov * Math.PI) / 360)));
-    const told = this.pointed ?? this.model.selection;
-    this.tip.show(wordsFor(told, this.topology, this.shown), told && this.placeOf(told));
-  }
-
-  // --- where things are on the screen ---
-
-  onScreen(at) {
-    const point = new Vector3(...at).project(this.camera);
-    if (point.z > 1) return null;
-    const { clientWidth: width, clientHeight: height } = this.canvas;
-    return [((point.x + 1) / 2) * width, ((1 - point.y) / 2) * height, point.z];
-  }
-
-  nodeAt(node) {
-    return Array.from(this.glide.position.subarray(3 * node, 3 * node + 3));
-  }
-
-  bridleEnds(k) {
-    const { bridle_nodes: nodes, bridle_corners: corners, corner_position_m: frame } = this.topology;
-    return [frame[corners[k]], this.nodeAt(nodes[k])];
-  }
-
-  placeOf({ bridle, sensor, node }) {
-    if (node !== undefined) return this.onScreen(this.nodeAt(node));
-    if (sensor !== undefined) {
-      const found = this.marks.places.find(({ name }) => name === sensor);
-      return found && this.onScreen(found.at);
-    }
-    const k = this.topology.bridle_names.indexOf(bridle);
-    if (k < 0) return null;
-    const [from, to] = this.bridleEnds(k);
-    return this.onScreen(from.map((one, axis) => one + 0.45 * (to[axis] - one)));
+    this.overlay.show(this);
   }
 
   // --- the reader ---
 
-  under(event) {
-    if (!this.topology) return null;
-    const box = this.canvas.getBoundingClientRect();
-    const nodes = Array.from({ length: this.topology.rest.length / 3 },
-      (_, k) => this.onScreen(this.nodeAt(k)));
-    const bridles = this.topology.bridle_names.map((name, k) => {
-      const [from, to] = this.bridleEnds(k).map((at) => this.onScreen(at));
-      return { name, from, to };
-    });
-    const sensors = this.marks.places.map(({ name, at }) => ({ name, at: this.onScreen(at) }));
-    return pick([event.clientX - box.left, event.clientY - box.top], { nodes, bridles, sensors },
-      event.pointerType === "touch");
-  }
-
   hover(event) {
     if (this.orbit.dragging || event.pointerType === "touch") return;
-    this.point(this.under(event));
+    this.point(this.screen?.under(event) ?? null);
   }
 
   point(selection) {
@@ -302,7 +233,7 @@ export class View3d {
     if (!this.size) return;
     const { width, height } = { width: this.holder.clientWidth || 1, height: this.holder.clientHeight || 1 };
     // All of the frame fits the narrower way.
-    const wide = Math.max(1, (1.45 * height) / width);
+    const wide = Math.max(1, (1.2 * height) / width);
     const target = new Vector3(0, 0, name === "top" ? 0 : -0.3 * this.size.depth);
     const distance = (name === "top" ? 3.1 : 2.5) * this.size.frame * wide;
     this.orbit.limits = [0.5 * this.size.frame, 8 * this.size.frame];

@@ -1,0 +1,48 @@
+// What lies over the three-dimensional drawing, moved along with it.
+
+import { compass, Labels, scaleBar } from "./furniture.js";
+import { towards } from "./geometry.js";
+import { Tip } from "./tip.js";
+import { bearing, fixed, wordsFor } from "./words.js";
+
+const POINTS = { N: 0, E: 90, S: 180, W: 270 };
+const OUTSIDE = 1.08; // the ring of the compass
+
+export class Overlay {
+  constructor(holder, { lookNorth }) {
+    this.labels = new Labels(holder);
+    this.tip = new Tip(holder);
+    this.compass = compass(lookNorth);
+    this.scale = scaleBar();
+    holder.append(this.compass.element, this.scale.element);
+  }
+
+  /** Follow a view: its camera, its water, and what is pointed at. */
+  show(view) {
+    this.#names(view);
+    this.#water(view);
+    const { distance, azimuth } = view.orbit.now;
+    const halfView = Math.tan((view.camera.fov * Math.PI) / 360);
+    this.compass.turn((azimuth * 180) / Math.PI);
+    this.scale.show(view.canvas.clientHeight / (2 * distance * halfView));
+    const told = view.pointed ?? view.model.selection;
+    this.tip.show(wordsFor(told, view.topology, view.shown), told && view.screen.of(told));
+  }
+
+  #names({ sea, screen }) {
+    for (const [name, degrees] of Object.entries(POINTS)) {
+      const [x, y] = towards(degrees).map((one) => OUTSIDE * sea.ringRadius * one);
+      this.labels.pin(`point-${name}`, name, screen.at([x, y, 0]));
+    }
+  }
+
+  #water({ arrows, screen, shown }) {
+    const water = shown?.state.valid ? shown.state.water : null;
+    const pin = (name, arrow, place, text) =>
+      this.labels.pin(name, text, water && arrow.visible ? screen.at(place.toArray()) : null);
+    pin("current", arrows.currents[0], arrows.currentLabel, water
+      && `Current ${fixed(water.current_speed_m_s, 2, "m/s")} to ${bearing(water.current_to_deg)}`);
+    pin("waves", arrows.wave, arrows.waveLabel, water
+      && `Waves ${fixed(water.hs_m, 1, "m")} from ${bearing(water.wave_from_deg)}`);
+  }
+}
