@@ -27,14 +27,14 @@ class Retention:
     clocks
         Of each cage, as old is what its clock says.
     keep_days
-        So many whole days before today stay [d].
+        UTC days that ended longer ago leave [d].
     every_s
         Between two looks [s of the wall].
 
     Raises
     ------
     InputError
-        Less than a day.
+        It is not above zero.
     """
 
     def __init__(
@@ -42,13 +42,13 @@ class Retention:
         store: Store,
         *,
         clocks: Mapping[str, Clock],
-        keep_days: int,
+        keep_days: float,
         every_s: float = 3600.0,
     ) -> None:
-        if keep_days < 1:
+        if not keep_days > 0.0:
             raise InputError(
-                f"keep_days = {keep_days} d: the newest day is still being measured. "
-                "Keep one day at least."
+                f"keep_days = {keep_days:g} d would keep nothing. Give the days that samples "
+                "stay at full rate, e.g. 30; all stay without a retention."
             )
         self._store, self._clocks = store, clocks
         self._keep, self._every_s = timedelta(days=keep_days), every_s
@@ -57,7 +57,7 @@ class Retention:
         """Look for ever; what fails is told and tried again at the next look."""
         while True:
             for cage, clock in self._clocks.items():
-                before = midnight(clock.now()) - self._keep
+                before = midnight(clock.now() - self._keep)
                 try:
                     count = await asyncio.to_thread(self._store.retire, cage, before=before)
                 except StoreError as error:

@@ -64,6 +64,7 @@ class PostgresSession(AbstractSession):
 
     locking = " FOR UPDATE"
     passing = " FOR UPDATE SKIP LOCKED"
+    lateral = True
 
     def __init__(self, connection: "Connection[tuple[Any, ...]]") -> None:
         self._connection = connection

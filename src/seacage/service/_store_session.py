@@ -28,6 +28,9 @@ class AbstractSession(ABC):
     passing: str = ""
     """The same, but rows that another process holds are left to it."""
 
+    lateral: bool = False
+    """Whether a subquery of FROM may look at its neighbours."""
+
     @abstractmethod
     def rows(self, sql: str, values: Sequence[object] = ()) -> Answer:
         """Run one statement; the rows that it answers."""

@@ -55,7 +55,13 @@ def test_a_disk_that_takes_nothing_is_tried_again(store):
     assert store.samples("ace", limit=9) == []
 
 
-def test_not_to_keep_the_day_that_is_being_measured_is_refused(store):
+def test_the_day_that_is_being_measured_stays_however_short_samples_are_kept(store):
+    put(store, sample(-A_DAY), sample(-60), sample(0))
+    looked(store, keep_days=0.1)
+    assert store.samples("ace", limit=9) == [sample(-60), sample(0)]
+
+
+def test_to_keep_nothing_is_refused(store):
     with pytest.raises(InputError, match="keep_days = 0 d"):
         Retention(store, clocks={}, keep_days=0)
 

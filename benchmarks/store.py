@@ -1,0 +1,140 @@
+"""The live store: samples taken, aggregates of a year, and what a reader's connection costs.
+
+With `--postgres URL` the same is asked of a server, in tables that are dropped again.
+"""
+
+import sys
+import tempfile
+from contextlib import closing
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+from _timing import ONCE, seconds, tell
+
+from seacage.records import Sample
+from seacage.service._store import Store, open_store
+from seacage.service._store_place import database_at
+from seacage.service._store_rows import Row, row_of
+from seacage.service._store_session import AbstractDatabase
+from seacage.service._store_sqlite import sqlite_look
+
+NOON = datetime(2020, 2, 1, 12, tzinfo=UTC)
+STREAMS = [f"depth-{number}" for number in range(1, 31)]
+COUNT = 300 if ONCE else 6000
+YEAR = 100 if ONCE else 52_560
+FEW = 10 if ONCE else 200
+ROUNDS = 3
+
+moment = NOON
+
+
+def fresh(count: int) -> list[Sample]:
+    """Samples that no store has: of thirty sensors, every two seconds."""
+    global moment  # noqa: PLW0603
+    samples: list[Sample] = []
+    while len(samples) < count:
+        moment += timedelta(seconds=2)
+        samples += [Sample(stream=name, t=moment, values={"depth_m": 14.0}) for name in STREAMS]
+    return samples[:count]
+
+
+def taken(place: str) -> None:
+    """Samples as they are offered: many at once, or each waiting for its commit."""
+    each: dict[str, float] = {}
+    with closing(open_store(place)) as store:
+        for size, count in ((1000, COUNT), (30, COUNT), (1, FEW)):
+            ready = [fresh(count) for _ in range(ROUNDS + 1)]
+            took = seconds(lambda r=ready, n=size: offer(store, r.pop(), n), rounds=ROUNDS)
+            each[f"in batches of {size}"] = took / count
+    tell("append until the commit, per sample", each)
+
+
+def offer(store: Store, samples: list[Sample], size: int) -> None:
+    for first in range(0, len(samples), size):
+        store.append("ace", samples[first : first + size], ingested=NOON).result()
+
+
+def inserted(place: str) -> None:
+    """All rows by one call, or one call for each."""
+    per_row: dict[str, float] = {}
+    with closing(database_at(place)) as database:
+        for what, size in (("all rows at once", COUNT), ("row by row", 1)):
+            ready = [[row_of("ice", one, NOON) for one in fresh(COUNT)] for _ in range(ROUNDS + 1)]
+            took = seconds(lambda r=ready, n=size: insert(database, r.pop(), n), rounds=ROUNDS)
+            per_row[what] = took / COUNT
+    tell("insert in one transaction, per row", per_row)
+
+
+def insert(database: AbstractDatabase, rows: list[Row], size: int) -> None:
+    with database.writing() as session:
+        for first in range(0, len(rows), size):
+            session.insert(rows[first : first + size])
+
+
+def summed_up(place: str) -> None:
+    """A year of ten minutes as it is kept, against the same from samples of a day."""
+    start = datetime(2024, 1, 1, tzinfo=UTC)
+    t = int(start.timestamp()) * 1_000_000
+    with closing(database_at(place)) as database, database.writing() as session:
+        session.each(
+            "INSERT INTO aggregate VALUES ('old', 'depth-1', 'depth_m', 600, ?, 300, 14, 13, 15)",
+            [(t + k * 600_000_000,) for k in range(YEAR)],
+        )
+    with closing(open_store(place)) as store:
+        every_s, day = (600 if ONCE else 2), timedelta(days=1)
+        samples = [
+            Sample(stream="depth-1", t=start + timedelta(seconds=k), values={"depth_m": 14.0})
+            for k in range(0, 86_400, every_s)
+        ]
+        store.append("new", samples, ingested=NOON).result()
+        of = {"stream": "depth-1", "key": "depth_m", "width_s": 600, "limit": 100_000}
+        kept = seconds(lambda: store.aggregates("old", **of), rounds=3) / YEAR
+        made = seconds(lambda: store.aggregates("new", **of, end=start + day), rounds=3) / 144
+    tell("aggregates, per ten minutes asked for", {"kept": kept, "from samples": made})
+    print(f"  a year of {YEAR:,} spans, kept: {kept * YEAR:.2f} s")
+
+
+def read(place: str) -> None:
+    """What each question of a page costs."""
+    with closing(open_store(place)) as store:
+        store.append("ace", fresh(3000), ingested=NOON).result()
+        four = {"limit": 4, "newest": True}
+        asked = {
+            "the newest of 30 streams, one query": lambda: store.latest("ace"),
+            "four of each of 30 streams, 30 queries": lambda: [
+                store.samples("ace", stream=name, **four) for name in STREAMS
+            ],
+        }
+        tell("read", {what: seconds(ask) for what, ask in asked.items()})
+        pooled = seconds(lambda: store.alarm_book("ace"))
+        if not place.startswith("postgres"):
+            opened = seconds(lambda: look(Path(place)))
+            tell("the smallest question", {"connection kept": pooled, "opened for it": opened})
+
+
+def look(path: Path) -> None:
+    with sqlite_look(path) as session:
+        session.rows("SELECT book FROM alarm_book WHERE cage = 'ace'")
+
+
+def all_of(place: str) -> None:
+    for part in (taken, inserted, read, summed_up):
+        part(place)
+
+
+with tempfile.TemporaryDirectory() as folder:
+    print("SQLite")
+    all_of(str(Path(folder, "samples.sqlite")))
+
+if "--postgres" in sys.argv:
+    import psycopg
+
+    url = sys.argv[sys.argv.index("--postgres") + 1]
+    with psycopg.connect(url, autocommit=True) as owner:
+        owner.execute("CREATE SCHEMA seacage_benchmark")
+        try:
+            print("PostgreSQL")
+            join = "&" if "?" in url else "?"
+            all_of(f"{url}{join}options=-csearch_path%3Dseacage_benchmark")
+        finally:
+            owner.execute("DROP SCHEMA seacage_benchmark CASCADE")
