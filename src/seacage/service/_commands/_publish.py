@@ -87,20 +87,17 @@ def publish(
     """
     from seacage.conventions import InputError
     from seacage.service._publisher import Publisher
-    from seacage.service._spool import Spool
 
     if follow and (source == "-" or Path(source).is_dir() or speed is not None):
         raise InputError("publish: --follow is for a growing file, at the speed at which it grows.")
     refused = _Refused()
-    place = f"{to.rpartition('@')[2]}, cage {cage}, site {site}"
-    kept = Spool(spool, to=place, most=spool_most, drop_oldest=when_full == "drop-oldest")
-    try:
+    with (
+        _courier(to, cage, site, token, ca) as courier,  # first: it refuses a wrong address
+        _spool(spool, to, cage, site, spool_most, when_full) as kept,
+        progress_bar() as progress,
+    ):
         batches = _batches(source, kept, refused, stream, columns, follow=follow, speed=speed)
-        with _courier(to, cage, site, token, ca) as courier, progress_bar() as progress:
-            publisher = Publisher(kept, courier, patience_s=patience_s, progress=progress)
-            done = publisher.run(batches)
-    finally:
-        kept.close()
+        done = Publisher(kept, courier, patience_s=patience_s, progress=progress).run(batches)
     _tell(done, refused, as_json=as_json)
     if refused.count or done.rejected:
         raise stopped(
@@ -161,6 +158,21 @@ def _batches(
     else:
         records = [read_record(path, columns=choice, stream=stream)]
     return record_batches(records, source=name, place=place, speed=speed)
+
+
+@contextmanager
+def _spool(
+    path: Path, to: str, cage: str, site: str, most: int, when_full: str
+) -> "Generator[Spool]":
+    from seacage.service._spool import Spool
+
+    place = to.rpartition("://")[2].rpartition("@")[2]  # a password may change
+    destination = f"{place}, site {site}, cage {cage}"
+    opened = Spool(path, to=destination, most=most, drop_oldest=when_full == "drop-oldest")
+    try:
+        yield opened
+    finally:
+        opened.close()
 
 
 @contextmanager
