@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Self
 
 from seacage.conventions import InputError
 from seacage.twin._alarm import Alarm, Changed
-from seacage.twin._irregular import Sense
+from seacage.twin._irregular_told import Suspicion
 
 if TYPE_CHECKING:
     from pydantic import TypeAdapter
@@ -26,15 +26,15 @@ class AlarmBook:
         By name, those that have been judged at least once.
     t
         The twin's clock at the last assessment; None before the first.
-    senses
-        By sensor, what the tests for irregularity remember.
+    suspicion
+        What the tests for irregularity remember.
     format
         What ``from_json`` knows it by.
     """
 
     alarms: Mapping[str, Alarm] = field(default_factory=dict[str, Alarm])
     t: datetime | None = None
-    senses: Mapping[str, Sense] = field(default_factory=dict[str, Sense])
+    suspicion: Suspicion = field(default_factory=Suspicion)
     format: str = FORMAT
 
     @classmethod
@@ -92,8 +92,7 @@ class AlarmBook:
             name: replace(alarm, crossed=None, said=None if alarm.said is None else now)
             for name, alarm in self.alarms.items()
         }
-        senses = {name: sense.interrupted() for name, sense in self.senses.items()}
-        return replace(self, t=now, alarms=alarms, senses=senses)
+        return replace(self, t=now, alarms=alarms, suspicion=self.suspicion.interrupted())
 
 
 @cache

@@ -42,12 +42,12 @@ def numbers(
     twin, state, answered
         The twin, what it remembers, and what it said last.
     distrusted
-        Sensors whose readings are not to be believed.
+        Streams whose readings are not to be believed.
     """
     yield from _loads(twin, state, answered, distrusted)
     yield _volume(answered)
     yield from _silences(state, answered.t)
-    yield _input(twin, state, answered)
+    yield _input(twin, state, answered, distrusted)
     yield _domain(answered)
 
 
@@ -100,12 +100,12 @@ def _silences(state: TwinState, now: datetime) -> Iterator[Number]:
         yield Number(alarm=f"silent.{name}", value=max(0.0, age_s))
 
 
-def _input(twin: Twin, state: TwinState, answered: Answered) -> Number:
-    """Whether there is no input; where the buoy is silent, that is said already."""
+def _input(twin: Twin, state: TwinState, answered: Answered, distrusted: frozenset[str]) -> Number:
+    """Whether there is no input; where the buoy is silent or stuck, that is said already."""
     name, answer = f"input.{twin.buoy}", answered.answer
     if answer.valid[0]:
         return Number(alarm=name, value=0.0)
-    value = None if twin.buoy in state.silent else 1.0
+    value = None if twin.buoy in state.silent | distrusted else 1.0
     return Number(alarm=name, value=value, detail=answer.reason[0])
 
 

@@ -39,7 +39,10 @@ USUAL: Mapping[str, Limit] = {
     "domain": Limit(raise_at=1.0, clear_at=0.0, on_delay_s=600.0, off_delay_s=1800.0, severity=400),
     # Of the test's own limit; the averaging that delays belong to is in the test.
     "irregular": Limit(raise_at=1.0, clear_at=0.5, severity=500),
-    "bridle": Limit(raise_at=1.0, clear_at=0.5, repeat_after_s=600.0, severity=900),
+    # No bridle mends itself: a whole tide has to say so.
+    "bridle": Limit(
+        raise_at=1.0, clear_at=0.5, off_delay_s=43200.0, repeat_after_s=600.0, severity=900
+    ),
     "net": Limit(raise_at=1.0, clear_at=0.5, repeat_after_s=600.0, severity=900),
     "history": Limit(raise_at=1.0, clear_at=0.0, repeat_after_s=3600.0, severity=800),
 }
@@ -141,7 +144,7 @@ def alarm_names(cage: Cage, buoy: str) -> frozenset[str]:
         "volume": ("net",),
         "net": ("net",),
         "silent": (buoy, *cage.sensor_names),
-        "irregular": cage.sensor_names,
+        "irregular": (buoy, *cage.sensor_names),
         "input": (buoy,),
         "domain": ("input",),
         "history": ("store",),

@@ -132,7 +132,7 @@ _WORDS: Mapping[str, _Words] = {
     "irregular": _Words(
         title="{source} reads irregularly",
         message=_either(
-            active="{source} does not read as the twin and the other sensors expect.",
+            active="{source} does not read as it should.",
             calm="{source} reads as the twin and the other sensors expect.",
         ),
         advice="Compare it with a reading by hand. Calibrate or replace the sensor if it is "

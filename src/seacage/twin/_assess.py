@@ -2,14 +2,16 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from datetime import datetime
 from types import MappingProxyType
 
-from seacage.twin._alarm import Alarm, Happened
+from seacage.twin._alarm import Alarm, Changed, Happened
 from seacage.twin._alarm_book import AlarmBook
 from seacage.twin._alarm_judged import judged
 from seacage.twin._alarm_numbers import Number, numbers
 from seacage.twin._alarm_policy import USUAL, AlarmPolicy
 from seacage.twin._events import Answered
+from seacage.twin._irregular_told import distrusted_in
 from seacage.twin._state import TwinState
 from seacage.twin._twin import Twin
 
@@ -49,28 +51,37 @@ def assess(
     """
     now = answered.t
     book = book.at(now, jump_s=policy.jump_s)
+    active = frozenset(name for name, alarm in book.alarms.items() if alarm.active)
+    suspicion = book.suspicion.followed(twin, state, answered, active=active)
+    ended = suspicion.opened.number != book.suspicion.opened.number
+    distrusted = distrusted_in(suspicion.senses, active)
     alarms, lines = dict(book.alarms), list[Happened]()
-    for number in _all_numbers(book, twin, state, answered, trouble):
-        alarm = alarms.get(number.alarm) or Alarm(name=number.alarm)
-        before = alarm.active
-        alarm, changed = judged(alarm, number.value, policy.limit(alarm.name), now)
-        # What was said when it was raised stays: the cause, not the latest weather.
-        if alarm.active and not before and number.detail != alarm.detail:
-            alarm = replace(alarm, detail=number.detail)
+    unheard_of = set(alarms)
+    for number in (
+        *numbers(twin, state, answered, distrusted=distrusted),
+        *(suspicion.numbers(twin.cage, active=active) if ended else suspicion.stuck()),
+        *_faults(book, trouble),
+    ):
+        alarm, changed = _judged(alarms, number, policy, now)
         alarms[alarm.name] = alarm
+        unheard_of.discard(alarm.name)
         lines += changed
-    return replace(book, alarms=alarms), tuple(lines)
+    for name in unheard_of:  # shelves end and what nobody has seen is said again
+        alarms[name], changed = judged(alarms[name], None, policy.limit(name), now)
+        lines += changed
+    return replace(book, alarms=alarms, suspicion=suspicion), tuple(lines)
 
 
-def _all_numbers(
-    book: AlarmBook,
-    twin: Twin,
-    state: TwinState,
-    answered: Answered,
-    trouble: Mapping[str, str],
-) -> Iterator[Number]:
-    yield from numbers(twin, state, answered, distrusted=frozenset())
-    yield from _faults(book, trouble)
+def _judged(
+    alarms: Mapping[str, Alarm], number: Number, policy: AlarmPolicy, now: datetime
+) -> Changed:
+    alarm = alarms.get(number.alarm) or Alarm(name=number.alarm)
+    before = alarm.active
+    alarm, changed = judged(alarm, number.value, policy.limit(alarm.name), now)
+    # What was said when it was raised stays: the cause, not the latest weather.
+    if alarm.active and not before and number.detail != alarm.detail:
+        alarm = replace(alarm, detail=number.detail)
+    return alarm, changed
 
 
 def _faults(book: AlarmBook, trouble: Mapping[str, str]) -> Iterator[Number]:

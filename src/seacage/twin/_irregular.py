@@ -9,7 +9,12 @@ from seacage.conventions import Flag
 from seacage.records import Sample
 from seacage.twin._state import Stream
 
-_SI = {"tension_kn": 1000.0, "depth_m": 1.0}
+STUCK_S = 1800.0
+"""A live sensor's noise does not let it repeat a number for so long [s]."""
+
+STUCK_READINGS = 6
+"""And not so often; a sensor that speaks seldom needs longer than ``STUCK_S``."""
+
 _COUNTED = (Flag.GOOD, Flag.NOT_EVALUATED)
 
 
@@ -21,25 +26,26 @@ class Sense:
     ----------
     heard
         Time of the newest reading taken in.
-    value, same_since
-        That reading [N] or [m], and since when it has been the very same.
-    count, read, said, doubt
-        Of the block of time that is being averaged: good readings, and the sums of readings,
-        of what the twin said, and of its standard deviations [N] or [m].
+    values, since, repeats
+        That reading by its door keys, since when it has been the very same, and how often it
+        was said again.
+    count, error, doubt
+        Of the block of time that is being averaged: good readings, and the sums of their
+        distances from what the twin said, and of its standard deviations [N] or [m].
     blocks
-        How many whole blocks were judged.
+        How many blocks were judged.
     usual
-        How far off its neighbours' word the sensor usually is, in standard deviations.
+        How far off the other sensors' word it usually is, in standard deviations.
     above, below
-        Sums of how much further it was, upwards and downwards, in standard deviations.
+        Sums of how much further off it was, upwards and downwards, in standard deviations.
     """
 
     heard: datetime | None = None
-    value: float | None = None
-    same_since: datetime | None = None
+    values: tuple[float, ...] = ()
+    since: datetime | None = None
+    repeats: int = 0
     count: int = 0
-    read: float = 0.0
-    said: float = 0.0
+    error: float = 0.0
     doubt: float = 0.0
     blocks: int = 0
     usual: float = 0.0
@@ -47,12 +53,12 @@ class Sense:
     below: float = 0.0
 
     def interrupted(self) -> Self:
-        """Return the same without the readings being averaged, and with all still unheard."""
-        return replace(self, heard=None, same_since=None, count=0, read=0.0, said=0.0, doubt=0.0)
+        """Return the same with nothing heard lately, and the tests' sums as they are."""
+        return replace(self.begun_anew(), heard=None, values=(), since=None, repeats=0)
 
-    def closed(self) -> Self:
+    def begun_anew(self) -> Self:
         """Return the same with the next block begun."""
-        return replace(self, count=0, read=0.0, said=0.0, doubt=0.0)
+        return replace(self, count=0, error=0.0, doubt=0.0)
 
     def taken(self, sample: Sample, said: tuple[float, float] | None) -> Self:
         """Take a reading in.
@@ -60,37 +66,46 @@ class Sense:
         Parameters
         ----------
         sample
-            With its flags; one that did not pass its checks is heard, and does not count.
+            With its flags; one that did not pass its checks is heard, and is not averaged.
         said
-            The twin's mean and standard deviation of it; None where it had no input.
+            The twin's mean and standard deviation of it [N] or [m]; None where it had none.
         """
-        ((key, raw),) = sample.values.items()
-        value = raw * _SI[key]
-        same = value == self.value and self.same_since is not None
-        since = self.same_since if same else sample.t
-        if said is None or sample.flags[key] not in _COUNTED:
-            return replace(self, heard=sample.t, value=value, same_since=since)
-        mean, std = said
-        return replace(
+        values = tuple(sample.values.values())
+        same = values == self.values
+        sense = replace(
             self,
             heard=sample.t,
-            value=value,
-            same_since=since,
+            values=values,
+            since=self.since if same else sample.t,
+            repeats=self.repeats + 1 if same else 0,
+        )
+        ((key, value),) = sample.values.items() if len(values) == 1 else (("", 0.0),)
+        if said is None or not key or sample.flags[key] not in _COUNTED:
+            return sense
+        mean, std = said
+        reading = value * (1000.0 if key == "tension_kn" else 1.0)
+        return replace(
+            sense,
             count=self.count + 1,
-            read=self.read + value,
-            said=self.said + mean,
+            error=self.error + reading - mean,
             doubt=self.doubt + std,
         )
 
+    @property
     def still_s(self) -> float:
-        """For how long it has repeated itself [s]."""
-        if self.heard is None or self.same_since is None:
+        """For how long it has repeated itself [s]; 0 where it was not often enough to say."""
+        if self.heard is None or self.since is None or self.repeats < STUCK_READINGS:
             return 0.0
-        return (self.heard - self.same_since).total_seconds()
+        return (self.heard - self.since).total_seconds()
+
+    @property
+    def stuck(self) -> bool:
+        """Whether it has repeated itself for too long."""
+        return self.still_s >= STUCK_S
 
 
 def unheard(stream: Stream, since: datetime | None) -> list[Sample]:
-    """Return what a sensor said after a time, oldest first, as far as the twin remembers."""
+    """Return what a stream said after a time, oldest first, as far as the twin remembers."""
     if since is None:
         return [stream[-1].sample] if stream else []
     newer = takewhile(lambda taken: taken.sample.t > since, reversed(stream))
