@@ -15,6 +15,8 @@ from fastapi.staticfiles import StaticFiles
 from seacage.conventions import InputError
 from seacage.service._alarm_routes import alarms
 from seacage.service._audit import Audit
+from seacage.service._clearance_routes import rov
+from seacage.service._downloads import downloads
 from seacage.service._guard import Gate
 from seacage.service._limits import Limits
 from seacage.service._live import LiveCage
@@ -115,7 +117,7 @@ def create_app(service: Service) -> FastAPI:
     app.add_exception_handler(StoreError, _unavailable)
     app.add_exception_handler(InputError, _refused)
     app.add_exception_handler(RequestValidationError, _malformed)
-    for router in (around, sessions, cages, alarms, what_if, sockets):
+    for router in (around, sessions, cages, alarms, what_if, downloads, rov, sockets):
         app.include_router(router)
     if _PAGE.is_dir():
         app.mount("/page", StaticFiles(directory=_PAGE), name="page")

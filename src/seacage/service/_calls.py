@@ -6,7 +6,7 @@ from fastapi import Depends, HTTPException, Path, Query, Request
 
 from seacage.service._guard import Permit
 from seacage.service._live import LiveCage
-from seacage.service._schemas import Problem, Time
+from seacage.service._schemas import Problem, Reach
 
 Responses = dict[int | str, dict[str, Any]]
 
@@ -57,13 +57,15 @@ _WHEN = "2018-01-26T23:08:00Z"
 
 Live = Annotated[LiveCage, Depends(_cage)]
 At = Annotated[
-    Time | None,
+    Reach | None,
     Query(description="A time in the past, with its zone; now if left out.", examples=[_WHEN]),
 ]
 From = Annotated[
-    Time | None, Query(alias="from", description="First time, included.", examples=[_WHEN])
+    Reach | None, Query(alias="from", description="First time, included.", examples=[_WHEN])
 ]
-To = Annotated[Time | None, Query(alias="to", description="Last time, left out.", examples=[_WHEN])]
+To = Annotated[
+    Reach | None, Query(alias="to", description="Last time, left out.", examples=[_WHEN])
+]
 Limit = Annotated[int, Query(ge=1, le=10_000, description="At most so many.", examples=[1000])]
 Stream = Annotated[
     str | None,
@@ -71,6 +73,10 @@ Stream = Annotated[
 ]
 OneStream = Annotated[str, Query(max_length=64, pattern=_NAME, examples=["buoy-1"])]
 Key = Annotated[str, Query(max_length=64, pattern=_NAME, examples=["current_speed_m_s"])]
+Width = Annotated[
+    int,
+    Query(description="Of each span [s].", examples=[600], json_schema_extra={"enum": [60, 600]}),
+]
 
 may_read, may_ingest = [Depends(Permit("read"))], [Depends(Permit("ingest"))]
 may_acknowledge = [Depends(Permit("ack"))]

@@ -6,7 +6,7 @@ from datetime import datetime, timedelta
 import numpy as np
 
 from seacage.conventions import Flag, Origin
-from seacage.records import Record, Sample, instant
+from seacage.records import Record, Sample, instant, moment
 from seacage.service._answers import history_of
 from seacage.service._samples import BUOY_KEYS
 from seacage.service._schemas import History
@@ -74,9 +74,8 @@ def history_between(
     limit: int,
 ) -> History:
     """Answer to the last of a buoy's readings in a span, and show what the sensors read."""
-    said = store.samples(cage, stream=twin.buoy, start=start, end=end, limit=limit, newest=True)
-    buoy = record_of(twin.buoy, said, keys=BUOY_KEYS, origin=twin.origin)
-    since = said[0].t if said else start
+    buoy = readings_between(twin, store, cage, start=start, end=end, limit=limit)
+    since = moment(buoy.time[0]) if len(buoy) else start
     measured = {
         sensor: store.samples(
             cage, stream=sensor, start=since, end=end, limit=_MEASURED_LIMIT, newest=True
@@ -84,6 +83,20 @@ def history_between(
         for sensor in twin.sensor_names
     }
     return history_of(buoy, twin.predict_record(buoy), measured, points=limit)
+
+
+def readings_between(
+    twin: Twin,
+    store: Store,
+    cage: str,
+    *,
+    start: datetime | None,
+    end: datetime | None,
+    limit: int,
+) -> Record:
+    """Read the last of a buoy's readings in a span."""
+    said = store.samples(cage, stream=twin.buoy, start=start, end=end, limit=limit, newest=True)
+    return record_of(twin.buoy, said, keys=BUOY_KEYS, origin=twin.origin)
 
 
 def record_of(

@@ -12,11 +12,14 @@ from seacage.service._calls import (
     WRITE,
     At,
     From,
+    Key,
     Limit,
     Live,
+    OneStream,
     Responses,
     Stream,
     To,
+    Width,
     may_ingest,
     may_read,
 )
@@ -26,6 +29,8 @@ from seacage.service._live import LiveCage
 from seacage.service._past import history_between, state_at
 from seacage.service._samples import read_samples
 from seacage.service._schemas import (
+    AggregateOut,
+    AggregatesOut,
     Cages,
     Health,
     History,
@@ -110,6 +115,41 @@ def get_samples(
     """Give back stored samples in time order, the first ones of the span."""
     samples = live.store.samples(live.name, stream=stream, start=start, end=end, limit=limit)
     return SamplesOut(samples=[sample_of(sample) for sample in samples])
+
+
+@cages.get("/{cage}/latest", dependencies=may_read, responses=READ)
+def get_latest(live: Live, at: At = None) -> SamplesOut:
+    """Give back the newest sample of every stream, in one call."""
+    latest = live.store.latest(live.name, at=at)
+    return SamplesOut(samples=[sample_of(latest[stream]) for stream in sorted(latest)])
+
+
+@cages.get("/{cage}/aggregates", dependencies=may_read, responses=READ)
+def get_aggregates(
+    live: Live,
+    stream: OneStream,
+    key: Key,
+    width_s: Width = 600,
+    start: From = None,
+    end: To = None,
+    limit: Limit = 1000,
+) -> AggregatesOut:
+    """Say what the usable readings of each minute, or of ten, were: count, mean, least and most.
+
+    A direction has no mean; ask for ``current_east_m_s`` and ``current_north_m_s`` instead.
+    """
+    found = live.store.aggregates(
+        live.name, stream=stream, key=key, width_s=width_s, start=start, end=end, limit=limit
+    )
+    return AggregatesOut(
+        stream=stream,
+        key=key,
+        width_s=width_s,
+        aggregates=[
+            AggregateOut(t=one.t, count=one.count, mean=one.mean, least=one.least, most=one.most)
+            for one in found
+        ],
+    )
 
 
 @cages.get("/{cage}/state", dependencies=may_read, responses=READ)

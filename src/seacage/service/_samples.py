@@ -2,13 +2,14 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from datetime import datetime
+from datetime import UTC, datetime
 
 from seacage.conventions import InputError
 from seacage.records import Sample
 from seacage.service._schemas import Rejection, SampleIn
 
 _LARGEST = 1.7e308
+_EARLIEST = datetime(1970, 1, 1, tzinfo=UTC)
 
 BUOY_KEYS = ("current_speed_m_s", "current_to_deg", "hs_m", "tp_s", "wave_from_deg")
 
@@ -48,6 +49,11 @@ def _sample(one: SampleIn, streams: Mapping[str, tuple[str, ...]], until: dateti
         if key not in streams[one.stream]:
             carried = ", ".join(streams[one.stream])
             raise InputError(f"{one.stream} has no quantity {key!r}. It carries {carried}.")
+    if one.t < _EARLIEST:
+        raise InputError(
+            f"{one.stream}: its time {one.t.isoformat()} is before 1970. Check the clock of the "
+            "source."
+        )
     if one.t > until:
         raise InputError(
             f"{one.stream}: its time {one.t.isoformat()} is ahead of the cage's clock. "

@@ -1,6 +1,6 @@
 """The JSON of the doors: what is asked and what is answered, with the unit in each key."""
 
-from datetime import datetime
+from datetime import UTC, datetime
 from typing import Annotated, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, JsonValue
@@ -15,13 +15,27 @@ _YEARS = range(1900, 2200)
 def _with_zone(t: datetime) -> datetime:
     if t.tzinfo is None:
         raise ValueError("a time says its zone, as in 2018-01-26T23:08:00Z")
+    return t
+
+
+def _of_our_time(t: datetime) -> datetime:
     if t.year not in _YEARS:  # at the ends of the calendar, another zone's time does not exist
         raise ValueError(f"no time here is from the year {t.year}; check the source's clock")
     return t
 
 
-Time = Annotated[datetime, AfterValidator(_with_zone)]
+Time = Annotated[datetime, AfterValidator(_with_zone), AfterValidator(_of_our_time)]
 """With its zone."""
+
+_FIRST, _LAST = datetime(1900, 1, 1, tzinfo=UTC), datetime(2200, 1, 1, tzinfo=UTC)
+
+
+def _reachable(t: datetime) -> datetime:
+    return min(max(_with_zone(t), _FIRST), _LAST)
+
+
+Reach = Annotated[datetime, AfterValidator(_reachable)]
+"""A time that something is asked of: far away from all that is stored, one is as good as any."""
 
 BATCH_LIMIT = 1000
 """Samples in one request."""
@@ -83,6 +97,25 @@ class SamplesOut(_Answered):
     """Stored samples in time order."""
 
     samples: list[SampleOut]
+
+
+class AggregateOut(_Answered):
+    """The usable readings of one span, in the unit of the quantity's name; ``t`` is its start."""
+
+    t: datetime
+    count: int
+    mean: float
+    least: float
+    most: float
+
+
+class AggregatesOut(_Answered):
+    """The spans that had readings, in time order."""
+
+    stream: str
+    key: str
+    width_s: int
+    aggregates: list[AggregateOut]
 
 
 class Interval(_Answered):
