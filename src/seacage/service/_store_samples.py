@@ -24,23 +24,21 @@ UPDATE sample SET readings = ?, remarks = ? WHERE cage = ? AND stream = ? AND t 
 
 # Down the index from stream to stream, and in each to its newest: no scan of the samples. In
 # SQLite's words, and in those that PostgreSQL plans well.
-_NAMED = """
+_LATEST = """
 WITH RECURSIVE named(stream) AS (
     SELECT min(stream) FROM sample WHERE cage = ?
     UNION ALL
     SELECT (SELECT min(stream) FROM sample WHERE cage = ? AND stream > named.stream)
     FROM named WHERE named.stream IS NOT NULL
 )
-SELECT s.stream, s.t, s.seq, s.readings, s.remarks FROM named """
-_LATEST = {
-    False: _NAMED
-    + """JOIN sample s ON s.cage = ? AND s.stream = named.stream AND (s.t, s.seq) = (
+SELECT s.stream, s.t, s.seq, s.readings, s.remarks FROM named {newest}"""
+_NEWEST = {
+    False: """JOIN sample s ON s.cage = ? AND s.stream = named.stream AND (s.t, s.seq) = (
     SELECT t, seq FROM sample
     WHERE cage = s.cage AND stream = named.stream AND t <= ?
     ORDER BY t DESC, seq DESC LIMIT 1
 )""",
-    True: _NAMED
-    + """CROSS JOIN LATERAL (
+    True: """CROSS JOIN LATERAL (
     SELECT * FROM sample WHERE cage = ? AND stream = named.stream AND t <= ?
     ORDER BY t DESC, seq DESC LIMIT 1
 ) s""",
@@ -109,7 +107,7 @@ def latest_samples(
 ) -> dict[str, Sample]:
     """Read the newest sample of each stream until a time, it included."""
     until = _FOREVER if at is None else microseconds(at)
-    rows = session.rows(_LATEST[session.lateral], (cage, cage, cage, until))
+    rows = session.rows(_LATEST.format(newest=_NEWEST[session.lateral]), (cage, cage, cage, until))
     return {row[0]: _read(cage, row) for row in rows}
 
 
