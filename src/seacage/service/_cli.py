@@ -7,6 +7,7 @@ import typer
 from seacage.service._commands import (
     _archive,
     _campaign,
+    _clearance,
     _config,
     _doctor,
     _field,
@@ -45,6 +46,8 @@ app.command()(_score.score)
 app.add_typer(_study.group, name="study")
 app.command()(_serve.serve)
 app.command()(_replay.replay)
+app.command()(_clearance.clearance)
+app.command()(_clearance.inspect)
 app.command()(_publish.publish)
 app.add_typer(_token.group, name="token")
 app.add_typer(_archive.group, name="archive")

@@ -32,13 +32,15 @@ class Exit(IntEnum):
     REFUSED = 1
     USAGE = 2
     FAILED = 3
+    EXCEEDED = 4
     INTERRUPTED = 130
     UNHEARD = 141
 
 
 EXIT_CODES = (
     "Exit codes: 0 done; 1 the input was refused; 2 the command line was not understood; "
-    "3 the work failed; 130 interrupted; 141 whoever read the output stopped reading."
+    "3 the work failed; 4 a bound that was given is exceeded; 130 interrupted; 141 whoever read "
+    "the output stopped reading."
 )
 
 
