@@ -30,6 +30,9 @@ COMMANDS = [
     "serve",
     "replay",
     "token new",
+    "archive write",
+    "archive read",
+    "archive check",
     "doctor",
 ]
 
