@@ -187,6 +187,7 @@ export class Model {
   }
 
   #refused(why) {
+    clearInterval(this.round); // nobody is asked with a token that is no good
     this.#link?.close();
     this.#link = null;
     if (why === "cage") return this.#connected("refused", "No cage has this name any more.");

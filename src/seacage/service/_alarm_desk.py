@@ -90,8 +90,12 @@ class AlarmDesk:
         return self._book.alarms
 
     def waiting(self) -> list[AlarmBrief]:
-        """Those that are active or that nobody has acknowledged, the worst first."""
-        open_ = [one for one in self.alarms.values() if one.active or not one.acknowledged]
+        """Those in service that are active or that nobody has acknowledged, the worst first."""
+        open_ = [
+            one
+            for one in self.alarms.values()
+            if one.in_service and (one.active or not one.acknowledged)
+        ]
         return sorted((self._brief(one) for one in open_), key=lambda one: -one.severity)
 
     def standing(self) -> list[Announcement]:

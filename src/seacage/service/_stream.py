@@ -10,7 +10,7 @@ from seacage.service._live import LiveCage
 
 _FIRST_MESSAGE_S = 5.0
 _FIRST_MESSAGE_BYTES = 1000
-UNKNOWN_TOKEN, NO_SCOPE, NO_CAGE, TOO_OFTEN = 4401, 4403, 4404, 4429
+UNKNOWN_TOKEN, NO_SCOPE, NO_CAGE, TOO_LATE, TOO_OFTEN = 4401, 4403, 4404, 4408, 4429
 """Codes of a closing: the page tells its reader which it was."""
 
 sockets = APIRouter()
@@ -58,7 +58,10 @@ async def _refusal(socket: WebSocket, cage: str) -> tuple[int, str] | None:
     gate, cages = gate_of(socket), socket.app.state.service.cages
     if sum(one.watchers for one in cages.values()) >= gate.limits.live_clients:
         return TOO_OFTEN, "There are as many live connections as may be. Try again later."
-    said, token = await _first_message(socket)
+    try:
+        said, token = await _first_message(socket)
+    except TimeoutError:  # a slow machine's page may try again: its token was not even heard
+        return TOO_LATE, f"The first message did not come within {_FIRST_MESSAGE_S:g} s."
     found = gate.known(token, socket.cookies.get(COOKIE)) if said else None
     if found is None:
         return _not_known(socket)
@@ -83,6 +86,6 @@ async def _first_message(socket: WebSocket) -> tuple[bool, str | None]:
     try:
         text = await asyncio.wait_for(socket.receive_text(), _FIRST_MESSAGE_S)
         token = json.loads(text[:_FIRST_MESSAGE_BYTES])["token"]
-    except (TimeoutError, WebSocketDisconnect, ValueError, KeyError, TypeError):
+    except (WebSocketDisconnect, ValueError, KeyError, TypeError):
         return False, None
     return token is None or isinstance(token, str), token

@@ -56,3 +56,12 @@ def test_a_replays_new_beginning_forgets_every_alarm(store: Store):
     looked(desk)
     desk.begin_anew()
     assert not desk.alarms
+
+
+def test_an_alarm_out_of_service_waits_for_nobody(store: Store):
+    store.keep_alarms("ace", book="none", journal=()).result()
+    desk = desk_of(store)
+    looked(desk)
+    assert [one.id for one in desk.waiting()] == ["history.store"]
+    desk.handle("history.store", "out-of-service", who="me", now=NOON, why="trial", seconds=None)
+    assert not desk.waiting()

@@ -74,6 +74,14 @@ def test_without_a_token_in_the_first_message_it_closes(idle: Running, first):
         assert closed_with(socket) == 4401
 
 
+def test_a_first_message_that_comes_too_late_costs_nobody_the_token(
+    idle: Running, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setattr("seacage.service._stream._FIRST_MESSAGE_S", 0.05)
+    with opened(idle) as socket:
+        assert closed_with(socket) == 4408
+
+
 def test_a_token_that_may_not_read_is_told_so(idle: Running):
     with opened(idle) as socket:
         socket.send(token(idle, "ingest"))
