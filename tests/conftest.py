@@ -79,6 +79,15 @@ def chromium() -> Path | None:
 
 
 @pytest.fixture(scope="session")
+def built_page(pytestconfig: pytest.Config) -> Path:
+    """The page, where it was built; `make page` builds it."""
+    folder = pytestconfig.rootpath / "src" / "seacage" / "service" / "page"
+    if not (folder / "index.html").is_file():
+        skip_or_fail("chromium", "the page is not built; run `make page`")
+    return folder
+
+
+@pytest.fixture(scope="session")
 def mosquitto(tmp_path_factory: pytest.TempPathFactory) -> Iterator[int]:
     """A broker of our own; its port on 127.0.0.1."""
     with socket.create_server(("127.0.0.1", 0)) as free:

@@ -1,13 +1,23 @@
-"""The page's scripts are ES modules that a strict reader accepts."""
+"""The page's scripts do what their own tests say."""
 
 import subprocess
 from pathlib import Path
 
-import seacage
+import pytest
 
 
-def test_node_reads_every_script_of_the_page(node: Path) -> None:
-    scripts = sorted(Path(seacage.__file__).parent.glob("service/page/**/*.js"))
+def test_the_tests_of_the_pages_scripts_pass(node: Path, pytestconfig: pytest.Config) -> None:
+    web = pytestconfig.rootpath / "web"
+    tests = sorted(web.glob("test/**/*.test.js"))
+    assert tests
+    told = subprocess.run(
+        [node, "--test", *tests], cwd=web, capture_output=True, text=True, check=False
+    )
+    assert not told.returncode, told.stdout[-4000:]
+
+
+def test_node_reads_every_script_of_the_page(node: Path, pytestconfig: pytest.Config) -> None:
+    scripts = sorted((pytestconfig.rootpath / "web").glob("src/**/*.js"))
     assert scripts
     for script in scripts:
         read = [node, "--input-type=module", "--check"]

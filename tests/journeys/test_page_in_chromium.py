@@ -1,65 +1,190 @@
-"""The page, opened in a real browser."""
+"""The page, opened in a real browser on a real service."""
 
-import json
 from pathlib import Path
 
 import pytest
 
-from browser import blank_page
-from serviced import Running, at, buoy, depth, running
+from browser import Line, Watched, opened_browser
+from serviced import Running, buoy, depth, running
+
+pytestmark = pytest.mark.usefixtures("built_page")
+PAGE_BYTES = 1_000_000  # what a phone on a boat can wait for
+FRAME_BYTES = 10_000
+MOUSE_STEPS = 4
 
 
 @pytest.fixture
 def live(tmp_path: Path):
-    """A service of one's own."""
+    """A service of one's own, with a buoy that has spoken."""
     with running(tmp_path) as one:
+        one.post(buoy(speed=0.5), depth(metres=14.2))
         yield one
 
 
-def test_the_page_shows_what_a_buoy_reports_and_asks_nobody_else(
-    chromium: Path, live: Running, tmp_path: Path
+def address(live: Running, scopes: tuple[str, ...] = ("read", "ack")) -> str:
+    token = live.service.tokens.mint(list(scopes), keep=False)
+    return f"{live.address}/#token={token}"
+
+
+def place_of(watched: Watched, selector: str) -> tuple[float, float]:
+    box = watched.page.locator(selector).first.bounding_box()
+    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+
+def test_the_page_draws_what_a_buoy_reports_and_asks_nobody_else(
+    chromium: Path, live: Running
 ) -> None:
-    live.post(buoy(speed=0.5))
-    token = live.reader.headers["Authorization"].removeprefix("Bearer ")
-    with blank_page(chromium, tmp_path / "profile") as page:
-        page.open(f"{live.address}/#token={token}")
-        page.until("document.body.dataset.phase == 'live'")
-        page.until("document.querySelectorAll('#bridle-table [scope=row]').length == 12")
-        page.until("document.querySelector('#verdict').innerText.includes('0.50 m/s')")
-        drawn = "(c => new Set(c.getContext('2d').getImageData(0, 0, c.width, c.height).data).size)"
-        assert page.value(f"{drawn}(document.querySelector('#side'))") > 10
-        outside = [asked for asked in page.asked if not asked.startswith((live.address, "data:"))]
-        assert not outside
-        assert not page.complaints
-        assert token not in page.value("location.href")
+    with opened_browser(chromium) as watched:
+        watched.page.goto(address(live))
+        watched.until_drawn()
+        watched.until("document.body.innerText.includes('0.50 m/s')")
+        assert watched.colours("#net") > 1000
+        assert not watched.asked_elsewhere(live.address)
+        assert not watched.complaints
+        assert "token" not in watched.page.url
 
 
-def test_a_spike_leaves_the_pages_curves_when_it_is_known_for_one(
-    chromium: Path, live: Running, tmp_path: Path
+def test_the_page_is_light_enough_for_a_boat(chromium: Path, live: Running) -> None:
+    with opened_browser(chromium) as watched:
+        watched.page.goto(address(live))
+        watched.until_drawn()
+        assert 100_000 < watched.loaded_bytes <= PAGE_BYTES
+        assert watched.frame_bytes
+        assert max(watched.frame_bytes) <= FRAME_BYTES
+
+
+def test_the_net_moves_when_the_current_grows(chromium: Path, live: Running) -> None:
+    with opened_browser(chromium, reduced_motion="reduce") as watched:
+        watched.page.goto(address(live))
+        watched.until_drawn()
+        bottom = "Number(document.querySelector('#net').dataset.bottom)"
+        before = watched.page.evaluate(bottom)
+        live.post(buoy(0.5, speed=0.9))
+        live.clock.at = live.cage.clock.now().replace(minute=1)
+        watched.until(f"{bottom} > {before} + 1")  # a stronger current lifts it
+
+
+def test_a_node_that_is_pointed_at_says_where_it_is(chromium: Path, live: Running) -> None:
+    with opened_browser(chromium) as watched:
+        watched.page.goto(address(live))
+        watched.until_drawn()
+        x, y = place_of(watched, "#net")
+        tip = watched.page.locator(".scene-tip")
+        # The net fills the middle; somewhere on a short way across it there is a node.
+        for step in range(60):
+            watched.page.mouse.move(x - 60 + 2 * step, y + 30, steps=MOUSE_STEPS)
+            if tip.is_visible() and "Depth" in tip.inner_text():
+                break
+        assert "Uncertainty, σ" in tip.inner_text()
+
+
+def test_the_keyboard_turns_the_net_and_steps_through_its_lines(
+    chromium: Path, live: Running
 ) -> None:
-    measured = [(-4, 7.0), (-3, 7.1), (-2, 30.0), (-1, 7.2)]
-    live.post(buoy(-4), *(depth(minute, metres) for minute, metres in measured))
-    # each state is a tick half a minute after its reading
-    state = json.dumps([live.state(at=at(minute + 0.5)) for minute, _ in measured])
-    topology = live.reader.get("/api/v1/cages/ace/topology").text
-    with blank_page(chromium, tmp_path / "profile") as page:
-        page.open(live.address)
-        page.until("document.body.dataset.phase == 'asking'")
-        page.value(f"""import("{live.address}/page/sensors.js").then(({{ Sensors }}) => {{
-            const [grid, legend] = [0, 1].map(() => document.createElement("div"));
-            const sensors = new Sensors({{ grid, legend }});
-            sensors.topology({topology});
-            window.shown = {state}.map((state) => {{
-                sensors.show(state);
-                return sensors.cards.get("depth-2").measured.map(({{ value }}) => value);
-            }});
-        }})""")
-        page.until("Boolean(window.shown)")
-        assert page.value("JSON.stringify(window.shown.slice(-2))") == "[[7,7.1,30],[7,7.1,7.2]]"
+    with opened_browser(chromium, reduced_motion="reduce") as watched:
+        watched.page.goto(address(live))
+        watched.until_drawn()
+        watched.page.locator("#net").focus()
+        needle = "document.querySelector('.scene-compass g').getAttribute('transform')"
+        before = watched.page.evaluate(needle)
+        watched.page.keyboard.press("ArrowLeft")
+        watched.until(f"{needle} != {before!r}")
+        watched.page.keyboard.press("PageDown")
+        tip = watched.page.locator(".scene-tip")
+        tip.wait_for(state="visible")
+        assert "Of its capacity" in tip.inner_text()
+        watched.page.keyboard.press("Escape")
+        tip.wait_for(state="hidden")
 
 
-def test_a_page_without_a_token_asks_for_one(chromium: Path, live: Running, tmp_path: Path) -> None:
-    with blank_page(chromium, tmp_path / "profile") as page:
-        page.open(live.address)
-        page.until("document.body.dataset.phase == 'asking'")
-        assert not page.value("document.querySelector('#ask').hidden")
+def test_without_webgl_the_net_is_drawn_flat_with_a_table(chromium: Path, live: Running) -> None:
+    with opened_browser(chromium, webgl=False) as watched:
+        watched.page.goto(address(live))
+        watched.until("document.querySelectorAll('.flat-bridle').length == 24")  # in two views
+        assert "Sinker tube" in watched.page.locator(".flat-table").inner_text()
+        assert not [asked for asked in watched.asked if "/three" in asked]
+        assert not watched.complaints
+
+
+@pytest.mark.parametrize("scheme", ["dark", "light"])
+def test_the_page_follows_the_system_into_the_dark_and_the_light(
+    scheme: str, chromium: Path, live: Running
+) -> None:
+    with opened_browser(chromium, color_scheme=scheme) as watched:
+        watched.page.goto(address(live))
+        watched.until_drawn()
+        assert watched.page.evaluate("document.documentElement.dataset.theme") == scheme
+        ground = watched.page.evaluate("getComputedStyle(document.body).backgroundColor")
+        bright = sum(map(int, ground.removeprefix("rgb(").removesuffix(")").split(",")))
+        assert (bright > 600) is (scheme == "light")
+
+
+def test_on_a_phone_the_net_is_on_top_and_nothing_sticks_out(chromium: Path, live: Running) -> None:
+    with opened_browser(chromium, size=(390, 844), has_touch=True) as watched:
+        watched.page.goto(address(live))
+        watched.until_drawn()
+        wide = "document.documentElement.scrollWidth - document.documentElement.clientWidth"
+        assert watched.page.evaluate(wide) == 0
+        scene, panels = (watched.page.locator(one).bounding_box() for one in ("#scene", "#panels"))
+        assert scene["y"] + scene["height"] <= panels["y"] + 1
+        assert scene["width"] == 390
+
+
+def test_a_page_without_a_token_asks_for_one_and_opens_with_it(
+    chromium: Path, live: Running
+) -> None:
+    with opened_browser(chromium) as watched:
+        watched.page.goto(live.address)
+        field = watched.page.get_by_label("Token")
+        field.wait_for(state="visible")
+        field.fill(live.service.tokens.mint(["read"], keep=False))
+        field.press("Enter")
+        watched.until_drawn()
+        assert watched.page.locator("#ask").is_hidden()
+
+
+def test_a_token_that_is_not_known_is_refused_in_words(chromium: Path, live: Running) -> None:
+    with opened_browser(chromium) as watched:
+        watched.page.goto(f"{live.address}/#token=guess")
+        why = watched.page.locator("#ask .ask-why")
+        why.wait_for(state="visible")
+        assert "does not open the service" in why.inner_text()
+
+
+def test_without_any_input_the_page_says_so_and_shows_no_load(
+    chromium: Path, tmp_path: Path
+) -> None:
+    with running(tmp_path) as live, opened_browser(chromium) as watched:
+        watched.page.goto(address(live))
+        watched.until("document.body.dataset.valid == 'false'")
+        notice = watched.page.locator(".scene-notice")
+        notice.wait_for(state="visible")
+        assert "Waiting for the first reading" in notice.inner_text()
+        assert "kN" not in watched.page.locator("#scene").inner_text()
+        assert not watched.complaints
+
+
+def test_a_connection_that_breaks_is_told_and_comes_back(chromium: Path, live: Running) -> None:
+    with opened_browser(chromium) as watched:
+        line = Line(watched)
+        watched.page.goto(address(live))
+        watched.until_drawn()
+        line.break_off()
+        watched.until("document.body.dataset.connection == 'lost'")
+        assert "No connection" in watched.page.locator(".scene-notice").inner_text()
+        line.mend()
+        watched.until("document.body.dataset.connection == 'live'")
+        watched.page.locator(".scene-notice").wait_for(state="hidden")
+
+
+@pytest.mark.parametrize("scheme", ["dark", "light"])
+def test_axe_finds_no_serious_fault(
+    scheme: str, chromium: Path, live: Running, pytestconfig: pytest.Config
+) -> None:
+    axe = pytestconfig.rootpath / "web" / "node_modules" / "axe-core" / "axe.min.js"
+    if not axe.is_file():
+        pytest.skip("needs axe-core, which the page's build fetches")
+    with opened_browser(chromium, color_scheme=scheme) as watched:
+        watched.page.goto(address(live))
+        watched.until_drawn()
+        assert not watched.faults(axe)

@@ -1,69 +1,120 @@
-"""A page in headless Chromium, spoken to by the browser's own debugging protocol."""
+"""A page in Debian's headless Chromium: what it shows, whom it asks and what it complains of."""
 
+import io
 import json
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-import httpx
-from websockets.sync.client import ClientConnection, connect
+import numpy as np
+from PIL import Image
+from playwright.sync_api import Page, WebSocketRoute, sync_playwright
 
-from outside import serving, wait_for
+_PLAIN = ("--no-sandbox",)
+# WebGL by software: slow, but the same picture on every machine.
+_WITH_WEBGL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
+_WITHOUT_WEBGL = ("--disable-gpu", "--disable-3d-apis")
+_SERIOUS = {"serious", "critical"}
 
-HEADLESS = ("--headless", "--no-sandbox", "--remote-debugging-port=0", "about:blank")
-PROBLEMS = ("Runtime.exceptionThrown", "Runtime.consoleAPICalled", "Log.entryAdded")
 
+class Watched:
+    """A page under watch; `page` is Playwright's own."""
 
-class Page:
-    """One open page: what it shows, which addresses it asked and what it complained of."""
-
-    def __init__(self, line: ClientConnection) -> None:
+    def __init__(self, page: Page) -> None:
+        self.page = page
         self.asked: list[str] = []
         self.complaints: list[str] = []
-        self._line = line
-        self._calls = 0
-        for domain in ("Page", "Runtime", "Log", "Network"):
-            self._call(f"{domain}.enable")
+        self.loaded_bytes = 0
+        self.frame_bytes: list[int] = []
+        page.on("console", self._hear)
+        page.on("pageerror", lambda error: self.complaints.append(str(error)))
+        page.on("request", lambda request: self.asked.append(request.url))
+        page.on("response", self._weigh)
+        page.on("websocket", lambda line: line.on("framereceived", self._weigh_frame))
 
-    def open(self, address: str) -> None:
-        """Go there."""
-        self._call("Page.navigate", url=address)
-
-    def value(self, script: str) -> object:
-        """What a script's expression is in the page."""
-        return self._call("Runtime.evaluate", expression=script)["result"].get("value")
-
-    def until(self, script: str, *, seconds: float = 30.0) -> None:
-        """Wait until an expression is true."""
+    def until(self, script: str, *, seconds: float = 45.0) -> None:
+        """Wait until an expression of the page is true."""
         end = time.monotonic() + seconds
-        while not self.value(script):
-            body = self.value("document.body.outerHTML")
-            assert time.monotonic() < end, f"{script} stays false; {self.complaints}\n{body}"
-            time.sleep(0.1)
+        # Not `wait_for_function`: it evaluates in the page, which our security policy forbids.
+        while not self.page.evaluate(script):
+            assert time.monotonic() < end, f"{script} stays false; complaints: {self.complaints}"
+            self.page.wait_for_timeout(100)
 
-    def _call(self, method: str, **params: object) -> dict:
-        self._calls += 1
-        self._line.send(json.dumps({"id": self._calls, "method": method, "params": params}))
-        while (told := json.loads(self._line.recv(timeout=30))).get("id") != self._calls:
-            self._hear(told)
-        return told["result"]
+    def until_drawn(self) -> None:
+        """Wait for the net in three dimensions."""
+        self.until("document.body.dataset.connection == 'live'")
+        self.until("Number(document.querySelector('#net')?.dataset.frames) > 2")
 
-    def _hear(self, told: dict) -> None:
-        if told["method"] == "Network.requestWillBeSent":
-            self.asked.append(told["params"]["request"]["url"])
-        if told["method"] in PROBLEMS:
-            self.complaints.append(json.dumps(told["params"]))
+    def asked_elsewhere(self, address: str) -> list[str]:
+        """Addresses beyond the service's own."""
+        own = (address, address.replace("http", "ws", 1), "data:", "blob:")
+        return [asked for asked in self.asked if not asked.startswith(own)]
+
+    def colours(self, selector: str) -> int:
+        """How many colours a part of the page shows; a blank one shows a handful."""
+        picture = Image.open(io.BytesIO(self.page.locator(selector).first.screenshot()))
+        return len(np.unique(np.asarray(picture.convert("RGB")).reshape(-1, 3), axis=0))
+
+    def faults(self, axe: Path) -> list[str]:
+        """Serious faults of accessibility that axe-core finds, each with where it is."""
+        self.page.evaluate(axe.read_text())
+        found = self.page.evaluate("axe.run(document, {resultTypes: ['violations']})")
+        return [
+            json.dumps({"rule": one["id"], "at": [node["target"] for node in one["nodes"]][:5]})
+            for one in found["violations"]
+            if one["impact"] in _SERIOUS
+        ]
+
+    def _hear(self, message) -> None:
+        if message.type in {"error", "warning"} and "GPU stall" not in message.text:
+            self.complaints.append(message.text)
+
+    def _weigh(self, response) -> None:
+        if response.url.startswith("http") and "/api/" not in response.url:
+            self.loaded_bytes += int(response.headers.get("content-length", 0))
+
+    def _weigh_frame(self, frame: str | bytes) -> None:
+        if isinstance(frame, bytes):
+            self.frame_bytes.append(len(frame))
 
 
 @contextmanager
-def blank_page(chromium: Path, profile: Path) -> Iterator[Page]:
-    """An empty page of a browser of our own, whose profile is a folder that may go away."""
-    where = profile / "DevToolsActivePort"
-    with serving([chromium, f"--user-data-dir={profile}", *HEADLESS]):
-        wait_for(where.read_text)
-        port = where.read_text().split()[0]
-        tabs = httpx.get(f"http://127.0.0.1:{port}/json").json()
-        address = next(tab["webSocketDebuggerUrl"] for tab in tabs if tab["type"] == "page")
-        with connect(address, max_size=None) as line:
-            yield Page(line)
+def opened_browser(
+    chromium: Path, *, webgl: bool = True, size: tuple[int, int] = (1440, 900), **context: object
+) -> Iterator[Watched]:
+    """An empty page in a browser of our own; `context` goes to Playwright, as color_scheme."""
+    flags = [*_PLAIN, *(_WITH_WEBGL if webgl else _WITHOUT_WEBGL)]
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=chromium, args=flags)
+        viewport = {"width": size[0], "height": size[1]}
+        try:
+            yield Watched(browser.new_context(viewport=viewport, **context).new_page())
+        finally:
+            browser.close()
+
+
+class Line:
+    """Stands between the page and its live connection, to cut it."""
+
+    def __init__(self, watched: Watched) -> None:
+        self._open: list[WebSocketRoute] = []
+        self.cut = False
+        watched.page.route_web_socket("**/live", self._pass)
+
+    def _pass(self, line: WebSocketRoute) -> None:
+        if self.cut:
+            line.close(code=1001)
+            return
+        self._open.append(line)
+        line.connect_to_server()
+
+    def break_off(self) -> None:
+        """Cut the connection, and every new one until it is mended."""
+        self.cut = True
+        while self._open:
+            self._open.pop().close(code=1001)
+
+    def mend(self) -> None:
+        """Let connections through again."""
+        self.cut = False

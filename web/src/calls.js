@@ -13,7 +13,9 @@ export class Refusal extends Error {
 
 /** Call a path under /api/v1; the answer as JSON, or as bytes where it is a frame. */
 export async function call(method, path, body) {
-  const headers = { Authorization: `Bearer ${token()}` };
+  const known = token();
+  if (!known) throw new Refusal(401, "This page has no token.");
+  const headers = { Authorization: `Bearer ${known}` };
   if (body !== undefined) headers["Content-Type"] = "application/json";
   let answer;
   try {

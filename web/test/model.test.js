@@ -104,6 +104,24 @@ test("a token that is refused is dropped and asked for again", async () => {
   assert.equal(globalThis.sessionStorage.getItem("seacage-token"), null);
 });
 
+test("a token that came too late is not thrown away, but sent again", async () => {
+  const { model, socket } = await opened();
+  socket.close(4401);
+  assert.equal(model.connection, "lost");
+  mock.timers.tick(2000);
+  await new Promise(setImmediate);
+  assert.equal(sockets.length, 2);
+  sockets[1].onopen();
+  assert.deepEqual(sockets[1].sent, ['{"token":"secret"}']);
+});
+
+test("without a token nothing is asked of the service", async () => {
+  const model = new Model();
+  globalThis.sessionStorage.removeItem("seacage-token");
+  await assert.rejects(model.call("GET", "cages/calm/alarms"), { status: 401 });
+  assert.equal(calls.length, 0);
+});
+
 test("a token without the scope is told so", async () => {
   const { model, socket } = await opened();
   socket.close(4403);

@@ -132,6 +132,7 @@ export class Orbit {
     const does = KEYS[event.key];
     if (!does || event.ctrlKey || event.metaKey || event.altKey) return;
     event.preventDefault();
+    event.stopPropagation(); // the page has other uses for arrows
     if (does.zoom) this.zoom(does.zoom);
     else if (event.shiftKey) this.#pan(150 * (does.azimuth ?? 0), 150 * (does.elevation ?? 0));
     else this.#turn(does.azimuth ?? 0, does.elevation ?? 0);

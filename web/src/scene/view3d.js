@@ -31,7 +31,7 @@ export class View3d {
     this.canvas = make("canvas", {
       id: "net", tabIndex: 0, role: "img",
       "aria-label": "The net in three dimensions. Arrow keys turn it, plus and minus zoom, " +
-        "comma and full stop step through bridles and sensors.",
+        "page up and page down step through bridles and sensors.",
     });
     holder.append(this.canvas);
     this.renderer = new WebGLRenderer({ canvas: this.canvas, antialias: true, alpha: true });
@@ -220,11 +220,13 @@ export class View3d {
   key(event) {
     if (event.key === "Escape") this.model.select(null);
     if (event.key === "Home") this.look("oblique");
-    if (event.key !== "," && event.key !== ".") return;
+    const step = { PageDown: 1, PageUp: -1 }[event.key];
+    if (!step || !this.screen) return;
+    event.preventDefault();
     const all = [...this.topology.bridle_names.map((bridle) => ({ bridle })),
       ...this.marks.places.map(({ name }) => ({ sensor: name }))];
     const at = all.findIndex((one) => JSON.stringify(one) === JSON.stringify(this.model.selection));
-    const next = at + (event.key === "." ? 1 : at < 0 ? 0 : -1);
+    const next = at < 0 && step < 0 ? all.length - 1 : at + step;
     this.model.select(all[(next + all.length) % all.length]);
   }
 
@@ -233,7 +235,7 @@ export class View3d {
     if (!this.size) return;
     const { width, height } = { width: this.holder.clientWidth || 1, height: this.holder.clientHeight || 1 };
     // All of the frame fits the narrower way.
-    const wide = Math.max(1, (1.2 * height) / width);
+    const wide = Math.max(1, (1.38 * height) / width);
     const target = new Vector3(0, 0, name === "top" ? 0 : -0.3 * this.size.depth);
     const distance = (name === "top" ? 3.1 : 2.5) * this.size.frame * wide;
     this.orbit.limits = [0.5 * this.size.frame, 8 * this.size.frame];
