@@ -14,6 +14,7 @@ from seacage.service._mqtt_feed import MqttFeed
 from seacage.service._notify import Herald, Webhook
 from seacage.service._quarantine import Quarantine
 from seacage.service._replay import Replay
+from seacage.service._retention import Retention
 from seacage.service._settings import CageSection, Settings
 from seacage.service._store import Store, open_store
 from seacage.service._tokens import Tokens
@@ -85,7 +86,10 @@ def assembled(
     if replay is not None and len(twins) != 1:
         raise InputError(f"serve: a record is replayed into one cage, and there are {len(twins)}.")
     policies = {name: policy_of(settings, name, twin) for name, twin in twins.items()}
-    store = open_store(store_place(settings, replayed=replay is not None))
+    store = open_store(
+        store_place(settings, replayed=replay is not None),
+        archive=settings.store.archive if replay is None else None,
+    )
     metrics, clock = Metrics(), _clock(replay, speed)
     cages = {
         name: LiveCage(
@@ -100,6 +104,8 @@ def assembled(
         for name, twin in twins.items()
     }
     feeds = _feeds(settings, cages, metrics)
+    if replay is None and (keep_days := settings.store.keep_days) is not None:
+        feeds.append(Retention(store, clocks=dict.fromkeys(cages, clock), keep_days=keep_days).run)
     if replay is not None and isinstance(clock, ReplayClock):
         feeds.append(partial(replay.feed, next(iter(cages.values())), clock))
     return _guarded(settings, cages, store, metrics, feeds)

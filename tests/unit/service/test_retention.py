@@ -4,8 +4,11 @@ from datetime import timedelta
 import pytest
 
 from seacage.conventions import InputError
+from seacage.service._assembly import assembled
 from seacage.service._retention import Retention, midnight
-from seacage.service._store import open_store
+from seacage.service._settings import Settings
+from seacage.service._store import look_into, open_store
+from seacage.testing import stand_in_twin
 from stores import NOON, put, sample
 
 A_DAY = 60 * 24
@@ -68,3 +71,27 @@ def test_to_keep_nothing_is_refused(store):
 
 def test_midnight_is_that_of_utc():
     assert midnight(NOON) == NOON - timedelta(hours=12)
+
+
+def test_a_service_that_is_told_to_archives_and_lets_go(tmp_path):
+    kept = {"keep_days": 30.0, "archive": tmp_path / "archive"}
+    service = assembled(Settings(data=tmp_path, store=kept), {"ace": stand_in_twin()})
+    put(service.store, sample(), sample(60 * 24))
+
+    def left():
+        with look_into(tmp_path / "samples.sqlite") as session:
+            return session.rows("SELECT count(*) FROM sample")[0][0]
+
+    async def serve():
+        service.begin()
+        for _ in range(200):
+            await asyncio.sleep(0.05)
+            if not left():
+                break
+        read = service.store.samples("ace", limit=9)
+        await service.end()
+        return read
+
+    assert asyncio.run(serve()) == [sample(), sample(60 * 24)]
+    assert left() == 0
+    assert len(list(tmp_path.glob("archive/ace/depth-1/*.parquet"))) == 2
