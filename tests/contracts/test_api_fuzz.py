@@ -1,0 +1,100 @@
+"""Whatever is sent, the interface answers as it documents: never 5xx, never an unknown code."""
+
+import httpx
+import hypothesis
+import pytest
+import schemathesis
+from schemathesis import GenerationMode
+from schemathesis.specs.openapi.checks import ignored_auth, positive_data_acceptance
+
+from seacage.service._limits import Limits
+from serviced import buoy, depth, running
+
+# A sea too steep to stand, or an alarm that there is not, is well formed and refused all the same.
+EXCLUDED = [positive_data_acceptance]
+OPEN_TO_LOOPBACK = [ignored_auth]
+# Schemathesis does what Hypothesis warns of.
+pytestmark = pytest.mark.filterwarnings("ignore:Do not use the `random` module")
+PLENTY = Limits(requests_per_s=1e6, burst=1e6, refusals_per_s=1e6, refusal_burst=1e6)
+
+
+@pytest.fixture(scope="module")
+def service(tmp_path_factory):
+    """A service that has heard something and never holds anybody up."""
+    with running(tmp_path_factory.mktemp("fuzz"), limits=PLENTY) as one:
+        one.post(buoy(-30), buoy(-10), depth(-15), depth(-10, stream="depth-1"))
+        yield one
+
+
+@pytest.fixture(scope="module")
+def operations(service):
+    """Every call that the interface describes."""
+    described = httpx.get(f"{service.address}/openapi.json").json()
+    schema = schemathesis.openapi.from_dict(described)
+    return [operation.ok() for operation in schema.get_all_operations()]
+
+
+def tried(service, operation, mode, cases):
+    """Send so many cases of one call; how many were sent."""
+    token = service.service.tokens.mint(["admin"], keep=False)
+    headers, sent = {"Authorization": f"Bearer {token}"}, 0
+    excluded = EXCLUDED + (OPEN_TO_LOOPBACK if "service" in operation.tags else [])
+
+    @hypothesis.settings(
+        max_examples=cases,
+        database=None,
+        derandomize=True,
+        suppress_health_check=list(hypothesis.HealthCheck),
+        phases=[hypothesis.Phase.explicit, hypothesis.Phase.generate],
+    )
+    @hypothesis.given(case=operation.as_strategy(generation_mode=mode))
+    def attempt(case):
+        nonlocal sent
+        sent += 1
+        if mode is GenerationMode.POSITIVE and "cage" in case.path_parameters:
+            case.path_parameters["cage"] = "ace"  # else hardly any case would get past the name
+        case.call_and_validate(
+            base_url=service.address, headers=headers, excluded_checks=excluded, timeout=60
+        )
+
+    attempt()
+    return sent
+
+
+def fuzzed(service, operations, cases):
+    return sum(
+        tried(service, operation, mode, cases)
+        for operation in operations
+        for mode in (GenerationMode.POSITIVE, GenerationMode.NEGATIVE)
+        if can(operation, mode)
+    )
+
+
+def can(operation, mode):
+    """Whether there is a wrong way to make a call: not where it has nothing to get wrong."""
+    parts = (operation.path_parameters, operation.query, operation.headers)
+    return mode is GenerationMode.POSITIVE or bool(operation.body) or any(map(bool, parts))
+
+
+def test_some_hundred_cases_are_answered_as_documented(service, operations):
+    assert fuzzed(service, operations, 6) > 200
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(3600)
+def test_ten_thousand_cases_are_answered_as_documented(service, operations):
+    assert fuzzed(service, operations, 250) >= 10_000
+
+
+def test_every_call_documents_its_refusals_and_shows_an_example(service):
+    described = httpx.get(f"{service.address}/openapi.json").json()
+    assert described["openapi"].startswith("3.1")
+    for path, calls in described["paths"].items():
+        for method, call in calls.items():
+            where = f"{method} {path}"
+            assert {"401", "429"} <= call["responses"].keys(), where
+            assert call.get("description"), where
+            for parameter in call.get("parameters", []):
+                bounded = parameter["schema"].get("anyOf", [parameter["schema"]])[0]
+                kind = bounded.get("type")
+                assert kind != "string" or {"maxLength", "format", "enum"} & bounded.keys(), where
