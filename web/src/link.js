@@ -21,7 +21,7 @@ export function connect(cage, on) {
 
   const listen = () => {
     clearTimeout(watch);
-    watch = setTimeout(() => socket.close(), QUIET_MS);
+    watch = setTimeout(silent, QUIET_MS);
   };
 
   function open() {
@@ -40,13 +40,23 @@ export function connect(cage, on) {
         if (message.kind === "topology") on.topology(message);
       }
     };
-    socket.onclose = ({ code }) => {
-      if (one !== socket || ended) return;
-      clearTimeout(watch);
-      if (code in REFUSED) on.refused(REFUSED[code]);
-      else if (!document.hidden) pause();
-    };
+    socket.onclose = ({ code }) => gone(one, code);
     listen();
+  }
+
+  function gone(one, code) {
+    if (one !== socket || ended) return;
+    socket = null;
+    clearTimeout(watch);
+    if (code in REFUSED) on.refused(REFUSED[code]);
+    else if (!document.hidden) pause();
+  }
+
+  /** A line that has died may take minutes to close; nobody waits for that. */
+  function silent() {
+    const dead = socket;
+    gone(dead);
+    dead?.close();
   }
 
   function pause() {
@@ -58,8 +68,8 @@ export function connect(cage, on) {
 
   const seen = () => {
     clearTimeout(retry);
-    if (document.hidden) socket.close();
-    else if (socket.readyState >= WebSocket.CLOSING) open();
+    if (document.hidden) socket?.close();
+    else if (!socket || socket.readyState >= WebSocket.CLOSING) open();
   };
 
   document.addEventListener("visibilitychange", seen);
@@ -71,7 +81,7 @@ export function connect(cage, on) {
       clearTimeout(watch);
       clearTimeout(retry);
       document.removeEventListener("visibilitychange", seen);
-      socket.close();
+      socket?.close();
     },
   };
 }

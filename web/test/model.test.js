@@ -106,10 +106,9 @@ test("a token that is refused is dropped and asked for again", async () => {
 
 test("a token that came too late is not thrown away, but sent again", async () => {
   const { model, socket } = await opened();
-  socket.close(4401);
+  socket.close(4408);
   assert.equal(model.connection, "lost");
-  mock.timers.tick(2000);
-  await new Promise(setImmediate);
+  mock.timers.tick(1000);
   assert.equal(sockets.length, 2);
   sockets[1].onopen();
   assert.deepEqual(sockets[1].sent, ['{"token":"secret"}']);
@@ -195,4 +194,13 @@ test("input older than the limit is stale, and the past never is", () => {
   assert.equal(viewOf(old, "live", how).stale, true);
   assert.equal(viewOf(old, "past", how).stale, false);
   assert.equal(viewOf({ state: { age_s: null } }, "live", how).ageS, null);
+});
+
+test("a line that falls silent is lost at once, even where it takes its time to close", async () => {
+  const { model, socket } = await opened();
+  socket.close = () => {};
+  mock.timers.tick(15_000);
+  assert.equal(model.connection, "lost");
+  mock.timers.tick(1000);
+  assert.equal(sockets.length, 2);
 });
