@@ -1,11 +1,12 @@
 """The page, opened in a real browser on a real service."""
 
+from datetime import timedelta
 from pathlib import Path
 
 import pytest
 
 from browser import Line, Watched, opened_browser
-from serviced import Running, buoy, depth, running
+from serviced import Running, buoy, depth, eventually, running
 
 pytestmark = pytest.mark.usefixtures("built_page")
 PAGE_BYTES = 1_000_000  # what a phone on a boat can wait for
@@ -24,6 +25,11 @@ def live(tmp_path: Path):
 def address(live: Running, scopes: tuple[str, ...] = ("read", "ack")) -> str:
     token = live.service.tokens.mint(list(scopes), keep=False)
     return f"{live.address}/#token={token}"
+
+
+def silence(live: Running) -> dict:
+    told = live.reader.get("/api/v1/cages/ace/alarms").json()["alarms"]
+    return next(alarm for alarm in told if alarm["id"] == "silent.buoy-1")
 
 
 def place_of(watched: Watched, selector: str) -> tuple[float, float]:
@@ -175,6 +181,55 @@ def test_a_connection_that_breaks_is_told_and_comes_back(chromium: Path, live: R
         line.mend()
         watched.until("document.body.dataset.connection == 'live'")
         watched.page.locator(".scene-notice").wait_for(state="hidden")
+
+
+def test_the_reader_asks_what_would_be_and_comes_back_to_what_is(
+    chromium: Path, live: Running
+) -> None:
+    with opened_browser(chromium, reduced_motion="reduce") as watched:
+        watched.page.goto(address(live))
+        watched.until_drawn()
+        watched.page.get_by_role("tab", name="What if").click()
+        bottom = "Number(document.querySelector('#net').dataset.bottom)"
+        before = watched.page.evaluate(bottom)
+        speed = watched.page.locator("#panels").get_by_label("Current", exact=True)
+        speed.focus()
+        for _ in range(3):
+            watched.page.keyboard.press("PageUp")
+        watched.until("document.body.dataset.mode == 'whatif'")
+        watched.until(f"{bottom} > {before} + 0.5")
+        watched.page.get_by_role("button", name="Back to the sea now").click()
+        watched.until("document.body.dataset.mode == 'live'")
+        assert not watched.complaints
+
+
+def test_the_reader_travels_to_the_past_and_back(chromium: Path, live: Running) -> None:
+    live.post(buoy(-120.0, speed=0.9))
+    with opened_browser(chromium) as watched:
+        watched.page.goto(address(live))
+        watched.until_drawn()
+        slider = watched.page.get_by_label("Time that is shown")
+        slider.focus()
+        watched.page.keyboard.press("PageDown")
+        watched.until("document.body.dataset.mode == 'past'")
+        watched.page.keyboard.press("End")
+        watched.until("document.body.dataset.mode == 'live'")
+        assert not watched.complaints
+
+
+def test_a_silent_buoy_is_told_and_acknowledged_on_the_page(chromium: Path, live: Running) -> None:
+    with opened_browser(chromium) as watched:
+        watched.page.goto(address(live))
+        watched.until_drawn()
+        for _ in range(25):  # in small steps: a clock that jumps has nobody woken
+            live.clock.at += timedelta(seconds=60)
+            watched.page.wait_for_timeout(400)
+        watched.page.get_by_role("tab", name="Alarms").click()
+        found = watched.page.get_by_role("button", name="Acknowledge: ").first
+        found.wait_for(state="visible")
+        found.click()
+        watched.page.get_by_role("dialog").get_by_role("button", name="Acknowledge").click()
+        assert eventually(lambda: silence(live), lambda told: told["acknowledged"])["acknowledged"]
 
 
 @pytest.mark.parametrize("scheme", ["dark", "light"])

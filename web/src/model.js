@@ -7,7 +7,6 @@ import { dropToken, keepToken, token } from "./token.js";
 import { readFrame } from "./wire.js";
 
 const LOOK_ROUND_MS = 10_000;
-const ASK_AGAIN_MS = 2000;
 const STALE_UNKNOWN_S = 3600;
 
 /**
@@ -97,15 +96,8 @@ export class Model {
       frame: (buffer) => this.#setLive(buffer),
       lost: (seconds) =>
         this.#connected("lost", `Connection lost; trying again in ${seconds} s.`),
-      // A line so slow that the token came too late is refused like a wrong token: ask again.
-      refused: (why) => (why === "unknown" ? this.#askAgain() : this.#refused(why)),
+      refused: (why) => this.#refused(why),
     });
-  }
-
-  #askAgain() {
-    this.#link = null;
-    this.#connected("lost", "The service did not hear the token; trying again.");
-    setTimeout(() => this.#link ?? this.open(), ASK_AGAIN_MS);
   }
 
   /** Try to connect at once. */
