@@ -17,6 +17,7 @@ from seacage.service._replay import Replay
 from seacage.service._retention import Retention
 from seacage.service._settings import CageSection, Settings
 from seacage.service._store import Store, open_store
+from seacage.service._tail import FileTail
 from seacage.service._tokens import Tokens
 from seacage.twin import AlarmPolicy, Twin
 
@@ -119,6 +120,8 @@ def _feeds(settings: Settings, cages: Mapping[str, LiveCage], metrics: Metrics) 
     feeds, hooks = list[Feed](), [Webhook(**hook.model_dump()) for hook in settings.webhooks]
     if hooks:
         feeds.append(Herald(hooks, cages).run)
+    quarantine = Quarantine(settings.data / "quarantine.jsonl")
+    feeds += _tails(settings, cages, quarantine)
     if settings.mqtt is not None:
         mqtt = settings.mqtt
         feed = MqttFeed(
@@ -127,12 +130,24 @@ def _feeds(settings: Settings, cages: Mapping[str, LiveCage], metrics: Metrics) 
             cages=cages,
             client_id=mqtt.client_id or f"seacage-{settings.site}",
             metrics=metrics,
-            quarantine=Quarantine(settings.data / "quarantine.jsonl"),
+            quarantine=quarantine,
             group=mqtt.group,
             ca=mqtt.ca,
             state_every_s=mqtt.state_every_s,
         )
         feeds.append(feed.run)
+    return feeds
+
+
+def _tails(settings: Settings, cages: Mapping[str, LiveCage], quarantine: Quarantine) -> list[Feed]:
+    feeds = list[Feed]()
+    for section in settings.cages:
+        cage = cages[section.name or next(iter(cages))]  # a cage without a name is alone
+        for number, tail in enumerate(section.tail, start=1):
+            kept = settings.data / "tails" / f"{cage.name}-{number}.json"
+            kept.parent.mkdir(parents=True, exist_ok=True)
+            feed = FileTail(tail.path, cage, quarantine=quarantine, stream=tail.stream, kept=kept)
+            feeds.append(feed.run)
     return feeds
 
 

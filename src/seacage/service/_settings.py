@@ -75,6 +75,21 @@ class MqttSection(_Section):
     state_every_s: float = Field(default=10.0, ge=1.0, le=3600.0)
 
 
+class TailSection(_Section):
+    """One ``[[cages.tail]]``: a table that a logger appends to.
+
+    Parameters
+    ----------
+    path
+        Of the file; it may come later.
+    stream
+        What its rows are readings of.
+    """
+
+    path: Path
+    stream: Name = "buoy-1"
+
+
 class CageSection(_Section):
     """One ``[[cages]]``.
 
@@ -85,14 +100,14 @@ class CageSection(_Section):
     twin
         Folder of its trained twin.
     tail
-        Files that grow by lines of CSV or JSON, read as they grow.
+        Tables that are read as they grow.
     alarms
         As ``[alarms]``, for this cage alone.
     """
 
     twin: Path
     name: Name | None = None
-    tail: tuple[Path, ...] = ()
+    tail: tuple[TailSection, ...] = ()
     alarms: dict[str, Any] = Field(default_factory=dict)
 
 

@@ -1,0 +1,70 @@
+import asyncio
+
+import pytest
+
+from seacage.conventions import InputError
+from seacage.service._assembly import assembled, read_twins, store_place
+from seacage.service._replay import replay_of
+from seacage.service._settings import Settings
+from seacage.testing import stand_in_field, stand_in_twin
+
+
+@pytest.fixture
+def ended():
+    """Services that a test puts together, ended after it."""
+    services = []
+    yield services
+    for one in services:
+        asyncio.run(one.end())
+
+
+def told(tmp_path, **settings):
+    return Settings.model_validate({"data": tmp_path / "data"} | settings)
+
+
+def test_cages_share_a_store_and_have_limits_of_their_own(tmp_path, ended):
+    stand_in_twin().write(tmp_path / "twin")
+    north = {"name": "north", "twin": tmp_path / "twin"}
+    south = {"name": "south", "twin": tmp_path / "twin", "alarms": {"load": {"raise_at": 0.9}}}
+    settings = told(tmp_path, cages=[north, south], alarms={"load": {"raise_at": 0.75}})
+    service = assembled(settings, read_twins(settings.cages))
+    ended.append(service)
+    assert list(service.cages) == ["north", "south"]
+    limits = [cage.desk.policy.limit("load.bridle-1").raise_at for cage in service.cages.values()]
+    assert limits == [0.75, 0.9]
+    assert len({id(cage.store) for cage in service.cages.values()}) == 1
+
+
+def test_a_table_that_grows_feeds_its_cage(tmp_path, ended):
+    stand_in_twin().write(tmp_path / "twin")
+    tail = {"path": tmp_path / "buoy.csv"}
+    settings = told(tmp_path, cages=[{"twin": tmp_path / "twin", "tail": [tail]}])
+    service = assembled(settings, read_twins(settings.cages))
+    ended.append(service)
+    (tmp_path / "buoy.csv").write_text(
+        "time,current_speed_m_s,current_to_deg\n2020-02-01T12:00:00Z,0.5,90\n"
+    )
+    (cage,) = service.cages.values()
+
+    async def fed():
+        feeds = [asyncio.create_task(feed()) for feed in service._feeds]
+        while not cage.store.samples(cage.name, limit=1):
+            await asyncio.sleep(0.05)
+        for feed in feeds:
+            feed.cancel()
+
+    asyncio.run(asyncio.wait_for(fed(), 20))
+
+
+def test_what_is_replayed_lies_apart_from_what_was_measured(tmp_path):
+    settings = told(tmp_path, store={"url": "postgresql://db/farm"})
+    assert store_place(settings) == "postgresql://db/farm"
+    assert store_place(settings, replayed=True) == tmp_path / "data" / "replay.sqlite"
+    assert store_place(told(tmp_path)) == tmp_path / "data" / "samples.sqlite"
+
+
+def test_a_record_is_not_replayed_into_several_cages(tmp_path):
+    twin = stand_in_twin()
+    buoy = stand_in_field(twin.cage, days=0.25).buoy
+    with pytest.raises(InputError, match="there are 2"):
+        assembled(told(tmp_path), {"a": twin, "b": twin}, replay=replay_of(buoy))
