@@ -11,6 +11,7 @@ from seacage.service._commands import (
     _config,
     _doctor,
     _field,
+    _inspect,
     _publish,
     _replay,
     _score,
@@ -47,7 +48,7 @@ app.add_typer(_study.group, name="study")
 app.command()(_serve.serve)
 app.command()(_replay.replay)
 app.command()(_clearance.clearance)
-app.command()(_clearance.inspect)
+app.command("inspect-path")(_inspect.inspect_path)
 app.command()(_publish.publish)
 app.add_typer(_token.group, name="token")
 app.add_typer(_archive.group, name="archive")

@@ -127,18 +127,18 @@ def test_a_question_that_is_not_whole_is_refused(twin, args):
 def test_a_way_along_the_net_is_laid_and_written(twin, tmp_path, form):
     out = tmp_path / f"way{form}"
     sizes = ["--row-spacing", "5", "--step", "3", "--side", "outside"]
-    answer = told("inspect", *sizes, "--out", out, *twin)
+    answer = told("inspect-path", *sizes, "--out", out, *twin)
     assert len(answer["waypoints"]) > 50
     assert out.stat().st_size > 1000
     if form == ".csv":
         assert len(out.read_text().splitlines()) == 1 + len(answer["waypoints"])
-    assert "Waypoints" in run("inspect", *sizes, *twin).stdout
+    assert "Waypoints" in run("inspect-path", *sizes, *twin).stdout
 
 
 def test_a_way_is_not_written_in_another_form_nor_on_a_map_that_is_not_known(twin, tmp_path):
-    result = run("inspect", "--out", tmp_path / "way.kml", *twin, code=1)
+    result = run("inspect-path", "--out", tmp_path / "way.kml", *twin, code=1)
     assert ".geojson" in result.stderr
-    result = run("inspect", "--out", tmp_path / "way.geojson", *twin, code=1)
+    result = run("inspect-path", "--out", tmp_path / "way.geojson", *twin, code=1)
     assert "latitude_deg" in result.stderr
 
 
@@ -154,7 +154,7 @@ def test_a_running_service_is_asked_about_its_net_now(live: Running, way, tmp_pa
     assert answer == live.reader.post("/api/v1/cages/ace/clearance", json=body).json()
     assert answer["shape_error"] is None
     out = tmp_path / "way.mcap"
-    told("inspect", "--row-spacing", "5", "--step", "3", "--out", out, *to)
+    told("inspect-path", "--row-spacing", "5", "--step", "3", "--out", out, *to)
     assert out.read_bytes().startswith(b"\x89MCAP")
     run("clearance", way, "--to", live.address, "--token", "none", code=1)
     run("clearance", way, "--cage", "ice", *to, code=1)
