@@ -18,14 +18,14 @@ from outside import program, wait_for
 class Mosquitto:
     """A broker of one's own on a free port, which remembers its sessions on disk."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, *, who: str = "allow_anonymous true") -> None:
         with socket.create_server(("127.0.0.1", 0)) as free:
             self.port = free.getsockname()[1]
         self.url = f"mqtt://127.0.0.1:{self.port}"
         self._settings = folder / "mosquitto.conf"
         owner = "root\n" if Path("/root").exists() else "mosquitto\n"
         self._settings.write_text(
-            f"listener {self.port} 127.0.0.1\nallow_anonymous true\nuser {owner}"
+            f"listener {self.port} 127.0.0.1\n{who}\nuser {owner}"
             f"persistence true\npersistence_location {folder}/\nautosave_interval 1\n"
             "max_queued_messages 100000\n"
         )
@@ -44,10 +44,10 @@ class Mosquitto:
 
 
 @contextmanager
-def broker(folder: Path) -> Iterator[Mosquitto]:
+def broker(folder: Path, **how: str) -> Iterator[Mosquitto]:
     """Run a broker until the block ends, whether it was killed meanwhile or not."""
     folder.mkdir(exist_ok=True)
-    one = Mosquitto(folder)
+    one = Mosquitto(folder, **how)
     one.start()
     try:
         yield one

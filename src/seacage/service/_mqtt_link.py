@@ -237,7 +237,8 @@ class _Connection:
             socket.close()  # also where it took no more bytes
 
     def _end(self, reason: str) -> None:
-        self.reason = reason
+        if not self.ended.is_set():  # what comes after the first reason follows from it
+            self.reason = reason
         self.greeted.set()
         self.ended.set()
 
