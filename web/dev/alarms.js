@@ -53,6 +53,7 @@ export function alarmsFor(trouble, now) {
 
 /** Figures of an alarm system, made up. */
 export const kpi = {
-  per_day: [{ day: "2026-01-01", raised: 3 }, { day: "2026-01-02", raised: 1 }], raised: 4,
-  standing: [], chattering: [], longest: [{ alarm: "load.bridle-8", seconds: 5400 }],
+  start: "2026-01-01T00:00:00Z", end: "2026-01-02T00:00:00Z", raised: { "load.bridle-8": 4 },
+  per_day: 4, most_in_an_hour: 3, standing: {}, longest_s: { "load.bridle-8": 5400 },
+  chattering: ["load.bridle-8"], to_acknowledge_s: 240, unacknowledged: 1,
 };

@@ -1,5 +1,6 @@
 """The calls about alarms: how they stand, what people do with them, and what happened."""
 
+from datetime import timedelta
 from typing import Annotated, Literal
 
 from fastapi import APIRouter, HTTPException, Path
@@ -9,8 +10,10 @@ from seacage.service._alarm_schemas import (
     AlarmState,
     Handling,
     Journal,
+    Kpi,
     alarm_state,
     journal_line,
+    kpi_of,
 )
 from seacage.service._calls import (
     READ,
@@ -23,6 +26,10 @@ from seacage.service._calls import (
     may_read,
 )
 from seacage.service._guard import Who
+from seacage.twin import alarm_kpi
+
+_WATCH = timedelta(days=7)
+_LINES = 10_000  # of the journal, counted back from the end of the span
 
 alarms = APIRouter(prefix="/api/v1/cages/{cage}", tags=["alarms"])
 
@@ -66,3 +73,12 @@ def get_journal(live: Live, start: From = None, end: To = None, limit: Limit = 1
     """Give the last lines of a span, in time order: what happened to which alarm, and who did."""
     lines = live.store.journal(live.name, start=start, end=end, limit=limit, newest=True)
     return Journal(lines=[journal_line(line) for line in lines])
+
+
+@alarms.get("/kpi", dependencies=may_read, responses=READ)
+def get_kpi(live: Live, start: From = None, end: To = None) -> Kpi:
+    """Count how well the alarms serve their watch, over the last week if no span is given."""
+    until = end or live.clock.now() + timedelta(microseconds=1)  # what happens now counts
+    since = start or until - _WATCH
+    lines = live.store.journal(live.name, end=until, limit=_LINES, newest=True)
+    return kpi_of(alarm_kpi(lines, start=since, end=until))

@@ -5,7 +5,7 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from seacage.twin import Alarm, AlarmPolicy, Happened, described
+from seacage.twin import Alarm, AlarmKpi, AlarmPolicy, Happened, described
 
 LONGEST_WORDS = 500
 """Of a reason or a comment [characters]."""
@@ -88,6 +88,28 @@ class Journal(BaseModel):
     lines: list[JournalLine]
 
 
+class Kpi(BaseModel):
+    """How well the alarms served their watch over a span of time.
+
+    Alarms that were shelved or out of service count in ``raised`` and in no other rate: they
+    woke nobody. ``standing`` says since when; ``chattering`` names those raised three times or
+    more within an hour; ``to_acknowledge_s`` is the median.
+    """
+
+    model_config = ConfigDict(frozen=True, from_attributes=True)
+
+    start: datetime
+    end: datetime
+    raised: dict[str, int]
+    per_day: float
+    most_in_an_hour: int
+    standing: dict[str, datetime]
+    longest_s: dict[str, float]
+    chattering: list[str]
+    to_acknowledge_s: float | None
+    unacknowledged: int
+
+
 def alarm_state(alarm: Alarm, policy: AlarmPolicy) -> AlarmState:
     """Say how an alarm stands."""
     limit, text = policy.limit(alarm.name), described(alarm, policy)
@@ -125,3 +147,8 @@ def journal_line(happened: Happened) -> JournalLine:
         why=happened.why,
         quiet=happened.quiet,
     )
+
+
+def kpi_of(kpi: AlarmKpi) -> Kpi:
+    """Say what was counted."""
+    return Kpi.model_validate(kpi)

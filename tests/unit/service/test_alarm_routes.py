@@ -97,3 +97,19 @@ def test_the_journal_can_be_read_by_span(live, operator):
     beyond_what_was_learned(live)
     earlier = {"to": at(5)}
     assert live.reader.get("/api/v1/cages/ace/journal", params=earlier).json()["lines"] == []
+
+
+def test_how_well_the_alarms_serve_is_counted_from_the_journal(live, operator):
+    beyond_what_was_learned(live)
+    done(operator, "acknowledge")
+    kpi = live.reader.get("/api/v1/cages/ace/kpi").json()
+    assert kpi["raised"][NAME] == 1
+    assert NAME in kpi["standing"]
+    assert kpi["to_acknowledge_s"] is not None
+    assert kpi["chattering"] == []
+
+
+def test_a_span_that_ends_before_it_starts_is_refused_in_a_sentence(live):
+    answer = live.reader.get("/api/v1/cages/ace/kpi", params={"from": at(5), "to": at(0)})
+    assert answer.status_code == 422
+    assert "end after the start" in answer.json()["detail"]

@@ -1,41 +1,25 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { counted } from "../../src/panels/kpi-counts.js";
+import { kpiRows } from "../../src/panels/kpi-rows.js";
 
-const HOUR = 3600e3;
-const line = (alarm, action, minutes) => ({ alarm, action, t: new Date(60e3 * minutes).toISOString() });
-const over = (lines) => counted(lines, { start: 0, end: 24 * HOUR });
+const none = { raised: {}, standing: {}, longest_s: {}, chattering: [] };
 
-test("a quiet day counts nothing", () => {
-  const counts = over([]);
-  assert.deepEqual([counts.raised, counts.perDay, counts.standing, counts.longestS, counts.seenAfterS],
-    [0, 0, 0, 0, null]);
+test("a quiet span has no rows", () => {
+  assert.deepEqual(kpiRows(none), []);
 });
 
-test("an alarm that is raised and cleared has its length", () => {
-  const counts = over([line("a", "raised", 10), line("a", "acknowledged", 12), line("a", "cleared", 40)]);
-  assert.deepEqual([counts.raised, counts.perDay, counts.standing, counts.longestS, counts.seenAfterS],
-    [1, 1, 0, 1800, 120]);
+test("the alarm raised most often comes first, then the one that stood longest", () => {
+  const rows = kpiRows({ ...none, raised: { a: 1, b: 3, c: 1 }, longest_s: { a: 5, b: 1, c: 9 } });
+  assert.deepEqual(rows.map(({ name }) => name), ["b", "c", "a"]);
 });
 
-test("an alarm that has not cleared stands, up to the end", () => {
-  const counts = over([line("a", "raised", 23 * 60)]);
-  assert.deepEqual([counts.standing, counts.longestS], [1, 3600]);
+test("an alarm that was there before the span has its row", () => {
+  const [row] = kpiRows({ ...none, standing: { a: "2026-01-01T00:00:00Z" }, longest_s: { a: 60 } });
+  assert.deepEqual(row, { name: "a", raised: 0, longestS: 60, state: "standing" });
 });
 
-test("an alarm that was there before the span counts from its begin", () => {
-  const { each } = over([line("a", "cleared", 30)]);
-  assert.deepEqual([each[0].raised, each[0].longestS], [0, 1800]);
-});
-
-test("three times within ten minutes is chattering, within an hour is not", () => {
-  const times = (minutes) => minutes.flatMap((m) => [line("a", "raised", m), line("a", "cleared", m + 1)]);
-  assert.equal(over(times([0, 4, 8])).chattering, 1);
-  assert.equal(over(times([0, 20, 40])).chattering, 0);
-});
-
-test("the alarm raised most often comes first", () => {
-  const { each } = over([line("a", "raised", 1), line("b", "raised", 2), line("b", "cleared", 3), line("b", "raised", 4)]);
-  assert.deepEqual(each.map(({ name }) => name), ["b", "a"]);
+test("one that stands and chatters is told so", () => {
+  const [row] = kpiRows({ raised: { a: 4 }, standing: { a: "x" }, longest_s: {}, chattering: ["a"] });
+  assert.deepEqual([row.state, row.longestS], ["standing, chattering", null]);
 });
