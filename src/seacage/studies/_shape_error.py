@@ -9,7 +9,7 @@ from jaxtyping import Bool, Float
 
 from seacage.campaigns import Hidden, TrueShapes, true_shapes
 from seacage.conventions import Origin, Progress
-from seacage.twin import Answered, Discrepancy, Metocean, PredictedNet, Twin
+from seacage.twin import Discrepancy, Metocean, PredictedNet, Twin
 
 SEEDS = tuple(range(6))
 CASES = 120
@@ -17,6 +17,9 @@ CASES = 120
 
 SCATTERED = 4.0
 """Of the points that judge, about the predicted net [m]: an ROV's distances."""
+
+
+_NOW = datetime(2020, 1, 18, tzinfo=UTC)  # any time will do
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -109,7 +112,7 @@ def judged_points(
     random = np.random.default_rng(seed)
     foretold, happened, speed = list[np.ndarray](), list[np.ndarray](), list[float]()
     for velocity, true in zip(shapes.current_velocity, shapes.node_position, strict=True):
-        net = _net(twin, velocity)
+        net = PredictedNet.under(twin, _water(velocity[None]), t=_NOW)
         point = _near(net, random, points)
         foretold.append(net.clearance(point, below=below).p_below)
         happened.append(twin.cage.nearest(point, true).distance < below)
@@ -129,7 +132,7 @@ def judged_paths(
     random = np.random.default_rng(seed)
     foretold, happened, speed = list[float](), list[bool](), list[float]()
     for velocity, true in zip(shapes.current_velocity, shapes.node_position, strict=True):
-        net = _net(twin, velocity)
+        net = PredictedNet.under(twin, _water(velocity[None]), t=_NOW)
         for _ in range(paths):
             along = net.along(_path(net, random), below=below)
             foretold.append(along.p_below)
@@ -145,17 +148,6 @@ def _water(velocity: Float[np.ndarray, "case 2"]) -> Metocean:
         hs=still,
         wave_direction=np.column_stack([still, still + 1.0]),
     )
-
-
-def _net(twin: Twin, velocity: Float[np.ndarray, " 2"]) -> PredictedNet:
-    water = _water(velocity[None])
-    answered = Answered(
-        t=datetime(2020, 1, 18, tzinfo=UTC),
-        answer=twin.predict(water),
-        metocean=water,
-        input_age_s=0.0,
-    )
-    return PredictedNet.of(twin, answered)
 
 
 def _near(

@@ -12,8 +12,8 @@ from seacage.conventions import InputError
 STRETCH = 0.25
 """Longest between two points at which a path is looked at [m]."""
 
-LONGEST = 20_000
-"""Points at most at which a path is looked at: five kilometres."""
+LONGEST = 8_000
+"""Points at most at which a path is looked at: two kilometres."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

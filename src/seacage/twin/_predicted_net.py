@@ -9,10 +9,12 @@ from jaxtyping import Float, Int
 
 from seacage.cage import Cage, Nearest
 from seacage.conventions import InputError, Origin, SeacageError
+from seacage.ocean import SeaState
 from seacage.twin._answer import Answer
 from seacage.twin._clearance import Clearance, PathClearance, sampled
 from seacage.twin._discrepancy import ShapeError
 from seacage.twin._events import Answered
+from seacage.twin._metocean import Metocean
 from seacage.twin._twin import Twin
 
 PATCH_RINGS = 3
@@ -120,6 +122,23 @@ class PredictedNet:
             in_domain=bool(answer.in_domain[0]),
         )
 
+    @classmethod
+    def under(cls, twin: Twin, water: SeaState | Metocean, *, t: datetime) -> Self:
+        """Take the net that a twin predicts under some water, as if it had just been read.
+
+        Parameters
+        ----------
+        twin
+            Whose net.
+        water
+            A sea state, or one row.
+        t
+            To give the net.
+        """
+        row = Metocean.of(water) if isinstance(water, SeaState) else water
+        answered = Answered(t=t, answer=twin.predict(row), metocean=row, input_age_s=0.0)
+        return cls.of(twin, answered)
+
     @property
     def expected_position(self) -> Float[np.ndarray, "node 3"]:
         """Where the nodes are to be expected: as predicted, less the twin's known error [m]."""
@@ -155,13 +174,11 @@ class PredictedNet:
         """
         _check(path, below)
         point, along = sampled(path)
-        parts = [
-            (self._expected(point[rows]), rows)
-            for rows in np.array_split(np.arange(len(point)), 1 + len(point) // BLOCK)
-        ]
-        p = np.concatenate([part.p_below(below) for part, _ in parts])
-        patch = np.concatenate([self._patch(part.near) for part, _ in parts])
         weight = self.error.weight
+        p, patch = np.empty((len(point), len(weight))), np.empty(len(point), dtype=int)
+        for rows in np.array_split(np.arange(len(point)), 1 + len(point) // BLOCK):
+            expected = self._expected(point[rows])
+            p[rows], patch[rows] = expected.p_below(below), self._patch(expected.near)
         return PathClearance(
             point=point,
             along=along,

@@ -6,6 +6,7 @@ import pytest
 from brute import brute_distance
 from netted import CAGE, NOW, answered, currents, drifting, erring_twin, net_in
 from seacage.conventions import InputError
+from seacage.ocean import SeaState
 from seacage.testing import stand_in_twin
 from seacage.twin import Answered, PredictedNet, StaleError
 from seacage.twin._clearance import sampled
@@ -153,3 +154,11 @@ def test_what_is_no_point_or_no_distance_is_refused(point, below):
 def test_a_path_in_millimetres_is_refused():
     with pytest.raises(InputError, match="metres"):
         net_in(erring_twin(), 0.4, 0.0).along(np.array([[0.0, 0.0, 0.0], [25000.0, 0.0, 0.0]]))
+
+
+def test_a_net_may_be_asked_for_in_water_that_is_only_imagined():
+    sea = SeaState(current_speed=0.5, current_to=90.0)
+    imagined, read = PredictedNet.under(erring_twin(), sea, t=NOW), net_in(erring_twin(), 0.5, 0.0)
+    np.testing.assert_allclose(imagined.node_position, read.node_position, atol=1e-9)
+    np.testing.assert_allclose(imagined.expected_position, read.expected_position, atol=1e-9)
+    assert imagined.age_s == 0.0
