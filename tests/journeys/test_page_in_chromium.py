@@ -192,7 +192,7 @@ def test_the_reader_asks_what_would_be_and_comes_back_to_what_is(
         watched.page.get_by_role("tab", name="What if").click()
         bottom = "Number(document.querySelector('#net').dataset.bottom)"
         before = watched.page.evaluate(bottom)
-        speed = watched.page.locator("#panels").get_by_label("Current", exact=True)
+        speed = watched.page.get_by_role("slider", name="Current", exact=True)
         speed.focus()
         for _ in range(3):
             watched.page.keyboard.press("PageUp")
