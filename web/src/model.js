@@ -113,10 +113,17 @@ export class Model {
   }
 
   #setLive(buffer) {
-    this.live = this.#viewOf(buffer, "live");
+    try {
+      this.live = this.#viewOf(buffer, "live");
+    } catch (error) {
+      // Another version of the service: the next frame would be no better.
+      this.#link.close();
+      return this.#connected("refused", error.message);
+    }
     if (this.connection !== "live") this.#connected("live");
     this.#tell("live", this.live);
     if (this.#wanted === null) this.#show(this.live);
+    return undefined;
   }
 
   #viewOf(buffer, mode) {

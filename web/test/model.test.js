@@ -169,6 +169,17 @@ test("a service that falls silent counts as lost", async () => {
   assert.equal(model.connection, "lost");
 });
 
+test("a service that speaks another version stops the page with the reason", async () => {
+  const { model, socket } = await opened();
+  const newer = frame(3000);
+  new DataView(newer).setUint16(4, 9, true);
+  socket.onmessage({ data: newer });
+  assert.equal(model.connection, "refused");
+  assert.match(model.why, /version 9; this page reads 1/);
+  mock.timers.tick(60_000);
+  assert.equal(sockets.length, 1);
+});
+
 test("a topology that is already known is not built again", async () => {
   const { model, socket } = await opened();
   const built = [];

@@ -6,8 +6,8 @@ import { onTheme } from "../theme.js";
 import { extent, ringNodes, towards, tubeRing } from "./geometry.js";
 import { sensorPlaces } from "./places.js";
 import { bridleColours, sensorColour } from "./paint.js";
-import { fixed, wordsFor } from "./words.js";
 import { Tip } from "./tip.js";
+import { fixed, wordsFor } from "./words.js";
 
 const PAD = 8; // metres around the drawing
 
@@ -23,6 +23,7 @@ export class FlatView {
     make("div", { className: "flat-words" }, this.table));
     holder.append(this.element);
     this.tip = new Tip(holder);
+    for (const { svg } of [this.side, this.plan]) this.listen(svg);
     this.forget = [
       model.on("topology", (topology) => this.build(topology)),
       model.on("view", () => this.show()),
@@ -52,20 +53,21 @@ export class FlatView {
     this.side.svg.replaceChildren(...sketch(seen, ([x, , z]) => [x, -z], "side"));
     this.plan.svg.replaceChildren(...sketch(seen, ([x, y]) => [x, -y], "plan"));
     this.fill(view);
-    for (const { svg } of [this.side, this.plan]) {
-      for (const target of svg.querySelectorAll("[data-name]")) this.listen(target);
-    }
   }
 
-  listen(target) {
-    const { kind, name } = target.dataset;
-    target.addEventListener("click", () => this.model.select({ [kind]: name }));
-    target.addEventListener("pointerenter", (event) => {
+  /** Heard on the whole drawing, whose lines are drawn anew with each state. */
+  listen(svg) {
+    const named = ({ target }) => {
+      const { kind, name } = target.closest("[data-name]")?.dataset ?? {};
+      return name ? { [kind]: name } : null;
+    };
+    svg.addEventListener("click", (event) => this.model.select(named(event)));
+    svg.addEventListener("pointerleave", () => this.tip.show(null));
+    svg.addEventListener("pointermove", (event) => {
       const box = this.holder.getBoundingClientRect();
-      this.tip.show(wordsFor({ [kind]: name }, this.topology, this.model.view),
-        [event.clientX - box.left, event.clientY - box.top]);
+      const words = wordsFor(named(event), this.topology, this.model.view);
+      this.tip.show(words, [event.clientX - box.left, event.clientY - box.top]);
     });
-    target.addEventListener("pointerleave", () => this.tip.show(null));
   }
 
   /** Where the net is, in numbers. */
@@ -128,10 +130,9 @@ function sketch({ topology, view, position, options, chosen }, project, kind) {
   topology.bridle_names.forEach((name, k) => {
     const from = project(topology.corner_position_m[topology.bridle_corners[k]]);
     const to = at(position, topology.bridle_nodes[k]);
-    const line = draw("line", { x1: from[0], y1: from[1], x2: to[0], y2: to[1],
+    parts.push(draw("line", { x1: from[0], y1: from[1], x2: to[0], y2: to[1],
       class: `flat-bridle ${chosen?.bridle === name ? "chosen" : ""}`, stroke: colours[k],
-      "data-kind": "bridle", "data-name": name });
-    parts.push(line);
+      "data-kind": "bridle", "data-name": name }));
   });
   for (const { name, at: place } of sensorPlaces(topology, position)) {
     const [cx, cy] = project(place);
