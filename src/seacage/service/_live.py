@@ -1,10 +1,11 @@
 """One cage, live: samples are read, checked, stored and stepped by one path."""
 
 import asyncio
+import time
 from collections import deque
 from collections.abc import Generator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import assert_never
 
@@ -48,6 +49,7 @@ class Snapshot:
     answered: Answered
     state: State
     rest_position: Float[np.ndarray, "node 3"]
+    made: float = field(default_factory=time.monotonic)
 
     @cached_property
     def frame(self) -> bytes:
@@ -129,7 +131,8 @@ class LiveCage:
         StoreError
             The disk did not take them; then none of them counts.
         """
-        new = await self._stored(samples)
+        with self._metrics.commits.labels(self.name).time():
+            new = await self._stored(samples)
         self._pending.extend(s for s, fresh in zip(samples, new, strict=True) if fresh)
         self._arrived.set()
         return new
@@ -244,6 +247,8 @@ class LiveCage:
 
     def _publish(self, answered: Answered) -> None:
         self.snapshot = self._shown(answered)
+        severities = (alarm.severity for alarm in self.snapshot.state.alarms)
+        self._metrics.count_alarms(self.name, severities)
         self._metrics.valid.labels(self.name).set(float(self.snapshot.state.valid))
         self._metrics.input_age.labels(self.name).set(self.snapshot.state.age_s or 0.0)
         for mailbox in self._mailboxes:
