@@ -1,8 +1,13 @@
 """What Prometheus is told about the service."""
 
+from collections import Counter as Counted
+from collections.abc import Iterable
+
 from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, generate_latest
 
 _STEP_BUCKETS = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.5)
+_WAIT_BUCKETS = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0)
+_WORDS = {800: "critical", 500: "warning", 1: "note"}
 
 
 class Metrics:
@@ -42,6 +47,37 @@ class Metrics:
             "seacage_live_clients", "Open live connections.", ("cage",), registry=registry
         )
 
+        self.commits = Histogram(
+            "seacage_commit_seconds",
+            "From a sample's arrival until it is on disk.",
+            ("cage",),
+            buckets=_WAIT_BUCKETS,
+            registry=registry,
+        )
+        self.shown = Histogram(
+            "seacage_answer_to_page_seconds",
+            "From a new answer until a live connection has taken it.",
+            ("cage",),
+            buckets=_WAIT_BUCKETS,
+            registry=registry,
+        )
+        self.alarms = Gauge(
+            "seacage_alarms",
+            "Alarms that are active or not acknowledged; critical from severity 800, warning 500.",
+            ("cage", "severity"),
+            registry=registry,
+        )
+
+    def count_alarms(self, cage: str, severities: Iterable[int]) -> None:
+        """Say how many alarms of each severity there are."""
+        counts = Counted(_word(severity) for severity in severities)
+        for word in _WORDS.values():
+            self.alarms.labels(cage, word).set(counts[word])
+
     def text(self) -> bytes:
         """Everything in Prometheus' text format."""
         return generate_latest(self._registry)
+
+
+def _word(severity: int) -> str:
+    return next(word for least, word in _WORDS.items() if severity >= least)

@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import time
 
 from fastapi import APIRouter, HTTPException, WebSocket, WebSocketDisconnect
 
@@ -45,13 +46,17 @@ async def live(socket: WebSocket, cage: str) -> None:
 
 async def _send(socket: WebSocket, one: LiveCage) -> None:
     known = ""
+    shown = socket.app.state.service.metrics.shown.labels(one.name)
     with one.watched() as mailbox:
         while True:
             snapshot = await mailbox.take()
+            fresh = bool(known)  # the first was made before anybody waited for it
             if one.topology.topology_id != known:
                 known = one.topology.topology_id
                 await socket.send_text(one.topology.model_dump_json())
             await socket.send_bytes(snapshot.frame)
+            if fresh:
+                shown.observe(time.monotonic() - snapshot.made)
 
 
 async def _refusal(socket: WebSocket, cage: str) -> tuple[int, str] | None:

@@ -17,7 +17,7 @@ def test_a_bucket_never_holds_more_than_its_burst():
     assert [rates.wait_s("ada", 1e6) > 0.0 for _ in range(3)] == [False, False, True]
 
 
-def test_one_asker_does_not_use_up_anothers_bucket():
+def test_one_asker_does_not_use_up_the_bucket_of_another():
     rates = Rates(per_s=1.0, burst=1.0)
     assert rates.wait_s("ada", 0.0) == rates.wait_s("bob", 0.0) == 0.0
     assert rates.wait_s("ada", 0.0) > 0.0

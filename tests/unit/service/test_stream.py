@@ -109,3 +109,15 @@ def test_a_client_that_leaves_is_no_longer_counted(live: Running):
     while live.cage._mailboxes and time.monotonic() < end:
         time.sleep(0.02)
     assert not live.cage._mailboxes
+
+
+def test_the_way_from_an_answer_to_the_page_is_timed_without_the_first(live: Running):
+    with opened(live) as socket:
+        socket.send(token(live, "read"))
+        for _ in range(4):  # the topology, the present state and two new ones
+            received(socket)
+        count = live.service.metrics.shown.labels("ace")._sum
+        end = time.monotonic() + 5
+        while not count.get() and time.monotonic() < end:
+            time.sleep(0.02)
+        assert 0.0 < count.get() < 5.0
