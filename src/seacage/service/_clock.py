@@ -31,6 +31,37 @@ class WallClock:
         return datetime.now(UTC)
 
 
+class FollowingClock:
+    """A clock that stands where the newest sample stands, and runs on from there.
+
+    For records that somebody publishes as if they were live: what is ahead of it is not a fault
+    of the sender but the time itself. It never goes back; before the first sample it tells the
+    wall's time.
+
+    Parameters
+    ----------
+    speed
+        Seconds at the cage per second of the wall, between samples [-].
+    newest
+        Of the samples that are known already.
+    """
+
+    def __init__(self, *, speed: float = 1.0, newest: datetime | None = None) -> None:
+        self.speed = speed
+        self._at, self._heard = newest, time.monotonic()
+
+    def now(self) -> datetime:
+        """Return the time at the cage, UTC."""
+        if self._at is None:
+            return datetime.now(UTC)
+        return self._at + timedelta(seconds=(time.monotonic() - self._heard) * self.speed)
+
+    def hear(self, t: datetime) -> None:
+        """Stand at a sample's time, if that is later."""
+        if self._at is None or t > self.now():
+            self._at, self._heard = t, time.monotonic()
+
+
 class ReplayClock:
     """A clock that starts in the past and runs fast; it follows the monotonic clock.
 
@@ -59,3 +90,18 @@ class ReplayClock:
         """Stand at a time again and run on from there."""
         self._start = start
         self._began = time.monotonic()
+
+
+def latest_allowed(clock: Clock, ahead_s: float) -> datetime:
+    """Return the time after which a sample's own clock must be wrong.
+
+    Parameters
+    ----------
+    clock
+        Of the cage; one that follows its samples calls none of them wrong.
+    ahead_s
+        How far a source's clock may be ahead [s].
+    """
+    if isinstance(clock, FollowingClock):
+        return datetime.max.replace(tzinfo=UTC)
+    return clock.now() + timedelta(seconds=ahead_s)

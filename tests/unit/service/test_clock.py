@@ -2,7 +2,7 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from seacage.service._clock import ReplayClock, WallClock
+from seacage.service._clock import FollowingClock, ReplayClock, WallClock, latest_allowed
 
 NOON = datetime(2020, 2, 1, 12, tzinfo=UTC)
 
@@ -32,3 +32,22 @@ def test_a_replay_can_begin_again(monotonic):
 
 def test_the_walls_clock_knows_its_zone():
     assert WallClock().now().tzinfo is UTC
+
+
+def test_a_clock_that_follows_stands_at_the_newest_sample_and_never_goes_back(monotonic):
+    clock = FollowingClock(speed=60.0)
+    assert abs((clock.now() - datetime.now(UTC)).total_seconds()) < 60.0
+    clock.hear(NOON)
+    monotonic[0] = 10.0
+    assert clock.now() == NOON + timedelta(minutes=10)
+    clock.hear(NOON + timedelta(minutes=9))
+    assert clock.now() == NOON + timedelta(minutes=10)
+    clock.hear(NOON + timedelta(hours=5))
+    assert clock.now() == NOON + timedelta(hours=5)
+
+
+@pytest.mark.usefixtures("monotonic")
+def test_only_a_clock_that_follows_lets_samples_be_ahead():
+    replayed = ReplayClock(NOON, speed=60.0)
+    assert latest_allowed(replayed, 30.0) == NOON + timedelta(seconds=30)
+    assert latest_allowed(FollowingClock(newest=NOON), 30.0) > NOON + timedelta(days=10_000)
