@@ -108,6 +108,8 @@ def test_without_webgl_the_net_is_drawn_flat_with_a_table(chromium: Path, live: 
         watched.page.goto(address(live))
         watched.until("document.querySelectorAll('.flat-bridle').length == 24")  # in two views
         assert "Sinker tube" in watched.page.locator(".flat-table").inner_text()
+        watched.page.locator(".flat-bridle").nth(15).hover(force=True)  # seen from above
+        assert "Of its capacity" in watched.page.locator(".scene-tip").inner_text()
         assert not [asked for asked in watched.asked if "/three" in asked]
         assert not watched.complaints
 
