@@ -21,10 +21,11 @@ USUAL: Mapping[str, Limit] = {
         repeat_after_s=1800.0,
         severity=700,
     ),
-    # Of the volume in still water. It comes and goes with every tide, so only what lasts counts.
+    # Of the volume in still water. It comes and goes with every tide: a net like cage ``ace``'s
+    # loses half of it in 1 m/s, so only more than that counts, and only what lasts.
     "volume": Limit(
-        raise_at=0.5,
-        clear_at=0.4,
+        raise_at=0.6,
+        clear_at=0.5,
         on_delay_s=1200.0,
         off_delay_s=1200.0,
         repeat_after_s=7200.0,

@@ -73,7 +73,7 @@ def wandering(sense: Sense) -> float:
 
 def _judged(sense: Sense, distance: float) -> Sense:
     news = min(max(distance - sense.usual, -FARTHEST), FARTHEST)
-    # Held just above the limit, so that a sensor that was mended is believed within a day.
+    # Held just above the limit, so that a sensor that was mended is believed within two days.
     above = min(max(0.0, sense.above + news - SLACK), 1.25 * LIMIT)
     below = min(max(0.0, sense.below - news - SLACK), 1.25 * LIMIT)
     after = replace(sense, blocks=sense.blocks + 1, above=above, below=below)

@@ -1,0 +1,148 @@
+"""How well the alarms serve their watch, counted from the journal."""
+
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from statistics import median
+
+from seacage.conventions import InputError
+from seacage.twin._alarm import Action, Happened
+
+CHATTERING = 3
+"""An alarm that is raised so often within an hour chatters."""
+
+_HOUR = timedelta(hours=1)
+_DAY = timedelta(days=1)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AlarmKpi:
+    """Figures of a journal over a span of time.
+
+    Quiet lines, of alarms that were shelved or out of service, count among ``raised`` by name
+    alone: they woke nobody.
+
+    Parameters
+    ----------
+    start, end
+        The span.
+    raised
+        How often each alarm was raised, quiet or not; the most frequent first.
+    per_day
+        Alarms raised that were to be heard, over the days of the span [1/day].
+    most_in_an_hour
+        The most that were to be heard within any hour.
+    standing
+        Alarms that were raised at the end, the longest first, and since when; a raise before
+        the span counts where its line is among those given.
+    longest_s
+        By alarm, the longest that it stood within the span [s].
+    chattering
+        Alarms raised three times or more within an hour.
+    to_acknowledge_s
+        Median time from raise to acknowledgement [s]; None where nothing was acknowledged.
+    unacknowledged
+        Raises that were to be heard and were not acknowledged within the span.
+    """
+
+    start: datetime
+    end: datetime
+    raised: Mapping[str, int]
+    per_day: float
+    most_in_an_hour: int
+    standing: Mapping[str, datetime]
+    longest_s: Mapping[str, float]
+    chattering: tuple[str, ...]
+    to_acknowledge_s: float | None
+    unacknowledged: int
+
+
+def alarm_kpi(journal: Iterable[Happened], *, start: datetime, end: datetime) -> AlarmKpi:
+    """Count what a journal says about a span of time.
+
+    Parameters
+    ----------
+    journal
+        Lines in any order; those after the span are left out, those before it say what was
+        standing when it began.
+    start, end
+        Of the span, with their zones.
+
+    Raises
+    ------
+    InputError
+        The span does not end after it starts.
+    """
+    if not start < end:
+        raise InputError(
+            f"alarm_kpi: the span from {start.isoformat()} to {end.isoformat()} is empty. "
+            "Give an end after the start."
+        )
+    lines = sorted((line for line in journal if line.t < end), key=lambda line: line.t)
+    raises = [line for line in lines if line.action is Action.RAISED and line.t >= start]
+    heard = [line for line in raises if not line.quiet]
+    stood = _stood(lines, end)
+    within = [(name, max(since, start), until) for name, since, until in stood if until > start]
+    waited = [_acknowledged(line, lines) for line in heard]
+    seen = [one for one in waited if one is not None]
+    return AlarmKpi(
+        start=start,
+        end=end,
+        raised=dict(Counter(line.alarm for line in raises).most_common()),
+        per_day=len(heard) / ((end - start) / _DAY),
+        most_in_an_hour=_most_in_an_hour([line.t for line in heard]),
+        standing=dict(
+            sorted(
+                ((name, since) for name, since, until in stood if until == end),
+                key=lambda one: one[1],
+            )
+        ),
+        longest_s=_longest(within),
+        chattering=_chattering(raises),
+        to_acknowledge_s=median(seen) if seen else None,
+        unacknowledged=len(waited) - len(seen),
+    )
+
+
+def _stood(lines: Sequence[Happened], end: datetime) -> list[tuple[str, datetime, datetime]]:
+    """Name each alarm's spells, from raise to clearing or to the end."""
+    since, spells = dict[str, datetime](), list[tuple[str, datetime, datetime]]()
+    for line in lines:
+        if line.action is Action.RAISED:
+            since.setdefault(line.alarm, line.t)
+        elif line.action is Action.CLEARED and line.alarm in since:
+            spells.append((line.alarm, since.pop(line.alarm), line.t))
+    return spells + [(name, t, end) for name, t in since.items()]
+
+
+def _longest(spells: Sequence[tuple[str, datetime, datetime]]) -> dict[str, float]:
+    longest = dict[str, float]()
+    for name, since, until in spells:
+        longest[name] = max(longest.get(name, 0.0), (until - since).total_seconds())
+    return dict(sorted(longest.items(), key=lambda one: -one[1]))
+
+
+def _acknowledged(raised: Happened, lines: Sequence[Happened]) -> float | None:
+    """How long a raise waited to be seen [s]; the next raise of the same alarm ends the wait."""
+    for line in lines:
+        if line.alarm != raised.alarm or line.t < raised.t or line is raised:
+            continue
+        if line.action is Action.ACKNOWLEDGED:
+            return (line.t - raised.t).total_seconds()
+        if line.action is Action.RAISED:
+            return None
+    return None
+
+
+def _most_in_an_hour(times: Sequence[datetime]) -> int:
+    return max((sum(t <= one < t + _HOUR for one in times) for t in times), default=0)
+
+
+def _chattering(raises: Sequence[Happened]) -> tuple[str, ...]:
+    names = dict.fromkeys(line.alarm for line in raises)
+    return tuple(
+        name
+        for name in names
+        if _most_in_an_hour([line.t for line in raises if line.alarm == name]) >= CHATTERING
+    )

@@ -1,0 +1,94 @@
+"""A book of alarms survives a restart to the bit."""
+
+from datetime import UTC, datetime, timedelta
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from seacage.conventions import InputError
+from seacage.twin import Alarm, AlarmBook
+from seacage.twin._irregular import Sense
+from seacage.twin._irregular_block import Open
+from seacage.twin._irregular_bridle import Parting
+from seacage.twin._irregular_drag import Drag
+from seacage.twin._irregular_told import Suspicion
+
+EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
+NUMBERS = st.floats(allow_nan=False, allow_infinity=False)
+COUNTS = st.integers(0, 10**9)
+TIMES = st.integers(0, 4 * 10**15).map(lambda us: EPOCH + timedelta(microseconds=us))
+NAMES = st.text(min_size=1, max_size=20)
+
+
+def _keywords(**strategies: st.SearchStrategy[object]) -> st.SearchStrategy[dict[str, object]]:
+    """Arguments, not values: what checks types draws at random, which strategies may not."""
+    return st.fixed_dictionaries(strategies)
+
+
+ALARMS = _keywords(
+    name=NAMES,
+    active=st.booleans(),
+    acknowledged=st.booleans(),
+    since=st.none() | TIMES,
+    crossed=st.none() | TIMES,
+    said=st.none() | TIMES,
+    value=st.none() | NUMBERS,
+    worst=st.none() | NUMBERS,
+    shelved_until=st.none() | TIMES,
+    shelved_once=st.booleans(),
+    in_service=st.booleans(),
+    comment=st.text(),
+    detail=st.text(),
+)
+SENSES = _keywords(
+    heard=st.none() | TIMES,
+    values=st.lists(NUMBERS, max_size=5).map(tuple),
+    since=st.none() | TIMES,
+    repeats=COUNTS,
+    count=COUNTS,
+    error=NUMBERS,
+    doubt=NUMBERS,
+    blocks=COUNTS,
+    usual=NUMBERS,
+    above=NUMBERS,
+    below=NUMBERS,
+)
+PARTINGS = _keywords(whole=NUMBERS, shared=NUMBERS)
+
+
+@settings(max_examples=60)
+@given(
+    alarms=st.lists(ALARMS, max_size=3),
+    t=st.none() | TIMES,
+    senses=st.dictionaries(NAMES, SENSES, max_size=3),
+    partings=st.dictionaries(NAMES, PARTINGS, max_size=3),
+    opened=_keywords(number=st.none() | COUNTS, ticks=COUNTS, east=NUMBERS, north=NUMBERS),
+    drag=_keywords(total=NUMBERS, weight=NUMBERS, seen_s=NUMBERS, lost=NUMBERS),
+)
+def test_a_book_comes_back_as_it_was_written(alarms, t, senses, partings, opened, drag):
+    book = AlarmBook(
+        alarms={one["name"]: Alarm(**one) for one in alarms},
+        t=t,
+        suspicion=Suspicion(
+            senses={name: Sense(**one) for name, one in senses.items()},
+            partings={name: Parting(**one) for name, one in partings.items()},
+            opened=Open(**opened),
+            drag=Drag(**drag),
+        ),
+    )
+    assert AlarmBook.from_json(book.to_json()) == book
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("", "Begin with AlarmBook.new"),
+        ("[]", "Begin with AlarmBook.new"),
+        ('{"alarms": {"a": {"active": 3}}}', "alarms.a"),
+        ('{"format": "another"}', "this is 'another'"),
+    ],
+)
+def test_another_text_is_refused_in_a_sentence(text: str, says: str) -> None:
+    with pytest.raises(InputError, match=says):
+        AlarmBook.from_json(text)
