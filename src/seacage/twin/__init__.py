@@ -10,6 +10,7 @@ from seacage.twin._alarm_handled import (
     take_out_of_service,
     unshelve,
 )
+from seacage.twin._alarm_kpi import AlarmKpi, alarm_kpi
 from seacage.twin._alarm_policy import AlarmPolicy
 from seacage.twin._alarm_text import AlarmText, described
 from seacage.twin._align import Pairs, align, spread_out, teaching_window
@@ -34,6 +35,7 @@ __all__ = [
     "Action",
     "Alarm",
     "AlarmBook",
+    "AlarmKpi",
     "AlarmPolicy",
     "AlarmText",
     "Answer",
@@ -68,6 +70,7 @@ __all__ = [
     "TwinState",
     "Watch",
     "acknowledge",
+    "alarm_kpi",
     "align",
     "assess",
     "described",
