@@ -22,6 +22,7 @@ from seacage.service._limits import Limits
 from seacage.service._live import LiveCage
 from seacage.service._metrics import Metrics
 from seacage.service._routes import around, cages
+from seacage.service._sensorthings import things
 from seacage.service._session_routes import sessions
 from seacage.service._shield import Shield
 from seacage.service._store import Store, StoreError
@@ -117,7 +118,7 @@ def create_app(service: Service) -> FastAPI:
     app.add_exception_handler(StoreError, _unavailable)
     app.add_exception_handler(InputError, _refused)
     app.add_exception_handler(RequestValidationError, _malformed)
-    for router in (around, sessions, cages, alarms, what_if, downloads, rov, sockets):
+    for router in (around, sessions, cages, alarms, what_if, downloads, rov, things, sockets):
         app.include_router(router)
     if _PAGE.is_dir():
         app.mount("/page", StaticFiles(directory=_PAGE), name="page")

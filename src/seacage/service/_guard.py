@@ -141,6 +141,7 @@ class Permit:
         grant, session = found
         state = request.state
         state.who, state.token, state.action = grant.who, grant.id, self._action
+        state.grant = grant
         gate.pace(grant)
         if session and request.method not in _READING:
             check_csrf(request, session)
