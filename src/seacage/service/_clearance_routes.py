@@ -36,7 +36,7 @@ _NO_MCAP = refusal(501, "MCAP cannot be written here.", "Install seacage[ros].")
 
 
 def _file(media_type: str) -> Responses:
-    schema = {"type": "string", "format": "binary"}
+    schema = {"type": "object"} if media_type == GEOJSON else {"type": "string", "format": "binary"}
     return {200: {"content": {media_type: {"schema": schema}}, "description": "The file."}}
 
 

@@ -126,7 +126,7 @@ class InspectionAsked(_Asked):
     """A way along the net."""
 
     frame: FrameName = "enu"
-    stand_off_m: Annotated[float, Field(gt=0.0, le=50.0)] = 2.0
+    stand_off_m: Annotated[float, Field(ge=0.1, le=50.0)] = 2.0
     side: Literal["inside", "outside"] = "inside"
     pattern: Literal["rows", "spiral"] = "rows"
     row_spacing_m: Annotated[float, Field(ge=0.1, le=50.0)] = 2.0
