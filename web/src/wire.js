@@ -42,7 +42,8 @@ export function readFrame(buffer, rest) {
     flags,
     state: JSON.parse(new TextDecoder().decode(words)),
     position: valid ? moved(view, rest) : null,
-    sigma: valid ? spread(new Uint8Array(buffer, spreadAt, nodes), view.getFloat32(28, true)) : null,
+    sigma: valid
+      ? spread(new Uint8Array(buffer, spreadAt, nodes), view.getFloat32(28, true)) : null,
   };
 }
 

@@ -36,7 +36,8 @@ export class Arrows extends Group {
     Object.assign(this, { reach, depth });
     this.water = new MeshBasicMaterial({ transparent: true, opacity: 0.92 });
     this.waves = new MeshBasicMaterial({ transparent: true, opacity: 0.85 });
-    this.currents = [0.08, 0.42, 0.8].map((share) => Object.assign(new Arrow(this.water, 0.5), { share }));
+    this.currents = [0.08, 0.42, 0.8].map((share) =>
+      Object.assign(new Arrow(this.water, 0.5), { share }));
     this.wave = new Arrow(this.waves, 0.5);
     this.currentLabel = new Vector3();
     this.waveLabel = new Vector3();
@@ -56,7 +57,8 @@ export class Arrows extends Group {
         const start = this.reach + 5 + length - (arrow.share > 0.6 ? 0.25 * this.reach : 0);
         const z = -arrow.share * this.depth;
         arrow.point([-start * east, -start * north, z], [east, north], length);
-        if (arrow === this.currents[0]) this.currentLabel.set(-(start + 5) * east, -(start + 5) * north, z);
+        if (arrow !== this.currents[0]) continue;
+        this.currentLabel.set(-(start + 5) * east, -(start + 5) * north, z);
       }
     }
     const rolls = (water?.hs_m ?? 0) > 0.05 && (water?.wave_from_deg ?? null) !== null;

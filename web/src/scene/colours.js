@@ -5,8 +5,9 @@ const SCALES = {
   viridis: "440154 482475 414487 355f8d 2a788e 21918c 22a884 44bf70 7ad151 bddf26 fde725",
   cividis: "00224e 123570 3b496c 575d6d 707173 8a8678 a59c74 c3b369 e1cc55 f2da4a fee838",
 };
+const parts = (hex) => [0, 2, 4].map((at) => parseInt(hex.slice(at, at + 2), 16));
 const STOPS = Object.fromEntries(Object.entries(SCALES).map(([name, stops]) =>
-  [name, stops.split(" ").map((hex) => [0, 2, 4].map((at) => parseInt(hex.slice(at, at + 2), 16)))]));
+  [name, stops.split(" ").map(parts)]));
 // What stands out from the ground: the darkest part is lost at night, the brightest by day.
 const SPAN = { dark: [0.3, 1], light: [0, 0.86] };
 
@@ -24,8 +25,10 @@ export const cssColour = (share, how) =>
   `rgb(${scaleColour(share, how).map(Math.round).join(", ")})`;
 
 /** A scale as a CSS gradient, from left to right. */
-export const gradient = (how) =>
-  `linear-gradient(90deg, ${Array.from({ length: 9 }, (_, k) => cssColour(k / 8, how)).join(", ")})`;
+export function gradient(how) {
+  const stops = Array.from({ length: 9 }, (_, k) => cssColour(k / 8, how));
+  return `linear-gradient(90deg, ${stops.join(", ")})`;
+}
 
 /** "critical", "warning" or "note". */
 export const rank = (severity) =>

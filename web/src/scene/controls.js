@@ -28,8 +28,9 @@ export function mountControls(model, options, holder, { scene, flatOnly }) {
     options.set("view", options.view === "flat" ? "3d" : "flat"));
   const toggles = Object.entries(TOGGLES).map(([name, [words, title]]) =>
     button(name, words, title, () => options.set(name, !options[name])));
-  const tint = make("select", { title: "What the net’s colour says", "aria-label": "Colour of the net" },
-    ...Object.entries(TINTS).map(([value, words]) => make("option", { value }, words)));
+  const tint = make("select", {
+    title: "What the net’s colour says", "aria-label": "Colour of the net",
+  }, ...Object.entries(TINTS).map(([value, words]) => make("option", { value }, words)));
   tint.addEventListener("change", () => options.set("tint", tint.value));
 
   const show = () => {
@@ -98,6 +99,7 @@ function scale(name) {
   };
 }
 
-const padlock = () => draw("svg", { viewBox: "0 0 16 16", width: 13, height: 13, "aria-hidden": "true" },
-  draw("rect", { x: 3, y: 7, width: 10, height: 7, rx: 1.5, class: "lock-body" }),
+const padlock = () => draw("svg", {
+  viewBox: "0 0 16 16", width: 13, height: 13, "aria-hidden": "true",
+}, draw("rect", { x: 3, y: 7, width: 10, height: 7, rx: 1.5, class: "lock-body" }),
   draw("path", { d: "M5 7V5a3 3 0 0 1 6 0v2", class: "lock-bow" }));

@@ -37,8 +37,8 @@ export class FlatView {
   build(topology) {
     this.topology = topology;
     const { frame, depth } = extent(topology);
-    const reach = Math.max(...topology.corner_position_m.map(([x, y]) => Math.max(Math.abs(x), Math.abs(y))),
-      0.72 * frame) + PAD;
+    const aside = topology.corner_position_m.flat().filter((_, k) => k % 3 < 2).map(Math.abs);
+    const reach = Math.max(...aside, 0.72 * frame) + PAD;
     this.side.svg.setAttribute("viewBox", `${-reach} ${-PAD} ${2 * reach} ${1.25 * depth + PAD}`);
     this.plan.svg.setAttribute("viewBox", `${-reach} ${-reach} ${2 * reach} ${2 * reach}`);
     this.show();
@@ -83,7 +83,8 @@ export class FlatView {
       const moved = position && [0, 1, 2].map((axis) => mean(position, axis) - mean(rest, axis));
       const sigma = position
         && nodes.reduce((most, node) => Math.max(most, view.sigma[node]), 0);
-      return [name, fixed(position && -mean(position, 2), 1), fixed(moved && Math.hypot(moved[0], moved[1]), 1),
+      const aside = moved && Math.hypot(moved[0], moved[1]);
+      return [name, fixed(position && -mean(position, 2), 1), fixed(aside, 1),
         fixed(moved && moved[2], 1), fixed(sigma, 2)];
     });
     const heads = ["Where", "Depth [m]", "Moved aside [m]", "Raised [m]", "σ [m]"];
@@ -136,8 +137,9 @@ function sketch({ topology, view, position, options, chosen }, project, kind) {
   });
   for (const { name, at: place } of sensorPlaces(topology, position)) {
     const [cx, cy] = project(place);
-    parts.push(draw("circle", { cx, cy, r: chosen?.sensor === name ? 1.7 : 1.1, class: "flat-sensor",
-      fill: sensorColour(view, name), "data-kind": "sensor", "data-name": name }));
+    const r = chosen?.sensor === name ? 1.7 : 1.1;
+    parts.push(draw("circle", { cx, cy, r, class: "flat-sensor", fill: sensorColour(view, name),
+      "data-kind": "sensor", "data-name": name }));
   }
   const water = view?.state.valid ? view.state.water : null;
   if (water?.current_speed_m_s > 0.03) parts.push(arrow(topology, water, project));
@@ -146,9 +148,9 @@ function sketch({ topology, view, position, options, chosen }, project, kind) {
 
 function mooring({ corner_position_m: corners }, project) {
   const d = corners.map((corner, k) => {
-    const [a, b] = [project(corner), project(corners[(k + 1) % corners.length])];
-    const top = project([corner[0], corner[1], 0]);
-    return `M${a.map(short).join(" ")}L${b.map(short).join(" ")}M${a.map(short).join(" ")}L${top.map(short).join(" ")}`;
+    const places = [corner, corners[(k + 1) % corners.length], [corner[0], corner[1], 0]];
+    const [at, next, top] = places.map((place) => project(place).map(short).join(" "));
+    return `M${at}L${next}M${at}L${top}`;
   }).join("");
   return draw("path", { d, class: "flat-frame" });
 }
@@ -163,8 +165,9 @@ function arrow(topology, water, project) {
   const size = Math.hypot(dx, dy);
   if (size < 1) return draw("g");
   const [u, v] = [dx / size, dy / size];
-  const head = `M${to.map(short).join(" ")}L${short(to[0] - 3 * u + 1.4 * v)} ${short(to[1] - 3 * v - 1.4 * u)}` +
-    `L${short(to[0] - 3 * u - 1.4 * v)} ${short(to[1] - 3 * v + 1.4 * u)}Z`;
+  const barb = (side) =>
+    [to[0] - 3 * u + 1.4 * side * v, to[1] - 3 * v - 1.4 * side * u].map(short).join(" ");
+  const head = `M${to.map(short).join(" ")}L${barb(1)}L${barb(-1)}Z`;
   return draw("g", { class: "flat-current" },
     draw("line", { x1: from[0], y1: from[1], x2: to[0] - 2.4 * u, y2: to[1] - 2.4 * v }),
     draw("path", { d: head }));

@@ -2,8 +2,8 @@
 
 import {
   BufferAttribute, BufferGeometry, Color, CylinderGeometry, Group, InstancedMesh,
-  LineBasicMaterial, LineSegments, Matrix4, MeshBasicMaterial, MeshStandardMaterial, Quaternion, SphereGeometry,
-  Vector3,
+  LineBasicMaterial, LineSegments, Matrix4, MeshBasicMaterial, MeshStandardMaterial, Quaternion,
+  SphereGeometry, Vector3,
 } from "three";
 
 import { ringNodes, smoothLoop, tubeRing } from "./geometry.js";
@@ -66,7 +66,8 @@ export class Mooring extends Group {
     const { topology } = this;
     const at = (node) => [position[3 * node], position[3 * node + 1], position[3 * node + 2]];
     const ring = ringNodes(topology, 0).map(at);
-    const middle = [0, 1].map((axis) => ring.reduce((sum, one) => sum + one[axis], 0) / ring.length);
+    const middle = [0, 1].map((axis) =>
+      ring.reduce((sum, one) => sum + one[axis], 0) / ring.length);
     const widened = (by, up) => ring.map(([x, y, z]) => {
       const away = Math.hypot(x - middle[0], y - middle[1]);
       return [x + (by * (x - middle[0])) / away, y + (by * (y - middle[1])) / away, z + up];

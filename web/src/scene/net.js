@@ -58,7 +58,8 @@ export class Net extends Group {
     this.normal3 = attribute(new Float32Array(rest.length));
     this.tint = attribute(new Float32Array(rest.length).fill(1));
     const place = new BufferAttribute(places(topology), 3);
-    const meshRows = { value: { x: (spokes * MESHES_PER_PANEL) / (2 * Math.PI), y: MESHES_PER_PANEL, z: 0 } };
+    const around = (spokes * MESHES_PER_PANEL) / (2 * Math.PI);
+    const meshRows = { value: { x: around, y: MESHES_PER_PANEL, z: 0 } };
 
     this.panels = new Mesh(new BufferGeometry(), panelMaterial(0.42, 1, meshRows));
     const { geometry } = this.panels;

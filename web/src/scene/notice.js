@@ -6,7 +6,9 @@ import { lasting } from "./words.js";
 /** Which notice a model calls for: {kind, title, words, retry} or null. */
 export function noticeFor({ connection, why, view }) {
   if (connection === "asking") return null; // the dialog asks
-  if (connection === "refused") return { kind: "refused", title: "This cage cannot be shown", words: why };
+  if (connection === "refused") {
+    return { kind: "refused", title: "This cage cannot be shown", words: why };
+  }
   if (connection === "lost") {
     return { kind: "lost", title: "No connection", words: view
       ? `${why} What you see is the last that was heard.` : why, retry: true };

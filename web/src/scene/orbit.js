@@ -43,7 +43,9 @@ export class Orbit {
       const turn = 2 * Math.PI;
       this.now.azimuth += turn * Math.round((view.azimuth - this.now.azimuth) / turn);
     }
-    if (atOnce || still()) Object.assign(this.now, this.wanted, { target: this.wanted.target.clone() });
+    if (atOnce || still()) {
+      Object.assign(this.now, this.wanted, { target: this.wanted.target.clone() });
+    }
     this.changed();
   }
 
@@ -125,7 +127,8 @@ export class Orbit {
 
   #wheel(event) {
     event.preventDefault();
-    this.zoom(Math.exp(0.0012 * MathUtils.clamp(event.deltaY * (event.deltaMode ? 30 : 1), -300, 300)));
+    const by = event.deltaY * (event.deltaMode ? 30 : 1);
+    this.zoom(Math.exp(0.0012 * MathUtils.clamp(by, -300, 300)));
   }
 
   #key(event) {

@@ -17,7 +17,8 @@ void main() {
   vAt = position.xy;
   float at = dot(along, position.xy) * number - phase;
   // A second, longer and slanting train keeps the crests from looking ruled.
-  float slant = dot(vec2(along.x * 0.95 - along.y * 0.31, along.x * 0.31 + along.y * 0.95), position.xy);
+  vec2 askew = vec2(along.x * 0.95 - along.y * 0.31, along.x * 0.31 + along.y * 0.95);
+  float slant = dot(askew, position.xy);
   vCrest = 0.8 * sin(at) + 0.2 * sin(0.6 * slant * number - 0.77 * phase);
   gl_Position = projectionMatrix * modelViewMatrix * vec4(position.xy, 0.5 * height * vCrest, 1.0);
 }`;
@@ -29,7 +30,8 @@ varying float vCrest;
 void main() {
   float away = length(vAt) / radius;
   float fade = 1.0 - smoothstep(0.35, 1.0, away);
-  float bright = pow(0.5 + 0.5 * vCrest, 5.0) * (0.35 + 0.65 * clamp(height, 0.0, 1.5)) * step(0.05, height);
+  float rough = (0.35 + 0.65 * clamp(height, 0.0, 1.5)) * step(0.05, height);
+  float bright = rough * pow(0.5 + 0.5 * vCrest, 5.0);
   gl_FragColor = vec4(mix(water, crest, 0.65 * bright), strength * fade * (0.16 + 0.3 * bright));
   #include <colorspace_fragment>
 }`;
@@ -72,7 +74,8 @@ export class Sea extends Group {
 
   /** Let the waves run on. */
   roll(seconds) {
-    this.uniforms.phase.value = (this.uniforms.phase.value + seconds * this.frequency) % (20 * Math.PI);
+    const { phase } = this.uniforms;
+    phase.value = (phase.value + seconds * this.frequency) % (200 * Math.PI);
   }
 
   /** Take the theme's colours. */

@@ -1,6 +1,8 @@
 // The cage in three dimensions, drawn when something changes.
 
-import { DirectionalLight, HemisphereLight, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from "three";
+import {
+  DirectionalLight, HemisphereLight, PerspectiveCamera, Scene, Vector3, WebGLRenderer,
+} from "three";
 
 import { make, still } from "../dom.js";
 import { onTheme, styled, theme } from "../theme.js";
@@ -137,10 +139,12 @@ export class View3d {
   dress() {
     if (!this.topology) return;
     const dark = theme() === "dark";
-    this.net.dress({ twine: styled("--twine"), ghost: styled("--ghost"), shell: styled("--accent"), dark });
-    this.mooring.dress({ collar: styled("--collar"), rope: styled("--rope"), buoy: styled("--buoy") });
+    const [twine, ghost, collar, rope, buoy] =
+      ["--twine", "--ghost", "--collar", "--rope", "--buoy"].map(styled);
+    this.net.dress({ twine, ghost, shell: styled("--accent"), dark });
+    this.mooring.dress({ collar, rope, buoy });
     this.arrows.dress({ water: styled("--water"), wave: styled("--wave") });
-    this.sea.dress({ water: styled("--sea-0"), crest: styled("--crest"), ring: styled("--ghost"), dark });
+    this.sea.dress({ water: styled("--sea-0"), crest: styled("--crest"), ring: ghost, dark });
     this.sky.intensity = dark ? 1.9 : 2.4;
     this.repaint();
   }
@@ -233,13 +237,14 @@ export class View3d {
   /** Look from a named side. */
   look(name, how) {
     if (!this.size) return;
-    const { width, height } = { width: this.holder.clientWidth || 1, height: this.holder.clientHeight || 1 };
+    const [width, height] = [this.holder.clientWidth || 1, this.holder.clientHeight || 1];
     // All of the frame fits the narrower way.
     const wide = Math.max(1, (1.38 * height) / width);
     const target = new Vector3(0, 0, name === "top" ? 0 : -0.3 * this.size.depth);
     const distance = (name === "top" ? 3.1 : 2.5) * this.size.frame * wide;
-    this.orbit.limits = [0.5 * this.size.frame, 8 * this.size.frame];
-    this.orbit.look({ ...VIEWS[name], target, distance: Math.min(distance, this.orbit.limits[1]) }, how);
+    const farthest = 8 * this.size.frame;
+    this.orbit.limits = [0.5 * this.size.frame, farthest];
+    this.orbit.look({ ...VIEWS[name], target, distance: Math.min(distance, farthest) }, how);
   }
 
   resize() {
