@@ -67,8 +67,9 @@ def assess(
         unheard_of.discard(alarm.name)
         lines += changed
     for name in unheard_of:  # shelves end and what nobody has seen is said again
-        alarms[name], changed = judged(alarms[name], None, policy.limit(name), now)
-        lines += changed
+        if alarms[name].active or alarms[name].shelved:
+            alarms[name], changed = judged(alarms[name], None, policy.limit(name), now)
+            lines += changed
     return replace(book, alarms=alarms, suspicion=suspicion), tuple(lines)
 
 
