@@ -1,0 +1,119 @@
+"""The panels beside the net, in a real browser on a real service; the net itself is drawn flat."""
+
+from datetime import timedelta
+from pathlib import Path
+
+import pytest
+
+from browser import opened_browser
+from serviced import Running, buoy, depth, eventually, running
+
+pytestmark = pytest.mark.usefixtures("built_page")
+
+
+@pytest.fixture
+def live(tmp_path: Path):
+    """A service of one's own, with two hours of a buoy and a sensor."""
+    with running(tmp_path) as one:
+        for minutes in range(-120, 1, 20):
+            one.post(buoy(float(minutes), speed=0.4), depth(float(minutes), metres=14.2))
+        yield one
+
+
+def address(live: Running, *scopes: str) -> str:
+    return f"{live.address}/#token={live.service.tokens.mint(list(scopes), keep=False)}"
+
+
+def beyond_what_was_learned(live: Running) -> None:
+    """Let the cage extrapolate until the alarm about it is raised."""
+    live.post(buoy(0.5, speed=1.9))
+    eventually(live.state, lambda state: state["valid"] and not state["in_domain"])
+    live.clock.at += timedelta(minutes=11)
+    eventually(live.state, lambda state: bool(state["alarms"]))
+
+
+def opened(watched, where: str) -> None:
+    watched.page.goto(where)
+    watched.until("document.querySelectorAll('.loads tbody tr').length == 12")
+    watched.until("document.querySelector('.figure .value').textContent != ''")
+
+
+def test_the_verdict_and_the_loads_are_those_of_the_service(chromium: Path, live: Running) -> None:
+    with opened_browser(chromium, webgl=False) as watched:
+        opened(watched, address(live, "read"))
+        watched.until("document.querySelector('.verdict').dataset.kind == 'well'")
+        first = live.state()["bridles"][0]
+        shown = watched.page.locator(".loads tbody tr").first.inner_text()
+        assert f"{first['tension_kn']['mean']:.1f}" in shown
+        assert not watched.complaints
+
+
+def test_a_bridle_chosen_in_the_table_is_marked_in_the_rose(chromium: Path, live: Running) -> None:
+    with opened_browser(chromium, webgl=False) as watched:
+        opened(watched, address(live, "read"))
+        watched.page.get_by_role("button", name="Bridle 3", exact=True).click()
+        chosen = watched.page.locator(".rose .bar[data-chosen]")
+        assert chosen.locator(".which").text_content() == "3"
+
+
+def test_charts_are_drawn_and_lead_to_the_past(chromium: Path, live: Running) -> None:
+    with opened_browser(chromium, webgl=False) as watched:
+        opened(watched, address(live, "read"))
+        watched.page.keyboard.press("2")
+        chart = watched.page.locator(".chart").first
+        chart.wait_for(state="visible")
+        assert watched.colours(".chart canvas") > 5
+        chart.locator(".chart-area").focus()
+        for key in ("ArrowLeft", "ArrowLeft", "Enter"):
+            watched.page.keyboard.press(key)
+        watched.until("document.body.dataset.mode == 'past'")
+        assert "The past" in watched.page.locator(".banner").inner_text()
+        watched.page.get_by_role("button", name="Back to live").click()
+        watched.until("document.body.dataset.mode == 'live'")
+        assert not watched.complaints
+
+
+def test_who_may_only_read_is_told_why_nothing_can_be_acknowledged(
+    chromium: Path, live: Running
+) -> None:
+    beyond_what_was_learned(live)
+    with opened_browser(chromium, webgl=False) as watched:
+        opened(watched, address(live, "read"))
+        watched.page.keyboard.press("3")
+        watched.page.get_by_role("button", name="Acknowledge: ").first.click()
+        dialog = watched.page.get_by_role("dialog")
+        dialog.get_by_role("button", name="Acknowledge").click()
+        dialog.get_by_role("alert").wait_for(state="visible")
+        assert "scope ack" in dialog.get_by_role("alert").inner_text()
+        watched.page.keyboard.press("Escape")
+        assert "scope ack" in watched.page.locator(".denied").inner_text()
+
+
+def test_a_comment_goes_into_the_journal(chromium: Path, live: Running) -> None:
+    beyond_what_was_learned(live)
+    with opened_browser(chromium, webgl=False) as watched:
+        opened(watched, address(live, "read", "ack"))
+        watched.page.keyboard.press("3")
+        watched.page.get_by_role("button", name="Comment: ").first.click()
+        watched.page.get_by_label("Why").fill("A <b>buoy</b> adrift")
+        watched.page.get_by_role("dialog").get_by_role("button", name="Comment").click()
+        watched.page.get_by_role("dialog").wait_for(state="hidden")
+        watched.page.get_by_role("tab", name="Journal").click()
+        watched.until("document.body.innerText.includes('A <b>buoy</b> adrift')")
+        assert not watched.complaints
+
+
+@pytest.mark.parametrize("scheme", ["dark", "light"])
+def test_axe_finds_no_serious_fault_in_any_panel(
+    scheme: str, chromium: Path, live: Running, pytestconfig: pytest.Config
+) -> None:
+    axe = pytestconfig.rootpath / "web" / "node_modules" / "axe-core" / "axe.min.js"
+    if not axe.is_file():
+        pytest.skip("needs axe-core, which the page's build fetches")
+    beyond_what_was_learned(live)
+    with opened_browser(chromium, webgl=False, color_scheme=scheme) as watched:
+        opened(watched, address(live, "read", "ack"))
+        for key in ("1", "2", "3", "4", "?"):
+            watched.page.keyboard.press(key)
+            watched.page.wait_for_timeout(500)
+            assert not watched.faults(axe), key
