@@ -76,8 +76,9 @@ def can(operation, mode):
     return mode is GenerationMode.POSITIVE or bool(operation.body) or any(map(bool, parts))
 
 
+@pytest.mark.timeout(400)
 def test_some_hundred_cases_are_answered_as_documented(service, operations):
-    assert fuzzed(service, operations, 6) > 200
+    assert fuzzed(service, operations, 3) > 150
 
 
 @pytest.mark.slow
