@@ -73,8 +73,13 @@ def judged_bridles(
     cage: Cage,
     senses: Mapping[str, Sense],
     distrusted: frozenset[str],
+    beside: frozenset[str],
 ) -> dict[str, Parting]:
-    """Add a block's evidence for every bridle whose corner has two shackles that speak."""
+    """Add a block's evidence for every bridle whose corner has two shackles that speak.
+
+    The water is taken from sensors elsewhere, but not from those beside a bridle that has
+    parted already.
+    """
     rows = {name: row for row, name in enumerate(block.sensors) if name not in distrusted}
     after = dict(partings)
     for bridle, name in enumerate(cage.bridle_names):
@@ -84,7 +89,10 @@ def judged_bridles(
             for one in cage.shackles
             if corner[one.bridle] and one.name in rows
         }
-        others = np.array([row for row in rows.values() if row not in mates.values()], dtype=int)
+        elsewhere = rows.keys() - beside
+        others = np.array(
+            sorted(rows[one] for one in elsewhere if rows[one] not in mates.values()), dtype=int
+        )
         if len(mates) < 2 or len(others) == 0:
             continue
         shift = parted(cage, bridle, block.tension) - block.tension

@@ -79,7 +79,7 @@ class Suspicion:
             senses=judged_sensors(
                 begun.senses, block, distrusted=distrusted, beside=cut, anew=anew
             ),
-            partings=judged_bridles(self.partings, block, twin.cage, self.senses, distrusted),
+            partings=judged_bridles(self.partings, block, twin.cage, self.senses, distrusted, cut),
             drag=self.drag.judged(block, rows) if rows else self.drag,
         )
 

@@ -137,7 +137,7 @@ def test_the_other_bridles_of_a_corner_hold_it_where_it_was():
 def partings(errors, names=NAMES) -> dict[str, Parting]:
     senses, found = {name: Sense() for name in NAMES}, dict[str, Parting]()
     for error in errors:
-        found = judged_bridles(found, block(error, names), ACE, senses, NOBODY)
+        found = judged_bridles(found, block(error, names), ACE, senses, NOBODY, NOBODY)
     return found
 
 
