@@ -1,5 +1,6 @@
 """The alarms of one cage: judged at every tick, handled by people, kept on disk."""
 
+import json
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass
@@ -207,6 +208,30 @@ class AlarmDesk:
             shelved=alarm.shelved,
             since=alarm.since,
         )
+
+
+def announced_json(told: Announcement, *, action: str | None = None) -> str:
+    """Write an announcement as other systems get it; ``action`` in place of what happened."""
+    happened = told.happened
+    return json.dumps(
+        {
+            "cage": told.cage,
+            "alarm": told.alarm.name,
+            "action": action or happened.action.value,
+            "t": happened.t.isoformat(),
+            "severity": told.severity,
+            "title": told.text.title,
+            "message": told.text.message,
+            "advice": told.text.advice,
+            "value": told.alarm.value,
+            "unit": told.text.unit,
+            "active": told.alarm.active,
+            "acknowledged": told.alarm.acknowledged,
+            "since": told.alarm.since and told.alarm.since.isoformat(),
+            "who": happened.who,
+            "why": happened.why,
+        }
+    )
 
 
 def _mourn(kept: Future[None]) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 from seacage.conventions import InputError
 from seacage.service._api import Service
 from seacage.service._audit import Audit
-from seacage.service._clock import Clock, ReplayClock, WallClock
+from seacage.service._clock import Clock, FollowingClock, ReplayClock, WallClock
 from seacage.service._live import LiveCage
 from seacage.service._metrics import Metrics
 from seacage.service._mqtt_feed import MqttFeed
@@ -16,6 +16,7 @@ from seacage.service._quarantine import Quarantine
 from seacage.service._replay import Replay
 from seacage.service._retention import Retention
 from seacage.service._settings import CageSection, Settings
+from seacage.service._shards import cages_of
 from seacage.service._store import Store, open_store
 from seacage.service._tail import FileTail
 from seacage.service._tokens import Tokens
@@ -24,16 +25,26 @@ from seacage.twin import AlarmPolicy, Twin
 Feed = Callable[[], Coroutine[None, None, None]]
 
 
-def read_twins(cages: tuple[CageSection, ...]) -> dict[str, Twin]:
-    """Read the twin of each cage, by the name under which it is served.
+def read_twins(settings: Settings) -> dict[str, Twin]:
+    """Read the twin of each cage that this worker serves, by the name under which it does.
 
     Raises
     ------
     ModelError
         A folder is no twin's, or changed by as little as a byte.
     """
-    twins = [(section.name, Twin.read(section.twin)) for section in cages]
+    twins = [(section.name, Twin.read(section.twin)) for section in own_cages(settings)]
     return {name or twin.cage.name: twin for name, twin in twins}
+
+
+def own_cages(settings: Settings) -> tuple[CageSection, ...]:
+    """The cages that fall to this worker."""
+    if settings.workers == 1:
+        return settings.cages
+    names = [cage.name for cage in settings.cages if cage.name is not None]
+    workers = [str(number) for number in range(settings.workers)]
+    own = set(cages_of(str(settings.worker), names, workers))
+    return tuple(cage for cage in settings.cages if cage.name in own)
 
 
 def policy_of(settings: Settings, name: str, twin: Twin) -> AlarmPolicy:
@@ -91,7 +102,7 @@ def assembled(
         store_place(settings, replayed=replay is not None),
         archive=settings.store.archive if replay is None else None,
     )
-    metrics, clock = Metrics(), _clock(replay, speed)
+    metrics, clock = Metrics(), _clock(settings, store, tuple(twins), replay, speed)
     cages = {
         name: LiveCage(
             name=name,
@@ -112,8 +123,15 @@ def assembled(
     return _guarded(settings, cages, store, metrics, feeds)
 
 
-def _clock(replay: Replay | None, speed: float) -> Clock:
-    return WallClock() if replay is None else ReplayClock(replay.start, speed=speed)
+def _clock(
+    settings: Settings, store: Store, cages: tuple[str, ...], replay: Replay | None, speed: float
+) -> Clock:
+    if replay is not None:
+        return ReplayClock(replay.start, speed=speed)
+    if settings.clock == "wall":
+        return WallClock()
+    known = [sample.t for cage in cages for sample in store.latest(cage).values()]
+    return FollowingClock(speed=settings.speed, newest=max(known, default=None))
 
 
 def _feeds(settings: Settings, cages: Mapping[str, LiveCage], metrics: Metrics) -> list[Feed]:
@@ -128,7 +146,7 @@ def _feeds(settings: Settings, cages: Mapping[str, LiveCage], metrics: Metrics) 
             mqtt.url,
             site=settings.site,
             cages=cages,
-            client_id=mqtt.client_id or f"seacage-{settings.site}",
+            client_id=mqtt.client_id or f"seacage-{settings.site}-{settings.worker}",
             metrics=metrics,
             quarantine=quarantine,
             group=mqtt.group,
@@ -141,7 +159,7 @@ def _feeds(settings: Settings, cages: Mapping[str, LiveCage], metrics: Metrics) 
 
 def _tails(settings: Settings, cages: Mapping[str, LiveCage], quarantine: Quarantine) -> list[Feed]:
     feeds = list[Feed]()
-    for section in settings.cages:
+    for section in own_cages(settings):
         cage = cages[section.name or next(iter(cages))]  # a cage without a name is alone
         for number, tail in enumerate(section.tail, start=1):
             kept = settings.data / "tails" / f"{cage.name}-{number}.json"

@@ -6,6 +6,7 @@ from collections import deque
 from collections.abc import Generator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
+from datetime import datetime
 from functools import cached_property
 from typing import assert_never
 
@@ -16,14 +17,14 @@ from jaxtyping import Float
 from seacage.records import Amendment, QualityState, Sample, check_sample
 from seacage.service._alarm_desk import AlarmDesk
 from seacage.service._answers import state_of, topology_of
-from seacage.service._clock import Clock
+from seacage.service._clock import Clock, FollowingClock, latest_allowed
 from seacage.service._frame import frame_of
 from seacage.service._mailbox import Mailbox
 from seacage.service._metrics import Metrics
 from seacage.service._past import REMEMBERED, answered_in, state_at, streams_of
 from seacage.service._samples import BUOY_KEYS
 from seacage.service._schemas import State, Topology
-from seacage.service._store import Store
+from seacage.service._store import Store, StoreError
 from seacage.twin import (
     Alarm,
     AlarmPolicy,
@@ -118,6 +119,11 @@ class LiveCage:
         """How many live connections there are."""
         return len(self._mailboxes)
 
+    @property
+    def latest_allowed(self) -> datetime:
+        """The time after which a sample's own clock must be wrong."""
+        return latest_allowed(self.clock, self.twin.watch.future_s)
+
     async def take(self, samples: Sequence[Sample]) -> tuple[bool, ...]:
         """Check, store and queue samples; returns after the commit.
 
@@ -131,6 +137,9 @@ class LiveCage:
         StoreError
             The disk did not take them; then none of them counts.
         """
+        if isinstance(self.clock, FollowingClock):
+            for sample in samples:
+                self.clock.hear(sample.t)
         with self._metrics.commits.labels(self.name).time():
             new = await self._stored(samples)
         self._pending.extend(s for s, fresh in zip(samples, new, strict=True) if fresh)
@@ -205,17 +214,24 @@ class LiveCage:
             self._metrics.clients.labels(self.name).dec()
 
     async def _stored(self, samples: Sequence[Sample]) -> tuple[bool, ...]:
-        checked, amendments = list[Sample](), list[Amendment]()
+        checked, amendments, before = list[Sample](), list[Amendment](), self._quality
+        self._quality = dict(before)
         for sample in samples:
             quality = self._quality.get(sample.stream, QualityState())
             quality, flagged = check_sample(quality, sample)
             self._quality[sample.stream] = quality
             checked.append(flagged)
             amendments += quality.amended
-        appended = self.store.append(
-            self.name, checked, ingested=self.clock.now(), amendments=amendments
-        )
-        return await asyncio.wrap_future(appended)
+        try:
+            return await asyncio.wrap_future(
+                self.store.append(
+                    self.name, checked, ingested=self.clock.now(), amendments=amendments
+                )
+            )
+        except StoreError:
+            # They will be sent again, and must not be checked against themselves.
+            self._quality = before
+            raise
 
     def _stepped(self, samples: Sequence[Sample]) -> tuple[Answered, list[Event]]:
         """Step through the samples, then tick: the newest answer is as old as this call."""

@@ -5,12 +5,12 @@ import json
 from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from datetime import timedelta
 from pathlib import Path
 
 import structlog
 
 from seacage.records import Sample
+from seacage.service._alarm_desk import Announcement, announced_json
 from seacage.service._live import LiveCage
 from seacage.service._metrics import Metrics
 from seacage.service._mqtt_broker import Broker
@@ -117,6 +117,9 @@ class MqttFeed:
 
     async def run(self) -> None:
         """Listen, store and tell for ever."""
+        self._loop = asyncio.get_running_loop()
+        for cage in self._cages.values():
+            cage.desk.tell(self._announced)
         async with asyncio.TaskGroup() as work:
             work.create_task(self._link.run())
             work.create_task(self._store())
@@ -128,6 +131,10 @@ class MqttFeed:
         topic = self._topics.said(cage, "alarms")
         self._alarms.extend((topic, line.encode()) for line in lines)
         self._say_alarms()
+
+    def _announced(self, told: Announcement) -> None:
+        # Called in the thread that stepped the twin, and the link is the loop's.
+        self._loop.call_soon_threadsafe(self.tell, told.cage, [announced_json(told)])
 
     def hear(self, heard: Heard) -> None:
         """Queue a message; one that nobody waits for is dropped where the queue is full."""
@@ -160,8 +167,7 @@ class MqttFeed:
         cage = self._cages.get(address.cage) if address else None
         if address is None or cage is None:
             return self._set_aside(heard, "No cage of this service is meant by the topic.")
-        until = cage.clock.now() + timedelta(seconds=cage.twin.watch.future_s)
-        read = read_observed(address.stream, heard.payload, cage.streams, until=until)
+        read = read_observed(address.stream, heard.payload, cage.streams, until=cage.latest_allowed)
         if read.fault:
             return self._set_aside(heard, read.fault)
         for one in read.refused:

@@ -4,7 +4,6 @@ import asyncio
 import hashlib
 import hmac
 import http.client
-import json
 from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -15,7 +14,7 @@ from urllib.parse import urlsplit
 import structlog
 
 from seacage.conventions import InputError
-from seacage.service._alarm_desk import AlarmDesk, Announcement
+from seacage.service._alarm_desk import AlarmDesk, Announcement, announced_json
 from seacage.service._clock import Clock
 from seacage.twin import Action
 
@@ -120,7 +119,7 @@ class Herald:
             return
         for hook, queue in self._queues.items():
             if hook.after_s == 0.0 and hook.wants(told.cage, told.severity):
-                queue.append(_body(told, action=told.happened.action.value))
+                queue.append(announced_json(told))
 
     async def _escalate(self) -> None:
         while True:
@@ -138,7 +137,7 @@ class Herald:
                 late = alarm.since is not None and alarm.since <= due
                 if late and key not in self._escalated and hook.wants(name, told.severity):
                     self._escalated.add(key)
-                    self._queues[hook].append(_body(told, action="escalated"))
+                    self._queues[hook].append(announced_json(told, action="escalated"))
 
     async def _deliver(self, hook: Webhook) -> None:
         queue = self._queues[hook]
@@ -155,29 +154,6 @@ class Herald:
                     _log.error("webhook gives up", url=hook.url, reason=problem, body=body)
                 else:
                     await asyncio.sleep(patience_s)
-
-
-def _body(told: Announcement, *, action: str) -> str:
-    happened = told.happened
-    return json.dumps(
-        {
-            "cage": told.cage,
-            "alarm": told.alarm.name,
-            "action": action,
-            "t": happened.t.isoformat(),
-            "severity": told.severity,
-            "title": told.text.title,
-            "message": told.text.message,
-            "advice": told.text.advice,
-            "value": told.alarm.value,
-            "unit": told.text.unit,
-            "active": told.alarm.active,
-            "acknowledged": told.alarm.acknowledged,
-            "since": told.alarm.since and told.alarm.since.isoformat(),
-            "who": happened.who,
-            "why": happened.why,
-        }
-    )
 
 
 def _posted(hook: Webhook, body: str) -> str | None:

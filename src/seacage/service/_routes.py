@@ -1,7 +1,5 @@
 """The calls of the HTTP interface: the service itself, its cages, their samples and answers."""
 
-from datetime import timedelta
-
 from fastapi import APIRouter, Depends, Request, Response
 from fastapi.responses import JSONResponse
 
@@ -100,8 +98,7 @@ async def post_samples(request: Request, body: SamplesIn, live: Live) -> Receipt
     A sample is known by (stream, t, seq): sent again it counts as a duplicate and changes
     nothing.
     """
-    until = live.clock.now() + timedelta(seconds=live.twin.watch.future_s)
-    samples, rejected = read_samples(body.samples, live.streams, until=until)
+    samples, rejected = read_samples(body.samples, live.streams, until=live.latest_allowed)
     new = await live.take(samples)
     receipt = Receipt(accepted=sum(new), duplicates=len(new) - sum(new), rejected=rejected)
     _counted(request, live.name, receipt)

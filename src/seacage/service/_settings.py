@@ -154,6 +154,12 @@ class Settings(BaseSettings):
         Listen without TLS where others can hear.
     tick_s
         Longest pause between two looks at the clock [s of the wall].
+    clock, speed
+        The machine's, or one that stands where the newest sample stands and runs so fast
+        between samples: for a record that is published as if it were live.
+    worker, workers
+        Of a farm that several processes serve: which one this is, from 0, and how many there
+        are. It serves the cages that fall to it.
     log
         Lines for people or JSON for machines.
     store, mqtt, cages, webhooks, limits
@@ -174,6 +180,10 @@ class Settings(BaseSettings):
     key: Path | None = None
     insecure_http: bool = False
     tick_s: float = Field(default=2.0, gt=0.0, le=60.0)
+    clock: Literal["wall", "samples"] = "wall"
+    speed: float = Field(default=1.0, ge=0.1, le=10_000.0)
+    worker: int = Field(default=0, ge=0)
+    workers: int = Field(default=1, ge=1, le=10_000)
     log: Literal["lines", "json"] = "lines"
     store: StoreSection = StoreSection()
     mqtt: MqttSection | None = None
@@ -193,6 +203,16 @@ class Settings(BaseSettings):
         names = [cage.name for cage in self.cages]
         if len(names) > 1 and (None in names or len(set(names)) < len(names)):
             raise ValueError("several cages take a name each, and no two the same")
+        return self
+
+    @model_validator(mode="after")
+    def _a_worker_is_one_of_them(self) -> Self:
+        if self.worker >= self.workers:
+            raise ValueError(
+                f"worker = {self.worker} of workers = {self.workers}; they count from 0"
+            )
+        if self.workers > 1 and any(cage.name is None for cage in self.cages):
+            raise ValueError("cages that workers share take a name each")
         return self
 
     def check_host(self) -> None:

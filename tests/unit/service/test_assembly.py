@@ -1,8 +1,10 @@
 import asyncio
+from datetime import UTC, datetime, timedelta
 
 import pytest
 
 from seacage.conventions import InputError
+from seacage.records import Sample
 from seacage.service._assembly import assembled, read_twins, store_place
 from seacage.service._replay import replay_of
 from seacage.service._settings import Settings
@@ -27,7 +29,7 @@ def test_cages_share_a_store_and_have_limits_of_their_own(tmp_path, ended):
     north = {"name": "north", "twin": tmp_path / "twin"}
     south = {"name": "south", "twin": tmp_path / "twin", "alarms": {"load": {"raise_at": 0.9}}}
     settings = told(tmp_path, cages=[north, south], alarms={"load": {"raise_at": 0.75}})
-    service = assembled(settings, read_twins(settings.cages))
+    service = assembled(settings, read_twins(settings))
     ended.append(service)
     assert list(service.cages) == ["north", "south"]
     limits = [cage.desk.policy.limit("load.bridle-1").raise_at for cage in service.cages.values()]
@@ -35,11 +37,37 @@ def test_cages_share_a_store_and_have_limits_of_their_own(tmp_path, ended):
     assert len({id(cage.store) for cage in service.cages.values()}) == 1
 
 
+def test_workers_part_the_cages_and_leave_none_out(tmp_path):
+    stand_in_twin().write(tmp_path / "twin")
+    cages = [{"name": f"cage-{k}", "twin": tmp_path / "twin"} for k in range(7)]
+    served = [
+        list(read_twins(told(tmp_path, cages=cages, worker=worker, workers=2)))
+        for worker in range(2)
+    ]
+    assert all(served)
+    assert sorted(served[0] + served[1]) == [cage["name"] for cage in cages]
+
+
+def test_a_clock_that_follows_goes_on_where_the_store_ends(tmp_path, ended):
+    then = datetime(2018, 1, 26, tzinfo=UTC)
+    settings = told(tmp_path, clock="samples", speed=100.0)
+    for speaks in (True, False):
+        service = assembled(settings, {"ace": stand_in_twin()})
+        cage = service.cages["ace"]
+        if speaks:
+            water = {"current_speed_m_s": 0.5, "current_to_deg": 90.0}
+            asyncio.run(cage.take([Sample(stream="buoy-1", t=then, values=water)]))
+            asyncio.run(service.end())
+    ended.append(service)
+    assert then <= cage.clock.now() < then + timedelta(days=1)
+    assert cage.snapshot.state.valid
+
+
 def test_a_table_that_grows_feeds_its_cage(tmp_path, ended):
     stand_in_twin().write(tmp_path / "twin")
     tail = {"path": tmp_path / "buoy.csv"}
     settings = told(tmp_path, cages=[{"twin": tmp_path / "twin", "tail": [tail]}])
-    service = assembled(settings, read_twins(settings.cages))
+    service = assembled(settings, read_twins(settings))
     ended.append(service)
     (tmp_path / "buoy.csv").write_text(
         "time,current_speed_m_s,current_to_deg\n2020-02-01T12:00:00Z,0.5,90\n"

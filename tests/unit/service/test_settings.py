@@ -104,3 +104,10 @@ def test_plain_http_beyond_this_machine_takes_a_decision(host, tmp_path):
 @pytest.mark.parametrize("host", ["127.0.0.1", "::1", "localhost"])
 def test_this_machine_needs_no_decision(host):
     Settings(host=host).check_host()
+
+
+def test_a_worker_is_one_of_the_workers_and_shares_named_cages(file):
+    with pytest.raises(InputError, match="worker = 2 of workers = 2"):
+        read_settings(file("worker = 2\nworkers = 2\n"))
+    with pytest.raises(InputError, match="take a name each"):
+        read_settings(file('workers = 2\n[[cages]]\ntwin = "."\n'))

@@ -38,7 +38,7 @@ def publish(
         ),
     ],
     cage: Annotated[str, typer.Option(help="The cage's name there.")] = "ace",
-    site: Annotated[str, typer.Option(help="By MQTT: the site's name in the topics.")] = "farm",
+    site: Annotated[str, typer.Option(help="By MQTT: the site's name in the topics.")] = "site",
     stream: Annotated[str, typer.Option(help="What to call the stream of a file.")] = "buoy-1",
     columns: Annotated[
         str | None,

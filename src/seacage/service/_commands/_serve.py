@@ -4,7 +4,7 @@ import socket
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -65,9 +65,22 @@ def serve(
         Path | None,
         typer.Option(exists=True, dir_okay=False, help="A buoy's record to replay, over and over."),
     ] = None,
+    clock: Annotated[
+        Literal["wall", "samples"] | None,
+        typer.Option(
+            help="The time at the cage: this machine's, or that of the newest sample, for a "
+            "record that is published as if it were live. [default: wall]"
+        ),
+    ] = None,
     speed: Annotated[
-        float, typer.Option(min=0.1, max=10_000.0, help="Of a replay, against real time.")
-    ] = 60.0,
+        float | None,
+        typer.Option(
+            min=0.1,
+            max=10_000.0,
+            help="Of a replay, or of --clock samples between two of them, against real time. "
+            "[default: 60 of a replay, else 1]",
+        ),
+    ] = None,
     insecure_http: Annotated[
         bool,
         typer.Option("--insecure-http", help="Listen beyond this machine without encryption."),
@@ -86,6 +99,9 @@ def serve(
     Example: let a logger send samples to your own twin.
         seacage token new --data var --scope ingest
         seacage serve --data var --twin twin
+    Example: show a record that is published at 100 times its pace.
+        seacage serve --twin twin --mqtt mqtt://127.0.0.1:1883 --clock samples --speed 100
+        seacage publish record.csv --to mqtt://127.0.0.1:1883 --speed 100
     Example: serve a farm as its file says.
         seacage serve --config seacage.toml
     """
@@ -103,6 +119,8 @@ def serve(
         certificate=certificate,
         key=key,
         insecure_http=insecure_http or None,
+        clock=clock,
+        speed=speed,
         store={"url": store} if store else None,
         mqtt={"url": mqtt} if mqtt else None,
         cages=[{"twin": twin, "name": cage}] if twin else None,
@@ -116,8 +134,9 @@ def serve(
         twins, replay = _prepared(settings, demo=demo, record=record)
         if cage and not settings.cages:
             twins = dict.fromkeys([cage], next(iter(twins.values())))
-        service = assembled(settings, twins, replay=replay, speed=speed)
-        greeting = _greeting(settings, service, listener, speed if replay else None)
+        pace = 60.0 if speed is None else speed
+        service = assembled(settings, twins, replay=replay, speed=pace)
+        greeting = _greeting(settings, service, listener, pace if replay else None)
         tell(greeting.said, as_json=as_json, rows=greeting.rows)
         _run(service, settings, listener)
 
@@ -145,7 +164,7 @@ def _prepared(
 
     buoy = read_record(record) if record else None
     if settings.cages:
-        return read_twins(settings.cages), replay_of(buoy) if buoy else None
+        return read_twins(settings), replay_of(buoy) if buoy else None
     with progress_bar() as progress:
         made = prepare_demonstration(
             settings.data / "demonstration", record=buoy if demo else None, progress=progress
