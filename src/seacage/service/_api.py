@@ -4,13 +4,11 @@ import asyncio
 from collections.abc import AsyncGenerator, Callable, Coroutine, Mapping, Sequence
 from contextlib import asynccontextmanager
 from importlib.metadata import version
-from pathlib import Path
 
 import structlog
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import FileResponse, JSONResponse, PlainTextResponse, Response
-from fastapi.staticfiles import StaticFiles
 
 from seacage.conventions import InputError
 from seacage.service._alarm_routes import alarms
@@ -21,6 +19,7 @@ from seacage.service._guard import Gate
 from seacage.service._limits import Limits
 from seacage.service._live import LiveCage
 from seacage.service._metrics import Metrics
+from seacage.service._page_files import PAGE, PageFiles
 from seacage.service._routes import around, cages
 from seacage.service._sensorthings import things
 from seacage.service._session_routes import sessions
@@ -30,7 +29,6 @@ from seacage.service._stream import sockets
 from seacage.service._tokens import Tokens
 from seacage.service._whatif import what_if
 
-_PAGE = Path(__file__).parent / "page"
 _FAULTS = 5  # of a request, as many as anyone reads
 _log = structlog.get_logger(__name__)
 
@@ -120,14 +118,14 @@ def create_app(service: Service) -> FastAPI:
     app.add_exception_handler(RequestValidationError, _malformed)
     for router in (around, sessions, cages, alarms, what_if, downloads, rov, things, sockets):
         app.include_router(router)
-    if _PAGE.is_dir():
-        app.mount("/page", StaticFiles(directory=_PAGE), name="page")
+    if PAGE.is_dir():
+        app.mount("/page", PageFiles(directory=PAGE), name="page")
     app.add_api_route("/", _page, include_in_schema=False)
     return app
 
 
 def _page() -> Response:
-    index = _PAGE / "index.html"
+    index = PAGE / "index.html"
     if index.is_file():
         return FileResponse(index)
     return PlainTextResponse(

@@ -1,3 +1,5 @@
+import shutil
+
 import httpx
 import pytest
 
@@ -93,7 +95,9 @@ def built(tmp_path, monkeypatch):
     folder = tmp_path / "page"
     folder.mkdir()
     (folder / "index.html").write_text("<title>seacage</title>")
-    monkeypatch.setattr("seacage.service._api._PAGE", folder)
+    (folder / "assets").mkdir()
+    (folder / "assets" / "index-a1b2.js").write_text("1;")
+    monkeypatch.setattr("seacage.service._api.PAGE", folder)
     return folder
 
 
@@ -105,9 +109,17 @@ def test_the_page_lies_at_the_root_and_its_folder_gives_nothing_else_away(built,
             assert httpx.get(f"{one.address}/page/{odd}").status_code == 404
 
 
+def test_only_files_whose_names_hold_a_hash_are_kept_by_a_browser(built, tmp_path):
+    with running(tmp_path) as one:
+        assert "no-cache" in httpx.get(one.address).headers["cache-control"]
+        kept = httpx.get(f"{one.address}/page/assets/index-a1b2.js").headers["cache-control"]
+        assert "immutable" in kept
+        missing = httpx.get(f"{one.address}/page/assets/none.js")
+        assert "no-cache" in missing.headers["cache-control"]
+
+
 def test_a_service_whose_page_was_not_built_serves_all_else_and_says_so(built, tmp_path):
-    (built / "index.html").unlink()
-    built.rmdir()
+    shutil.rmtree(built)
     with running(tmp_path) as one:
         answer = httpx.get(one.address)
         assert answer.status_code == 404
