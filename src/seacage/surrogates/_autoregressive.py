@@ -36,10 +36,14 @@ LINK_LENGTH = (math.log(6.0), 0.9)
 """Mean and sd of a log length in spreads, for one feature."""
 
 KNOWN_LENGTH = (0.2, 0.5)
-"""Mean and sd of delta's log length less that of the lowest level, where that is known."""
+"""Mean and sd of delta's log length less that of the lowest level, where that is known and short.
+
+A level that turns fast with a feature leaves something that does so too. One that hardly follows
+a feature may do so wrongly: of what it leaves there, a long length tells nothing.
+"""
 
 STRANGE = 2.5
-"""A log length of the lowest level counts as known only so far from delta's general one."""
+"""A log length of the lowest level counts as known only so far below delta's general one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +58,7 @@ class AutoregressiveKernel(AbstractKernel):
 
     The priors expect the level above to be near a line in the level below, to bend smoothly
     about it, with a bend that hardly changes over the inputs, and to leave little else, which
-    varies over the inputs about as fast as the lowest level does.
+    varies over the inputs about as fast as the lowest level does where that is fast.
 
     Parameters
     ----------
@@ -154,12 +158,7 @@ class AutoregressiveKernel(AbstractKernel):
         general = _lengths(width, *DELTA_LENGTH)
         if not self.lengths:
             return general
-        shift, sd = KNOWN_LENGTH
-        held = [
-            min(max(known, mean - STRANGE), mean + STRANGE)
-            for known, (mean, _) in zip(self.lengths, general, strict=True)
-        ]
-        return [(known + shift, sd) for known in held]
+        return [_told(known, one) for known, one in zip(self.lengths, general, strict=True)]
 
     def link_length(self, log_parameters: Float[np.ndarray, " parameter"]) -> float:
         """Length over which the answer bends with f, in the unit of the standardised f."""
@@ -250,6 +249,13 @@ LinkKernel = AutoregressiveKernel | StraightKernel
 def _lengths(width: int, mean: float, sd: float) -> list[tuple[float, float]]:
     # Distances grow with the root of the number of features.
     return [(mean + 0.5 * math.log(width), sd)] * width
+
+
+def _told(known: float, general: tuple[float, float]) -> tuple[float, float]:
+    """Mean and sd of delta's log length of a feature, given that of the lowest level."""
+    shift, sd = KNOWN_LENGTH
+    expected = max(known, general[0] - STRANGE) + shift
+    return (expected, sd) if expected < general[0] else general
 
 
 def saved_kernel(name: str) -> AbstractKernel:

@@ -19,8 +19,16 @@ def test_what_a_level_leaves_is_expected_to_vary_as_fast_as_the_lowest_level():
 
 def test_a_length_beyond_belief_is_believed_only_so_far():
     general = AutoregressiveKernel(linear=True).prior(3).mean[DELTA]
-    strange = AutoregressiveKernel(linear=True, lengths=(50.0, -50.0)).prior(3).mean[DELTA]
-    np.testing.assert_allclose(strange - general, np.array([STRANGE, -STRANGE]) + KNOWN_LENGTH[0])
+    strange = AutoregressiveKernel(linear=True, lengths=(-5.0, -50.0)).prior(3).mean[DELTA]
+    np.testing.assert_allclose(strange - general, KNOWN_LENGTH[0] - STRANGE)
+
+
+def test_a_feature_that_the_lowest_level_hardly_follows_tells_nothing_of_what_is_left():
+    general = AutoregressiveKernel(linear=True).prior(3)
+    told = AutoregressiveKernel(linear=True, lengths=(0.5, 3.0)).prior(3)
+    assert told.mean[DELTA][0] < general.mean[DELTA][0]
+    assert told.mean[DELTA][1] == general.mean[DELTA][1]
+    assert told.sd[DELTA][1] == general.sd[DELTA][1]
 
 
 def test_lengths_are_handed_up_in_the_spreads_of_the_level_that_hears_them():
