@@ -1,9 +1,8 @@
 """Questions of a pilot to a running service."""
 
-import http.client
 import json
 from dataclasses import dataclass
-from urllib.parse import quote, urlsplit
+from http import HTTPStatus
 
 from seacage.conventions import InputError, SeacageError
 from seacage.service._clearance_schemas import (
@@ -12,6 +11,7 @@ from seacage.service._clearance_schemas import (
     InspectionAnswer,
     InspectionAsked,
 )
+from seacage.service._post import POST_FAILED, post_to_cage
 from seacage.twin import StaleError
 
 
@@ -60,32 +60,17 @@ class Asker:
             Nobody answers, or not so.
         """
         try:
-            status, answer = self._posted(call, body)
-        except (OSError, http.client.HTTPException) as error:
+            status, answer = post_to_cage(self.address, self.cage, call, body, token=self.token)
+        except POST_FAILED as error:
             raise AskError(f"{self.address} does not answer ({error}). Is it running?") from error
-        if status == http.client.OK:
+        if status == HTTPStatus.OK:
             return answer
         why = _detail(answer)
-        if status == http.client.CONFLICT:
+        if status == HTTPStatus.CONFLICT:
             raise StaleError(why)
         if status in range(400, 500):
             raise InputError(f"{self.address} refused the question ({status}): {why}")
         raise AskError(f"{self.address} cannot answer ({status}): {why}")
-
-    def _posted(self, call: str, body: str) -> tuple[int, bytes]:
-        place = urlsplit(self.address)
-        kinds = {"http": http.client.HTTPConnection, "https": http.client.HTTPSConnection}
-        if place.scheme not in kinds or place.hostname is None:
-            raise InputError(f"{self.address} is no address. Give one as http://127.0.0.1:8000.")
-        connection = kinds[place.scheme](place.hostname, place.port, timeout=60.0)
-        headers = {"Authorization": f"Bearer {self.token}", "Content-Type": "application/json"}
-        path = f"{place.path.rstrip('/')}/api/v1/cages/{quote(self.cage, safe='')}/{call}"
-        try:
-            connection.request("POST", path, body, headers)
-            answer = connection.getresponse()
-            return answer.status, answer.read()
-        finally:
-            connection.close()
 
 
 def _detail(answer: bytes) -> str:

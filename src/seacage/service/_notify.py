@@ -3,7 +3,6 @@
 import asyncio
 import hashlib
 import hmac
-import http.client
 from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -16,6 +15,7 @@ import structlog
 from seacage.conventions import InputError
 from seacage.service._alarm_desk import AlarmDesk, Announcement, announced_json
 from seacage.service._clock import Clock
+from seacage.service._post import POST_FAILED, post
 from seacage.twin import Action
 
 _TOLD = {Action.RAISED, Action.REPEATED, Action.CLEARED, Action.ACKNOWLEDGED}
@@ -158,19 +158,12 @@ class Herald:
 
 def _posted(hook: Webhook, body: str) -> str | None:
     """Post once; why it failed, or None."""
-    place = urlsplit(hook.url)
-    kinds = {"http": http.client.HTTPConnection, "https": http.client.HTTPSConnection}
-    headers = {"Content-Type": "application/json"}
+    headers = dict[str, str]()
     if hook.secret:
         signature = hmac.new(hook.secret.encode(), body.encode(), hashlib.sha256)
         headers["X-Seacage-Signature"] = signature.hexdigest()
-    path = f"{place.path or '/'}{'?' + place.query if place.query else ''}"
-    connection = kinds[place.scheme](place.hostname or "", place.port, timeout=_TIMEOUT_S)
     try:
-        connection.request("POST", path, body, headers)
-        status = connection.getresponse().status
-    except (OSError, http.client.HTTPException) as error:
+        status, _ = post(hook.url, body, headers=headers, timeout_s=_TIMEOUT_S)
+    except POST_FAILED as error:
         return str(error) or type(error).__name__
-    finally:
-        connection.close()
     return None if 200 <= status < 300 else f"it answered {status}"

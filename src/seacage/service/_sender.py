@@ -1,15 +1,14 @@
 """Samples sent to a running service over HTTP, until it has them on disk."""
 
-import http.client
 import json
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
-from urllib.parse import urlsplit
 
 from seacage.conventions import InputError, SeacageError
 from seacage.records import Sample
 from seacage.service._mqtt_messages import said
+from seacage.service._post import POST_FAILED, post_to_cage
 from seacage.service._schemas import BATCH_LIMIT, Receipt
 
 _LATER = (429, 503)
@@ -65,8 +64,11 @@ class Sender:
         answer = ""
         for patience_s in (*self.patience_s, None):
             try:
-                status, answer = self._asked(body)
-            except (OSError, http.client.HTTPException) as error:
+                status, raw = post_to_cage(
+                    self.address, self.cage, "samples", body, token=self.token, timeout_s=30.0
+                )
+                answer = raw.decode("utf-8", "replace")
+            except POST_FAILED as error:
                 status, answer = 503, str(error)
             if status == 201:
                 return Receipt.model_validate_json(answer)
@@ -75,18 +77,3 @@ class Sender:
             if patience_s is not None:
                 time.sleep(patience_s)
         raise SendError(f"{self.address} takes no samples ({answer[:300]}). Is it running?")
-
-    def _asked(self, body: str) -> tuple[int, str]:
-        place = urlsplit(self.address)
-        kinds = {"http": http.client.HTTPConnection, "https": http.client.HTTPSConnection}
-        if place.scheme not in kinds or place.hostname is None:
-            raise InputError(f"{self.address} is no address. Give one as http://127.0.0.1:8000.")
-        connection = kinds[place.scheme](place.hostname, place.port, timeout=30.0)
-        headers = {"Authorization": f"Bearer {self.token}", "Content-Type": "application/json"}
-        path = f"{place.path.rstrip('/')}/api/v1/cages/{self.cage}/samples"
-        try:
-            connection.request("POST", path, body, headers)
-            answer = connection.getresponse()
-            return answer.status, answer.read().decode("utf-8", "replace")
-        finally:
-            connection.close()
