@@ -2,7 +2,7 @@
 
 import hashlib
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from datetime import UTC, datetime
 
 import numpy as np
@@ -33,6 +33,7 @@ from seacage.surrogates import Prediction
 from seacage.twin import Answer, Answered, Metocean, Twin, TwinState
 
 _UNUSABLE = (Flag.FAIL, Flag.MISSING)
+_PERIOD = "tp_s"
 _DOOR_UNIT = {"N": ("kN", 1e-3), "m": ("m", 1.0)}
 _ID_DIGITS = 16  # of the hash of a topology: enough that two never meet by chance
 _DECIMALS = 3  # a newton, a millimetre: below what any sensor here resolves
@@ -61,7 +62,7 @@ def state_of(name: str, twin: Twin, answered: Answered, memory: TwinState) -> St
         in_domain=bool(answer.in_domain[0]),
         reason=answer.reason[0],
         origin=str(twin.origin),
-        water=_water(answered.metocean),
+        water=_water(answered.metocean, _period(memory, twin.buoy)),
         bridles=_bridles(twin.cage, answer),
         sensors=_sensors(answer, memory, answered.t, twin.watch.sensor_silent_after_s),
         shape_level=answer.shape_level,
@@ -189,7 +190,7 @@ def topology_of(name: str, twin: Twin, *, speed: float) -> Topology:
 
 
 def history_of(
-    buoy: Record, answer: Answer, measured: Mapping[str, Sequence[Sample]], *, points: int
+    buoy: Record, answer: Answer, measured: Mapping[str, Measured], *, thinned: bool
 ) -> History:
     """Say what the twin answers to each reading of a buoy.
 
@@ -200,9 +201,9 @@ def history_of(
     answer
         One row each.
     measured
-        The samples of each sensor in the same time.
-    points
-        At most so many of each sensor: every so manieth is kept.
+        What each sensor read in the same time.
+    thinned
+        Whether the buoy read more often than these readings say.
     """
     times = [t.replace(tzinfo=UTC) for t in buoy.time.tolist()]
     bridle, sensor = answer.bridle_interval(), answer.sensor_interval()
@@ -228,8 +229,9 @@ def history_of(
             )
             for k, name in enumerate(answer.sensor_names)
         },
-        measured={name: _measured(samples, points) for name, samples in measured.items()},
+        measured=dict(measured),
         volume_fraction=_column(answer.volume_fraction),
+        thinned=thinned,
     )
 
 
@@ -247,12 +249,6 @@ def _series(
     )
 
 
-def _measured(samples: Sequence[Sample], points: int) -> Measured:
-    stride = max(1, math.ceil(len(samples) / points))
-    kept = [(one.t, value) for one in samples[::stride] if (value := usable_value(one)) is not None]
-    return Measured(t=[t for t, _ in kept], value=[round(value, _DECIMALS) for _, value in kept])
-
-
 def sample_of(sample: Sample) -> SampleOut:
     """Say what is stored of a sample."""
     return SampleOut(
@@ -264,7 +260,16 @@ def sample_of(sample: Sample) -> SampleOut:
     )
 
 
-def _water(metocean: Metocean | None) -> Water | None:
+def _period(memory: TwinState, buoy: str) -> float | None:
+    """The buoy's last word on the period, which no twin is asked with; None where it failed."""
+    stream = memory.streams.get(buoy)
+    sample = stream[-1].newest.get(_PERIOD) if stream else None
+    if sample is None or sample.flags[_PERIOD] in _UNUSABLE:
+        return None
+    return sample.values[_PERIOD]
+
+
+def _water(metocean: Metocean | None, tp_s: float | None) -> Water | None:
     if metocean is None:
         return None
     velocity = metocean.current_velocity[0]
@@ -272,6 +277,7 @@ def _water(metocean: Metocean | None) -> Water | None:
         current_speed_m_s=_number(float(np.hypot(*velocity))),
         current_to_deg=_number(float(compass(velocity)), 1),
         hs_m=_number(metocean.hs[0], 2),
+        tp_s=_number(tp_s, 2),
         wave_from_deg=_number(float(compass(-metocean.wave_direction[0])), 1),
     )
 

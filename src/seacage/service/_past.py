@@ -6,15 +6,12 @@ from datetime import datetime, timedelta
 import numpy as np
 
 from seacage.conventions import Flag, Origin
-from seacage.records import Record, Sample, instant, moment
-from seacage.service._answers import history_of
+from seacage.records import Record, Sample, instant
 from seacage.service._samples import BUOY_KEYS
-from seacage.service._schemas import History
 from seacage.service._store import Store
 from seacage.twin import Answered, Event, Twin, TwinState
 
 _CONTEXT = 4  # samples of a stream: the newest governs, the checks look a little further back
-_MEASURED_LIMIT = 50_000
 
 REMEMBERED = timedelta(hours=12)
 """After a restart the intervals are adapted again by the readings of so long."""
@@ -62,27 +59,6 @@ def state_at(
     answered = answered_in(events)
     assert answered is not None  # a tick is always answered
     return state, answered
-
-
-def history_between(
-    twin: Twin,
-    store: Store,
-    cage: str,
-    *,
-    start: datetime | None,
-    end: datetime | None,
-    limit: int,
-) -> History:
-    """Answer to the last of a buoy's readings in a span, and show what the sensors read."""
-    buoy = readings_between(twin, store, cage, start=start, end=end, limit=limit)
-    since = moment(buoy.time[0]) if len(buoy) else start
-    measured = {
-        sensor: store.samples(
-            cage, stream=sensor, start=since, end=end, limit=_MEASURED_LIMIT, newest=True
-        )
-        for sensor in twin.sensor_names
-    }
-    return history_of(buoy, twin.predict_record(buoy), measured, points=limit)
 
 
 def readings_between(

@@ -23,8 +23,9 @@ from seacage.service._calls import (
 )
 from seacage.service._frame import MEDIA_TYPE, Flags, frame_of
 from seacage.service._guard import Permit
+from seacage.service._history import history_between
 from seacage.service._live import LiveCage
-from seacage.service._past import history_between, state_at
+from seacage.service._past import state_at
 from seacage.service._samples import read_samples
 from seacage.service._schemas import (
     AggregateOut,
@@ -187,7 +188,13 @@ def get_topology(live: Live) -> Topology:
 
 @cages.get("/{cage}/history", dependencies=may_read, responses=READ)
 def get_history(live: Live, start: From = None, end: To = None, limit: Limit = 1000) -> History:
-    """Answer to the last of the buoy's readings in a span, and show what the sensors read."""
+    """Answer to the buoy's readings in a span, and show what the sensors read.
+
+    Where the buoy read more often than ``limit``, ``thinned`` is true, and the answers are spread
+    over the span: its first and last, and the calmest and fastest water of equal parts between.
+    A sensor that read more often is told by means of one or ten minutes. Intervals are as
+    trained.
+    """
     return history_between(live.twin, live.store, live.name, start=start, end=end, limit=limit)
 
 

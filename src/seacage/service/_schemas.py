@@ -155,11 +155,12 @@ class SensorState(_Answered):
 
 
 class Water(_Answered):
-    """The reading that the answer rests on."""
+    """The reading that the answer rests on; null where the source said nothing."""
 
     current_speed_m_s: float | None
     current_to_deg: float | None
     hs_m: float | None
+    tp_s: float | None
     wave_from_deg: float | None
 
 
@@ -234,14 +235,22 @@ class Series(_Answered):
 
 
 class Measured(_Answered):
-    """What a sensor read, at its own times; values that failed their checks are left out."""
+    """What a sensor read, at its own times; values that failed their checks are left out.
+
+    With ``width_s`` they are means over spans of so many seconds, each at the middle of its span.
+    """
 
     t: list[datetime]
     value: list[float]
+    width_s: int | None = None
 
 
 class History(_Answered):
-    """The answers to the buoy's readings, one per reading, and what the sensors read."""
+    """The answers to the buoy's readings, one per reading, and what the sensors read.
+
+    ``thinned`` says that there were more readings than were asked for: these are the first, the
+    last, and the calmest and the fastest water of equal parts between. Intervals are as trained.
+    """
 
     t: list[datetime]
     valid: list[bool]
@@ -252,6 +261,7 @@ class History(_Answered):
     sensors: dict[str, Series]
     measured: dict[str, Measured]
     volume_fraction: list[float | None]
+    thinned: bool
 
 
 class Position(_Answered):

@@ -36,5 +36,8 @@ def ask_what_if(live: Live, body: WhatIf) -> Response:
         t=live.clock.now(), answer=twin.predict(water), metocean=water, input_age_s=0.0
     )
     state = state_of(live.name, twin, answered, twin.start())
+    if state.water and sea.hs > 0.0:
+        water_said = state.water.model_copy(update={"tp_s": round(sea.peak_period, 2)})
+        state = state.model_copy(update={"water": water_said})
     frame = frame_of(state, answered, live.rest_position, about=Flags.WHAT_IF)
     return Response(frame, media_type=MEDIA_TYPE)

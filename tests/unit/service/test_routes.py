@@ -223,8 +223,22 @@ def test_history_has_one_answer_per_reading_and_what_the_sensors_read(live: Runn
     series = past["sensors"]["depth-2"]
     assert [value is None for value in series["mean"]] == [False, True, False]
     assert series["unit"] == "m"
-    assert past["measured"]["depth-2"] == {"t": ["2020-02-01T11:45:00Z"], "value": [14.0]}
+    measured = past["measured"]["depth-2"]
+    assert measured == {"t": ["2020-02-01T11:45:00Z"], "value": [14.0], "width_s": None}
     assert past["bridles"]["bridle-1"]["level"] == 1
+
+
+def test_the_period_of_the_waves_is_said_with_their_height(live: Running):
+    waves = {"hs_m": 1.2, "tp_s": 6.5, "wave_from_deg": 270.0}
+    live.post(buoy(-10) | {"values": buoy()["values"] | waves})
+    state = eventually(live.state, lambda one: one["valid"])
+    assert state["water"]["tp_s"] == 6.5
+    live.post(buoy(-5) | {"values": buoy()["values"] | waves | {"tp_s": None}})
+    state = eventually(live.state, lambda one: one["water"]["tp_s"] is None)
+    assert state["water"]["tp_s"] is None
+    asked = {"current_speed_m_s": 0.5, "current_to_deg": 90.0, "hs_m": 1.0}
+    frame = frame_of(live.reader.post("/api/v1/cages/ace/whatif", json=asked))
+    assert frame.state["water"]["tp_s"] == 5.0
 
 
 def test_history_of_a_silent_buoy_is_empty(idle: Running):
