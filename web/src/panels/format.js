@@ -10,9 +10,12 @@ const NAMES = ["north", "north-east", "east", "south-east", "south", "south-west
 /** Whether there is a number. */
 export const known = (value) => Number.isFinite(value);
 
-/** A number with so many decimals; a dash where there is none. */
-export const fixed = (value, decimals = 1) =>
-  known(value) ? value.toFixed(decimals).replace("-", "−") : DASH;
+/** A number with so many decimals; a dash where there is none. What rounds to nothing has no sign. */
+export function fixed(value, decimals = 1) {
+  if (!known(value)) return DASH;
+  const text = value.toFixed(decimals);
+  return text.replace("-", Number(text) === 0 ? "" : "−");
+}
 
 /** A number with its unit. */
 export const withUnit = (value, unit, decimals = 1) =>

@@ -1,7 +1,8 @@
 // Single keys, wherever the reader does not write.
 
-const WRITES = "input, textarea, select, [role=slider]";
-const PRESSES = "button, a, summary, [role=tab]";
+// Sliders take arrows and pages alone, so letters go on to do what they do elsewhere.
+const WRITES = "input:not([type=range], [type=checkbox]), textarea, select";
+const PRESSES = "button, a, summary, [role=tab], [type=checkbox]";
 
 /** Call what belongs to a key; `keys` maps what the keyboard says to functions. */
 export function listenForKeys(keys) {

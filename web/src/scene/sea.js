@@ -32,7 +32,8 @@ void main() {
   float fade = 1.0 - smoothstep(0.35, 1.0, away);
   float rough = (0.35 + 0.65 * clamp(height, 0.0, 1.5)) * step(0.05, height);
   float bright = rough * pow(0.5 + 0.5 * vCrest, 5.0);
-  gl_FragColor = vec4(mix(water, crest, 0.65 * bright), strength * fade * (0.16 + 0.3 * bright));
+  // A little of the crests' colour all over: still water has a surface too.
+  gl_FragColor = vec4(mix(water, crest, 0.3 + 0.5 * bright), strength * fade * (0.16 + 0.3 * bright));
   #include <colorspace_fragment>
 }`;
 

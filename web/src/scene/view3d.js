@@ -21,7 +21,7 @@ import { Sea } from "./sea.js";
 const ROLL_MS = 50; // twenty pictures a second are enough for a swell
 const SLOW = /swiftshader|llvmpipe|software/i;
 const VIEWS = {
-  oblique: { azimuth: 0.55, elevation: 0.3 },
+  oblique: { azimuth: 0.38, elevation: 0.3 },
   side: { azimuth: 0, elevation: 0.02 },
   top: { azimuth: 0, elevation: Math.PI / 2 - 1e-3 },
 };
@@ -241,7 +241,7 @@ export class View3d {
     // All of the frame fits the narrower way.
     const wide = Math.max(1, (1.38 * height) / width);
     const target = new Vector3(0, 0, name === "top" ? 0 : -0.3 * this.size.depth);
-    const distance = (name === "top" ? 3.1 : 2.5) * this.size.frame * wide;
+    const distance = (name === "top" ? 3.1 : 2.6) * this.size.frame * wide;
     const farthest = 8 * this.size.frame;
     this.orbit.limits = [0.5 * this.size.frame, farthest];
     this.orbit.look({ ...VIEWS[name], target, distance: Math.min(distance, farthest) }, how);

@@ -7,7 +7,13 @@ const MINUS = "−";
 /** A number with its unit; a dash where there is none. */
 export const fixed = (value, decimals, unit = "") =>
   value === null || value === undefined || !Number.isFinite(value)
-    ? "–" : `${value.toFixed(decimals).replace("-", MINUS)}${unit && ` ${unit}`}`;
+    ? "–" : `${rounded(value, decimals).replace("-", MINUS)}${unit && ` ${unit}`}`;
+
+/** So many decimals; what rounds to nothing has no sign. */
+function rounded(value, decimals) {
+  const text = value.toFixed(decimals);
+  return Number(text) === 0 ? text.replace("-", "") : text;
+}
 
 /** Degrees in three figures, as on a bridge. */
 export const bearing = (degrees) => `${String(Math.round(degrees) % 360).padStart(3, "0")}°`;

@@ -16,6 +16,7 @@ test("a number that is not known is a dash and has no unit", () => {
 
 test("a number has its decimals and a true minus", () => {
   assert.equal(fixed(-1.26), "−1.3");
+  assert.equal(fixed(-0.04), "0.0");
   assert.equal(withUnit(2, "m", 2), "2.00 m");
 });
 
