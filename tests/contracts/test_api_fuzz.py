@@ -2,6 +2,7 @@
 
 import httpx
 import hypothesis
+import jsonschema
 import pytest
 import schemathesis
 from schemathesis import GenerationMode
@@ -87,7 +88,7 @@ def test_ten_thousand_cases_are_answered_as_documented(service, operations):
     assert fuzzed(service, operations, 250) >= 10_000
 
 
-def test_every_call_documents_its_refusals_and_shows_an_example(service):
+def test_every_call_documents_its_refusals_and_its_bounds(service):
     described = httpx.get(f"{service.address}/openapi.json").json()
     assert described["openapi"].startswith("3.1")
     for path, calls in described["paths"].items():
@@ -99,3 +100,53 @@ def test_every_call_documents_its_refusals_and_shows_an_example(service):
                 bounded = parameter["schema"].get("anyOf", [parameter["schema"]])[0]
                 kind = bounded.get("type")
                 assert kind != "string" or {"maxLength", "format", "enum"} & bounded.keys(), where
+
+
+def examples_in(described):
+    """The example of every body, and of every answer that people can read."""
+    for path, calls in described["paths"].items():
+        for method, call in calls.items():
+            contents = {"body": call.get("requestBody", {}).get("content", {})}
+            contents |= {
+                code: call["responses"][code].get("content", {})
+                for code in ("200", "201")
+                if code in call["responses"]
+            }
+            for what, content in contents.items():
+                for kind, medium in content.items():
+                    if kind.startswith("text/") or kind.endswith("json"):
+                        name = medium.get("schema", {}).get("$ref", "").rpartition("/")[2]
+                        schema = described["components"]["schemas"].get(name, {})
+                        yield (
+                            f"{method} {path} {what}",
+                            name,
+                            [
+                                *schema.get("examples", []),
+                                *([medium["example"]] if "example" in medium else []),
+                            ],
+                        )
+
+
+def test_every_body_and_every_answer_that_can_be_read_shows_an_example(service):
+    shown = list(examples_in(httpx.get(f"{service.address}/openapi.json").json()))
+    assert len(shown) > 40
+    assert [where for where, _, examples in shown if not examples] == []
+
+
+def test_every_example_is_what_its_call_takes_or_gives_with_all_that_belongs_there(service):
+    described = httpx.get(f"{service.address}/openapi.json").json()
+    # An example that lacks a key of an answer would teach readers an answer that never comes.
+    for name, schema in described["components"]["schemas"].items():
+        for example in schema.get("examples", []):
+            checker = jsonschema.Draft202012Validator(
+                {"$ref": f"#/components/schemas/{name}"} | described
+            )
+            assert [error.message for error in checker.iter_errors(example)] == [], name
+            asked = schema.get("additionalProperties") is False
+            assert asked or schema["properties"].keys() == example.keys(), name
+
+
+def test_the_example_of_a_sample_is_taken(service):
+    described = httpx.get(f"{service.address}/openapi.json").json()
+    (example,) = described["components"]["schemas"]["SamplesIn"]["examples"]
+    assert service.post(*example["samples"]).json()["rejected"] == []

@@ -15,6 +15,7 @@ from seacage.service._alarm_routes import alarms
 from seacage.service._audit import Audit
 from seacage.service._clearance_routes import rov
 from seacage.service._downloads import downloads
+from seacage.service._examples import with_examples
 from seacage.service._guard import Gate
 from seacage.service._limits import Limits
 from seacage.service._live import LiveCage
@@ -118,6 +119,8 @@ def create_app(service: Service) -> FastAPI:
     app.add_exception_handler(RequestValidationError, _malformed)
     for router in (around, sessions, cages, alarms, what_if, downloads, rov, things, sockets):
         app.include_router(router)
+    described = app.openapi
+    app.openapi = lambda: with_examples(described())
     if PAGE.is_dir():
         app.mount("/page", PageFiles(directory=PAGE), name="page")
     app.add_api_route("/", _page, include_in_schema=False)

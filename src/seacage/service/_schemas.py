@@ -337,18 +337,6 @@ class Cages(_Answered):
 class WhatIf(_Asked):
     """Water that is only imagined; ``tp_s`` null takes the steepest sea of the height."""
 
-    model_config = ConfigDict(
-        json_schema_extra={
-            "example": {
-                "current_speed_m_s": 0.8,
-                "current_to_deg": 90.0,
-                "hs_m": 1.5,
-                "tp_s": None,
-                "wave_from_deg": 270.0,
-            }
-        }
-    )
-
     current_speed_m_s: Annotated[float, Field(ge=0.0, le=3.0)]
     current_to_deg: Annotated[float, Field(ge=0.0, le=360.0)]
     hs_m: Annotated[float, Field(ge=0.0, le=20.0)] = 0.0
