@@ -411,6 +411,16 @@ def test_the_book_of_alarms_is_the_last_that_was_kept(store):
     assert store.alarm_book("ace") == '{"a": 2}'
 
 
+def test_what_was_adapted_is_the_last_that_was_kept(store):
+    assert store.adapted("ace") is None
+    for factors in ('{"depth-1": 1}', '{"depth-1": 2}'):
+        store.keep_adapted("ace", factors).result(timeout=20)
+    assert store.adapted("ace") == '{"depth-1": 2}'
+    assert store.adapted("ice") is None
+    store.forget("ace")
+    assert store.adapted("ace") is None
+
+
 def test_the_journal_comes_back_in_order_within_its_bounds(store):
     store.keep_alarms("ace", book="{}", journal=[SEEN, RAISED]).result(timeout=20)
     store.keep_alarms("ace", book="{}", journal=[RAISED]).result(timeout=20)

@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Generator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
-from datetime import datetime
+from datetime import datetime, timedelta
 from functools import cached_property
 from typing import assert_never
 
@@ -14,6 +14,7 @@ import numpy as np
 import structlog
 from jaxtyping import Float
 
+from seacage.conventions import InputError
 from seacage.records import Amendment, QualityState, Sample, check_sample
 from seacage.service._alarm_desk import AlarmDesk
 from seacage.service._answers import state_of, topology_of
@@ -21,7 +22,7 @@ from seacage.service._clock import Clock, FollowingClock, latest_allowed
 from seacage.service._frame import frame_of
 from seacage.service._mailbox import Mailbox
 from seacage.service._metrics import Metrics
-from seacage.service._past import REMEMBERED, answered_in, state_at, streams_of
+from seacage.service._past import answered_in, state_at, streams_of
 from seacage.service._samples import BUOY_KEYS
 from seacage.service._schemas import State, Topology
 from seacage.service._store import Store, StoreError
@@ -34,10 +35,14 @@ from seacage.twin import (
     StreamBack,
     StreamSilent,
     Twin,
+    TwinState,
 )
 
 _GATHERED_S = 0.1
 """What comes within so long is stepped through together, and shown once [s]."""
+
+_KEPT_EVERY = timedelta(minutes=1)
+"""How far the intervals were adapted is kept so often."""
 
 _log = structlog.get_logger(__name__)
 
@@ -100,7 +105,8 @@ class LiveCage:
         self.rest_position = np.array(self._topology.rest_position_m)
         limits = policy or AlarmPolicy.default(twin.cage, buoy=twin.buoy, watch=twin.watch)
         self.desk = AlarmDesk(cage=name, twin=twin, store=store, policy=limits)
-        self._state, answered = state_at(twin, store, name, clock.now(), remembered=REMEMBERED)
+        self._kept_at: datetime | None = None
+        self._state, answered = self._found()
         self._quality = {stream: taken[-1].quality for stream, taken in self._state.streams.items()}
         self.snapshot = self._shown(answered)
 
@@ -244,7 +250,22 @@ class LiveCage:
         answered = answered_in(events)
         assert answered is not None  # a tick is always answered
         self.desk.look(self._state, answered)
+        self._keep_adapted(answered.t)
         return answered, noticed
+
+    def _found(self) -> tuple[TwinState, Answered]:
+        """Where the twin stood, from what the store kept of it."""
+        now, adapted = self.clock.now(), self.store.adapted(self.name)
+        try:
+            return state_at(self.twin, self.store, self.name, now, adapted=adapted)
+        except InputError as error:
+            _log.warning("intervals as trained", cage=self.name, reason=str(error))
+            return state_at(self.twin, self.store, self.name, now)
+
+    def _keep_adapted(self, t: datetime) -> None:
+        if self._kept_at is None or abs(t - self._kept_at) >= _KEPT_EVERY:
+            self._kept_at = t
+            self.store.keep_adapted(self.name, self._state.adapted)
 
     def _note(self, events: Sequence[Event]) -> None:
         for event in events:

@@ -13,11 +13,6 @@ from seacage.twin import Answered, Event, Twin, TwinState
 
 _CONTEXT = 4  # samples of a stream: the newest governs, the checks look a little further back
 
-REMEMBERED = timedelta(hours=12)
-"""After a restart the intervals are adapted again by the readings of so long."""
-
-_REMEMBERED_LIMIT = 2000  # samples of a stream: a restart waits for them all to be stepped through
-
 
 def streams_of(twin: Twin) -> tuple[str, ...]:
     """Name the streams that a twin listens to, the buoy first."""
@@ -30,7 +25,7 @@ def answered_in(events: Sequence[Event]) -> Answered | None:
 
 
 def state_at(
-    twin: Twin, store: Store, cage: str, at: datetime, *, remembered: timedelta = timedelta(0)
+    twin: Twin, store: Store, cage: str, at: datetime, *, adapted: str | None = None
 ) -> tuple[TwinState, Answered]:
     """Fold a twin's state and answer at a time from what had been measured until then.
 
@@ -38,22 +33,17 @@ def state_at(
     ----------
     twin, store, cage, at
         Whose state, from what, and when.
-    remembered
-        How far back the readings go that adapt the intervals; without it these are as trained,
-        or nearly so.
+    adapted
+        How far the intervals had been adapted; None takes them as trained, or nearly so.
     """
     end = at + timedelta(microseconds=1)
-    recent: dict[tuple[str, datetime, int | None], Sample] = {}
-    for stream in streams_of(twin):
-        last = store.samples(cage, stream=stream, end=end, limit=_CONTEXT, newest=True)
-        if remembered:
-            start = at - remembered
-            last += store.samples(
-                cage, stream=stream, start=start, end=end, limit=_REMEMBERED_LIMIT, newest=True
-            )
-        recent |= {(one.stream, one.t, one.seq): one for one in last}
-    state = twin.start()
-    for sample in sorted(recent.values(), key=lambda sample: sample.t):
+    recent = [
+        sample
+        for stream in streams_of(twin)
+        for sample in store.samples(cage, stream=stream, end=end, limit=_CONTEXT, newest=True)
+    ]
+    state = twin.start(adapted)
+    for sample in sorted(recent, key=lambda sample: sample.t):
         state, _ = twin.step(state, sample, sample.t)
     state, events = twin.step(state, None, at)
     answered = answered_in(events)

@@ -10,6 +10,7 @@ from seacage.records import Amendment, Sample
 from seacage.service._aggregates import Aggregate, check_aggregate
 from seacage.service._archive import Archive
 from seacage.service._archive_found import completed, latest_of
+from seacage.service._store_adapted import adapted, keep_adapted
 from seacage.service._store_aggregates import aggregates_between, renew_rested
 from seacage.service._store_alarms import alarm_book, journal_between, keep_alarms
 from seacage.service._store_place import database_at, look_into
@@ -22,7 +23,7 @@ from seacage.twin import Happened
 
 __all__ = ["Store", "StoreError", "look_into", "open_store"]
 
-_TABLES = ("sample", "aggregate", "mark", "sealed", "alarm_book", "journal")
+_TABLES = ("sample", "aggregate", "mark", "sealed", "alarm_book", "adapted", "journal")
 
 
 def open_store(place: Path | str, *, archive: Path | None = None) -> "Store":
@@ -211,6 +212,15 @@ class Store:
         """Read the book that was kept last; None where there was none."""
         with self._database.reading() as session:
             return alarm_book(session, cage)
+
+    def keep_adapted(self, cage: str, factors: str) -> "Future[None]":
+        """Keep how far the intervals of a cage's twin were adapted, as JSON."""
+        return self._writer.ask(lambda session: keep_adapted(session, cage, factors))
+
+    def adapted(self, cage: str) -> str | None:
+        """Read what ``keep_adapted`` kept last; None where there was nothing."""
+        with self._database.reading() as session:
+            return adapted(session, cage)
 
     def journal(
         self,

@@ -46,6 +46,8 @@ _TABLES = (
     PRIMARY KEY (cage, stream, t)
 ){keyed}""",
     "CREATE TABLE IF NOT EXISTS alarm_book (cage TEXT PRIMARY KEY, book TEXT NOT NULL){keyed}",
+    # How far the intervals of a cage's twin were adapted.
+    "CREATE TABLE IF NOT EXISTS adapted (cage TEXT PRIMARY KEY, factors TEXT NOT NULL){keyed}",
     """CREATE TABLE IF NOT EXISTS journal (
     number {counted},
     cage TEXT NOT NULL,

@@ -1,10 +1,11 @@
 """Intervals that adapt to the sensors that are there: their readings judge what was said."""
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 
-from seacage.conventions import Flag
+from seacage.conventions import Flag, InputError
 from seacage.records import Sample
 from seacage.surrogates import AdaptiveConformal
 
@@ -67,3 +68,35 @@ def answered_with(
     return {
         name: replace(tracked.get(name, Tracked()), said=numbers) for name, numbers in said.items()
     }
+
+
+def factors_to_json(tracked: Mapping[str, Tracked]) -> str:
+    """Write how far the intervals of each sensor were adapted, and when it was last judged."""
+    return json.dumps(
+        {
+            name: {"factor": one.factor, "judged": one.judged and one.judged.isoformat()}
+            for name, one in tracked.items()
+        }
+    )
+
+
+def factors_from_json(text: str) -> dict[str, Tracked]:
+    """Read back what ``factors_to_json`` wrote; what was last said is said anew.
+
+    Raises
+    ------
+    InputError
+        The text is something else.
+    """
+    try:
+        return {
+            name: Tracked(
+                factor=float(one["factor"]),
+                judged=None if one["judged"] is None else datetime.fromisoformat(one["judged"]),
+            )
+            for name, one in json.loads(text).items()
+        }
+    except (ValueError, TypeError, KeyError, AttributeError) as error:
+        raise InputError(
+            f"factors_from_json: this is not what factors_to_json wrote ({error}). Begin anew."
+        ) from error

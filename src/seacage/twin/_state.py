@@ -8,7 +8,7 @@ from datetime import datetime, timedelta
 from seacage.conventions import Flag
 from seacage.records import Amendment, QualityState, Sample, check_sample
 from seacage.twin._held import Held
-from seacage.twin._online import Tracked
+from seacage.twin._online import Tracked, factors_to_json
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -93,6 +93,11 @@ class TwinState:
         """Return the newest sample of a stream, with its flags; None before the first."""
         taken = self.streams.get(stream, ())
         return taken[-1].sample if taken else None
+
+    @property
+    def adapted(self) -> str:
+        """How far the intervals were adapted, for ``Twin.start`` after a restart, as JSON."""
+        return factors_to_json(self.tracked)
 
     @property
     def amended(self) -> tuple[Amendment, ...]:

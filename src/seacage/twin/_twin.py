@@ -19,7 +19,7 @@ from seacage.twin._folder import read_folder, write_folder
 from seacage.twin._held import Held
 from seacage.twin._metocean import INPUT_KEYS, Metocean
 from seacage.twin._models import Models
-from seacage.twin._online import answered_with, judged_by
+from seacage.twin._online import answered_with, factors_from_json, judged_by
 from seacage.twin._provenance import Provenance
 from seacage.twin._saving import restored, saved
 from seacage.twin._state import TwinState, Watch
@@ -133,9 +133,21 @@ class Twin:
                 trouble[row] = trouble[row] or failed(buoy.stream, key, int(buoy.flags[key][row]))
         return self.models.answer(Metocean.of_record(buoy), trouble)
 
-    def start(self) -> TwinState:
-        """Return the state before the first step."""
-        return TwinState()
+    def start(self, adapted: str | None = None) -> TwinState:
+        """Return the state before the first step.
+
+        Parameters
+        ----------
+        adapted
+            From ``TwinState.adapted`` of another time; None begins with the intervals as
+            trained.
+
+        Raises
+        ------
+        InputError
+            ``adapted`` is something else.
+        """
+        return TwinState(tracked=factors_from_json(adapted) if adapted is not None else {})
 
     def step(
         self, state: TwinState, sample: Sample | None, now: datetime

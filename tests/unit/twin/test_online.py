@@ -3,10 +3,10 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from seacage.conventions import Flag
+from seacage.conventions import Flag, InputError
 from seacage.records import Sample
 from seacage.testing import stand_in_twin
-from seacage.twin import Answered
+from seacage.twin import Answered, TwinState
 from seacage.twin._online import Tracked, judged_by
 
 NOON = datetime(2020, 2, 1, 12, tzinfo=UTC)
@@ -124,3 +124,19 @@ def test_the_same_samples_make_the_same_intervals_again():
     (one, first), (other, second) = (played(samples, [9]) for _ in range(2))
     assert one.tracked == other.tracked
     assert (first[-1].sensor.std == second[-1].sensor.std).all()
+
+
+def test_what_was_adapted_comes_back_after_a_restart():
+    twin = stand_in_twin()
+    tracked = {
+        "depth-1": Tracked(factor=1.25, said=(9.0, 0.5), judged=NOON),
+        "depth-2": Tracked(factor=0.9),
+    }
+    again = twin.start(TwinState(tracked=tracked).adapted).tracked
+    assert again == {name: replace(one, said=None) for name, one in tracked.items()}
+
+
+@pytest.mark.parametrize("text", ["", "[1]", '{"depth-1": {"factor": "x", "judged": null}}', "{}x"])
+def test_what_is_no_record_of_adapting_is_refused(text):
+    with pytest.raises(InputError, match="Begin anew"):
+        stand_in_twin().start(text)
