@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import typer
 from safetensors.numpy import load_file
 from typer.testing import CliRunner
 
@@ -29,10 +30,17 @@ COMMANDS = [
     "study fidelity",
     "serve",
     "replay",
+    "clearance",
+    "inspect-path",
+    "publish",
     "token new",
+    "token list",
+    "token revoke",
     "archive write",
     "archive read",
     "archive check",
+    "config check",
+    "config show",
     "doctor",
 ]
 
@@ -88,6 +96,14 @@ def test_help_teaches_with_an_example_and_offers_json(command):
     assert "Example" in said
     assert f"seacage {command}" in said
     assert "--json" in said
+
+
+def test_no_command_is_left_out_of_these_tests():
+    named = set()
+    for name, command in typer.main.get_command(app).commands.items():
+        inner = getattr(command, "commands", None)
+        named |= {f"{name} {one}" for one in inner} if inner else {name}
+    assert named == set(COMMANDS)
 
 
 def test_the_exit_codes_are_documented():
@@ -298,6 +314,14 @@ def test_a_port_that_is_taken_is_named_before_any_work(tmp_path, twin, idle):
     result = run("serve", "--data", tmp_path, "--twin", twin, "--port", port)
     assert result.exit_code == 3
     assert f"cannot listen on 127.0.0.1:{port}" in result.stderr
+
+
+def test_a_data_folder_that_takes_no_files_is_refused_plainly(tmp_path, twin):
+    (tmp_path / "var").write_text("a file where the folder should be")
+    result = run("serve", "--data", tmp_path / "var", "--twin", twin, "--port", 0)
+    assert result.exit_code in (1, 3)
+    assert result.stderr.count("\n") == 1
+    assert str(tmp_path / "var") in result.stderr
 
 
 @pytest.mark.parametrize("words", [("--port", "70000"), ("--demo", "--twin", "TWIN")])

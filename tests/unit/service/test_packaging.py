@@ -35,3 +35,11 @@ def test_a_service_is_started_with_its_file_of_settings_and_never_as_root(name):
     text = (PACKAGING / name).read_text()
     assert "--config" in text
     assert "DynamicUser=yes" in text or "USER seacage" in text
+
+
+@pytest.mark.parametrize("name", ["seacage.service", "Containerfile"])
+def test_where_the_data_lie_is_said_once_and_where_the_service_may_write(name):
+    text = (PACKAGING / name).read_text()
+    assert "SEACAGE_" not in text, "a variable would go before the file, and nobody would see it"
+    data = read_settings(PACKAGING / "seacage.toml").data
+    assert f"WorkingDirectory={data}" in text or f"VOLUME {data}" in text
