@@ -7,7 +7,7 @@ const FORBIDDEN = 403;
 
 export class AlarmDesk {
   #listeners = new Set();
-  #seen = "";
+  #seen = null;
   #turn = 0;
 
   constructor(model) {
@@ -25,7 +25,8 @@ export class AlarmDesk {
 
   forget() {
     Object.assign(this, { alarms: null, fault: null, denied: false });
-    this.#seen = "";
+    this.#seen = null;
+    this.#turn += 1; // an answer on its way is of another cage
     this.#tell();
   }
 
@@ -33,11 +34,11 @@ export class AlarmDesk {
     for (const fn of this.#listeners) fn();
   }
 
-  /** Ask anew where the live state says that something changed. */
+  /** Ask anew, once, where the live state says that something changed. */
   compare(alarms) {
     const seen = JSON.stringify(alarms.map(({ id, active, acknowledged, shelved, severity }) =>
       [id, active, acknowledged, shelved, severity]));
-    if (seen === this.#seen && this.alarms) return;
+    if (seen === this.#seen || document.hidden) return;
     this.#seen = seen;
     this.look();
   }

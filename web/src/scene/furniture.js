@@ -26,9 +26,9 @@ export class Labels {
       label.textContent = text;
       label.half = label.offsetWidth / 2 + 6;
     }
-    // A name whose point is in sight stays whole.
+    // A name that is seen is seen whole.
     const width = this.layer.clientWidth;
-    const inside = at[0] > 0 && at[0] < width;
+    const inside = at[0] > -label.half && at[0] < width + label.half;
     const x = inside ? Math.min(Math.max(at[0], label.half), width - label.half) : at[0];
     label.style.transform =
       `translate(${Math.round(x)}px, ${Math.round(at[1])}px) translate(-50%, -50%)`;
