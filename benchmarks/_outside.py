@@ -18,8 +18,8 @@ SEACAGE = (sys.executable, "-c", "from seacage.service import main; main()")
 
 def lacking(url: str) -> str | None:
     """Why there is no broker or no server to measure with; None where there are both."""
-    if _mosquitto() is None:
-        return "Mosquitto is not installed"
+    if why := lacking_broker():
+        return why
     try:
         import psycopg
     except ImportError:
@@ -29,6 +29,11 @@ def lacking(url: str) -> str | None:
     except psycopg.OperationalError as error:
         return f"no PostgreSQL answers ({str(error).splitlines()[0]}); name one with --postgres URL"
     return None
+
+
+def lacking_broker() -> str | None:
+    """Why there is no broker to measure with; None where there is one."""
+    return None if _mosquitto() else "Mosquitto is not installed"
 
 
 @contextmanager
@@ -60,13 +65,13 @@ def database(url: str) -> Generator[str]:
 
 @contextmanager
 def service(words: Sequence[object]) -> Generator[dict[str, str]]:
-    """Run `seacage serve` on a free port; what it said at its start."""
+    """Run `seacage serve` on a free port; what it said at its start, and its number."""
     command = [*SEACAGE, "serve", "--port", "0", "--json", *map(str, words)]
     with _running(command, stdout=subprocess.PIPE) as process:
         assert process.stdout is not None
         said = process.stdout.readline()
         assert said, "the service did not start"
-        yield json.loads(said)
+        yield json.loads(said) | {"pid": str(process.pid)}
 
 
 @contextmanager

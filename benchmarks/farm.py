@@ -8,10 +8,13 @@ hardest case: a real buoy speaks every ten minutes, and an answer is held in bet
 import asyncio
 import json
 import socket
+import statistics
 import tempfile
 import time
-from collections.abc import Sequence
-from datetime import UTC, datetime
+from collections.abc import Callable, Sequence
+from contextlib import closing
+from dataclasses import dataclass, field
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import uvicorn
@@ -24,6 +27,7 @@ from seacage.service._api import Service, create_app
 from seacage.service._clock import WallClock
 from seacage.service._live import LiveCage
 from seacage.service._metrics import Metrics
+from seacage.service._mqtt_messages import observed_text, read_observed
 from seacage.service._store import Store
 from seacage.service._tokens import Tokens
 from seacage.testing import stand_in_campaign, stand_in_field, stand_in_seas
@@ -35,6 +39,9 @@ CAGES = 2 if ONCE else 50
 CLIENTS = 4 if ONCE else 200
 DEAF = CLIENTS // 4
 """Clients that never read."""
+STEPS = 10 if ONCE else 400
+TOGETHER = 30
+"""Samples of one commit: those of a cage with thirty streams at one time."""
 
 
 def learned() -> Twin:
@@ -72,7 +79,15 @@ async def speaking(cages: Sequence[LiveCage], *, speaks: bool) -> None:
         turn += 1
 
 
-async def watching(address: str, token: str, *, deaf: bool, ages: list[float]) -> None:
+@dataclass
+class Came:
+    """What came to the clients that read: how old each frame was [s], and how long [bytes]."""
+
+    ages: list[float] = field(default_factory=list[float])
+    sizes: list[int] = field(default_factory=list[int])
+
+
+async def watching(address: str, token: str, *, deaf: bool, came: Came) -> None:
     """Watch a cage as a page does; a deaf client only opens."""
     async with websockets.connect(address, max_queue=2, max_size=None) as line:
         await line.send(json.dumps({"token": token}))
@@ -84,15 +99,13 @@ async def watching(address: str, token: str, *, deaf: bool, ages: list[float]) -
             assert isinstance(frame, bytes)
             length = int.from_bytes(frame[20:24], "little")
             said = json.loads(frame[-length:])
-            ages.append(
-                datetime.now(UTC).timestamp() - datetime.fromisoformat(said["t"]).timestamp()
-            )
+            late = datetime.now(UTC) - datetime.fromisoformat(said["t"])
+            came.ages.append(late.total_seconds())
+            came.sizes.append(len(frame))
 
 
-async def measured(
-    folder: Path, twin: Twin, *, clients: int, speaks: bool
-) -> tuple[float, list[float]]:
-    """Share of one core that the whole takes, and the ages of the frames as they came [s]."""
+async def measured(folder: Path, twin: Twin, *, clients: int, speaks: bool) -> tuple[float, Came]:
+    """Share of one core that the whole takes, its clients too, and what came to them."""
     store, metrics, tokens = Store(folder / "samples.sqlite"), Metrics(), Tokens(folder)
     cages = {
         f"cage-{k}": LiveCage(
@@ -112,7 +125,7 @@ async def measured(
     serving = asyncio.create_task(server.serve([listener]))
     while not server.started:
         await asyncio.sleep(0.01)
-    token, ages = tokens.mint(["read"], keep=False), list[float]()
+    token, came = tokens.mint(["read"], keep=False), Came()
     port = listener.getsockname()[1]
     watchers = [
         asyncio.create_task(
@@ -120,13 +133,14 @@ async def measured(
                 f"ws://127.0.0.1:{port}/api/v1/cages/cage-{k % CAGES}/live",
                 token,
                 deaf=k < DEAF and clients > 0,
-                ages=ages,
+                came=came,
             )
         )
         for k in range(clients)
     ]
     await asyncio.sleep(min(3.0, SECONDS))
-    ages.clear()
+    came.ages.clear()
+    came.sizes.clear()
     cpu, begun = time.process_time(), time.monotonic()
     await speaking(list(cages.values()), speaks=speaks)
     share = (time.process_time() - cpu) / (time.monotonic() - begun)
@@ -135,12 +149,94 @@ async def measured(
     await asyncio.gather(*watchers, return_exceptions=True)
     server.should_exit = True
     await serving
-    return share, ages
+    return share, came
+
+
+def cpu_ms(work: Callable[[], object]) -> float:
+    """Time of the processor [ms], which a busy machine does not stretch as it does the wall's."""
+    begun = time.process_time()
+    work()
+    return 1e3 * (time.process_time() - begun)
+
+
+def tick(twin: Twin) -> dict[str, float]:
+    """All predictions for one cage, of water that was not seen before and of the same [ms]."""
+    now, state, clock = datetime.now(UTC), twin.start(), time.process_time
+    new, same = list[float](), list[float]()
+    for k in range(STEPS):
+        t = now + timedelta(seconds=TICK_S * k)
+        water = {"current_speed_m_s": 0.3 + 0.37 * k % 0.5, "current_to_deg": 7.3 * k % 360}
+        begun = clock()
+        state, _ = twin.step(state, Sample(stream=twin.buoy, t=t, values=water), t)
+        between = clock()
+        state, _ = twin.step(state, None, t + timedelta(seconds=1))
+        new.append(between - begun)
+        same.append(clock() - between)
+    median = {"a tick, new water": new, "a tick, the same": same}
+    return {what: 1e3 * statistics.median(taken) for what, taken in median.items()}
+
+
+def sample_costs(twin: Twin, folder: Path) -> dict[str, float]:
+    """What one sample of a sensor costs on its way in [ms], for each of its parts."""
+    now = datetime.now(UTC)
+    sensor = twin.sensor_names[-1]
+    key = "tension_kn" if sensor in {one.name for one in twin.cage.shackles} else "depth_m"
+    samples = [
+        Sample(stream=sensor, t=now + timedelta(seconds=k / 1000), values={key: 10.0 + k % 7 / 10})
+        for k in range(TOGETHER * STEPS // 10)
+    ]
+    messages = [observed_text([one]) for one in samples]
+    with closing(Store(folder / "samples.sqlite")) as store:
+        cage = LiveCage(
+            name="ace", twin=twin, store=store, clock=WallClock(), metrics=Metrics(), tick_s=TICK_S
+        )
+
+        def read() -> None:
+            for one in messages:
+                read_observed(sensor, one, cage.streams, until=samples[-1].t)
+
+        async def take() -> None:
+            for first in range(0, len(samples), TOGETHER):
+                await cage.take(samples[first : first + TOGETHER])
+
+        def step() -> None:
+            state = twin.start()
+            for one in samples:
+                state, _ = twin.step(state, one, one.t)
+
+        works = {
+            "read from a message of its own": read,
+            f"checked and committed, {TOGETHER} at once": lambda: asyncio.run(take()),
+            "stepped, where nothing else is new": step,
+        }
+        return {what: cpu_ms(work) / len(samples) for what, work in works.items()}
+
+
+def tell_costs(twin: Twin) -> None:
+    """Print what one tick and one sample cost."""
+    with tempfile.TemporaryDirectory() as folder:
+        costs = {**tick(twin), **sample_costs(twin, Path(folder))}
+    print("one cage of 321 nodes and 9 streams, time of the processor")
+    for what, cost in costs.items():
+        print(f"  {what:<56}{cost:9.3f} ms")
+
+
+def tell_farm(name: str, share: float, came: Came) -> None:
+    """Print what a farm costs, and what its clients get."""
+    print(f"  {name:<56}{100.0 * share:7.1f} % of a core")
+    if came.ages:
+        late, size = sorted(came.ages)[int(0.99 * len(came.ages))], statistics.mean(came.sizes)
+        each = len(came.sizes) / SECONDS / (CLIENTS - DEAF)
+        print(
+            f"    frames {1e3 * late:.0f} ms old (p99), {size / 1e3:.1f} kB each, "
+            f"{each:.2f} a second and client: {each * size / 1e3:.1f} kB/s"
+        )
 
 
 def main() -> None:
-    """Print the table."""
+    """Print the tables."""
     twin = learned()
+    tell_costs(twin)
     print(f"farm: {CAGES} cages at {TICK_S:g} s, one process")
     for name, speaks, clients in (
         ("cages alone, no new water", False, 0),
@@ -148,11 +244,8 @@ def main() -> None:
         (f"the same, {CLIENTS} clients, {DEAF} of which do not read", True, CLIENTS),
     ):
         with tempfile.TemporaryDirectory() as folder:
-            share, ages = asyncio.run(measured(Path(folder), twin, clients=clients, speaks=speaks))
-        late = (
-            f", frames {1e3 * sorted(ages)[int(0.99 * len(ages))]:.0f} ms old (p99)" if ages else ""
-        )
-        print(f"  {name:<56}{100.0 * share:7.1f} % of a core{late}")
+            share, came = asyncio.run(measured(Path(folder), twin, clients=clients, speaks=speaks))
+        tell_farm(name, share, came)
 
 
 main()
