@@ -97,7 +97,8 @@ def _number(name: str, value: float, unit: str) -> float:
 
 
 def _check_steepness(hs: float, tp: float) -> None:
-    steepness = math.inf if tp == 0.0 else 2.0 * math.pi * hs / (GRAVITY * tp**2)
+    square = tp * tp  # of a tiny period 0, of a huge one inf
+    steepness = math.inf if square == 0.0 else 2.0 * math.pi * hs / (GRAVITY * square)
     limit = steepness_limit(tp)
     if steepness > limit:
         raise InputError(

@@ -42,9 +42,14 @@ def test_an_impossible_steepness_is_refused_with_the_limit_and_its_source():
         SeaState(current_speed=0.0, current_to=0.0, hs=3.0, tp=2.1)
 
 
-def test_waves_without_a_period_are_as_steep_as_can_be_and_refused():
-    with pytest.raises(InputError, match="steepness inf"):
-        SeaState(current_speed=0.0, current_to=0.0, hs=1.0, tp=0.0)
+@pytest.mark.parametrize("tp", [0.0, 1e-168, 1e-160])
+def test_waves_with_hardly_a_period_are_as_steep_as_can_be_and_refused(tp):
+    with pytest.raises(InputError, match=r"steepness (inf|\de\+)"):
+        SeaState(current_speed=0.0, current_to=0.0, hs=1.0, tp=tp)
+
+
+def test_a_period_without_end_is_a_sea_that_is_hardly_steep():
+    assert SeaState(current_speed=0.0, current_to=0.0, hs=1.0, tp=1e200).peak_period == 1e200
 
 
 def test_the_steepness_limit_falls_from_a_15th_to_a_25th():

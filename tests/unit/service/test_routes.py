@@ -321,6 +321,7 @@ def test_water_that_is_only_imagined_is_answered_and_leaves_no_trace(live: Runni
         ({"current_speed_m_s": 1.0}, "current_to_deg"),
         ({"current_speed_m_s": False, "current_to_deg": 0.0}, "valid number"),
         ({"current_speed_m_s": 0.5, "current_to_deg": 0.0, "hs_m": 3.0, "tp_s": 2.0}, "steep"),
+        ({"current_speed_m_s": 0.5, "current_to_deg": 0.0, "hs_m": 3.0, "tp_s": 1e-168}, "steep"),
     ],
 )
 def test_water_that_cannot_be_is_refused_in_one_sentence(idle: Running, sea, why):
