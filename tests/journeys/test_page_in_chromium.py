@@ -9,8 +9,6 @@ from browser import Line, Watched, opened_browser
 from serviced import Running, buoy, depth, eventually, running
 
 pytestmark = pytest.mark.usefixtures("built_page")
-PAGE_BYTES = 1_000_000  # what a phone on a boat can wait for
-FRAME_BYTES = 10_000
 MOUSE_STEPS = 4
 
 
@@ -48,15 +46,6 @@ def test_the_page_draws_what_a_buoy_reports_and_asks_nobody_else(
         assert not watched.asked_elsewhere(live.address)
         assert not watched.complaints
         assert "token" not in watched.page.url
-
-
-def test_the_page_is_light_enough_for_a_boat(chromium: Path, live: Running) -> None:
-    with opened_browser(chromium) as watched:
-        watched.page.goto(address(live))
-        watched.until_drawn()
-        assert 100_000 < watched.loaded_bytes <= PAGE_BYTES
-        assert watched.frame_bytes
-        assert max(watched.frame_bytes) <= FRAME_BYTES
 
 
 def test_the_net_moves_when_the_current_grows(chromium: Path, live: Running) -> None:
@@ -232,16 +221,3 @@ def test_a_silent_buoy_is_told_and_acknowledged_on_the_page(chromium: Path, live
         found.click()
         watched.page.get_by_role("dialog").get_by_role("button", name="Acknowledge").click()
         assert eventually(lambda: silence(live), lambda told: told["acknowledged"])["acknowledged"]
-
-
-@pytest.mark.parametrize("scheme", ["dark", "light"])
-def test_axe_finds_no_serious_fault(
-    scheme: str, chromium: Path, live: Running, pytestconfig: pytest.Config
-) -> None:
-    axe = pytestconfig.rootpath / "web" / "node_modules" / "axe-core" / "axe.min.js"
-    if not axe.is_file():
-        pytest.skip("needs axe-core, which the page's build fetches")
-    with opened_browser(chromium, color_scheme=scheme) as watched:
-        watched.page.goto(address(live))
-        watched.until_drawn()
-        assert not watched.faults(axe)

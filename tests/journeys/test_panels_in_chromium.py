@@ -101,19 +101,3 @@ def test_a_comment_goes_into_the_journal(chromium: Path, live: Running) -> None:
         watched.page.get_by_role("tab", name="Journal").click()
         watched.until("document.body.innerText.includes('A <b>buoy</b> adrift')")
         assert not watched.complaints
-
-
-@pytest.mark.parametrize("scheme", ["dark", "light"])
-def test_axe_finds_no_serious_fault_in_any_panel(
-    scheme: str, chromium: Path, live: Running, pytestconfig: pytest.Config
-) -> None:
-    axe = pytestconfig.rootpath / "web" / "node_modules" / "axe-core" / "axe.min.js"
-    if not axe.is_file():
-        pytest.skip("needs axe-core, which the page's build fetches")
-    beyond_what_was_learned(live)
-    with opened_browser(chromium, webgl=False, color_scheme=scheme) as watched:
-        opened(watched, address(live, "read", "ack"))
-        for key in ("1", "2", "3", "4", "?"):
-            watched.page.keyboard.press(key)
-            watched.page.wait_for_timeout(500)
-            assert not watched.faults(axe), key

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 from PIL import Image
-from playwright.sync_api import Page, WebSocketRoute, sync_playwright
+from playwright.sync_api import Page, Request, WebSocketRoute, sync_playwright
 
 _PLAIN = ("--no-sandbox",)
 # WebGL by software: slow, but the same picture on every machine.
@@ -25,12 +25,12 @@ class Watched:
         self.page = page
         self.asked: list[str] = []
         self.complaints: list[str] = []
-        self.loaded_bytes = 0
+        self._came: list[Request] = []
         self.frame_bytes: list[int] = []
         page.on("console", self._hear)
         page.on("pageerror", lambda error: self.complaints.append(str(error)))
         page.on("request", lambda request: self.asked.append(request.url))
-        page.on("response", self._weigh)
+        page.on("requestfinished", lambda one: self._came.append(one))
         page.on("websocket", lambda line: line.on("framereceived", self._weigh_frame))
 
     def until(self, script: str, *, seconds: float = 45.0) -> None:
@@ -51,6 +51,10 @@ class Watched:
         own = (address, address.replace("http", "ws", 1), "data:", "blob:")
         return [asked for asked in self.asked if not asked.startswith(own)]
 
+    def loaded_bytes(self) -> int:
+        """Bytes of all that was asked for and came, as they went over the wire."""
+        return sum(one.sizes()["responseBodySize"] for one in self._came)
+
     def colours(self, selector: str) -> int:
         """How many colours a part of the page shows; a blank one shows a handful."""
         picture = Image.open(io.BytesIO(self.page.locator(selector).first.screenshot()))
@@ -69,10 +73,6 @@ class Watched:
     def _hear(self, message) -> None:
         if message.type in {"error", "warning"} and "GPU stall" not in message.text:
             self.complaints.append(message.text)
-
-    def _weigh(self, response) -> None:
-        if response.url.startswith("http") and "/api/" not in response.url:
-            self.loaded_bytes += int(response.headers.get("content-length", 0))
 
     def _weigh_frame(self, frame: str | bytes) -> None:
         if isinstance(frame, bytes):

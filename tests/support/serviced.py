@@ -19,6 +19,7 @@ from seacage.service._metrics import Metrics
 from seacage.service._store import Store
 from seacage.service._tokens import Tokens
 from seacage.testing import stand_in_twin
+from seacage.twin import AlarmPolicy, Twin
 
 NOON = datetime(2020, 2, 1, 12, tzinfo=UTC)
 
@@ -49,8 +50,8 @@ class Running:
     def cage(self) -> LiveCage:
         return self.service.cages["ace"]
 
-    def post(self, *samples, **how):
-        return self.logger.post("/api/v1/cages/ace/samples", json={"samples": samples}, **how)
+    def post(self, *samples, cage="ace", **how):
+        return self.logger.post(f"/api/v1/cages/{cage}/samples", json={"samples": samples}, **how)
 
     def state(self, **params):
         return self.reader.get("/api/v1/cages/ace/state", params=params).json()
@@ -78,15 +79,23 @@ def eventually(ask, accept, *, seconds=5.0):
 
 
 @contextmanager
-def running(folder: Path, **service) -> Iterator[Running]:
-    """Serve a cage until the block ends; what else the service is told goes through."""
+def running(
+    folder: Path,
+    *,
+    names: tuple[str, ...] = ("ace",),
+    twin: Twin | None = None,
+    policy: AlarmPolicy | None = None,
+    port: int = 0,
+    **service,
+) -> Iterator[Running]:
+    """Serve cages until the block ends; what else the service is told goes through."""
     clock, metrics = HandClock(), Metrics()
     store, tokens = Store(folder / "samples.sqlite"), Tokens(folder)
-    cage = LiveCage(
-        name="ace", twin=stand_in_twin(), store=store, clock=clock, metrics=metrics, tick_s=0.3
-    )
-    service = Service(cages={"ace": cage}, store=store, tokens=tokens, metrics=metrics, **service)
-    listener = socket.create_server(("127.0.0.1", 0))
+    parts = {"store": store, "clock": clock, "metrics": metrics, "policy": policy}
+    twin = twin or stand_in_twin()
+    cages = {name: LiveCage(name=name, twin=twin, tick_s=0.3, **parts) for name in names}
+    service = Service(cages=cages, store=store, tokens=tokens, metrics=metrics, **service)
+    listener = socket.create_server(("127.0.0.1", port))
     config = uvicorn.Config(create_app(service), ws="websockets-sansio", log_config=None)
     server = uvicorn.Server(config)
     thread = threading.Thread(target=asyncio.run, args=(server.serve([listener]),))

@@ -84,9 +84,9 @@ def stand_in_field(
 
 
 @cache
-def stand_in_twin() -> Twin:
-    """A small trained twin, the same one for all tests of a run."""
-    cage = Cage.named("ace").altered(mesh={"spokes": 8})
+def stand_in_twin(*, spokes: int = 8) -> Twin:
+    """A trained twin, small if not told otherwise, the same one for all tests of a run."""
+    cage = Cage.named("ace").altered(mesh={"spokes": spokes})
     return train(
         cage,
         stand_in_campaign(cage, stand_in_seas(120)),

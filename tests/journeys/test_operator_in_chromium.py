@@ -1,0 +1,234 @@
+"""What an operator does at the page, from a calm sea to an alarm and back, in a real browser."""
+
+import json
+from datetime import datetime, timedelta
+from functools import partial
+from pathlib import Path
+
+import pytest
+
+from browser import Watched, opened_browser
+from seacage.testing import stand_in_twin
+from seacage.twin import AlarmPolicy
+from serviced import NOON, Running, buoy, depth, eventually, running
+
+pytestmark = pytest.mark.usefixtures("built_page")
+FIRST_LOAD_BYTES = 1_000_000  # what a phone on a boat can wait for
+UPDATE_BYTES = 10_000
+# Bridles 9 and 10 of the stand-in carry 0.12 of their capacity in 0.5 m/s, 0.6 in 1.27 m/s.
+STRICT = AlarmPolicy.from_dict({"load": {"raise_at": 0.55, "clear_at": 0.4, "on_delay_s": 60.0}})
+LOADED = ["load.bridle-10", "load.bridle-9"]
+waited = partial(eventually, seconds=30.0)  # beside a browser a tick may take long
+
+
+@pytest.fixture
+def live(tmp_path: Path):
+    """A service with an hour of a calm sea behind it, and strict limits of the loads."""
+    with running(tmp_path, policy=STRICT) as one:
+        for minutes in range(-60, 1, 10):
+            told(one, float(minutes), 0.5)
+        yield one
+
+
+@pytest.fixture
+def axe(pytestconfig: pytest.Config) -> Path:
+    """axe-core, which finds faults of accessibility."""
+    script = pytestconfig.rootpath / "web" / "node_modules" / "axe-core" / "axe.min.js"
+    if not script.is_file():
+        pytest.skip("needs axe-core, which the page's build fetches")
+    return script
+
+
+def address(live: Running, *scopes: str) -> str:
+    token = live.service.tokens.mint(list(scopes), keep=True, name="Night shift")
+    return f"{live.address}/#token={token}"
+
+
+def told(live: Running, minutes: float, speed: float, cage: str = "ace") -> None:
+    """Tell of the sea and of one depth; no reading is quite like the one before."""
+    ripple = 0.01 * (minutes % 3.0)
+    live.post(buoy(minutes, speed=speed + ripple), depth(minutes, metres=14.2 + ripple), cage=cage)
+
+
+def later(live: Running, minutes: float, speed: float) -> None:
+    """Let the cage's clock go on, and have the sea as it now is told."""
+    live.clock.at += timedelta(minutes=minutes)
+    told(live, (live.clock.at - NOON) / timedelta(minutes=1), speed)
+    now = live.clock.at
+    heard = waited(live.state, lambda state: (at(state), state["age_s"]) == (now, 0.0))
+    assert at(heard) == now
+
+
+def at(state: dict) -> datetime:
+    return datetime.fromisoformat(state["t"])
+
+
+def alarms_of(live: Running) -> dict[str, dict]:
+    told = live.reader.get("/api/v1/cages/ace/alarms").json()["alarms"]
+    return {one["id"]: one for one in told}
+
+
+def raised(live: Running) -> list[str]:
+    return sorted(name for name, one in alarms_of(live).items() if one["active"])
+
+
+def excursion(live: Running) -> None:
+    """A current that loads two bridles beyond their limit, for longer than the delay."""
+    for minutes, speed in ((10, 0.8), (10, 1.26), (2, 1.26)):  # faster growth would be suspect
+        later(live, minutes, speed)
+    assert waited(lambda: raised(live), lambda names: names == LOADED) == LOADED
+
+
+def well(watched: Watched) -> None:
+    watched.until("document.querySelector('.verdict').dataset.kind == 'well'")
+
+
+def test_a_load_beyond_its_limit_is_told_acknowledged_journaled_and_looked_back_at(
+    chromium: Path, live: Running
+) -> None:
+    with opened_browser(chromium, webgl=False) as watched:
+        page = watched.page
+        page.goto(address(live, "read", "ack"))
+        well(watched)
+
+        excursion(live)
+        watched.until("document.querySelector('.verdict').dataset.kind == 'warning'")
+        assert "2 alarms" in page.locator(".verdict").inner_text()
+        assert page.title().startswith("(2)")
+        toast = page.locator(".toast", has_text="bridle-10")
+        toast.get_by_role("button", name="Look").click()
+
+        listed = page.locator("li.alarm", has_text="bridle-10")
+        assert "active, not acknowledged" in listed.inner_text()
+        listed.get_by_role("button", name="Acknowledge: ").click()
+        page.get_by_label("Why").fill("Feed barge slackens the stern")
+        page.get_by_role("dialog").get_by_role("button", name="Acknowledge").click()
+        watched.until("document.body.innerText.includes('active, acknowledged')")
+        assert alarms_of(live)["load.bridle-10"]["acknowledged"]
+
+        page.get_by_role("tab", name="Journal").click()
+        line = page.locator(".journal tr[data-action=acknowledged]")
+        line.wait_for(state="visible")
+        assert "Night shift: Feed barge slackens the stern" in line.inner_text()
+
+        # The current falls: what was acknowledged clears by itself, the other still waits.
+        for minutes, speed in ((10, 0.85), (6, 0.8)):
+            later(live, minutes, speed)
+        assert waited(lambda: raised(live), lambda names: not names) == []
+        watched.until("document.querySelector('.verdict').innerText.includes('1 alarm')")
+
+        # Where the reader looks back, the load that woke everybody is there again.
+        page.keyboard.press("1")
+        ago = live.clock.at - timedelta(minutes=12)
+        then = live.state(at=ago.isoformat())["bridles"][9]["tension_kn"]["mean"]
+        assert then > 80.0
+        page.get_by_label("Look back over").select_option("1 h")
+        page.get_by_label("Time that is shown").focus()
+        for _ in range(2):  # a tenth of the hour each
+            page.keyboard.press("PageDown")
+        watched.until("document.body.dataset.mode == 'past'")
+        row = "document.querySelectorAll('.loads tbody tr')[9].innerText"
+        watched.until(f"{row}.includes('{then:.1f}')")
+        page.keyboard.press("l")
+        watched.until("document.body.dataset.mode == 'live'")
+        assert not watched.complaints
+        assert not watched.asked_elsewhere(live.address)
+
+
+def test_a_service_that_is_started_again_is_found_without_a_hand(
+    chromium: Path, tmp_path: Path
+) -> None:
+    with opened_browser(chromium, webgl=False) as watched:
+        with running(tmp_path) as before:
+            told(before, 0.0, 0.5)
+            port = int(before.address.rpartition(":")[2])
+            watched.page.goto(address(before, "read"))
+            well(watched)
+        watched.until("document.querySelector('.verdict').dataset.kind == 'lost'")
+        assert "Connection lost" in watched.page.locator(".verdict").inner_text()
+        with running(tmp_path, port=port) as after:
+            well(watched)
+            later(after, 10, 0.61)
+            watched.until("document.querySelector('.figure').innerText.includes('0.62')")
+
+
+def test_a_full_cage_is_light_and_the_page_keeps_a_strict_policy(
+    chromium: Path, tmp_path: Path
+) -> None:
+    twin = stand_in_twin(spokes=32)
+    with running(tmp_path, twin=twin) as live, opened_browser(chromium) as watched:
+        live.post(buoy(speed=0.5), depth(metres=14.2))
+        answer = watched.page.goto(address(live, "read"))
+        watched.until_drawn()
+        assert len(live.cage.topology.rest_position_m) == 321
+        assert 100_000 < watched.loaded_bytes() <= FIRST_LOAD_BYTES
+        assert watched.frame_bytes
+        assert 2_000 < max(watched.frame_bytes) <= UPDATE_BYTES
+
+        policy = answer.headers["content-security-policy"]
+        rules = dict(rule.split(maxsplit=1) for rule in policy.split(";"))
+        assert rules["default-src"] == "'none'"
+        assert set(rules.values()) == {"'none'", "'self'"}
+        inline = "script:not([src]), style, [style], [onclick], [onload]"
+        served = f"new DOMParser().parseFromString({json.dumps(answer.text())}, 'text/html')"
+        assert watched.page.evaluate(f"{served}.querySelectorAll('{inline}').length") == 0
+        assert not watched.complaints  # a browser complains of whatever its policy forbids
+
+
+def test_a_farm_shows_its_cages_the_worst_first_and_leads_to_each(
+    chromium: Path, tmp_path: Path
+) -> None:
+    with running(tmp_path, names=("ace", "bay", "cove"), policy=STRICT) as live:
+        told(live, 0.0, 0.5)
+        told(live, 0.0, 0.4, "cove")
+        excursion(live)
+        with opened_browser(chromium, webgl=False) as watched:
+            page = watched.page
+            page.goto(address(live, "read"))
+            watched.until("document.querySelectorAll('.tile').length == 3")
+            kinds = "[...document.querySelectorAll('.tile')].map((one) => one.dataset.kind)"
+            assert page.evaluate(kinds) == ["warning", "none", "well"]
+            page.locator(".tile", has_text="cove").click()
+            watched.until("document.querySelector('.cage-name').textContent == 'cove'")
+            well(watched)
+            page.keyboard.press("f")
+            page.locator(".tile[aria-current=true]", has_text="cove").wait_for(state="visible")
+            assert not watched.complaints
+
+
+@pytest.mark.parametrize("scheme", ["dark", "light"])
+def test_axe_finds_no_serious_fault_in_any_state(
+    scheme: str, chromium: Path, live: Running, axe: Path
+) -> None:
+    with opened_browser(chromium, color_scheme=scheme, reduced_motion="reduce") as watched:
+        page, faults = watched.page, {}
+
+        def looked(state: str) -> None:
+            page.wait_for_timeout(200)
+            faults[state] = watched.faults(axe)
+
+        page.goto(live.address)
+        page.get_by_label("Token").wait_for(state="visible")
+        looked("no token")
+        page.goto(address(live, "read", "ack"))
+        page.reload()
+        watched.until_drawn()
+        looked("live")
+        excursion(live)
+        watched.until("document.querySelectorAll('.toast').length > 0")
+        looked("alarm")
+        for key, state in (("2", "charts"), ("3", "alarms"), ("4", "what if"), ("?", "help")):
+            page.keyboard.press(key)
+            looked(state)
+        page.keyboard.press("Escape")
+        page.keyboard.press("f")
+        looked("farm")
+        page.keyboard.press("Escape")
+        page.get_by_label("Time that is shown").focus()
+        page.keyboard.press("PageDown")
+        watched.until("document.body.dataset.mode == 'past'")
+        looked("past")
+        page.set_viewport_size({"width": 390, "height": 844})
+        looked("phone")
+        assert not {state: found for state, found in faults.items() if found}
+        assert len(faults) == 9
