@@ -122,7 +122,9 @@ def test_an_answer_that_is_no_number_is_an_error(tmp_path, problem):
 
 @pytest.mark.parametrize("name", [one.name for one in own_methods()])
 def test_our_own_methods_answer(name):
-    problem = problem_named("currin")
+    # Of a single sample one can ask no more than this, and not of every problem: Currin's five
+    # points leave it to chance. The study judges by many.
+    problem = problem_named("pedagogical")
     sample = problem.sample(0)
     predict = METHODS[name](sample.levels, noisy=False, seed=0)
     mean, std = predict(sample.x_test)
