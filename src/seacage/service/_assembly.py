@@ -139,6 +139,7 @@ def _feeds(settings: Settings, cages: Mapping[str, LiveCage], metrics: Metrics) 
     if hooks:
         feeds.append(Herald(hooks, cages).run)
     quarantine = Quarantine(settings.data / "quarantine.jsonl")
+    metrics.quarantined.set_function(lambda: float(quarantine.count))
     feeds += _tails(settings, cages, quarantine)
     if settings.mqtt is not None:
         mqtt = settings.mqtt

@@ -68,6 +68,30 @@ class Metrics:
             registry=registry,
         )
 
+        self.messages = Counter(
+            "seacage_broker_messages",
+            "Messages that a broker has brought.",
+            ("broker",),
+            registry=registry,
+        )
+        self.connected = Gauge(
+            "seacage_broker_connected",
+            "1 while there is a connection to the broker.",
+            ("broker",),
+            registry=registry,
+        )
+        self.waiting = Gauge(
+            "seacage_broker_waiting",
+            "Messages that a broker has brought and that are not stored yet.",
+            ("broker",),
+            registry=registry,
+        )
+        self.quarantined = Gauge(
+            "seacage_quarantined",
+            "Messages and lines that could not be read, set aside since the start.",
+            registry=registry,
+        )
+
     def count_alarms(self, cage: str, severities: Iterable[int]) -> None:
         """Say how many alarms of each severity there are."""
         counts = Counted(_word(severity) for severity in severities)

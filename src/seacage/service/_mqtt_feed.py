@@ -100,8 +100,9 @@ class MqttFeed:
         self._filled, self._empty = asyncio.Event(), asyncio.Event()
         self._empty.set()
         self._alarms: deque[tuple[str, bytes]] = deque(maxlen=_KEPT)
+        broker = Broker.parse(url, ca=ca)
         self._link = Link(
-            Broker.parse(url, ca=ca),
+            broker,
             client_id=client_id,
             filters=[shared(self._topics.observed(cage), group) for cage in cages],
             listener=self,
@@ -109,6 +110,9 @@ class MqttFeed:
             session_s=_SESSION_S,
             will=_will(self._topics.status(client_id), tuple(cages)),
         )
+        self._messages = metrics.messages.labels(str(broker))
+        metrics.connected.labels(str(broker)).set_function(lambda: float(self.fault is None))
+        metrics.waiting.labels(str(broker)).set_function(lambda: float(len(self._queue)))
 
     @property
     def fault(self) -> str | None:
@@ -138,6 +142,7 @@ class MqttFeed:
 
     def hear(self, heard: Heard) -> None:
         """Queue a message; one that nobody waits for is dropped where the queue is full."""
+        self._messages.inc()
         if len(self._queue) < _AHEAD or heard.sure:
             self._queue.append(heard)
             self._empty.clear()

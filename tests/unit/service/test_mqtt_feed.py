@@ -48,6 +48,7 @@ def one(tmp_path):
     yield SimpleNamespace(
         feed=feed,
         sent=feed._link,
+        metrics=metrics,
         cage=cage,
         kept=lambda: store.samples("ace", limit=100),
         counted=lambda outcome: counts.labels("ace", outcome)._value.get(),
@@ -94,6 +95,22 @@ def test_what_is_on_disk_is_acknowledged_to_broker_and_sender(one):
     assert topic == "seacage/v1/south/ace/buoy-1/ack"
     assert [line["t"] for line in told] == [at(-1), at(-2), at(-3)]
     assert not more
+
+
+def test_the_metrics_tell_of_the_broker_and_of_what_waits(one):
+    say(one, reading(-1))
+    say(one, reading(-2))
+    labels = '{broker="mqtt://127.0.0.1:1883"}'
+    told = one.metrics.text().decode()
+    assert f"seacage_broker_messages_total{labels} 2.0" in told
+    assert f"seacage_broker_waiting{labels} 2.0" in told
+    settled(one)
+    one.sent.fault = "It is away."
+    told = one.metrics.text().decode()
+    assert f"seacage_broker_waiting{labels} 0.0" in told
+    assert f"seacage_broker_connected{labels} 0.0" in told
+    one.sent.fault = None
+    assert f"seacage_broker_connected{labels} 1.0" in one.metrics.text().decode()
 
 
 def test_while_the_disk_is_full_nothing_is_acknowledged_and_nothing_lost(one, monkeypatch):
