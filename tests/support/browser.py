@@ -30,7 +30,7 @@ class Watched:
         page.on("console", self._hear)
         page.on("pageerror", lambda error: self.complaints.append(str(error)))
         page.on("request", lambda request: self.asked.append(request.url))
-        page.on("requestfinished", lambda one: self._came.append(one))
+        page.on("requestfinished", self._receive)
         page.on("websocket", lambda line: line.on("framereceived", self._weigh_frame))
 
     def until(self, script: str, *, seconds: float = 45.0) -> None:
@@ -73,6 +73,9 @@ class Watched:
     def _hear(self, message) -> None:
         if message.type in {"error", "warning"} and "GPU stall" not in message.text:
             self.complaints.append(message.text)
+
+    def _receive(self, request: Request) -> None:
+        self._came.append(request)  # Playwright takes no bound method of a list
 
     def _weigh_frame(self, frame: str | bytes) -> None:
         if isinstance(frame, bytes):
