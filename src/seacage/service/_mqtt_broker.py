@@ -104,11 +104,24 @@ class Broker:
 
     def _trust(self) -> ssl.SSLContext:
         try:
-            return ssl.create_default_context(cafile=self.ca)
+            trust = ssl.create_default_context(cafile=self.ca)
         except OSError as error:  # ssl.SSLError is one
             raise InputError(
                 f"{self.ca}: the CA file cannot be read ({error}). Give a PEM file."
             ) from error
+        trust.sslsocket_class = _Greeting
+        return trust
+
+
+class _Greeting(ssl.SSLSocket):
+    """Closes itself where the greeting fails, which paho leaves to chance."""
+
+    def do_handshake(self, block: bool = False) -> None:  # noqa: FBT001, FBT002  # as its parent
+        try:
+            super().do_handshake(block)
+        except OSError:
+            self.close()
+            raise
 
 
 def connecting(*, receive_maximum: int, session_s: int) -> Properties:

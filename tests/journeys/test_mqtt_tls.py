@@ -1,0 +1,93 @@
+"""A broker that speaks TLS: heard where its certificate is trusted, and else refused."""
+
+import asyncio
+import shutil
+import subprocess
+
+import pytest
+
+from brokered import broker
+from seacage.service._mqtt_broker import Broker
+from seacage.service._mqtt_link import Link
+
+pytestmark = pytest.mark.mosquitto
+
+
+class Ears:
+    """Acknowledges all it hears."""
+
+    def __init__(self):
+        self.heard = []
+
+    def hear(self, heard):
+        self.heard.append(heard.payload)
+        heard.acknowledge()
+
+    async def settled(self):
+        pass
+
+
+@pytest.fixture(scope="module")
+def certificate(tmp_path_factory):
+    """A certificate for this machine that signs itself, and its key."""
+    openssl = shutil.which("openssl")
+    if openssl is None:
+        pytest.skip("needs openssl, to make a certificate")
+    folder = tmp_path_factory.mktemp("certificate")
+    made, key = folder / "certificate.pem", folder / "key.pem"
+    asked = ["req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256", "-nodes"]
+    named = ["-days", "2", "-subj", "/CN=localhost", "-addext", "subjectAltName=IP:127.0.0.1"]
+    subprocess.run(
+        [openssl, *asked, *named, "-out", made, "-keyout", key], check=True, capture_output=True
+    )
+    return made, key
+
+
+@pytest.fixture
+def encrypted(tmp_path, certificate):
+    """The address of a broker that speaks nothing but TLS."""
+    made, key = certificate
+    with broker(tmp_path, who=f"allow_anonymous true\ncertfile {made}\nkeyfile {key}") as one:
+        yield one.url.replace("mqtt://", "mqtts://")
+
+
+def linked(url, ears, ca):
+    return Link(
+        Broker.parse(url, ca=ca),
+        client_id="me",
+        filters=["a/#"],
+        listener=ears,
+        receive_maximum=50,
+        session_s=60,
+    )
+
+
+async def running(link, done):
+    """Let a link run until something has come to pass."""
+    task = asyncio.create_task(link.run())
+    try:
+        async with asyncio.timeout(30):
+            while not done():
+                await asyncio.sleep(0.02)
+    finally:
+        task.cancel()
+        await asyncio.gather(task, return_exceptions=True)
+
+
+def test_a_large_message_comes_whole_over_tls(encrypted, certificate):
+    # More than one record of TLS holds, so some of it is unpacked before it is asked for.
+    ears, message = Ears(), bytes(range(256)) * 800
+    link = linked(encrypted, ears, certificate[0])
+
+    def heard():
+        if link.fault is None and not ears.heard:
+            link.publish("a/b", message)
+        return bool(ears.heard)
+
+    asyncio.run(running(link, heard))
+    assert ears.heard[0] == message
+
+
+def test_a_broker_whose_certificate_nobody_vouches_for_is_refused(encrypted):
+    link = linked(encrypted, Ears(), None)
+    asyncio.run(running(link, lambda: "certificate" in (link.fault or "")))
