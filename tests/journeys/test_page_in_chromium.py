@@ -66,9 +66,10 @@ def test_a_node_that_is_pointed_at_says_where_it_is(chromium: Path, live: Runnin
         x, y = place_of(watched, "#net")
         tip = watched.page.locator(".scene-tip")
         # The net fills the middle; somewhere on a short way across it there is a node.
-        for step in range(60):
-            watched.page.mouse.move(x - 60 + 2 * step, y + 30, steps=MOUSE_STEPS)
-            if tip.is_visible() and "Depth" in tip.inner_text():
+        for step in range(180):
+            down, along = divmod(step, 45)
+            watched.page.mouse.move(x - 90 + 4 * along, y + 30 * down, steps=MOUSE_STEPS)
+            if tip.is_visible() and "Uncertainty" in tip.inner_text():
                 break
         assert "Uncertainty, σ" in tip.inner_text()
 
