@@ -38,7 +38,7 @@ from seacage.twin import AlarmPolicy, Twin
 PICTURES = Path(__file__).parents[1] / "docs" / "pictures"
 CALM = datetime(2020, 2, 24, 4, 30, tzinfo=UTC)
 PEAK = datetime(2020, 2, 24, 10, 50, tzinfo=UTC)
-# Below the usual 0.8, which no day of the demonstration reaches.
+# Below the usual 0.8, so that the hours shown here reach it.
 LIMITS = {"load": {"raise_at": 0.45, "clear_at": 0.4}}
 DAY, STEP = timedelta(hours=24), timedelta(minutes=10)
 WIDE, PHONE = (1440, 900), (390, 844)

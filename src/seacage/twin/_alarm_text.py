@@ -34,10 +34,10 @@ def described(alarm: Alarm, policy: AlarmPolicy) -> AlarmText:
     words = _WORDS.get(alarm.kind, _FAULT)
     limit = policy.limit(alarm.name)
     message = words.message(alarm, limit)
-    if alarm.detail and alarm.detail not in message:
+    if alarm.active and alarm.detail and alarm.detail not in message:
         message = f"{message} {alarm.detail}".strip()
     return AlarmText(
-        title=words.title.format(source=_said(alarm.source)),
+        title=words.title.format(source=alarm.source, Source=_said(alarm.source)),
         message=message,
         advice=words.advice,
         unit=words.unit,
@@ -55,10 +55,10 @@ class _Words:
 def _load(alarm: Alarm, limit: Limit) -> str:
     if alarm.value is None:
         return "Its load is not known."
-    worst = f", {alarm.worst:.0%} at worst" if alarm.worst is not None and alarm.active else ""
+    worst = f", {_share(alarm.worst)} at worst" if alarm.worst is not None and alarm.active else ""
     return (
-        f"{_said(alarm.source)} bears {alarm.value:.0%} of what it may bear{worst}; the alarm "
-        f"is raised at {limit.raise_at:.0%} and clears at {limit.clear_at:.0%}."
+        f"{_said(alarm.source)} bears {_share(alarm.value)} of what it may bear{worst}; the "
+        f"alarm is raised at {_share(limit.raise_at)} and clears at {_share(limit.clear_at)}."
     )
 
 
@@ -66,8 +66,8 @@ def _volume(alarm: Alarm, limit: Limit) -> str:
     if alarm.value is None:
         return "The net's volume is not known."
     return (
-        f"The net has lost {alarm.value:.0%} of its volume in still water; the alarm is raised "
-        f"at {limit.raise_at:.0%}."
+        f"The net has lost {_share(alarm.value)} of its volume in still water; the alarm is "
+        f"raised at {_share(limit.raise_at)}."
     )
 
 
@@ -105,7 +105,7 @@ _WORDS: Mapping[str, _Words] = {
         advice="Stop feeding and watch the fish. The volume comes back as the current falls.",
     ),
     "silent": _Words(
-        title="{source} is silent",
+        title="{Source} is silent",
         message=_silent,
         advice="Check its power, its radio and its clock.",
         unit="s",
@@ -130,7 +130,7 @@ _WORDS: Mapping[str, _Words] = {
         "the twin with a wider campaign.",
     ),
     "irregular": _Words(
-        title="{source} reads irregularly",
+        title="{Source} reads irregularly",
         message=_either(
             active="{source} does not read as it should.",
             calm="{source} reads as the twin and the other sensors expect.",
@@ -139,14 +139,15 @@ _WORDS: Mapping[str, _Words] = {
         "wrong; inspect the cage near it if it is right.",
     ),
     "bridle": _Words(
-        title="{source} has probably parted",
+        title="{Source} has probably parted",
         message=_either(
             active="{source} seems to bear nothing, and the other bridles of its corner bear "
             "its share.",
             calm="{source} bears what is expected of it.",
         ),
-        advice="Look at the line at once, from a boat that keeps clear of its corner. Its "
-        "neighbours carry more until it is mended.",
+        advice="Look at all lines of this corner at once, from a boat that keeps clear of it: "
+        "which of them it is, the sensors tell less surely than that it is one of them. The "
+        "others carry more until it is mended.",
     ),
     "net": _Words(
         title="The net may be torn",
@@ -174,6 +175,10 @@ _FAULT = _Words(
 def _said(source: str) -> str:
     """Begin a sentence with a source's name."""
     return source[:1].upper() + source[1:]
+
+
+def _share(part: float) -> str:
+    return f"{100.0 * part:.0f} %"
 
 
 def _time(seconds: float) -> str:

@@ -155,3 +155,14 @@ def test_every_alarm_of_a_cage_is_described_in_words_active_or_not():
             assert said.title
             assert said.advice.endswith(".")
             assert "{" not in said.title + said.message
+
+
+def test_a_cause_is_told_while_it_lasts_and_names_stand_as_the_sentence_needs_them():
+    policy = AlarmPolicy.default()
+    raised = Alarm(name="domain.input", active=True, value=1.0, detail="Extrapolating: …")
+    assert "Extrapolating" in described(raised, policy).message
+    assert "Extrapolating" not in described(replace(raised, active=False), policy).message
+    load = Alarm(name="load.bridle-7", active=True, value=0.85, worst=0.9)
+    said = described(load, policy)
+    assert said.title == "High load on bridle-7"
+    assert said.message.startswith("Bridle-7 bears 85 % of what it may bear, 90 % at worst")
