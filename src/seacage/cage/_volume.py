@@ -29,7 +29,8 @@ def enclosed_volume(
     splits = (
         _tetrahedra(a, b, c) + _tetrahedra(a, c, d) + _tetrahedra(a, b, d) + _tetrahedra(b, c, d)
     )
-    return np.asarray(splits.sum(axis=-1) / 2.0)
+    # In C order, so that a case is summed in the same order alone as in company.
+    return np.asarray(np.ascontiguousarray(splits).sum(axis=-1) / 2.0)
 
 
 def _tetrahedra(

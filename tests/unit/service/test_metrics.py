@@ -1,7 +1,7 @@
 import httpx
 
 from seacage.service._metrics import Metrics
-from serviced import Running, buoy
+from serviced import Running, buoy, eventually
 
 
 def test_alarms_are_counted_by_how_bad_they_are():
@@ -16,6 +16,9 @@ def test_alarms_are_counted_by_how_bad_they_are():
 
 def test_a_commit_is_timed_and_alarms_are_counted_while_a_service_runs(live: Running):
     live.post(buoy())
-    text = httpx.get(f"{live.address}/metrics").text
+    counted = 'seacage_alarms{cage="ace",severity="critical"}'  # from the first tick on
+    text = eventually(
+        lambda: httpx.get(f"{live.address}/metrics").text, lambda text: counted in text
+    )
+    assert counted in text
     assert 'seacage_commit_seconds_count{cage="ace"} 1.0' in text
-    assert 'seacage_alarms{cage="ace",severity="critical"}' in text
