@@ -1,7 +1,6 @@
 """A farm served as its file of settings says: several cages, by HTTPS, with people who sign in."""
 
 import json
-import shutil
 import ssl
 import subprocess
 import sys
@@ -14,24 +13,6 @@ from outside import wait_for
 from seacage.testing import stand_in_twin
 
 SEACAGE = [sys.executable, "-c", "from seacage.service import main; main()"]
-
-
-@pytest.fixture(scope="module")
-def certificate(tmp_path_factory):
-    """A certificate for this machine that signs itself, and its key."""
-    openssl = shutil.which("openssl")
-    if openssl is None:
-        pytest.skip("needs openssl: it is not installed")
-    folder = tmp_path_factory.mktemp("tls")
-    certificate, key = folder / "certificate.pem", folder / "key.pem"
-    asked = ["req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes"]
-    named = ["-subj", "/CN=127.0.0.1", "-addext", "subjectAltName=IP:127.0.0.1", "-days", "2"]
-    subprocess.run(
-        [openssl, *asked, *named, "-out", certificate, "-keyout", key],
-        check=True,
-        capture_output=True,
-    )
-    return certificate, key
 
 
 @pytest.fixture

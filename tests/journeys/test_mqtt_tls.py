@@ -1,8 +1,6 @@
 """A broker that speaks TLS: heard where its certificate is trusted, and else refused."""
 
 import asyncio
-import shutil
-import subprocess
 
 import pytest
 
@@ -25,22 +23,6 @@ class Ears:
 
     async def settled(self):
         pass
-
-
-@pytest.fixture(scope="module")
-def certificate(tmp_path_factory):
-    """A certificate for this machine that signs itself, and its key."""
-    openssl = shutil.which("openssl")
-    if openssl is None:
-        pytest.skip("needs openssl, to make a certificate")
-    folder = tmp_path_factory.mktemp("certificate")
-    made, key = folder / "certificate.pem", folder / "key.pem"
-    asked = ["req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256", "-nodes"]
-    named = ["-days", "2", "-subj", "/CN=localhost", "-addext", "subjectAltName=IP:127.0.0.1"]
-    subprocess.run(
-        [openssl, *asked, *named, "-out", made, "-keyout", key], check=True, capture_output=True
-    )
-    return made, key
 
 
 @pytest.fixture

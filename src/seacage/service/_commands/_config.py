@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
-from seacage.service._commands._doctor import Finding
-from seacage.service._console import Exit, Json, guarded, stopped, tell
+from seacage.service._commands._findings import Finding, tell_findings
+from seacage.service._console import Exit, Json, guarded, tell
 
 if TYPE_CHECKING:
     from seacage.service._settings import Settings
@@ -42,15 +42,7 @@ def check(
     from seacage.service._settings import read_settings
 
     findings = list(_findings(read_settings(config), reach=reach))
-    wrong = [one for one in findings if one.state == "wrong"]
-    tell(
-        {"ok": not wrong}
-        | {"findings": [{"what": f.what, "state": f.state, "said": f.said} for f in findings]},
-        as_json=as_json,
-        rows=[(f"{one.state:<6}  {one.what}", one.said) for one in findings],
-    )
-    if wrong:
-        raise stopped(f"config: {len(wrong)} of {len(findings)} are wrong.", Exit.REFUSED)
+    tell_findings("config", findings, code=Exit.REFUSED, as_json=as_json)
 
 
 @group.command()

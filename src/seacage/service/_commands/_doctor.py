@@ -6,13 +6,13 @@ import shutil
 import socket
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated
 
 import typer
 
-from seacage.service._console import Exit, Json, guarded, stopped, tell
+from seacage.service._commands._findings import Finding, tell_findings
+from seacage.service._console import Exit, Json, guarded
 
 _EXTRAS = {
     "sim": ("xarray", "zarr", "h5netcdf", "dask", "matplotlib"),
@@ -21,15 +21,6 @@ _EXTRAS = {
     "archive": ("pyarrow",),
     "ros": ("rosbags",),
 }
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Finding:
-    """What was looked at, how it is, and what to do where it is wrong."""
-
-    what: str
-    state: Literal["ok", "absent", "wrong"]
-    said: str
 
 
 @guarded
@@ -57,15 +48,7 @@ def doctor(
         lambda: _demonstration(data),
     )
     findings = [check() for check in checks] + [_extra(name) for name in _EXTRAS]
-    wrong = [one for one in findings if one.state == "wrong"]
-    tell(
-        {"ok": not wrong}
-        | {"findings": [{"what": f.what, "state": f.state, "said": f.said} for f in findings]},
-        as_json=as_json,
-        rows=[(f"{one.state:<6}  {one.what}", one.said) for one in findings],
-    )
-    if wrong:
-        raise stopped(f"doctor: {len(wrong)} of {len(findings)} are wrong.", Exit.FAILED)
+    tell_findings("doctor", findings, code=Exit.FAILED, as_json=as_json)
 
 
 def _python() -> Finding:
