@@ -12,11 +12,11 @@ from pathlib import Path
 from _timing import ONCE, seconds, tell
 
 from seacage.records import Sample
-from seacage.service._store import Store, open_store
-from seacage.service._store_place import database_at
-from seacage.service._store_rows import Row, row_of
-from seacage.service._store_session import AbstractDatabase
-from seacage.service._store_sqlite import sqlite_look
+from seacage.service._store._place import database_at
+from seacage.service._store._rows import Row, row_of
+from seacage.service._store._session import AbstractDatabase
+from seacage.service._store._sqlite import sqlite_look
+from seacage.service._store._store import Store, open_store
 
 NOON = datetime(2020, 2, 1, 12, tzinfo=UTC)
 STREAMS = [f"depth-{number}" for number in range(1, 31)]

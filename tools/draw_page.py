@@ -26,12 +26,12 @@ from PIL import Image
 from playwright.sync_api import Page, sync_playwright
 
 from seacage.records import Sample
-from seacage.service._api import Service, create_app
-from seacage.service._live import LiveCage
-from seacage.service._metrics import Metrics
-from seacage.service._replay import Replay, replay_of
-from seacage.service._store import open_store
-from seacage.service._tokens import Tokens
+from seacage.service._access._tokens import Tokens
+from seacage.service._calls._api import Service, create_app
+from seacage.service._live._cage import LiveCage
+from seacage.service._live._metrics import Metrics
+from seacage.service._live._replay import Replay, replay_of
+from seacage.service._store._store import open_store
 from seacage.studies import Demonstration, prepare_demonstration
 from seacage.twin import AlarmPolicy, Twin
 

@@ -8,7 +8,7 @@ import schemathesis
 from schemathesis import GenerationMode
 from schemathesis.specs.openapi.checks import ignored_auth, positive_data_acceptance
 
-from seacage.service._limits import Limits
+from seacage.service._access._limits import Limits
 from serviced import buoy, depth, running
 
 # A sea too steep to stand, or an alarm that there is not, is well formed and refused all the same.

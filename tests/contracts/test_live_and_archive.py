@@ -9,9 +9,9 @@ import pytest
 
 from seacage.conventions import Flag, Origin
 from seacage.records import Record, check_record, instant, moment, read_record
-from seacage.service._live import LiveCage
-from seacage.service._metrics import Metrics
-from seacage.service._store import Store
+from seacage.service._live._cage import LiveCage
+from seacage.service._live._metrics import Metrics
+from seacage.service._store._store import Store
 from seacage.testing import stand_in_twin
 from serviced import HandClock
 

@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 
 from seacage.conventions import Flag, InputError
 from seacage.records import Amendment, Sample
-from seacage.service._store import StoreError, open_store
-from seacage.service._store_aggregates import renew_rested
-from seacage.service._store_days import delete, rows_of_day
-from seacage.service._store_rows import DAY_US, microseconds
+from seacage.service._store._days import delete, rows_of_day
+from seacage.service._store._kept_aggregates import renew_rested
+from seacage.service._store._rows import DAY_US, microseconds
+from seacage.service._store._store import StoreError, open_store
 from seacage.twin import Action, Happened
 from stores import NOON, put, sample, schema
 

@@ -14,7 +14,7 @@ import pytest
 from websockets.sync.client import connect
 
 from brokered import broker, talking
-from seacage.service._store import open_store
+from seacage.service._store._store import open_store
 from seacage.testing import stand_in_field, stand_in_twin
 from stores import schema
 

@@ -16,7 +16,7 @@ import pytest
 
 import outside
 from brokered import broker, talking
-from seacage.service._store import open_store
+from seacage.service._store._store import open_store
 from seacage.testing import stand_in_twin
 
 pytestmark = [pytest.mark.mosquitto, pytest.mark.timeout(900)]

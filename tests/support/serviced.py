@@ -13,11 +13,11 @@ from pathlib import Path
 import httpx
 import uvicorn
 
-from seacage.service._api import Service, create_app
-from seacage.service._live import LiveCage
-from seacage.service._metrics import Metrics
-from seacage.service._store import Store
-from seacage.service._tokens import Tokens
+from seacage.service._access._tokens import Tokens
+from seacage.service._calls._api import Service, create_app
+from seacage.service._live._cage import LiveCage
+from seacage.service._live._metrics import Metrics
+from seacage.service._store._store import Store
 from seacage.testing import stand_in_twin
 from seacage.twin import AlarmPolicy, Twin
 

@@ -5,21 +5,21 @@ from functools import partial
 from pathlib import Path
 
 from seacage.conventions import InputError
-from seacage.service._api import Service
-from seacage.service._audit import Audit
-from seacage.service._clock import Clock, FollowingClock, ReplayClock, WallClock
-from seacage.service._live import LiveCage
-from seacage.service._metrics import Metrics
-from seacage.service._mqtt_feed import MqttFeed
-from seacage.service._notify import Herald, Webhook
-from seacage.service._quarantine import Quarantine
-from seacage.service._replay import Replay
-from seacage.service._retention import Retention
+from seacage.service._access._audit import Audit
+from seacage.service._access._tokens import Tokens
+from seacage.service._calls._api import Service
+from seacage.service._live._cage import LiveCage
+from seacage.service._live._clock import Clock, FollowingClock, ReplayClock, WallClock
+from seacage.service._live._metrics import Metrics
+from seacage.service._live._replay import Replay
+from seacage.service._live._retention import Retention
 from seacage.service._settings import CageSection, Settings
-from seacage.service._shards import cages_of
-from seacage.service._store import Store, open_store
-from seacage.service._tail import FileTail
-from seacage.service._tokens import Tokens
+from seacage.service._store._store import Store, open_store
+from seacage.service._wires._mqtt_feed import MqttFeed
+from seacage.service._wires._notify import Herald, Webhook
+from seacage.service._wires._quarantine import Quarantine
+from seacage.service._wires._shards import cages_of
+from seacage.service._wires._tail import FileTail
 from seacage.twin import AlarmPolicy, Twin
 
 Feed = Callable[[], Coroutine[None, None, None]]

@@ -14,7 +14,7 @@ from pydantic_settings import (
 )
 
 from seacage.conventions import InputError
-from seacage.service._limits import Limits
+from seacage.service._access._limits import Limits
 
 _LOOPBACK = ("127.0.0.1", "::1", "localhost")
 

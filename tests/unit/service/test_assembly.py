@@ -6,7 +6,7 @@ import pytest
 from seacage.conventions import InputError
 from seacage.records import Sample
 from seacage.service._assembly import assembled, read_twins, store_place
-from seacage.service._replay import replay_of
+from seacage.service._live._replay import replay_of
 from seacage.service._settings import Settings
 from seacage.testing import stand_in_field, stand_in_twin
 

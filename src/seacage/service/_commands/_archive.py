@@ -39,10 +39,10 @@ def write(
     Example: archive all that was measured until yesterday.
         seacage archive write archive --store var/samples.sqlite
     """
-    from seacage.service._archive import Archive
-    from seacage.service._store import look_into
-    from seacage.service._store_days import cages, days_before, readable, rows_of_day
-    from seacage.service._store_rows import microseconds, moment_of
+    from seacage.service._store._archive import Archive
+    from seacage.service._store._days import cages, days_before, readable, rows_of_day
+    from seacage.service._store._rows import microseconds, moment_of
+    from seacage.service._store._store import look_into
 
     until = microseconds((before or datetime.now(UTC)).replace(tzinfo=UTC))
     archive, count = Archive(folder), 0
@@ -83,9 +83,9 @@ def read(
     import json
 
     from seacage.conventions import InputError
-    from seacage.service._archive import Archive
-    from seacage.service._archive_found import archived_between
     from seacage.service._console import without_nan
+    from seacage.service._store._archive import Archive
+    from seacage.service._store._archive_found import archived_between
 
     archive = Archive(folder)
     if cage not in archive.cages():
@@ -119,7 +119,7 @@ def check(folder: Folder, *, as_json: Json = False) -> None:
         seacage archive check archive
     """
     from seacage.conventions import InputError
-    from seacage.service._archive import Archive
+    from seacage.service._store._archive import Archive
 
     if not folder.is_dir():
         raise InputError(f"{folder} is no folder. Name the folder of the archive.")

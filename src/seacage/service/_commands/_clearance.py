@@ -24,13 +24,13 @@ from seacage.service._commands._pilot import (
 from seacage.service._console import Exit, Json, guarded, stopped, tell
 
 if TYPE_CHECKING:
-    from seacage.service._clearance_schemas import (
+    from seacage.service._forms._clearance_schemas import (
         ClearanceAnswer,
         FrameName,
         PathAnswer,
         PointClearance,
     )
-    from seacage.service._clearance_table import Row
+    from seacage.service._rov._clearance_table import Row
 
 
 @guarded
@@ -82,8 +82,8 @@ def clearance(
         seacage clearance way.csv --path --most 0.05 --to http://127.0.0.1:8000 --token TOKEN
         seacage clearance --point 20,0,-8 --twin twin --current-speed 0.4 --current-to 90
     """
-    from seacage.service._clearance import clearance_answer
-    from seacage.service._clearance_table import asked_of, write_clearances
+    from seacage.service._rov._clearance import clearance_answer
+    from seacage.service._rov._clearance_table import asked_of, write_clearances
 
     frame, rows = _points(points, point or [])
     asked = asked_of(
@@ -113,7 +113,7 @@ def clearance(
 
 def _points(path: Path | None, given: list[str]) -> "tuple[FrameName, list[Row]]":
     from seacage.conventions import InputError
-    from seacage.service._clearance_table import read_points
+    from seacage.service._rov._clearance_table import read_points
 
     if (path is None) == (not given):
         raise InputError("clearance: give a CSV file of points, or some with --point; one of them.")

@@ -155,7 +155,7 @@ def _stored(settings: "Settings", *, reach: bool) -> str:
     from seacage.conventions import InputError
     from seacage.service._assembly import store_place
     from seacage.service._settings import without_password
-    from seacage.service._store import open_store
+    from seacage.service._store._store import open_store
 
     place = store_place(settings)
     for extra, package, wanted in (
@@ -172,8 +172,8 @@ def _stored(settings: "Settings", *, reach: bool) -> str:
 def _brokered(settings: "Settings", *, reach: bool) -> str:
     import socket
 
-    from seacage.service._mqtt_broker import Broker
-    from seacage.service._mqtt_topics import Topics
+    from seacage.service._wires._mqtt_broker import Broker
+    from seacage.service._wires._mqtt_topics import Topics
 
     assert settings.mqtt
     Topics(settings.site)

@@ -24,8 +24,8 @@ from seacage.service._commands._pilot import (
 from seacage.service._console import Json, guarded, tell
 
 if TYPE_CHECKING:
-    from seacage.service._clearance_client import Asker
-    from seacage.service._clearance_schemas import InspectionAnswer, InspectionAsked
+    from seacage.service._forms._clearance_schemas import InspectionAnswer, InspectionAsked
+    from seacage.service._rov._clearance_client import Asker
     from seacage.twin import PredictedNet
 
 
@@ -69,8 +69,8 @@ def inspect_path(
         seacage inspect-path --to http://127.0.0.1:8000 --token TOKEN --out way.csv
         seacage inspect-path --twin twin --current-speed 0.4 --current-to 90 --out way.mcap
     """
-    from seacage.service._clearance import inspection_answer
-    from seacage.service._clearance_schemas import InspectionAsked
+    from seacage.service._forms._clearance_schemas import InspectionAsked
+    from seacage.service._rov._clearance import inspection_answer
 
     asked = InspectionAsked(
         frame=frame,
@@ -105,9 +105,9 @@ def _write_way(
     asker: "Asker | None",
 ) -> None:
     from seacage.conventions import InputError
-    from seacage.service._clearance import inspection_of
-    from seacage.service._clearance_table import write_waypoints
-    from seacage.service._rov_files import inspection_geojson, inspection_mcap
+    from seacage.service._rov._clearance import inspection_of
+    from seacage.service._rov._clearance_table import write_waypoints
+    from seacage.service._rov._rov_files import inspection_geojson, inspection_mcap
 
     form = out.suffix.lower()
     if form == ".csv":

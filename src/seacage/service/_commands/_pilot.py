@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from seacage.service._clearance_client import Asker
-    from seacage.service._clearance_schemas import ClearanceAnswer, InspectionAnswer
+    from seacage.service._forms._clearance_schemas import ClearanceAnswer, InspectionAnswer
+    from seacage.service._rov._clearance_client import Asker
     from seacage.twin import PredictedNet
 
 TwinFolder = Annotated[
@@ -68,7 +68,7 @@ def net_of(
 
 def asker_of(to: str | None, cage: str, token: str) -> "Asker":
     """Return who asks the service."""
-    from seacage.service._clearance_client import Asker
+    from seacage.service._rov._clearance_client import Asker
 
     assert to is not None  # `net_of` refused both and neither
     return Asker(address=to, cage=cage, token=token)

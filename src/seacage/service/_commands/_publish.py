@@ -15,9 +15,9 @@ from seacage.service._console import Exit, Json, guarded, progress_bar, stopped,
 if TYPE_CHECKING:
     from collections.abc import Generator
 
-    from seacage.service._courier import Courier
-    from seacage.service._publisher import Batch, Published
-    from seacage.service._spool import Spool
+    from seacage.service._wires._courier import Courier
+    from seacage.service._wires._publisher import Batch, Published
+    from seacage.service._wires._spool import Spool
 
 _AHEAD = timedelta(minutes=1)
 
@@ -86,7 +86,7 @@ def publish(
         read-sensors | seacage publish - --to http://127.0.0.1:8000 --token TOKEN
     """
     from seacage.conventions import InputError
-    from seacage.service._publisher import Publisher
+    from seacage.service._wires._publisher import Publisher
 
     if follow and (source == "-" or Path(source).is_dir() or speed is not None):
         raise InputError("publish: --follow is for a growing file, at the speed at which it grows.")
@@ -130,8 +130,8 @@ def _batches(
 ) -> "Iterator[Batch]":
     from seacage.conventions import InputError
     from seacage.records import KEYS, ColumnMap, FieldRecord, read_map, read_record
-    from seacage.service._sources import arriving, line_batches, record_batches, tail_batches
-    from seacage.service._tail import Place, Tail
+    from seacage.service._wires._sources import arriving, line_batches, record_batches, tail_batches
+    from seacage.service._wires._tail import Place, Tail
 
     if source == "-":
         return line_batches(
@@ -164,7 +164,7 @@ def _batches(
 def _spool(
     path: Path, to: str, cage: str, site: str, most: int, when_full: str
 ) -> "Generator[Spool]":
-    from seacage.service._spool import Spool
+    from seacage.service._wires._spool import Spool
 
     place = to.rpartition("://")[2].rpartition("@")[2]  # a password may change
     destination = f"{place}, site {site}, cage {cage}"
@@ -177,9 +177,9 @@ def _spool(
 
 @contextmanager
 def _courier(to: str, cage: str, site: str, token: str, ca: Path | None) -> "Generator[Courier]":
-    from seacage.service._courier import HttpCourier, MqttCourier
-    from seacage.service._mqtt_broker import Broker
-    from seacage.service._sender import Sender
+    from seacage.service._wires._courier import HttpCourier, MqttCourier
+    from seacage.service._wires._mqtt_broker import Broker
+    from seacage.service._wires._sender import Sender
 
     if to.startswith(("http://", "https://")):
         made = HttpCourier(Sender(address=to, cage=cage, token=token, patience_s=()))

@@ -68,7 +68,7 @@ def replay(
 
 
 def _answer(record: Path, folder: Path, out: list[Path], *, batched: bool, as_json: bool) -> None:
-    from seacage.service._files import Replayed, check_form
+    from seacage.service._calls._files import Replayed, check_form
     from seacage.twin import Twin
 
     for path in out:
@@ -102,8 +102,8 @@ def _stepped(twin: "Twin", buoy: "Record", progress: "Progress") -> "Answer":
     """Step through a record as a live service would; the same answers as in blocks."""
     from dataclasses import replace
 
-    from seacage.service._files import joined
-    from seacage.service._past import answered_in
+    from seacage.service._calls._files import joined
+    from seacage.service._live._past import answered_in
 
     state, answers = twin.start(), list["Answer"]()
     for done, sample in enumerate(buoy.samples(), start=1):
@@ -120,8 +120,8 @@ def _stepped(twin: "Twin", buoy: "Record", progress: "Progress") -> "Answer":
 def _send(
     record: Path, to: str, cage: str, token: str, speed: float | None, *, as_json: bool
 ) -> None:
-    from seacage.service._sender import Sender
-    from seacage.service._sources import paced
+    from seacage.service._wires._sender import Sender
+    from seacage.service._wires._sources import paced
 
     streams = _streams(record)
     total = sum(len(one) for one in streams)

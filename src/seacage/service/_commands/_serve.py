@@ -11,8 +11,8 @@ import typer
 from seacage.service._console import Json, guarded, progress_bar, tell
 
 if TYPE_CHECKING:
-    from seacage.service._api import Service
-    from seacage.service._replay import Replay
+    from seacage.service._calls._api import Service
+    from seacage.service._live._replay import Replay
     from seacage.service._settings import Settings
     from seacage.twin import Twin
 
@@ -158,7 +158,7 @@ def _prepared(
     """Read or make the twins, and what feeds them."""
     from seacage.records import read_record
     from seacage.service._assembly import read_twins
-    from seacage.service._replay import replay_of
+    from seacage.service._live._replay import replay_of
     from seacage.studies import prepare_demonstration
     from seacage.twin import Twin
 
@@ -211,7 +211,7 @@ def _sources(settings: "Settings") -> str:
 def _run(service: "Service", settings: "Settings", listener: socket.socket) -> None:
     import uvicorn
 
-    from seacage.service._api import create_app
+    from seacage.service._calls._api import create_app
 
     config = uvicorn.Config(
         create_app(service),

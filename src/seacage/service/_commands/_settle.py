@@ -68,7 +68,7 @@ def settle(
     response = settled(subject, sea, law=law, mean_waves=mean_waves)
     answer = _answer(subject, response)
     if out is not None:
-        from seacage.service._files import write_response
+        from seacage.service._calls._files import write_response
 
         write_response(out, subject, sea, law, response)
         answer["written"] = str(out)

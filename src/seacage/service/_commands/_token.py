@@ -8,7 +8,7 @@ import typer
 from seacage.service._console import Json, guarded, tell
 
 if TYPE_CHECKING:
-    from seacage.service._tokens import Grant
+    from seacage.service._access._tokens import Grant
 
 group = typer.Typer(help="Tokens of the service.")
 
@@ -41,7 +41,7 @@ def new(
     """
     import json
 
-    from seacage.service._tokens import Tokens
+    from seacage.service._access._tokens import Tokens
 
     tokens, scopes = Tokens(data), scope.split(",")
     token = tokens.mint(scopes, keep=True, name=name)
@@ -58,7 +58,7 @@ def show(*, data: Data = Path("var"), as_json: Json = False) -> None:
     Example:
         seacage token list --data var
     """
-    from seacage.service._tokens import Tokens
+    from seacage.service._access._tokens import Tokens
 
     grants = Tokens(data).all()
     tell(
@@ -86,7 +86,7 @@ def revoke(
     Example:
         seacage token revoke --data var "Night shift"
     """
-    from seacage.service._tokens import Tokens
+    from seacage.service._access._tokens import Tokens
 
     revoked = Tokens(data).revoke(token)
     _audited(data, "token revoke", revoked)
@@ -94,7 +94,7 @@ def revoke(
 
 
 def _audited(data: Path, did: str, grant: "Grant | None") -> None:
-    from seacage.service._audit import Audit
+    from seacage.service._access._audit import Audit
 
     about = "" if grant is None else grant.id
     Audit(data / "audit.jsonl").write(did, who="command line", about=about)

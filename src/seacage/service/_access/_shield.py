@@ -1,0 +1,75 @@
+"""What surrounds every request: how much is sent, what a browser may do, what is written down."""
+
+from fastapi import HTTPException
+from starlette.datastructures import MutableHeaders
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from seacage.service._access._guard import Gate
+
+_HEADERS = {
+    "content-security-policy": (
+        "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; "
+        "font-src 'self'; connect-src 'self'; base-uri 'none'; form-action 'none'; "
+        "frame-ancestors 'none'"
+    ),
+    "x-content-type-options": "nosniff",
+    "referrer-policy": "no-referrer",
+    "cross-origin-opener-policy": "same-origin",
+    "cache-control": "no-cache",
+}
+_REFUSALS = {401, 403, 429}
+_READING = {"GET", "HEAD", "OPTIONS"}
+_PLAIN = {"read", "ingest"}  # questions and samples: too many to write down, and no deeds
+
+
+class Shield:
+    """Add the browser's rules to every answer, cut bodies that are too long, and keep the audit.
+
+    Written down are refusals, and what people change.
+
+    Parameters
+    ----------
+    app
+        What is shielded.
+    """
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] != "http":
+            await self._app(scope, receive, send)
+            return
+        gate: Gate = scope["app"].state.service.gate
+        limit, received = gate.limits.body_bytes, 0
+
+        async def counted() -> Message:
+            nonlocal received
+            message = await receive()
+            received += len(message.get("body", b""))
+            if received > limit:
+                raise HTTPException(413, f"A request may have {limit} bytes. Send less at once.")
+            return message
+
+        async def ruled(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                headers = MutableHeaders(scope=message)
+                for name, value in _HEADERS.items():
+                    headers.setdefault(name, value)
+                _written(gate, scope, message["status"])
+            await send(message)
+
+        await self._app(scope, counted, ruled)
+
+
+def _written(gate: Gate, scope: Scope, status: int) -> None:
+    state = scope.get("state", {})
+    deed = scope["method"] not in _READING and state.get("action", "read") not in _PLAIN
+    if deed or status in _REFUSALS:
+        gate.audit.write(
+            f"{scope['method']} {scope['path'][:200]}",
+            who=state.get("who", ""),
+            token=state.get("token", ""),
+            source=scope["client"][0] if scope.get("client") else "",
+            status=status,
+        )

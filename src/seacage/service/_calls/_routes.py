@@ -1,0 +1,205 @@
+"""The calls of the HTTP interface: the service itself, its cages, their samples and answers."""
+
+from fastapi import APIRouter, Depends, Request, Response
+from fastapi.responses import JSONResponse
+
+from seacage.service._access._guard import Permit
+from seacage.service._calls._calls import (
+    READ,
+    REFUSED,
+    WRITE,
+    At,
+    From,
+    Key,
+    Limit,
+    Live,
+    OneStream,
+    Responses,
+    Stream,
+    To,
+    Width,
+    may_ingest,
+    may_read,
+)
+from seacage.service._calls._history import history_between
+from seacage.service._forms._samples import read_samples
+from seacage.service._forms._schemas import (
+    AggregateOut,
+    AggregatesOut,
+    Cages,
+    Health,
+    History,
+    Receipt,
+    SamplesIn,
+    SamplesOut,
+    Shape,
+    State,
+    Topology,
+)
+from seacage.service._live._answers import sample_of, shape_of, state_of, summary_of
+from seacage.service._live._cage import LiveCage
+from seacage.service._live._frame import MEDIA_TYPE, Flags, frame_of
+from seacage.service._live._past import state_at
+
+_HEALTH = {**REFUSED, 503: {"model": Health, "description": "The service cannot do its work."}}
+FRAME: Responses = {
+    200: {
+        "content": {MEDIA_TYPE: {"schema": {"type": "string", "format": "binary"}}},
+        "description": "The page's binary message.",
+    }
+}
+"""How a call documents a frame."""
+
+around = APIRouter(dependencies=[Depends(Permit("read", open_to_loopback=True))], tags=["service"])
+cages = APIRouter(prefix="/api/v1/cages", tags=["cages"])
+
+
+@around.get("/healthz", responses=REFUSED)
+async def healthz() -> Health:
+    """Say that the service lives."""
+    return Health(status="alive")
+
+
+@around.get("/readyz", response_model=Health, responses=_HEALTH)
+async def readyz(request: Request) -> Response:
+    """Say whether samples are taken and every cage is being stepped."""
+    trouble = request.app.state.service.trouble()
+    health = Health(status=trouble or "ready")
+    return JSONResponse(health.model_dump(), status_code=503 if trouble else 200)
+
+
+@around.get(
+    "/metrics",
+    response_class=Response,
+    responses={**REFUSED, 200: {"content": {"text/plain": {}}, "description": "For Prometheus."}},
+)
+async def metrics(request: Request) -> Response:
+    """Tell Prometheus what happened."""
+    text = request.app.state.service.metrics.text()
+    return Response(text, media_type="text/plain; version=0.0.4; charset=utf-8")
+
+
+@around.get("/openapi.json", include_in_schema=False)
+async def openapi(request: Request) -> JSONResponse:
+    """Describe the interface."""
+    return JSONResponse(request.app.openapi())
+
+
+@cages.get("", dependencies=may_read, responses=REFUSED)
+async def list_cages(request: Request) -> Cages:
+    """List the cages: whether each answers, its worst load and its worst alarm."""
+    live: dict[str, LiveCage] = request.app.state.service.cages
+    return Cages(cages=[summary_of(name, one.snapshot.state) for name, one in live.items()])
+
+
+@cages.post("/{cage}/samples", status_code=201, dependencies=may_ingest, responses=WRITE)
+async def post_samples(request: Request, body: SamplesIn, live: Live) -> Receipt:
+    """Take samples in any order; 201 says that those accepted are on disk.
+
+    A sample is known by (stream, t, seq): sent again it counts as a duplicate and changes
+    nothing.
+    """
+    samples, rejected = read_samples(body.samples, live.streams, until=live.latest_allowed)
+    new = await live.take(samples)
+    receipt = Receipt(accepted=sum(new), duplicates=len(new) - sum(new), rejected=rejected)
+    _counted(request, live.name, receipt)
+    return receipt
+
+
+@cages.get("/{cage}/samples", dependencies=may_read, responses=READ)
+def get_samples(
+    live: Live, stream: Stream = None, start: From = None, end: To = None, limit: Limit = 1000
+) -> SamplesOut:
+    """Give back stored samples in time order, the first ones of the span."""
+    samples = live.store.samples(live.name, stream=stream, start=start, end=end, limit=limit)
+    return SamplesOut(samples=[sample_of(sample) for sample in samples])
+
+
+@cages.get("/{cage}/latest", dependencies=may_read, responses=READ)
+def get_latest(live: Live, at: At = None) -> SamplesOut:
+    """Give back the newest sample of every stream, in one call."""
+    latest = live.store.latest(live.name, at=at)
+    return SamplesOut(samples=[sample_of(latest[stream]) for stream in sorted(latest)])
+
+
+@cages.get("/{cage}/aggregates", dependencies=may_read, responses=READ)
+def get_aggregates(
+    live: Live,
+    stream: OneStream,
+    key: Key,
+    width_s: Width = 600,
+    start: From = None,
+    end: To = None,
+    limit: Limit = 1000,
+) -> AggregatesOut:
+    """Say what the usable readings of each minute, or of ten, were: count, mean, least and most.
+
+    A direction has no mean; ask for ``current_east_m_s`` and ``current_north_m_s`` instead.
+    """
+    found = live.store.aggregates(
+        live.name, stream=stream, key=key, width_s=width_s, start=start, end=end, limit=limit
+    )
+    return AggregatesOut(
+        stream=stream,
+        key=key,
+        width_s=width_s,
+        aggregates=[
+            AggregateOut(t=one.t, count=one.count, mean=one.mean, least=one.least, most=one.most)
+            for one in found
+        ],
+    )
+
+
+@cages.get("/{cage}/state", dependencies=may_read, responses=READ)
+def get_state(live: Live, at: At = None) -> State:
+    """Say what the cage does: loads, sensors, volume, each with its level and 95 % interval."""
+    if at is None:
+        return live.snapshot.state
+    state, answered = state_at(live.twin, live.store, live.name, at)
+    return state_of(live.name, live.twin, answered, state)
+
+
+@cages.get("/{cage}/shape", dependencies=may_read, responses=READ)
+def get_shape(live: Live, at: At = None) -> Shape:
+    """Say where the net is, node by node, and how surely."""
+    if at is None:
+        return shape_of(live.snapshot.answered)
+    return shape_of(state_at(live.twin, live.store, live.name, at)[1])
+
+
+@cages.get(
+    "/{cage}/frame", dependencies=may_read, response_class=Response, responses={**READ, **FRAME}
+)
+def get_frame(live: Live, at: At = None) -> Response:
+    """Give the page's binary message of now or of the past; ``docs/service.md`` has its layout."""
+    if at is None:
+        return Response(live.snapshot.frame, media_type=MEDIA_TYPE)
+    memory, answered = state_at(live.twin, live.store, live.name, at)
+    state = state_of(live.name, live.twin, answered, memory)
+    frame = frame_of(state, answered, live.rest_position, about=Flags.PAST)
+    return Response(frame, media_type=MEDIA_TYPE)
+
+
+@cages.get("/{cage}/topology", dependencies=may_read, responses=READ)
+def get_topology(live: Live) -> Topology:
+    """Say what of the cage does not change."""
+    return live.topology
+
+
+@cages.get("/{cage}/history", dependencies=may_read, responses=READ)
+def get_history(live: Live, start: From = None, end: To = None, limit: Limit = 1000) -> History:
+    """Answer to the buoy's readings in a span, and show what the sensors read.
+
+    Where the buoy read more often than ``limit``, ``thinned`` is true, and the answers are spread
+    over the span: its first and last, and the calmest and fastest water of equal parts between.
+    A sensor that read more often is told by means of one or ten minutes. Intervals are as
+    trained.
+    """
+    return history_between(live.twin, live.store, live.name, start=start, end=end, limit=limit)
+
+
+def _counted(request: Request, cage: str, receipt: Receipt) -> None:
+    samples = request.app.state.service.metrics.samples
+    samples.labels(cage, "accepted").inc(receipt.accepted)
+    samples.labels(cage, "duplicate").inc(receipt.duplicates)
+    samples.labels(cage, "rejected").inc(len(receipt.rejected))

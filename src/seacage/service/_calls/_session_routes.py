@@ -1,0 +1,78 @@
+"""Signing in, for the page: a token is given once and a cookie stands for it."""
+
+from datetime import UTC, datetime
+from typing import Annotated
+
+from fastapi import APIRouter, Header, HTTPException, Request, Response
+
+from seacage.service._access._guard import COOKIE, Cookie, check_csrf, gate_of, source_of
+from seacage.service._access._sessions import Session
+from seacage.service._access._tokens import Grant
+from seacage.service._calls._calls import BODY, REFUSED
+from seacage.service._forms._schemas import SessionOut, SignIn
+
+sessions = APIRouter(prefix="/session", tags=["session"])
+
+Csrf = Annotated[
+    str | None, Header(alias="X-CSRF-Token", max_length=200, description="Of the session.")
+]
+
+
+@sessions.post("", status_code=201, responses=REFUSED | BODY)
+async def sign_in(request: Request, response: Response, body: SignIn) -> SessionOut:
+    """Give a token, get a cookie that no script can read; a write by it repeats ``csrf``."""
+    gate = gate_of(request)
+    if not gate.from_our_page(request):
+        raise HTTPException(403, "Only the page of this service may sign in by itself.")
+    grant = gate.tokens.grant(body.token)
+    if grant is None:
+        gate.refuse(source_of(request))
+    gate.pace(grant)
+    _remember(request, grant)
+    cookie, session = gate.sessions.begin(grant, datetime.now(UTC))
+    response.set_cookie(
+        COOKIE,
+        cookie,
+        max_age=int(gate.limits.session_s),
+        secure=request.url.scheme == "https",
+        httponly=True,
+        samesite="strict",
+    )
+    return _said(grant, session)
+
+
+@sessions.get("", responses=REFUSED)
+async def who_am_i(request: Request, cookie: Cookie) -> SessionOut:
+    """Say who is signed in, as a page asks that was loaded again."""
+    session, grant = _session(request, cookie)
+    return _said(grant, session)
+
+
+@sessions.delete("", status_code=204, responses=REFUSED)
+async def sign_out(request: Request, response: Response, cookie: Cookie, _: Csrf = None) -> None:
+    """End the session."""
+    session, grant = _session(request, cookie)
+    _remember(request, grant)
+    check_csrf(request, session)
+    gate_of(request).sessions.end(cookie or "")
+    response.delete_cookie(COOKIE, httponly=True, samesite="strict")
+
+
+def _session(request: Request, cookie: str | None) -> tuple[Session, Grant]:
+    gate = gate_of(request)
+    found = gate.known(None, cookie)
+    if found is None or found[1] is None:
+        gate.refuse(source_of(request))
+    gate.pace(found[0])
+    return found[1], found[0]
+
+
+def _remember(request: Request, grant: Grant) -> None:
+    state = request.state
+    state.who, state.token, state.action = grant.who, grant.id, "session"
+
+
+def _said(grant: Grant, session: Session) -> SessionOut:
+    return SessionOut(
+        who=grant.who, scopes=list(grant.scopes), csrf=session.csrf, expires=session.expires
+    )

@@ -1,0 +1,96 @@
+"""The live connection of the page."""
+
+import asyncio
+import json
+import time
+
+from fastapi import APIRouter, HTTPException, WebSocket, WebSocketDisconnect
+
+from seacage.service._access._guard import COOKIE, gate_of, source_of
+from seacage.service._live._cage import LiveCage
+
+_FIRST_MESSAGE_S = 5.0
+_FIRST_MESSAGE_BYTES = 1000
+UNKNOWN_TOKEN, NO_SCOPE, NO_CAGE, TOO_LATE, TOO_OFTEN = 4401, 4403, 4404, 4408, 4429
+"""Codes of a closing: the page tells its reader which it was."""
+
+sockets = APIRouter()
+
+
+@sockets.websocket("/api/v1/cages/{cage}/live")
+async def live(socket: WebSocket, cage: str) -> None:
+    """Send what does not change once, then the newest state whenever the reader is ready.
+
+    The first message of the client is ``{"token": …}``: a URL would end up in logs. A page that
+    has signed in sends null.
+    """
+    if not gate_of(socket).from_our_page(socket):
+        await socket.close()  # before it is accepted: the browser gets a 403
+        return
+    await socket.accept()
+    refusal = await _refusal(socket, cage)
+    if refusal is not None:
+        await socket.close(*refusal)
+        return
+    one: LiveCage = socket.app.state.service.cages[cage]
+    sending = asyncio.create_task(_send(socket, one))
+    try:
+        while True:  # nothing more is asked; this only notices that the client has left
+            await socket.receive_text()
+    except WebSocketDisconnect:
+        pass
+    finally:
+        sending.cancel()
+        await asyncio.gather(sending, return_exceptions=True)
+
+
+async def _send(socket: WebSocket, one: LiveCage) -> None:
+    known = ""
+    shown = socket.app.state.service.metrics.shown.labels(one.name)
+    with one.watched() as mailbox:
+        while True:
+            snapshot = await mailbox.take()
+            fresh = bool(known)  # the first was made before anybody waited for it
+            if one.topology.topology_id != known:
+                known = one.topology.topology_id
+                await socket.send_text(one.topology.model_dump_json())
+            await socket.send_bytes(snapshot.frame)
+            if fresh:
+                shown.observe(time.monotonic() - snapshot.made)
+
+
+async def _refusal(socket: WebSocket, cage: str) -> tuple[int, str] | None:
+    gate, cages = gate_of(socket), socket.app.state.service.cages
+    if sum(one.watchers for one in cages.values()) >= gate.limits.live_clients:
+        return TOO_OFTEN, "There are as many live connections as may be. Try again later."
+    try:
+        said, token = await _first_message(socket)
+    except TimeoutError:  # a slow machine's page may try again: its token was not even heard
+        return TOO_LATE, f"The first message did not come within {_FIRST_MESSAGE_S:g} s."
+    found = gate.known(token, socket.cookies.get(COOKIE)) if said else None
+    if found is None:
+        return _not_known(socket)
+    if not found[0].allows("read", cage, site=gate.site):
+        return NO_SCOPE, "This token does not have the scope read."
+    if cage not in cages:
+        return NO_CAGE, f"No cage is called {cage!r}."[:100]
+    return None
+
+
+def _not_known(socket: WebSocket) -> tuple[int, str]:
+    try:
+        gate_of(socket).refuse(source_of(socket))
+    except HTTPException as error:
+        if error.status_code == 429:
+            return TOO_OFTEN, error.detail
+    return UNKNOWN_TOKEN, 'The first message is {"token": …} with a token that is known.'
+
+
+async def _first_message(socket: WebSocket) -> tuple[bool, str | None]:
+    """Read whether a first message came, and its token; null stands for the page's session."""
+    try:
+        text = await asyncio.wait_for(socket.receive_text(), _FIRST_MESSAGE_S)
+        token = json.loads(text[:_FIRST_MESSAGE_BYTES])["token"]
+    except (WebSocketDisconnect, ValueError, KeyError, TypeError):
+        return False, None
+    return token is None or isinstance(token, str), token

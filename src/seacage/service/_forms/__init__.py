@@ -1,0 +1,1 @@
+"""What goes over the doors: the bodies of calls and answers, and the samples in them."""

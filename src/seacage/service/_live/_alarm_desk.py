@@ -1,0 +1,239 @@
+"""The alarms of one cage: judged at every tick, handled by people, kept on disk."""
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Future
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+
+import structlog
+
+from seacage.conventions import InputError
+from seacage.service._forms._schemas import AlarmBrief
+from seacage.service._store._store import Store, StoreError
+from seacage.twin import (
+    Action,
+    Alarm,
+    AlarmBook,
+    AlarmPolicy,
+    AlarmText,
+    Answered,
+    Changed,
+    Happened,
+    Twin,
+    TwinState,
+    acknowledge,
+    assess,
+    described,
+    put_in_service,
+    remark,
+    shelve,
+    take_out_of_service,
+    unshelve,
+)
+
+_KEPT_EVERY = timedelta(minutes=1)
+"""What the tests remember is kept so often; what happens to an alarm is kept at once."""
+
+_log = structlog.get_logger(__name__)
+
+Handle = Callable[[Alarm, str, datetime, str, float | None], Changed]
+
+HANDLES: Mapping[str, Handle] = {
+    "acknowledge": lambda alarm, who, now, why, _: acknowledge(alarm, who=who, now=now, why=why),
+    "comment": lambda alarm, who, now, why, _: remark(alarm, who=who, now=now, why=why),
+    "shelve": lambda alarm, who, now, why, s: shelve(alarm, who=who, now=now, why=why, seconds=s),
+    "unshelve": lambda alarm, who, now, why, _: unshelve(alarm, who=who, now=now, why=why),
+    "out-of-service": lambda alarm, who, now, why, _: take_out_of_service(
+        alarm, who=who, now=now, why=why
+    ),
+    "in-service": lambda alarm, who, now, why, _: put_in_service(alarm, who=who, now=now, why=why),
+}
+"""What people can do with an alarm."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Announcement:
+    """What happened to an alarm of a cage, in the words for those who are told."""
+
+    cage: str
+    happened: Happened
+    alarm: Alarm
+    text: AlarmText
+    severity: int
+
+
+class AlarmDesk:
+    """Where a cage's alarms are judged, and where people handle them.
+
+    The book and the journal's lines go to the store in one transaction, so that after a crash
+    every alarm stands as it was last said to stand.
+
+    Parameters
+    ----------
+    cage
+        Its name in the service.
+    twin, store, policy
+        Whose answers are judged, where it is kept, and by which limits.
+    """
+
+    def __init__(self, *, cage: str, twin: Twin, store: Store, policy: AlarmPolicy) -> None:
+        self._cage, self._twin, self._store = cage, twin, store
+        self.policy = policy
+        self._lost = ""
+        self._book = self._opened()
+        self._kept_at: datetime | None = None
+        self._listeners: list[Callable[[Announcement], None]] = []
+
+    @property
+    def alarms(self) -> Mapping[str, Alarm]:
+        """All that were ever judged, by name."""
+        return self._book.alarms
+
+    def waiting(self) -> list[AlarmBrief]:
+        """Those in service that are active or that nobody has acknowledged, the worst first."""
+        open_ = [
+            one
+            for one in self.alarms.values()
+            if one.in_service and (one.active or not one.acknowledged)
+        ]
+        return sorted((self._brief(one) for one in open_), key=lambda one: -one.severity)
+
+    def standing(self) -> list[Announcement]:
+        """Those that are active and heard, and that nobody has acknowledged, as when raised."""
+        return [
+            self._said(
+                one, Happened(alarm=one.name, action=Action.RAISED, t=one.since, value=one.worst)
+            )
+            for one in self.alarms.values()
+            if one.active and not one.acknowledged and not one.quiet and one.since
+        ]
+
+    def tell(self, listener: Callable[[Announcement], None]) -> None:
+        """Have whatever happens from now on told to a listener, in the thread that finds it."""
+        self._listeners.append(listener)
+
+    def begin_anew(self) -> None:
+        """Forget every alarm, as a replay does at its start."""
+        self._book, self._kept_at = AlarmBook.new(), None
+
+    def look(self, state: TwinState, answered: Answered) -> tuple[Happened, ...]:
+        """Judge every alarm once more, by the answer of a tick."""
+        self._book, happened = assess(
+            self._book,
+            twin=self._twin,
+            state=state,
+            answered=answered,
+            policy=self.policy,
+            trouble=self._trouble(),
+        )
+        if happened or self._kept_at is None or answered.t - self._kept_at >= _KEPT_EVERY:
+            self._kept_at = answered.t
+            self._keep(happened).add_done_callback(_mourn)
+        self._announce(happened)
+        return happened
+
+    def handle(
+        self, name: str, how: str, *, who: str, now: datetime, why: str, seconds: float | None
+    ) -> tuple[Alarm, Future[None]]:
+        """Do what a person asks with an alarm.
+
+        Parameters
+        ----------
+        name, how
+            Of the alarm, and one of ``HANDLES``.
+        who, now, why, seconds
+            For the journal, and how long to shelve [s].
+
+        Returns
+        -------
+        alarm, kept
+            As it now stands, and when that is on disk.
+
+        Raises
+        ------
+        InputError
+            There is no such alarm, or the action makes no sense with it.
+        """
+        if name not in self.alarms:
+            raise InputError(f"No alarm is called {name!r} here, or it was never judged.")
+        alarm, happened = HANDLES[how](self.alarms[name], who, now, why, seconds)
+        self._book = self._book.with_alarm(alarm)
+        kept = self._keep(happened)
+        self._announce(happened)
+        return alarm, kept
+
+    def _opened(self) -> AlarmBook:
+        kept = self._store.alarm_book(self._cage)
+        if kept is None:
+            return AlarmBook.new()
+        try:
+            return AlarmBook.from_json(kept)
+        except InputError as error:
+            self._lost = f"The alarms that were kept cannot be read; they begin anew ({error})"
+            _log.error("alarms lost", cage=self._cage, reason=self._lost)
+            return AlarmBook.new()
+
+    def _trouble(self) -> dict[str, str]:
+        said = self._store.fault or self._store.lost or self._lost
+        return {"history.store": said} if said else {}
+
+    def _keep(self, happened: Sequence[Happened]) -> Future[None]:
+        return self._store.keep_alarms(self._cage, book=self._book.to_json(), journal=happened)
+
+    def _announce(self, happened: Sequence[Happened]) -> None:
+        for one in happened:
+            told = self._said(self.alarms[one.alarm], one)
+            for listener in self._listeners:
+                listener(told)
+
+    def _said(self, alarm: Alarm, happened: Happened) -> Announcement:
+        return Announcement(
+            cage=self._cage,
+            happened=happened,
+            alarm=alarm,
+            text=described(alarm, self.policy),
+            severity=self.policy.limit(alarm.name).severity,
+        )
+
+    def _brief(self, alarm: Alarm) -> AlarmBrief:
+        text = described(alarm, self.policy)
+        return AlarmBrief(
+            id=alarm.name,
+            severity=self.policy.limit(alarm.name).severity,
+            title=text.title,
+            message=text.message,
+            active=alarm.active,
+            acknowledged=alarm.acknowledged,
+            shelved=alarm.shelved,
+            since=alarm.since,
+        )
+
+
+def announced_json(told: Announcement, *, action: str | None = None) -> str:
+    """Write an announcement as other systems get it; ``action`` in place of what happened."""
+    happened = told.happened
+    return json.dumps(
+        {
+            "cage": told.cage,
+            "alarm": told.alarm.name,
+            "action": action or happened.action.value,
+            "t": happened.t.isoformat(),
+            "severity": told.severity,
+            "title": told.text.title,
+            "message": told.text.message,
+            "advice": told.text.advice,
+            "value": told.alarm.value,
+            "unit": told.text.unit,
+            "active": told.alarm.active,
+            "acknowledged": told.alarm.acknowledged,
+            "since": told.alarm.since and told.alarm.since.isoformat(),
+            "who": happened.who,
+            "why": happened.why,
+        }
+    )
+
+
+def _mourn(kept: Future[None]) -> None:
+    if isinstance(error := kept.exception(), StoreError):
+        _log.error("alarms not kept", reason=str(error))

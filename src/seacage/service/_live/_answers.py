@@ -1,0 +1,300 @@
+"""From the twin's answers to the JSON of the doors: the one place where SI is left."""
+
+import hashlib
+import math
+from collections.abc import Mapping
+from datetime import UTC, datetime
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.cage import Cage
+from seacage.conventions import Flag, compass
+from seacage.ocean import SeaState
+from seacage.records import Amendment, Record, Sample
+from seacage.service._forms._schemas import (
+    Amended,
+    BridleState,
+    CageSummary,
+    History,
+    Interval,
+    Measured,
+    Position,
+    SampleOut,
+    SensorState,
+    Series,
+    ShacklePlace,
+    Shape,
+    State,
+    Topology,
+    Water,
+)
+from seacage.surrogates import Prediction
+from seacage.twin import Answer, Answered, Metocean, Twin, TwinState
+
+_UNUSABLE = (Flag.FAIL, Flag.MISSING)
+_PERIOD = "tp_s"
+_DOOR_UNIT = {"N": ("kN", 1e-3), "m": ("m", 1.0)}
+_ID_DIGITS = 16  # of the hash of a topology: enough that two never meet by chance
+_DECIMALS = 3  # a newton, a millimetre: below what any sensor here resolves
+
+Table = Float[np.ndarray, "case output"]
+
+
+def state_of(name: str, twin: Twin, answered: Answered, memory: TwinState) -> State:
+    """Say what a cage does at one time.
+
+    Parameters
+    ----------
+    name
+        Of the cage.
+    twin, answered
+        Who answered, and what.
+    memory
+        What the twin remembers of its streams.
+    """
+    answer = answered.answer
+    return State(
+        cage=name,
+        t=answered.t,
+        age_s=_number(answered.input_age_s),
+        valid=bool(answer.valid[0]),
+        in_domain=bool(answer.in_domain[0]),
+        reason=answer.reason[0],
+        origin=str(twin.origin),
+        water=_water(answered.metocean, _period(memory, twin.buoy)),
+        bridles=_bridles(twin.cage, answer),
+        sensors=_sensors(answer, memory, answered.t, twin.watch.sensor_silent_after_s),
+        shape_level=answer.shape_level,
+        volume_fraction=_number(answer.volume_fraction[0], 4),
+        silent=sorted(memory.silent),
+        amended=[_amended(one) for one in memory.amended],
+    )
+
+
+def summary_of(name: str, state: State) -> CageSummary:
+    """Say in one line how a cage is."""
+    waiting = [alarm for alarm in state.alarms if not alarm.shelved]
+    worst = max(waiting, key=lambda alarm: alarm.severity, default=None)
+    loads = [one.utilisation for one in state.bridles if one.utilisation is not None]
+    return CageSummary(
+        name=name,
+        origin=state.origin,
+        valid=state.valid,
+        in_domain=state.in_domain,
+        t=state.t,
+        age_s=state.age_s,
+        reason=state.reason,
+        max_utilisation=max(loads, default=None),
+        volume_fraction=state.volume_fraction,
+        current_speed_m_s=state.water.current_speed_m_s if state.water else None,
+        current_to_deg=state.water.current_to_deg if state.water else None,
+        waiting=len(waiting),
+        worst_severity=worst.severity if worst else None,
+        worst_title=worst.title if worst else None,
+    )
+
+
+def _bridles(cage: Cage, answer: Answer) -> list[BridleState]:
+    tension, (lower, upper) = answer.bridle_tension.mean[0], answer.bridle_interval()
+    return [
+        BridleState(
+            name=bridle,
+            level=int(answer.bridle_level[k]),
+            tension_kn=Interval(
+                mean=_number(tension[k] / 1e3),
+                lower=_number(lower[0, k] / 1e3),
+                upper=_number(upper[0, k] / 1e3),
+            ),
+            low_fidelity_kn=_number(answer.bridle_low[0, k] / 1e3),
+            utilisation=_number(tension[k] / cage.bridle_capacity[k], 4),
+        )
+        for k, bridle in enumerate(answer.bridle_names)
+    ]
+
+
+def _sensors(
+    answer: Answer, memory: TwinState, now: datetime, silent_after_s: float
+) -> list[SensorState]:
+    (lower, upper), states = answer.sensor_interval(), list[SensorState]()
+    for k, sensor in enumerate(answer.sensor_names):
+        unit, scale = _DOOR_UNIT[answer.sensor_units[k]]
+        sample = memory.latest(sensor)
+        measured = usable_value(sample) if sample else None
+        age = (now - sample.t).total_seconds() if sample and measured is not None else None
+        fresh = age is not None and age <= silent_after_s
+        states.append(
+            SensorState(
+                name=sensor,
+                unit=unit,
+                level=int(answer.sensor_level[k]),
+                low_fidelity=_number(answer.sensor_low.mean[0, k] * scale),
+                mean=_number(answer.sensor.mean[0, k] * scale),
+                lower=_number(lower[0, k] * scale),
+                upper=_number(upper[0, k] * scale),
+                measured=_number(measured) if fresh else None,
+                measured_age_s=_number(age) if fresh else None,
+            )
+        )
+    return states
+
+
+def _amended(one: Amendment) -> Amended:
+    return Amended(
+        stream=one.stream, t=one.t, quantity=one.key, flag=int(one.flag), reason=one.remark
+    )
+
+
+def usable_value(sample: Sample) -> float | None:
+    """Read the one value of a sensor's sample; None where it failed its checks."""
+    key, value = next(iter(sample.values.items()))
+    return value if sample.flags[key] not in _UNUSABLE and math.isfinite(value) else None
+
+
+def shape_of(answered: Answered) -> Shape:
+    """Say where the net is at one time; nowhere without valid input."""
+    answer = answered.answer
+    valid = bool(answer.valid[0])
+    return Shape(
+        t=answered.t,
+        valid=valid,
+        level=answer.shape_level,
+        node_position_m=answer.node_position[0].round(_DECIMALS).tolist() if valid else [],
+        sigma_m=answer.node_sigma[0].round(_DECIMALS).tolist() if valid else [],
+    )
+
+
+def topology_of(name: str, twin: Twin, *, speed: float) -> Topology:
+    """Say what of a cage does not change."""
+    cage = twin.cage
+    rest = twin.predict(SeaState(current_speed=0.0, current_to=0.0))
+    topology = Topology(
+        cage=name,
+        origin=str(twin.origin),
+        spokes=cage.spokes,
+        rings=cage.rings,
+        edges=cage.edges.tolist(),
+        rest_position_m=rest.node_position[0].round(_DECIMALS).tolist(),
+        corner_position_m=cage.corner_position.round(_DECIMALS).tolist(),
+        bridle_names=list(cage.bridle_names),
+        bridle_nodes=cage.bridle_nodes.tolist(),
+        bridle_corners=cage.bridle_corner.tolist(),
+        bridle_capacity_kn=(cage.bridle_capacity / 1e3).round(_DECIMALS).tolist(),
+        depth_sensors=[Position(name=one.name, node=one.node) for one in cage.depth_sensors],
+        shackles=[ShacklePlace(name=one.name, bridle=one.bridle) for one in cage.shackles],
+        stale_after_s=twin.watch.stale_after_s,
+        speed=speed,
+    )
+    digest = hashlib.sha256(topology.model_dump_json().encode()).hexdigest()
+    return topology.model_copy(update={"topology_id": digest[:_ID_DIGITS]})
+
+
+def history_of(
+    buoy: Record, answer: Answer, measured: Mapping[str, Measured], *, thinned: bool
+) -> History:
+    """Say what the twin answers to each reading of a buoy.
+
+    Parameters
+    ----------
+    buoy
+        The readings.
+    answer
+        One row each.
+    measured
+        What each sensor read in the same time.
+    thinned
+        Whether the buoy read more often than these readings say.
+    """
+    times = [t.replace(tzinfo=UTC) for t in buoy.time.tolist()]
+    bridle, sensor = answer.bridle_interval(), answer.sensor_interval()
+    low = np.asarray(answer.bridle_low)
+    return History(
+        t=times,
+        valid=answer.valid.tolist(),
+        in_domain=answer.in_domain.tolist(),
+        current_speed_m_s=_usable(buoy, "current_speed_m_s"),
+        current_to_deg=_usable(buoy, "current_to_deg"),
+        bridles={
+            name: _series("N", int(answer.bridle_level[k]), low, answer.bridle_tension, bridle, k)
+            for k, name in enumerate(answer.bridle_names)
+        },
+        sensors={
+            name: _series(
+                answer.sensor_units[k],
+                int(answer.sensor_level[k]),
+                answer.sensor_low.mean,
+                answer.sensor,
+                sensor,
+                k,
+            )
+            for k, name in enumerate(answer.sensor_names)
+        },
+        measured=dict(measured),
+        volume_fraction=_column(answer.volume_fraction),
+        thinned=thinned,
+    )
+
+
+def _series(
+    si_unit: str, level: int, low: Table, best: Prediction, interval: tuple[Table, Table], k: int
+) -> Series:
+    unit, scale = _DOOR_UNIT[si_unit]
+    return Series(
+        unit=unit,
+        level=level,
+        low_fidelity=_column(low[:, k] * scale),
+        mean=_column(best.mean[:, k] * scale),
+        lower=_column(interval[0][:, k] * scale),
+        upper=_column(interval[1][:, k] * scale),
+    )
+
+
+def sample_of(sample: Sample) -> SampleOut:
+    """Say what is stored of a sample."""
+    return SampleOut(
+        stream=sample.stream,
+        t=sample.t,
+        seq=sample.seq,
+        values={key: _finite(value) for key, value in sample.values.items()},
+        flags={key: int(flag) for key, flag in sample.flags.items()},
+    )
+
+
+def _period(memory: TwinState, buoy: str) -> float | None:
+    """The buoy's last word on the period, which no twin is asked with; None where it failed."""
+    stream = memory.streams.get(buoy)
+    sample = stream[-1].newest.get(_PERIOD) if stream else None
+    if sample is None or sample.flags[_PERIOD] in _UNUSABLE:
+        return None
+    return sample.values[_PERIOD]
+
+
+def _water(metocean: Metocean | None, tp_s: float | None) -> Water | None:
+    if metocean is None:
+        return None
+    velocity = metocean.current_velocity[0]
+    return Water(
+        current_speed_m_s=_number(float(np.hypot(*velocity))),
+        current_to_deg=_number(float(compass(velocity)), 1),
+        hs_m=_number(metocean.hs[0], 2),
+        tp_s=_number(tp_s, 2),
+        wave_from_deg=_number(float(compass(-metocean.wave_direction[0])), 1),
+    )
+
+
+def _usable(record: Record, key: str) -> list[float | None]:
+    if key not in record.values:
+        return [None] * len(record)
+    return _column(np.where(record.usable(key), record.values[key], np.nan))
+
+
+def _column(values: Float[np.ndarray, " case"]) -> list[float | None]:
+    return [_number(value) for value in values.tolist()]
+
+
+def _number(value: float | None, decimals: int = _DECIMALS) -> float | None:
+    return None if value is None or not math.isfinite(value) else round(float(value), decimals)
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None

@@ -1,0 +1,309 @@
+"""One cage, live: samples are read, checked, stored and stepped by one path."""
+
+import asyncio
+import time
+from collections import deque
+from collections.abc import Generator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
+from datetime import datetime, timedelta
+from functools import cached_property
+from typing import assert_never
+
+import numpy as np
+import structlog
+from jaxtyping import Float
+
+from seacage.conventions import InputError
+from seacage.records import Amendment, QualityState, Sample, check_sample
+from seacage.service._forms._samples import BUOY_KEYS
+from seacage.service._forms._schemas import State, Topology
+from seacage.service._live._alarm_desk import AlarmDesk
+from seacage.service._live._answers import state_of, topology_of
+from seacage.service._live._clock import Clock, FollowingClock, latest_allowed
+from seacage.service._live._frame import frame_of
+from seacage.service._live._mailbox import Mailbox
+from seacage.service._live._metrics import Metrics
+from seacage.service._live._past import answered_in, state_at, streams_of
+from seacage.service._store._store import Store, StoreError
+from seacage.twin import (
+    Alarm,
+    AlarmPolicy,
+    Answered,
+    Event,
+    Flagged,
+    StreamBack,
+    StreamSilent,
+    Twin,
+    TwinState,
+)
+
+_GATHERED_S = 0.1
+"""What comes within so long is stepped through together, and shown once [s]."""
+
+_KEPT_EVERY = timedelta(minutes=1)
+"""How far the intervals were adapted is kept so often."""
+
+_log = structlog.get_logger(__name__)
+
+
+# No slots here: the frame is made once, and only where somebody watches.
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Snapshot:
+    """What a cage says now."""
+
+    answered: Answered
+    state: State
+    rest_position: Float[np.ndarray, "node 3"]
+    made: float = field(default_factory=time.monotonic)
+
+    @cached_property
+    def frame(self) -> bytes:
+        """The same as one message to the page."""
+        return frame_of(self.state, self.answered, self.rest_position)
+
+
+class LiveCage:
+    """A twin that listens.
+
+    ``take`` is the only way in: it checks, stores and queues samples, and returns once they are
+    on disk. ``run`` steps the twin with what was queued and with the ticks of the clock.
+
+    Parameters
+    ----------
+    name
+        Under which the cage is served.
+    twin, store, clock
+        What answers, what keeps, and what time it is.
+    metrics
+        Where steps and samples are counted.
+    tick_s
+        Longest pause between two looks at the clock [s of the wall].
+    policy
+        Limits of the alarms; None for the usual.
+    """
+
+    def __init__(
+        self,
+        *,
+        name: str,
+        twin: Twin,
+        store: Store,
+        clock: Clock,
+        metrics: Metrics,
+        tick_s: float = 2.0,
+        policy: AlarmPolicy | None = None,
+    ) -> None:
+        self.name, self.twin, self.store, self.clock = name, twin, store, clock
+        self._metrics, self._tick_s = metrics, tick_s
+        self._streams = _quantities(twin)
+        self._pending: deque[Sample] = deque()
+        self._arrived = asyncio.Event()
+        self._stepping = asyncio.Lock()
+        self._mailboxes: set[Mailbox[Snapshot]] = set()
+        self._topology = topology_of(name, twin, speed=clock.speed)
+        self.rest_position = np.array(self._topology.rest_position_m)
+        limits = policy or AlarmPolicy.default(twin.cage, buoy=twin.buoy, watch=twin.watch)
+        self.desk = AlarmDesk(cage=name, twin=twin, store=store, policy=limits)
+        self._kept_at: datetime | None = None
+        self._state, answered = self._found()
+        self._quality = {stream: taken[-1].quality for stream, taken in self._state.streams.items()}
+        self.snapshot = self._shown(answered)
+
+    @property
+    def streams(self) -> Mapping[str, tuple[str, ...]]:
+        """The streams listened to, and the quantities that each carries."""
+        return self._streams
+
+    @property
+    def topology(self) -> Topology:
+        """What of the cage does not change."""
+        return self._topology
+
+    @property
+    def watchers(self) -> int:
+        """How many live connections there are."""
+        return len(self._mailboxes)
+
+    @property
+    def latest_allowed(self) -> datetime:
+        """The time after which a sample's own clock must be wrong."""
+        return latest_allowed(self.clock, self.twin.watch.future_s)
+
+    async def take(self, samples: Sequence[Sample]) -> tuple[bool, ...]:
+        """Check, store and queue samples; returns after the commit.
+
+        Returns
+        -------
+        new
+            For each sample whether it was not known before.
+
+        Raises
+        ------
+        StoreError
+            The disk did not take them; then none of them counts.
+        """
+        if isinstance(self.clock, FollowingClock):
+            for sample in samples:
+                self.clock.hear(sample.t)
+        with self._metrics.commits.labels(self.name).time():
+            new = await self._stored(samples)
+        self._pending.extend(s for s, fresh in zip(samples, new, strict=True) if fresh)
+        self._arrived.set()
+        return new
+
+    async def begin(self, backlog: Sequence[Sample]) -> None:
+        """Forget everything and stand where a backlog ends, as a replay does at its start."""
+        async with self._stepping:
+            await asyncio.to_thread(self.store.forget, self.name)
+            self.desk.begin_anew()
+            self._quality.clear()
+            self._pending.clear()
+            await self._stored(backlog)
+            now = self.clock.now()
+            self._state, answered = await asyncio.to_thread(
+                state_at, self.twin, self.store, self.name, now
+            )
+            self._publish(answered)
+
+    async def run(self) -> None:
+        """Step the twin for ever."""
+        while True:
+            with suppress(TimeoutError):
+                await asyncio.wait_for(self._arrived.wait(), self._tick_s)
+            self._arrived.clear()
+            async with self._stepping:
+                samples = list(self._pending)
+                self._pending.clear()
+                answered, events = await asyncio.to_thread(self._stepped, samples)
+                self._note(events)
+                self._publish(answered)
+            await asyncio.sleep(_GATHERED_S)
+
+    async def handle(
+        self, alarm: str, how: str, *, who: str, why: str, seconds: float | None
+    ) -> Alarm:
+        """Do what a person asks with an alarm; returns when that is on disk.
+
+        Parameters
+        ----------
+        alarm, how
+            Its name, and one of ``HANDLES``.
+        who, why, seconds
+            For the journal, and how long to shelve [s].
+
+        Raises
+        ------
+        InputError
+            The action makes no sense as the alarm stands.
+        StoreError
+            The disk did not take it.
+        """
+        async with self._stepping:
+            now = self.clock.now()
+            after, kept = self.desk.handle(alarm, how, who=who, now=now, why=why, seconds=seconds)
+            self._publish(self.snapshot.answered)
+        await asyncio.wrap_future(kept)
+        return after
+
+    @contextmanager
+    def watched(self) -> Generator[Mailbox[Snapshot]]:
+        """Lend a mailbox that gets every snapshot, the present one first."""
+        mailbox = Mailbox[Snapshot]()
+        mailbox.put(self.snapshot)
+        self._mailboxes.add(mailbox)
+        self._metrics.clients.labels(self.name).inc()
+        try:
+            yield mailbox
+        finally:
+            self._mailboxes.discard(mailbox)
+            self._metrics.clients.labels(self.name).dec()
+
+    async def _stored(self, samples: Sequence[Sample]) -> tuple[bool, ...]:
+        checked, amendments, before = list[Sample](), list[Amendment](), self._quality
+        self._quality = dict(before)
+        for sample in samples:
+            quality = self._quality.get(sample.stream, QualityState())
+            quality, flagged = check_sample(quality, sample)
+            self._quality[sample.stream] = quality
+            checked.append(flagged)
+            amendments += quality.amended
+        try:
+            return await asyncio.wrap_future(
+                self.store.append(
+                    self.name, checked, ingested=self.clock.now(), amendments=amendments
+                )
+            )
+        except StoreError:
+            # They will be sent again, and must not be checked against themselves.
+            self._quality = before
+            raise
+
+    def _stepped(self, samples: Sequence[Sample]) -> tuple[Answered, list[Event]]:
+        """Step through the samples, then tick: the newest answer is as old as this call."""
+        noticed, events = list[Event](), tuple[Event, ...]()
+        timer = self._metrics.steps.labels(self.name)
+        for sample in (*samples, None):
+            with timer.time():
+                self._state, events = self.twin.step(self._state, sample, self.clock.now())
+            noticed += [event for event in events if not isinstance(event, Answered)]
+        answered = answered_in(events)
+        assert answered is not None  # a tick is always answered
+        self.desk.look(self._state, answered)
+        self._keep_adapted(answered.t)
+        return answered, noticed
+
+    def _found(self) -> tuple[TwinState, Answered]:
+        """Where the twin stood, from what the store kept of it."""
+        now, adapted = self.clock.now(), self.store.adapted(self.name)
+        try:
+            return state_at(self.twin, self.store, self.name, now, adapted=adapted)
+        except InputError as error:
+            _log.warning("intervals as trained", cage=self.name, reason=str(error))
+            return state_at(self.twin, self.store, self.name, now)
+
+    def _keep_adapted(self, t: datetime) -> None:
+        if self._kept_at is None or abs(t - self._kept_at) >= _KEPT_EVERY:
+            self._kept_at = t
+            self.store.keep_adapted(self.name, self._state.adapted)
+
+    def _note(self, events: Sequence[Event]) -> None:
+        for event in events:
+            self._metrics.notices.labels(self.name, type(event).__name__).inc()
+            match event:
+                case Flagged():
+                    _log.warning("flagged", cage=self.name, reason=event.reason)
+                case StreamSilent():
+                    _log.warning("stream silent", cage=self.name, stream=event.stream)
+                case StreamBack():
+                    _log.info("stream back", cage=self.name, stream=event.stream)
+                case Answered():
+                    pass
+                case _:
+                    assert_never(event)
+
+    def _publish(self, answered: Answered) -> None:
+        self.snapshot = self._shown(answered)
+        severities = (alarm.severity for alarm in self.snapshot.state.alarms)
+        self._metrics.count_alarms(self.name, severities)
+        self._metrics.valid.labels(self.name).set(float(self.snapshot.state.valid))
+        self._metrics.input_age.labels(self.name).set(self.snapshot.state.age_s or 0.0)
+        for mailbox in self._mailboxes:
+            mailbox.put(self.snapshot)
+
+    def _shown(self, answered: Answered) -> Snapshot:
+        state = state_of(self.name, self.twin, answered, self._state)
+        state = state.model_copy(update={"alarms": self.desk.waiting()})
+        return Snapshot(answered=answered, state=state, rest_position=self.rest_position)
+
+
+def _quantities(twin: Twin) -> dict[str, tuple[str, ...]]:
+    shackles = {shackle.name for shackle in twin.cage.shackles}
+    return {
+        stream: BUOY_KEYS
+        if stream == twin.buoy
+        else ("tension_kn",)
+        if stream in shackles
+        else ("depth_m",)
+        for stream in streams_of(twin)
+    }

@@ -1,0 +1,84 @@
+"""What changes on the page, as one binary message: a header, the net, and the state as JSON."""
+
+import struct
+from enum import IntFlag
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.service._forms._schemas import State
+from seacage.twin import Answered
+
+MEDIA_TYPE = "application/vnd.seacage.frame"
+"""Of a frame in an HTTP answer."""
+
+_HEADER = struct.Struct("<4sHHdIIff")
+_MAGIC, _VERSION, _ALIGNED = b"SCFR", 1, 8
+_FINEST = 1e-6  # a unit of nothing would divide by nothing [m]
+
+
+class Flags(IntFlag):
+    """What a frame says of itself."""
+
+    LIVE = 0
+    VALID = 1
+    IN_DOMAIN = 2
+    PAST = 4
+    WHAT_IF = 8
+
+
+def frame_of(
+    state: State,
+    answered: Answered,
+    rest_position: Float[np.ndarray, "node 3"],
+    *,
+    about: Flags = Flags.LIVE,
+) -> bytes:
+    """Say all that changes on the page, little-endian, each section aligned to 8 bytes.
+
+    The header: ``SCFR``, version (u16), flags (u16), time in ms since 1970 UTC (f64), nodes
+    (u32), bytes of the JSON (u32), metres per unit of displacement and of spread (f32 each).
+    Then int16 displacement, x y z of each node in turn; uint8 spread; the state. Both units
+    follow the largest number of the frame, so that none is cut off.
+
+    Parameters
+    ----------
+    state, answered
+        The same twice: for people, and in SI.
+    rest_position
+        That the page adds the displacement to [m].
+    about
+        Whether this is the past, or what would be.
+    """
+    answer = answered.answer
+    displacement, sigma = np.zeros((0, 3)), np.zeros(0)
+    if state.valid:
+        displacement, sigma = answer.node_position[0] - rest_position, answer.node_sigma[0]
+        about |= Flags.VALID
+    if state.in_domain:
+        about |= Flags.IN_DOMAIN
+    moved_by, moved = _in_units(displacement, np.dtype("<i2"))
+    spread_by, spread = _in_units(sigma, np.dtype("u1"))
+    words = state.model_dump_json().encode()
+    header = _HEADER.pack(
+        _MAGIC,
+        _VERSION,
+        about,
+        state.t.timestamp() * 1e3,
+        len(sigma),
+        len(words),
+        moved_by,
+        spread_by,
+    )
+    return b"".join((header, _padded(moved), _padded(spread), words))
+
+
+def _in_units(metres: np.ndarray, kind: np.dtype[np.integer]) -> tuple[float, bytes]:
+    """Give the unit [m] that lets the largest just fit, and the numbers in it."""
+    largest = float(np.abs(metres).max(initial=0.0))
+    unit = float(np.float32(max(largest / np.iinfo(kind).max, _FINEST)))
+    return unit, np.rint(metres / unit).astype(kind).tobytes()
+
+
+def _padded(section: bytes) -> bytes:
+    return section + bytes(-len(section) % _ALIGNED)

@@ -1,0 +1,73 @@
+"""How long samples stay at full rate: old days go to the archive, their aggregates stay."""
+
+import asyncio
+from collections.abc import Mapping
+from datetime import datetime, timedelta
+
+import structlog
+
+from seacage.conventions import InputError
+from seacage.service._live._clock import Clock
+from seacage.service._store._session import StoreError
+from seacage.service._store._store import Store
+
+_log = structlog.get_logger(__name__)
+
+
+class Retention:
+    """Keeps so many days of samples in the store; a feed of the service.
+
+    A day leaves the store when it is archived, if the store has an archive, and its aggregates
+    are final. The work goes in small pieces between those of the ingest.
+
+    Parameters
+    ----------
+    store
+        Where old samples are.
+    clocks
+        Of each cage, as old is what its clock says.
+    keep_days
+        UTC days that ended longer ago leave [d].
+    every_s
+        Between two looks [s of the wall].
+
+    Raises
+    ------
+    InputError
+        It is not above zero.
+    """
+
+    def __init__(
+        self,
+        store: Store,
+        *,
+        clocks: Mapping[str, Clock],
+        keep_days: float,
+        every_s: float = 3600.0,
+    ) -> None:
+        if not keep_days > 0.0:
+            raise InputError(
+                f"keep_days = {keep_days:g} d would keep nothing. Give the days that samples "
+                "stay at full rate, e.g. 30; all stay without a retention."
+            )
+        self._store, self._clocks = store, clocks
+        self._keep, self._every_s = timedelta(days=keep_days), every_s
+
+    async def run(self) -> None:
+        """Look for ever; what fails is told and tried again at the next look."""
+        while True:
+            for cage, clock in self._clocks.items():
+                before = midnight(clock.now() - self._keep)
+                try:
+                    count = await asyncio.to_thread(self._store.retire, cage, before=before)
+                except StoreError as error:
+                    _log.warning("old samples stay", cage=cage, reason=str(error))
+                else:
+                    if count:
+                        _log.info("old samples retired", cage=cage, samples=count)
+            await asyncio.sleep(self._every_s)
+
+
+def midnight(t: datetime) -> datetime:
+    """When the UTC day of a time began."""
+    return t.replace(hour=0, minute=0, second=0, microsecond=0)

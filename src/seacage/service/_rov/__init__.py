@@ -1,0 +1,1 @@
+"""How near a vehicle is to the net, in a pilot's frames and files."""

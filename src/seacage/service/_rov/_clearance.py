@@ -1,0 +1,132 @@
+"""From a predicted net to the answers that pilots get, by HTTP or in a shell."""
+
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.service._forms._clearance_schemas import (
+    ClearanceAnswer,
+    ClearanceAsked,
+    FrameName,
+    InspectionAnswer,
+    InspectionAsked,
+    PathAnswer,
+    PointClearance,
+    Waypoint,
+)
+from seacage.service._rov._clearance_frames import Points, in_frame, local_points, places_of
+from seacage.twin import Clearance, InspectionPath, PredictedNet, inspection_path
+
+_STATED = 1.0  # the distance that every answer is about [m]
+_DECIMALS = 4  # of metres and probabilities: a tenth of a millimetre
+
+
+def clearance_answer(net: PredictedNet, asked: ClearanceAsked) -> ClearanceAnswer:
+    """Say how far points, and a path, are from a net."""
+    point = local_points(net.cage, asked)
+    stated = net.clearance(point, below=_STATED)
+    other = stated if asked.below_m == _STATED else net.clearance(point, below=asked.below_m)
+    return ClearanceAnswer(
+        **_about(net, asked.frame, asked.below_m),
+        points=_points(net, asked.frame, stated, other),
+        path=_path(net, asked, point) if asked.as_path else None,
+    )
+
+
+def inspection_of(net: PredictedNet, asked: InspectionAsked) -> InspectionPath:
+    """Lay the way that was asked for."""
+    return inspection_path(
+        net,
+        stand_off=asked.stand_off_m,
+        side=asked.side,
+        pattern=asked.pattern,
+        row_spacing=asked.row_spacing_m,
+        step=asked.step_m,
+        top=asked.top_m,
+        below=asked.below_m,
+    )
+
+
+def inspection_answer(net: PredictedNet, asked: InspectionAsked) -> InspectionAnswer:
+    """Say where to swim along a net, and where to look."""
+    way = inspection_of(net, asked)
+    columns = zip(
+        _rounded(in_frame(asked.frame, way.position)),
+        places_of(net.cage, asked.frame, way.position),
+        way.heading.round(2).tolist(),
+        way.pitch.round(2).tolist(),
+        way.row.tolist(),
+        way.part.tolist(),
+        _rounded(way.clearance.distance),
+        _rounded(way.clearance.expected),
+        _rounded(way.clearance.sigma),
+        _rounded(way.clearance.p_below),
+        strict=True,
+    )
+    names = list(Waypoint.model_fields)
+    return InspectionAnswer(
+        **_about(net, asked.frame, asked.below_m),
+        waypoints=[Waypoint(**dict(zip(names, row, strict=True))) for row in columns],
+        parts=int(way.part[-1]) + 1,
+        left_out=way.left_out,
+    )
+
+
+def _points(
+    net: PredictedNet, frame: FrameName, stated: Clearance, other: Clearance
+) -> list[PointClearance]:
+    columns = zip(
+        _rounded(stated.distance),
+        stated.inside.tolist(),
+        _rounded(in_frame(frame, stated.position)),
+        places_of(net.cage, frame, stated.position),
+        _rounded(in_frame(frame, stated.normal)),
+        _rounded(stated.expected),
+        _rounded(stated.sigma),
+        _rounded(stated.p_below),
+        _rounded(other.p_below),
+        _rounded(stated.p_through),
+        strict=True,
+    )
+    names = [name for name in PointClearance.model_fields if name != "state_age_s"]
+    age_s = round(net.age_s, 3)
+    return [
+        PointClearance(state_age_s=age_s, **dict(zip(names, row, strict=True))) for row in columns
+    ]
+
+
+def _path(net: PredictedNet, asked: ClearanceAsked, point: Points) -> PathAnswer:
+    stated = net.along(point, below=_STATED)
+    other = stated if asked.below_m == _STATED else net.along(point, below=asked.below_m)
+    here = np.array([stated.closest])
+    (closest,) = _points(net, asked.frame, stated.clearance.rows(here), other.clearance.rows(here))
+    (at_m,) = _rounded(in_frame(asked.frame, stated.point[here]))
+    (at_place,) = places_of(net.cage, asked.frame, stated.point[here])
+    return PathAnswer(
+        length_m=round(float(stated.along[-1]), _DECIMALS),
+        looked_at=len(stated.point),
+        along_m=round(float(stated.along[stated.closest]), _DECIMALS),
+        at_m=at_m,
+        at_place=at_place,
+        closest=closest,
+        p_below_1m=round(stated.p_below, _DECIMALS),
+        p_below=round(other.p_below, _DECIMALS),
+        p_least=round(other.p_least, _DECIMALS),
+        p_most=round(other.p_most, _DECIMALS),
+    )
+
+
+def _about(net: PredictedNet, frame: FrameName, below: float) -> dict[str, Any]:
+    return {
+        "t": net.t,
+        "frame": frame,
+        "in_domain": net.in_domain,
+        "state_age_s": round(net.age_s, 3),
+        "shape_error": None if net.learned is None else str(net.learned),
+        "below_m": below,
+    }
+
+
+def _rounded(values: Float[np.ndarray, "point *rest"]) -> list[Any]:
+    return values.round(_DECIMALS).tolist()

@@ -1,0 +1,251 @@
+"""The archive: one Parquet file per cage, stream and UTC day, and what each file must be."""
+
+import fcntl
+import hashlib
+import json
+import os
+from collections.abc import Generator, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from datetime import date, datetime
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote, unquote
+
+from seacage.conventions import SeacageError
+from seacage.records import Sample
+from seacage.service._store._archive_table import ArchiveError, packed, unpacked
+from seacage.service._store._rows import microseconds
+
+_MANIFEST = "manifest.json"
+_UNBORN = ".unborn"
+_ALL = 2**62
+
+Manifest = Mapping[date, Mapping[str, Any]]
+"""By UTC day: ``file``, ``sha256`` and how many ``samples``."""
+
+SampleKey = tuple[str, datetime, int]
+
+
+class Archive:
+    """A folder of days that do not change any more, or seldom.
+
+    A file's name carries its hash. It is written and synchronised beside its final name; only
+    then the manifest of its stream, replaced in one step, points to it. So whatever is cut off,
+    the manifest names whole files.
+
+    Parameters
+    ----------
+    folder
+        Made where there is none.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self._known: dict[Path, tuple[tuple[int, int], Manifest]] = {}
+
+    def write(self, cage: str, stream: str, day: date, samples: Sequence[Sample]) -> None:
+        """Add samples to a day; of two with one time and number the one given now counts.
+
+        Raises
+        ------
+        ArchiveError
+            The disk does not take them, or pyarrow is not installed.
+        """
+        folder = self._folder(cage, stream)
+        with _told(folder, "cannot be written"), _locked(folder):
+            manifest = self._manifest(folder)
+            there = self._read(folder, stream, day, manifest[day]) if day in manifest else []
+            both = {key_of(one): one for one in (*there, *samples)}
+            content = packed(cage, stream, [both[key] for key in sorted(both, key=order_of)])
+            digest = hashlib.sha256(content).hexdigest()
+            name = f"{day.isoformat()}-{digest[:12]}.parquet"
+            entry = {"file": name, "sha256": digest, "samples": len(both)}
+            _put(folder / name, content)
+            said = {kept.isoformat(): one for kept, one in {**manifest, day: entry}.items()}
+            _put(folder / _MANIFEST, json.dumps(said, indent=1, sort_keys=True).encode())
+            for left in folder.glob(f"{day.isoformat()}-*"):
+                if left.name != name:
+                    left.unlink()
+
+    def days(
+        self,
+        cage: str,
+        *,
+        stream: str | None = None,
+        start: datetime | None = None,
+        end: datetime | None = None,
+    ) -> list[tuple[date, str]]:
+        """Days and streams that may hold samples of start <= t < end, in time order."""
+        streams = self.streams(cage) if stream is None else [stream]
+        return sorted(
+            (day, one)
+            for one in streams
+            for day in self._manifest(self._folder(cage, one))
+            if (start is None or day >= start.date()) and (end is None or day <= end.date())
+        )
+
+    def read(
+        self,
+        cage: str,
+        stream: str,
+        day: date,
+        *,
+        start: datetime | None = None,
+        end: datetime | None = None,
+        limit: int = _ALL,
+        newest: bool = False,
+    ) -> list[Sample]:
+        """Read samples of one day in time order, start <= t < end.
+
+        Raises
+        ------
+        ArchiveError
+            The file is not there, or is not what was written.
+        """
+        folder = self._folder(cage, stream)
+        bounds = (
+            -_ALL if start is None else microseconds(start),
+            _ALL if end is None else microseconds(end),
+        )
+        for again in (True, False):
+            entry = self._manifest(folder).get(day)
+            if entry is None:
+                return []
+            try:
+                return self._read(folder, stream, day, entry, bounds, limit=limit, newest=newest)
+            except ArchiveError:
+                # Another process may just have put a fuller file in its place.
+                if not again or self._manifest(folder).get(day) == entry:
+                    raise
+        return []
+
+    def cages(self) -> list[str]:
+        """The cages that it has days of."""
+        return _named(self.folder)
+
+    def streams(self, cage: str) -> list[str]:
+        """The streams of a cage that it has days of."""
+        return _named(self.folder / _quoted(cage))
+
+    def faults(self) -> Iterator[tuple[str, str | None]]:
+        """Look at every file: its path, and what is wrong with it, or None."""
+        for cage in self.cages():
+            for stream in self.streams(cage):
+                folder = self._folder(cage, stream)
+                try:
+                    manifest = self._manifest(folder)
+                except ArchiveError as error:
+                    yield str(folder / _MANIFEST), str(error)
+                    continue
+                for day, entry in sorted(manifest.items()):
+                    yield str(folder / entry["file"]), self._fault(folder, stream, day, entry)
+                named = {entry["file"] for entry in manifest.values()}
+                for left in sorted(folder.glob("*.parquet")):
+                    if left.name not in named:
+                        yield str(left), f"{left} is named by no manifest; a write was cut off."
+
+    def _fault(self, folder: Path, stream: str, day: date, entry: Mapping[str, Any]) -> str | None:
+        try:
+            count = len(self._read(folder, stream, day, entry))
+        except ArchiveError as error:
+            return str(error)
+        if count != entry["samples"]:
+            return f"{folder / entry['file']} has {count} samples, not {entry['samples']}."
+        return None
+
+    def _read(
+        self,
+        folder: Path,
+        stream: str,
+        day: date,
+        entry: Mapping[str, Any],
+        bounds: tuple[int, int] = (-_ALL, _ALL),
+        *,
+        limit: int = _ALL,
+        newest: bool = False,
+    ) -> list[Sample]:
+        path = folder / entry["file"]
+        with _told(path, f"cannot be read, so {stream} has no samples of {day}"):
+            content = path.read_bytes()
+            if hashlib.sha256(content).hexdigest() != entry["sha256"]:
+                raise ArchiveError(
+                    f"{path} is not what was written: its hash differs from the manifest's. "
+                    "Restore it from a copy."
+                )
+            start, end = bounds
+            return unpacked(content, stream, start=start, end=end, limit=limit, newest=newest)
+
+    def _manifest(self, folder: Path) -> Manifest:
+        path = folder / _MANIFEST
+        with _told(path, "cannot be read"):
+            try:
+                state = path.stat()
+            except FileNotFoundError:
+                return {}
+            stamp = (state.st_mtime_ns, state.st_ino)
+            if folder not in self._known or self._known[folder][0] != stamp:
+                said = json.loads(path.read_bytes())
+                read = {date.fromisoformat(day): entry for day, entry in said.items()}
+                self._known[folder] = (stamp, read)
+            return self._known[folder][1]
+
+    def _folder(self, cage: str, stream: str) -> Path:
+        return self.folder / _quoted(cage) / _quoted(stream)
+
+
+def key_of(sample: Sample) -> SampleKey:
+    """What a sample is known by."""
+    return (sample.stream, sample.t, -1 if sample.seq is None else sample.seq)
+
+
+def order_of(key: SampleKey) -> tuple[datetime, str, int]:
+    """By which samples are ordered."""
+    stream, t, seq = key
+    return (t, stream, seq)
+
+
+def _quoted(name: str) -> str:
+    quoted = quote(name, safe="")
+    return quoted.replace(".", "%2E", 1) if quoted.startswith(".") else quoted
+
+
+def _named(folder: Path) -> list[str]:
+    if not folder.is_dir():
+        return []
+    return sorted(unquote(one.name) for one in folder.iterdir() if one.is_dir())
+
+
+def _put(path: Path, content: bytes) -> None:
+    """Write a file so that it is whole or not there, whenever the power goes."""
+    unborn = path.with_name(path.name + _UNBORN)
+    with unborn.open("wb") as file:
+        file.write(content)
+        file.flush()
+        os.fsync(file.fileno())
+    unborn.replace(path)
+    place = os.open(path.parent, os.O_RDONLY)
+    try:
+        os.fsync(place)
+    finally:
+        os.close(place)
+
+
+@contextmanager
+def _locked(folder: Path) -> Generator[None]:
+    """Let one process at a time change the days of a stream."""
+    folder.mkdir(parents=True, exist_ok=True)
+    with (folder / ".lock").open("w") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        yield
+
+
+@contextmanager
+def _told(path: Path, what: str) -> Generator[None]:
+    try:
+        yield
+    except ArchiveError:
+        raise
+    except (OSError, ValueError, KeyError, TypeError, SeacageError) as error:
+        raise ArchiveError(
+            f"{path} {what} ({error}). Check the disk, or restore it from a copy."
+        ) from error

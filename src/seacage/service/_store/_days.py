@@ -1,0 +1,87 @@
+"""Whole UTC days of the store: found, sealed, and deleted sample by sample."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from seacage.conventions import SeacageError
+from seacage.records import Sample
+from seacage.service._store._kept_aggregates import renew_between
+from seacage.service._store._rows import DAY_US, sample_of_row
+from seacage.service._store._session import AbstractSession
+
+# Down the index from name to name; a DISTINCT would read every sample.
+_CAGES = """
+WITH RECURSIVE named(name) AS (
+    SELECT min(cage) FROM sample
+    UNION ALL
+    SELECT (SELECT min(cage) FROM sample WHERE cage > named.name)
+    FROM named WHERE named.name IS NOT NULL
+)
+SELECT name FROM named WHERE name IS NOT NULL"""
+_STREAMS = """
+WITH RECURSIVE named(name) AS (
+    SELECT min(stream) FROM sample WHERE cage = ?
+    UNION ALL
+    SELECT (SELECT min(stream) FROM sample WHERE cage = ? AND stream > named.name)
+    FROM named WHERE named.name IS NOT NULL
+)
+SELECT name FROM named WHERE name IS NOT NULL"""
+_NEXT = "SELECT min(t) FROM sample WHERE cage = ? AND stream = ? AND t >= ?"
+_ROWS = """
+SELECT stream, t, seq, readings, remarks FROM sample
+WHERE cage = ? AND stream = ? AND t >= ? AND t < ? ORDER BY t, seq"""
+_SEAL = "INSERT INTO sealed VALUES (?, ?, ?) ON CONFLICT DO NOTHING"
+
+# Exactly what was read: a sample that was amended since is left for the next time.
+_DELETE = """
+DELETE FROM sample
+WHERE cage = ? AND stream = ? AND t = ? AND seq = ? AND readings = ? AND remarks = ?"""
+
+DayRow = tuple[Any, ...]
+"""Stream, t, seq, readings and remarks of a sample."""
+
+
+def cages(session: AbstractSession) -> list[str]:
+    """The cages that have samples."""
+    return [name for (name,) in session.rows(_CAGES)]
+
+
+def days_before(session: AbstractSession, cage: str, before: int) -> Iterator[tuple[str, int]]:
+    """Streams and days [µs] that have samples and end at or before a time [µs]."""
+    for (stream,) in session.rows(_STREAMS, (cage, cage)):
+        day = _next_day(session, cage, stream, -(2**62))
+        while day is not None and day + DAY_US <= before:
+            yield stream, day
+            day = _next_day(session, cage, stream, day + DAY_US)
+
+
+def rows_of_day(session: AbstractSession, cage: str, stream: str, day: int) -> list[DayRow]:
+    """Read a day's samples as they are stored."""
+    return session.rows(_ROWS, (cage, stream, day, day + DAY_US))
+
+
+def readable(rows: Sequence[DayRow]) -> list[tuple[DayRow, Sample]]:
+    """Pair rows with their samples; what the disk has spoilt is left out, and so stays."""
+    pairs: list[tuple[DayRow, Sample]] = []
+    for row in rows:
+        try:
+            pairs.append((row, sample_of_row(row)))
+        except (ValueError, TypeError, OverflowError, AttributeError, SeacageError):
+            continue
+    return pairs
+
+
+def seal(session: AbstractSession, cage: str, stream: str, day: int) -> None:
+    """Make the aggregates of a day final."""
+    renew_between(session, cage, stream, day, day + DAY_US)
+    session.rows(_SEAL, (cage, stream, day))
+
+
+def delete(session: AbstractSession, cage: str, rows: Sequence[DayRow]) -> None:
+    """Delete the samples that were read as these rows."""
+    session.each(_DELETE, [(cage, *row) for row in rows])
+
+
+def _next_day(session: AbstractSession, cage: str, stream: str, start: int) -> int | None:
+    ((t,),) = session.rows(_NEXT, (cage, stream, start))
+    return None if t is None else t - t % DAY_US

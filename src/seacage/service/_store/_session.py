@@ -1,0 +1,70 @@
+"""What the store's statements need of a database, whichever it is."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Sequence
+from contextlib import AbstractContextManager
+from typing import Any
+
+from seacage.conventions import SeacageError
+from seacage.service._store._rows import Row
+
+Answer = list[tuple[Any, ...]]
+
+
+class StoreError(SeacageError):
+    """The disk does not take samples, or the database cannot be read."""
+
+
+class DamageError(StoreError):
+    """What is on disk is not what was written."""
+
+
+class AbstractSession(ABC):
+    """One transaction: statements with ``?`` for each value."""
+
+    locking: str = ""
+    """What a SELECT ends with, so that no other process changes its rows until the commit."""
+
+    passing: str = ""
+    """The same, but rows that another process holds are left to it."""
+
+    lateral: bool = False
+    """Whether a subquery of FROM may look at its neighbours."""
+
+    @abstractmethod
+    def rows(self, sql: str, values: Sequence[object] = ()) -> Answer:
+        """Run one statement; the rows that it answers."""
+
+    @abstractmethod
+    def each(self, sql: str, rows: Iterable[Sequence[object]]) -> None:
+        """Run one statement for each row of values."""
+
+    @abstractmethod
+    def insert(self, rows: Sequence[Row]) -> tuple[bool, ...]:
+        """Insert samples that are not known; for each whether it was not."""
+
+
+class AbstractDatabase(ABC):
+    """A database, open: one writer at a time, and readers beside it.
+
+    Its sessions raise ``StoreError``, and ``DamageError`` where the file itself is at fault.
+    """
+
+    lost: str | None = None
+    """Why history was moved aside; None where nothing was."""
+
+    @abstractmethod
+    def writing(self) -> AbstractContextManager[AbstractSession]:
+        """A transaction that is on disk when the block has ended, or was not made."""
+
+    @abstractmethod
+    def reading(self) -> AbstractContextManager[AbstractSession]:
+        """A transaction that sees one moment and changes nothing; from any thread."""
+
+    @abstractmethod
+    def renew(self, error: DamageError) -> bool:
+        """Move a damaged database aside and begin a new one; False where that cannot be."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Close every connection."""

@@ -1,0 +1,248 @@
+"""The store in one SQLite file: one connection that writes, readers beside it."""
+
+import sqlite3
+import time
+from collections.abc import Generator, Iterable, Sequence
+from contextlib import closing, contextmanager
+from datetime import UTC, datetime
+from functools import partial
+from pathlib import Path
+
+from seacage.service._store._pool import Pool
+from seacage.service._store._rows import Row
+from seacage.service._store._session import (
+    AbstractDatabase,
+    AbstractSession,
+    Answer,
+    DamageError,
+    StoreError,
+)
+from seacage.service._store._tables import tables
+
+_WORDS = {
+    "integer": "INTEGER",
+    "real": "REAL",
+    "counted": "INTEGER PRIMARY KEY",
+    "keyed": " WITHOUT ROWID, STRICT",
+    "checked": " STRICT",
+    "parted": " WITHOUT ROWID, STRICT",
+}
+_INSERT = "INSERT INTO sample VALUES (?, ?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING"
+_HEADER = b"SQLite format 3\0"
+_VERSION = 1
+_DAMAGED = {sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB}
+_LOOK_S = 2.0
+
+
+class SqliteSession(AbstractSession):
+    """A transaction of one connection."""
+
+    def __init__(self, connection: sqlite3.Connection) -> None:
+        self._connection = connection
+
+    def rows(self, sql: str, values: Sequence[object] = ()) -> Answer:
+        """Run one statement."""
+        return self._connection.execute(sql, values).fetchall()  # pyright: ignore[reportArgumentType]
+
+    def each(self, sql: str, rows: Iterable[Sequence[object]]) -> None:
+        """Run one statement for each row."""
+        self._connection.executemany(sql, rows)  # pyright: ignore[reportArgumentType]
+
+    def insert(self, rows: Sequence[Row]) -> tuple[bool, ...]:
+        """Insert all at once; only where some were known it has to be found which."""
+        connection = self._connection
+        before = connection.total_changes
+        connection.execute("SAVEPOINT samples")
+        connection.executemany(_INSERT, rows)
+        if connection.total_changes - before == len(rows):
+            new = (True,) * len(rows)
+        else:
+            connection.execute("ROLLBACK TO samples")
+            new = tuple(connection.execute(_INSERT, row).rowcount == 1 for row in rows)
+        connection.execute("RELEASE samples")
+        return new
+
+
+class SqliteDatabase(AbstractDatabase):
+    """One file with its write-ahead log.
+
+    The writing connection is the only one that writes or checkpoints, which keeps clear of a
+    WAL-reset fault in SQLite before 3.51.3.
+
+    Parameters
+    ----------
+    path
+        Of the file; made where there is none. A damaged one is moved aside, and ``lost`` says
+        so.
+
+    Raises
+    ------
+    StoreError
+        The file cannot be opened for writing.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._readers = Pool(self._reader)
+        try:
+            with _said(path, "does not open as the store of samples"):
+                self._writer = _opened(path)
+        except DamageError as error:
+            self._begin_anew(error)
+
+    @contextmanager
+    def writing(self) -> Generator[AbstractSession]:
+        """Write; the block's end is the commit, which has reached the disk."""
+        connection = self._writer
+        with _said(self._path, "takes no samples"):
+            connection.execute("BEGIN IMMEDIATE")
+            try:
+                yield SqliteSession(connection)
+                connection.execute("COMMIT")
+            except BaseException:
+                if connection.in_transaction:
+                    connection.execute("ROLLBACK")
+                raise
+
+    @contextmanager
+    def reading(self) -> Generator[AbstractSession]:
+        """Read one moment of the file."""
+        with _said(self._path, "cannot be read"), self._readers.lent() as connection:
+            connection.execute("BEGIN")
+            yield SqliteSession(connection)
+            connection.execute("COMMIT")
+
+    def renew(self, error: DamageError) -> bool:
+        """Move the damaged file aside, also while others read."""
+        self._writer.close()
+        self._readers.close()
+        self._begin_anew(error)
+        return True
+
+    def close(self) -> None:
+        """Close the readers first: the last to close must be able to checkpoint."""
+        self._readers.close()
+        self._writer.close()
+
+    def _begin_anew(self, error: DamageError) -> None:
+        aside = _moved_aside(self._path)
+        with _said(self._path, "does not open as the store of samples"):
+            self._writer = _opened(self._path)
+        self.lost = (
+            f"{self._path} was damaged ({error.__cause__}) and begun anew; what was in it lies in "
+            f"{aside}. Look after the disk, and restore from a copy or the archive."
+        )
+
+    def _reader(self) -> sqlite3.Connection:
+        return _reading(self._path)
+
+
+@contextmanager
+def sqlite_look(path: Path) -> Generator[AbstractSession]:
+    """Read one moment of a file that another process may be writing."""
+    with _said(path, "cannot be read"), closing(_reading(path)) as connection:
+        connection.execute("BEGIN")
+        yield SqliteSession(connection)
+
+
+_text = partial(str, encoding="utf-8", errors="replace")  # a flipped bit must not stop a query
+
+
+def _reading(path: Path) -> sqlite3.Connection:
+    connection = sqlite3.connect(
+        f"{path.resolve().as_uri()}?mode=ro",
+        uri=True,
+        isolation_level=None,
+        check_same_thread=False,
+    )
+    connection.text_factory = _text
+    return connection
+
+
+def _opened(path: Path) -> sqlite3.Connection:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    _check_header(path)
+    connection = sqlite3.connect(path, isolation_level=None, check_same_thread=False)
+    try:
+        connection.text_factory = _text
+        connection.execute("PRAGMA journal_mode = WAL")
+        connection.execute("PRAGMA synchronous = FULL")
+        _look_through(connection)
+        _check_version(connection, path)
+        for table in tables(_WORDS):
+            connection.execute(table)
+        connection.execute(f"PRAGMA user_version = {_VERSION}")
+    except BaseException:
+        connection.close()
+        raise
+    return connection
+
+
+def _check_header(path: Path) -> None:
+    """Refuse what is no database before SQLite opens it, as it would delete the log beside."""
+    if path.is_file():
+        with path.open("rb") as file:
+            begins = file.read(len(_HEADER))
+        if begins not in {b"", _HEADER}:
+            raise DamageError(f"{path} is damaged.") from sqlite3.DatabaseError(
+                "file is not a database"
+            )
+
+
+def _look_through(connection: sqlite3.Connection) -> None:
+    """Look for damage, but not for longer than a start may take."""
+    end = time.monotonic() + _LOOK_S
+    connection.set_progress_handler(lambda: time.monotonic() > end, 10_000)
+    try:
+        found = [row[0] for row in connection.execute("PRAGMA quick_check(1)")]
+    except sqlite3.OperationalError as error:
+        if error.sqlite_errorcode != sqlite3.SQLITE_INTERRUPT:
+            raise
+        found = ["ok"]
+    finally:
+        connection.set_progress_handler(None, 0)
+    if found != ["ok"]:
+        raise DamageError("The store's file is damaged.") from sqlite3.DatabaseError(found[0])
+
+
+def _check_version(connection: sqlite3.Connection, path: Path) -> None:
+    (version,) = connection.execute("PRAGMA user_version").fetchone()
+    if version > _VERSION:
+        raise StoreError(
+            f"{path} was written by a newer seacage (tables of version {version}, known up to "
+            f"{_VERSION}). Install that version, or name another file."
+        )
+
+
+def _moved_aside(path: Path) -> Path:
+    stamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%S%fZ")
+    aside = path.with_name(f"{path.name}.damaged-{stamp}")
+    try:
+        for end in ("-wal", "-shm", ""):
+            part = path.with_name(path.name + end)
+            if part.exists():
+                part.replace(aside.with_name(aside.name + end))
+    except OSError as error:
+        raise StoreError(
+            f"{path} is damaged and cannot be moved aside ({error.strerror}). "
+            "Give the service the right to write in its folder, or move the file yourself."
+        ) from error
+    return aside
+
+
+@contextmanager
+def _said(path: Path, what: str) -> Generator[None]:
+    """Turn a fault of SQLite or of the disk into one of the store."""
+    try:
+        yield
+    except (sqlite3.Error, UnicodeDecodeError) as error:
+        kind = DamageError if _damaged(error) else StoreError
+        raise kind(f"{path} {what} ({error}). Check the disk, its space and its rights.") from error
+    except OSError as error:
+        raise StoreError(f"{path} {what} ({error.strerror}). Check the disk.") from error
+
+
+def _damaged(error: Exception) -> bool:
+    # An extended code carries the plain one in its lowest byte.
+    code = getattr(error, "sqlite_errorcode", 0) & 0xFF
+    return code in _DAMAGED or isinstance(error, UnicodeDecodeError)

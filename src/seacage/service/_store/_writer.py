@@ -1,0 +1,160 @@
+"""The one thread that writes: what has queued up goes into one transaction."""
+
+import queue
+import threading
+import time
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future
+from dataclasses import dataclass
+from itertools import groupby
+from typing import Any, TypeVar
+
+from seacage.service._store._kept_samples import Append, append_all
+from seacage.service._store._session import (
+    AbstractDatabase,
+    AbstractSession,
+    DamageError,
+    StoreError,
+)
+
+T = TypeVar("T")
+Work = Append | Callable[[AbstractSession], Any]
+
+_CHORE_S = 1.0
+_TRIAL = "INSERT INTO trial VALUES (1, ?) ON CONFLICT (id) DO UPDATE SET t = excluded.t"
+
+
+@dataclass(frozen=True, slots=True)
+class _Asked:
+    work: Work
+    done: "Future[Any]"
+
+
+class Writer:
+    """Takes all that has queued up into one transaction and answers after the commit.
+
+    Where a commit fails nobody who asked is answered that it was done. From then on a trial is
+    written now and then, so that the fault is known to be over even if nobody dares to send.
+
+    Parameters
+    ----------
+    database
+        Where to.
+    chore
+        Done about every second between two transactions.
+    """
+
+    def __init__(
+        self, database: AbstractDatabase, *, chore: Callable[[AbstractSession], object]
+    ) -> None:
+        self._database, self._chore = database, chore
+        self._next_chore = time.monotonic() + _CHORE_S
+        self._queue: queue.SimpleQueue[_Asked | None] = queue.SimpleQueue()
+        self._closing = threading.Lock()
+        self._closed = False
+        self.fault: str | None = None
+        self._thread = threading.Thread(target=self._run, name="store", daemon=True)
+        self._thread.start()
+
+    def append(self, work: Append) -> "Future[tuple[bool, ...]]":
+        """Store samples."""
+        return self._ask(work)
+
+    def ask(self, work: Callable[[AbstractSession], T]) -> "Future[T]":
+        """Have something done in a transaction; the future resolves after its commit."""
+        return self._ask(work)
+
+    def close(self) -> None:
+        """Finish what was asked, and take nothing more."""
+        with self._closing:
+            if self._closed:
+                return
+            self._closed = True
+            self._queue.put(None)
+        self._thread.join()
+
+    def _ask(self, work: Work) -> "Future[Any]":
+        asked = _Asked(work, Future())
+        asked.done.set_running_or_notify_cancel()  # what was asked is done, whoever still waits
+        with self._closing:
+            if self._closed:
+                raise StoreError("The store is closed; nothing more can be written to it.")
+            self._queue.put(asked)
+        return asked.done
+
+    def _run(self) -> None:
+        try:
+            self._serve()
+        finally:
+            with self._closing:
+                self._closed = True
+            while not self._queue.empty():
+                if asked := self._queue.get():
+                    asked.done.set_exception(StoreError("The store's writer has stopped."))
+
+    def _serve(self) -> None:
+        going = True
+        while going:
+            batch, going = self._queued()
+            if batch:
+                self._answer(batch)
+            if going and time.monotonic() >= self._next_chore:
+                self._see_to_chore()
+                self._next_chore = time.monotonic() + _CHORE_S
+
+    def _queued(self) -> tuple[list[_Asked], bool]:
+        """Wait a while for work, then take all there is; False when asked to end."""
+        batch: list[_Asked] = []
+        try:
+            asked = self._queue.get(timeout=_CHORE_S)
+            while asked is not None:
+                batch.append(asked)
+                asked = self._queue.get_nowait()
+        except queue.Empty:
+            return batch, True
+        return batch, False
+
+    def _answer(self, batch: Sequence[_Asked]) -> None:
+        try:
+            answers = self._committed([asked.work for asked in batch])
+        except BaseException as error:
+            self.fault = str(error)
+            for asked in batch:
+                asked.done.set_exception(error)
+            if not isinstance(error, StoreError):
+                raise
+        else:
+            self.fault = None
+            for asked, answer in zip(batch, answers, strict=True):
+                asked.done.set_result(answer)
+
+    def _committed(self, works: Sequence[Work]) -> list[Any]:
+        try:
+            return self._written(works)
+        except DamageError as error:
+            if not self._database.renew(error):
+                raise
+            return self._written(works)
+
+    def _written(self, works: Sequence[Work]) -> list[Any]:
+        answers: list[Any] = []
+        with self._database.writing() as session:
+            # Samples that came one by one are inserted together.
+            for samples, group in groupby(works, lambda work: isinstance(work, Append)):
+                if samples:
+                    appends = [work for work in group if isinstance(work, Append)]
+                    answers += append_all(session, appends, touched=time.time_ns() // 1000)
+                else:
+                    answers += [work(session) for work in group if not isinstance(work, Append)]
+        return answers
+
+    def _see_to_chore(self) -> None:
+        try:
+            with self._database.writing() as session:
+                if self.fault:
+                    session.rows(_TRIAL, (time.time_ns() // 1000,))
+                self._chore(session)
+        except StoreError as error:
+            self.fault = str(error)
+        else:
+            self.fault = None

@@ -1,0 +1,303 @@
+"""A table that a logger appends to, followed row by row."""
+
+import asyncio
+import hashlib
+import json
+import os
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import BinaryIO, Self
+
+import structlog
+
+from seacage.conventions import RecordError
+from seacage.records import ColumnMap, Sample, check_rows, read_rows
+from seacage.service._live._cage import LiveCage
+from seacage.service._store._store import StoreError
+from seacage.service._wires._quarantine import Quarantine
+
+_HEAD = 1024  # bytes at the beginning that tell one file from another
+_MOST = 1 << 20  # bytes that are read at a time
+_log = structlog.get_logger(__name__)
+
+Refuse = Callable[[str, bytes, str], None]
+"""Is told where a row stands, the row, and why it cannot be read."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Place:
+    """How far a file was read.
+
+    Parameters
+    ----------
+    offset, line
+        Up to the end of which row: bytes and lines.
+    head
+        Hash of what the file began with, as far as ``offset`` or a kilobyte.
+    """
+
+    offset: int = 0
+    line: int = 0
+    head: str = ""
+
+    @classmethod
+    def parse(cls, text: str) -> Self:
+        """Read what ``str`` wrote; the beginning where it is nothing of the kind."""
+        with suppress(ValueError, TypeError):
+            return cls(**json.loads(text))
+        return cls()
+
+    def __str__(self) -> str:
+        """As JSON, to be kept."""
+        return json.dumps(asdict(self))
+
+
+@dataclass(slots=True, kw_only=True)
+class Tail:
+    """Reads what was appended to a table since the last look.
+
+    A row counts once its line has ended. The logger may begin the file anew, in its place or
+    as another file of its name: the rest of the old one is read first. A row that cannot be
+    read is refused and the others are not.
+
+    Parameters
+    ----------
+    path
+        Of the file; it may come later.
+    columns
+        What its columns mean; by its header where None.
+    stream
+        What to call the stream.
+    refuse
+        Is told of rows that cannot be read.
+    place
+        Where to read on, after a restart.
+    """
+
+    path: Path
+    columns: ColumnMap | None = None
+    stream: str = "buoy-1"
+    refuse: Refuse
+    place: Place = field(default_factory=Place)
+    _file: BinaryIO | None = None
+    _header: str = ""
+
+    def poll(self) -> tuple[Sample, ...]:
+        """Read the rows that are new; afterwards ``place`` is behind them.
+
+        Raises
+        ------
+        OSError
+            The file is there and cannot be read.
+        RecordError
+            Its header is not that of its map, so no row can be read.
+        """
+        if self._file is None and not self._opened():
+            return ()
+        file = self._file
+        assert file is not None
+        if self._rewritten(file):
+            self._begin(file)
+        samples = self._rows(file)
+        if not samples and self._replaced(file):
+            self._leave(file)
+            return self.poll()
+        return samples
+
+    def close(self) -> None:
+        """Close the file."""
+        if self._file is not None:
+            self._file.close()
+            self._file = None
+
+    def _opened(self) -> bool:
+        try:
+            self._file = self.path.open("rb")
+        except FileNotFoundError:
+            return False
+        if not self._header and self.place.line:
+            self._read_header(self._file)
+        return True
+
+    def _read_header(self, file: BinaryIO) -> None:
+        """Read the header again, to go on below it."""
+        file.seek(0)
+        lines = [file.readline() for _ in range(self._skipped + 1)]
+        self._header = self._text(lines[-1])
+
+    def _rewritten(self, file: BinaryIO) -> bool:
+        if os.fstat(file.fileno()).st_size < self.place.offset:
+            return True
+        return self.place.head != self._hashed(file, self.place.offset)
+
+    def _begin(self, file: BinaryIO) -> None:
+        _log.info("file begins anew", path=str(self.path))
+        self.place, self._header = Place(), ""
+        file.seek(0)
+
+    def _replaced(self, file: BinaryIO) -> bool:
+        mine = os.fstat(file.fileno())
+        try:
+            its = self.path.stat()
+        except FileNotFoundError:
+            return False
+        return (mine.st_dev, mine.st_ino) != (its.st_dev, its.st_ino)
+
+    def _leave(self, file: BinaryIO) -> None:
+        """Be done with a file that another has replaced."""
+        file.seek(self.place.offset)
+        if rest := file.read(_MOST):
+            where = f"{self.path}, line {self.place.line + 1}"
+            self.refuse(where, rest, "The file ended inside this row, so a number may be cut.")
+        self.close()
+        self.place, self._header = Place(), ""
+
+    def _rows(self, file: BinaryIO) -> tuple[Sample, ...]:
+        file.seek(self.place.offset)
+        content = file.read(_MOST)
+        whole = content[: content.rfind(b"\n") + 1]
+        if not whole:
+            if len(content) == _MOST:
+                raise RecordError(f"{self.path}: a line is longer than {_MOST} bytes. Is it text?")
+            return ()
+        first = self.place.line
+        # At line feeds alone: a carriage return before one belongs to its line.
+        lines = [line + b"\n" for line in whole.split(b"\n")[:-1]]
+        offset = self.place.offset + len(whole)
+        after = Place(offset=offset, line=first + len(lines), head=self._hashed(file, offset))
+        above = max(0, self._skipped + 1 - first)  # lines up to the header's
+        if 0 < above <= len(lines):
+            self._header = self._text(lines[above - 1])
+            check_rows(self.path, self._header, columns=self.columns)
+        samples = self._read(lines[above:], first + above + 1)
+        self.place = after
+        return samples
+
+    def _read(self, lines: list[bytes], first: int) -> tuple[Sample, ...]:
+        """Read rows together, or one by one where one of them is bad."""
+        if not any(line.strip() for line in lines):
+            return ()
+        try:
+            return self._samples(b"".join(lines), first_line=2)
+        except RecordError:
+            samples = list[Sample]()
+            for number, line in enumerate(lines, start=first):
+                try:
+                    samples += self._samples(line, first_line=number) if line.strip() else ()
+                except RecordError as error:
+                    self.refuse(f"{self.path}, line {number}", line, str(error))
+            return tuple(samples)
+
+    def _samples(self, rows: bytes, *, first_line: int) -> tuple[Sample, ...]:
+        record = read_rows(
+            self.path,
+            self._header,
+            self._text(rows),
+            columns=self.columns,
+            first_line=first_line,
+            stream=self.stream,
+        )
+        return tuple(record.samples())
+
+    @property
+    def _skipped(self) -> int:
+        return 0 if self.columns is None else self.columns.skip_lines
+
+    def _text(self, content: bytes) -> str:
+        encoding = "utf-8" if self.columns is None else self.columns.encoding
+        try:
+            text = content.decode("utf-8-sig" if encoding == "utf-8" else encoding)
+        except UnicodeDecodeError as error:
+            raise RecordError(f"{self.path}: it is not {encoding.upper()} text.") from error
+        if "\0" in text:
+            raise RecordError(f"{self.path}: there is a NUL character, so this is no text.")
+        return text
+
+    def _hashed(self, file: BinaryIO, offset: int) -> str:
+        if not offset:
+            return ""
+        file.seek(0)
+        return hashlib.blake2b(file.read(min(offset, _HEAD)), digest_size=8).hexdigest()
+
+
+class FileTail:
+    """Feeds a cage from a file that a logger appends to.
+
+    After a restart it reads on where it stopped: the place is written once the samples are on
+    disk, so some may be read twice, and are known again by stream and time.
+
+    Parameters
+    ----------
+    path, columns, stream
+        See ``Tail``.
+    cage
+        Whose samples they are.
+    quarantine
+        Where rows that cannot be read are set aside.
+    kept
+        File of the place; None reads from the beginning after each restart.
+    every_s
+        How often to look [s].
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        cage: LiveCage,
+        *,
+        quarantine: Quarantine,
+        columns: ColumnMap | None = None,
+        stream: str = "buoy-1",
+        kept: Path | None = None,
+        every_s: float = 1.0,
+    ) -> None:
+        self._cage, self._quarantine, self._kept, self._every_s = cage, quarantine, kept, every_s
+        place = Place.parse(kept.read_text("utf-8")) if kept and kept.exists() else Place()
+        self._tail = Tail(
+            path=path, columns=columns, stream=stream, refuse=self._refuse, place=place
+        )
+        self._fault: str | None = None
+
+    @property
+    def fault(self) -> str | None:
+        """Why the file cannot be read; None while it can."""
+        return self._fault
+
+    async def run(self) -> None:
+        """Look for rows for ever."""
+        try:
+            while True:
+                before = self._tail.place
+                if not await self._looked() or self._tail.place == before:
+                    await asyncio.sleep(self._every_s)
+        finally:
+            self._tail.close()
+
+    async def _looked(self) -> bool:
+        """Read and store what is new; False where that failed."""
+        before = self._tail.place
+        try:
+            samples = await asyncio.to_thread(self._tail.poll)
+            if samples:
+                await self._cage.take(samples)
+            if self._tail.place != before:
+                await asyncio.to_thread(self._keep)
+        except (OSError, RecordError, StoreError) as error:
+            if self._fault is None:
+                _log.error("file waits", path=str(self._tail.path), reason=str(error))
+            self._fault = str(error)
+            self._tail.place = before  # whatever was not stored is read again
+            return False
+        self._fault = None
+        return True
+
+    def _keep(self) -> None:
+        if self._kept is not None:
+            beside = self._kept.with_suffix(".new")
+            beside.write_text(str(self._tail.place), encoding="utf-8")
+            beside.replace(self._kept)
+
+    def _refuse(self, where: str, row: bytes, reason: str) -> None:
+        self._quarantine.put(where, row, reason, now=self._cage.clock.now())

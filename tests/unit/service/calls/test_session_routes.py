@@ -1,0 +1,72 @@
+from collections.abc import Iterator
+
+import httpx
+import pytest
+
+from seacage.service._access._guard import COOKIE
+from serviced import Running, buoy
+
+
+@pytest.fixture
+def page(idle: Running) -> Iterator[httpx.Client]:
+    """A browser of somebody who may do everything, not yet signed in."""
+    with httpx.Client(base_url=idle.address) as client:
+        yield client
+
+
+def signed_in(idle: Running, page: httpx.Client, *scopes, **headers) -> httpx.Response:
+    token = idle.service.tokens.mint(scopes or ["admin"], keep=False, name="")
+    return page.post("/session", json={"token": token}, headers=headers)
+
+
+def test_a_token_buys_a_cookie_that_no_script_and_no_other_page_can_use(idle, page):
+    answer = signed_in(idle, page)
+    assert answer.status_code == 201
+    cookie = answer.headers["set-cookie"]
+    for rule in ("HttpOnly", "SameSite=strict", "Path=/", "Max-Age=43200"):
+        assert rule in cookie
+    assert "Secure" not in cookie, "without TLS a browser would not send it back"
+    assert page.get("/api/v1/cages").status_code == 200
+    assert page.get("/session").json() == answer.json()
+
+
+def test_behind_tls_the_cookie_stays_there(idle, page):
+    # A proxy on this machine says how it was reached.
+    answer = signed_in(idle, page, **{"X-Forwarded-Proto": "https"})
+    assert "Secure" in answer.headers["set-cookie"]
+
+
+def test_a_write_by_cookie_repeats_what_only_our_page_knows(idle, page):
+    csrf = signed_in(idle, page).json()["csrf"]
+    post = {"url": "/api/v1/cages/ace/samples", "json": {"samples": [buoy(minutes=-1)]}}
+    assert page.post(**post).status_code == 403
+    assert page.post(**post, headers={"X-CSRF-Token": "guess"}).status_code == 403
+    elsewhere = {"X-CSRF-Token": csrf, "Origin": "https://elsewhere.example"}
+    assert page.post(**post, headers=elsewhere).status_code == 403
+    assert page.post(**post, headers={"X-CSRF-Token": csrf}).status_code == 201
+
+
+def test_another_page_may_not_sign_somebody_in(idle, page):
+    assert signed_in(idle, page, Origin="https://elsewhere.example").status_code == 403
+    assert not page.cookies
+
+
+def test_signing_out_ends_the_session(idle, page):
+    csrf = signed_in(idle, page).json()["csrf"]
+    cookie = page.cookies[COOKIE]
+    assert page.delete("/session").status_code == 403
+    assert page.delete("/session", headers={"X-CSRF-Token": csrf}).status_code == 204
+    old = httpx.get(f"{idle.address}/api/v1/cages", cookies={COOKIE: cookie})
+    assert old.status_code == 401
+
+
+def test_a_session_opens_no_more_than_its_token(idle, page):
+    csrf = signed_in(idle, page, "read").json()["csrf"]
+    headers = {"X-CSRF-Token": csrf}
+    answer = page.post("/api/v1/cages/ace/samples", json={"samples": [buoy()]}, headers=headers)
+    assert answer.status_code == 403
+
+
+def test_a_wrong_token_signs_nobody_in(page):
+    assert page.post("/session", json={"token": "guess"}).status_code == 401
+    assert page.get("/session").status_code == 401

@@ -1,0 +1,123 @@
+import json
+import time
+
+import pytest
+from websockets.exceptions import ConnectionClosedError, InvalidStatus
+from websockets.sync.client import connect
+
+from framed import decoded
+from serviced import Running, buoy
+
+
+def opened(live: Running, *, cage="ace", **how):
+    return connect(f"{live.address.replace('http', 'ws')}/api/v1/cages/{cage}/live", **how)
+
+
+def token(live: Running, *scopes):
+    return json.dumps({"token": live.service.tokens.mint(scopes, keep=False)})
+
+
+def received(socket):
+    message = socket.recv(timeout=5)
+    return json.loads(message) if isinstance(message, str) else decoded(message)
+
+
+def closed_with(socket):
+    with pytest.raises(ConnectionClosedError) as closed:
+        socket.recv(timeout=5)
+    return closed.value.rcvd.code
+
+
+def test_what_never_changes_comes_first_and_then_the_state(idle: Running):
+    with opened(idle) as socket:
+        socket.send(token(idle, "read"))
+        topology, frame = received(socket), received(socket)
+    assert topology["kind"] == "topology"
+    assert not frame.state["valid"]
+    assert frame.displacement.size == 0
+
+
+def test_a_reading_reaches_the_page(live: Running):
+    with opened(live) as socket:
+        socket.send(token(live, "read"))
+        topology = received(socket)
+        live.post(buoy())
+        end = time.monotonic() + 5
+        while not (frame := received(socket)).state["valid"]:
+            assert time.monotonic() < end
+    assert frame.displacement.shape == (len(topology["rest_position_m"]), 3)
+    assert frame.sigma.shape == (len(topology["rest_position_m"]),)
+
+
+def test_a_topology_that_changes_is_sent_again_before_the_next_frame(live: Running):
+    with opened(live) as socket:
+        socket.send(token(live, "read"))
+        first = received(socket)
+        live.cage._topology = live.cage.topology.model_copy(update={"topology_id": "another"})
+        end = time.monotonic() + 5
+        while not isinstance(again := received(socket), dict):
+            assert time.monotonic() < end
+    assert again == first | {"topology_id": "another"}
+
+
+def test_a_reader_that_lags_gets_the_newest_state_and_not_all_that_it_missed(live: Running):
+    with live.cage.watched() as mailbox:
+        time.sleep(0.5)  # ten ticks
+        held = mailbox._latest
+    assert held is live.cage.snapshot or held.answered.t == live.clock.now()
+
+
+@pytest.mark.parametrize("first", ['{"token": "guess"}', "{}", "no JSON", '"token"', "[1]"])
+def test_without_a_token_in_the_first_message_it_closes(idle: Running, first):
+    with opened(idle) as socket:
+        socket.send(first)
+        assert closed_with(socket) == 4401
+
+
+def test_a_first_message_that_comes_too_late_costs_nobody_the_token(
+    idle: Running, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setattr("seacage.service._calls._stream._FIRST_MESSAGE_S", 0.05)
+    with opened(idle) as socket:
+        assert closed_with(socket) == 4408
+
+
+def test_a_token_that_may_not_read_is_told_so(idle: Running):
+    with opened(idle) as socket:
+        socket.send(token(idle, "ingest"))
+        assert closed_with(socket) == 4403
+
+
+def test_a_cage_that_is_not_there_is_told_so(idle: Running):
+    with opened(idle, cage="ice") as socket:
+        socket.send(token(idle, "read"))
+        assert closed_with(socket) == 4404
+
+
+def test_a_page_from_elsewhere_is_turned_away_at_the_door(idle: Running):
+    with pytest.raises(InvalidStatus, match="403"):
+        opened(idle, origin="https://elsewhere.example")
+
+
+def test_a_client_that_leaves_is_no_longer_counted(live: Running):
+    with opened(live) as socket:
+        socket.send(token(live, "read"))
+        received(socket)
+        received(socket)
+        assert len(live.cage._mailboxes) == 1
+    end = time.monotonic() + 5
+    while live.cage._mailboxes and time.monotonic() < end:
+        time.sleep(0.02)
+    assert not live.cage._mailboxes
+
+
+def test_the_way_from_an_answer_to_the_page_is_timed_without_the_first(live: Running):
+    with opened(live) as socket:
+        socket.send(token(live, "read"))
+        for _ in range(4):  # the topology, the present state and two new ones
+            received(socket)
+        count = live.service.metrics.shown.labels("ace")._sum
+        end = time.monotonic() + 5
+        while not count.get() and time.monotonic() < end:
+            time.sleep(0.02)
+        assert 0.0 < count.get() < 5.0

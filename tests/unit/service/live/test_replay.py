@@ -1,0 +1,77 @@
+import asyncio
+from datetime import timedelta
+
+import numpy as np
+import pytest
+
+from seacage.records import moment
+from seacage.service._live._cage import LiveCage
+from seacage.service._live._clock import ReplayClock
+from seacage.service._live._metrics import Metrics
+from seacage.service._live._replay import Replay, replay_of
+from seacage.service._store._store import Store
+from seacage.testing import stand_in_field, stand_in_twin
+
+
+@pytest.fixture(scope="module")
+def field():
+    return stand_in_field(stand_in_twin().cage, days=3.0)
+
+
+def test_a_replay_begins_some_hours_into_the_shackles_last_window(field):
+    replay = replay_of(field.buoy, field)
+    first = moment(field.buoy.time[0])
+    assert replay.start == first + timedelta(days=2, hours=6)
+    assert len(replay.records) == 9
+
+
+def test_a_buoy_alone_is_replayed_from_its_start(field):
+    assert replay_of(field.buoy).start == moment(field.buoy.time[0]) + timedelta(hours=6)
+
+
+def test_a_replay_feeds_in_time_order_and_begins_anew_with_a_clean_store(field, tmp_path):
+    start = moment(field.buoy.time[0]) + timedelta(hours=1)
+    short = field.buoy.between(start - timedelta(hours=1), start + timedelta(hours=1))
+    depth = field.sensors["depth-1"].between(start, start + timedelta(hours=1))
+    replay = Replay(records=(short, depth), start=start)
+    clock, store = ReplayClock(start, speed=20_000.0), Store(tmp_path / "replay.sqlite")
+    cage = LiveCage(
+        name="ace", twin=stand_in_twin(), store=store, clock=clock, metrics=Metrics(), tick_s=0.1
+    )
+    begun, fed = [], []
+    begin, take = cage.begin, cage.take
+
+    async def counted_begin(backlog):
+        begun.append(len(backlog))
+        await begin(backlog)
+        assert len(store.samples("ace", limit=999)) == len(backlog)
+        if len(begun) == 2:
+            raise asyncio.CancelledError
+
+    async def counted_take(samples):
+        fed.extend(samples)
+        return await take(samples)
+
+    cage.begin, cage.take = counted_begin, counted_take
+    with pytest.raises(asyncio.CancelledError):
+        asyncio.run(replay.feed(cage, clock))
+    store.close()
+    assert begun == [5, 5]
+    times = [sample.t for sample in fed]
+    assert times == sorted(times)
+    assert len(fed) == len(short) - 5 + len(depth)
+
+
+def test_what_was_before_the_start_is_there_from_the_beginning(field, tmp_path):
+    replay = replay_of(field.buoy, field)
+    clock, store = ReplayClock(replay.start, speed=1.0), Store(tmp_path / "replay.sqlite")
+    cage = LiveCage(
+        name="ace", twin=stand_in_twin(), store=store, clock=clock, metrics=Metrics(), tick_s=0.1
+    )
+    backlog = list(replay._merged(replay.start - timedelta(hours=2), replay.start))
+    assert not cage.snapshot.state.valid
+    asyncio.run(cage.begin(backlog))
+    assert cage.snapshot.state.valid
+    assert all(sensor.measured is not None for sensor in cage.snapshot.state.sensors)
+    assert np.isfinite(cage.snapshot.answered.answer.node_position).all()
+    store.close()

@@ -1,0 +1,136 @@
+"""The store on a server: shared by workers, parted by month, and reached again."""
+
+import subprocess
+import sys
+import threading
+import time
+
+import psycopg
+import pytest
+
+from seacage.service._store._store import StoreError, open_store
+from stores import put, sample, schema
+
+A_DAY = 60 * 24
+
+
+@pytest.fixture
+def url(postgres):
+    with schema(postgres) as one:
+        yield one
+
+
+@pytest.fixture
+def pair(url):
+    """Two workers on one database."""
+    stores = [open_store(url), open_store(url)]
+    yield stores
+    for store in stores:
+        store.close()
+
+
+def asked(url, sql):
+    with psycopg.connect(url, autocommit=True) as connection:
+        cursor = connection.execute(sql)
+        return cursor.fetchall() if cursor.description else []
+
+
+def test_each_month_has_its_partition(url, pair):
+    put(pair[0], sample(), sample(35 * A_DAY), sample(-18_000 * A_DAY))
+    tables = "SELECT tablename FROM pg_tables WHERE tablename LIKE 'sample_%' AND schemaname = "
+    names = {name for (name,) in asked(url, tables + "current_schema()")}
+    assert names == {"sample_2020_02", "sample_2020_03", "sample_early"}
+    assert asked(url, "SELECT count(*) FROM sample_2020_02") == [(1,)]
+
+
+def test_times_are_found_by_brin(url, pair):
+    put(pair[0], sample())
+    (kind,) = asked(
+        url,
+        "SELECT indexdef FROM pg_indexes WHERE tablename = 'sample_2020_02' "
+        "AND indexdef LIKE '%brin%' AND schemaname = current_schema()",
+    )
+    assert "(t)" in kind[0]
+
+
+def test_two_workers_with_the_same_samples_store_each_once(pair):
+    months = [sample(15 * A_DAY * k + j) for k in range(6) for j in range(20)]
+    told = {}
+
+    def send(worker, order):
+        told[worker] = sum(put(pair[worker], *order))
+
+    threads = [
+        threading.Thread(target=send, args=(worker, months[:: 1 - 2 * worker]))
+        for worker in range(2)
+    ]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert sum(told.values()) == len(months)
+    assert pair[0].samples("ace", limit=999) == months
+
+
+def test_many_may_make_the_tables_at_once(url):
+    stores = []
+    threads = [threading.Thread(target=lambda: stores.append(open_store(url))) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    for store in stores:
+        store.close()
+    assert len(stores) == 4
+
+
+def test_a_connection_that_is_cut_is_made_again(url, pair):
+    store = pair[0]
+    put(store, sample())
+    store.samples("ace", limit=9)
+    asked(
+        url,
+        "SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE application_name = 'seacage'",
+    )
+    with pytest.raises(StoreError, match="postgres on"):
+        put(store, sample(1))
+    with pytest.raises(StoreError, match="cannot be read"):
+        store.samples("ace", limit=9)
+    end = time.monotonic() + 20
+    while store.fault and time.monotonic() < end:  # nobody sends anything
+        time.sleep(0.05)
+    assert store.fault is None
+    assert put(store, sample(1)) == (True,)
+    assert store.samples("ace", limit=9) == [sample(), sample(1)]
+
+
+def test_an_answered_sample_is_on_disk_whatever_the_servers_default(url, pair):
+    with pair[0]._database.writing() as session:
+        assert session.rows("SHOW synchronous_commit") == [("on",)]
+
+
+def test_a_server_that_does_not_answer_is_named_without_the_password():
+    with pytest.raises(StoreError, match=r"farm on .* does not open") as refused:
+        open_store("postgresql://keeper:secret@127.0.0.1:1/farm")
+    assert "secret" not in str(refused.value)
+
+
+def test_an_address_that_is_none_is_refused():
+    with pytest.raises(StoreError, match="does not open"):
+        open_store("postgresql://host/name?colour=blue")
+
+
+def test_without_the_driver_the_extra_is_named(monkeypatch):
+    monkeypatch.setitem(sys.modules, "psycopg", None)
+    with pytest.raises(StoreError, match=r"seacage\[postgres\]"):
+        open_store("postgresql://127.0.0.1/farm")
+
+
+def test_a_file_needs_no_driver_of_a_server(tmp_path):
+    tells = (
+        "import sys; from pathlib import Path; "
+        "from seacage.service._store._store import open_store; "
+        f"open_store(Path({str(tmp_path)!r}, 's.sqlite')).close(); print('psycopg' in sys.modules)"
+    )
+    told = subprocess.run([sys.executable, "-c", tells], check=True, capture_output=True, text=True)
+    assert told.stdout.strip() == "False"
