@@ -19,6 +19,7 @@ from seacage.surrogates._shape import FittedCoordinate, FittedShapeGP, ShapeGP
 from seacage.surrogates._symmetry import Symmetry
 from seacage.surrogates._symmetry_check import check_symmetry
 from seacage.surrogates._table import Table, Tabulable
+from seacage.surrogates._together import Together
 
 __all__ = [
     "AR1",
@@ -48,6 +49,7 @@ __all__ = [
     "Symmetry",
     "Table",
     "Tabulable",
+    "Together",
     "block_bootstrap",
     "check_symmetry",
     "conformal_factor",

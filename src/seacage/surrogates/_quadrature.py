@@ -107,7 +107,7 @@ def carried_slope(
 def _slope_with_rule(
     count: int, levels: Sequence[SlopedLevel], x: Float[np.ndarray, "row feature"], below: Moments
 ) -> Float[np.ndarray, "row feature"]:
-    node, weight = _rule(count)
+    node, weight = rule(count)
     value, its_slope = below.at(node)
     inputs = np.repeat(x, count, axis=0)
     at = levels[0].sloped(inputs, value).through(its_slope)
@@ -122,7 +122,7 @@ def _by_rule(
     variance: Float[np.ndarray, " row"],
 ) -> Iterator[tuple[int, Int[np.ndarray, " chosen"]]]:
     """How many nodes, and for which rows, a piece at a time."""
-    counts = _node_counts(_largest_ratio(levels, x, mean, variance))
+    counts = node_counts(_largest_ratio(levels, x, mean, variance))
     for count in np.unique(counts).tolist():
         alike = np.flatnonzero(counts == count)
         for piece in chunks(len(alike), CHUNK // count):
@@ -136,15 +136,13 @@ def _with_rule(
     mean: Float[np.ndarray, " row"],
     variance: Float[np.ndarray, " row"],
 ) -> tuple[Float[np.ndarray, " row"], Float[np.ndarray, " row"]]:
-    node, weight = _rule(count)
+    node, weight = rule(count)
     below = mean[:, None] + np.sqrt(variance)[:, None] * node
     inputs = np.repeat(x, count, axis=0)
     at_mean, at_variance = levels[0].moments(inputs, below.ravel())
     if len(levels) > 1:
         at_mean, at_variance = carried(levels[1:], inputs, at_mean, at_variance)
-    at_mean, at_variance = at_mean.reshape(-1, count), at_variance.reshape(-1, count)
-    top_mean = at_mean @ weight
-    return top_mean, (at_variance + (at_mean - top_mean[:, None]) ** 2) @ weight
+    return total_moments(at_mean.reshape(-1, count), at_variance.reshape(-1, count), weight)
 
 
 def _largest_ratio(
@@ -165,13 +163,24 @@ def _largest_ratio(
     return np.maximum(ratio, _largest_ratio(levels[1:], x, *above))
 
 
-def _node_counts(ratio: Float[np.ndarray, " row"]) -> Int[np.ndarray, " row"]:
+def node_counts(ratio: Float[np.ndarray, "row *rest"]) -> Int[np.ndarray, "row *rest"]:
+    """Nodes that each ratio of the level below's sd to the bend needs."""
     limits, counts = zip(*RULES, strict=True)
     return np.array(counts)[np.searchsorted(limits, ratio)]
 
 
+def total_moments(
+    mean: Float[np.ndarray, "*rest node"],
+    variance: Float[np.ndarray, "*rest node"],
+    weight: Float[np.ndarray, " node"],
+) -> tuple[Float[np.ndarray, "*rest"], Float[np.ndarray, "*rest"]]:
+    """Mean and variance of all nodes together."""
+    total = mean @ weight
+    return total, (variance + (mean - total[..., None]) ** 2) @ weight
+
+
 @cache
-def _rule(count: int) -> tuple[Float[np.ndarray, " node"], Float[np.ndarray, " node"]]:
+def rule(count: int) -> tuple[Float[np.ndarray, " node"], Float[np.ndarray, " node"]]:
     """Nodes in sd from the mean, and weights that sum to 1."""
     if count <= GAUSS_HERMITE_UP_TO:
         node, weight = np.polynomial.hermite_e.hermegauss(count)

@@ -1,0 +1,152 @@
+"""Many levels over the same features, asked in one go: a live twin's answer to one sea state.
+
+A row of one level is little arithmetic and many calls. Here the calls are made once for all.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from seacage.surrogates._gaussian_process import FittedGaussianProcess
+from seacage.surrogates._links import Links
+from seacage.surrogates._prediction import Prediction, checked_inputs
+from seacage.surrogates._quadrature import node_counts, rule, total_moments
+from seacage.surrogates._regression import Posterior, chunks
+from seacage.surrogates._scaling import Scaling
+
+CELLS = 2**17
+"""Covariances held at once, of all levels together: 1 MiB, which stays near the processor."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Together:
+    """Processes of the same features, each with a level below of its own as the last input.
+
+    Parameters
+    ----------
+    levels
+        The processes, such as ``FittedNARGP.upper`` holds.
+    members, owner
+        Of all their ensembles, one after the other, and whose each is.
+    share
+        Probability of each member within its level, 0 in the others.
+    links
+        The members' covariances with their points.
+    weights
+        By which each member's mean is summed; 0 for points that it does not have.
+    centre, unit
+        Of each member's inputs.
+    outputs
+        Centre and amplitude of each level's.
+    bend
+        Length over which each level bends with the one below, in that one's unit.
+    """
+
+    levels: tuple[FittedGaussianProcess, ...]
+    members: tuple[Posterior, ...]
+    owner: Int[np.ndarray, " member"]
+    share: Float[np.ndarray, "level member"]
+    links: Links
+    weights: Float[np.ndarray, "member n 1"]
+    centre: Float[np.ndarray, "member 1 feature"]
+    unit: Float[np.ndarray, "member 1 feature"]
+    outputs: Scaling
+    bend: Float[np.ndarray, " level"]
+
+    @classmethod
+    def of(cls, levels: Sequence[FittedGaussianProcess]) -> Self:
+        """Put together; each has one output and a link kernel."""
+        members = tuple(member for level in levels for member in level.members)
+        owner = np.repeat(np.arange(len(levels)), [len(level.members) for level in levels])
+        share = np.zeros((len(levels), len(members)))
+        share[owner, np.arange(len(members))] = np.concatenate([level.share for level in levels])
+        links = Links.of(members)
+        weights = np.zeros((*links.below_point.shape, 1))
+        for index, member in enumerate(members):
+            weights[index, : len(member.weights)] = member.weights
+        unit = np.stack([level.inputs.unit for level in levels])[owner, None]
+        length = links.link_length * unit[:, 0, -1]
+        return cls(
+            levels=tuple(levels),
+            members=members,
+            owner=owner,
+            share=share,
+            links=links,
+            weights=weights,
+            centre=np.stack([level.inputs.centre for level in levels])[owner, None],
+            unit=unit,
+            outputs=Scaling(
+                centre=np.concatenate([level.centre for level in levels]),
+                spread=np.concatenate([level.amplitude for level in levels]),
+            ),
+            bend=np.array([length[own].min() for own in share > 0.0]),
+        )
+
+    def predict(self, x: Float[np.ndarray, "row feature"], below: Prediction) -> Prediction:
+        """Answer at each row of features what each level would answer alone.
+
+        Parameters
+        ----------
+        x
+            One row per case.
+        below
+            The level below each, (row, level).
+        """
+        x = checked_inputs(x, what="predict", width=self.unit.shape[2] - 1)
+        counts = node_counts(below.std / self.bend)
+        mean, variance = np.empty(counts.shape), np.empty(counts.shape)
+        for count in sorted(set(counts.ravel().tolist())):
+            asked = counts == count
+            rows, levels = (np.flatnonzero(asked.any(axis=axis)) for axis in (1, 0))
+            some = self if len(levels) == len(self.levels) else self._chosen(levels)
+            for piece in chunks(len(rows), CELLS // (count * some.weights.size)):
+                at = np.ix_(rows[piece], levels)
+                said = some._with_rule(count, x[rows[piece]], below.mean[at], below.std[at])  # noqa: SLF001
+                for whole, part in zip((mean, variance), said, strict=True):
+                    whole[at] = np.where(asked[at], part, whole[at])
+        return Prediction(mean=mean, std=np.sqrt(variance))
+
+    def _chosen(self, levels: Int[np.ndarray, " chosen"]) -> Self:
+        return self.of([self.levels[level] for level in levels])
+
+    def _with_rule(
+        self,
+        count: int,
+        x: Float[np.ndarray, "row feature"],
+        mean: Float[np.ndarray, "row level"],
+        std: Float[np.ndarray, "row level"],
+    ) -> tuple[Float[np.ndarray, "row level"], Float[np.ndarray, "row level"]]:
+        node, weight = rule(count)
+        at = self._moments(x, mean.T[..., None] + std.T[..., None] * node)
+        mean, variance = total_moments(*at, weight)
+        return mean.T, variance.T
+
+    def _moments(
+        self, x: Float[np.ndarray, "row feature"], below: Float[np.ndarray, "level row node"]
+    ) -> tuple[Float[np.ndarray, "level row node"], Float[np.ndarray, "level row node"]]:
+        """Mean and variance of each level where the one below has these values."""
+        local = (x - self.centre[..., :-1]) / self.unit[..., :-1]
+        link = (below[self.owner] - self.centre[..., -1:]) / self.unit[..., -1:]
+        cross = self.links.covariance(local, link)
+        cross = cross.reshape(len(cross), -1, cross.shape[-1])
+        known = [
+            member.factor.explained(own[:, : len(member.x)])
+            for member, own in zip(self.members, cross, strict=True)
+        ]
+        prior = self.links.variance(link).reshape(len(cross), -1)
+        # Rounding can explain a hair more than there is.
+        variances = np.maximum(prior - np.stack(known)[..., 0], 0.0)
+        mean, variance = self._mixed((cross @ self.weights)[..., 0], variances)
+        return mean.reshape(below.shape), variance.reshape(below.shape)
+
+    def _mixed(
+        self, means: Float[np.ndarray, "member value"], variances: Float[np.ndarray, "member value"]
+    ) -> tuple[Float[np.ndarray, "level value"], Float[np.ndarray, "level value"]]:
+        """Mean and variance of the outputs, by the law of total variance over the members."""
+        mean = self.share @ means
+        variance = self.share @ variances * self.outputs.spread[:, None] ** 2
+        variance += self.share @ (means - mean[self.owner]) ** 2
+        return mean + self.outputs.centre[:, None], variance
