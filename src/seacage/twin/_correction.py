@@ -1,12 +1,13 @@
 """Level 2 of one sensor: a line through level 1, and a NARGP of what the line leaves."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal, Self
 
 import numpy as np
 from jaxtyping import Float, Shaped
 
-from seacage.surrogates import NARGP, FittedNARGP, Prediction, Predicts
+from seacage.surrogates import NARGP, FittedNARGP, Prediction, Predicts, Together
 from seacage.twin._align import Pairs
 
 GAIN_SD = 0.5
@@ -124,6 +125,16 @@ class Correction:
         """Variance of a reading about what lies behind it: the instrument's own [N2] or [m2]."""
         return self.spread.white
 
+    @property
+    def own(self) -> float:
+        """Variance of what the cage does that the water does not explain [N2] or [m2].
+
+        Of the noise that the lesson found, the instrument's share is taken out, but never more
+        than half.
+        """
+        found = float(self.rest.upper[-1].noise[0])
+        return max(found - self.spread.white, LEAST_SHARE * found)
+
     def behind(
         self,
         x: Features,
@@ -131,10 +142,6 @@ class Correction:
         steepness: Float[np.ndarray, " case"] | None = None,
     ) -> Prediction:
         """Return what lies behind a reading, given what level 1 says there.
-
-        The instrument's noise is left out; what the lesson could not explain by the water is
-        not, for the cage itself scattered so. The line's and the rest's shares of level 1's
-        small variance are taken as independent.
 
         Parameters
         ----------
@@ -146,23 +153,71 @@ class Correction:
             Of level 1: length of its gradient over the current [N s/m] or [s]; None where the
             spread has no share of the water.
         """
-        rest = replace(self.rest, lent=Said(prediction=low)).predict(x)
-        variance = self.spread.scale**2 * self.doubt(rest.std, low.std)
-        if steepness is not None:
-            variance = variance + (self.gain * steepness * self.spread.water_sd) ** 2
-        return Prediction(mean=rest.mean + self.gain * low.mean, std=np.sqrt(variance))
+        steepness = np.zeros_like(low.mean) if steepness is None else steepness
+        column = Prediction(mean=low.mean[:, None], std=low.std[:, None])
+        behind = Corrections.of([self]).behind(x, column, steepness[:, None])
+        return Prediction(mean=behind.mean[:, 0], std=behind.std[:, 0])
 
     def doubt(
         self, rest_std: Float[np.ndarray, " case"], low_std: Float[np.ndarray, " case"]
     ) -> Float[np.ndarray, " case"]:
-        """Variance that the lesson gives to what lies behind a reading, before calibration.
+        """Variance that the lesson gives to what lies behind a reading, before calibration."""
+        return rest_std**2 + (self.gain * low_std) ** 2 + self.own
 
-        Of the noise that the lesson found, the instrument's share is taken out, but never more
-        than half.
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Corrections:
+    """Level 2 of several sensors, asked in one go.
+
+    Parameters
+    ----------
+    rest
+        What each learned beside the gain.
+    gain, own, scale, water_sd, noise
+        Of each ``Correction`` and its ``Spread``.
+    """
+
+    rest: Together
+    gain: Float[np.ndarray, " sensor"]
+    own: Float[np.ndarray, " sensor"]
+    scale: Float[np.ndarray, " sensor"]
+    water_sd: Float[np.ndarray, " sensor"]
+    noise: Float[np.ndarray, " sensor"]
+
+    @classmethod
+    def of(cls, models: Sequence[Correction]) -> Self:
+        """Put together."""
+        return cls(
+            rest=Together.of([level for model in models for level in model.rest.upper]),
+            gain=np.array([model.gain for model in models]),
+            own=np.array([model.own for model in models]),
+            scale=np.array([model.spread.scale for model in models]),
+            water_sd=np.array([model.spread.water_sd for model in models]),
+            noise=np.array([model.noise for model in models]),
+        )
+
+    def behind(
+        self, x: Features, low: Prediction, steepness: Float[np.ndarray, "case sensor"]
+    ) -> Prediction:
+        """Return what lies behind each sensor's reading, given what level 1 says there.
+
+        The instrument's noise is left out; what the lesson could not explain by the water is
+        not, for the cage itself scattered so. The line's and the rest's shares of level 1's
+        small variance are taken as independent.
+
+        Parameters
+        ----------
+        x
+            Features of the water.
+        low
+            Level 1 there, (case, sensor).
+        steepness
+            Of level 1: length of its gradient over the current [N s/m] or [s].
         """
-        found = float(self.rest.upper[-1].noise[0])
-        own = max(found - self.spread.white, LEAST_SHARE * found)
-        return rest_std**2 + (self.gain * low_std) ** 2 + own
+        rest = self.rest.predict(x, low)
+        doubt = rest.std**2 + (self.gain * low.std) ** 2 + self.own
+        variance = self.scale**2 * doubt + (self.gain * steepness * self.water_sd) ** 2
+        return Prediction(mean=rest.mean + self.gain * low.mean, std=np.sqrt(variance))
 
 
 def fitted_gain(

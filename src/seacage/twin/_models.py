@@ -16,7 +16,7 @@ from seacage.surrogates import (
     Predicts,
 )
 from seacage.twin._answer import Answer
-from seacage.twin._correction import Correction
+from seacage.twin._correction import Correction, Corrections
 from seacage.twin._metocean import Input, Metocean
 
 BLOCK = 512
@@ -73,6 +73,8 @@ class Models:
         Level 1 of the node positions [m].
     upper
         Level 2 by sensor, of its readings [N] or [m].
+    together
+        Those of the cage's sensors, in their order; None where there is none.
     """
 
     cage: Cage
@@ -83,6 +85,11 @@ class Models:
     bridles: FittedGaussianProcess
     shape: FittedShapeGP
     upper: Mapping[str, Correction] = field(default_factory=dict[str, Correction])
+    together: Corrections | None = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        models = [self.upper[name] for name in self.cage.sensor_names if name in self.upper]
+        object.__setattr__(self, "together", Corrections.of(models) if models else None)
 
     def lower(self, sensor: str) -> Predicts:
         """Level 1 of one sensor [N] or [m]."""
@@ -123,15 +130,7 @@ class Models:
             for block in np.array_split(np.arange(len(rows)), 1 + len(rows) // BLOCK)
         ]
 
-        def whole(name: str) -> Float[np.ndarray, "case *rest"]:
-            values = np.concatenate([block[name] for block in blocks])
-            scattered = np.full((len(valid), *values.shape[1:]), np.nan)
-            scattered[rows] = values
-            return scattered
-
-        def both(name: str) -> Prediction:
-            return Prediction(mean=whole(f"{name}_mean"), std=whole(f"{name}_std"))
-
+        numbers = {name: _scattered([block[name] for block in blocks], valid) for name in blocks[0]}
         in_domain = valid.copy()
         in_domain[rows] = inside
         beyond = self._beyond()
@@ -143,18 +142,18 @@ class Models:
                 for one, here in zip(trouble, in_domain, strict=True)
             ),
             bridle_names=self.cage.bridle_names,
-            bridle_tension=both("bridle"),
-            bridle_low=whole("bridle_low_mean"),
+            bridle_tension=_both(numbers, "bridle"),
+            bridle_low=numbers["bridle_low_mean"],
             bridle_level=self._bridle_level(),
             sensor_names=self.cage.sensor_names,
             sensor_units=self._sensor_units(),
-            sensor=both("sensor"),
-            sensor_low=both("sensor_low"),
+            sensor=_both(numbers, "sensor"),
+            sensor_low=_both(numbers, "sensor_low"),
             sensor_level=np.array([self._level(name) for name in self.cage.sensor_names]),
-            node_position=whole("node_position"),
-            node_sigma=whole("node_sigma"),
+            node_position=numbers["node_position"],
+            node_sigma=numbers["node_sigma"],
             shape_level=1,
-            volume_fraction=whole("volume_fraction"),
+            volume_fraction=numbers["volume_fraction"],
         )
 
     def _inside(self, water: Metocean) -> Bool[np.ndarray, " case"]:
@@ -204,19 +203,20 @@ class Models:
         The bridle that a shackle taught has no scatter: the rope is meant, not the instrument.
         """
         bridle, sensor = _copied(bridle_low), _copied(sensor_low)
-        lines, x = self._lines(), water.features(self.inputs)
-        uneven = any(model.spread.water_sd for model in self.upper.values())
-        steepness = self.steepness(water) if uneven else np.zeros_like(sensor_low.mean)
-        for column, name in enumerate(self.cage.sensor_names):
-            if name in self.upper:
-                model = self.upper[name]
-                low = Prediction(mean=sensor_low.mean[:, column], std=sensor_low.std[:, column])
-                behind = model.behind(x, low, steepness[:, column])
-                sensor.mean[:, column] = behind.mean
-                sensor.std[:, column] = np.sqrt(behind.std**2 + model.noise)
-                if name in lines:
-                    bridle.mean[:, lines[name]] = behind.mean
-                    bridle.std[:, lines[name]] = behind.std
+        if self.together is None:
+            return {"bridle": bridle, "sensor": sensor}
+        taught = np.array([name in self.upper for name in self.cage.sensor_names])
+        low = Prediction(mean=sensor_low.mean[:, taught], std=sensor_low.std[:, taught])
+        steepness = np.zeros_like(low.mean)
+        if self.together.water_sd.any():
+            steepness = self.steepness(water)[:, taught]
+        behind = self.together.behind(water.features(self.inputs), low, steepness)
+        sensor.mean[:, taught] = behind.mean
+        sensor.std[:, taught] = np.sqrt(behind.std**2 + self.together.noise)
+        lines = [line for name, line in self._lines().items() if name in self.upper]
+        if lines:  # the shackles are the last of the sensors
+            bridle.mean[:, lines] = behind.mean[:, -len(lines) :]
+            bridle.std[:, lines] = behind.std[:, -len(lines) :]
         return {"bridle": bridle, "sensor": sensor}
 
     def _lines(self) -> dict[str, int]:
@@ -252,3 +252,19 @@ def _widened(here: Prediction, edge: Prediction, beyond: Bool[np.ndarray, " case
 
 def _copied(prediction: Prediction) -> Prediction:
     return Prediction(mean=prediction.mean.copy(), std=prediction.std.copy())
+
+
+def _scattered(
+    parts: Sequence[Float[np.ndarray, "_ *rest"]], valid: Bool[np.ndarray, " case"]
+) -> Float[np.ndarray, "case *rest"]:
+    """One quantity of all rows, NaN in those that are not valid."""
+    values = np.concatenate(parts)
+    if len(values) == len(valid):
+        return values
+    scattered = np.full((len(valid), *values.shape[1:]), np.nan)
+    scattered[valid] = values
+    return scattered
+
+
+def _both(numbers: Numbers, name: str) -> Prediction:
+    return Prediction(mean=numbers[f"{name}_mean"], std=numbers[f"{name}_std"])
