@@ -15,17 +15,18 @@ import structlog
 from jaxtyping import Float
 
 from seacage.conventions import InputError
-from seacage.records import Amendment, QualityState, Sample, check_sample
+from seacage.records import Sample
 from seacage.service._forms._samples import BUOY_KEYS
 from seacage.service._forms._schemas import State, Topology
 from seacage.service._live._alarm_desk import AlarmDesk
 from seacage.service._live._answers import state_of, topology_of
+from seacage.service._live._checks import Checks
 from seacage.service._live._clock import Clock, FollowingClock, latest_allowed
 from seacage.service._live._frame import frame_of
 from seacage.service._live._mailbox import Mailbox
 from seacage.service._live._metrics import Metrics
 from seacage.service._live._past import answered_in, state_at, streams_of
-from seacage.service._store._store import Store, StoreError
+from seacage.service._store._store import Store
 from seacage.twin import (
     Alarm,
     AlarmPolicy,
@@ -107,7 +108,9 @@ class LiveCage:
         self.desk = AlarmDesk(cage=name, twin=twin, store=store, policy=limits)
         self._kept_at: datetime | None = None
         self._state, answered = self._found()
-        self._quality = {stream: taken[-1].quality for stream, taken in self._state.streams.items()}
+        self._checks = Checks(
+            {stream: taken[-1].quality for stream, taken in self._state.streams.items()}
+        )
         self.snapshot = self._shown(answered)
 
     @property
@@ -157,7 +160,7 @@ class LiveCage:
         async with self._stepping:
             await asyncio.to_thread(self.store.forget, self.name)
             self.desk.begin_anew()
-            self._quality.clear()
+            self._checks = Checks({})
             self._pending.clear()
             await self._stored(backlog)
             now = self.clock.now()
@@ -220,24 +223,25 @@ class LiveCage:
             self._metrics.clients.labels(self.name).dec()
 
     async def _stored(self, samples: Sequence[Sample]) -> tuple[bool, ...]:
-        checked, amendments, before = list[Sample](), list[Amendment](), self._quality
-        self._quality = dict(before)
-        for sample in samples:
-            quality = self._quality.get(sample.stream, QualityState())
-            quality, flagged = check_sample(quality, sample)
-            self._quality[sample.stream] = quality
-            checked.append(flagged)
-            amendments += quality.amended
+        checks = self._checks
+        checked = checks.check(samples)
         try:
-            return await asyncio.wrap_future(
+            new = await asyncio.wrap_future(
                 self.store.append(
-                    self.name, checked, ingested=self.clock.now(), amendments=amendments
+                    self.name,
+                    checked.samples,
+                    ingested=self.clock.now(),
+                    amendments=checked.amendments,
                 )
             )
-        except StoreError:
-            # They will be sent again, and must not be checked against themselves.
-            self._quality = before
+        except asyncio.CancelledError:
+            checks.keep(checked)  # what was asked is done, whoever still waits
             raise
+        except Exception:
+            checks.forget(checked)
+            raise
+        checks.keep(checked)
+        return new
 
     def _stepped(self, samples: Sequence[Sample]) -> tuple[Answered, list[Event]]:
         """Step through the samples, then tick: the newest answer is as old as this call."""

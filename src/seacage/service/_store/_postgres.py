@@ -121,7 +121,8 @@ class PostgresDatabase(AbstractDatabase):
             told = conninfo_to_dict(url)
             self._place = f"{told.get('dbname', 'its database')} on {told.get('host', 'localhost')}"
             self._writer = self._opened()
-            self._partitions = self._made()
+            with self._closed_unless_well(self._writer):
+                self._partitions = self._made()
         self._readers = Pool(self._reader)
         self._tried = 0.0
 
@@ -187,9 +188,18 @@ class PostgresDatabase(AbstractDatabase):
         connection = self._psycopg.connect(
             self._url, autocommit=True, connect_timeout=_PATIENCE_S, application_name="seacage"
         )
-        # Whatever the server's default: an acknowledged sample is on disk.
-        connection.execute("SET synchronous_commit = on")
+        with self._closed_unless_well(connection):
+            # Whatever the server's default: an acknowledged sample is on disk.
+            connection.execute("SET synchronous_commit = on")
         return connection
+
+    @contextmanager
+    def _closed_unless_well(self, connection: "Connection[tuple[Any, ...]]") -> Generator[None]:
+        try:
+            yield
+        except BaseException:
+            connection.close()
+            raise
 
     def _reader(self) -> "Connection[tuple[Any, ...]]":
         connection = self._opened()

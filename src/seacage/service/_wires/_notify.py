@@ -102,7 +102,8 @@ class Herald:
     def __init__(self, hooks: Sequence[Webhook], cages: Mapping[str, Alarmed]) -> None:
         self._cages = cages
         self._queues = {hook: deque[str](maxlen=_WAITING) for hook in hooks}
-        self._escalated: set[tuple[Webhook, str, str, datetime | None]] = set()
+        # Since when each alarm stood that was escalated last: as many as there are alarms.
+        self._escalated: dict[tuple[Webhook, str, str], datetime] = {}
         for cage in cages.values():
             cage.desk.tell(self._heard)
 
@@ -132,11 +133,10 @@ class Herald:
         for name, cage in self._cages.items():
             due = cage.clock.now() - timedelta(seconds=hook.after_s)
             for told in cage.desk.standing():
-                alarm = told.alarm
-                key = (hook, name, alarm.name, alarm.since)
-                late = alarm.since is not None and alarm.since <= due
-                if late and key not in self._escalated and hook.wants(name, told.severity):
-                    self._escalated.add(key)
+                key, since = (hook, name, told.alarm.name), told.alarm.since
+                late = since is not None and since <= due
+                if late and self._escalated.get(key) != since and hook.wants(name, told.severity):
+                    self._escalated[key] = since
                     self._queues[hook].append(announced_json(told, action="escalated"))
 
     async def _deliver(self, hook: Webhook) -> None:

@@ -104,6 +104,18 @@ def test_a_connection_that_is_cut_is_made_again(url, pair):
     assert store.samples("ace", limit=9) == [sample(), sample(1)]
 
 
+def test_an_opening_that_fails_leaves_no_connection(url):
+    here = "SELECT count(*) FROM pg_stat_activity WHERE application_name = 'seacage'"
+    before = asked(url, here)
+    with pytest.raises(StoreError, match="read-only transaction") as refused:
+        open_store(f"{url}%20-cdefault_transaction_read_only%3Don")
+    end = time.monotonic() + 5
+    while asked(url, here) != before and time.monotonic() < end:
+        time.sleep(0.05)
+    assert asked(url, here) == before
+    assert refused.value  # which holds all that the attempt made, so that nothing closes by itself
+
+
 def test_an_answered_sample_is_on_disk_whatever_the_servers_default(url, pair):
     with pair[0]._database.writing() as session:
         assert session.rows("SHOW synchronous_commit") == [("on",)]

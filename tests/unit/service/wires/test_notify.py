@@ -5,6 +5,7 @@ import json
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from types import SimpleNamespace
@@ -133,6 +134,21 @@ def test_the_next_on_duty_is_told_once_when_nobody_acknowledges():
         assert not told(hook, heard, said(), standing=[said()], now=NOON + timedelta(minutes=9))
         bodies = told(hook, heard, standing=[said()], now=NOON + timedelta(minutes=10))
     assert [body["action"] for body in bodies] == ["escalated"]
+
+
+def test_an_alarm_that_comes_again_and_again_is_told_each_time_and_remembered_once():
+    hook, desk = Webhook(url="http://x", after_s=600.0), Desk()
+    now = [NOON]
+    cage = SimpleNamespace(desk=desk, clock=SimpleNamespace(now=lambda: now[0]))
+    herald = Herald([hook], {"ace": cage})
+    for times in range(1, 51):
+        raised = said()
+        desk.open = [replace(raised, alarm=replace(raised.alarm, since=now[0]))]
+        now[0] += timedelta(minutes=11)
+        herald._overdue(hook)
+        herald._overdue(hook)
+        assert len(herald._queues[hook]) == times
+    assert len(herald._escalated) == 1
 
 
 @pytest.mark.parametrize(
