@@ -134,8 +134,9 @@ class Herald:
             due = cage.clock.now() - timedelta(seconds=hook.after_s)
             for told in cage.desk.standing():
                 key, since = (hook, name, told.alarm.name), told.alarm.since
-                late = since is not None and since <= due
-                if late and self._escalated.get(key) != since and hook.wants(name, told.severity):
+                if since is None or since > due or self._escalated.get(key) == since:
+                    continue
+                if hook.wants(name, told.severity):
                     self._escalated[key] = since
                     self._queues[hook].append(announced_json(told, action="escalated"))
 
