@@ -175,13 +175,12 @@ def _shape(
     return (1.0 + far + 5.0 / 3.0 * squared) * decay, 5.0 / 3.0 * (1.0 + far) * decay
 
 
-def squared_distance(
-    x: Float[np.ndarray, "*voice row feature"], z: Float[np.ndarray, "*voice n feature"]
-) -> Float[np.ndarray, "*voice row n"]:
-    """Of each row of one set of inputs from each of the other."""
-    squared = x @ np.swapaxes(-2.0 * z, -1, -2)
-    squared += np.sum(x * x, axis=-1)[..., None]
-    squared += np.sum(z * z, axis=-1)[..., None, :]
+def _squared_distance(
+    x: Float[np.ndarray, "row feature"], z: Float[np.ndarray, "n feature"]
+) -> Float[np.ndarray, "row n"]:
+    squared = x @ (-2.0 * z.T)
+    squared += np.sum(x * x, axis=1)[:, None]
+    squared += np.sum(z * z, axis=1)
     return np.maximum(squared, 0.0, out=squared)
 
 
@@ -193,7 +192,7 @@ def correlation(
 ) -> Float[np.ndarray, "row n"]:
     """Of two sets of inputs, of unit variance."""
     length = np.exp(log_length)
-    return _shape(name, squared_distance(x / length, z / length))[0]
+    return _shape(name, _squared_distance(x / length, z / length))[0]
 
 
 def correlation_slope(
@@ -206,7 +205,7 @@ def correlation_slope(
     """Gradient in each row of x of the sum over z of share times correlation."""
     length = np.exp(log_length)
     scaled_x, scaled_z = x / length, z / length
-    fall = share * _shape(name, squared_distance(scaled_x, scaled_z))[1]
+    fall = share * _shape(name, _squared_distance(scaled_x, scaled_z))[1]
     return (fall @ scaled_z - fall.sum(axis=1)[:, None] * scaled_x) / length
 
 
@@ -217,7 +216,7 @@ def unit(
 ) -> tuple[Float[np.ndarray, "n n"], Pullback]:
     """Correlation of the rows with one another, and its pullback to the log lengths."""
     z = x / np.exp(log_length)
-    alike, fall = _shape(name, squared_distance(z, z))
+    alike, fall = _shape(name, _squared_distance(z, z))
     return alike, partial(_pulled_lengths, z, fall)
 
 

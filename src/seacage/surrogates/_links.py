@@ -1,7 +1,8 @@
 """Link kernels side by side: the covariances of many levels with their own points, at once.
 
-One formula holds them all: k_rho (curve (k_f - held k_f0 k_0f') + offset) + left k_delta
-+ line f f' + level. What the level below does not enter is made once for all its values.
+One formula holds them all: rho (curve (k_f - held k_f0 k_0f') + offset) + left delta + line f f'
++ level, with rho, delta and k_f squared exponentials. What the level below does not enter is
+made once for all its values. The kernels themselves say the same one at a time, and learn.
 """
 
 from collections.abc import Sequence
@@ -10,137 +11,146 @@ from typing import Self, assert_never
 
 import numpy as np
 from jaxtyping import Float
-from numpy.typing import ArrayLike
 
 from seacage.surrogates._autoregressive import AutoregressiveKernel, LinkKernel, StraightKernel
 from seacage.surrogates._bend import RANGE
-from seacage.surrogates._kernels import squared_distance
 from seacage.surrogates._regression import Posterior
+
+EachVoice = Float[np.ndarray, "voice 1 1"]
+EachPoint = Float[np.ndarray, "voice 1 1 n"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Links:
     """Link kernels with the points that each has learned from.
 
+    A voice that has fewer points than the most has some at 0 in the end.
+
     Parameters
     ----------
-    rho_length, delta_length, link_length
-        Over which each varies with the features and with the level below.
+    local_length, link_length
+        Over which rho and delta vary with the features, and k_f with the level below.
     curve, held, offset, left, line, level
-        What the parts of the formula are multiplied by.
-    rho_point, delta_point
-        Features of the points, in these lengths; a level that has fewer points than the most
-        has some at 0 in the end.
-    below_point
-        The level below at the points.
+        Of the formula.
+    local_point
+        The points' features for rho and for delta, as ``_squared_distance`` takes them.
+    link_point
+        The level below at the points, in its length.
+    held_point, line_point
+        The factors of the formula's parts that the points make.
     """
 
-    rho_length: Float[np.ndarray, "voice feature"]
-    delta_length: Float[np.ndarray, "voice feature"]
-    link_length: Float[np.ndarray, " voice"]
-    curve: Float[np.ndarray, " voice"]
-    held: Float[np.ndarray, " voice"]
-    offset: Float[np.ndarray, " voice"]
-    left: Float[np.ndarray, " voice"]
-    line: Float[np.ndarray, " voice"]
-    level: Float[np.ndarray, " voice"]
-    rho_point: Float[np.ndarray, "voice n feature"]
-    delta_point: Float[np.ndarray, "voice n feature"]
-    below_point: Float[np.ndarray, "voice n"]
+    local_length: Float[np.ndarray, "2 voice 1 feature"]
+    link_length: EachVoice
+    curve: EachVoice
+    held: EachVoice
+    offset: EachVoice
+    left: EachVoice
+    line: EachVoice
+    level: EachVoice
+    local_point: Float[np.ndarray, "2 voice column n"]
+    link_point: EachPoint
+    held_point: EachPoint
+    line_point: EachPoint
 
     @classmethod
     def of(cls, posteriors: Sequence[Posterior]) -> Self:
         """Of processes whose kernels are links over the same features."""
-        parts = [_terms(_link(one), one.log_parameters) for one in posteriors]
-        terms = {name: np.array([part[name] for part in parts]) for name in parts[0]}
+        terms = [_terms(one) for one in posteriors]
+        each = {
+            name: np.array([getattr(one, name) for one in terms]).reshape(-1, 1, 1)
+            for name in ("link_length", "curve", "held", "offset", "left", "line", "level")
+        }
+        lengths = [[one.rho_length for one in terms], [one.delta_length for one in terms]]
+        local_length = np.array(lengths)[:, :, None]
         most = max(len(one.x) for one in posteriors)
         points = np.stack([np.pad(one.x, ((0, most - len(one.x)), (0, 0))) for one in posteriors])
-        local = points[..., :-1]
+        below = points[:, None, None, :, -1]
+        link_point = below / each["link_length"][..., None]
         return cls(
-            **terms,
-            rho_point=local / terms["rho_length"][:, None],
-            delta_point=local / terms["delta_length"][:, None],
-            below_point=points[..., -1],
+            **each,
+            local_length=local_length,
+            local_point=_as_columns(points[..., :-1] / local_length),
+            link_point=link_point,
+            held_point=each["held"][..., None] * np.exp(-0.5 * link_point**2),
+            line_point=each["line"][..., None] * below,
         )
 
     def covariance(
         self, x: Float[np.ndarray, "voice row feature"], below: Float[np.ndarray, "voice row node"]
     ) -> Float[np.ndarray, "voice row node n"]:
-        """With the points, where the level below has several values for each row of inputs."""
-        rho = _bell(x / self.rho_length[:, None], self.rho_point)
-        delta = _bell(x / self.delta_length[:, None], self.delta_point)
-        plain = self.left[:, None, None] * delta + self.level[:, None, None]
-
-        length, point = _beside(self.link_length, 3), self.below_point[:, None, None]
-        below = below[..., None]
-        covariance = np.exp(-0.5 * (below / length - point / length) ** 2)
-        to_mean = _beside(self.held, 3) * np.exp(-0.5 * (below / length) ** 2)
-        covariance -= to_mean * np.exp(-0.5 * (point / length) ** 2)
-        covariance *= _beside(self.curve, 3)
-        covariance += _beside(self.offset, 3)
+        """With the points, where the level below has several values for each row of features."""
+        rho, delta = np.exp(-0.5 * _squared_distance(x / self.local_length, self.local_point))
+        link = (below / self.link_length)[..., None]
+        covariance = np.exp(-0.5 * (link - self.link_point) ** 2)
+        covariance -= np.exp(-0.5 * link**2) * self.held_point
+        covariance *= self.curve[..., None]
+        covariance += self.offset[..., None]
         covariance *= rho[:, :, None]
-        covariance += plain[:, :, None]
-        covariance += (_beside(self.line, 3) * below) * point
+        covariance += (self.left * delta + self.level)[:, :, None]
+        covariance += below[..., None] * self.line_point
         return covariance
 
-    def variance(self, below: Float[np.ndarray, "voice row node"]) -> Float[np.ndarray, "_ _ _"]:
+    def variance(
+        self, below: Float[np.ndarray, "voice row node"]
+    ) -> Float[np.ndarray, "voice row node"]:
         """Beforehand, where the level below has these values."""
-        to_mean = np.exp(-((below / _beside(self.link_length, 2)) ** 2))
-        bent = _beside(self.curve, 2) * (1.0 - _beside(self.held, 2) * to_mean)
-        flat = self.offset + self.left + self.level
-        return bent + _beside(flat, 2) + _beside(self.line, 2) * below**2
+        known = self.held * np.exp(-((below / self.link_length) ** 2))
+        bent = self.curve * (1.0 - known) + self.offset
+        return bent + self.left + self.level + self.line * below**2
 
 
-def _bell(
-    x: Float[np.ndarray, "voice row feature"], point: Float[np.ndarray, "voice n feature"]
-) -> Float[np.ndarray, "voice row n"]:
-    return np.exp(-0.5 * squared_distance(x, point))
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Terms:
+    """What the formula holds for one kernel."""
+
+    rho_length: Sequence[float]
+    delta_length: Sequence[float]
+    link_length: float = np.inf
+    curve: float = 0.0
+    held: float = 0.0
+    offset: float = 0.0
+    left: float
+    line: float
+    level: float = 0.0
 
 
-def _beside(values: Float[np.ndarray, " voice"], axes: int) -> np.ndarray:
-    """With so many axes of length 1 behind."""
-    return values.reshape(-1, *[1] * axes)
-
-
-def _link(posterior: Posterior) -> LinkKernel:
-    assert isinstance(posterior.kernel, LinkKernel)
-    return posterior.kernel
-
-
-def _terms(
-    kernel: LinkKernel, log_parameters: Float[np.ndarray, " parameter"]
-) -> dict[str, ArrayLike]:
-    """What the formula holds of one kernel."""
-    size = np.exp(log_parameters)
+def _terms(posterior: Posterior) -> _Terms:
+    kernel, size = posterior.kernel, np.exp(posterior.log_parameters).tolist()
+    assert isinstance(kernel, LinkKernel)
+    features = posterior.x.shape[1] - 1
     match kernel:
-        case AutoregressiveKernel():
-            features = (len(size) - 1 - kernel.linear) // 2 - 1
-            (rho, *rho_length), rest = size[: features + 1], size[features + 1 :]
-            link, delta, delta_length = rest[0], rest[1], rest[2 : features + 2]
-            line = rest[-1] if kernel.linear else 0.0
-            return {
-                "rho_length": rho_length,
-                "delta_length": delta_length,
-                "link_length": link,
-                "curve": rho * link**2 if kernel.linear else rho,
-                "held": float(kernel.linear),
-                "offset": rho * RANGE**2 * kernel.linear,
-                "left": delta,
-                "line": line,
-                "level": line,
-            }
+        case AutoregressiveKernel(linear=linear):
+            rho, link, left = size[0], size[features + 1], size[features + 2]
+            line = size[-1] if linear else 0.0
+            return _Terms(
+                rho_length=size[1 : features + 1],
+                delta_length=size[features + 3 : 2 * features + 3],
+                link_length=link,
+                curve=rho * link**2 if linear else rho,
+                held=float(linear),
+                offset=rho * RANGE**2 if linear else 0.0,
+                left=left,
+                line=line,
+                level=line,
+            )
         case StraightKernel():
-            line, delta, *delta_length = size
-            return {
-                "rho_length": np.ones(len(delta_length)),
-                "delta_length": delta_length,
-                "link_length": np.inf,
-                "curve": 0.0,
-                "held": 0.0,
-                "offset": 0.0,
-                "left": delta,
-                "line": line,
-                "level": 0.0,
-            }
+            line, left, *length = size
+            return _Terms(rho_length=length, delta_length=length, left=left, line=line)
         case _:
             assert_never(kernel)
+
+
+def _as_columns(point: Float[np.ndarray, "2 voice n feature"]) -> np.ndarray:
+    """Points that a product with rows (x, |x|^2, 1) makes squared distances of."""
+    square = np.sum(point**2, axis=-1, keepdims=True)
+    columns = np.concatenate([-2.0 * point, np.ones_like(square), square], axis=-1)
+    return np.ascontiguousarray(np.swapaxes(columns, -1, -2))
+
+
+def _squared_distance(
+    x: Float[np.ndarray, "2 voice row feature"], point: Float[np.ndarray, "2 voice column n"]
+) -> Float[np.ndarray, "2 voice row n"]:
+    square = np.sum(x**2, axis=-1, keepdims=True)
+    squared = np.concatenate([x, square, np.ones_like(square)], axis=-1) @ point
+    return np.maximum(squared, 0.0, out=squared)

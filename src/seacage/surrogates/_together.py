@@ -64,11 +64,11 @@ class Together:
         share = np.zeros((len(levels), len(members)))
         share[owner, np.arange(len(members))] = np.concatenate([level.share for level in levels])
         links = Links.of(members)
-        weights = np.zeros((*links.below_point.shape, 1))
+        weights = np.zeros((len(members), links.local_point.shape[-1], 1))
         for index, member in enumerate(members):
             weights[index, : len(member.weights)] = member.weights
         unit = np.stack([level.inputs.unit for level in levels])[owner, None]
-        length = links.link_length * unit[:, 0, -1]
+        length = links.link_length[:, 0, 0] * unit[:, 0, -1]
         return cls(
             levels=tuple(levels),
             members=members,
