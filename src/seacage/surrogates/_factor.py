@@ -1,6 +1,8 @@
 """A covariance with noise, factorised once for all that is asked of it."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import Self
 
 import numpy as np
@@ -56,11 +58,8 @@ class Cholesky:
 
     def explained(self, cross: Float[np.ndarray, "row n"]) -> Float[np.ndarray, "row 1"]:
         """Of each row's variance, by the cases that it varies with."""
-        from scipy.linalg import get_lapack_funcs
-
         # Called bare: for one row, looking at the arguments first would cost as much again.
-        (trtrs,) = get_lapack_funcs(("trtrs",), (self.lower,))
-        half = trtrs(self.lower, cross.T, lower=True)[0]
+        half = _trtrs()(self.lower, cross.T, lower=True)[0]
         return np.einsum("nr,nr->r", half, half)[:, None]
 
     def precision(self) -> Float[np.ndarray, "n 1"]:
@@ -178,6 +177,15 @@ def _lower(
     whole = covariance.copy()
     whole[np.diag_indices_from(whole)] = diagonal
     return cholesky(whole, lower=True, overwrite_a=True, check_finite=False)
+
+
+@cache
+def _trtrs() -> Callable[..., tuple[np.ndarray, int]]:
+    """LAPACK's solution of triangular systems in float64."""
+    from scipy.linalg import get_lapack_funcs
+
+    (trtrs,) = get_lapack_funcs(("trtrs",), dtype=np.float64)
+    return trtrs
 
 
 def inverse(lower: Float[np.ndarray, "n n"]) -> Float[np.ndarray, "n n"]:

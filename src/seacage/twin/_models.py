@@ -126,10 +126,9 @@ class Models:
         rows = np.flatnonzero(valid)
         inside = self._inside(water.rows(rows))
         blocks = [
-            self._numbers(water.rows(rows[block]), inside[block])
-            for block in np.array_split(np.arange(len(rows)), 1 + len(rows) // BLOCK)
+            self._numbers(water.rows(rows[first : first + BLOCK]), inside[first : first + BLOCK])
+            for first in range(0, max(len(rows), 1), BLOCK)
         ]
-
         numbers = {name: _scattered([block[name] for block in blocks], valid) for name in blocks[0]}
         in_domain = valid.copy()
         in_domain[rows] = inside
