@@ -1,10 +1,12 @@
 """The alarms of one cage: judged at every tick, handled by people, kept on disk."""
 
 import json
+from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass
 from datetime import datetime, timedelta
+from functools import partial
 
 import structlog
 
@@ -34,6 +36,8 @@ from seacage.twin import (
 
 _KEPT_EVERY = timedelta(minutes=1)
 """What the tests remember is kept so often; what happens to an alarm is kept at once."""
+
+_WAITING = 10_000  # lines for a disk that takes none; then the oldest are lost
 
 _log = structlog.get_logger(__name__)
 
@@ -67,7 +71,8 @@ class AlarmDesk:
     """Where a cage's alarms are judged, and where people handle them.
 
     The book and the journal's lines go to the store in one transaction, so that after a crash
-    every alarm stands as it was last said to stand.
+    every alarm stands as it was last said to stand. Lines that the disk did not take are written
+    with those that come after them.
 
     Parameters
     ----------
@@ -83,6 +88,8 @@ class AlarmDesk:
         self._lost = ""
         self._book = self._opened()
         self._kept_at: datetime | None = None
+        self._unkept: deque[Happened] = deque(maxlen=_WAITING)
+        self._failing = False
         self._listeners: list[Callable[[Announcement], None]] = []
 
     @property
@@ -116,6 +123,7 @@ class AlarmDesk:
     def begin_anew(self) -> None:
         """Forget every alarm, as a replay does at its start."""
         self._book, self._kept_at = AlarmBook.new(), None
+        self._unkept.clear()
 
     def look(self, state: TwinState, answered: Answered) -> tuple[Happened, ...]:
         """Judge every alarm once more, by the answer of a tick."""
@@ -127,9 +135,10 @@ class AlarmDesk:
             policy=self.policy,
             trouble=self._trouble(),
         )
-        if happened or self._kept_at is None or answered.t - self._kept_at >= _KEPT_EVERY:
+        due = self._kept_at is None or answered.t - self._kept_at >= _KEPT_EVERY
+        if happened or self._unkept or due:
             self._kept_at = answered.t
-            self._keep(happened).add_done_callback(_mourn)
+            self._keep(happened)
         self._announce(happened)
         return happened
 
@@ -179,7 +188,22 @@ class AlarmDesk:
         return {"history.store": said} if said else {}
 
     def _keep(self, happened: Sequence[Happened]) -> Future[None]:
-        return self._store.keep_alarms(self._cage, book=self._book.to_json(), journal=happened)
+        lines = list[Happened]()
+        while self._unkept:
+            lines.append(self._unkept.popleft())
+        lines += happened
+        kept = self._store.keep_alarms(self._cage, book=self._book.to_json(), journal=lines)
+        kept.add_done_callback(partial(self._settle, lines))
+        return kept
+
+    def _settle(self, lines: Sequence[Happened], kept: Future[None]) -> None:
+        # Called in the thread that writes; a deque takes this without a lock.
+        error = kept.exception()
+        if isinstance(error, StoreError):
+            self._unkept.extend(lines)
+            if not self._failing:
+                _log.error("alarms not kept yet", cage=self._cage, reason=str(error))
+        self._failing = error is not None
 
     def _announce(self, happened: Sequence[Happened]) -> None:
         for one in happened:
@@ -232,8 +256,3 @@ def announced_json(told: Announcement, *, action: str | None = None) -> str:
             "why": happened.why,
         }
     )
-
-
-def _mourn(kept: Future[None]) -> None:
-    if isinstance(error := kept.exception(), StoreError):
-        _log.error("alarms not kept", reason=str(error))

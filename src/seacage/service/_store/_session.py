@@ -19,6 +19,10 @@ class DamageError(StoreError):
     """What is on disk is not what was written."""
 
 
+class FullError(StoreError):
+    """The disk has no room, or takes no bytes at all."""
+
+
 class AbstractSession(ABC):
     """One transaction: statements with ``?`` for each value."""
 
@@ -47,7 +51,8 @@ class AbstractSession(ABC):
 class AbstractDatabase(ABC):
     """A database, open: one writer at a time, and readers beside it.
 
-    Its sessions raise ``StoreError``, and ``DamageError`` where the file itself is at fault.
+    Its sessions raise ``StoreError``: ``DamageError`` where the file itself is at fault, and
+    ``FullError`` where it cannot grow.
     """
 
     lost: str | None = None
@@ -64,6 +69,14 @@ class AbstractDatabase(ABC):
     @abstractmethod
     def renew(self, error: DamageError) -> bool:
         """Move a damaged database aside and begin a new one; False where that cannot be."""
+
+    def hold_reserve(self) -> None:
+        """Hold room for what must be written when there is no other; ``FullError`` without it."""
+        return  # a server sees to its own disk
+
+    def give_up_reserve(self) -> None:
+        """Leave that room to what is written next."""
+        return
 
     @abstractmethod
     def close(self) -> None:

@@ -9,12 +9,14 @@ from functools import partial
 from pathlib import Path
 
 from seacage.service._store._pool import Pool
+from seacage.service._store._reserve import Reserve
 from seacage.service._store._rows import Row
 from seacage.service._store._session import (
     AbstractDatabase,
     AbstractSession,
     Answer,
     DamageError,
+    FullError,
     StoreError,
 )
 from seacage.service._store._tables import tables
@@ -31,6 +33,13 @@ _INSERT = "INSERT INTO sample VALUES (?, ?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHIN
 _HEADER = b"SQLite format 3\0"
 _VERSION = 1
 _DAMAGED = {sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB}
+_FULL = {
+    sqlite3.SQLITE_FULL,
+    # So speaks a disk beyond its quota, one that finds out late, and one that fails.
+    sqlite3.SQLITE_IOERR_WRITE,
+    sqlite3.SQLITE_IOERR_FSYNC,
+    sqlite3.SQLITE_IOERR_SHMSIZE,
+}
 _LOOK_S = 2.0
 
 
@@ -67,7 +76,8 @@ class SqliteDatabase(AbstractDatabase):
     """One file with its write-ahead log.
 
     The writing connection is the only one that writes or checkpoints, which keeps clear of a
-    WAL-reset fault in SQLite before 3.51.3.
+    WAL-reset fault in SQLite before 3.51.3. Beside the file lies another that holds room for
+    alarms while the first is open.
 
     Parameters
     ----------
@@ -84,6 +94,7 @@ class SqliteDatabase(AbstractDatabase):
     def __init__(self, path: Path) -> None:
         self._path = path
         self._readers = Pool(self._reader)
+        self._reserve = Reserve(path.with_name(path.name + "-reserve"))
         try:
             with _said(path, "does not open as the store of samples"):
                 self._writer = _opened(path)
@@ -119,8 +130,17 @@ class SqliteDatabase(AbstractDatabase):
         self._begin_anew(error)
         return True
 
+    def hold_reserve(self) -> None:
+        """Hold room beside the file."""
+        self._reserve.hold()
+
+    def give_up_reserve(self) -> None:
+        """Leave that room to the file and its log."""
+        self._reserve.give_up()
+
     def close(self) -> None:
         """Close the readers first: the last to close must be able to checkpoint."""
+        self._reserve.give_up()
         self._readers.close()
         self._writer.close()
 
@@ -168,10 +188,11 @@ def _opened(path: Path) -> sqlite3.Connection:
         connection.execute("PRAGMA journal_mode = WAL")
         connection.execute("PRAGMA synchronous = FULL")
         _look_through(connection)
-        _check_version(connection, path)
+        version = _version(connection, path)
         for table in tables(_WORDS):
             connection.execute(table)
-        connection.execute(f"PRAGMA user_version = {_VERSION}")
+        if version < _VERSION:  # else nothing is written: a full disk must not keep it shut
+            connection.execute(f"PRAGMA user_version = {_VERSION}")
     except BaseException:
         connection.close()
         raise
@@ -205,13 +226,15 @@ def _look_through(connection: sqlite3.Connection) -> None:
         raise DamageError("The store's file is damaged.") from sqlite3.DatabaseError(found[0])
 
 
-def _check_version(connection: sqlite3.Connection, path: Path) -> None:
+def _version(connection: sqlite3.Connection, path: Path) -> int:
+    """Of the tables; refused where it is newer than this seacage."""
     (version,) = connection.execute("PRAGMA user_version").fetchone()
     if version > _VERSION:
         raise StoreError(
             f"{path} was written by a newer seacage (tables of version {version}, known up to "
             f"{_VERSION}). Install that version, or name another file."
         )
+    return version
 
 
 def _moved_aside(path: Path) -> Path:
@@ -236,13 +259,17 @@ def _said(path: Path, what: str) -> Generator[None]:
     try:
         yield
     except (sqlite3.Error, UnicodeDecodeError) as error:
-        kind = DamageError if _damaged(error) else StoreError
-        raise kind(f"{path} {what} ({error}). Check the disk, its space and its rights.") from error
+        raise _kind(error)(
+            f"{path} {what} ({error}). Check the disk, its space and its rights."
+        ) from error
     except OSError as error:
         raise StoreError(f"{path} {what} ({error.strerror}). Check the disk.") from error
 
 
-def _damaged(error: Exception) -> bool:
+def _kind(error: Exception) -> type[StoreError]:
+    code = getattr(error, "sqlite_errorcode", 0)
+    if code in _FULL:
+        return FullError
     # An extended code carries the plain one in its lowest byte.
-    code = getattr(error, "sqlite_errorcode", 0) & 0xFF
-    return code in _DAMAGED or isinstance(error, UnicodeDecodeError)
+    damaged = code & 0xFF in _DAMAGED or isinstance(error, UnicodeDecodeError)
+    return DamageError if damaged else StoreError

@@ -196,6 +196,8 @@ class Store:
     def keep_alarms(self, cage: str, *, book: str, journal: Sequence[Happened]) -> "Future[None]":
         """Keep the book of alarms and what happened to them, both or neither.
 
+        Where the disk is full this goes on, in room that was held for it.
+
         Parameters
         ----------
         cage
@@ -206,7 +208,7 @@ class Store:
             Lines to add.
         """
         lines = tuple(journal)
-        return self._writer.ask(lambda session: keep_alarms(session, cage, book, lines))
+        return self._writer.ask(lambda session: keep_alarms(session, cage, book, lines), vital=True)
 
     def alarm_book(self, cage: str) -> str | None:
         """Read the book that was kept last; None where there was none."""

@@ -9,11 +9,14 @@ from dataclasses import dataclass
 from itertools import groupby
 from typing import Any, TypeVar
 
+import structlog
+
 from seacage.service._store._kept_samples import Append, append_all
 from seacage.service._store._session import (
     AbstractDatabase,
     AbstractSession,
     DamageError,
+    FullError,
     StoreError,
 )
 
@@ -21,6 +24,7 @@ T = TypeVar("T")
 Work = Append | Callable[[AbstractSession], Any]
 
 _CHORE_S = 1.0
+_log = structlog.get_logger(__name__)
 _TRIAL = "INSERT INTO trial VALUES (1, ?) ON CONFLICT (id) DO UPDATE SET t = excluded.t"
 
 
@@ -28,6 +32,7 @@ _TRIAL = "INSERT INTO trial VALUES (1, ?) ON CONFLICT (id) DO UPDATE SET t = exc
 class _Asked:
     work: Work
     done: "Future[Any]"
+    vital: bool
 
 
 class Writer:
@@ -35,6 +40,9 @@ class Writer:
 
     Where a commit fails nobody who asked is answered that it was done. From then on a trial is
     written now and then, so that the fault is known to be over even if nobody dares to send.
+
+    A disk that is full takes nothing but what is vital, in the room that the database held in
+    reserve; all else is taken again when that room is held again.
 
     Parameters
     ----------
@@ -52,17 +60,22 @@ class Writer:
         self._queue: queue.SimpleQueue[_Asked | None] = queue.SimpleQueue()
         self._closing = threading.Lock()
         self._closed = False
+        self._full = False
         self.fault: str | None = None
+        try:
+            database.hold_reserve()
+        except FullError as error:
+            self._note(error)
         self._thread = threading.Thread(target=self._run, name="store", daemon=True)
         self._thread.start()
 
     def append(self, work: Append) -> "Future[tuple[bool, ...]]":
         """Store samples."""
-        return self._ask(work)
+        return self._ask(work, vital=False)
 
-    def ask(self, work: Callable[[AbstractSession], T]) -> "Future[T]":
+    def ask(self, work: Callable[[AbstractSession], T], *, vital: bool = False) -> "Future[T]":
         """Have something done in a transaction; the future resolves after its commit."""
-        return self._ask(work)
+        return self._ask(work, vital=vital)
 
     def close(self) -> None:
         """Finish what was asked, and take nothing more."""
@@ -73,8 +86,8 @@ class Writer:
             self._queue.put(None)
         self._thread.join()
 
-    def _ask(self, work: Work) -> "Future[Any]":
-        asked = _Asked(work, Future())
+    def _ask(self, work: Work, *, vital: bool) -> "Future[Any]":
+        asked = _Asked(work, Future(), vital)
         asked.done.set_running_or_notify_cancel()  # what was asked is done, whoever still waits
         with self._closing:
             if self._closed:
@@ -115,18 +128,41 @@ class Writer:
         return batch, False
 
     def _answer(self, batch: Sequence[_Asked]) -> None:
+        if self._full:
+            batch = self._vital(batch)
+        if not batch:
+            return
         try:
             answers = self._committed([asked.work for asked in batch])
         except BaseException as error:
-            self.fault = str(error)
+            was_full = self._full
+            self._note(error)
+            if self._full and not was_full:
+                self._answer(batch)  # now what is vital alone, in the reserve
+                return
             for asked in batch:
                 asked.done.set_exception(error)
             if not isinstance(error, StoreError):
                 raise
         else:
-            self.fault = None
+            self.fault = self.fault if self._full else None
             for asked, answer in zip(batch, answers, strict=True):
                 asked.done.set_result(answer)
+
+    def _vital(self, batch: Sequence[_Asked]) -> list[_Asked]:
+        """What the reserve is for; the rest is refused."""
+        for asked in batch:
+            if not asked.vital:
+                asked.done.set_exception(FullError(self.fault))
+        return [asked for asked in batch if asked.vital]
+
+    def _note(self, error: BaseException) -> None:
+        self.fault = str(error)
+        if isinstance(error, FullError):
+            self._database.give_up_reserve()
+            if not self._full:
+                self._full = True
+                _log.error("no samples are taken, and alarms from the reserve", reason=str(error))
 
     def _committed(self, works: Sequence[Work]) -> list[Any]:
         try:
@@ -150,11 +186,14 @@ class Writer:
 
     def _see_to_chore(self) -> None:
         try:
+            self._database.hold_reserve()
             with self._database.writing() as session:
                 if self.fault:
                     session.rows(_TRIAL, (time.time_ns() // 1000,))
                 self._chore(session)
         except StoreError as error:
-            self.fault = str(error)
+            self._note(error)
         else:
-            self.fault = None
+            if self._full:
+                _log.info("samples are taken again")
+            self.fault, self._full = None, False
