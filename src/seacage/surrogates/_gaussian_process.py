@@ -165,6 +165,15 @@ class FittedGaussianProcess:
             variance = variance + self._noise(x)
         return self._answer(mean, variance)
 
+    def mean(self, x: Float[np.ndarray, "row feature"]) -> Float[np.ndarray, "row *output"]:
+        """The mean of ``predict`` alone, at a fraction of its cost; all rows are held at once."""
+        x = self._standardised(x, what="mean")
+        means = [
+            member.kernel.covariance(member.log_parameters, x, member.x) @ member.weights
+            for member in self.members
+        ]
+        return self._shaped(self._average(means) + self.centre)
+
     def jacobian(
         self, x: Float[np.ndarray, "row feature"]
     ) -> Float[np.ndarray, "row *output feature"]:

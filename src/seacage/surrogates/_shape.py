@@ -242,9 +242,7 @@ class FittedShapeGP:
         nodes
             Which, from 0.
         """
-        x = checked_inputs(x, what="predict", width=self.features)
-        if self.symmetry is not None or self.frame == "current":
-            check_turnable(x, what="predict")
+        x = self._checked(x, what="predict")
         if self.symmetry is None:
             mean, variance = self._at_home(x, nodes, noisy=noisy)
             return Prediction(mean=mean, std=np.sqrt(np.swapaxes(variance[:, :3], 1, 2)))
@@ -254,6 +252,15 @@ class FittedShapeGP:
             mean[rows] += share * own.mean
             std[rows] += share * own.std
         return Prediction(mean=mean, std=std)
+
+    def mean_of_nodes(
+        self, x: Float[np.ndarray, "row feature"], nodes: Nodes
+    ) -> Float[np.ndarray, "row node 3"]:
+        """The mean of ``predict_nodes`` alone [m], at a fraction of its cost without symmetry."""
+        if self.symmetry is not None:
+            return self.predict_nodes(x, nodes).mean
+        x = self._checked(x, what="mean_of_nodes")
+        return self._mean(x, self.scores.mean(self._seen(x)).reshape(len(x), self.modes), nodes)
 
     def coordinate(self, node: int, axis: int) -> "FittedCoordinate":
         """One coordinate of one node, answered without the rest of the shape.
@@ -363,11 +370,21 @@ class FittedShapeGP:
         mean[..., :2] = symmetry.centre + (mean[..., :2] - symmetry.centre) @ turn.T
         return Prediction(mean=mean, std=np.sqrt(_turned(moments, turn)))
 
+    def _checked(
+        self, x: Float[np.ndarray, "row feature"], *, what: str
+    ) -> Float[np.ndarray, "_ _"]:
+        x = checked_inputs(x, what=what, width=self.features)
+        if self.symmetry is not None or self.frame == "current":
+            check_turnable(x, what=what)
+        return x
+
+    def _seen(self, x: Float[np.ndarray, "row feature"]) -> Float[np.ndarray, "row seen"]:
+        return seen_along(x) if self.frame == "current" else x
+
     def _at_home(
         self, x: Float[np.ndarray, "row feature"], nodes: Nodes, *, noisy: bool
     ) -> tuple[Float[np.ndarray, "row node 3"], Float[np.ndarray, "row 4 node"]]:
-        seen = seen_along(x) if self.frame == "current" else x
-        score = self.scores.predict(seen, noisy=noisy)
+        score = self.scores.predict(self._seen(x), noisy=noisy)
         rows = (len(x), self.modes)
         mean = self._mean(x, score.mean.reshape(rows), nodes)
         return mean, self.variance(x, score.std.reshape(rows), nodes)

@@ -110,8 +110,8 @@ class Models:
         x = replace(around, current_velocity=velocity).features(self.inputs)
         nodes = np.array([one.node for one in self.cage.depth_sensors], dtype=int)
         lines = [one.bridle for one in self.cage.shackles]
-        depth = -self.shape.predict_nodes(x, nodes).mean[:, :, 2]
-        low = np.hstack([depth, self.bridles.predict(x).mean[:, lines]])
+        depth = -self.shape.mean_of_nodes(x, nodes)[:, :, 2]
+        low = np.hstack([depth, self.bridles.mean(x)[:, lines]])
         east, west, north, south = low.reshape(len(ways), len(water), low.shape[1])
         return np.hypot(east - west, north - south) / (2.0 * STRIDE)
 

@@ -5,6 +5,7 @@ import pytest
 
 from seacage.conventions import InputError
 from seacage.surrogates import GaussianProcess, coverage, rmse
+from seacage.surrogates._ensemble import Ensemble
 from seacage.surrogates._gaussian_process import SHARED_POINTS, condensed
 
 
@@ -105,6 +106,15 @@ def test_one_output_alone_answers_as_within_the_whole() -> None:
     np.testing.assert_allclose(alone.mean, whole.mean[:, 2], rtol=1e-9)
     np.testing.assert_allclose(alone.std, whole.std[:, 2], rtol=1e-9)
     assert fitted.output(2).posterior.factor is fitted.posterior.factor
+
+
+@pytest.mark.parametrize("ensemble", ["always", "never"])
+def test_the_mean_alone_is_that_of_the_whole_answer(ensemble: Ensemble) -> None:
+    x, y = bumps(30, seed=0)
+    new, _ = bumps(9, seed=1)
+    for outputs in (y, np.stack([y, y**2], axis=1)):
+        fitted = GaussianProcess(restarts=0, ensemble=ensemble).fit(x, outputs)
+        np.testing.assert_allclose(fitted.mean(new), fitted.predict(new).mean, rtol=1e-12)
 
 
 def test_an_output_that_does_not_exist_is_refused() -> None:

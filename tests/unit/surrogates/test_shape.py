@@ -182,6 +182,15 @@ def test_one_coordinate_of_a_turned_shape_answers_as_the_whole(turnable: FittedS
     np.testing.assert_allclose(alone.std, whole.std[:, 13, 1], rtol=1e-6)
 
 
+def test_the_mean_of_some_nodes_is_that_of_the_whole_shape(
+    fitted: FittedShapeGP, turnable: FittedShapeGP
+) -> None:
+    nodes = np.array([13, 2])
+    for shape, x in ((fitted, net(7, seed=4)[0]), (turnable, in_waves(7, seed=4)[0])):
+        whole = shape.predict(x).mean[:, nodes]
+        np.testing.assert_allclose(shape.mean_of_nodes(x, nodes), whole, atol=1e-9)
+
+
 def test_a_turned_shape_is_saved_exactly(turnable: FittedShapeGP) -> None:
     x, _ = in_waves(20, seed=2)
     settings, arrays = encode(turnable)
