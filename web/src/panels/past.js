@@ -7,7 +7,7 @@ export const SPANS = [
   ["1 h", HOUR_MS], ["6 h", 6 * HOUR_MS], ["24 h", 24 * HOUR_MS], ["3 days", 72 * HOUR_MS],
   ["7 days", 168 * HOUR_MS], ["30 days", 720 * HOUR_MS],
 ];
-const POINTS = 1500; // of a curve: more than a screen has columns
+const POINTS = 2000; // of a curve: more than a screen has columns
 const MISSED_MS = 0.5 * HOUR_MS; // a longer step of the clock means that something was missed
 const AGAIN_MS = 10_000; // of the wall: a fast replay misses all the time
 
@@ -72,7 +72,7 @@ export class Past {
     const from = encodeURIComponent(new Date(this.start).toISOString());
     const path = `cages/${encodeURIComponent(this.model.cageName)}/history`;
     try {
-      const history = await this.model.call("GET", `${path}?from=${from}&limit=5000`);
+      const history = await this.model.call("GET", `${path}?from=${from}&limit=${POINTS}`);
       if (turn !== this.#asked) return;
       Object.assign(this, { columns: columnsOf(history), fault: null });
     } catch (error) {

@@ -41,7 +41,7 @@ test("the past is asked for once, over the span, and goes on with what comes", a
   model.tell("live", live(100_060));
   assert.equal(model.asked.length, 1);
   assert.equal(model.asked[0][1],
-    `cages/a%20cage/history?from=${encodeURIComponent(at(100_000 - 86_400))}&limit=5000`);
+    `cages/a%20cage/history?from=${encodeURIComponent(at(100_000 - 86_400))}&limit=2000`);
   assert.deepEqual(past.columns.t, [90_000, 99_000, 100_060]);
 });
 

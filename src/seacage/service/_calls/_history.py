@@ -1,6 +1,8 @@
 """A cage's history: a span of any length, told in so many points."""
 
-from datetime import datetime, timedelta
+from collections.abc import Sequence
+from datetime import UTC, datetime, timedelta
+from functools import partial
 
 import numpy as np
 from jaxtyping import Float
@@ -11,13 +13,15 @@ from seacage.service._forms._samples import BUOY_KEYS
 from seacage.service._forms._schemas import History, Measured
 from seacage.service._live._answers import history_of, usable_value
 from seacage.service._live._past import record_of
-from seacage.service._store._aggregates import WIDTHS_S
+from seacage.service._store._aggregates import WIDTHS_S, Aggregate
 from seacage.service._store._store import Store
 from seacage.twin import Twin
 
-READ_LIMIT = 50_000
-"""Readings that one history looks at: a buoy's of a year, where it reads every twelve minutes."""
+READ_LIMIT = 10_000
+"""Readings that one history looks at one by one; of more, spans of minutes are looked at."""
 
+_PAGE = 10_000  # aggregates read at once
+_ORIGIN = datetime(1970, 1, 1, tzinfo=UTC)  # of every span
 _DECIMALS = 3
 _SPEED = "current_speed_m_s"
 
@@ -34,22 +38,24 @@ def history_between(
     """Answer to a buoy's readings in a span, and show what the sensors read.
 
     Where there are more than ``limit`` readings, those stand for the span that tell most of it,
-    as in ``telling``. Intervals are as trained: what the sensors' later readings made of them,
-    the states of the time say, and folding one for each point would take too long.
+    as in ``telling``; of very many it is one reading of each of the minutes, or of the tens of
+    minutes, that tell most. Intervals are as trained: what the sensors' later readings made of
+    them, the states of the time say, and folding one for each point would take too long.
     """
-    said = store.samples(
-        cage, stream=twin.buoy, start=start, end=end, limit=READ_LIMIT, newest=True
-    )
-    read = list({sample.t: sample for sample in said}.values())  # of one time the last counts
-    speed = np.array([_speed(one) for one in read])
-    kept = [read[row] for row in telling(speed, limit)]
-    buoy = record_of(twin.buoy, kept, keys=BUOY_KEYS, origin=twin.origin)
-    since = kept[0].t if kept else start
+    read = store.samples(cage, stream=twin.buoy, start=start, end=end, limit=READ_LIMIT + 1)
+    if len(read) > READ_LIMIT:
+        few = _readings_of_spans(store, cage, read[0], start=start, end=end, limit=limit)
+        thinned = True
+    else:
+        once = list({sample.t: sample for sample in read}.values())  # of one time the last counts
+        few = [once[row] for row in telling(_speeds(once), limit)]
+        thinned = len(few) < len(once)
+    buoy = record_of(twin.buoy, few, keys=BUOY_KEYS, origin=twin.origin)
     measured = {
-        sensor: measured_between(store, cage, sensor, start=since, end=end, limit=limit)
+        sensor: measured_between(store, cage, sensor, start=start, end=end, limit=limit)
         for sensor in twin.sensor_names
     }
-    return history_of(buoy, twin.predict_record(buoy), measured, thinned=len(kept) < len(read))
+    return history_of(buoy, twin.predict_record(buoy), measured, thinned=thinned)
 
 
 def measured_between(
@@ -62,9 +68,9 @@ def measured_between(
     limit: int,
 ) -> Measured:
     """Say what a sensor read: each reading, or where these are too many, the means of spans."""
-    read = store.samples(cage, stream=sensor, start=start, end=end, limit=limit + 1, newest=True)
+    read = store.samples(cage, stream=sensor, start=start, end=end, limit=limit + 1)
     if len(read) > limit:
-        return _means_between(store, cage, read[-1], start=start, end=end, limit=limit)
+        return _means_of_spans(store, cage, read[0], end=end, limit=limit)
     good = [(one.t, value) for one in read if (value := usable_value(one)) is not None]
     return Measured(t=[t for t, _ in good], value=[round(value, _DECIMALS) for _, value in good])
 
@@ -93,37 +99,62 @@ def telling(value: Float[np.ndarray, " reading"], limit: int) -> list[int]:
     return sorted({*ends, *least, *most})
 
 
-def _speed(sample: Sample) -> float:
-    """Of the current [m/s]; NaN where it failed its checks, for no error is a storm."""
-    good = sample.flags.get(_SPEED, Flag.MISSING) not in (Flag.FAIL, Flag.MISSING)
-    return sample.values[_SPEED] if good else np.nan
-
-
-def _means_between(
+def _readings_of_spans(
     store: Store,
     cage: str,
-    newest: Sample,
+    first: Sample,
     *,
     start: datetime | None,
     end: datetime | None,
     limit: int,
+) -> list[Sample]:
+    """Of each of the spans that tell most, a reading as usual as its mean."""
+    some, chosen = max(1, READ_LIMIT // limit), list[Sample]()
+    width, spans = _telling_spans(store, cage, first, key=_SPEED, end=end, limit=limit)
+    for one in spans:
+        begin, over = max(one.t, start or one.t), min(one.t + width, end or one.t + width)
+        read = store.samples(cage, stream=first.stream, start=begin, end=over, limit=some)
+        apart = np.abs(_speeds(read) - one.mean)
+        if np.isfinite(apart).any():  # else what was usable has been retired since
+            chosen.append(read[int(np.nanargmin(apart))])
+    return chosen
+
+
+def _means_of_spans(
+    store: Store, cage: str, first: Sample, *, end: datetime | None, limit: int
 ) -> Measured:
-    """Means of one or of ten minutes, each at its middle; where these too are many, the telling."""
-    stream, key = newest.stream, next(iter(newest.values))
-    longest = timedelta(seconds=READ_LIMIT * WIDTHS_S[-1])
-    if start is None:
-        start = store.samples(cage, stream=stream, end=end, limit=1)[0].t
-    start = max(start, newest.t - longest)
-    span_s = (newest.t - start).total_seconds()
-    width_s = next((width for width in WIDTHS_S if span_s <= width * limit), WIDTHS_S[-1])
-    found = store.aggregates(
-        cage, stream=stream, key=key, width_s=width_s, start=start, end=end, limit=READ_LIMIT
-    )
-    means = np.array([one.mean for one in found])
-    kept = [found[row] for row in telling(means, limit)]
-    middle = timedelta(seconds=width_s / 2.0)
+    """Means of one or of ten minutes, each at its middle."""
+    key = next(iter(first.values))
+    width, spans = _telling_spans(store, cage, first, key=key, end=end, limit=limit)
     return Measured(
-        t=[one.t + middle for one in kept],
-        value=[round(one.mean, _DECIMALS) for one in kept],
-        width_s=width_s,
+        t=[one.t + width / 2 for one in spans],
+        value=[round(one.mean, _DECIMALS) for one in spans],
+        width_s=int(width.total_seconds()),
+    )
+
+
+def _telling_spans(
+    store: Store, cage: str, first: Sample, *, key: str, end: datetime | None, limit: int
+) -> tuple[timedelta, list[Aggregate]]:
+    """Choose, of the minutes or tens of minutes from a first reading on, those that tell most."""
+    (last,) = store.samples(cage, stream=first.stream, end=end, limit=1, newest=True)
+    length_s = (last.t - first.t).total_seconds()
+    width_s = next((width for width in WIDTHS_S if length_s <= width * limit), WIDTHS_S[-1])
+    width = timedelta(seconds=width_s)
+    since, found = first.t - (first.t - _ORIGIN) % width, list[Aggregate]()
+    read = partial(store.aggregates, cage, stream=first.stream, key=key, width_s=width_s)
+    while page := read(start=since, end=end, limit=_PAGE):
+        found += page
+        since = page[-1].t + width
+    return width, [found[row] for row in telling(np.array([one.mean for one in found]), limit)]
+
+
+def _speeds(samples: Sequence[Sample]) -> Float[np.ndarray, " reading"]:
+    """Of the current [m/s]; NaN where it failed its checks, for no error is a storm."""
+    useless = (Flag.FAIL, Flag.MISSING)
+    return np.array(
+        [
+            np.nan if one.flags.get(_SPEED, Flag.MISSING) in useless else one.values[_SPEED]
+            for one in samples
+        ]
     )

@@ -104,6 +104,59 @@ def test_where_even_these_are_too_many_the_extremes_stay(twin, store):
     assert past.value[-1] == pytest.approx(23.03, abs=0.01)
 
 
+@pytest.fixture
+def few(monkeypatch):
+    """So few readings are looked at one by one that a day and a half are very many."""
+    monkeypatch.setattr("seacage.service._calls._history.READ_LIMIT", 40)
+    monkeypatch.setattr("seacage.service._calls._history._PAGE", 7)
+
+
+@pytest.mark.parametrize("limit", [20, 40])
+def test_of_very_many_readings_none_at_the_beginning_is_lost_and_no_storm(twin, store, few, limit):
+    past = history(twin, store, limit)
+    assert past.thinned
+    assert limit // 2 < len(past.t) <= limit
+    assert (past.t[0], past.t[-1]) == (NOON, NOON + timedelta(minutes=12 * 179))
+    assert NOON + STORM in past.t
+    assert past.t == sorted(past.t)
+    assert all((t - NOON) % timedelta(minutes=12) == timedelta(0) for t in past.t)
+    stormy = past.t.index(NOON + STORM)
+    assert past.current_speed_m_s[stormy] == 0.7
+    whole = [history(twin, store, 10, start=t, end=t + timedelta(seconds=1)) for t in past.t[:3]]
+    assert [one.bridles["bridle-1"].mean[0] for one in whole] == past.bridles["bridle-1"].mean[:3]
+
+
+def test_of_very_many_readings_none_lies_outside_the_span_that_was_asked_for(twin, store, few):
+    start, end = NOON + timedelta(minutes=13), NOON + timedelta(minutes=12 * 100 + 1)
+    past = history(twin, store, 30, start=start, end=end)
+    assert past.thinned
+    assert past.t[0] == NOON + timedelta(minutes=24)
+    assert past.t[-1] == end - timedelta(minutes=1)
+
+
+def test_of_very_many_readings_those_that_failed_stand_for_nothing(twin, store, few):
+    wrong = [
+        Sample(
+            stream="buoy-1",
+            t=NOON + timedelta(minutes=12 * k, seconds=-30),
+            values={"current_speed_m_s": 99.0, "current_to_deg": 90.0},
+            flags={"current_speed_m_s": Flag.FAIL, "current_to_deg": Flag.GOOD},
+        )
+        for k in range(1, 180)
+    ]
+    store.append("ace", wrong, ingested=NOON).result(timeout=10)
+    past = history(twin, store, 20)
+    assert max(past.current_speed_m_s) == 0.7
+    assert NOON + STORM in past.t
+
+
+def test_the_sensors_are_told_from_where_the_span_begins_even_before_the_buoy(twin, store):
+    start = NOON + timedelta(minutes=5)
+    past = history(twin, store, 720, start=start)
+    assert past.measured["depth-1"].t[0] == start
+    assert past.t[0] == NOON + timedelta(minutes=12)
+
+
 def test_an_empty_span_has_no_history(twin, store):
     past = history(twin, store, 10, start=NOON - timedelta(days=2), end=NOON - timedelta(days=1))
     assert (past.t, past.thinned) == ([], False)
