@@ -53,6 +53,14 @@ export const topologyOf = (name, speed) => ({
   stale_after_s: 1800, speed,
 });
 
+export const learned = {
+  inputs: [
+    { key: "current_speed_m_s", most: 0.9 }, { key: "current_to_deg", most: null },
+    { key: "hs_m", most: 3 }, { key: "wave_from_deg", most: null },
+  ],
+  unknown: ["tp_s"],
+};
+
 /** The made-up sea at a time [ms]: a tide that turns, some weather, some noise. */
 export function seaAt(t, strength = 1) {
   const hours = t / 3.6e6;

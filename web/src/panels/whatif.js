@@ -6,57 +6,83 @@ import { write } from "./dom.js";
 import { bearing, beyond, compass, fixed, known, titled } from "./format.js";
 import { icon } from "./icons.js";
 import { highest } from "./now.js";
-import { CHOICES, change, seaNow } from "./sea-wanted.js";
+import { change, choices, introduced, learnedWords, seaNow } from "./sea-wanted.js";
 
 export class WhatIf {
   constructor(holder, model) {
     this.model = model;
-    this.sea = seaNow(null);
-    this.sliders = CHOICES.map((choice) => this.slider(choice));
-    this.usual = make("input", { type: "checkbox", checked: true });
-    this.usual.addEventListener("change", () => this.take({ tp_s: this.usual.checked ? null : 6 }));
-    this.to = dial({ name: "Current towards", kind: "to", says: (d) => `${bearing(d)} ${compass(d)}`,
-      turn: (degrees) => this.take({ current_to_deg: degrees }) });
-    this.from = dial({ name: "Waves from", kind: "from", says: (d) => `${bearing(d)} ${compass(d)}`,
-      turn: (degrees) => this.take({ wave_from_deg: degrees }) });
+    this.aside = make("p", { className: "aside" });
+    this.inputs = make("div", { className: "whatif-sea" });
     this.warning = make("p", { className: "beyond-note", role: "status", hidden: true });
     this.fault = make("p", { className: "dialog-fault", role: "alert", hidden: true });
     this.table = make("tbody");
     this.back = make("button", { type: "button", className: "button main", disabled: true,
       onclick: () => model.travel(null) }, "Back to the sea now");
-    const [speed, height, period] = this.sliders;
-    holder.append(
-      make("p", { className: "aside" }, "Move the current and the waves: the net and the loads answer at once. The twin has learned " +
-        "from seas whose period goes with their height. Nothing here touches the cage."),
-      make("div", { className: "whatif-sea" }, speed.box, this.to.box, height.box, this.from.box,
-        make("div", {}, period.box,
-          make("label", { className: "usual" }, this.usual, " goes with the height"))),
-      this.fault, this.warning,
+    this.anew = make("button", { type: "button", className: "button", disabled: true,
+      onclick: () => this.reset() }, "Start from the sea now");
+    holder.append(this.aside, this.inputs, this.fault, this.warning,
       make("table", { className: "compared" },
         make("caption", { className: "unseen" }, "The sea now and the sea you chose"),
         make("thead", {}, make("tr", {}, ...["Of the cage", "Now", "What if", "Change"]
           .map((head) => make("th", { scope: "col" }, head)))), this.table),
-      make("div", { className: "whatif-buttons" }, this.back,
-        make("button", { type: "button", className: "button", onclick: () => this.reset() }, "Start from the sea now")));
+      make("div", { className: "whatif-buttons" }, this.back, this.anew));
     for (const name of ["view", "live"]) model.on(name, () => this.show());
-    model.on("topology", () => { this.begun = false; });
+    model.on("topology", () => this.learn());
+    this.forget();
+  }
+
+  forget() {
+    Object.assign(this, { kinds: [], shows: [], sea: {}, begun: false });
+    this.inputs.replaceChildren();
+    this.anew.disabled = true;
+    write(this.aside, "Asking the service what this twin has learned.");
     this.fill();
   }
 
-  slider({ key, name, unit, least, most, step, decimals }) {
+  /** Ask what the twin has learned, and offer that alone. */
+  async learn() {
+    this.forget();
+    const { cageName } = this.model;
+    try {
+      const learned = await this.model.call("GET", `cages/${encodeURIComponent(cageName)}/whatif`);
+      if (cageName !== this.model.cageName) return;
+      this.offer(learned);
+      this.say("");
+    } catch (error) {
+      this.say(error.message);
+    }
+  }
+
+  offer(learned) {
+    this.kinds = choices(learned);
+    write(this.aside, introduced(learned));
+    this.shows = [];
+    this.inputs.replaceChildren(...this.kinds.map(({ speed, way }) =>
+      make("div", { className: "whatif-kind" }, this.slider(speed), this.dial(way))));
+    this.anew.disabled = false;
+    this.sea = seaNow(this.kinds, this.model.live?.state.water);
+    this.fill();
+  }
+
+  dial({ key, name, kind }) {
+    const { box, show } = dial({ name, kind, says: (d) => `${bearing(d)} ${compass(d)}`,
+      turn: (degrees) => this.take({ [key]: degrees }) });
+    this.shows.push(() => show(this.sea[key]));
+    return box;
+  }
+
+  slider({ key, name, unit, least, most, step, decimals, learned }) {
     const input = make("input", { type: "range", min: least, max: most, step, id: `whatif-${key}` });
     const words = make("output", { className: "slider-words", htmlFor: input.id });
     input.addEventListener("input", () => this.take({ [key]: Number(input.value) }));
-    const box = make("div", { className: "slider" },
-      make("label", { htmlFor: input.id }, name), words, input);
-    const show = (value) => {
-      input.value = known(value) ? value : least;
-      input.disabled = !known(value);
-      const text = known(value) ? `${fixed(value, decimals)} ${unit}` : "as usual";
+    this.shows.push(() => {
+      input.value = this.sea[key];
+      const text = `${fixed(this.sea[key], decimals)} ${unit}`;
       input.setAttribute("aria-valuetext", text);
       write(words, text);
-    };
-    return { key, box, show };
+    });
+    return make("div", { className: "slider" }, make("label", { htmlFor: input.id }, name), words, input,
+      make("small", {}, learnedWords({ learned, unit, decimals })));
   }
 
   /** Change the sea and ask what it does; the model keeps only the newest question. */
@@ -79,21 +105,18 @@ export class WhatIf {
   }
 
   reset() {
-    this.take(seaNow(this.model.live?.state.water));
+    this.take(seaNow(this.kinds, this.model.live?.state.water));
   }
 
   /** Begin with the sea of now, until the reader has moved something. */
   visible(shown) {
     if (!shown || this.begun) return;
-    this.sea = seaNow(this.model.live?.state.water);
+    this.sea = seaNow(this.kinds, this.model.live?.state.water);
     this.fill();
   }
 
   fill() {
-    for (const { key, show } of this.sliders) show(this.sea[key]);
-    this.usual.checked = this.sea.tp_s === null;
-    this.to.show(this.sea.current_to_deg);
-    this.from.show(this.sea.wave_from_deg);
+    for (const show of this.shows) show();
     this.show();
   }
 

@@ -5,7 +5,7 @@ import { byNeed, tileVerdict } from "../../src/panels/farm-tile.js";
 import { largest, loadRows } from "../../src/panels/load-rows.js";
 import { INNER, OUTER, azimuths, polar, radius } from "../../src/panels/rose-shape.js";
 import { ringsOf, scaleFor } from "../../src/panels/scale.js";
-import { change, seaNow } from "../../src/panels/sea-wanted.js";
+import { change } from "../../src/panels/sea-wanted.js";
 import { highest } from "../../src/panels/now.js";
 
 const near = (a, b) => assert.ok(Math.abs(a - b) < 1e-9, `${a} is not ${b}`);
@@ -68,12 +68,6 @@ test("without valid input a row has no number", () => {
 
 test("the highest load is the one nearest its own capacity", () => {
   assert.equal(highest(state).name, "bridle-1");
-});
-
-test("a what-if begins with the sea of now, within what can be chosen", () => {
-  const sea = seaNow({ current_speed_m_s: 9, current_to_deg: 359.8, hs_m: 1.234, wave_from_deg: 10 });
-  assert.deepEqual(sea, { current_speed_m_s: 1.5, current_to_deg: 0, hs_m: 1.25, tp_s: null, wave_from_deg: 10 });
-  assert.ok(Object.values(seaNow(null)).every((value) => value === null || Number.isFinite(value)));
 });
 
 test("a change has its sign, and none is said where a side is not known", () => {

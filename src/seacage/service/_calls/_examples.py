@@ -191,6 +191,13 @@ SCHEMAS: dict[str, Any] = {
     "History": _HISTORY,
     "InspectionAnswer": _NET | {"waypoints": [_WAYPOINT], "parts": 1, "left_out": 0},
     "InspectionAsked": {"stand_off_m": 2.0, "side": "inside", "pattern": "rows"},
+    "Learned": {
+        "inputs": [
+            {"key": "current_speed_m_s", "most": 1.03},
+            {"key": "current_to_deg", "most": None},
+        ],
+        "unknown": ["hs_m", "tp_s", "wave_from_deg"],
+    },
     "Journal": {
         "lines": [
             {

@@ -344,6 +344,23 @@ class WhatIf(_Asked):
     wave_from_deg: Annotated[float, Field(ge=0.0, le=360.0)] = 0.0
 
 
+class LearnedInput(_Answered):
+    """An input of a twin, and up to where it has learned; null of a direction, which has no end."""
+
+    key: str
+    most: float | None
+
+
+class Learned(_Answered):
+    """What a cage's twin can be asked: the inputs that it was taught with, and how far.
+
+    ``unknown`` are the keys of a what-if that change nothing, for the twin knows nothing of them.
+    """
+
+    inputs: list[LearnedInput]
+    unknown: list[str]
+
+
 class SignIn(_Asked):
     """A token, given once for a session."""
 

@@ -236,9 +236,6 @@ def test_the_period_of_the_waves_is_said_with_their_height(live: Running):
     live.post(buoy(-5) | {"values": buoy()["values"] | waves | {"tp_s": None}})
     state = eventually(live.state, lambda one: one["water"]["tp_s"] is None)
     assert state["water"]["tp_s"] is None
-    asked = {"current_speed_m_s": 0.5, "current_to_deg": 90.0, "hs_m": 1.0}
-    frame = frame_of(live.reader.post("/api/v1/cages/ace/whatif", json=asked))
-    assert frame.state["water"]["tp_s"] == 5.0
 
 
 def test_history_of_a_silent_buoy_is_empty(idle: Running):
