@@ -149,6 +149,38 @@ def test_a_token_that_is_not_known_is_refused_in_words(chromium: Path, live: Run
         assert "does not open the service" in why.inner_text()
 
 
+def test_whoever_signs_in_stays_so_without_the_token_in_any_scripts_reach_until_they_sign_out(
+    chromium: Path, live: Running
+) -> None:
+    token = live.service.tokens.mint(["read", "ack"], keep=False, name="Night shift")
+    with opened_browser(chromium, webgl=False) as watched:
+        page = watched.page
+        page.goto(f"{live.address}/#token={token}")
+        watched.until("document.body.dataset.connection == 'live'")
+        for store in ("localStorage", "sessionStorage", "document.cookie", "location.href"):
+            assert token not in page.evaluate(f"JSON.stringify({store})"), store
+        page.reload()
+        watched.until("document.body.dataset.connection == 'live'")
+        assert not watched.complaints
+        page.get_by_role("button", name="Signed in as Night shift").click()
+        assert "May see, handle alarms." in page.get_by_role("dialog").inner_text()
+        page.get_by_role("button", name="Sign out", exact=True).click()
+        page.get_by_label("Token").wait_for(state="visible")
+        assert page.context.cookies() == []
+        assert "kN" not in page.locator("#panels").inner_text()
+
+
+def test_a_session_that_somebody_ends_asks_for_a_token_again(chromium: Path, live: Running) -> None:
+    token = live.service.tokens.mint(["read"], keep=True, name="ada")
+    with opened_browser(chromium, webgl=False) as watched:
+        watched.page.goto(f"{live.address}/#token={token}")
+        watched.until("document.body.dataset.connection == 'live'")
+        live.service.tokens.revoke("ada")
+        why = watched.page.locator("#ask .ask-why")
+        why.wait_for(state="visible")
+        assert "no longer signed in" in why.inner_text()
+
+
 def test_without_any_input_the_page_says_so_and_shows_no_load(
     chromium: Path, tmp_path: Path
 ) -> None:
@@ -182,6 +214,11 @@ def test_the_reader_asks_what_would_be_and_comes_back_to_what_is(
         watched.page.goto(address(live))
         watched.until_drawn()
         watched.page.get_by_role("tab", name="What if").click()
+        chosen = watched.page.locator("#panels .whatif-kind")  # of a twin that knows no waves
+        assert "learned up to" in chosen.inner_text()
+        assert "Waves are not among what this twin has learned" in (
+            watched.page.locator("#panels").inner_text()
+        )
         bottom = "Number(document.querySelector('#net').dataset.bottom)"
         before = watched.page.evaluate(bottom)
         speed = watched.page.get_by_role("slider", name="Current", exact=True)

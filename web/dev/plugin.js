@@ -4,7 +4,7 @@
 import { WebSocketServer } from "ws";
 
 import { alarmsFor, kpi } from "./alarms.js";
-import { seaAt, topologyOf } from "./cage.js";
+import { learned, seaAt, topologyOf } from "./cage.js";
 import { frameOf, historyOf, stateOf } from "./state.js";
 
 const SPEED = 60;
@@ -15,6 +15,9 @@ const cages = new Map([
   { name: "calm", strength: 0.8 }, { name: "storm", strength: 1.15, trouble: "load" },
   { name: "silent", strength: 0.8, trouble: "silent" },
 ].map((one) => [one.name, { ...one, book: alarmsFor(one.trouble, began) }]));
+
+const session = { who: "Night shift", scopes: ["read", "ack"], csrf: "made up", expires: "2100-01-01T00:00:00Z" };
+let signedIn = false;
 
 const live = (one) => frameOf(one, now(), seaAt(now(), one.strength), one.book.brief());
 
@@ -42,6 +45,7 @@ const GET = {
   alarms: (one) => ({ alarms: one.book.alarms }),
   journal: (one) => ({ lines: one.book.lines }),
   kpi: () => kpi,
+  whatif: () => learned,
 };
 
 function answer(method, path, query, body) {
@@ -59,8 +63,24 @@ function answer(method, path, query, body) {
   return method === "GET" ? GET[what]?.(one, span) : null;
 }
 
+async function bodyOf(request) {
+  const chunks = [];
+  for await (const chunk of request) chunks.push(chunk);
+  return chunks.length ? JSON.parse(Buffer.concat(chunks)) : {};
+}
+
+async function signing(request, response) {
+  if (request.method === "POST") signedIn = (await bodyOf(request)).token !== "wrong";
+  const known = signedIn;
+  if (request.method === "DELETE") signedIn = false;
+  response.statusCode = known ? 200 : 401;
+  response.setHeader("Content-Type", "application/json");
+  response.end(JSON.stringify(known ? session : { detail: "Unknown." }));
+}
+
 async function serve(request, response, next) {
   const url = new URL(request.url, "http://fake");
+  if (url.pathname === "/session") return signing(request, response);
   if (!url.pathname.startsWith("/api/v1/")) return next();
   const send = (status, content) => {
     response.statusCode = status;
@@ -68,10 +88,8 @@ async function serve(request, response, next) {
       ? "application/vnd.seacage.frame" : "application/json");
     response.end(content instanceof ArrayBuffer ? Buffer.from(content) : JSON.stringify(content));
   };
-  if (request.headers.authorization === "Bearer wrong") return send(401, { detail: "Unknown." });
-  const chunks = [];
-  for await (const chunk of request) chunks.push(chunk);
-  const body = chunks.length ? JSON.parse(Buffer.concat(chunks)) : {};
+  if (!signedIn) return send(401, { detail: "Unknown." });
+  const body = await bodyOf(request);
   const found = answer(request.method, url.pathname.slice(8), url.searchParams, body);
   return found ? send(200, found) : send(404, { detail: "There is nothing here." });
 }
@@ -84,7 +102,7 @@ function listen(server) {
     sockets.handleUpgrade(request, socket, head, (client) => {
       const one = cages.get(decodeURIComponent(found[1]));
       client.once("message", (first) => {
-        if (JSON.parse(first).token === "wrong") return client.close(4401);
+        if (!signedIn) return client.close(4401);
         if (!one) return client.close(4404);
         client.send(JSON.stringify(topologyOf(one.name, SPEED)));
         client.send(live(one));

@@ -26,3 +26,5 @@ mountAsk(model);
 mountScene(model, document.getElementById("scene"));
 mountPanels(model);
 model.open();
+// A link with a token, followed where the page is open already, loads nothing by itself.
+addEventListener("hashchange", () => model.open());

@@ -1,19 +1,28 @@
 // What the page knows: the one place that the scene and the panels read and ask.
 
-import { call, Refusal } from "./calls.js";
 import { latestOnly } from "./latest.js";
 import { connect } from "./link.js";
-import { dropToken, keepToken, token } from "./token.js";
+import { Refusal } from "./request.js";
+import { begin, call, forget, renewal, resume, signIn, signOut } from "./session.js";
 import { readFrame } from "./wire.js";
 
 const LOOK_ROUND_MS = 10_000;
 const STALE_UNKNOWN_S = 3600;
+const WHY_NOT = {
+  token: "This token does not open the service. It may be mistyped, revoked, or made for an " +
+    "earlier start.",
+  session: "You are no longer signed in: the session was too old, its token was revoked, or the " +
+    "service was started anew.",
+  cookie: "The token is good, but this browser keeps no cookie of the service. Allow it, then " +
+    "try again.",
+};
 
 /**
  * The page's model.
  *
  * Names to listen to: `connection`, `topology`, `view` (what is shown), `live` (what is so now,
- * whatever is shown), `cages`, `selection`, `age` (each second), `trouble` (an Error to tell).
+ * whatever is shown), `cages`, `session` (who is signed in), `selection`, `age` (each second),
+ * `trouble` (an Error to tell).
  */
 export class Model {
   /** "connecting" | "live" | "lost" | "refused" | "asking" */
@@ -49,24 +58,44 @@ export class Model {
     for (const fn of this.#listeners.get(name) ?? []) fn(value);
   }
 
-  /** Begin: find the cages, choose one, and listen. */
-  async open() {
-    if (!token()) return this.#connected("asking");
+  /** Begin: as who is signed in, or with a token. */
+  async open(given = null) {
     this.#connected("connecting");
+    try {
+      this.session = await (given === null ? begin() : signIn(given));
+    } catch (error) {
+      return this.#notBegun(error);
+    }
+    this.#tell("session", this.session);
     try {
       await this.#lookRound();
     } catch (error) {
-      if (error.status === 401 || error.status === 403) return this.#refused("unknown");
-      this.#connected("lost", "The service does not answer; trying again.");
-      return setTimeout(() => this.open(), 3000);
+      if (error.status === 401) return this.#asked(WHY_NOT.cookie);
+      return this.#notBegun(error);
     }
-    clearInterval(this.round);
-    this.round = setInterval(() => this.#lookRound().catch(() => {}), LOOK_ROUND_MS);
-    clearInterval(this.second);
-    this.second = setInterval(() => this.#tell("age", this.view), 1000);
+    this.#repeat();
     const wanted = new URLSearchParams(location.search).get("cage");
     const names = this.cages.map(({ name }) => name);
     return this.cage(names.includes(wanted) ? wanted : names[0]);
+  }
+
+  #notBegun(error) {
+    if (error.status === 401) return this.#asked(error.message && WHY_NOT.token);
+    if (error.status >= 400 && error.status < 500) return this.#asked(error.message);
+    this.#connected("lost", "The service does not answer; trying again.");
+    return setTimeout(() => this.open(), 3000);
+  }
+
+  /** Look round, count the seconds and stay signed in, for as long as the page is open. */
+  #repeat() {
+    this.#rest();
+    this.round = setInterval(() => this.#lookRound().catch(() => {}), LOOK_ROUND_MS);
+    this.second = setInterval(() => this.#tell("age", this.view), 1000);
+    this.renewed = setInterval(() => resume().catch(() => {}), renewal());
+  }
+
+  #rest() {
+    for (const one of [this.round, this.second, this.renewed]) clearInterval(one);
   }
 
   async #lookRound() {
@@ -77,8 +106,13 @@ export class Model {
 
   /** Use a token that the reader typed. */
   enter(given) {
-    keepToken(given);
-    return this.open();
+    return this.open(given);
+  }
+
+  /** Sign out, and leave nothing of the cage on the page. Rejects with a Refusal. */
+  async leave() {
+    await signOut();
+    location.reload();
   }
 
   /** Show another cage. */
@@ -174,7 +208,7 @@ export class Model {
     try {
       return await call(method, path.replace(/^\//, ""), body);
     } catch (error) {
-      if (error instanceof Refusal && error.status === 401) this.#refused("unknown");
+      if (error instanceof Refusal && error.status === 401) this.#asked(WHY_NOT.session);
       throw error;
     }
   }
@@ -194,17 +228,25 @@ export class Model {
   }
 
   #refused(why) {
-    clearInterval(this.round); // nobody is asked with a token that is no good
+    if (why === "unknown") return this.#asked(WHY_NOT.session);
+    this.#part();
+    if (why === "cage") return this.#connected("refused", "No cage has this name any more.");
+    return this.#connected("refused", "This token may not read this cage. Take one with the " +
+      "scope read.");
+  }
+
+  /** Ask the reader for a token. */
+  #asked(why) {
+    this.#part();
+    forget();
+    return this.#connected("asking", why);
+  }
+
+  /** Ask the service for nothing more. */
+  #part() {
+    this.#rest();
     this.#link?.close();
     this.#link = null;
-    if (why === "cage") return this.#connected("refused", "No cage has this name any more.");
-    if (why === "scope") {
-      return this.#connected("refused", "This token may not read this cage. Take one with the " +
-        "scope read.");
-    }
-    dropToken();
-    return this.#connected("asking", "This token does not open the service. It may have been " +
-      "made for an earlier start.");
   }
 }
 

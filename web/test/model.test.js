@@ -6,10 +6,12 @@ import { beforeEach, mock, test } from "node:test";
 import { topologyOf } from "../dev/cage.js";
 import { encodeFrame } from "../dev/encode.js";
 import { Model, viewOf } from "../src/model.js";
+import { forget } from "../src/session.js";
 
 const topology = { ...topologyOf("calm", 1), topology_id: "one" };
 const nodes = topology.rest_position_m.length;
-let sockets, calls, answers;
+const session = { who: "ada", scopes: ["read"], csrf: "said once", expires: "2100-01-01T00:00:00Z" };
+let sockets, calls, answers, reloaded;
 
 class Socket {
   static CLOSING = 2;
@@ -36,14 +38,14 @@ const frame = (t, flags = 3, state = {}) => encodeFrame({
 beforeEach(() => {
   mock.timers.reset();
   mock.timers.enable({ apis: ["setInterval", "setTimeout"] });
-  [sockets, calls] = [[], []];
-  answers = { cages: { cages: [{ name: "calm" }] } };
-  const store = new Map([["seacage-token", "secret"]]);
+  [sockets, calls, reloaded] = [[], [], 0];
+  answers = { session, cages: { cages: [{ name: "calm" }] } };
+  const store = new Map();
   Object.assign(globalThis, {
     document: { hidden: false, addEventListener() {}, removeEventListener() {} },
-    history: { replaceState() {} },
-    location: { hash: "", search: "", pathname: "/", href: "http://cage.test/" },
-    sessionStorage: {
+    history: { replaceState() { location.hash = ""; } },
+    location: { hash: "#token=secret", search: "", pathname: "/", href: "http://cage.test/", reload() { reloaded += 1; } },
+    localStorage: {
       getItem: (key) => store.get(key) ?? null, setItem: (key, value) => store.set(key, value),
       removeItem: (key) => store.delete(key),
     },
@@ -60,6 +62,7 @@ beforeEach(() => {
       };
     },
   });
+  forget();
 });
 
 async function opened() {
@@ -72,11 +75,53 @@ async function opened() {
   return { model, socket };
 }
 
-test("the token goes in the first message and in no address", async () => {
+test("the token goes to the service once, and in no address", async () => {
   const { socket } = await opened();
-  assert.deepEqual(socket.sent, ['{"token":"secret"}']);
-  assert.ok(!socket.url.includes("secret"));
-  assert.equal(calls[0].headers.Authorization, "Bearer secret");
+  const [asked, ...later] = calls;
+  assert.deepEqual([asked.method, asked.path, asked.body], ["POST", "session", '{"token":"secret"}']);
+  assert.equal(location.hash, "");
+  assert.deepEqual(socket.sent, ['{"token":null}']);
+  assert.ok(!JSON.stringify([later, socket]).includes("secret"));
+});
+
+test("a page that is loaded again goes on with its cookie", async () => {
+  localStorage.setItem("seacage-signed-in", "yes");
+  location.hash = "";
+  const { model } = await opened();
+  assert.deepEqual([calls[0].method, calls[0].path], ["GET", "session"]);
+  assert.equal(model.session.who, "ada");
+});
+
+test("a write repeats what the session said, a question does not", async () => {
+  const { model } = await opened();
+  answers = { alarms: {} };
+  await model.call("POST", "cages/calm/alarms/a/acknowledge", {});
+  await model.call("GET", "cages/calm/alarms");
+  assert.deepEqual(calls.slice(-2).map(({ headers }) => headers["X-CSRF-Token"]), ["said once", undefined]);
+});
+
+test("where another tab has signed in anew, a write is repeated with what it said", async () => {
+  const { model } = await opened();
+  answers = { session: { ...session, csrf: "another" }, alarms: { status: 403, detail: "No." } };
+  await assert.rejects(model.call("POST", "cages/calm/alarms/a/acknowledge", {}), { status: 403 });
+  assert.deepEqual(calls.slice(-3).map(({ path, headers }) => [path.split("/").at(-1), headers["X-CSRF-Token"]]),
+    [["acknowledge", "said once"], ["session", undefined], ["acknowledge", "another"]]);
+});
+
+test("signing out ends the session and leaves nothing", async () => {
+  const { model } = await opened();
+  await model.leave();
+  const { method, path, headers } = calls.at(-1);
+  assert.deepEqual([method, path, headers["X-CSRF-Token"]], ["DELETE", "session", "said once"]);
+  assert.equal(reloaded, 1);
+  await assert.rejects(model.call("GET", "cages/calm/alarms"), { status: 401 });
+});
+
+test("a page that is open stays signed in", async () => {
+  await opened();
+  const before = calls.length;
+  mock.timers.tick(3600e3);
+  assert.ok(calls.slice(before).some(({ method, path }) => method === "GET" && path === "session"));
 });
 
 test("a frame makes the connection live and is shown", async () => {
@@ -88,35 +133,68 @@ test("a frame makes the connection live and is shown", async () => {
 });
 
 test("without a token the page asks for one and calls nobody", async () => {
-  globalThis.sessionStorage.removeItem("seacage-token");
+  location.hash = "";
   const model = new Model();
   await model.open();
-  assert.equal(model.connection, "asking");
+  assert.deepEqual([model.connection, model.why], ["asking", ""]);
   assert.equal(calls.length + sockets.length, 0);
 });
 
 test("a token that is refused is dropped and asked for again", async () => {
-  answers = { cages: { status: 401, detail: "No." } };
+  answers = { session: { status: 401, detail: "No." } };
   const model = new Model();
   await model.open();
   assert.equal(model.connection, "asking");
   assert.match(model.why, /does not open the service/);
-  assert.equal(globalThis.sessionStorage.getItem("seacage-token"), null);
+  await model.open();
+  assert.equal(calls.length, 1);
 });
 
-test("a token that came too late is not thrown away, but sent again", async () => {
+test("whoever tries too often is told to wait in the service's words", async () => {
+  answers = { session: { status: 429, detail: "Ask again in 3 s." } };
+  const model = new Model();
+  await model.open();
+  assert.deepEqual([model.connection, model.why], ["asking", "Ask again in 3 s."]);
+});
+
+test("a browser that keeps no cookie is told so", async () => {
+  answers = { session, cages: { status: 401, detail: "No." } };
+  const model = new Model();
+  await model.open();
+  assert.equal(model.connection, "asking");
+  assert.match(model.why, /keeps no cookie/);
+});
+
+test("a service that does not answer yet gets the token again", async () => {
+  globalThis.fetch = async () => { throw new Error("nobody there"); };
+  const model = new Model();
+  await model.open();
+  assert.equal(model.connection, "lost");
+  let given;
+  globalThis.fetch = async (path, { body }) => { given = [path, body]; throw new Error("still"); };
+  mock.timers.tick(3000);
+  assert.deepEqual(given, ["session", '{"token":"secret"}']);
+});
+
+test("a session that has ended is told so, and a token asked for", async () => {
+  const { model, socket } = await opened();
+  socket.close(4401);
+  assert.equal(model.connection, "asking");
+  assert.match(model.why, /no longer signed in/);
+});
+
+test("a first message that came too late is sent again", async () => {
   const { model, socket } = await opened();
   socket.close(4408);
   assert.equal(model.connection, "lost");
   mock.timers.tick(1000);
   assert.equal(sockets.length, 2);
   sockets[1].onopen();
-  assert.deepEqual(sockets[1].sent, ['{"token":"secret"}']);
+  assert.deepEqual(sockets[1].sent, ['{"token":null}']);
 });
 
 test("without a token nothing is asked of the service", async () => {
   const model = new Model();
-  globalThis.sessionStorage.removeItem("seacage-token");
   await assert.rejects(model.call("GET", "cages/calm/alarms"), { status: 401 });
   assert.equal(calls.length, 0);
 });

@@ -7,6 +7,7 @@ import { icon } from "./icons.js";
 import { rank, waits } from "./ranks.js";
 import { themeSwitch } from "./theme-switch.js";
 import { judged } from "./verdict.js";
+import { Who } from "./who.js";
 
 const LINKS = {
   live: "Live", connecting: "Connecting", lost: "Connection lost, trying again",
@@ -36,7 +37,7 @@ export class Bar {
     const time = make("div", { className: "bar-time" }, this.clock, this.speed, this.age);
     holder.append(
       make("div", { className: "bar-who" }, make("h1", {}, this.cages), this.origin), this.verdict,
-      time, make("div", { className: "bar-tools" }, this.link, themeSwitch(), help));
+      time, make("div", { className: "bar-tools" }, this.link, themeSwitch(), help, new Who(model).button));
     model.on("topology", () => this.topology());
     for (const name of ["live", "view", "connection", "age"]) model.on(name, () => this.show());
     // On a phone the tabs stop beneath the bar, however high that is.

@@ -21,7 +21,7 @@ class Limits(BaseModel):
     live_clients
         Open live connections.
     session_s
-        How long a signed-in page stays so [s].
+        How long a page stays signed in after it was last open [s].
     origins
         Pages from elsewhere that may open a live connection, as ``https://farm.example``.
     """

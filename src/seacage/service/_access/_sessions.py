@@ -1,13 +1,20 @@
 """Sessions of the page: a cookie that no script can read stands for a token."""
 
+import hmac
+import json
+import os
 import secrets
 from collections import OrderedDict
 from dataclasses import dataclass
 from datetime import datetime, timedelta
+from pathlib import Path
+
+import structlog
 
 from seacage.service._access._tokens import Grant, Tokens, digest
 
 _MOST_SESSIONS = 1000
+_log = structlog.get_logger(__name__)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -30,39 +37,86 @@ class Session:
 
 
 class Sessions:
-    """The sessions of this process: a restart ends them all.
+    """The sessions of a data folder: a service that is started again knows them still.
 
     Parameters
     ----------
     tokens
-        That they stand for.
+        That they stand for; the sessions lie beside them.
     lasting_s
-        How long one lasts [s].
+        How long one lasts after it was begun or renewed [s].
     """
 
     def __init__(self, tokens: Tokens, *, lasting_s: float) -> None:
         self._tokens, self._lasting = tokens, timedelta(seconds=lasting_s)
-        self._open: OrderedDict[str, Session] = OrderedDict()
+        self._path = tokens.folder / "sessions.json"
+        self._open = _read(self._path)
 
     def begin(self, grant: Grant, now: datetime) -> tuple[str, Session]:
         """Open a session; only the hash of its cookie is kept."""
         cookie = secrets.token_urlsafe(32)
-        session = Session(
-            token_sha256=grant.sha256, csrf=secrets.token_urlsafe(32), expires=now + self._lasting
-        )
-        self._open[digest(cookie)] = session
-        if len(self._open) > _MOST_SESSIONS:
-            self._open.popitem(last=False)
-        return cookie, session
+        return cookie, self._opened(cookie, grant.sha256, now)
+
+    def renew(self, cookie: str, now: datetime) -> Session | None:
+        """Let a session last anew; None where it or its token has ended."""
+        found = self.find(cookie, now)
+        return None if found is None else self._opened(cookie, found[0].token_sha256, now)
 
     def find(self, cookie: str, now: datetime) -> tuple[Session, Grant] | None:
         """Find who a cookie stands for; None where it or its token has ended."""
-        session = self._open.get(digest(cookie))
-        if session is None or session.expires <= now:
-            return None
-        grant = self._tokens.kept(session.token_sha256)
-        return None if grant is None else (session, grant)
+        token_sha256, expires = self._open.get(digest(cookie), ("", now))
+        grant = self._tokens.kept(token_sha256) if expires > now else None
+        return None if grant is None else (_session(cookie, token_sha256, expires), grant)
 
     def end(self, cookie: str) -> None:
         """Close a session, if there is one."""
-        self._open.pop(digest(cookie), None)
+        if self._open.pop(digest(cookie), None):
+            self._write()
+
+    def _opened(self, cookie: str, token_sha256: str, now: datetime) -> Session:
+        expires = now + self._lasting
+        self._open[digest(cookie)] = token_sha256, expires
+        self._open.move_to_end(digest(cookie))
+        if len(self._open) > _MOST_SESSIONS:
+            self._open.popitem(last=False)
+        self._write()
+        return _session(cookie, token_sha256, expires)
+
+    def _write(self) -> None:
+        """Replace the file at once; a disk that does not take it costs a session its next start."""
+        kept = {key: [token, end.isoformat()] for key, (token, end) in self._open.items()}
+        fresh = self._path.with_suffix(".new")
+        try:
+            self._path.parent.mkdir(parents=True, exist_ok=True)
+            file = os.open(fresh, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
+            with os.fdopen(file, "w", encoding="utf-8") as stream:
+                json.dump(kept, stream)
+            fresh.replace(self._path)
+        except OSError as error:
+            _log.warning("the sessions are not kept", file=str(self._path), error=str(error))
+
+
+def _session(cookie: str, token_sha256: str, expires: datetime) -> Session:
+    # Made from the cookie, so that no file holds what a write repeats.
+    csrf = hmac.new(cookie.encode(), b"csrf", "sha256").hexdigest()
+    return Session(token_sha256=token_sha256, csrf=csrf, expires=expires)
+
+
+def _read(path: Path) -> OrderedDict[str, tuple[str, datetime]]:
+    """Read the sessions; a file that was damaged costs everybody a token and nothing else."""
+    try:
+        kept = json.loads(path.read_text("utf-8"))
+        found = {key: (str(token), _time(end)) for key, (token, end) in kept.items()}
+    except FileNotFoundError:
+        return OrderedDict()
+    except (OSError, ValueError, TypeError, AttributeError) as error:
+        _log.warning("the sessions cannot be read", file=str(path), error=str(error))
+        return OrderedDict()
+    return OrderedDict(found)
+
+
+def _time(text: str) -> datetime:
+    t = datetime.fromisoformat(text)
+    if t.tzinfo is None:
+        raise ValueError("a time without its zone")
+    return t

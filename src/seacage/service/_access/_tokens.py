@@ -71,6 +71,7 @@ class Tokens:
     """
 
     def __init__(self, folder: Path) -> None:
+        self.folder = folder
         self._path = folder / "tokens.jsonl"
         self._passing: list[Grant] = []
         self._kept: list[Grant] = []

@@ -29,22 +29,19 @@ async def sign_in(request: Request, response: Response, body: SignIn) -> Session
         gate.refuse(source_of(request))
     gate.pace(grant)
     _remember(request, grant)
+    gate.sessions.end(request.cookies.get(COOKIE, ""))
     cookie, session = gate.sessions.begin(grant, datetime.now(UTC))
-    response.set_cookie(
-        COOKIE,
-        cookie,
-        max_age=int(gate.limits.session_s),
-        secure=request.url.scheme == "https",
-        httponly=True,
-        samesite="strict",
-    )
+    _hand_over(request, response, cookie)
     return _said(grant, session)
 
 
 @sessions.get("", responses=REFUSED)
-async def who_am_i(request: Request, cookie: Cookie) -> SessionOut:
-    """Say who is signed in, as a page asks that was loaded again."""
+async def who_am_i(request: Request, response: Response, cookie: Cookie) -> SessionOut:
+    """Say who is signed in, as a page asks that was loaded again; the session lasts anew."""
     session, grant = _session(request, cookie)
+    assert cookie is not None
+    session = gate_of(request).sessions.renew(cookie, datetime.now(UTC)) or session
+    _hand_over(request, response, cookie)
     return _said(grant, session)
 
 
@@ -56,6 +53,17 @@ async def sign_out(request: Request, response: Response, cookie: Cookie, _: Csrf
     check_csrf(request, session)
     gate_of(request).sessions.end(cookie or "")
     response.delete_cookie(COOKIE, httponly=True, samesite="strict")
+
+
+def _hand_over(request: Request, response: Response, cookie: str) -> None:
+    response.set_cookie(
+        COOKIE,
+        cookie,
+        max_age=int(gate_of(request).limits.session_s),
+        secure=request.url.scheme == "https",
+        httponly=True,
+        samesite="strict",
+    )
 
 
 def _session(request: Request, cookie: str | None) -> tuple[Session, Grant]:

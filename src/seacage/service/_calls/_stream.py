@@ -7,6 +7,7 @@ import time
 from fastapi import APIRouter, HTTPException, WebSocket, WebSocketDisconnect
 
 from seacage.service._access._guard import COOKIE, gate_of, source_of
+from seacage.service._access._tokens import Grant
 from seacage.service._live._cage import LiveCage
 
 _FIRST_MESSAGE_S = 5.0
@@ -28,12 +29,12 @@ async def live(socket: WebSocket, cage: str) -> None:
         await socket.close()  # before it is accepted: the browser gets a 403
         return
     await socket.accept()
-    refusal = await _refusal(socket, cage)
+    token, refusal = await _admitted(socket, cage)
     if refusal is not None:
         await socket.close(*refusal)
         return
     one: LiveCage = socket.app.state.service.cages[cage]
-    sending = asyncio.create_task(_send(socket, one))
+    sending = asyncio.create_task(_send(socket, one, token))
     try:
         while True:  # nothing more is asked; this only notices that the client has left
             await socket.receive_text()
@@ -44,12 +45,15 @@ async def live(socket: WebSocket, cage: str) -> None:
         await asyncio.gather(sending, return_exceptions=True)
 
 
-async def _send(socket: WebSocket, one: LiveCage) -> None:
+async def _send(socket: WebSocket, one: LiveCage, token: str | None) -> None:
     known = ""
     shown = socket.app.state.service.metrics.shown.labels(one.name)
     with one.watched() as mailbox:
         while True:
             snapshot = await mailbox.take()
+            if _grant(socket, token) is None:  # revoked, or signed out, since
+                await socket.close(UNKNOWN_TOKEN, "This token, or its session, has ended.")
+                return
             fresh = bool(known)  # the first was made before anybody waited for it
             if one.topology.topology_id != known:
                 known = one.topology.topology_id
@@ -59,22 +63,28 @@ async def _send(socket: WebSocket, one: LiveCage) -> None:
                 shown.observe(time.monotonic() - snapshot.made)
 
 
-async def _refusal(socket: WebSocket, cage: str) -> tuple[int, str] | None:
+async def _admitted(socket: WebSocket, cage: str) -> tuple[str | None, tuple[int, str] | None]:
+    """Hear the token, None where the session's cookie stands for it, and why not to go on."""
     gate, cages = gate_of(socket), socket.app.state.service.cages
     if sum(one.watchers for one in cages.values()) >= gate.limits.live_clients:
-        return TOO_OFTEN, "There are as many live connections as may be. Try again later."
+        return None, (TOO_OFTEN, "There are as many live connections as may be. Try again later.")
     try:
         said, token = await _first_message(socket)
     except TimeoutError:  # a slow machine's page may try again: its token was not even heard
-        return TOO_LATE, f"The first message did not come within {_FIRST_MESSAGE_S:g} s."
-    found = gate.known(token, socket.cookies.get(COOKIE)) if said else None
-    if found is None:
-        return _not_known(socket)
-    if not found[0].allows("read", cage, site=gate.site):
-        return NO_SCOPE, "This token does not have the scope read."
+        return None, (TOO_LATE, f"The first message did not come within {_FIRST_MESSAGE_S:g} s.")
+    grant = _grant(socket, token) if said else None
+    if grant is None:
+        return token, _not_known(socket)
+    if not grant.allows("read", cage, site=gate.site):
+        return token, (NO_SCOPE, "This token does not have the scope read.")
     if cage not in cages:
-        return NO_CAGE, f"No cage is called {cage!r}."[:100]
-    return None
+        return token, (NO_CAGE, f"No cage is called {cage!r}."[:100])
+    return token, None
+
+
+def _grant(socket: WebSocket, token: str | None) -> Grant | None:
+    found = gate_of(socket).known(token, socket.cookies.get(COOKIE))
+    return found and found[0]
 
 
 def _not_known(socket: WebSocket) -> tuple[int, str]:

@@ -27,7 +27,10 @@ def test_a_token_buys_a_cookie_that_no_script_and_no_other_page_can_use(idle, pa
         assert rule in cookie
     assert "Secure" not in cookie, "without TLS a browser would not send it back"
     assert page.get("/api/v1/cages").status_code == 200
-    assert page.get("/session").json() == answer.json()
+    again = page.get("/session")
+    assert again.json() | {"expires": ""} == answer.json() | {"expires": ""}
+    assert again.json()["expires"] > answer.json()["expires"], "whoever looks stays signed in"
+    assert "Max-Age=43200" in again.headers["set-cookie"]
 
 
 def test_behind_tls_the_cookie_stays_there(idle, page):
@@ -58,6 +61,15 @@ def test_signing_out_ends_the_session(idle, page):
     assert page.delete("/session", headers={"X-CSRF-Token": csrf}).status_code == 204
     old = httpx.get(f"{idle.address}/api/v1/cages", cookies={COOKIE: cookie})
     assert old.status_code == 401
+
+
+def test_signing_in_again_ends_the_session_before(idle, page):
+    signed_in(idle, page)
+    cookie = page.cookies[COOKIE]
+    signed_in(idle, page, "read")
+    old = httpx.get(f"{idle.address}/api/v1/cages", cookies={COOKIE: cookie})
+    assert old.status_code == 401
+    assert page.get("/session").json()["scopes"] == ["read"]
 
 
 def test_a_session_opens_no_more_than_its_token(idle, page):

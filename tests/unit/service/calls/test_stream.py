@@ -1,11 +1,13 @@
 import json
 import time
 
+import httpx
 import pytest
 from websockets.exceptions import ConnectionClosedError, InvalidStatus
 from websockets.sync.client import connect
 
 from framed import decoded
+from seacage.service._access._guard import COOKIE
 from serviced import Running, buoy
 
 
@@ -26,6 +28,15 @@ def closed_with(socket):
     with pytest.raises(ConnectionClosedError) as closed:
         socket.recv(timeout=5)
     return closed.value.rcvd.code
+
+
+def closed_at_last(socket):
+    """What it closes with, after whatever else it says."""
+    while True:
+        try:
+            socket.recv(timeout=5)
+        except ConnectionClosedError as closed:
+            return closed.rcvd.code
 
 
 def test_what_never_changes_comes_first_and_then_the_state(idle: Running):
@@ -97,6 +108,45 @@ def test_a_cage_that_is_not_there_is_told_so(idle: Running):
 def test_a_page_from_elsewhere_is_turned_away_at_the_door(idle: Running):
     with pytest.raises(InvalidStatus, match="403"):
         opened(idle, origin="https://elsewhere.example")
+
+
+def signed_in(live: Running):
+    """The headers of a browser whose page has signed in, and how to sign out."""
+    token = live.service.tokens.mint(["read"], keep=False)
+    answer = httpx.post(f"{live.address}/session", json={"token": token})
+    cookie = f"{COOKIE}={answer.cookies[COOKIE]}"
+    return {"Cookie": cookie}, {"Cookie": cookie, "X-CSRF-Token": answer.json()["csrf"]}
+
+
+def test_a_page_that_has_signed_in_says_no_token_and_is_let_in(idle: Running):
+    headers, _ = signed_in(idle)
+    with opened(idle, additional_headers=headers, origin=idle.address) as socket:
+        socket.send('{"token": null}')
+        assert received(socket)["kind"] == "topology"
+
+
+def test_a_cookie_alone_opens_no_live_connection_for_a_page_from_elsewhere(idle: Running):
+    headers, _ = signed_in(idle)
+    with pytest.raises(InvalidStatus, match="403"):
+        opened(idle, additional_headers=headers, origin="https://elsewhere.example")
+
+
+def test_signing_out_ends_the_live_connection(live: Running):
+    headers, out = signed_in(live)
+    with opened(live, additional_headers=headers) as socket:
+        socket.send('{"token": null}')
+        received(socket)
+        assert httpx.delete(f"{live.address}/session", headers=out).status_code == 204
+        assert closed_at_last(socket) == 4401
+
+
+def test_a_token_that_is_revoked_ends_its_live_connections(live: Running):
+    token = live.service.tokens.mint(["read"], keep=True, name="ada")
+    with opened(live) as socket:
+        socket.send(json.dumps({"token": token}))
+        received(socket)
+        live.service.tokens.revoke("ada")
+        assert closed_at_last(socket) == 4401
 
 
 def test_a_client_that_leaves_is_no_longer_counted(live: Running):

@@ -1,6 +1,4 @@
-// The service's calls by HTTP, with the token.
-
-import { token } from "./token.js";
+// Asking the service by HTTP, and its refusals in words.
 
 /** A call was refused or failed; `status` is HTTP's, 0 where nobody answered. */
 export class Refusal extends Error {
@@ -11,24 +9,21 @@ export class Refusal extends Error {
   }
 }
 
-/** Call a path under /api/v1; the answer as JSON, or as bytes where it is a frame. */
-export async function call(method, path, body) {
-  const known = token();
-  if (!known) throw new Refusal(401, "This page has no token.");
-  const headers = { Authorization: `Bearer ${known}` };
-  if (body !== undefined) headers["Content-Type"] = "application/json";
+/** Ask an address of the service; the answer as JSON, or as bytes where it is a frame. */
+export async function request(method, address, { body, headers = {} } = {}) {
+  const kind = body === undefined ? {} : { "Content-Type": "application/json" };
   let answer;
   try {
-    answer = await fetch(`api/v1/${path}`, {
-      method, headers, body: body === undefined ? undefined : JSON.stringify(body),
+    answer = await fetch(address, {
+      method, headers: { ...kind, ...headers }, body: body === undefined ? undefined : JSON.stringify(body),
     });
   } catch {
     throw new Refusal(0, "The service does not answer.");
   }
   if (!answer.ok) throw new Refusal(answer.status, await reason(answer));
-  const kind = answer.headers.get("Content-Type") ?? "";
   if (answer.status === 204) return null;
-  return kind.includes("json") ? answer.json() : answer.arrayBuffer();
+  const said = answer.headers.get("Content-Type") ?? "";
+  return said.includes("json") ? answer.json() : answer.arrayBuffer();
 }
 
 /** Why, in words; a list of faults, as for a malformed body, becomes one sentence. */
