@@ -1,90 +1,27 @@
-"""A service that is killed again and again while it is fed by MQTT and by HTTP at once."""
+"""A service that is killed: while it is fed by MQTT and by HTTP, and with a month on its disk."""
 
 import json
-import os
 import random
-import socket
-import subprocess
 import sys
 import threading
 import time
-from contextlib import contextmanager, suppress
+from contextlib import closing, contextmanager, suppress
 from datetime import UTC, datetime, timedelta
 
 import httpx
 import pytest
 
-import outside
 from brokered import broker, talking
+from killable import served
+from seacage.service._store._place import database_at
 from seacage.service._store._store import open_store
 from seacage.testing import stand_in_twin
 
-pytestmark = [pytest.mark.mosquitto, pytest.mark.timeout(900)]
+pytestmark = pytest.mark.timeout(900)
 
 START = datetime(2020, 2, 1, 12, tzinfo=UTC)
-SEACAGE = [sys.executable, "-c", "from seacage.service import main; main()"]
 TOGETHER = 20  # samples of one request
 ALARM = "domain.input"
-
-
-class Service:
-    """`seacage serve` on a port that stays the same; its admin token outlives it."""
-
-    def __init__(self, folder, *words):
-        with socket.create_server(("127.0.0.1", 0)) as free:
-            self._port = free.getsockname()[1]
-        command = [*SEACAGE, "serve", "--data", folder / "data", "--port", self._port, "--json"]
-        self._command = [str(word) for word in (*command, *words)]
-        self._log = (folder / "log").open("ab")
-        self._process = None
-        self.client = httpx.Client(base_url=f"http://127.0.0.1:{self._port}/api/v1/cages/ace/")
-
-    def start(self):
-        threads = {f"{name}_NUM_THREADS": "1" for name in ("OMP", "OPENBLAS", "MKL")}
-        self._process = subprocess.Popen(
-            self._command, stdout=subprocess.PIPE, stderr=self._log, env=os.environ | threads
-        )
-        said = json.loads(self._process.stdout.readline())
-        if "admin_token" in said:
-            self.client.headers["Authorization"] = f"Bearer {said['admin_token']}"
-        outside.wait_for(self._ask_ready, seconds=60)
-
-    def _ask_ready(self):
-        try:
-            httpx.get(f"http://127.0.0.1:{self._port}/readyz").raise_for_status()
-        except httpx.HTTPError as error:
-            raise OSError("not yet") from error
-
-    def kill(self):
-        self._process.kill()
-        self._process.wait()
-        self._process.stdout.close()
-
-    def close(self):
-        self.client.close()
-        if self._process is not None:
-            self.kill()
-        self._log.close()
-
-    def until(self, call, accept):
-        """What is asked, once it is as it should be."""
-
-        def attempt():
-            if not accept(self.client.get(call).raise_for_status().json()):
-                raise OSError("not yet")
-
-        outside.wait_for(attempt, seconds=60)
-        return self.client.get(call).json()
-
-
-@contextmanager
-def served(*what):
-    one = Service(*what)
-    try:
-        one.start()
-        yield one
-    finally:
-        one.close()
 
 
 @contextmanager
@@ -172,6 +109,7 @@ def stored(place):
         store.close()
 
 
+@pytest.mark.mosquitto
 @pytest.mark.parametrize("kills", [5, pytest.param(25, marks=pytest.mark.slow)])
 def test_a_service_killed_while_it_is_fed_keeps_every_acknowledged_sample_once_and_its_alarms(
     tmp_path, kills
@@ -210,3 +148,54 @@ def test_a_service_killed_while_it_is_fed_keeps_every_acknowledged_sample_once_a
     assert http == list(range(len(http)))
     assert len(http) in {len(acknowledged), len(acknowledged) + TOGETHER}, "one was in flight"
     assert mqtt == list(range(len(said)))
+
+
+A_MONTH_S = 30 * 86_400
+LIVE_AGAIN_S = 30.0
+"""Far above what a quiet machine takes, which docs/service.md says."""
+
+
+@pytest.mark.parametrize("every_s", [60, pytest.param(10, marks=pytest.mark.slow)])
+def test_a_service_with_a_month_on_its_disk_is_soon_live_again(
+    tmp_path, every_s, record_property, capsys
+):
+    twin = stand_in_twin()
+    twin.write(tmp_path / "twin")
+    rows = a_month(tmp_path / "data" / "samples.sqlite", twin, every_s)
+    with served(tmp_path, "--twin", tmp_path / "twin", "--clock", "samples") as service:
+        for number in range(50):  # so that there is a log to recover from
+            water = {"stream": "buoy-1", **reading(number)}
+            water["values"] = {"current_speed_m_s": 0.5, "current_to_deg": 90.0}
+            service.client.post("samples", json={"samples": [water]}).raise_for_status()
+        service.kill()
+        began = time.monotonic()
+        service.start()
+        service.until("state", lambda told: told["valid"])
+        took_s = time.monotonic() - began
+    record_property("live_again_s", took_s)
+    with capsys.disabled():
+        sys.stdout.write(f"live again {took_s:.1f} s after a kill, with {rows:,} samples\n")
+    assert took_s < LIVE_AGAIN_S
+
+
+def a_month(place, twin, every_s):
+    """Put the samples of a month on disk, as if they had come and rested; how many."""
+    with closing(database_at(place)) as database, database.writing() as session:
+        shackles = {one.name for one in twin.cage.shackles}
+        for stream in twin.sensor_names:
+            said = {"tension_kn": [12.0, 1]} if stream in shackles else {"depth_m": [14.0, 1]}
+            fill(session, stream, said, every_s)
+        water = {"current_speed_m_s": [0.5, 1], "current_to_deg": [90.0, 1]}
+        fill(session, twin.buoy, water, every_s)
+        return session.rows("SELECT count(*) FROM sample")[0][0]
+
+
+def fill(session, stream, said, every_s):
+    first = round((START - timedelta(days=30)).timestamp())
+    session.each(
+        "INSERT INTO sample VALUES ('ace', ?, ?, -1, ?, '[]', ?)",
+        [
+            (stream, t * 10**6, json.dumps(said), t * 10**6)
+            for t in range(first, first + A_MONTH_S, every_s)
+        ],
+    )
