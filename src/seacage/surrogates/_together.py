@@ -120,9 +120,9 @@ class Together:
         std: Float[np.ndarray, "row level"],
     ) -> tuple[Float[np.ndarray, "row level"], Float[np.ndarray, "row level"]]:
         node, weight = rule(count)
-        at = self._moments(x, mean.T[..., None] + std.T[..., None] * node)
-        mean, variance = total_moments(*at, weight)
-        return mean.T, variance.T
+        at_nodes = self._moments(x, mean.T[..., None] + std.T[..., None] * node)
+        top_mean, top_variance = total_moments(*at_nodes, weight)
+        return top_mean.T, top_variance.T
 
     def _moments(
         self, x: Float[np.ndarray, "row feature"], below: Float[np.ndarray, "level row node"]
