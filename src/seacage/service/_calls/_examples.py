@@ -127,9 +127,11 @@ _SUMMARY = {
     "worst_severity": 800,
     "worst_title": "Bridle 3 is heavily loaded",
 }
+_STA = "/sta/v1.1"
+_SETS = f"http://127.0.0.1:8000{_STA}"
 _ENTITY: dict[str, Any] = {
     "@iot.id": "ace",
-    "@iot.selfLink": "/sta/v1.1/Things('ace')",
+    "@iot.selfLink": f"{_SETS}/Things('ace')",
     "name": "ace",
     "description": "Net cage ace.",
     "properties": {},
@@ -185,7 +187,11 @@ SCHEMAS: dict[str, Any] = {
     "Cages": {"cages": [_SUMMARY]},
     "ClearanceAnswer": _NET | {"points": [_CLEAR], "path": None},
     "ClearanceAsked": {"frame": "enu", "points_m": [[20.0, 0.0, -5.0]], "below_m": 1.5},
-    "Entities": {"value": [_ENTITY]},
+    "Entities": {
+        "value": [_ENTITY],
+        "@iot.count": 2,
+        "@iot.nextLink": f"{_SETS}/Things?$top=1&$skip=1",
+    },
     "Handling": {"why": "Seen; the boat is on its way."},
     "Health": {"status": "ready"},
     "History": _HISTORY,
@@ -254,7 +260,7 @@ SCHEMAS: dict[str, Any] = {
 }
 """By the name of what is sent or answered."""
 
-_CAGE, _STA = "/api/v1/cages/{cage}", "/sta/v1.1"
+_CAGE = "/api/v1/cages/{cage}"
 
 TEXTS: dict[str, Any] = {
     "/metrics": 'seacage_samples_total{cage="ace",outcome="accepted"} 42.0\n',
@@ -263,8 +269,17 @@ TEXTS: dict[str, Any] = {
     f"{_CAGE}/inspection.geojson": _MAP,
     f"{_CAGE}/shape.geojson": _MAP,
 } | {
-    f"{_STA}/{name}('{{id}}')": _ENTITY | {"@iot.selfLink": f"{_STA}/{name}('ace')"}
-    for name in ("Things", "Locations", "Sensors", "ObservedProperties", "Datastreams")
+    f"{_STA}/{name}": _ENTITY | {"@iot.selfLink": f"{_SETS}/{name.partition('(')[0]}('ace')"}
+    for name in (
+        "Things('{id}')",
+        "Locations('{id}')",
+        "Sensors('{id}')",
+        "ObservedProperties('{id}')",
+        "Datastreams('{id}')",
+        "Datastreams('{id}')/Thing",
+        "Datastreams('{id}')/Sensor",
+        "Datastreams('{id}')/ObservedProperty",
+    )
 }
 """By the path of the call, where the answer has no name of its own."""
 

@@ -1,51 +1,88 @@
 """What was measured, as OGC SensorThings: read only, and without what it does not do."""
 
-import re
-from collections.abc import Callable, Iterator, Mapping
-from datetime import datetime, timedelta
+from collections.abc import Callable
+from datetime import datetime
 from typing import Annotated, Any
+from urllib.parse import quote, urlencode
 
-from fastapi import APIRouter, HTTPException, Path, Query, Request
-from pydantic import BaseModel, TypeAdapter, ValidationError
+from fastapi import APIRouter, Depends, Path, Query, Request
+from pydantic import BaseModel, Field
 
 from seacage.conventions import InputError
-from seacage.records import KEYS, Sample
+from seacage.records import Sample
 from seacage.service._access._guard import gate_of
 from seacage.service._calls._calls import READ, REFUSED, may_read
-from seacage.service._forms._schemas import Reach
-from seacage.service._live._cage import LiveCage
+from seacage.service._calls._things import (
+    OBSERVATIONS,
+    OBSERVED,
+    RELATIONS,
+    ROOT,
+    SETS,
+    Catalogue,
+    Entity,
+    observed,
+)
+from seacage.service._calls._things_asked import (
+    FARTHEST,
+    MOST,
+    Asked,
+    Span,
+    asked,
+    from_or_until,
+    written,
+)
 
-_ROOT = "/sta/v1.1"
-_UNDEFINED = "http://www.opengis.net/def/nil/OGC/0/unknown"
-_TYPE = "http://www.opengis.net/def/observationType/OGC-OM/2.0/OM_Measurement"
-_CONFORMS = "http://www.opengis.net/spec/iot_sensing/1.1/req/datamodel"
-_TERM = re.compile(r"(resultTime|phenomenonTime) (eq|ge|gt|le|lt) (\S+)")
-_TICK = timedelta(microseconds=1)
+_TIMES = ("phenomenonTime", "resultTime")
+_CONFORMS = "http://www.opengis.net/spec/iot_sensing/1.1/req/"
+_KEPT = ("datamodel", *(f"request-data/{one}" for one in ("select", "expand", "top", "skip")))
 
-Entity = dict[str, Any]
+_PLAIN = ":/'()@"  # of a path: what it may hold as it is
 
-things = APIRouter(prefix=_ROOT, tags=["SensorThings"], dependencies=may_read)
+things = APIRouter(prefix=ROOT, tags=["SensorThings"], dependencies=may_read)
 
-Top = Annotated[int, Query(alias="$top", ge=1, le=1000, description="At most so many.")]
-Skip = Annotated[int, Query(alias="$skip", ge=0, le=10_000, description="Leave out the first.")]
+Top = Annotated[int, Query(alias="$top", ge=1, le=MOST, description="At most so many.")]
+Skip = Annotated[int, Query(alias="$skip", ge=0, le=FARTHEST, description="Leave out the first.")]
+Count = Annotated[bool, Query(alias="$count", description="Say how many there are in all.")]
+Select = Annotated[
+    str | None,
+    Query(alias="$select", max_length=300, description="Only these.", examples=["name,id"]),
+]
+Expand = Annotated[
+    str | None,
+    Query(
+        alias="$expand",
+        max_length=500,
+        description="Tell relations in full, each with options of its own in brackets.",
+        examples=["Datastreams($expand=Observations($top=1;$orderby=phenomenonTime desc))"],
+    ),
+]
+Order = Annotated[
+    str | None,
+    Query(
+        alias="$orderby",
+        max_length=60,
+        description="One property, asc or desc; of Observations their time.",
+        examples=["name desc"],
+    ),
+]
 Filter = Annotated[
     str | None,
     Query(
         alias="$filter",
         max_length=300,
-        description="By resultTime or phenomenonTime, terms joined by and.",
+        description="Of Observations alone: by phenomenonTime or resultTime, terms joined by and.",
         examples=["resultTime ge 2018-01-26T00:00:00Z and resultTime lt 2018-01-27T00:00:00Z"],
     ),
 ]
-_ORDER = r"^(resultTime|phenomenonTime)( asc| desc)?$"
-Order = Annotated[str, Query(alias="$orderby", pattern=_ORDER, max_length=30)]
 Id = Annotated[str, Path(max_length=200, examples=["ace:buoy-1:current_speed_m_s"])]
 
 
 class Entities(BaseModel):
-    """A set of entities, as SensorThings says it."""
+    """A set of entities, as SensorThings says it; the links and the count where they belong."""
 
     value: list[Entity]
+    count: int = Field(default=0, alias="@iot.count")
+    next_link: str = Field(default="", alias="@iot.nextLink")
 
 
 class Root(BaseModel):
@@ -55,200 +92,267 @@ class Root(BaseModel):
     serverSettings: dict[str, Any]  # noqa: N815 (the standard's word)
 
 
-def _things(cages: Mapping[str, LiveCage]) -> Iterator[Entity]:
-    for name in cages:
-        yield _entity("Things", name, name=name, description=f"Net cage {name}.", properties={})
+def _all_options(
+    request: Request,
+    top: Top = 100,
+    skip: Skip = 0,
+    count: Count = False,  # noqa: FBT002
+    select: Select = None,
+    expand: Expand = None,
+    order: Order = None,
+    within: Filter = None,
+) -> Asked:
+    texts = {"$top": str(top), "$skip": str(skip), "$count": str(count).lower()}
+    return _asked(request, texts, select=select, expand=expand, orderby=order, filter=within)
 
 
-def _locations(cages: Mapping[str, LiveCage]) -> Iterator[Entity]:
-    for name, live in cages.items():
-        site = live.twin.cage.site
-        if site.latitude is not None and site.longitude is not None:
-            yield _entity(
-                "Locations",
-                name,
-                name=name,
-                description=f"Centre of cage {name}.",
-                encodingType="application/geo+json",
-                location={"type": "Point", "coordinates": [site.longitude, site.latitude]},
+def _options_of_one(request: Request, select: Select = None, expand: Expand = None) -> Asked:
+    return _asked(request, {}, select=select, expand=expand)
+
+
+def _asked(request: Request, texts: dict[str, str], **others: str | None) -> Asked:
+    texts |= {f"${name}": text for name, text in others.items() if text is not None}
+    foreign = [name for name in request.query_params if name.startswith("$") and name not in texts]
+    if foreign:
+        raise InputError(f"{foreign[0]} is not offered here.")
+    return asked(texts)
+
+
+Listing = Annotated[Asked, Depends(_all_options)]
+Telling = Annotated[Asked, Depends(_options_of_one)]
+
+
+class _Answer:
+    """Tells entities as they were asked for.
+
+    Parameters
+    ----------
+    catalogue
+        That they are of.
+    """
+
+    def __init__(self, catalogue: Catalogue) -> None:
+        self._catalogue = catalogue
+        self._left = FARTHEST  # Observations that one answer may still hold
+
+    def page(self, of: str, found: list[Entity], asked: Asked, address: str) -> Entity:
+        """Tell some of the entities that were found, and where the rest is."""
+        if asked.within is not None:
+            raise InputError("$filter: only Observations can be filtered, by their time.")
+        ordered = _ordered(of, found, asked)
+        rest = asked.skip + asked.top
+        said: Entity = {"value": [self.one(of, one, asked) for one in ordered[asked.skip : rest]]}
+        if asked.count:
+            said["@iot.count"] = len(found)
+        if rest < len(found):
+            said["@iot.nextLink"] = _address(address, {**asked.texts, "$skip": str(rest)})
+        return said
+
+    def one(self, of: str, entity: Entity, asked: Asked) -> Entity:
+        """Tell an entity with what is selected of it and what it is expanded by."""
+        said = _selected(of, entity, asked)
+        for name, inner in asked.expand.items():
+            told = self._expanded(of, entity, name, inner)
+            said.pop(f"{name}@iot.navigationLink", None)
+            said |= told
+        return said
+
+    def observations(self, datastream: str, asked: Asked, address: str) -> Entity:
+        """Tell readings of a Datastream's quantity in the order of their times."""
+        if asked.expand:
+            raise InputError("$expand: Observations lead to nothing more.")
+        _selected(OBSERVATIONS, dict.fromkeys(OBSERVED), asked)  # refused where there are none too
+        newest = _newest_first(asked)
+        span, reach = asked.within or (None, None), asked.skip + asked.top
+        read = self._samples(datastream, span, limit=reach + 1, newest=newest)
+        told = self._observed(datastream, read[asked.skip : reach])
+        self._left -= len(told)
+        if self._left < 0:
+            raise InputError(
+                f"One answer holds at most {FARTHEST} Observations. Give a smaller $top."
             )
+        said: Entity = {"value": [_selected(OBSERVATIONS, one, asked) for one in told]}
+        if asked.count:
+            said["@iot.count"] = self._count(datastream, span)
+        if len(read) > reach:
+            said["@iot.nextLink"] = _address(address, _onward(asked, read[:reach], newest=newest))
+        return said
 
+    def _expanded(self, of: str, entity: Entity, name: str, asked: Asked) -> Entity:
+        id, address = entity["@iot.id"], f"{entity['@iot.selfLink']}/{name}"  # noqa: A001
+        if (of, name) == ("Datastreams", OBSERVATIONS):
+            page = self.observations(id, asked, address)
+        elif name not in RELATIONS[of]:
+            raise InputError(f"$expand: {of} lead to no {name!r}. {_there(of)}")
+        else:
+            relation = RELATIONS[of][name]
+            found = self._catalogue.related(of, id, name)
+            if not relation.many:
+                return {name: self.one(relation.to, found[0], asked)}
+            page = self.page(relation.to, found, asked, address)
+        value = page.pop("value")
+        return {name: value} | {f"{name}{key}": one for key, one in page.items()}
 
-def _sensors(cages: Mapping[str, LiveCage]) -> Iterator[Entity]:
-    for name, live in cages.items():
-        for stream in live.streams:
-            yield _entity(
-                "Sensors",
-                f"{name}:{stream}",
-                name=stream,
-                description=f"The stream {stream} of cage {name}.",
-                encodingType="text/plain",
-                metadata=f"Origin: {live.twin.origin}",
+    def _count(self, datastream: str, span: Span) -> int:
+        read = self._samples(datastream, span, limit=FARTHEST + 1, newest=False)
+        if len(read) > FARTHEST:
+            raise InputError(
+                f"$count: there are more than {FARTHEST} samples. Name a shorter time by $filter."
             )
+        return len(self._observed(datastream, read))
 
-
-def _properties(cages: Mapping[str, LiveCage]) -> Iterator[Entity]:
-    carried = {key for live in cages.values() for keys in live.streams.values() for key in keys}
-    for key in sorted(carried):
-        yield _entity(
-            "ObservedProperties",
-            key,
-            name=key,
-            description=KEYS[key].long_name,
-            definition=_UNDEFINED,
+    def _samples(self, datastream: str, span: Span, *, limit: int, newest: bool) -> list[Sample]:
+        """Read a stream's samples in the order that is asked for."""
+        cage, stream, _ = datastream.split(":")
+        read = self._catalogue.cages[cage].store.samples(
+            cage, stream=stream, start=span[0], end=span[1], limit=limit, newest=newest
         )
+        return read[::-1] if newest else read
 
-
-def _datastreams(cages: Mapping[str, LiveCage]) -> Iterator[Entity]:
-    for name, live in cages.items():
-        for stream, keys in live.streams.items():
-            for key in keys:
-                unit = KEYS[key].cf_unit
-                yield _entity(
-                    "Datastreams",
-                    f"{name}:{stream}:{key}",
-                    name=f"{key} of {stream}",
-                    description=f"{KEYS[key].long_name}, read by {stream} of cage {name}.",
-                    observationType=_TYPE,
-                    unitOfMeasurement={"name": unit, "symbol": unit, "definition": _UNDEFINED},
-                ) | _links(
-                    Thing=f"Things('{name}')",
-                    Sensor=f"Sensors('{name}:{stream}')",
-                    ObservedProperty=f"ObservedProperties('{key}')",
-                    Observations=f"Datastreams('{name}:{stream}:{key}')/Observations",
-                )
-
-
-_SETS: Mapping[str, Callable[[Mapping[str, LiveCage]], Iterator[Entity]]] = {
-    "Things": _things,
-    "Locations": _locations,
-    "Sensors": _sensors,
-    "ObservedProperties": _properties,
-    "Datastreams": _datastreams,
-}
+    def _observed(self, datastream: str, samples: list[Sample]) -> list[Entity]:
+        key = datastream.rpartition(":")[2]
+        return [observed(datastream, one) for one in samples if key in one.values]
 
 
 @things.get("", responses=REFUSED)
 async def get_root() -> Root:
-    """Name the sets, and the one class of the standard that is kept.
+    """Name the sets, and what of the standard is kept: its data, to be read.
 
-    There is the data model, to be read. There are no links between all entities, no $expand,
-    no $select, and no writing. Observations are found by their Datastream alone.
+    Observations are found by their Datastream alone, are filtered and ordered by their time, and
+    have no FeatureOfInterest. There is no writing.
     """
     return Root(
-        value=[{"name": name, "url": f"{_ROOT}/{name}"} for name in _SETS],
-        serverSettings={"conformance": [_CONFORMS]},
+        value=[{"name": name, "url": f"{ROOT}/{name}"} for name in SETS],
+        serverSettings={"conformance": [f"{_CONFORMS}{one}" for one in _KEPT]},
     )
 
 
-def _listed(name: str) -> Callable[..., Entities]:
-    def listed(request: Request, top: Top = 100, skip: Skip = 0) -> Entities:
-        found = list(_SETS[name](_readable(request)))
-        return Entities(value=found[skip : skip + top])
+def _listed(name: str) -> Callable[..., Entity]:
+    def listed(request: Request, options: Listing) -> Entity:
+        catalogue = _catalogue(request)
+        address = f"{catalogue.address}{ROOT}/{name}"
+        return _Answer(catalogue).page(name, catalogue.all(name), options, address)
 
     listed.__doc__ = f"List the {name} of all cages that the token may read."
     return listed
 
 
 def _single(name: str) -> Callable[..., Entity]:
-    def single(request: Request, id: Id) -> Entity:  # noqa: A002
-        return _found(name, id, _readable(request))
+    def single(request: Request, id: Id, options: Telling) -> Entity:  # noqa: A002
+        catalogue = _catalogue(request)
+        return _Answer(catalogue).one(name, catalogue.one(name, id), options)
 
     single.__doc__ = f"Say one of the {name}."
     return single
 
 
-for _name in _SETS:
-    things.get(f"/{_name}", responses=REFUSED, operation_id=f"sta_{_name}")(_listed(_name))
+def _leading(name: str, relation: str) -> Callable[..., Entity]:
+    to = RELATIONS[name][relation]
+
+    def many(request: Request, id: Id, options: Listing) -> Entity:  # noqa: A002
+        catalogue = _catalogue(request)
+        address = f"{catalogue.one(name, id)['@iot.selfLink']}/{relation}"
+        found = catalogue.related(name, id, relation)
+        return _Answer(catalogue).page(to.to, found, options, address)
+
+    def single(request: Request, id: Id, options: Telling) -> Entity:  # noqa: A002
+        catalogue = _catalogue(request)
+        catalogue.one(name, id)
+        found = catalogue.related(name, id, relation)
+        return _Answer(catalogue).one(to.to, found[0], options)
+
+    leading = many if to.many else single
+    leading.__doc__ = f"Say what one of the {name} leads to as its {relation}."
+    return leading
+
+
+_PAGED: dict[str, Any] = {"response_model": Entities, "response_model_exclude_unset": True}
+
+for _name in SETS:
+    things.get(f"/{_name}", responses=REFUSED, operation_id=f"sta_{_name}", **_PAGED)(
+        _listed(_name)
+    )
     things.get(f"/{_name}('{{id}}')", responses=READ, operation_id=f"sta_one_of_{_name}")(
         _single(_name)
     )
+    for _relation, _to in RELATIONS[_name].items():
+        things.get(
+            f"/{_name}('{{id}}')/{_relation}",
+            responses=READ,
+            operation_id=f"sta_{_relation}_of_{_name}",
+            **(_PAGED if _to.many else {}),
+        )(_leading(_name, _relation))
 
 
-@things.get("/Datastreams('{id}')/Observations", responses=READ)
-def get_observations(
-    request: Request,
-    id: Id,  # noqa: A002
-    top: Top = 100,
-    skip: Skip = 0,
-    within: Filter = None,
-    order: Order = "resultTime asc",
-) -> Entities:
+@things.get("/Datastreams('{id}')/Observations", responses=READ, **_PAGED)
+def get_observations(request: Request, id: Id, options: Listing) -> Entity:  # noqa: A002
     """Give stored readings of one quantity, raw, with their flags; null where there was none.
 
     ``$skip`` and ``$top`` count the stream's samples, of which some may lack the quantity.
     """
-    cages = _readable(request)
-    _found("Datastreams", id, cages)
-    name, stream, key = id.split(":")
-    start, end = _span(within)
-    samples = cages[name].store.samples(
-        name,
-        stream=stream,
-        start=start,
-        end=end,
-        limit=skip + top,
-        newest=(newest := order.endswith("desc")),
-    )
-    ordered = samples[::-1] if newest else samples
-    return Entities(value=[_observed(id, key, one) for one in ordered[skip:] if key in one.values])
+    catalogue = _catalogue(request)
+    address = f"{catalogue.one('Datastreams', id)['@iot.selfLink']}/{OBSERVATIONS}"
+    return _Answer(catalogue).observations(id, options, address)
 
 
-def _readable(request: Request) -> dict[str, LiveCage]:
-    """The cages that the token may read; the guard knew it a moment ago."""
+def _catalogue(request: Request) -> Catalogue:
+    """What the token may read; the guard knew it a moment ago."""
     gate, cages = gate_of(request), request.app.state.service.cages
     grant = request.state.grant
-    return {n: one for n, one in cages.items() if grant.allows("read", n, site=gate.site)}
+    mine = {n: one for n, one in cages.items() if grant.allows("read", n, site=gate.site)}
+    return Catalogue(cages=mine, address=str(request.base_url).rstrip("/"))
 
 
-def _found(name: str, id: str, cages: Mapping[str, LiveCage]) -> Entity:  # noqa: A002
-    for entity in _SETS[name](cages):
-        if entity["@iot.id"] == id:
-            return entity
-    raise HTTPException(404, f"No {name} are called {id!r}.")
+def _ordered(of: str, found: list[Entity], asked: Asked) -> list[Entity]:
+    if asked.order is None:
+        return found
+    name, descending = asked.order
+    key = _property(name)
+    if any(not isinstance(one.get(key), str) for one in found):
+        raise InputError(f"$orderby: {of} are ordered by a property that is text, not {name!r}.")
+    return sorted(found, key=lambda one: one[key], reverse=descending)
 
 
-def _entity(of: str, id: str, **said: object) -> Entity:  # noqa: A002
-    return {"@iot.id": id, "@iot.selfLink": f"{_ROOT}/{of}('{id}')", **said}
+def _newest_first(asked: Asked) -> bool:
+    name, descending = asked.order or (_TIMES[0], False)
+    if name not in _TIMES:
+        raise InputError(f"$orderby: Observations are ordered by {' or '.join(_TIMES)}.")
+    return descending
 
 
-def _links(**to: str) -> Entity:
-    return {f"{name}@iot.navigationLink": f"{_ROOT}/{path}" for name, path in to.items()}
+def _selected(of: str, entity: Entity, asked: Asked) -> Entity:
+    if not asked.select:
+        return dict(entity)
+    wanted = {_property(name) for name in asked.select}
+    names = wanted | {f"{name}@iot.navigationLink" for name in wanted}
+    said = {name: one for name, one in entity.items() if name in names}
+    strange = wanted - said.keys() - {name.partition("@")[0] for name in said}
+    if strange:
+        raise InputError(f"$select: {of} have no {min(strange)!r}.")
+    return said
 
 
-def _observed(datastream: str, key: str, sample: Sample) -> Entity:
-    t, value = sample.t.isoformat().replace("+00:00", "Z"), sample.values[key]
-    number = "" if sample.seq is None else f".{sample.seq}"
-    return {
-        "@iot.id": f"{datastream}@{t}{number}",
-        "phenomenonTime": t,
-        "resultTime": t,
-        "result": value if abs(value) < float("inf") else None,
-        "resultQuality": int(sample.flags[key]),
-    }
+def _property(name: str) -> str:
+    return f"@iot.{name}" if name in {"id", "selfLink"} else name
 
 
-def _span(within: str | None) -> tuple[datetime | None, datetime | None]:
-    start, end = None, None
-    for term in within.split(" and ") if within else ():
-        match = _TERM.fullmatch(term.strip())
-        if match is None:
-            raise InputError(
-                f"$filter: {term.strip()!r} is not understood. Write e.g. resultTime ge "
-                "2018-01-26T00:00:00Z, terms joined by and."
-            )
-        t, how = _time(match[3]), match[2]
-        if how in {"eq", "ge", "gt"}:
-            low = t + _TICK if how == "gt" else t
-            start = low if start is None else max(start, low)
-        if how in {"eq", "le", "lt"}:
-            high = t if how == "lt" else t + _TICK
-            end = high if end is None else min(end, high)
-    return start, end
+def _there(of: str) -> str:
+    names = [*RELATIONS[of], *([OBSERVATIONS] if of == "Datastreams" else [])]
+    return f"There are {', '.join(names)}."
 
 
-def _time(text: str) -> datetime:
-    try:
-        return TypeAdapter(Reach).validate_python(text)
-    except ValidationError as error:
-        raise InputError(f"$filter: {text!r} is no time with its zone.") from error
+def _onward(asked: Asked, read: list[Sample], *, newest: bool) -> dict[str, str]:
+    """Ask on from the time of the last that was read: so a page far on costs no more than another.
+
+    Of several samples of that time those that were read are left out.
+    """
+    last: datetime = read[-1].t
+    span = from_or_until(asked.within or (None, None), last, newest=newest)
+    known = sum(one.t == last for one in read)
+    return {**asked.texts, "$filter": written(span), "$skip": str(known)}
+
+
+def _address(path: str, texts: dict[str, str]) -> str:
+    usual = {"$skip": "0", "$count": "false"}
+    kept = {name: text for name, text in texts.items() if usual.get(name) != text}
+    return f"{quote(path, safe=_PLAIN)}?{urlencode(kept, safe='$(),=;:/', quote_via=quote)}"

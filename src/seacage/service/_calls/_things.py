@@ -1,0 +1,199 @@
+"""Cages, streams and quantities as the entities of OGC SensorThings, and what joins them."""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from fastapi import HTTPException
+
+from seacage.records import KEYS, Sample
+from seacage.service._live._cage import LiveCage
+
+ROOT = "/sta/v1.1"
+_UNDEFINED = "http://www.opengis.net/def/nil/OGC/0/unknown"
+_TYPE = "http://www.opengis.net/def/observationType/OGC-OM/2.0/OM_Measurement"
+
+Entity = dict[str, Any]
+Cages = Mapping[str, LiveCage]
+
+
+def _things(cages: Cages) -> Iterator[Entity]:
+    for name in cages:
+        yield {"@iot.id": name, "name": name, "description": f"Net cage {name}.", "properties": {}}
+
+
+def _locations(cages: Cages) -> Iterator[Entity]:
+    for name, live in cages.items():
+        site = live.twin.cage.site
+        if site.latitude is not None and site.longitude is not None:
+            yield {
+                "@iot.id": name,
+                "name": name,
+                "description": f"Centre of cage {name}.",
+                "encodingType": "application/geo+json",
+                "location": {"type": "Point", "coordinates": [site.longitude, site.latitude]},
+            }
+
+
+def _sensors(cages: Cages) -> Iterator[Entity]:
+    for name, live in cages.items():
+        for stream in live.streams:
+            yield {
+                "@iot.id": f"{name}:{stream}",
+                "name": stream,
+                "description": f"The stream {stream} of cage {name}.",
+                "encodingType": "text/plain",
+                "metadata": f"Origin: {live.twin.origin}",
+            }
+
+
+def _properties(cages: Cages) -> Iterator[Entity]:
+    carried = {key for live in cages.values() for keys in live.streams.values() for key in keys}
+    for key in sorted(carried):
+        yield {
+            "@iot.id": key,
+            "name": key,
+            "description": KEYS[key].long_name,
+            "definition": _UNDEFINED,
+        }
+
+
+def _datastreams(cages: Cages) -> Iterator[Entity]:
+    for name, live in cages.items():
+        for stream, keys in live.streams.items():
+            for key in keys:
+                unit = KEYS[key].cf_unit
+                yield {
+                    "@iot.id": f"{name}:{stream}:{key}",
+                    "name": f"{key} of {stream}",
+                    "description": f"{KEYS[key].long_name}, read by {stream} of cage {name}.",
+                    "observationType": _TYPE,
+                    "unitOfMeasurement": {"name": unit, "symbol": unit, "definition": _UNDEFINED},
+                }
+
+
+SETS: Mapping[str, Callable[[Cages], Iterator[Entity]]] = {
+    "Things": _things,
+    "Locations": _locations,
+    "Sensors": _sensors,
+    "ObservedProperties": _properties,
+    "Datastreams": _datastreams,
+}
+"""The sets of entities; Observations are found by their Datastream alone."""
+
+OBSERVATIONS = "Observations"
+OBSERVED = ("@iot.id", "phenomenonTime", "resultTime", "result", "resultQuality")
+"""The properties of an Observation."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Relation:
+    """How an entity leads to others.
+
+    Parameters
+    ----------
+    to
+        The set that they are of.
+    many
+        Whether there may be several.
+    joins
+        Whether the id of the one and the id of another belong together.
+    """
+
+    to: str
+    many: bool
+    joins: Callable[[str, str], bool]
+
+
+def _same(one: str, other: str) -> bool:
+    return one == other
+
+
+def _begins(whole: str, part: str) -> bool:
+    return whole.startswith(f"{part}:")
+
+
+def _ends(whole: str, part: str) -> bool:
+    return whole.endswith(f":{part}")
+
+
+def _turned(joins: Callable[[str, str], bool]) -> Callable[[str, str], bool]:
+    return lambda one, other: joins(other, one)
+
+
+# The id of a Datastream is made of those of its Thing, its Sensor and its ObservedProperty.
+RELATIONS: Mapping[str, Mapping[str, Relation]] = {
+    "Things": {
+        "Locations": Relation(to="Locations", many=True, joins=_same),
+        "Datastreams": Relation(to="Datastreams", many=True, joins=_turned(_begins)),
+    },
+    "Locations": {"Things": Relation(to="Things", many=True, joins=_same)},
+    "Sensors": {"Datastreams": Relation(to="Datastreams", many=True, joins=_turned(_begins))},
+    "ObservedProperties": {
+        "Datastreams": Relation(to="Datastreams", many=True, joins=_turned(_ends))
+    },
+    "Datastreams": {
+        "Thing": Relation(to="Things", many=False, joins=_begins),
+        "Sensor": Relation(to="Sensors", many=False, joins=_begins),
+        "ObservedProperty": Relation(to="ObservedProperties", many=False, joins=_ends),
+    },
+}
+"""By set and by the name that the standard gives them."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Catalogue:
+    """All entities that somebody may see.
+
+    Parameters
+    ----------
+    cages
+        Those that the token may read.
+    address
+        Of the service's own root, as the client knows it.
+    """
+
+    cages: Cages
+    address: str
+
+    def all(self, of: str) -> list[Entity]:
+        """List a set, each entity with the links that lead on from it."""
+        return [self._linked(of, entity) for entity in SETS[of](self.cages)]
+
+    def one(self, of: str, id: str) -> Entity:  # noqa: A002 (the standard's word)
+        """Find an entity.
+
+        Raises
+        ------
+        HTTPException
+            404, where there is none.
+        """
+        for entity in SETS[of](self.cages):
+            if entity["@iot.id"] == id:
+                return self._linked(of, entity)
+        raise HTTPException(404, f"No {of} are called {id!r}.")
+
+    def related(self, of: str, id: str, name: str) -> list[Entity]:  # noqa: A002
+        """List what an entity leads to by a relation."""
+        relation = RELATIONS[of][name]
+        return [one for one in self.all(relation.to) if relation.joins(id, one["@iot.id"])]
+
+    def link(self, of: str, id: str) -> str:  # noqa: A002
+        """Say where an entity is."""
+        return f"{self.address}{ROOT}/{of}('{id}')"
+
+    def _linked(self, of: str, entity: Entity) -> Entity:
+        link = self.link(of, entity["@iot.id"])
+        names = [*RELATIONS[of], *([OBSERVATIONS] if of == "Datastreams" else [])]
+        leading = {f"{name}@iot.navigationLink": f"{link}/{name}" for name in names}
+        return {"@iot.id": entity["@iot.id"], "@iot.selfLink": link} | entity | leading
+
+
+def observed(datastream: str, sample: Sample) -> Entity:
+    """Say one reading of a Datastream's quantity, raw; null where it was not a number."""
+    key = datastream.rpartition(":")[2]
+    t, value = sample.t.isoformat().replace("+00:00", "Z"), sample.values[key]
+    number = "" if sample.seq is None else f".{sample.seq}"
+    result = value if abs(value) < float("inf") else None
+    told = (f"{datastream}@{t}{number}", t, t, result, int(sample.flags[key]))
+    return dict(zip(OBSERVED, told, strict=True))
