@@ -163,7 +163,7 @@ def test_whoever_signs_in_stays_so_without_the_token_in_any_scripts_reach_until_
         watched.until("document.body.dataset.connection == 'live'")
         assert not watched.complaints
         page.get_by_role("button", name="Signed in as Night shift").click()
-        assert "May see, handle alarms." in page.get_by_role("dialog").inner_text()
+        assert "May look and handle alarms." in page.get_by_role("dialog").inner_text()
         page.get_by_role("button", name="Sign out", exact=True).click()
         page.get_by_label("Token").wait_for(state="visible")
         assert page.context.cookies() == []

@@ -73,12 +73,27 @@ def test_charts_are_drawn_and_lead_to_the_past(chromium: Path, live: Running) ->
         assert not watched.complaints
 
 
-def test_who_may_only_read_is_told_why_nothing_can_be_acknowledged(
+def test_who_may_only_read_is_told_at_once_why_nothing_can_be_acknowledged(
     chromium: Path, live: Running
 ) -> None:
     beyond_what_was_learned(live)
     with opened_browser(chromium, webgl=False) as watched:
         opened(watched, address(live, "read"))
+        watched.page.keyboard.press("3")
+        button = watched.page.get_by_role("button", name="Acknowledge: ").first
+        button.wait_for(state="visible")
+        assert "scope ack" in watched.page.locator(".denied").inner_text()
+        assert button.get_attribute("aria-disabled") == "true"
+        button.click(force=True)
+        assert watched.page.get_by_role("dialog").count() == 0
+
+
+def test_a_right_that_holds_elsewhere_alone_is_missed_in_words(
+    chromium: Path, live: Running
+) -> None:
+    beyond_what_was_learned(live)
+    with opened_browser(chromium, webgl=False) as watched:
+        opened(watched, address(live, "read", "ack:another"))  # the page cannot tell where that is
         watched.page.keyboard.press("3")
         watched.page.get_by_role("button", name="Acknowledge: ").first.click()
         dialog = watched.page.get_by_role("dialog")

@@ -1,6 +1,7 @@
 // The alarms as the service has them, and what people do with them.
 
 import { waits } from "./ranks.js";
+import { may } from "./rights.js";
 
 const LOOK_MS = 15_000;
 const FORBIDDEN = 403;
@@ -24,7 +25,8 @@ export class AlarmDesk {
   }
 
   forget() {
-    Object.assign(this, { alarms: null, fault: null, denied: false });
+    const denied = !may(this.model.session?.scopes ?? ["ack"], "ack");
+    Object.assign(this, { alarms: null, fault: null, denied });
     this.#seen = null;
     this.#turn += 1; // an answer on its way is of another cage
     this.#tell();

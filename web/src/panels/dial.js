@@ -15,12 +15,12 @@ const MARKS = Array.from({ length: 16 }, (_, k) => 22.5 * k);
  */
 export function dial({ name, kind, says, turn }) {
   const needle = draw("path", { class: `dial-needle ${kind}`, d: kind === "to" ? TO : FROM });
-  const face = draw("svg", { viewBox: "-50 -50 100 100", "aria-hidden": "true" },
+  const face = draw("svg", { viewBox: "-50 -60 100 110", "aria-hidden": "true" },
     draw("circle", { r: 44, class: "dial-face" }),
     ...MARKS.map((degrees) => draw("path", {
       class: "dial-mark", d: degrees % 90 ? "M0-44v3" : "M0-44v6", transform: `rotate(${degrees})`,
     })),
-    draw("text", { class: "dial-north", y: -27 }, "N"), needle);
+    draw("text", { class: "dial-north", y: -53 }, "N"), needle);
   const words = make("output", { className: "dial-words" });
   const slider = make("div", {
     className: "dial", role: "slider", tabIndex: 0, ariaLabel: name, ariaValueMin: "0", ariaValueMax: "359",

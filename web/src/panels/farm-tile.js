@@ -17,6 +17,14 @@ export function tileVerdict({ waiting, worst_severity: severity, worst_title: ti
   return { kind: "well", icon: "well", words: "All well", detail: "" };
 }
 
+/** How many there are, and how many of them are well. */
+export function summed(cages) {
+  const well = cages.filter((cage) => tileVerdict(cage).kind === "well").length;
+  const words = { 0: "none well", [cages.length]: "all well" };
+  if (cages.length === 1) return well ? "1 cage, well" : "1 cage, not well";
+  return `${counted(cages.length, "cage")}, ${words[well] ?? `${well} of them well`}`;
+}
+
 const PLACE = { critical: 0, warning: 1, none: 2, note: 3, beyond: 4, well: 5 };
 
 /** The worst first, then by name. */

@@ -2,8 +2,7 @@
 
 import { make } from "../dom.js";
 import { write } from "./dom.js";
-import { byNeed, tile, tileVerdict } from "./farm-tile.js";
-import { counted } from "./format.js";
+import { byNeed, summed, tile } from "./farm-tile.js";
 import { icon } from "./icons.js";
 
 export class Farm {
@@ -40,8 +39,7 @@ export class Farm {
     this.tiles.replaceChildren(...byNeed(cages).map((cage) =>
       tile(cage, { present: cage.name === cageName, enter: (name) => this.enter(name) })));
     if (kept >= 0) this.tiles.children[kept]?.focus();
-    const well = cages.filter((cage) => tileVerdict(cage).kind === "well").length;
-    write(this.sum, `${counted(cages.length, "cage")}, ${well} of them well`);
+    write(this.sum, summed(cages));
   }
 
   enter(name) {

@@ -1,6 +1,6 @@
 // What a token's scopes let its holder do, in words.
 
-const WORDS = { read: "see", ack: "handle alarms", ingest: "send samples" };
+const WORDS = { read: "look", ack: "handle alarms", ingest: "send samples" };
 
 /** Say in a sentence what the scopes allow; one may hold for a single cage, as `ack:bay`. */
 export function rights(scopes) {
@@ -9,5 +9,9 @@ export function rights(scopes) {
     const [action, where] = scope.split(":");
     return `${WORDS[action] ?? action}${where ? ` at ${where}` : ""}`;
   });
-  return `May ${may.join(", ")}.`;
+  return may.length > 1 ? `May ${may.slice(0, -1).join(", ")} and ${may.at(-1)}.` : `May ${may[0]} only.`;
 }
+
+/** Whether the scopes may let their holder do something here; where, the service alone knows. */
+export const may = (scopes, action) =>
+  scopes.some((scope) => scope === "admin" || scope.split(":")[0] === action);

@@ -32,8 +32,10 @@ function ofLoads(state) {
   if (first) {
     const kind = rank(first.severity);
     const more = alarms.length > 1 ? ` and ${alarms.length - 1} more` : "";
-    const extra = state.in_domain ? "" : " The twin is extrapolating.";
-    return said(kind, kind, counted(alarms.length, "alarm"), `${first.title}${more}.${extra}`);
+    const over = first.active ? "" : ", over by now";
+    const told = state.in_domain || first.id.startsWith("domain.");
+    const extra = told ? "" : " The twin is extrapolating.";
+    return said(kind, kind, counted(alarms.length, "alarm"), `${first.title}${over}${more}.${extra}`);
   }
   if (!state.in_domain) {
     return said("beyond", "beyond", "Extrapolating", beyond(state.reason));

@@ -21,7 +21,7 @@ export class Who {
     this.button = make("button", { type: "button", className: "round", hidden: true,
       onclick: () => this.open() }, icon("who"));
     model.on("session", ({ who, scopes }) => {
-      write(this.name, who);
+      write(this.name, `Token “${who}”`);
       write(this.may, rights(scopes));
       this.button.title = this.button.ariaLabel = `Signed in as ${who}; sign out`;
       this.button.hidden = false;

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { byNeed, tileVerdict } from "../../src/panels/farm-tile.js";
+import { byNeed, summed, tileVerdict } from "../../src/panels/farm-tile.js";
 import { largest, loadRows } from "../../src/panels/load-rows.js";
 import { INNER, OUTER, azimuths, polar, radius } from "../../src/panels/rose-shape.js";
 import { ringsOf, scaleFor } from "../../src/panels/scale.js";
@@ -75,6 +75,13 @@ test("a change has its sign, and none is said where a side is not known", () => 
   assert.equal(change(3, 1, 1), "−2.0");
   assert.equal(change(1, 1.01, 1), "no change");
   assert.equal(change(null, 1, 1), "");
+});
+
+test("a farm is summed up in words", () => {
+  const [well, bad] = [{ waiting: 0, valid: true, in_domain: true }, { waiting: 0, valid: false }];
+  const sums = [[well], [bad], [well, well], [bad, bad], [well, bad, well]].map(summed);
+  assert.deepEqual(sums, ["1 cage, well", "1 cage, not well", "2 cages, all well",
+    "2 cages, none well", "3 cages, 2 of them well"]);
 });
 
 test("the cage in the greatest need comes first on the farm", () => {

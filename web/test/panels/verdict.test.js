@@ -56,6 +56,13 @@ test("beyond what was learned is said, and alarms come first", () => {
   const both = now({ in_domain: false, alarms: [alarm()] });
   assert.equal(both.headline, "1 alarm");
   assert.match(both.detail, /extrapolating/);
+  const said = now({ in_domain: false, alarms: [alarm({ id: "domain.input", title: "Water beyond" })] });
+  assert.equal(said.detail, "Water beyond.");
+});
+
+test("an alarm that went and waits to be seen is not told as if it were still so", () => {
+  const gone = alarm({ active: false, acknowledged: false, title: "Bridle 3 is heavily loaded" });
+  assert.match(now({ alarms: [gone] }).detail, /^Bridle 3 is heavily loaded, over by now\.$/);
 });
 
 test("a lost connection is never well, whatever came last", () => {
