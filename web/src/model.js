@@ -3,19 +3,11 @@
 import { latestOnly } from "./latest.js";
 import { connect } from "./link.js";
 import { Refusal } from "./request.js";
-import { begin, call, forget, renewal, resume, signIn, signOut } from "./session.js";
+import { begin, call, forget, renewal, resume, signIn, signOut, WHY_NOT } from "./session.js";
 import { readFrame } from "./wire.js";
 
 const LOOK_ROUND_MS = 10_000;
 const STALE_UNKNOWN_S = 3600;
-const WHY_NOT = {
-  token: "This token does not open the service. It may be mistyped, revoked, or made for an " +
-    "earlier start.",
-  session: "You are no longer signed in: the session was too old, its token was revoked, or the " +
-    "service was started anew.",
-  cookie: "The token is good, but this browser keeps no cookie of the service. Allow it, then " +
-    "try again.",
-};
 
 /**
  * The page's model.
@@ -80,7 +72,6 @@ export class Model {
   }
 
   #notBegun(error) {
-    if (error.status === 401) return this.#asked(error.message && WHY_NOT.token);
     if (error.status >= 400 && error.status < 500) return this.#asked(error.message);
     this.#connected("lost", "The service does not answer; trying again.");
     return setTimeout(() => this.open(), 3000);

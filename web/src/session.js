@@ -4,34 +4,43 @@
 import { Refusal, request } from "./request.js";
 
 const SIGNED_IN = "seacage-signed-in"; // whether it is worth asking who; it opens nothing
-const FORBIDDEN = 403;
+const [UNKNOWN, FORBIDDEN] = [401, 403];
 const SOONEST_MS = 20_000;
 const LATEST_MS = 3600e3;
+
+/** Why nobody is signed in, in words. */
+export const WHY_NOT = {
+  token: "This token does not open the service. It may be mistyped, revoked, or made for an " +
+    "earlier start.",
+  session: "You are no longer signed in: the session was too old, its token was revoked, or the " +
+    "service was started anew.",
+  cookie: "The token is good, but this browser keeps no cookie of the service. Allow it, then " +
+    "try again.",
+};
 
 let session = null;
 let linked = null; // the token of the address, until the service has answered to it
 
-/** Sign in with the token of the address, or go on with the cookie of before; rejects with 401. */
+/** Sign in with the token of the address, or go on with the cookie of before. */
 export async function begin() {
   linked = fromAddress() ?? linked;
-  if (linked === null && !localStorage.getItem(SIGNED_IN)) {
-    throw new Refusal(401, "");
-  }
-  return linked === null ? resume() : signIn(linked);
+  if (linked !== null) return signIn(linked);
+  if (!localStorage.getItem(SIGNED_IN)) throw new Refusal(UNKNOWN, "");
+  return resume();
 }
 
 /** Give a token for a cookie; says who is signed in. */
 export async function signIn(token) {
   linked = token;
-  return kept(request("POST", "session", { body: { token } }));
+  return kept(request("POST", "session", { body: { token } }), WHY_NOT.token);
 }
 
 /** Ask who is signed in, whose session then lasts anew. */
-export const resume = () => kept(request("GET", "session"));
+export const resume = () => kept(request("GET", "session"), WHY_NOT.session);
 
 /** End the session. */
 export async function signOut() {
-  await request("DELETE", "session", { headers: repeated() });
+  await askedAs("DELETE", "session");
   forget();
 }
 
@@ -42,9 +51,11 @@ export function forget() {
 }
 
 /** Ask for a path under /api/v1 as who is signed in. Rejects with a Refusal. */
-export async function call(method, path, body) {
-  if (!session) throw new Refusal(401, "Nobody is signed in.");
-  const ask = () => request(method, `api/v1/${path}`, { body, headers: method === "GET" ? {} : repeated() });
+export const call = (method, path, body) => askedAs(method, `api/v1/${path}`, body);
+
+async function askedAs(method, address, body) {
+  if (!session) throw new Refusal(UNKNOWN, "Nobody is signed in.");
+  const ask = () => request(method, address, { body, headers: method === "GET" ? {} : repeated() });
   try {
     return await ask();
   } catch (error) {
@@ -65,19 +76,20 @@ async function changed() {
   return (await resume()).csrf !== before;
 }
 
-async function kept(asked) {
+async function kept(asked, why) {
   try {
     session = await asked;
   } catch (error) {
-    if (error.status === 401) forget();
-    throw error;
+    if (error.status !== UNKNOWN) throw error;
+    forget();
+    throw new Refusal(UNKNOWN, why);
   }
   linked = null;
   localStorage.setItem(SIGNED_IN, "yes");
   return session;
 }
 
-const repeated = () => ({ "X-CSRF-Token": session?.csrf ?? "" });
+const repeated = () => ({ "X-CSRF-Token": session.csrf });
 
 /** The token of a link, which is taken out of the address before anybody can copy it. */
 function fromAddress() {

@@ -150,6 +150,16 @@ test("a token that is refused is dropped and asked for again", async () => {
   assert.equal(calls.length, 1);
 });
 
+test("a session that ended while the page was closed is told as such", async () => {
+  localStorage.setItem("seacage-signed-in", "yes");
+  location.hash = "";
+  answers = { session: { status: 401, detail: "No." } };
+  const model = new Model();
+  await model.open();
+  assert.equal(model.connection, "asking");
+  assert.match(model.why, /no longer signed in/);
+});
+
 test("whoever tries too often is told to wait in the service's words", async () => {
   answers = { session: { status: 429, detail: "Ask again in 3 s." } };
   const model = new Model();
