@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Self
 
 import numpy as np
@@ -51,7 +52,7 @@ class Depth:
         return Prediction(mean=-height.mean, std=height.std)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Models:
     """Level 1 of loads and shape, and level 2 of each sensor that has taught.
 
@@ -73,8 +74,6 @@ class Models:
         Level 1 of the node positions [m].
     upper
         Level 2 by sensor, of its readings [N] or [m].
-    together
-        Those of the cage's sensors, in their order; None where there is none.
     """
 
     cage: Cage
@@ -85,11 +84,12 @@ class Models:
     bridles: FittedGaussianProcess
     shape: FittedShapeGP
     upper: Mapping[str, Correction] = field(default_factory=dict[str, Correction])
-    together: Corrections | None = field(init=False, repr=False)
 
-    def __post_init__(self) -> None:
+    @cached_property
+    def together(self) -> Corrections | None:
+        """Level 2 of the cage's sensors, in their order; None where there is none."""
         models = [self.upper[name] for name in self.cage.sensor_names if name in self.upper]
-        object.__setattr__(self, "together", Corrections.of(models) if models else None)
+        return Corrections.of(models) if models else None
 
     def lower(self, sensor: str) -> Predicts:
         """Level 1 of one sensor [N] or [m]."""
