@@ -1,7 +1,7 @@
 """Link kernels side by side: the covariances of many levels with their own points, at once.
 
 One formula holds them all: rho (curve (k_f - held k_f0 k_0f') + offset) + left delta + line f f'
-+ level, with rho, delta and k_f squared exponentials. What the level below does not enter is
++ constant, with rho, delta and k_f squared exponentials. What the level below does not enter is
 made once for all its values. The kernels themselves say the same one at a time, and learn.
 """
 
@@ -16,21 +16,21 @@ from seacage.surrogates._autoregressive import AutoregressiveKernel, LinkKernel,
 from seacage.surrogates._bend import RANGE
 from seacage.surrogates._regression import Posterior
 
-EachVoice = Float[np.ndarray, "voice 1 1"]
-EachPoint = Float[np.ndarray, "voice 1 1 n"]
+EachMember = Float[np.ndarray, "member 1 1"]
+EachPoint = Float[np.ndarray, "member 1 1 n"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Links:
     """Link kernels with the points that each has learned from.
 
-    A voice that has fewer points than the most has some at 0 in the end.
+    A member that has fewer points than the most has some at 0 in the end.
 
     Parameters
     ----------
     local_length, link_length
         Over which rho and delta vary with the features, and k_f with the level below.
-    curve, held, offset, left, line, level
+    curve, held, offset, left, line, constant
         Of the formula.
     local_point
         The points' features for rho and for delta, as ``_squared_distance`` takes them.
@@ -40,15 +40,15 @@ class Links:
         The factors of the formula's parts that the points make.
     """
 
-    local_length: Float[np.ndarray, "2 voice 1 feature"]
-    link_length: EachVoice
-    curve: EachVoice
-    held: EachVoice
-    offset: EachVoice
-    left: EachVoice
-    line: EachVoice
-    level: EachVoice
-    local_point: Float[np.ndarray, "2 voice column n"]
+    local_length: Float[np.ndarray, "2 member 1 feature"]
+    link_length: EachMember
+    curve: EachMember
+    held: EachMember
+    offset: EachMember
+    left: EachMember
+    line: EachMember
+    constant: EachMember
+    local_point: Float[np.ndarray, "2 member column n"]
     link_point: EachPoint
     held_point: EachPoint
     line_point: EachPoint
@@ -59,7 +59,7 @@ class Links:
         terms = [_terms(one) for one in posteriors]
         each = {
             name: np.array([getattr(one, name) for one in terms]).reshape(-1, 1, 1)
-            for name in ("link_length", "curve", "held", "offset", "left", "line", "level")
+            for name in ("link_length", "curve", "held", "offset", "left", "line", "constant")
         }
         lengths = [[one.rho_length for one in terms], [one.delta_length for one in terms]]
         local_length = np.array(lengths)[:, :, None]
@@ -77,8 +77,10 @@ class Links:
         )
 
     def covariance(
-        self, x: Float[np.ndarray, "voice row feature"], below: Float[np.ndarray, "voice row node"]
-    ) -> Float[np.ndarray, "voice row node n"]:
+        self,
+        x: Float[np.ndarray, "member row feature"],
+        below: Float[np.ndarray, "member row node"],
+    ) -> Float[np.ndarray, "member row node n"]:
         """With the points, where the level below has several values for each row of features."""
         rho, delta = np.exp(-0.5 * _squared_distance(x / self.local_length, self.local_point))
         link = (below / self.link_length)[..., None]
@@ -87,17 +89,17 @@ class Links:
         covariance *= self.curve[..., None]
         covariance += self.offset[..., None]
         covariance *= rho[:, :, None]
-        covariance += (self.left * delta + self.level)[:, :, None]
+        covariance += (self.left * delta + self.constant)[:, :, None]
         covariance += below[..., None] * self.line_point
         return covariance
 
     def variance(
-        self, below: Float[np.ndarray, "voice row node"]
-    ) -> Float[np.ndarray, "voice row node"]:
+        self, below: Float[np.ndarray, "member row node"]
+    ) -> Float[np.ndarray, "member row node"]:
         """Beforehand, where the level below has these values."""
         known = self.held * np.exp(-((below / self.link_length) ** 2))
         bent = self.curve * (1.0 - known) + self.offset
-        return bent + self.left + self.level + self.line * below**2
+        return bent + self.left + self.constant + self.line * below**2
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -112,7 +114,7 @@ class _Terms:
     offset: float = 0.0
     left: float
     line: float
-    level: float = 0.0
+    constant: float = 0.0
 
 
 def _terms(posterior: Posterior) -> _Terms:
@@ -132,7 +134,7 @@ def _terms(posterior: Posterior) -> _Terms:
                 offset=rho * RANGE**2 if linear else 0.0,
                 left=left,
                 line=line,
-                level=line,
+                constant=line,
             )
         case StraightKernel():
             line, left, *length = size
@@ -141,7 +143,7 @@ def _terms(posterior: Posterior) -> _Terms:
             assert_never(kernel)
 
 
-def _as_columns(point: Float[np.ndarray, "2 voice n feature"]) -> np.ndarray:
+def _as_columns(point: Float[np.ndarray, "2 member n feature"]) -> np.ndarray:
     """Points that a product with rows (x, |x|^2, 1) makes squared distances of."""
     square = np.sum(point**2, axis=-1, keepdims=True)
     columns = np.concatenate([-2.0 * point, np.ones_like(square), square], axis=-1)
@@ -149,8 +151,8 @@ def _as_columns(point: Float[np.ndarray, "2 voice n feature"]) -> np.ndarray:
 
 
 def _squared_distance(
-    x: Float[np.ndarray, "2 voice row feature"], point: Float[np.ndarray, "2 voice column n"]
-) -> Float[np.ndarray, "2 voice row n"]:
+    x: Float[np.ndarray, "2 member row feature"], point: Float[np.ndarray, "2 member column n"]
+) -> Float[np.ndarray, "2 member row n"]:
     square = np.sum(x**2, axis=-1, keepdims=True)
     squared = np.concatenate([x, square, np.ones_like(square)], axis=-1) @ point
     return np.maximum(squared, 0.0, out=squared)

@@ -89,6 +89,24 @@ def test_level_one_repeats_the_simulations():
     assert np.abs(answer.bridle_low - truth.bridle_tension).max() < 0.1 * spread
 
 
+def test_a_sensor_answers_the_same_whoever_else_has_taught():
+    twin, seas = stand_in_twin(), stand_in_seas(9, seed=3, current_speed=1.3)
+    whole, bridles = twin.predict(seas), {one.name: one.bridle for one in twin.cage.shackles}
+    for names in (["depth-2"], ["shackle-4", "depth-3", "shackle-1"]):
+        upper = {name: twin.models.upper[name] for name in names}
+        part = replace(twin, models=replace(twin.models, upper=upper)).predict(seas)
+        columns = [twin.sensor_names.index(name) for name in names]
+        ropes = [bridles[name] for name in names if name in bridles]
+        assert np.flatnonzero(part.sensor_level == 2).tolist() == sorted(columns)
+        assert np.flatnonzero(part.bridle_level == 2).tolist() == sorted(ropes)
+        for one, other, at in (
+            (part.sensor, whole.sensor, columns),
+            (part.bridle_tension, whole.bridle_tension, ropes),
+        ):
+            np.testing.assert_allclose(one.mean[:, at], other.mean[:, at], rtol=1e-9)
+            np.testing.assert_allclose(one.std[:, at], other.std[:, at], rtol=1e-9)
+
+
 def test_a_reading_is_less_sure_than_the_rope_it_reads():
     twin = stand_in_twin()
     answer = twin.predict(stand_in_seas(5))
