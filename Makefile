@@ -52,7 +52,8 @@ lint: .venv/.dev .venv/.project ## style, types, imports and spelling
 check: lint test ## lint, then the fast tests
 
 bench: .venv/.dev .venv/.project ## time what people wait for (ONCE=1: only see that it runs)
-	@set -e; for script in benchmarks/[a-z]*.py; do \
+	@set -e; export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 MKL_NUM_THREADS=1; \
+	for script in benchmarks/[a-z]*.py; do \
 	  echo "== $$script"; $(BIN)/python "$$script" $(if $(ONCE),--once); done
 
 bench-peers: .venv-peers/.ready ## an environment with the learners that ours are compared with
