@@ -104,6 +104,26 @@ def test_a_right_that_holds_elsewhere_alone_is_missed_in_words(
         assert "scope ack" in watched.page.locator(".denied").inner_text()
 
 
+def test_a_dial_turns_to_where_it_is_pointed_at_though_the_page_moves_under_the_hand(
+    chromium: Path, live: Running
+) -> None:
+    with opened_browser(chromium, webgl=False) as watched:
+        opened(watched, address(live, "read"))
+        watched.page.keyboard.press("4")
+        dial = watched.page.get_by_role("slider", name="Current towards")
+        dial.wait_for(state="visible")
+        before = dial.locator("circle").bounding_box()
+        x, y = before["x"] + before["width"] / 2, before["y"] + before["height"] / 2
+        watched.page.mouse.move(x + 20, y - 20)
+        watched.page.mouse.down()
+        watched.until("document.querySelector('.dial').ariaValueNow == 45")
+        watched.until("document.body.dataset.mode == 'whatif'")  # its band has come above
+        assert dial.locator("circle").bounding_box()["y"] > before["y"] + 10
+        watched.page.mouse.move(x - 20, y)
+        watched.until("document.querySelector('.dial').ariaValueNow == 270")
+        watched.page.mouse.up()
+
+
 def test_a_comment_goes_into_the_journal(chromium: Path, live: Running) -> None:
     beyond_what_was_learned(live)
     with opened_browser(chromium, webgl=False) as watched:

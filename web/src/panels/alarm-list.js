@@ -3,7 +3,7 @@
 import { make } from "../dom.js";
 import { ACTIONS, actionsFor } from "./alarm-actions.js";
 import { empty, write } from "./dom.js";
-import { moment } from "./format.js";
+import { moment, unbroken } from "./format.js";
 import { icon, rankIcon } from "./icons.js";
 import { sourceOf } from "./load-rows.js";
 import { ordered, rank, standing, waits } from "./ranks.js";
@@ -41,8 +41,8 @@ export class AlarmList {
     const how = rank(alarm.severity);
     const words = make("div", { className: "alarm-words" },
       make("h3", {}, alarm.title),
-      make("p", { className: "alarm-standing" }, facts(alarm)),
-      make("p", { className: "alarm-message" }, alarm.message),
+      make("p", { className: "alarm-standing" }, unbroken(facts(alarm))),
+      make("p", { className: "alarm-message" }, unbroken(alarm.message)),
       ...[alarm.advice, alarm.comment && `“${alarm.comment}”`].filter(Boolean)
         .map((text) => make("p", { className: "alarm-more" }, text)));
     const buttons = make("div", { className: "alarm-buttons" },

@@ -15,8 +15,8 @@ const MARKS = Array.from({ length: 16 }, (_, k) => 22.5 * k);
  */
 export function dial({ name, kind, says, turn }) {
   const needle = draw("path", { class: `dial-needle ${kind}`, d: kind === "to" ? TO : FROM });
-  const face = draw("svg", { viewBox: "-50 -60 100 110", "aria-hidden": "true" },
-    draw("circle", { r: 44, class: "dial-face" }),
+  const circle = draw("circle", { r: 44, class: "dial-face" });
+  const face = draw("svg", { viewBox: "-50 -60 100 110", "aria-hidden": "true" }, circle,
     ...MARKS.map((degrees) => draw("path", {
       class: "dial-mark", d: degrees % 90 ? "M0-44v3" : "M0-44v6", transform: `rotate(${degrees})`,
     })),
@@ -40,12 +40,12 @@ export function dial({ name, kind, says, turn }) {
     turn(value);
   }
 
-  const pointed = ({ clientX, clientY }) => {
-    const box = slider.getBoundingClientRect();
-    const [x, y] = [clientX - box.left - box.width / 2, clientY - box.top - box.height / 2];
-    choose((Math.atan2(x, -y) * 180) / Math.PI);
-  };
+  let centre; // as it was when the hand came: what is answered may move the page under it
+  const pointed = ({ clientX, clientY }) =>
+    choose((Math.atan2(clientX - centre.x, centre.y - clientY) * 180) / Math.PI);
   slider.addEventListener("pointerdown", (event) => {
+    const box = circle.getBoundingClientRect();
+    centre = { x: box.left + box.width / 2, y: box.top + box.height / 2 };
     slider.setPointerCapture(event.pointerId);
     pointed(event);
   });

@@ -24,6 +24,10 @@ export const withUnit = (value, unit, decimals = 1) =>
 /** A share as a percentage. */
 export const percent = (share) => (known(share) ? `${Math.round(100 * share)} %` : DASH);
 
+/** Words in which no line ends between a number and its unit. */
+export const unbroken = (words) =>
+  words.replace(/(\d) (?=%|(?:kN|m\/s|m|s|min|h|deg)\b)/g, "$1\u00a0");
+
 /** Half the width of an interval, as what follows the mean; never said to be nothing. */
 export function half(interval, decimals = 1) {
   if (!known(interval?.lower) || !known(interval?.upper)) return "";

@@ -2,7 +2,8 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import {
-  bearing, beyond, compass, day, fixed, half, moment, percent, plain, span, spoken, time, titled, turned, withUnit,
+  bearing, beyond, compass, day, fixed, half, moment, percent, plain, span, spoken, time, titled, turned, unbroken,
+  withUnit,
 } from "../../src/panels/format.js";
 
 test("a number that is not known is a dash and has no unit", () => {
@@ -56,4 +57,9 @@ test("names lose their hyphens", () => {
 test("extrapolating is not said twice", () => {
   assert.equal(beyond("Extrapolating: level 1 ends at 1 m/s."), "Level 1 ends at 1 m/s.");
   assert.match(beyond(""), /beyond what the twin has learned/);
+});
+
+test("no line ends between a number and its unit, and words stay as they are", () => {
+  assert.equal(unbroken("at 45 %, 131 kN; 3 more, 2 mooring lines in 10 min"),
+    "at 45\u00a0%, 131\u00a0kN; 3 more, 2 mooring lines in 10\u00a0min");
 });
