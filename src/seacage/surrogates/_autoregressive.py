@@ -35,6 +35,9 @@ DELTA_LENGTH = (math.log(3.0), 1.1)
 LINK_LENGTH = (math.log(6.0), 0.9)
 """Mean and sd of a log length in spreads, for one feature."""
 
+ALIKE_LINE = (-4.0, 2.0)
+"""Mean and sd of the line's log variance about a ratio of 1, in spreads of both levels."""
+
 KNOWN_LENGTH = (0.2, 0.5)
 """Mean and sd of delta's log length less that of the lowest level, where that is known and short.
 
@@ -67,6 +70,9 @@ class AutoregressiveKernel(AbstractKernel):
     lengths
         Log lengths of the lowest level, in spreads of the inputs; empty where they are not
         known. They shape the prior alone.
+    alike
+        Whether the level below tells most of this one as it is: the line is then about a ratio
+        of 1, in the units of the levels, and not about 0.
 
     References
     ----------
@@ -75,10 +81,16 @@ class AutoregressiveKernel(AbstractKernel):
 
     linear: bool
     lengths: tuple[float, ...] = ()
+    alike: bool = False
 
     @property
     def name(self) -> str:
         return "line-and-bend" if self.linear else "autoregressive"
+
+    @property
+    def ratio(self) -> float:
+        """Expected change of the level per change of the one below."""
+        return float(self.linear and self.alike)
 
     @property
     def bend(self) -> AbstractBend:
@@ -89,7 +101,8 @@ class AutoregressiveKernel(AbstractKernel):
         size = RHO_SLOPE if self.linear else RHO_VARIANCE
         rho = [size, *_lengths(width - 1, *RHO_LENGTH)]
         delta = [DELTA_VARIANCE, *self._delta_lengths(width - 1)]
-        return prior_of([*rho, *_lengths(1, *LINK_LENGTH), *delta, *[VARIANCE_PRIOR] * self.linear])
+        line = ALIKE_LINE if self.alike else VARIANCE_PRIOR
+        return prior_of([*rho, *_lengths(1, *LINK_LENGTH), *delta, *[line] * self.linear])
 
     def covariance(
         self,
@@ -190,6 +203,11 @@ class StraightKernel(AbstractKernel):
     @property
     def name(self) -> str:
         return "straight"
+
+    @property
+    def ratio(self) -> float:
+        """A ratio of any size and sign is expected."""
+        return 0.0
 
     def prior(self, width: int) -> Prior:
         return prior_of([VARIANCE_PRIOR, VARIANCE_PRIOR, *length_priors(width - 1)])

@@ -121,6 +121,9 @@ class FittedGaussianProcess:
         Of each output: its mean, and the standard deviation that the kernel's is a share of.
     single
         Whether the answer is (row,) rather than (row, output).
+    line
+        What each output is expected to rise by with each standardised feature; the members are
+        of what is left.
     """
 
     MODEL: ClassVar[str] = "gaussian-process"
@@ -131,6 +134,7 @@ class FittedGaussianProcess:
     centre: Float[np.ndarray, " output"]
     amplitude: Float[np.ndarray, " output"]
     single: bool
+    line: Float[np.ndarray, "feature output"]
 
     @property
     def posterior(self) -> Posterior:
@@ -160,7 +164,7 @@ class FittedGaussianProcess:
             Of a new observation rather than of what lies behind it: adds the noise.
         """
         x = self._standardised(x, what="predict")
-        mean, variance = self._mixed([member.predict(x) for member in self.members])
+        mean, variance = self._mixed(x, [member.predict(x) for member in self.members])
         if noisy:
             variance = variance + self._noise(x)
         return self._answer(mean, variance)
@@ -172,14 +176,14 @@ class FittedGaussianProcess:
             member.kernel.covariance(member.log_parameters, x, member.x) @ member.weights
             for member in self.members
         ]
-        return self._shaped(self._average(means) + self.centre)
+        return self._shaped(self._average(means) + self._expected(x))
 
     def jacobian(
         self, x: Float[np.ndarray, "row feature"]
     ) -> Float[np.ndarray, "row *output feature"]:
         """Change of the mean per change of each feature, at each row."""
         x = self._standardised(x, what="jacobian")
-        slope = self._average([member.mean_slope(x) for member in self.members])
+        slope = self._average([member.mean_slope(x) for member in self.members]) + self.line.T
         return self._shaped(slope / self.inputs.unit)
 
     def moments(self, x: Float[np.ndarray, "row feature"]) -> Moments:
@@ -191,20 +195,21 @@ class FittedGaussianProcess:
             )
         x = self._standardised(x, what="moments")
         answers = [member.predict(x) for member in self.members]
-        mean, variance = self._mixed(answers)
+        mean, variance = self._mixed(x, answers)
+        of_members = mean - self._expected(x)
         slopes = [member.mean_slope(x)[:, 0] for member in self.members]
         mean_slope = self._average(slopes)
         square = self.amplitude[0] ** 2
         # Of the law of total variance: of each member's, and of their means about the mean.
         parts = [
             square * member.variance_slope(x)
-            + 2.0 * (answer[0] + self.centre - mean) * (slope - mean_slope)
+            + 2.0 * (answer[0] - of_members) * (slope - mean_slope)
             for member, answer, slope in zip(self.members, answers, slopes, strict=True)
         ]
         return Moments(
             mean=mean[:, 0],
             variance=variance[:, 0],
-            mean_slope=mean_slope / self.inputs.unit,
+            mean_slope=(mean_slope + self.line[:, 0]) / self.inputs.unit,
             variance_slope=self._average(parts) / self.inputs.unit,
         )
 
@@ -233,7 +238,8 @@ class FittedGaussianProcess:
                 f"{what}: {y.shape[1]} outputs, but {len(self.centre)} were learned. "
                 "Give the outputs of the training, in the same order."
             )
-        x, y = self.inputs.standardised(x), y - self.centre
+        x = self.inputs.standardised(x)
+        y = y - self._expected(x)
         members = [member.updated(x, y, amplitude=self.amplitude) for member in self.members]
         return replace(self, members=tuple(members))
 
@@ -245,7 +251,9 @@ class FittedGaussianProcess:
         """Conditioned on the same outputs at other inputs, one row for each case."""
         x = self.inputs.standardised(x)
         members = [
-            member.reconditioned(x, member.observed(), doubt=member.doubt)
+            member.reconditioned(
+                x, member.observed() + (member.x - x) @ self.line, doubt=member.doubt
+            )
             for member in self.members
         ]
         return replace(self, members=tuple(members))
@@ -264,7 +272,7 @@ class FittedGaussianProcess:
             (member.observed() - residual, variance)
             for member, (residual, variance) in zip(self.members, left_out, strict=True)
         ]
-        return self._answer(*self._mixed(answers))
+        return self._answer(*self._mixed(self.posterior.x, answers))
 
     def output(self, index: int) -> "FittedGaussianProcess":
         """One output as a model that answers (row,); it shares the factor."""
@@ -282,6 +290,7 @@ class FittedGaussianProcess:
             centre=np.array([self.centre @ share]),
             amplitude=np.array([np.linalg.norm(self.amplitude * share)]),
             single=True,
+            line=self.line @ share[:, None],
         )
 
     def to_arrays(self) -> tuple[Settings, Arrays]:
@@ -292,6 +301,7 @@ class FittedGaussianProcess:
             "kernel": first.kernel.name,
             "noise": first.noise.name,
             "single": self.single,
+            "about_line": bool(self.line.any()),
         }
         arrays = {
             "share": self.share,
@@ -305,6 +315,8 @@ class FittedGaussianProcess:
             "output_centre": self.centre,
             "output_amplitude": self.amplitude,
         }
+        if self.line.any():
+            arrays["line"] = self.line
         anchor = first.noise.anchor
         return settings, arrays | ({"anchor": anchor} if anchor.size else {})
 
@@ -348,6 +360,10 @@ class FittedGaussianProcess:
             centre=array(arrays, "output_centre", outputs),
             amplitude=array(arrays, "output_amplitude", outputs),
             single=single,
+            # Models saved before there was a line are without one.
+            line=array(arrays, "line", width, outputs)
+            if settings.get("about_line", False)
+            else np.zeros((width, outputs)),
         )
 
     def _standardised(
@@ -367,7 +383,7 @@ class FittedGaussianProcess:
         return np.tensordot(self.share, np.stack(parts), axes=1)
 
     def _mixed(
-        self, answers: Sequence[Answer]
+        self, x: Float[np.ndarray, "row feature"], answers: Sequence[Answer]
     ) -> tuple[Float[np.ndarray, "row output"], Float[np.ndarray, "row output"]]:
         """Mean and variance of the outputs, by the law of total variance over the members."""
         means = [mean for mean, _ in answers]
@@ -375,7 +391,11 @@ class FittedGaussianProcess:
         variance = self._average([variance for _, variance in answers]) * self.amplitude**2
         if len(answers) > 1:
             variance = variance + self._average([(one - mean) ** 2 for one in means])
-        return mean + self.centre, variance
+        return mean + self._expected(x), variance
+
+    def _expected(self, x: Float[np.ndarray, "row feature"]) -> Float[np.ndarray, "row output"]:
+        """What the members are about, at standardised inputs."""
+        return self.centre + x @ self.line
 
     def _answer(
         self, mean: Float[np.ndarray, "row output"], variance: Float[np.ndarray, "row output"]
@@ -396,6 +416,7 @@ def fitted_process(
     taught_by: Float[np.ndarray, "n teacher"],
     noise: NoiseName = "white",
     ensemble: Ensemble = "never",
+    slope: Float[np.ndarray, " feature"] | None = None,
     restarts: int,
     seed: int,
 ) -> FittedGaussianProcess:
@@ -411,11 +432,18 @@ def fitted_process(
         What the hyperparameters are learned from, of unit variance all in all.
     noise, ensemble
         As for ``GaussianProcess``.
+    slope
+        What each output is expected to rise by per unit of each feature; None for nothing. The
+        teachers are without it.
     restarts, seed
         Of the search.
     """
     inputs, outputs = Scaling.of(x), Scaling.of(y)
     standardised = inputs.standardised(x)
+    line = np.zeros((x.shape[1], y.shape[1]))
+    if slope is not None:
+        line += (slope * inputs.unit)[:, None]
+    rest = y - outputs.centre - standardised @ line
     scatter = noise_named(noise, standardised, outputs=taught_by.shape[1])
     evidence = Evidence.of(kernel, scatter, standardised, taught_by)
     mode = learned(evidence, restarts=restarts, seed=seed)
@@ -427,7 +455,7 @@ def fitted_process(
             kernel,
             *evidence.split(log_parameters),
             standardised,
-            y - outputs.centre,
+            rest,
             noise=scatter,
             doubt=mode.evidence.doubt,
         )
@@ -437,7 +465,7 @@ def fitted_process(
     # Each output's own variance, held to the shared one by a few points' worth of belief:
     # the mean of the conjugate posterior, a scaled inverse chi-squared, so that the answer's
     # variance is that of the Student's t which it leaves.
-    own = [np.einsum("no,no->o", y - outputs.centre, member.weights) for member in members]
+    own = [np.einsum("no,no->o", rest, member.weights) for member in members]
     variance = (SHARED_POINTS * outputs.spread**2 + share @ np.stack(own)) / (
         SHARED_POINTS + len(y) - 2.0
     )
@@ -448,6 +476,7 @@ def fitted_process(
         centre=outputs.centre,
         amplitude=np.sqrt(variance),
         single=y.shape[1] == 1,
+        line=line,
     )
 
 

@@ -24,7 +24,6 @@ from seacage.surrogates._gaussian_process import (
     FittedGaussianProcess,
     check_restarts,
     fitted_process,
-    teachers,
 )
 from seacage.surrogates._kernels import AbstractKernel, kernel_named
 from seacage.surrogates._noise import NoiseName, check_noise
@@ -40,6 +39,10 @@ from seacage.surrogates._scaling import Scaling
 
 DIFFERENCE = 1e-4
 """Step of central differences, in spreads of a feature; their error falls with its square."""
+
+ALIKE = 0.5
+"""Two levels are taken for the same quantity where their difference has less than this share of
+the upper one's spread."""
 
 Cases = tuple[Float[np.ndarray, "_ _"], Float[np.ndarray, " _"]]
 """Inputs (n, features) and outputs (n,) of one fidelity."""
@@ -59,7 +62,7 @@ class AbstractMultifidelity(ABC):
         check_restarts(self.restarts)
 
     @abstractmethod
-    def link(self, lengths: tuple[float, ...]) -> LinkKernel:
+    def link(self, lengths: tuple[float, ...], *, alike: bool) -> LinkKernel:
         """Covariance of a level over its inputs and the level below.
 
         Parameters
@@ -67,6 +70,8 @@ class AbstractMultifidelity(ABC):
         lengths
             Log lengths of the lowest level, in spreads of this level's inputs; empty where a
             lent one does not tell.
+        alike
+            Whether the level below tells most of this one as it is.
         """
 
     def fit(
@@ -108,14 +113,16 @@ class AbstractMultifidelity(ABC):
         fitted = FittedNARGP(own=(), lent=lower, nested=nested)
         for index, (x, y) in enumerate(cases):
             kernel: AbstractKernel = kernel_named("squared-exponential")
-            inputs = x
+            inputs, slope = x, np.zeros(x.shape[1])
             if fitted.levels:
                 if nested:
                     below = _observed_below(x, cases[index - 1], level=index + 1, what=what)
                 else:
                     below = _one_per_row(fitted.predict(x).mean, what=what)
-                kernel, inputs = self.link(_lengths_below(fitted, x)), np.column_stack([x, below])
-            added = self._process(kernel, inputs, y[:, None], seed=seeds[index])
+                alike = bool(np.std(y - below) < ALIKE * np.std(y))
+                kernel = self.link(_lengths_below(fitted, x), alike=alike)
+                inputs, slope = np.column_stack([x, below]), np.append(slope, kernel.ratio)
+            added = self._process(kernel, inputs, y[:, None], slope=slope, seed=seeds[index])
             fitted = replace(fitted, own=(*fitted.own, added))
         return fitted
 
@@ -125,15 +132,20 @@ class AbstractMultifidelity(ABC):
         x: Float[np.ndarray, "n feature"],
         y: Float[np.ndarray, "n 1"],
         *,
+        slope: Float[np.ndarray, " feature"],
         seed: int,
     ) -> FittedGaussianProcess:
+        rest = y - x @ slope[:, None]
+        rest = rest - rest.mean(axis=0)
         return fitted_process(
             kernel,
             x,
             y,
-            taught_by=teachers(y),
+            # In spreads of the level itself, whatever is left of it, as the priors are.
+            taught_by=rest / Scaling.of(y).unit,
             noise=self.noise,
             ensemble=self.ensemble,
+            slope=slope,
             restarts=self.restarts,
             seed=seed,
         )
@@ -152,7 +164,8 @@ class NARGP(AbstractMultifidelity):
     linear
         Expect a line in the level below, the same everywhere, which carries a plain ratio of
         the two to where nothing was observed, and about it a curve that is held to an offset at
-        the mean of the level below; False is the kernel as published.
+        the mean of the level below. Where the level below tells most of this one as it is, the
+        ratio is expected to be near 1. False is the kernel as published.
     noise, ensemble
         Of every level, as for ``GaussianProcess``; a level has one output.
     restarts
@@ -166,8 +179,8 @@ class NARGP(AbstractMultifidelity):
 
     linear: bool = True
 
-    def link(self, lengths: tuple[float, ...]) -> LinkKernel:
-        return AutoregressiveKernel(linear=self.linear, lengths=lengths)
+    def link(self, lengths: tuple[float, ...], *, alike: bool) -> LinkKernel:
+        return AutoregressiveKernel(linear=self.linear, lengths=lengths, alike=alike)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

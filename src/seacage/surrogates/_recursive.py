@@ -26,5 +26,5 @@ class AR1(AbstractMultifidelity):
     Uncertainty Quantification 4:365-386, for the recursion.
     """
 
-    def link(self, lengths: tuple[float, ...]) -> LinkKernel:  # noqa: ARG002
+    def link(self, lengths: tuple[float, ...], *, alike: bool) -> LinkKernel:  # noqa: ARG002
         return StraightKernel()

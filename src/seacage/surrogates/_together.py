@@ -37,6 +37,8 @@ class Together:
         The members' covariances with their points.
     weights
         By which each member's mean is summed; 0 for points that it does not have.
+    line
+        What each member's outputs are about, by its inputs.
     centre, unit
         Of each member's inputs.
     outputs
@@ -51,6 +53,7 @@ class Together:
     share: Float[np.ndarray, "level member"]
     links: Links
     weights: Float[np.ndarray, "member n 1"]
+    line: Float[np.ndarray, "member feature 1"]
     centre: Float[np.ndarray, "member 1 feature"]
     unit: Float[np.ndarray, "member 1 feature"]
     outputs: Scaling
@@ -76,6 +79,7 @@ class Together:
             share=share,
             links=links,
             weights=weights,
+            line=np.stack([level.line for level in levels])[owner],
             centre=np.stack([level.inputs.centre for level in levels])[owner, None],
             unit=unit,
             outputs=Scaling(
@@ -139,7 +143,9 @@ class Together:
         prior = self.links.variance(link).reshape(len(cross), -1)
         # Rounding can explain a hair more than there is.
         variances = np.maximum(prior - np.stack(known)[..., 0], 0.0)
-        mean, variance = self._mixed((cross @ self.weights)[..., 0], variances)
+        means = (local @ self.line[:, :-1] + link * self.line[:, -1:]).reshape(len(cross), -1)
+        means += (cross @ self.weights)[..., 0]
+        mean, variance = self._mixed(means, variances)
         return mean.reshape(below.shape), variance.reshape(below.shape)
 
     def _mixed(
