@@ -441,6 +441,50 @@ def test_lines_of_one_moment_stay_in_their_order(store):
     assert store.journal("ace", limit=2, newest=True) == lines[1:]
 
 
+# --- one process for a cage ---
+
+
+@pytest.fixture
+def impatient(monkeypatch):
+    monkeypatch.setattr("seacage.service._store._store._PATIENCE_S", 0.3)
+
+
+@pytest.fixture(params=BOTH)
+def two(request, tmp_path):
+    """Two stores in one place, as two processes open them."""
+    if request.param == "sqlite":
+        with two_of(tmp_path / "samples.sqlite") as stores:
+            yield stores
+    else:
+        with schema(request.getfixturevalue("postgres")) as url, two_of(url) as stores:
+            yield stores
+
+
+@contextmanager
+def two_of(place):
+    with closing(open_store(place)) as first, closing(open_store(place)) as second:
+        yield first, second
+
+
+def test_a_cage_is_served_by_one_process_and_then_by_the_next(two, impatient):
+    first, second = two
+    first.claim("ace")
+    first.claim("ace")
+    with pytest.raises(StoreError, match="ace is served from this store by another process"):
+        second.claim("ace")
+    first.close()
+    second.claim("ace")
+
+
+def test_who_comes_a_moment_early_waits_for_the_one_before(two):
+    first, second = two
+    first.claim("ace")
+    late = threading.Timer(0.5, first.close)
+    late.start()
+    second.claim("ace")
+    late.join()
+
+
 # --- the whole ---
 
 

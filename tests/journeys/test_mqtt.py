@@ -39,7 +39,8 @@ class Worker:
         folder.mkdir(exist_ok=True)
         words = (WORKER, twin, place, folder, url, name, *cages)
         self._command = [sys.executable, *map(str, words)]
-        self._log = (folder / "log").open("ab")
+        self.log = folder / "log"
+        self._log = self.log.open("ab")
         self._process = None
 
     def start(self):
@@ -49,6 +50,12 @@ class Worker:
 
     def wait(self):
         assert self._process.stdout.readline() == b"ready\n"
+
+    def ended(self):
+        """The status with which it ends by itself."""
+        status = self._process.wait(60)
+        self.close()
+        return status
 
     def kill(self):
         if self._process is not None:
@@ -248,6 +255,25 @@ def test_two_workers_share_the_cages_and_one_of_them_is_killed(twin, tmp_path, p
         f"seacage/v1/south/{name}/status": {"status": "online", "cages": list(shares[name])}
         for name in workers
     }
+
+
+def test_a_second_process_of_a_group_is_refused_a_cage_and_the_first_gets_every_sample(
+    twin, tmp_path, postgres
+):
+    with (
+        schema(postgres) as place,
+        broker(tmp_path / "broker") as mosquitto,
+        talking(mosquitto.port) as logger,
+        working(twin, place, tmp_path / "e", mosquitto.url, "east", ["ace"]),
+    ):
+        second = Worker(twin, place, tmp_path / "w", mosquitto.url, "west", ["ace"])
+        second.start()
+        for number in range(200):
+            logger.say("seacage/v1/south/ace/depth-2/obs", reading(number))
+        assert second.ended() != 0
+        assert "ace is served from this store by another process" in second.log.read_text()
+        wait_for_all(place, ["ace"], 200)
+        assert numbers(place) == list(range(200))
 
 
 def test_an_edge_publisher_plays_a_buoy_and_its_sensors_at_a_hundred_times_real_time(

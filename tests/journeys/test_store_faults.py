@@ -104,6 +104,8 @@ def test_a_service_that_is_killed_on_a_full_disk_comes_back_and_goes_on_keeping_
         assert outcome.stdout.endswith(b"refused, kept")  # after what the log said
         assert journal(place) == [Action.RAISED]
         with closing(open_store(place)) as store:
+            store.claim("ace")
+            eventually(lambda: store.fault, bool)
             assert "free the disk" in store.fault
             with pytest.raises(StoreError, match="free the disk"):
                 put(store, sample(999))
@@ -125,6 +127,8 @@ from stores import NOON, put, sample
 
 place = Path(sys.argv[1])
 store = open_store(place)
+store.claim("ace")
+put(store, sample())  # the reserve is held before anything is taken
 with filled(place.parent):
     try:
         for k in range(100_000):

@@ -93,15 +93,32 @@ def assembled(
     InputError
         A replay for more than one cage, or settings that cannot be.
     StoreError
-        The store does not open.
+        The store does not open, or another process serves one of the cages from it.
     """
     if replay is not None and len(twins) != 1:
         raise InputError(f"serve: a record is replayed into one cage, and there are {len(twins)}.")
+    _check_group(settings)
     policies = {name: policy_of(settings, name, twin) for name, twin in twins.items()}
     store = open_store(
         store_place(settings, replayed=replay is not None),
         archive=settings.store.archive if replay is None else None,
     )
+    try:
+        return _served_from(store, settings, twins, policies, replay=replay, speed=speed)
+    except BaseException:
+        store.close()
+        raise
+
+
+def _served_from(
+    store: Store,
+    settings: Settings,
+    twins: Mapping[str, Twin],
+    policies: Mapping[str, AlarmPolicy],
+    *,
+    replay: Replay | None,
+    speed: float,
+) -> Service:
     metrics, clock = Metrics(), _clock(settings, store, tuple(twins), replay, speed)
     cages = {
         name: LiveCage(
@@ -121,6 +138,15 @@ def assembled(
     if replay is not None and isinstance(clock, ReplayClock):
         feeds.append(partial(replay.feed, next(iter(cages.values())), clock))
     return _guarded(settings, cages, store, metrics, feeds)
+
+
+def _check_group(settings: Settings) -> None:
+    shares = settings.mqtt is not None and settings.mqtt.group is not None
+    if shares and isinstance(store_place(settings), Path):
+        raise InputError(
+            "serve: the processes of an mqtt.group share a site's samples, and with SQLite each "
+            "would keep a part of them. Give all one PostgreSQL as store.url, or leave group out."
+        )
 
 
 def _clock(

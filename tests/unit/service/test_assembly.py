@@ -8,6 +8,7 @@ from seacage.records import Sample
 from seacage.service._assembly import assembled, read_twins, store_place
 from seacage.service._live._replay import replay_of
 from seacage.service._settings import Settings
+from seacage.service._store._store import StoreError
 from seacage.testing import stand_in_field, stand_in_twin
 
 
@@ -46,6 +47,23 @@ def test_workers_part_the_cages_and_leave_none_out(tmp_path):
     ]
     assert all(served)
     assert sorted(served[0] + served[1]) == [cage["name"] for cage in cages]
+
+
+def test_a_folder_is_served_by_one_process(tmp_path, ended, monkeypatch):
+    monkeypatch.setattr("seacage.service._store._store._PATIENCE_S", 0.3)
+    settings = told(tmp_path)
+    ended.append(assembled(settings, {"ace": stand_in_twin()}))
+    reserve = tmp_path / "data" / "samples.sqlite-reserve"
+    for _ in range(2):
+        with pytest.raises(StoreError, match="a folder of its own"):
+            assembled(settings, {"ace": stand_in_twin()})
+        assert reserve.exists(), "who was refused leaves what is the other's alone"
+
+
+def test_a_group_takes_a_store_that_its_processes_share(tmp_path):
+    settings = told(tmp_path, mqtt={"url": "mqtt://127.0.0.1", "group": "twins"})
+    with pytest.raises(InputError, match=r"one PostgreSQL as store\.url"):
+        assembled(settings, {"ace": stand_in_twin()})
 
 
 def test_a_clock_that_follows_goes_on_where_the_store_ends(tmp_path, ended):

@@ -75,7 +75,8 @@ class LiveCage:
     name
         Under which the cage is served.
     twin, store, clock
-        What answers, what keeps, and what time it is.
+        What answers, what keeps, and what time it is; no other process may serve the cage from
+        the same store.
     metrics
         Where steps and samples are counted.
     tick_s
@@ -95,6 +96,7 @@ class LiveCage:
         tick_s: float = 2.0,
         policy: AlarmPolicy | None = None,
     ) -> None:
+        store.claim(name)
         self.name, self.twin, self.store, self.clock = name, twin, store, clock
         self._metrics, self._tick_s = metrics, tick_s
         self._streams = _quantities(twin)
@@ -172,8 +174,10 @@ class LiveCage:
     async def run(self) -> None:
         """Step the twin for ever."""
         while True:
+            # Not wait_for, which may swallow a cancellation that meets an arrival (Python 3.11).
             with suppress(TimeoutError):
-                await asyncio.wait_for(self._arrived.wait(), self._tick_s)
+                async with asyncio.timeout(self._tick_s):
+                    await self._arrived.wait()
             self._arrived.clear()
             async with self._stepping:
                 samples = list(self._pending)

@@ -55,6 +55,15 @@ _FIRST_MONTH = datetime(2000, 1, 1, tzinfo=UTC)
 # Whoever makes tables or partitions holds this, lest two make the same one.
 _LOCK = "SELECT pg_advisory_xact_lock(hashtext('seacage:' || current_schema()))"
 
+# It lasts as long as the connection that writes, so who has lost the one can write no more.
+_CLAIM = """
+SELECT pg_try_advisory_lock(hashtextextended('seacage:' || current_schema() || ':' || ?, 0))"""
+
+# A process whose machine has died lets go of its cages within half a minute.
+_KEEPALIVE = (
+    "SET tcp_keepalives_idle = 15; SET tcp_keepalives_interval = 5; SET tcp_keepalives_count = 3"
+)
+
 _AGAIN_S = 1.0  # between two attempts to reach a server that does not answer
 _PATIENCE_S = 5
 
@@ -120,6 +129,7 @@ class PostgresDatabase(AbstractDatabase):
             # A URL may hold a password, and an error is read by many.
             told = conninfo_to_dict(url)
             self._place = f"{told.get('dbname', 'its database')} on {told.get('host', 'localhost')}"
+            self._claimed: set[str] = set()
             self._writer = self._opened()
             with self._closed_unless_well(self._writer):
                 self._partitions = self._made()
@@ -154,6 +164,13 @@ class PostgresDatabase(AbstractDatabase):
         self._readers.close()
         self._writer.close()
 
+    def claim(self, session: AbstractSession, cage: str) -> bool:
+        """Claim one cage: others may be another worker's."""
+        ((had,),) = session.rows(_CLAIM, (cage,))
+        if had:
+            self._claimed.add(cage)
+        return had
+
     def part(self, months: Iterable[datetime]) -> None:
         """Make the partitions that these months lack."""
         wanted = {_partition(month): month for month in months}
@@ -182,7 +199,16 @@ class PostgresDatabase(AbstractDatabase):
         """Connect again, but do not knock without pause."""
         time.sleep(max(0.0, self._tried + _AGAIN_S - time.monotonic()))
         self._tried = time.monotonic()
-        self._writer = self._opened()
+        connection = self._opened()
+        with self._closed_unless_well(connection):
+            session = PostgresSession(connection)
+            gone = [cage for cage in sorted(self._claimed) if not self.claim(session, cage)]
+            if gone:
+                raise StoreError(
+                    f"{gone[0]} went to another process while {self._place} was away. "
+                    "Stop one of the two."
+                )
+        self._writer = connection
 
     def _opened(self) -> "Connection[tuple[Any, ...]]":
         connection = self._psycopg.connect(
@@ -191,6 +217,7 @@ class PostgresDatabase(AbstractDatabase):
         with self._closed_unless_well(connection):
             # Whatever the server's default: an acknowledged sample is on disk.
             connection.execute("SET synchronous_commit = on")
+            connection.execute(_KEEPALIVE)
         return connection
 
     @contextmanager

@@ -70,6 +70,10 @@ class AbstractDatabase(ABC):
     def renew(self, error: DamageError) -> bool:
         """Move a damaged database aside and begin a new one; False where that cannot be."""
 
+    @abstractmethod
+    def claim(self, session: AbstractSession, cage: str) -> bool:
+        """Be the one process that serves a cage, until ``close``; False where another is."""
+
     def hold_reserve(self) -> None:
         """Hold room for what must be written when there is no other; ``FullError`` without it."""
         return  # a server sees to its own disk

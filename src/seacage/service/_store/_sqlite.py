@@ -8,6 +8,7 @@ from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
 
+from seacage.service._store._claim import FileClaim
 from seacage.service._store._pool import Pool
 from seacage.service._store._reserve import Reserve
 from seacage.service._store._rows import Row
@@ -77,7 +78,7 @@ class SqliteDatabase(AbstractDatabase):
 
     The writing connection is the only one that writes or checkpoints, which keeps clear of a
     WAL-reset fault in SQLite before 3.51.3. Beside the file lies another that holds room for
-    alarms while the first is open.
+    alarms while a process serves from it.
 
     Parameters
     ----------
@@ -94,6 +95,7 @@ class SqliteDatabase(AbstractDatabase):
     def __init__(self, path: Path) -> None:
         self._path = path
         self._readers = Pool(self._reader)
+        self._claim = FileClaim(path.with_name(path.name + "-lock"))
         self._reserve = Reserve(path.with_name(path.name + "-reserve"))
         try:
             with _said(path, "does not open as the store of samples"):
@@ -130,19 +132,28 @@ class SqliteDatabase(AbstractDatabase):
         self._begin_anew(error)
         return True
 
+    def claim(self, session: AbstractSession, cage: str) -> bool:
+        """Claim the whole file: it has one writer."""
+        del session, cage
+        with _said(self._path, "cannot be locked"):
+            return self._claim.take()
+
     def hold_reserve(self) -> None:
-        """Hold room beside the file."""
-        self._reserve.hold()
+        """Hold room beside the file, if this process is the one that serves from it."""
+        if self._claim.taken:
+            self._reserve.hold()
 
     def give_up_reserve(self) -> None:
         """Leave that room to the file and its log."""
-        self._reserve.give_up()
+        if self._claim.taken:
+            self._reserve.give_up()
 
     def close(self) -> None:
         """Close the readers first: the last to close must be able to checkpoint."""
-        self._reserve.give_up()
+        self.give_up_reserve()
         self._readers.close()
         self._writer.close()
+        self._claim.release()
 
     def _begin_anew(self, error: DamageError) -> None:
         aside = _moved_aside(self._path)

@@ -23,6 +23,8 @@ from seacage.twin import Happened
 
 __all__ = ["Store", "StoreError", "look_into", "open_store"]
 
+_PATIENCE_S = 5.0  # a server may take a moment to see that a process was killed
+_LOOK_S = 0.2
 _TABLES = ("sample", "aggregate", "mark", "sealed", "alarm_book", "adapted", "journal")
 
 
@@ -72,6 +74,26 @@ class Store:
     def lost(self) -> str | None:
         """Why history was moved aside; None where nothing was."""
         return self._database.lost
+
+    def claim(self, cage: str) -> None:
+        """Be the one process that serves a cage until the store is closed.
+
+        Two would each step its twin with half of the samples, and write over each other's alarms.
+        A file of SQLite is claimed as a whole.
+
+        Raises
+        ------
+        StoreError
+            Another process serves it.
+        """
+        end = time.monotonic() + _PATIENCE_S
+        while not self._writer.claim(cage).result():
+            if time.monotonic() > end:
+                raise StoreError(
+                    f"{cage} is served from this store by another process. Stop that one first, "
+                    "or give this one cages and, with SQLite, a folder of its own."
+                )
+            time.sleep(_LOOK_S)
 
     def append(
         self,

@@ -62,10 +62,6 @@ class Writer:
         self._closed = False
         self._full = False
         self.fault: str | None = None
-        try:
-            database.hold_reserve()
-        except FullError as error:
-            self._note(error)
         self._thread = threading.Thread(target=self._run, name="store", daemon=True)
         self._thread.start()
 
@@ -76,6 +72,15 @@ class Writer:
     def ask(self, work: Callable[[AbstractSession], T], *, vital: bool = False) -> "Future[T]":
         """Have something done in a transaction; the future resolves after its commit."""
         return self._ask(work, vital=vital)
+
+    def claim(self, cage: str) -> "Future[bool]":
+        """Be the one process that serves a cage; False where another is."""
+
+        def claimed(session: AbstractSession) -> bool:
+            self._next_chore = 0.0  # from here on there is a reserve to hold, before anything else
+            return self._database.claim(session, cage)
+
+        return self._ask(claimed, vital=True)
 
     def close(self) -> None:
         """Finish what was asked, and take nothing more."""

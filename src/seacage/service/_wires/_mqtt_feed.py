@@ -69,7 +69,8 @@ class MqttFeed:
     quarantine
         Where messages that cannot be read are set aside.
     group
-        To share the samples with other processes of the same name, which stand by.
+        Of the broker's shared subscriptions; a cage is served by one process all the same, as
+        its store sees to.
     ca
         File of the authority that signed the broker's certificate.
     state_every_s

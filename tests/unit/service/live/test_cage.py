@@ -25,6 +25,25 @@ def depth(minutes, metres):
     return Sample(stream="depth-2", t=t, values={"depth_m": metres})
 
 
+def test_a_cage_that_is_told_to_stop_as_something_arrives_stops(tmp_path):
+    async def work(cage):
+        for _ in range(5):
+            running = asyncio.create_task(cage.run())
+            await asyncio.sleep(0.3)
+            while cage._stepping.locked() or cage._arrived.is_set():
+                await asyncio.sleep(0.0)
+            await asyncio.sleep(0.15)  # now it waits
+            cage._arrived.set()
+            await asyncio.sleep(0.0)  # the arrival is on its way
+            running.cancel()
+            done, _ = await asyncio.wait([running], timeout=2.0)
+            assert done
+
+    with closing(Store(tmp_path / "samples.sqlite")) as store:
+        parts = {"store": store, "clock": HandClock(), "metrics": Metrics()}
+        asyncio.run(work(LiveCage(name="ace", twin=stand_in_twin(), tick_s=60.0, **parts)))
+
+
 def test_a_commit_that_fails_leaves_what_was_asked_beside_it_to_compare_with(tmp_path):
     async def work(store):
         parts = {"store": store, "clock": HandClock(), "metrics": Metrics()}

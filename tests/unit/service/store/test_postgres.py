@@ -104,6 +104,43 @@ def test_a_connection_that_is_cut_is_made_again(url, pair):
     assert store.samples("ace", limit=9) == [sample(), sample(1)]
 
 
+def test_workers_serve_cages_of_their_own(pair, monkeypatch):
+    monkeypatch.setattr("seacage.service._store._store._PATIENCE_S", 0.3)
+    for store, cage in zip(pair, ("ace", "ice"), strict=True):
+        store.claim(cage)
+    with pytest.raises(StoreError, match="another process"):
+        pair[1].claim("ace")
+
+
+def test_a_cage_that_went_to_another_while_the_server_was_away_stays_there(url, pair, monkeypatch):
+    here, there = pair
+    here.claim("ace")
+    # Between the cut and here's next attempt, there is the one who asks.
+    monkeypatch.setattr(here._database, "_tried", time.monotonic() + 2.0)
+    writer = here._database._writer.info.backend_pid
+    asked(url, f"SELECT pg_terminate_backend({writer})")
+    there.claim("ace")
+    for _ in range(2):
+        with pytest.raises(StoreError, match="ace went to another process"):
+            put_until_cut(here)
+    assert put(there, sample()) == (True,)
+    there.close()
+    end = time.monotonic() + 20
+    while here.fault and time.monotonic() < end:  # nobody sends anything
+        time.sleep(0.05)
+    assert put(here, sample(1)) == (True,)
+
+
+def put_until_cut(store):
+    """The first attempt only finds that the connection is gone."""
+    try:
+        put(store, sample(2))
+    except StoreError as error:
+        if "went to" in str(error):
+            raise
+        put(store, sample(2))
+
+
 def test_an_opening_that_fails_leaves_no_connection(url):
     here = "SELECT count(*) FROM pg_stat_activity WHERE application_name = 'seacage'"
     before = asked(url, here)
