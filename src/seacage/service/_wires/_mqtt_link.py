@@ -152,7 +152,8 @@ class Link:
             client.will_set(self._will.topic, self._will.gone, qos=1, retain=True)
         try:
             await connection.open(self._broker, self._properties)
-            await asyncio.wait_for(connection.greeted.wait(), _ANSWER_S)
+            async with asyncio.timeout(_ANSWER_S):
+                await connection.greeted.wait()
             if connection.ended.is_set():
                 raise _Ended(connection.reason)
             client.subscribe([(one, SubscribeOptions(qos=1)) for one in self._filters])
