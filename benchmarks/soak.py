@@ -1,0 +1,152 @@
+"""A farm's samples into one SQLite file for minutes: memory, commits, and what is shown when.
+
+Fifty small cages, each with its buoy and eight sensors, share `--rate` samples a second (1,500 if
+left out) for `--minutes` (10). Where the machine cannot take so many, what it took is said. A
+sample is shown when its cage's snapshot, which is what the page gets, has its reading.
+"""
+
+import asyncio
+import os
+import sys
+import tempfile
+import time
+from collections.abc import Sequence
+from contextlib import closing
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from pathlib import Path
+
+import numpy as np
+from _timing import ONCE
+
+from seacage.records import Sample
+from seacage.service._live._cage import LiveCage
+from seacage.service._live._clock import WallClock
+from seacage.service._live._metrics import Metrics
+from seacage.service._store._place import look_into
+from seacage.service._store._store import open_store
+from seacage.testing import stand_in_twin
+from seacage.twin import Twin
+
+CAGES = 2 if ONCE else 50
+WATCHED = 2 if ONCE else 5
+"""Cages whose snapshots are timed; to time all would be a load of its own."""
+LOOK_S = 0.5 if ONCE else 2.0
+
+
+def asked(word: str, otherwise: float) -> float:
+    """What the command line says after a word."""
+    return float(sys.argv[sys.argv.index(word) + 1]) if word in sys.argv else otherwise
+
+
+RATE = asked("--rate", 100.0 if ONCE else 1500.0)
+MINUTES = asked("--minutes", 0.05 if ONCE else 10.0)
+
+
+@dataclass
+class Soaked:
+    """What was seen: seconds to commit and to show, memory [MB] at times [s], samples taken."""
+
+    commits: list[float] = field(default_factory=list[float])
+    shown: list[float] = field(default_factory=list[float])
+    memory: list[tuple[float, float]] = field(default_factory=list[tuple[float, float]])
+    taken: int = 0
+
+
+def spoken(twin: Twin, turn: int) -> list[Sample]:
+    """What the buoy and all sensors say this time; each time something else."""
+    now, step = datetime.now(UTC), 0.001 * (turn % 1000)
+    shackles = {one.name for one in twin.cage.shackles}
+    water = {"current_speed_m_s": 0.3 + step / 10.0, "current_to_deg": 90.0 + 10.0 * step}
+    sensors = [
+        Sample(
+            stream=name,
+            t=now,
+            values={"tension_kn": 12.0 + step} if name in shackles else {"depth_m": 10.0 + step},
+        )
+        for name in twin.sensor_names
+    ]
+    return [Sample(stream=twin.buoy, t=now, values=water), *sensors]
+
+
+async def speaking(cage: LiveCage, every_s: float, end: float, soaked: Soaked) -> None:
+    """Let a cage's streams speak in step with the clock; who is late does not catch up."""
+    turn, due = 0, time.monotonic() + every_s * np.random.default_rng().uniform()
+    while (now := time.monotonic()) < end:
+        if now < due:
+            await asyncio.sleep(due - now)
+        due = max(due + every_s, time.monotonic())
+        samples, began = spoken(cage.twin, turn), time.monotonic()
+        new = await cage.take(samples)
+        soaked.taken += sum(new)
+        soaked.commits.append(time.monotonic() - began)
+        turn += 1
+
+
+async def watching(cage: LiveCage, soaked: Soaked) -> None:
+    """Time each reading of a cage's first sensor from its birth until it is in a snapshot."""
+    last = None
+    with cage.watched() as mailbox:
+        while True:
+            snapshot = await mailbox.take()
+            latest = cage._state.streams.get(cage.twin.sensor_names[0])  # noqa: SLF001
+            if latest and latest[-1].sample.t != last:
+                last = latest[-1].sample.t
+                soaked.shown.append((datetime.now(UTC) - last).total_seconds())
+            snapshot.frame  # noqa: B018  # a page would have it made
+
+
+async def remembering(soaked: Soaked) -> None:
+    """Look at the memory of this process now and then."""
+    began = time.monotonic()
+    while True:
+        pages = int(Path("/proc/self/statm").read_text().split()[1])
+        soaked.memory.append((time.monotonic() - began, pages * os.sysconf("SC_PAGE_SIZE") / 1e6))
+        await asyncio.sleep(LOOK_S)
+
+
+async def soak(place: Path) -> Soaked:
+    """Run the cages and all that looks at them."""
+    twin, metrics, soaked = stand_in_twin(), Metrics(), Soaked()
+    every_s = CAGES * (1 + len(twin.sensor_names)) / RATE
+    with closing(open_store(place)) as store:
+        parts = {"twin": twin, "store": store, "clock": WallClock(), "metrics": metrics}
+        cages = [LiveCage(name=f"cage-{k}", **parts) for k in range(CAGES)]
+        beside = [asyncio.create_task(cage.run()) for cage in cages]
+        beside += [asyncio.create_task(watching(cage, soaked)) for cage in cages[:WATCHED]]
+        beside += [asyncio.create_task(remembering(soaked))]
+        end = time.monotonic() + 60.0 * MINUTES
+        await asyncio.gather(*(speaking(cage, every_s, end, soaked) for cage in cages))
+        for task in beside:
+            task.cancel()
+        await asyncio.gather(*beside, return_exceptions=True)
+    return soaked
+
+
+def slope(memory: Sequence[tuple[float, float]]) -> tuple[float, float]:
+    """Growth of the second half and its standard error [MB/h]; the first half warms up."""
+    t, megabytes = np.array(memory[len(memory) // 2 :]).T
+    if len(t) < 4:
+        return float("nan"), float("nan")
+    (rate, _), covariance = np.polyfit(t / 3600.0, megabytes, 1, cov=True)
+    return float(rate), float(np.sqrt(covariance[0, 0]))
+
+
+def told(soaked: Soaked, stored: int) -> None:
+    """Print what was seen."""
+    rate, error = slope(soaked.memory)
+    print(f"{CAGES} cages, {MINUTES:g} minutes")
+    print(f"  samples        {soaked.taken / MINUTES / 60.0:,.0f} /s of {RATE:,.0f} /s asked for")
+    print(f"  not stored     {soaked.taken - stored}")
+    for what, seconds in (("commit", soaked.commits), ("sample to page", soaked.shown)):
+        half, late, worst = 1e3 * np.quantile(seconds, (0.5, 0.99, 1.0))
+        print(f"  {what:<14} {half:.0f} ms half, {late:.0f} ms p99, {worst:.0f} ms at most")
+    print(f"  memory         {soaked.memory[-1][1]:.0f} MB, {rate:+.1f} ± {error:.1f} MB/h")
+
+
+with tempfile.TemporaryDirectory() as folder:
+    file = Path(folder, "samples.sqlite")
+    result = asyncio.run(soak(file))
+    with look_into(file) as session:
+        ((kept,),) = session.rows("SELECT count(*) FROM sample")
+    told(result, kept)
