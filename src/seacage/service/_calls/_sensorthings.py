@@ -32,6 +32,9 @@ from seacage.service._calls._things_asked import (
     written,
 )
 
+_AT_ONCE = 30_000
+"""Entities told and samples looked at, in one answer: expansions multiply."""
+
 _TIMES = ("phenomenonTime", "resultTime")
 _CONFORMS = "http://www.opengis.net/spec/iot_sensing/1.1/req/"
 _KEPT = ("datamodel", *(f"request-data/{one}" for one in ("select", "expand", "top", "skip")))
@@ -133,7 +136,7 @@ class _Answer:
 
     def __init__(self, catalogue: Catalogue) -> None:
         self._catalogue = catalogue
-        self._left = FARTHEST  # Observations that one answer may still hold
+        self._left = _AT_ONCE
 
     def page(self, of: str, found: list[Entity], asked: Asked, address: str) -> Entity:
         """Tell some of the entities that were found, and where the rest is."""
@@ -150,6 +153,7 @@ class _Answer:
 
     def one(self, of: str, entity: Entity, asked: Asked) -> Entity:
         """Tell an entity with what is selected of it and what it is expanded by."""
+        self._spend(1)
         said = _selected(of, entity, asked)
         for name, inner in asked.expand.items():
             told = self._expanded(of, entity, name, inner)
@@ -166,11 +170,6 @@ class _Answer:
         span, reach = asked.within or (None, None), asked.skip + asked.top
         read = self._samples(datastream, span, limit=reach + 1, newest=newest)
         told = self._observed(datastream, read[asked.skip : reach])
-        self._left -= len(told)
-        if self._left < 0:
-            raise InputError(
-                f"One answer holds at most {FARTHEST} Observations. Give a smaller $top."
-            )
         said: Entity = {"value": [_selected(OBSERVATIONS, one, asked) for one in told]}
         if asked.count:
             said["@iot.count"] = self._count(datastream, span)
@@ -207,7 +206,16 @@ class _Answer:
         read = self._catalogue.cages[cage].store.samples(
             cage, stream=stream, start=span[0], end=span[1], limit=limit, newest=newest
         )
+        self._spend(len(read))
         return read[::-1] if newest else read
+
+    def _spend(self, parts: int) -> None:
+        self._left -= parts
+        if self._left < 0:
+            raise InputError(
+                f"One question may look at {_AT_ONCE} entities and samples. Give a smaller $top "
+                "or $skip, or expand less."
+            )
 
     def _observed(self, datastream: str, samples: list[Sample]) -> list[Entity]:
         key = datastream.rpartition(":")[2]

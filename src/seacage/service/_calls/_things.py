@@ -1,7 +1,7 @@
 """Cages, streams and quantities as the entities of OGC SensorThings, and what joins them."""
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from fastapi import HTTPException
@@ -155,10 +155,11 @@ class Catalogue:
 
     cages: Cages
     address: str
+    _made: dict[str, list[Entity]] = field(default_factory=dict[str, list[Entity]], init=False)
 
     def all(self, of: str) -> list[Entity]:
         """List a set, each entity with the links that lead on from it."""
-        return [self._linked(of, entity) for entity in SETS[of](self.cages)]
+        return [self._linked(of, entity) for entity in self._plain(of)]
 
     def one(self, of: str, id: str) -> Entity:  # noqa: A002 (the standard's word)
         """Find an entity.
@@ -168,7 +169,7 @@ class Catalogue:
         HTTPException
             404, where there is none.
         """
-        for entity in SETS[of](self.cages):
+        for entity in self._plain(of):
             if entity["@iot.id"] == id:
                 return self._linked(of, entity)
         raise HTTPException(404, f"No {of} are called {id!r}.")
@@ -176,11 +177,18 @@ class Catalogue:
     def related(self, of: str, id: str, name: str) -> list[Entity]:  # noqa: A002
         """List what an entity leads to by a relation."""
         relation = RELATIONS[of][name]
-        return [one for one in self.all(relation.to) if relation.joins(id, one["@iot.id"])]
+        found = (one for one in self._plain(relation.to) if relation.joins(id, one["@iot.id"]))
+        return [self._linked(relation.to, one) for one in found]
 
     def link(self, of: str, id: str) -> str:  # noqa: A002
         """Say where an entity is."""
         return f"{self.address}{ROOT}/{of}('{id}')"
+
+    def _plain(self, of: str) -> list[Entity]:
+        # Made once for a question: an expansion may come back to a set thousands of times.
+        if of not in self._made:
+            self._made[of] = list(SETS[of](self.cages))
+        return self._made[of]
 
     def _linked(self, of: str, entity: Entity) -> Entity:
         link = self.link(of, entity["@iot.id"])

@@ -146,8 +146,26 @@ def test_more_than_can_be_counted_is_refused_and_not_guessed(live: Running, monk
     live.post(buoy(-30), buoy(-20), buoy(-10))
     monkeypatch.setattr("seacage.service._calls._sensorthings.FARTHEST", 2)
     assert "shorter time" in refused(live, f"{SPEED}/Observations", count="true", top=1)
-    assert "smaller $top" in refused(live, f"{SPEED}/Observations")
-    assert len(value(live, f"{SPEED}/Observations", top=2)) == 2
+    assert len(value(live, f"{SPEED}/Observations", top=1)) == 1
+
+
+@pytest.mark.parametrize(
+    ("inner", "fits"),
+    [("$top=1", True), ("$top=3", False), ("$top=1;$skip=2", False), ("$top=1;$count=true", False)],
+)
+def test_an_expansion_may_look_at_so_many_samples(farm: Running, monkeypatch, inner, fits):
+    monkeypatch.setattr("seacage.service._calls._sensorthings._AT_ONCE", 4)
+    expand = f"Datastreams($top=1;$expand=Observations({inner}))"  # three samples of one stream
+    if fits:
+        assert asked(farm, f"{ROOT}/Things('ace')", expand=expand)["Datastreams"]
+    else:
+        assert "expand less" in refused(farm, f"{ROOT}/Things('ace')", expand=expand)
+
+
+def test_an_expansion_that_multiplies_too_far_is_refused(farm: Running, monkeypatch):
+    monkeypatch.setattr("seacage.service._calls._sensorthings._AT_ONCE", 100)
+    assert value(farm, f"{ROOT}/Things", expand="Datastreams")
+    assert "expand less" in refused(farm, f"{ROOT}/Things", expand="Datastreams/Thing/Datastreams")
 
 
 def test_the_newest_of_every_stream_of_every_cage_comes_in_one_answer(farm: Running):
