@@ -14,16 +14,22 @@ export function loadRows(topology, state, colours = []) {
     const capacity = topology.bridle_capacity_kn[k];
     const share = (kn) => (Number.isFinite(kn) ? kn / capacity : null);
     const measured = read.get(shackles.get(k)) ?? null;
-    const { mean, lower, upper } = bridle.tension_kn;
+    const interval = intervalOf(bridle);
     return {
       name: bridle.name, level: bridle.level, shackle: shackles.get(k) ?? null, capacity,
-      kn: mean, interval: bridle.tension_kn, lowKn: bridle.low_fidelity_kn, measuredKn: measured,
-      mean: bridle.utilisation, lower: share(lower), upper: share(upper),
+      kn: bridle.tension_kn.mean, interval, lowKn: bridle.low_fidelity_kn, measuredKn: measured,
+      mean: bridle.utilisation, lower: share(interval?.lower), upper: share(interval?.upper),
       low: share(bridle.low_fidelity_kn), measured: share(measured),
       colour: colours[k], rank: ranks.get(bridle.name) ?? ranks.get(shackles.get(k)) ?? null,
     };
   });
 }
+
+/**
+ * Where the load of a bridle lies; null where no shackle has taught it. The simulation alone
+ * knows how well it is followed, not how far it is off at sea.
+ */
+export const intervalOf = (bridle) => (bridle?.level > 1 ? bridle.tension_kn : null);
 
 /** The largest share that is to be seen. */
 export function largest(rows) {

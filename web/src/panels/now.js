@@ -3,6 +3,7 @@
 import { make } from "../dom.js";
 import { write } from "./dom.js";
 import { DASH, bearing, compass, fixed, half, known, percent, plain } from "./format.js";
+import { intervalOf } from "./load-rows.js";
 import { waterArrow } from "./water-arrow.js";
 
 export class Now {
@@ -30,7 +31,7 @@ export class Now {
     this.current.turn(water?.current_to_deg);
     this.sayWaves(water);
     const top = highest(state);
-    this.load.say(fixed(top?.tension_kn.mean), `${half(top?.tension_kn)} kN`, top
+    this.load.say(fixed(top?.tension_kn.mean), `${half(intervalOf(top))} kN`, top
       ? `${plain(top.name)}, ${percent(top.utilisation)} of capacity${top.level > 1 ? "" : ", simulated"}` : "");
     const share = state?.valid ? state.volume_fraction : null;
     this.volume.say(known(share) ? String(Math.round(100 * share)) : DASH, "%",

@@ -57,7 +57,8 @@ function ofBridle(name, topology, state) {
   const bridle = state.bridles[k];
   if (!bridle) return null;
   const kn = bridle.tension_kn;
-  const rows = [["Tension", fixed(kn.mean, 1, "kN")], ["95 % interval", range(kn, 1, "kN")],
+  const rows = [["Tension", fixed(kn.mean, 1, "kN")],
+    ["95 % interval", interval(bridle.level, kn, 1, "kN")],
     ["Of its capacity", bridle.utilisation === null ? "–"
       : `${fixed(100 * bridle.utilisation, 0)} % of ${fixed(topology.bridle_capacity_kn[k], 0, "kN")}`]];
   const shackle = topology.shackles.find((one) => one.bridle === k);
@@ -75,12 +76,17 @@ function ofSensor(name, topology, state) {
     ["Measured", sensor.measured === null ? "– (silent)"
       : `${fixed(sensor.measured, decimals, sensor.unit)}${age === null ? "" : `, ${lasting(age)} ago`}`],
     ["Predicted", fixed(sensor.mean, decimals, sensor.unit)],
-    ["95 % interval", range(sensor, decimals, sensor.unit)],
+    ["95 % interval", interval(sensor.level, sensor, decimals, sensor.unit)],
     ["Simulation alone", fixed(sensor.low_fidelity, decimals, sensor.unit)],
   ];
   const bridle = topology.shackles.find((one) => one.name === name)?.bridle;
   const on = bridle === undefined ? "depth sensor on the net" : `on ${topology.bridle_names[bridle]}`;
   return { title: `${name}, ${on}`, rows, note: level(sensor.level, state) };
+}
+
+/** How far the simulation alone is off at sea, nobody knows. */
+function interval(number, bounds, decimals, unit) {
+  return number > 1 || bounds.mean === null ? range(bounds, decimals, unit) : "not known";
 }
 
 function level(number, { valid, in_domain: inDomain, reason }) {

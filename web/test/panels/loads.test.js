@@ -53,9 +53,14 @@ const state = {
 
 test("a row says what twin, simulation and shackle say of a bridle", () => {
   const [one, two] = loadRows(topology, state);
-  assert.deepEqual([one.lower, one.upper, one.measured, one.rank], [0.4, 0.6, null, "critical"]);
-  assert.deepEqual([two.measured, two.measuredKn, two.low, two.rank], [0.3, 60, 0.2, null]);
-  assert.equal(largest([one, two]), 0.6);
+  assert.deepEqual([one.mean, one.measured, one.rank], [0.5, null, "critical"]);
+  assert.deepEqual([two.lower, two.upper, two.measured, two.measuredKn], [0.225, 0.275, 0.3, 60]);
+  assert.equal(largest([one, two]), 0.5);
+});
+
+test("a bridle that no shackle has taught has no interval, for nobody knows how far off it is", () => {
+  const [one] = loadRows(topology, state);
+  assert.deepEqual([one.interval, one.lower, one.upper], [null, null, null]);
 });
 
 test("without valid input a row has no number", () => {

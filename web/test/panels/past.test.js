@@ -83,6 +83,14 @@ test("the twin's rows and the readings share one set of times", () => {
   assert.deepEqual([lower[0], upper[0], low[0]], [3, 7, 6]);
 });
 
+test("what no sensor has taught is drawn without an interval", () => {
+  const columns = columnsOf(history());
+  columns.bridles["bridle-1"].level = 1;
+  const { lower, upper, mean } =
+    rowsOf(columns, { key: "bridle:bridle-1", name: "bridle-1", sensor: null });
+  assert.deepEqual([lower, upper, mean], [[null, null], [null, null], [10, 20]]);
+});
+
 test("a curve is not drawn through a time of which the twin said nothing", () => {
   const columns = columnsOf(history());
   const [t, , , , , mean] =
