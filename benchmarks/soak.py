@@ -1,8 +1,9 @@
 """A farm's samples into one SQLite file for minutes: memory, commits, and what is shown when.
 
 Fifty small cages, each with its buoy and eight sensors, share `--rate` samples a second (1,500 if
-left out) for `--minutes` (10). Where the machine cannot take so many, what it took is said. A
+left out) for `--minutes` (30). Where the machine cannot take so many, what it took is said. A
 sample is shown when its cage's snapshot, which is what the page gets, has its reading.
+A twin remembers what came in the last ten minutes, so memory is judged after twice that alone.
 """
 
 import asyncio
@@ -26,11 +27,12 @@ from seacage.service._live._metrics import Metrics
 from seacage.service._store._place import look_into
 from seacage.service._store._store import open_store
 from seacage.testing import stand_in_twin
-from seacage.twin import Twin
+from seacage.twin import Twin, Watch
 
 CAGES = 2 if ONCE else 50
 WATCHED = 2 if ONCE else 5
 """Cages whose snapshots are timed; to time all would be a load of its own."""
+FULL_S = 2.0 * Watch().disorder_s
 LOOK_S = 0.5 if ONCE else 2.0
 
 
@@ -40,7 +42,7 @@ def asked(word: str, otherwise: float) -> float:
 
 
 RATE = asked("--rate", 100.0 if ONCE else 1500.0)
-MINUTES = asked("--minutes", 0.05 if ONCE else 10.0)
+MINUTES = asked("--minutes", 0.05 if ONCE else 30.0)
 
 
 @dataclass
@@ -124,10 +126,11 @@ async def soak(place: Path) -> Soaked:
 
 
 def slope(memory: Sequence[tuple[float, float]]) -> tuple[float, float]:
-    """Growth of the second half and its standard error [MB/h]; the first half warms up."""
-    t, megabytes = np.array(memory[len(memory) // 2 :]).T
-    if len(t) < 4:
+    """Growth once the twins' memories are full, and its standard error [MB/h]; else NaN."""
+    later = [one for one in memory if one[0] > FULL_S]
+    if len(later) < 4:
         return float("nan"), float("nan")
+    t, megabytes = np.array(later).T
     (rate, _), covariance = np.polyfit(t / 3600.0, megabytes, 1, cov=True)
     return float(rate), float(np.sqrt(covariance[0, 0]))
 
