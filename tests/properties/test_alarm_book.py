@@ -10,9 +10,9 @@ from seacage.conventions import InputError
 from seacage.twin import Alarm, AlarmBook
 from seacage.twin._irregular import Sense
 from seacage.twin._irregular_block import Open
-from seacage.twin._irregular_bridle import Parting
-from seacage.twin._irregular_drag import Drag
 from seacage.twin._irregular_told import Suspicion
+from seacage.twin._irregular_usual import Usual
+from seacage.twin._irregular_weighed import Belief
 
 EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 NUMBERS = st.floats(allow_nan=False, allow_infinity=False)
@@ -48,13 +48,16 @@ SENSES = _keywords(
     repeats=COUNTS,
     count=COUNTS,
     error=NUMBERS,
-    doubt=NUMBERS,
-    blocks=COUNTS,
-    usual=NUMBERS,
-    above=NUMBERS,
-    below=NUMBERS,
 )
-PARTINGS = _keywords(whole=NUMBERS, shared=NUMBERS)
+SIZES = st.lists(NUMBERS, max_size=3).map(tuple)
+TABLES = st.lists(SIZES, max_size=3).map(tuple)
+BELIEFS = _keywords(evidence=NUMBERS, size=SIZES, covariance=TABLES)
+USUALS = _keywords(
+    sensors=st.lists(NAMES, max_size=3).map(tuple),
+    size=SIZES,
+    covariance=TABLES,
+    restless=SIZES,
+)
 
 
 @settings(max_examples=60)
@@ -62,19 +65,25 @@ PARTINGS = _keywords(whole=NUMBERS, shared=NUMBERS)
     alarms=st.lists(ALARMS, max_size=3),
     t=st.none() | TIMES,
     senses=st.dictionaries(NAMES, SENSES, max_size=3),
-    partings=st.dictionaries(NAMES, PARTINGS, max_size=3),
+    beliefs=st.dictionaries(NAMES, BELIEFS, max_size=3),
     opened=_keywords(number=st.none() | COUNTS, ticks=COUNTS, east=NUMBERS, north=NUMBERS),
-    drag=_keywords(total=NUMBERS, weight=NUMBERS, seen_s=NUMBERS, lost=NUMBERS),
+    usual=USUALS,
+    told=st.lists(NAMES, max_size=3).map(tuple),
+    waited=COUNTS,
 )
-def test_a_book_comes_back_as_it_was_written(alarms, t, senses, partings, opened, drag):
+def test_a_book_comes_back_as_it_was_written(
+    alarms, t, senses, beliefs, opened, usual, told, waited
+):
     book = AlarmBook(
         alarms={one["name"]: Alarm(**one) for one in alarms},
         t=t,
         suspicion=Suspicion(
             senses={name: Sense(**one) for name, one in senses.items()},
-            partings={name: Parting(**one) for name, one in partings.items()},
+            beliefs={name: Belief(**one) for name, one in beliefs.items()},
             opened=Open(**opened),
-            drag=Drag(**drag),
+            usual=Usual(**usual),
+            told=told,
+            waited=waited,
         ),
     )
     assert AlarmBook.from_json(book.to_json()) == book

@@ -59,7 +59,7 @@ def assess(
     unheard_of = set(alarms)
     for number in (
         *numbers(twin, state, answered, distrusted=distrusted),
-        *(suspicion.numbers(twin.cage, active=active) if ended else suspicion.stuck()),
+        *(suspicion.numbers(twin.cage) if ended else suspicion.stuck()),
         *_faults(book, trouble),
     ):
         alarm, changed = _judged(alarms, number, policy, now)

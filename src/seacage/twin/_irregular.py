@@ -29,15 +29,9 @@ class Sense:
     values, since, repeats
         That reading by its door keys, since when it has been the very same, and how often it
         was said again.
-    count, error, doubt
-        Of the block of time that is being averaged: good readings, and the sums of their
-        distances from what the twin said, and of its standard deviations [N] or [m].
-    blocks
-        How many blocks were judged.
-    usual
-        How far off the other sensors' word it usually is, in standard deviations.
-    above, below
-        Sums of how much further off it was, upwards and downwards, in standard deviations.
+    count, error
+        Of the block of time that is being averaged: good readings, and the sum of their
+        distances from what the twin said [N] or [m].
     """
 
     heard: datetime | None = None
@@ -46,21 +40,16 @@ class Sense:
     repeats: int = 0
     count: int = 0
     error: float = 0.0
-    doubt: float = 0.0
-    blocks: int = 0
-    usual: float = 0.0
-    above: float = 0.0
-    below: float = 0.0
 
     def interrupted(self) -> Self:
-        """Return the same with nothing heard lately, and the tests' sums as they are."""
+        """Return the same with nothing heard lately."""
         return replace(self.begun_anew(), heard=None, values=(), since=None, repeats=0)
 
     def begun_anew(self) -> Self:
         """Return the same with the next block begun."""
-        return replace(self, count=0, error=0.0, doubt=0.0)
+        return replace(self, count=0, error=0.0)
 
-    def taken(self, sample: Sample, said: tuple[float, float] | None) -> Self:
+    def taken(self, sample: Sample, said: float | None) -> Self:
         """Take a reading in.
 
         Parameters
@@ -68,7 +57,7 @@ class Sense:
         sample
             With its flags; one that did not pass its checks is heard, and is not averaged.
         said
-            The twin's mean and standard deviation of it [N] or [m]; None where it had none.
+            What the twin expects [N] or [m]; None where it expects nothing.
         """
         values = tuple(sample.values.values())
         same = values == self.values
@@ -82,14 +71,8 @@ class Sense:
         ((key, value),) = sample.values.items() if len(values) == 1 else (("", 0.0),)
         if said is None or not key or sample.flags[key] not in _COUNTED:
             return sense
-        mean, std = said
         reading = value * (1000.0 if key == "tension_kn" else 1.0)
-        return replace(
-            sense,
-            count=self.count + 1,
-            error=self.error + reading - mean,
-            doubt=self.doubt + std,
-        )
+        return replace(sense, count=self.count + 1, error=self.error + reading - said)
 
     @property
     def still_s(self) -> float:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from seacage.twin._events import Answered
 from seacage.twin._irregular import Sense
@@ -15,8 +15,13 @@ from seacage.twin._twin import Twin
 BLOCK_S = 1800.0
 """Averaged over so long, most of what eddies and waves do is gone [s]."""
 
-LEAST_READINGS = 3
-"""Of a sensor in a block, or it says nothing there."""
+LEAST_READINGS, LEAST_SENSORS = 3, 3
+"""Of a sensor in a block, or it says nothing there; and of sensors, or nobody can say which of them
+is wrong."""
+
+WATER_SD = 0.1
+"""Of each component of the current at the cage about the buoy's word, over half an hour [m/s]. Too
+large does little harm: it leaves the water to the sensors to find."""
 
 STRIDE = 0.03
 """Either way, of the central difference over the current [m/s]."""
@@ -68,15 +73,17 @@ def counted(answered: Answered) -> bool:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Block:
-    """Means over a block, of the sensors that have something to say.
+    """Means over a block, of all sensors that have taught the twin.
 
     Parameters
     ----------
     sensors
         Their names.
+    heard
+        Which of them have something to say.
     error, own
-        How far they were from the twin's word, and the standard deviation of what each does not
-        share with the others [N] or [m].
+        How far they were from the twin's word, zero where nothing was heard, and the standard
+        deviation of what each does not share with the others [N] or [m].
     gradient
         Of the twin's word over the current (east, north) [N s/m] or [s].
     current
@@ -86,11 +93,25 @@ class Block:
     """
 
     sensors: tuple[str, ...]
+    heard: Bool[np.ndarray, " sensor"]
     error: Float[np.ndarray, " sensor"]
     own: Float[np.ndarray, " sensor"]
     gradient: Float[np.ndarray, "sensor 2"]
     current: Float[np.ndarray, "2"]
     tension: Float[np.ndarray, " line"]
+
+    @property
+    def drag(self) -> Float[np.ndarray, " sensor"]:
+        """What each would read more if the net had as much drag again, to first order.
+
+        Drag goes with the square of the speed, so a share of it is half a share of the speed.
+        """
+        return self.gradient @ self.current / 2.0
+
+    @property
+    def water(self) -> Float[np.ndarray, "sensor sensor"]:
+        """Covariance of what the buoy did not tell of the water: all sensors miss it together."""
+        return WATER_SD**2 * self.gradient @ self.gradient.T
 
 
 def closed(
@@ -105,12 +126,10 @@ def closed(
     twin, answered
         Asked once more, at the block's mean current and around it; its waves are the last.
     """
-    names = tuple(
-        name
-        for name in twin.models.upper
-        if name in senses and senses[name].count >= LEAST_READINGS and not senses[name].stuck
-    )
-    if not names or opened.ticks == 0 or answered.metocean is None:
+    names = tuple(name for name in twin.sensor_names if name in twin.models.upper)
+    each = [senses.get(name, Sense()) for name in names]
+    heard = np.array([one.count >= LEAST_READINGS and not one.stuck for one in each], dtype=bool)
+    if np.count_nonzero(heard) < LEAST_SENSORS or opened.ticks == 0 or answered.metocean is None:
         return None
     current = np.array([opened.east, opened.north]) / opened.ticks
     around = STRIDE * np.array([[0.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
@@ -122,14 +141,14 @@ def closed(
         return None
     columns = [answer.sensor_names.index(name) for name in names]
     _, east, west, north, south = answer.sensor.mean[:, columns]
-    counts = np.array([senses[name].count for name in names])
     share = [
         OWN_SHARE if twin.models.upper[name].spread.by == "own" else CARRIED_SHARE for name in names
     ]
     return Block(
         sensors=names,
-        error=np.array([senses[name].error for name in names]) / counts,
-        own=np.array([senses[name].doubt for name in names]) / counts * share,
+        heard=heard,
+        error=np.array([one.error / max(one.count, 1) for one in each]) * heard,
+        own=answer.sensor.std[0, columns] * share,
         gradient=np.column_stack([east - west, north - south]) / (2.0 * STRIDE),
         current=current,
         tension=answer.bridle_tension.mean[0],
