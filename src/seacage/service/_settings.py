@@ -63,7 +63,7 @@ class MqttSection(_Section):
     client_id
         Of this process; two processes never share one. ``seacage-`` and the site if left out.
     group
-        Processes of one group share the samples of the cages that each of them serves.
+        Name of a shared subscription; a process that stands by for another has the same.
     state_every_s
         How often a cage's state is published [s].
     """

@@ -99,7 +99,8 @@ def _not_known(socket: WebSocket) -> tuple[int, str]:
 async def _first_message(socket: WebSocket) -> tuple[bool, str | None]:
     """Read whether a first message came, and its token; null stands for the page's session."""
     try:
-        text = await asyncio.wait_for(socket.receive_text(), _FIRST_MESSAGE_S)
+        async with asyncio.timeout(_FIRST_MESSAGE_S):
+            text = await socket.receive_text()
         token = json.loads(text[:_FIRST_MESSAGE_BYTES])["token"]
     except (WebSocketDisconnect, ValueError, KeyError, TypeError):
         return False, None

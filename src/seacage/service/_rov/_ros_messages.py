@@ -9,13 +9,14 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float, Int
 
-from seacage.conventions import SeacageError
+from seacage.conventions import InputError, SeacageError
 
 FRAME_ID = "seacage_enu"
 """Of all messages: metres east, north and up of the cage's centre."""
 
 TRIANGLE_LIST = 11
 _POINT_FLOAT = 7
+_LAST_NS = 2**31 * 10**9
 _COLOUR = {"r": 0.2, "g": 0.6, "b": 0.8, "a": 0.5}
 
 Points = Float[np.ndarray, "point 3"]
@@ -37,6 +38,8 @@ class RosMessages:
     ------
     NoRosbagsError
         The package that writes them is not installed.
+    InputError
+        ROS has no such time.
     """
 
     def __init__(self, t: datetime) -> None:
@@ -48,6 +51,8 @@ class RosMessages:
             ) from error
         self._store: Any = get_typestore(Stores.ROS2_JAZZY)
         self._ns = round(t.timestamp() * 1e6) * 1000
+        if not 0 <= self._ns < _LAST_NS:
+            raise InputError(f"ROS tells time from 1970 to 2038, and this is {t.isoformat()}.")
 
     def cloud(self, position: Points, sigma: Float[np.ndarray, " point"]) -> Any:
         """Nodes with their sigma."""

@@ -213,6 +213,14 @@ def test_the_net_is_read_back_from_mcap(swum, tmp_path):
     assert cloud.header.stamp.sec == 1580558400
 
 
+def test_a_time_that_ros_cannot_tell_is_refused(swum):
+    answer = swum.reader.get(
+        "/api/v1/cages/ace/shape.mcap", params={"at": "2868-01-03T00:00:00Z", "allow_stale": True}
+    )
+    assert answer.status_code == 422
+    assert "from 1970 to 2038" in answer.json()["detail"]
+
+
 def test_the_way_is_read_back_from_mcap_and_its_poses_face_the_net(swum, tmp_path):
     body = {"row_spacing_m": 4.0, "step_m": 3.0}
     plain = swum.reader.post("/api/v1/cages/ace/inspection", json=body).json()["waypoints"]
