@@ -42,6 +42,9 @@ from seacage.twin import (
 _GATHERED_S = 0.1
 """What comes within so long is stepped through together, and shown once [s]."""
 
+MOST_WAITING = 20_000
+"""Samples that may wait to be stepped through, some 20 MB; who sends more is made to wait."""
+
 _KEPT_EVERY = timedelta(minutes=1)
 """How far the intervals were adapted is kept so often."""
 
@@ -101,7 +104,8 @@ class LiveCage:
         self._metrics, self._tick_s = metrics, tick_s
         self._streams = _quantities(twin)
         self._pending: deque[Sample] = deque()
-        self._arrived = asyncio.Event()
+        self._arrived, self._room = asyncio.Event(), asyncio.Event()
+        self._room.set()
         self._stepping = asyncio.Lock()
         self._mailboxes: set[Mailbox[Snapshot]] = set()
         self._topology = topology_of(name, twin, speed=clock.speed)
@@ -138,6 +142,9 @@ class LiveCage:
     async def take(self, samples: Sequence[Sample]) -> tuple[bool, ...]:
         """Check, store and queue samples; returns after the commit.
 
+        Where the twin has fallen far behind, samples are taken once it has caught up: their
+        senders keep them, and this process does not fill the memory with them.
+
         Returns
         -------
         new
@@ -148,12 +155,15 @@ class LiveCage:
         StoreError
             The disk did not take them; then none of them counts.
         """
+        await self._room.wait()
         if isinstance(self.clock, FollowingClock):
             for sample in samples:
                 self.clock.hear(sample.t)
         with self._metrics.commits.labels(self.name).time():
             new = await self._stored(samples)
         self._pending.extend(s for s, fresh in zip(samples, new, strict=True) if fresh)
+        if len(self._pending) >= MOST_WAITING:
+            self._room.clear()
         self._arrived.set()
         return new
 
@@ -164,6 +174,7 @@ class LiveCage:
             self.desk.begin_anew()
             self._checks = Checks({})
             self._pending.clear()
+            self._room.set()
             await self._stored(backlog)
             now = self.clock.now()
             self._state, answered = await asyncio.to_thread(
@@ -182,6 +193,7 @@ class LiveCage:
             async with self._stepping:
                 samples = list(self._pending)
                 self._pending.clear()
+                self._room.set()
                 answered, events = await asyncio.to_thread(self._stepped, samples)
                 self._note(events)
                 self._publish(answered)
