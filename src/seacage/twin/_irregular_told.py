@@ -114,8 +114,10 @@ class Suspicion:
         return replace(after, waited=before.waited + 1 if best >= LIMIT else 0)
 
     def _beside(self, told: tuple[str, ...], block: Block) -> Self:
-        """Begin anew, but for what is told, where that has changed."""
+        """Begin anew, but for what is told, where that has changed; all of it for other sensors."""
         usual = self.usual.of(block.sensors)
+        if usual is not self.usual:
+            return replace(self, usual=usual, beliefs={}, told=told, waited=0)
         if told == self.told:
             return replace(self, usual=usual)
         if any(not name.startswith("irregular") for name in {*told} ^ {*self.told}):

@@ -247,12 +247,15 @@ def test_what_cannot_be_told_apart_is_told_once_and_names_both():
     assert "shackle-5" in said["bridle.bridle-12"]
 
 
-def test_what_was_learned_of_other_sensors_is_forgotten():
-    usual = learned().suspicion.usual
-    other = usual.of(NAMES[:4])
-    assert usual.of(NAMES) is usual
-    assert len(other.size) == 8
-    assert set(other.size) == {0.0}
+def test_a_twin_that_other_sensors_have_taught_is_watched_anew():
+    before = learned().through(quiet(33, 0.2) - only("depth-1", 1.5)).suspicion
+    seen = block(np.zeros(8))
+    four = {name: getattr(seen, name)[:4] for name in ("heard", "error", "own", "gradient")}
+    fewer = replace(seen, sensors=NAMES[:4], **four)
+    after = before.judged(fewer, ACE, active=frozenset({"irregular.depth-1"}))
+    assert before.evidence()["irregular.depth-1"] > LIMIT
+    assert after.evidence().get("irregular.depth-1", 0.0) == 0.0
+    assert after.usual.sensors == NAMES[:4]
 
 
 def test_the_memory_of_a_quiet_week_and_of_a_parted_bridle_survive_a_restart():
