@@ -37,6 +37,15 @@ def is_drawn(ensemble: Ensemble, *, observations: int) -> bool:
     return ensemble == "always" or (ensemble == "auto" and observations <= FEW)
 
 
+def widened(points: int) -> float:
+    """Factor on the spread that each draw leaves: few points leave more open than they say.
+
+    Found and not derived (decision 0040): of 1, 1 + 1/2n, 1 + 1/n and 1 + 2/n this one gave
+    tuning samples of published problems the largest likelihood.
+    """
+    return 1.0 + 1.0 / points
+
+
 def check_ensemble(ensemble: str) -> None:
     """Refuse a choice that is not known."""
     if ensemble not in get_args(Ensemble):

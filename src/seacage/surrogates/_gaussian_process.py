@@ -10,7 +10,7 @@ from jaxtyping import Float
 from seacage.conventions import InputError
 from seacage.surrogates._arrays import Arrays, Settings, array, setting
 from seacage.surrogates._autoregressive import saved_kernel
-from seacage.surrogates._ensemble import Ensemble, check_ensemble, drawn, is_drawn
+from seacage.surrogates._ensemble import Ensemble, check_ensemble, drawn, is_drawn, widened
 from seacage.surrogates._kernels import AbstractKernel, KernelName, kernel_named
 from seacage.surrogates._learning import Evidence, learned
 from seacage.surrogates._noise import NoiseName, check_noise, noise_named, saved_noise
@@ -447,9 +447,9 @@ def fitted_process(
     scatter = noise_named(noise, standardised, outputs=taught_by.shape[1])
     evidence = Evidence.of(kernel, scatter, standardised, taught_by)
     mode = learned(evidence, restarts=restarts, seed=seed)
-    hyperparameters = mode.log_parameters[None]
+    hyperparameters, wider = mode.log_parameters[None], 1.0
     if is_drawn(ensemble, observations=taught_by.size):
-        hyperparameters = drawn(mode, seed=seed)
+        hyperparameters, wider = drawn(mode, seed=seed), widened(len(y))
     members = [
         Posterior.conditioned(
             kernel,
@@ -474,7 +474,7 @@ def fitted_process(
         share=share,
         inputs=inputs,
         centre=outputs.centre,
-        amplitude=np.sqrt(variance),
+        amplitude=wider * np.sqrt(variance),
         single=y.shape[1] == 1,
         line=line,
     )

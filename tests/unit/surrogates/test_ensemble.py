@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seacage.conventions import InputError
-from seacage.surrogates import GaussianProcess, coverage, decode, encode, rmse
+from seacage.surrogates import GaussianProcess, _gaussian_process, coverage, decode, encode, rmse
 from seacage.surrogates._ensemble import FEW, MEMBERS, drawn
 from seacage.surrogates._kernels import StationaryKernel
 from seacage.surrogates._learning import Evidence, learned
@@ -116,3 +116,31 @@ def test_an_unknown_choice_is_refused() -> None:
     unchecked = getattr(GaussianProcess.__init__, "__wrapped__", GaussianProcess.__init__)
     with pytest.raises(InputError, match="ensemble = 'some' is not known"):
         unchecked(object.__new__(GaussianProcess), ensemble="some")
+
+
+def test_the_spread_of_each_draw_of_few_points_is_widened_and_no_mean(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    x = some(5)
+    given = GaussianProcess().fit(x, wave(x)).predict(some(20, seed=1))
+    means, variances = [], []
+    for factor in (1.0, 2.0):
+        monkeypatch.setattr(_gaussian_process, "widened", lambda _, factor=factor: factor)
+        one = GaussianProcess().fit(x, wave(x)).predict(some(20, seed=1))
+        means.append(one.mean)
+        variances.append(one.std**2)
+    np.testing.assert_allclose(means, [given.mean, given.mean], rtol=1e-12)
+    # What the draws differ by stays, so that the variance goes with the factor's square.
+    of_each = (variances[1] - variances[0]) / 3.0
+    assert np.all(of_each > 0.0)
+    np.testing.assert_allclose(given.std**2, variances[0] + (1.2**2 - 1.0) * of_each, rtol=1e-9)
+
+
+def test_many_points_are_given_what_their_posterior_says(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    x = some(FEW + 1)
+    said = GaussianProcess().fit(x, wave(x)).predict(some(20, seed=1))
+    monkeypatch.setattr(_gaussian_process, "widened", lambda _: 2.0)
+    same = GaussianProcess().fit(x, wave(x)).predict(some(20, seed=1))
+    np.testing.assert_array_equal(said.std, same.std)
