@@ -388,9 +388,12 @@ def test_the_march_steps_as_it_says(mesh, law, cases, each, hold, held, seed):
     plain = Stepper.begun(assembly, net, ocean, steps, start)
     march.go(3)
     plain.go(3)
-    moved = np.abs(plain.position - start).max()
-    # rounding of the bars' lengths, which ring; drag of the cylinders taken at the old speed
-    # instead of the new, the smallest slip tried, changes both by 1e-3 and more
-    assert np.abs(march.position - plain.position).max() <= 2e-4 * moved
-    assert np.abs(march.velocity - plain.velocity).max() <= 1e-3 * np.abs(plain.velocity).max()
+    # Over all nodes together, for a single bar that rings in rounding may be off by more: 70
+    # cages were off by 1.7e-4 at most, and the smallest slip tried, drag taken at the old speed
+    # instead of the new, changes both by 2e-3 and more.
+    for ours, said, change in (
+        (march.position, plain.position, plain.position - start),
+        (march.velocity, plain.velocity, plain.velocity),
+    ):
+        assert np.linalg.norm(ours - said) <= 5e-4 * np.linalg.norm(change)
     assert np.all(np.isnan(march.lost_at))
