@@ -4,6 +4,7 @@ from datetime import timedelta
 from pathlib import Path
 
 import pytest
+from playwright.sync_api import Route
 
 from browser import Line, Watched, opened_browser
 from serviced import Running, buoy, depth, eventually, running
@@ -147,6 +148,25 @@ def test_a_token_that_is_not_known_is_refused_in_words(chromium: Path, live: Run
         why = watched.page.locator("#ask .ask-why")
         why.wait_for(state="visible")
         assert "does not open the service" in why.inner_text()
+
+
+def test_who_reloads_before_the_service_has_answered_to_a_link_is_let_in_by_it(
+    chromium: Path, live: Running
+) -> None:
+    unanswered = []
+
+    def left_alone(route: Route) -> None:
+        unanswered.append(route)
+
+    with opened_browser(chromium, webgl=False) as watched:
+        page = watched.page
+        page.route("**/session", left_alone, times=1)
+        page.goto(address(live))
+        while not unanswered:
+            page.wait_for_timeout(50)
+        page.reload()
+        watched.until("document.body.dataset.connection == 'live'")
+        assert "token" not in page.url
 
 
 def test_whoever_signs_in_stays_so_without_the_token_in_any_scripts_reach_until_they_sign_out(

@@ -81,9 +81,11 @@ async function kept(asked, why) {
     session = await asked;
   } catch (error) {
     if (error.status !== UNKNOWN) throw error;
+    hideToken();
     forget();
     throw new Refusal(UNKNOWN, why);
   }
+  hideToken();
   linked = null;
   localStorage.setItem(SIGNED_IN, "yes");
   return session;
@@ -91,9 +93,10 @@ async function kept(asked, why) {
 
 const repeated = () => ({ "X-CSRF-Token": session.csrf });
 
-/** The token of a link, which is taken out of the address before anybody can copy it. */
-function fromAddress() {
-  const token = new URLSearchParams(location.hash.slice(1)).get("token");
-  if (token) history.replaceState(null, "", location.pathname + location.search);
-  return token;
+/** The token of a link. */
+const fromAddress = () => new URLSearchParams(location.hash.slice(1)).get("token");
+
+/** Take it out of the address once it is answered; sooner, and who reloads then would lose it. */
+function hideToken() {
+  if (fromAddress()) history.replaceState(null, "", location.pathname + location.search);
 }
