@@ -4,6 +4,7 @@ import json
 from datetime import datetime, timedelta
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -25,8 +26,8 @@ waited = partial(eventually, seconds=30.0)  # beside a browser a tick may take l
 def live(tmp_path: Path):
     """A service with an hour of a calm sea behind it, and strict limits of the loads."""
     with running(tmp_path, policy=STRICT) as one:
-        for minutes in range(-60, 1, 10):
-            told(one, float(minutes), 0.5)
+        # At once: of the first alone the twin would find that its sensor fell silent since.
+        one.post(*(each for minutes in range(-60, 1, 10) for each in said(float(minutes), 0.5)))
         yield one
 
 
@@ -44,10 +45,15 @@ def address(live: Running, *scopes: str) -> str:
     return f"{live.address}/#token={token}"
 
 
-def told(live: Running, minutes: float, speed: float) -> None:
-    """Tell of the sea and of one depth; no reading is quite like the one before."""
+def said(minutes: float, speed: float) -> tuple[dict[str, Any], dict[str, Any]]:
+    """What buoy and one depth sensor say; no reading is quite like the one before."""
     ripple = 0.01 * (minutes % 3.0)
-    live.post(buoy(minutes, speed=speed + ripple), depth(minutes, metres=14.2 + ripple))
+    return buoy(minutes, speed=speed + ripple), depth(minutes, metres=14.2 + ripple)
+
+
+def told(live: Running, minutes: float, speed: float) -> None:
+    """Tell of the sea and of one depth."""
+    live.post(*said(minutes, speed))
 
 
 def later(live: Running, minutes: float, speed: float) -> None:

@@ -15,8 +15,11 @@ pytestmark = pytest.mark.usefixtures("built_page")
 def live(tmp_path: Path):
     """A service of one's own, with two hours of a buoy and a sensor."""
     with running(tmp_path) as one:
-        for minutes in range(-120, 1, 20):
-            one.post(buoy(float(minutes), speed=0.4), depth(float(minutes), metres=14.2))
+        # At once: of the first alone the twin would find that its sensor fell silent since.
+        one.post(
+            *(buoy(float(minutes), speed=0.4) for minutes in range(-120, 1, 20)),
+            *(depth(float(minutes), metres=14.2) for minutes in range(-120, 1, 20)),
+        )
         yield one
 
 
