@@ -44,6 +44,7 @@ RETURNING cage, stream, t, seq"""
 _PARTITION = """
 CREATE TABLE IF NOT EXISTS {name} (LIKE sample INCLUDING DEFAULTS INCLUDING CONSTRAINTS);
 ALTER TABLE sample ATTACH PARTITION {name} FOR VALUES FROM ({start}) TO ({end})"""
+_THERE = "SELECT relname FROM pg_class WHERE relnamespace = current_schema()::regnamespace"
 _PARTITIONS = """
 SELECT c.relname FROM pg_inherits i JOIN pg_class c ON c.oid = i.inhrelid
 WHERE i.inhparent = 'sample'::regclass"""
@@ -191,8 +192,11 @@ class PostgresDatabase(AbstractDatabase):
     def _made(self) -> set[str]:
         with self._writer.transaction():
             self._writer.execute(_LOCK)
-            for table in (*tables(_WORDS), _BRIN):
-                self._writer.execute(table.encode())
+            there = {name for (name,) in self._writer.execute(_THERE).fetchall()}
+            for statement in (*tables(_WORDS), _BRIN):
+                # Even "if not exists" locks a table that is there, against all that write into it.
+                if _made_by(statement) not in there:
+                    self._writer.execute(statement.encode())
             return {name for (name,) in self._writer.execute(_PARTITIONS).fetchall()}
 
     def _reach(self) -> None:
@@ -269,6 +273,11 @@ def _spelt(sql: str) -> bytes:
 def _month(t: int) -> datetime:
     when = moment_of(t)
     return datetime(when.year, when.month, 1, tzinfo=UTC)
+
+
+def _made_by(statement: str) -> str:
+    """Name what "CREATE TABLE IF NOT EXISTS name" and its like would make."""
+    return statement.split()[5]
 
 
 def _partition(month: datetime) -> str:

@@ -4,6 +4,7 @@ import subprocess
 import sys
 import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 import psycopg
 import pytest
@@ -82,6 +83,13 @@ def test_many_may_make_the_tables_at_once(url):
     for store in stores:
         store.close()
     assert len(stores) == 4
+
+
+def test_a_store_opens_beside_one_that_is_writing(url):
+    open_store(url).close()
+    with ThreadPoolExecutor() as pool, psycopg.connect(url) as writing:
+        writing.execute("LOCK TABLE sample, mark, journal IN ROW EXCLUSIVE MODE")
+        pool.submit(open_store, url).result(timeout=20.0).close()
 
 
 def test_a_connection_that_is_cut_is_made_again(url, pair):
