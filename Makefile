@@ -4,12 +4,16 @@
 PYTHON ?= python3
 WORKERS ?= 2
 RECORD ?=
+# Not from the environment, where others keep a PORT of their own.
+PORT = 8000
 INPUTS ?= 3000
 
 BIN := .venv/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
-PYTEST := $(BIN)/python -m pytest -n $(WORKERS)
+# A file's tests go to one worker, so that its fixtures are made once.
+PYTEST := $(BIN)/python -m pytest -n $(WORKERS) --dist loadfile
 OUTSIDE := mosquitto,postgres,node,chromium
+FAST := not slow and not long and not mosquitto and not postgres and not node and not chromium
 KERNEL := src/seacage/dynamics
 BUILT := $(wildcard $(KERNEL)/_kernel_*.so $(KERNEL)/_kernel_*.dylib)
 PAGE := src/seacage/service/page/sources.sha256
@@ -18,25 +22,32 @@ PAGE_SOURCES := web/index.html web/package-lock.json web/vite.config.js \
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help run page test test-outside test-all lint check lock bench bench-peers lock-peers sanitize \
+.PHONY: help run page test test-times test-rest test-long test-all lint check lock bench bench-peers lock-peers sanitize \
   validate always
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 14
 
-run: .venv/.project $(PAGE) ## the live page on http://127.0.0.1:8000 (RECORD=file.csv: a real buoy's record)
-	$(BIN)/seacage serve --data var --demo $(if $(RECORD),--record "$(RECORD)")
+run: .venv/.project $(PAGE) ## the live page on http://127.0.0.1:8000 (PORT=8100; RECORD=file.csv: a real buoy's record)
+	$(BIN)/seacage serve --data var --demo --port $(PORT) $(if $(RECORD),--record "$(RECORD)")
 
 page: ## build the live page again from web/
 	@rm -f $(PAGE)
 	@$(MAKE) --no-print-directory $(PAGE)
 
-test: .venv/.dev .venv/.project ## the fast tests; what needs an outside program skips without it
-	$(PYTEST) -m "not slow"
+test: .venv/.dev .venv/.project ## the fast tests, without any outside program
+	$(PYTEST) -m "$(FAST)"
 
-test-outside: .venv/.dev .venv/.project $(PAGE) ## the tests that need Mosquitto, PostgreSQL, Node or Chromium
+test-times: .venv/.dev .venv/.project ## where the fast tests' processor time goes
+	$(PYTEST) -m "$(FAST)" -p tools.times
+
+test-rest: .venv/.dev .venv/.project $(PAGE) ## the slow tests, and those with Mosquitto, PostgreSQL, Node or Chromium
 	tools/services.sh
-	SEACAGE_REQUIRE=$(OUTSIDE) $(PYTEST) -m "mosquitto or postgres or node or chromium"
+	SEACAGE_REQUIRE=$(OUTSIDE) $(PYTEST) -m "not ($(FAST)) and not long"
+
+test-long: .venv/.dev .venv/.project $(PAGE) ## the long forms: thousands of histories, messages and calls
+	tools/services.sh
+	SEACAGE_REQUIRE=$(OUTSIDE) $(PYTEST) -m "long"
 
 test-all: .venv/.dev .venv/.project $(PAGE) ## every test; none may skip for want of an outside program
 	tools/services.sh

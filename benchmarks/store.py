@@ -5,13 +5,17 @@ With `--postgres URL` the same is asked of a server, in tables that are dropped 
 
 import sys
 import tempfile
-from contextlib import closing
+import time
+from collections.abc import Generator
+from contextlib import closing, contextmanager, nullcontext
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 from _timing import ONCE, seconds, tell
 
 from seacage.records import Sample
+from seacage.service._store import _kept_samples, _postgres, _sqlite
+from seacage.service._store._checksum import with_checksum
 from seacage.service._store._place import database_at
 from seacage.service._store._rows import Row, row_of
 from seacage.service._store._session import AbstractDatabase
@@ -49,6 +53,38 @@ def taken(place: str) -> None:
     tell("append until the commit, per sample", each)
 
 
+def checked(place: str) -> None:
+    """What checksums and counts of days cost of the rate at which samples are taken.
+
+    Time of the processor, the two in turn: a disk, or a busy machine, varies by more than that.
+    """
+    with closing(open_store(place)) as store:
+        offer(store, fresh(COUNT), 1000)
+        for size in (1000, 30):
+            each = dict[str, list[float]]()
+            for _ in range(1 if ONCE else 5):
+                for what in ("without", "with checksums and counts"):
+                    with without_checks() if what == "without" else nullcontext():
+                        samples, start = fresh(COUNT), time.process_time()
+                        offer(store, samples, size)
+                    each.setdefault(what, []).append((time.process_time() - start) / COUNT)
+            tell(
+                f"append by {size}, processor time per sample", {k: min(v) for k, v in each.items()}
+            )
+
+
+@contextmanager
+def without_checks() -> Generator[None]:
+    """Rows get the same number for a checksum and no day is counted."""
+    known = _sqlite.checksum, _postgres.checksum, _kept_samples.count_new
+    _sqlite.checksum = _postgres.checksum = lambda *_: 0
+    _kept_samples.count_new = lambda *_: None
+    try:
+        yield
+    finally:
+        _sqlite.checksum, _postgres.checksum, _kept_samples.count_new = known
+
+
 def offer(store: Store, samples: list[Sample], size: int) -> None:
     for first in range(0, len(samples), size):
         store.append("ace", samples[first : first + size], ingested=NOON).result()
@@ -74,11 +110,14 @@ def insert(database: AbstractDatabase, rows: list[Row], size: int) -> None:
 def summed_up(place: str) -> None:
     """A year of ten minutes as it is kept, against the same from samples of a day."""
     start = datetime(2024, 1, 1, tzinfo=UTC)
-    t = int(start.timestamp()) * 1_000_000
+    t, of = int(start.timestamp()) * 1_000_000, ("old", "depth-1", "depth_m", 600)
     with closing(database_at(place)) as database, database.writing() as session:
         session.each(
-            "INSERT INTO aggregate VALUES ('old', 'depth-1', 'depth_m', 600, ?, 300, 14, 13, 15)",
-            [(t + k * 600_000_000,) for k in range(YEAR)],
+            "INSERT INTO aggregate VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+            [
+                with_checksum("aggregate", *of, t + k * 600_000_000, 300, 14.0, 13.0, 15.0)
+                for k in range(YEAR)
+            ],
         )
     with closing(open_store(place)) as store:
         every_s, day = (600 if ONCE else 2), timedelta(days=1)
@@ -118,7 +157,7 @@ def look(path: Path) -> None:
 
 
 def all_of(place: str) -> None:
-    for part in (taken, inserted, read, summed_up):
+    for part in (taken, checked, inserted, read, summed_up):
         part(place)
 
 

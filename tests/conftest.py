@@ -4,6 +4,7 @@ import os
 import shutil
 import socket
 import subprocess
+import sys
 import tempfile
 from collections import Counter
 from collections.abc import Iterator
@@ -13,14 +14,19 @@ from pathlib import Path
 for library in ("OMP", "OPENBLAS", "MKL"):
     os.environ.setdefault(f"{library}_NUM_THREADS", "1")
 
-import jaxtyping  # noqa: E402
+# Compiled once and kept, also where Python was told not to: without it each worker of each run
+# compiles all modules anew, which takes longer than to run many a room's tests.
+sys.dont_write_bytecode = False
+
+import checking  # noqa: E402
 
 # Before seacage is loaded: every annotated array is checked on the way in and out.
-jaxtyping.install_import_hook("seacage", "checking.annotated")
+checking.install("seacage")
 
 import hypothesis  # noqa: E402
 import pytest  # noqa: E402
 
+from collected import MARKS, shuffle  # noqa: E402
 from outside import PROGRAMS, program, serving, wait_for  # noqa: E402
 
 hypothesis.settings.register_profile("seacage", deadline=None)
@@ -35,11 +41,15 @@ def skip_or_fail(need: str, why: str) -> None:
 
 
 @pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark each test with the outside programs whose fixtures it asks for."""
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Mark each test with the outside programs whose fixtures it asks for, and keep the marks."""
     for item in items:
         for name in PROGRAMS.keys() & getattr(item, "fixturenames", ()):
             item.add_marker(name)
+    marks = {item.nodeid: {mark.name for mark in item.iter_markers()} for item in items}
+    config.stash[MARKS] = marks
+    if seed := os.environ.get("SEACAGE_ORDER"):
+        shuffle(items, seed)
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:

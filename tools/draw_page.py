@@ -53,11 +53,15 @@ class StandingClock:
     speed = 1.0
 
     def __init__(self, at: datetime) -> None:
-        self.at = at
+        self.at = self.start = at
 
     def now(self) -> datetime:
         """Where it stands."""
         return self.at
+
+    def elapsed_s(self) -> float:
+        """What has passed, which agrees with it: nobody set this clock."""
+        return (self.at - self.start).total_seconds()
 
 
 @dataclass(frozen=True, kw_only=True)

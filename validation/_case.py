@@ -1,7 +1,6 @@
 """A case that a user adds: one TOML on what was measured, one CSV with the numbers."""
 
 import csv
-import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -10,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from seacage.cage import Cage, Structure
-from seacage.conventions import InputError
+from seacage.conventions import InputError, parse_toml, read_text
 from seacage.dynamics import LAWS, MOVING_LAWS, MovingLaw
 from seacage.ocean import SeaState
 from validation._answers import How
@@ -122,12 +121,7 @@ def read_case(folder: Path) -> Case:
 
 
 def _table(path: Path, where: str) -> dict[str, Any]:
-    try:
-        table = tomllib.loads(path.read_text("utf-8"))
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{where}: cannot read it as UTF-8 text ({error}).") from error
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(f"{where}: this is not TOML ({error}). Mend the line it names.") from error
+    table = parse_toml(read_text(path), where)
     for key in NEEDED:
         if key not in table:
             raise InputError(f"{where}: the key {key!r} is missing. Add it.")

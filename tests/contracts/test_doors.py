@@ -3,7 +3,7 @@
 import ast
 import importlib
 import inspect
-from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -14,13 +14,16 @@ PACKAGE = Path(seacage.__file__).parent
 ROOMS = sorted(door.parent.name for door in PACKAGE.glob("*/__init__.py"))
 
 
-def imported(source: Path) -> Iterator[str]:
-    """The full names of the modules that a file imports from."""
+@cache
+def imported(source: Path) -> tuple[str, ...]:
+    """The full names of the modules that a file imports from; read once for all rooms."""
+    names = list[str]()
     for node in ast.walk(ast.parse(source.read_text())):
         if isinstance(node, ast.ImportFrom):
-            yield node.module or ""
+            names.append(node.module or "")
         elif isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
+            names += (alias.name for alias in node.names)
+    return tuple(names)
 
 
 @pytest.mark.parametrize("room", ROOMS)

@@ -110,6 +110,7 @@ def swapped(random, arrays, name):
     return arrays | {name: arrays[other], other: arrays[name]}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("change", [of_another_kind, not_a_number, lost, of_another_shape, swapped])
 def test_arrays_that_do_not_fit_are_refused_though_their_seal_is_right(copy, change):
     random, whole = np.random.default_rng(11), (copy / "arrays.safetensors").read_bytes()
@@ -123,6 +124,7 @@ def test_arrays_that_do_not_fit_are_refused_though_their_seal_is_right(copy, cha
 
 
 # A flipped exponent makes a number whose square is beyond all numbers: NumPy may say so.
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")
 def test_a_broken_file_with_the_right_seal_breaks_nothing(copy):
     random, refused = np.random.default_rng(13), 0

@@ -2,13 +2,13 @@
 
 import csv
 import re
-from datetime import UTC, datetime
 
 import numpy as np
 import pytest
 
+from public_files import public_file
 from seacage.conventions import Flag, Origin, RecordError
-from seacage.records import Column, ColumnMap, NetcdfMap, read_record, shipped_maps
+from seacage.records import Column, ColumnMap, NetcdfMap, inspect_file, read_record, shipped_maps
 
 
 def counted(record, key):
@@ -64,6 +64,13 @@ def test_a_hindcast_rounded_to_decimetres_is_suspect_only_where_it_stands_still(
 def test_a_profilers_bin_is_read_once_its_zone_is_declared(shared):
     pytest.importorskip("xarray")
     path = shared / "data" / "adcp_awac_snippet.nc"
+    found = inspect_file(path)
+    said = "Suspicious: its attribute 'comments' says 'times PDT', and times in CF are UTC."
+    assert said in found.findings
+    assert 'time_zone = "?"  # "UTC" if CF holds, "-07:00" if the attribute' in found.map_text
+    assert found.open_questions == 3
+    for question in ("origin", "time_zone", "range_m"):
+        assert f'{question} = "?"' in found.map_text
     # Its header says PDT, CF says UTC: 7 h, half a tide and more, that nobody guesses.
     doubt = re.escape("its attribute 'comments' says 'times PDT', and times in CF are UTC")
     with pytest.raises(RecordError, match=doubt):
@@ -80,9 +87,9 @@ def test_a_profilers_bin_is_read_once_its_zone_is_declared(shared):
 @pytest.mark.parametrize(
     ("name", "columns", "unit_m_s", "goes_to"),
     [
-        ("buoy_current_s08010_2018.csv", ("speed_cm_s", "direction_to_deg"), 0.01, True),
+        ("portsbuoy.csv", ("speed_cm_s", "direction_to_deg"), 0.01, True),
         (
-            "shelf_current_profile_norkyst_2018q1.csv",
+            "norkyst.csv",
             ("current_speed_5m", "current_direction_5m"),
             1.0,
             False,
@@ -90,12 +97,12 @@ def test_a_profilers_bin_is_read_once_its_zone_is_declared(shared):
     ],
 )
 def test_a_day_turned_into_the_other_sense_reads_as_the_same_vectors(
-    shared, tmp_path, name, columns, unit_m_s, goes_to
+    tmp_path, name, columns, unit_m_s, goes_to
 ):
-    """The file's own text, and the same numbers as a file that points the other way."""
-    text = (shared / "data" / name).read_text().splitlines()
-    rows = list(csv.DictReader(line for line in text if not line.startswith("#")))[:120]
-    known = read_record(shared / "data" / name)
+    """A public file's text, and the same numbers as a file that points the other way."""
+    path = public_file(tmp_path, name, rows=120)
+    rows = list(csv.DictReader(path.read_text().splitlines()))
+    known = read_record(path)
     speed, angle = (np.array([float(row[column]) for row in rows]) for column in columns)
     opposite = (angle + 180.0) % 360.0
     turned = "".join(
@@ -131,12 +138,9 @@ def test_a_day_turned_into_the_other_sense_reads_as_the_same_vectors(
         np.testing.assert_allclose(size * np.cos(to), north, atol=1e-12)
 
 
-def test_the_same_day_has_the_same_vectors_whichever_way_its_file_points(shared, tmp_path):
+def test_the_same_day_has_the_same_vectors_whichever_way_its_file_points(tmp_path):
     """A FROM-file, and the same day written as TO, as components and in knots."""
-    path = shared / "data" / "shelf_current_profile_norkyst_2018q1.csv"
-    known = read_record(path).between(
-        datetime(2018, 1, 26, tzinfo=UTC), datetime(2018, 1, 27, tzinfo=UTC)
-    )
+    known = read_record(public_file(tmp_path, "norkyst.csv", rows=12))
     time = [f"{t}Z" for t in known.time.astype("datetime64[s]")]
     speed, to = known.values["current_speed_m_s"], known.values["current_to_deg"]
     east, north = speed * np.sin(np.radians(to)), speed * np.cos(np.radians(to))

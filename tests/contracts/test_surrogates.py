@@ -62,6 +62,7 @@ def test_every_noise_keeps_the_promises(noise) -> None:
     check_surrogate(fit, output_shape=(3,))
 
 
+@pytest.mark.slow
 def test_an_ensemble_keeps_the_promises() -> None:
     def fit(x: np.ndarray, y: np.ndarray, seed: int) -> FittedGaussianProcess:
         return GaussianProcess(ensemble="always", restarts=0).fit(x, y, seed=seed)
@@ -98,6 +99,7 @@ def test_a_table_keeps_its_models_promises_within_its_region(outputs: tuple[int,
 # The suite gives each node its own mixture of the modes, which no neighbour shares: what a graph
 # convolution cannot borrow it has to learn, and least of all the paper's. A tenth of the cases
 # is held back, so the worst case given is one that the network never saw.
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "epochs", "worst_taught", "unseen_error"),
     [("modal", 100, 0.3, 0.08), ("paper", 300, 1.0, 0.2)],

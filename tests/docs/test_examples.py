@@ -12,7 +12,17 @@ QUICK = {"02_simulate_a_cage.py": ["waves.gif", "6"], "03_figure_set.py": [".", 
 """Arguments that make an example quick: seconds to simulate."""
 
 
-@pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.name)
+FAST = ("01", "07")
+"""The examples that take a second or two."""
+
+
+@pytest.mark.parametrize(
+    "example",
+    [
+        pytest.param(path, marks=() if path.name[:2] in FAST else pytest.mark.slow, id=path.name)
+        for path in EXAMPLES
+    ],
+)
 def test_an_example_runs(example: Path, tmp_path: Path) -> None:
     run = subprocess.run(
         [sys.executable, str(example), *QUICK.get(example.name, [])],

@@ -19,6 +19,7 @@ def wording(text: str) -> str:
     return " ".join(re.sub(r"[-+.e\d]*\d", "#", text).split())
 
 
+@pytest.mark.slow
 def test_the_code_of_the_page_runs_in_its_order() -> None:
     blocks = re.findall(r"```python\n(.*?)```", PAGE, flags=re.DOTALL)
     assert len(blocks) > 5
@@ -31,6 +32,7 @@ def test_the_page_prints_five_examples() -> None:
     assert len({example for example, _ in PRINTOUTS}) == 5
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("example", "printed"), PRINTOUTS, ids=lambda one: one[:24])
 def test_a_printout_is_worded_as_its_example_words_it(example: str, printed: str) -> None:
     run = subprocess.run(

@@ -149,12 +149,14 @@ def test_the_kept_answers_are_those_of_the_damaged_cage(damage: str) -> None:
     np.testing.assert_allclose(kept.value[1, speed, towards], now, rtol=1e-3, atol=0.01)
 
 
+@pytest.mark.slow
 def test_a_quiet_week_raises_nothing(sea: Sea) -> None:
     watch = _gone_on(sea.known, sea.whole, QUIET - KNOWN)
     assert _told(sea.known) + _told(watch) == []
     assert QUIET - TAUGHT >= 7.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("words", "days", "alarm"),
     [
@@ -174,12 +176,14 @@ def test_a_sensor_that_fails_raises_its_alarm_and_no_other(
     assert described(watch.book.alarms[alarm], watch.policy).title
 
 
+@pytest.mark.slow
 def test_a_parted_bridle_raises_its_alarm_and_no_other_within_a_tide(sea: Sea) -> None:
     watch = _gone_on(sea.known, sea.damaged("parted"), 1.0)
     assert _told(watch) == ["bridle.bridle-8"]
     assert _delay(watch, "bridle.bridle-8") < timedelta(hours=13)
 
 
+@pytest.mark.slow
 def test_a_large_hole_raises_the_net_s_alarm_and_no_other_within_days(sea: Sea) -> None:
     watch = _gone_on(sea.known, sea.damaged("torn"), 2.0)
     assert _told(watch) == ["net.net"]

@@ -106,7 +106,7 @@ def test_sea_states_become_a_record_of_what_waves_do(whole: Path) -> None:
         # Statistics beside the means have four bytes, of some 5e4 N at most.
         assert np.all(least <= mean + 0.01)
         assert np.all(mean <= most + 0.01)
-        assert np.all(np.diff(levels, axis=1) >= 0.0)
+        assert np.all(np.diff(levels, axis=1) >= -0.01)
     hs = np.array([sea.hs for sea in record.seas])
     heave = record.node_position_std[:, 0, 2]
     assert heave[hs > 2.0].min() > 3.0 * heave[hs < 0.5].mean()
@@ -143,11 +143,13 @@ def test_equilibria_become_a_record_that_can_be_learned_from(settled: Path) -> N
     assert record.bridle_tension[fast].max() > 2.0 * record.bridle_tension[slow].max()
 
 
+@pytest.mark.slow
 def test_the_answers_do_not_depend_on_the_number_of_processes(whole: Path, tmp_path: Path) -> None:
     run_campaign(SMALL, PLAN, tmp_path / "campaign", workers=2, **SHORT)
     assert contents(tmp_path / "campaign") == contents(whole)
 
 
+@pytest.mark.slow
 def test_a_killed_campaign_goes_on_and_ends_with_the_same_bytes(
     whole: Path, tmp_path: Path
 ) -> None:
@@ -165,6 +167,7 @@ def test_a_killed_campaign_goes_on_and_ends_with_the_same_bytes(
     assert contents(out) == contents(whole)
 
 
+@pytest.mark.slow
 def test_a_campaign_whose_worker_was_killed_goes_on_and_ends_with_the_same_bytes(
     whole: Path, tmp_path: Path
 ) -> None:
@@ -198,6 +201,7 @@ def cluster() -> "Iterator[object]":
         yield cluster
 
 
+@pytest.mark.slow
 def test_a_dask_cluster_gives_the_same_bytes_also_when_a_worker_is_killed(
     whole: Path, tmp_path: Path, cluster
 ) -> None:
@@ -215,6 +219,7 @@ def test_a_dask_cluster_gives_the_same_bytes_also_when_a_worker_is_killed(
     assert contents(out) == contents(whole)
 
 
+@pytest.mark.slow
 def test_a_job_array_gives_the_same_bytes_as_one_run(whole: Path, tmp_path: Path) -> None:
     SMALL.write(tmp_path / "cage.toml")
     PLAN.write(tmp_path / "plan.json")
@@ -238,6 +243,7 @@ def test_a_job_array_gives_the_same_bytes_as_one_run(whole: Path, tmp_path: Path
     assert contents(tmp_path / "campaign") == contents(whole)
 
 
+@pytest.mark.slow
 def test_an_exported_campaign_reads_the_same(whole: Path, settled: Path, tmp_path: Path) -> None:
     for store in (whole, settled):
         out = tmp_path / f"{store.parent.name}.nc"
@@ -246,12 +252,14 @@ def test_an_exported_campaign_reads_the_same(whole: Path, settled: Path, tmp_pat
         assert exported.sha256 == read_campaign(store).sha256
 
 
+@pytest.mark.slow
 def test_plain_xarray_reads_a_campaign_and_its_export(whole: Path, tmp_path: Path) -> None:
     export_campaign(whole, tmp_path / "campaign.nc")
     command = [sys.executable, "-W", "error", "-c", PLAIN, tmp_path / "campaign.nc", whole]
     subprocess.run(command, check=True)
 
 
+@pytest.mark.slow
 def test_the_low_fidelity_underestimates_what_the_virtual_field_shows(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

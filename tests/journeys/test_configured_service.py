@@ -52,6 +52,7 @@ def served(settings, certificate):
             process.kill()
 
 
+@pytest.mark.slow
 def test_a_farm_is_served_as_its_file_says(settings, certificate, tmp_path):
     with served(settings, certificate) as (said, client):
         assert said["address"].startswith("https://")

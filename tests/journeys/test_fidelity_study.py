@@ -16,6 +16,9 @@ from stand_in import StandIn
 COARSE = Cage.named("ace").altered(mesh={"ring_depths_m": [0.0, 7.0, 15.0, 23.0], "spokes": 16})
 SMALL = replace(COARSE, shackle=COARSE.shackle[:1], depth_sensor=COARSE.depth_sensor[:2])
 
+# All stand on a study that is made whole.
+pytestmark = pytest.mark.slow
+
 
 def unheard(stage, done, total):
     assert stage in {"rescaling", "null case", "fouling"}, f"{stage} was made again"

@@ -13,6 +13,7 @@ import pytest
 
 from brokered import broker, talking
 from killable import served
+from seacage.service._store._checksum import with_checksum
 from seacage.service._store._place import database_at
 from seacage.service._store._store import open_store
 from seacage.testing import stand_in_twin
@@ -155,7 +156,8 @@ LIVE_AGAIN_S = 30.0
 """Far above what a quiet machine takes, which docs/service.md says."""
 
 
-@pytest.mark.parametrize("every_s", [60, pytest.param(10, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("every_s", [60, 10])
 def test_a_service_with_a_month_on_its_disk_is_soon_live_again(
     tmp_path, every_s, record_property, capsys
 ):
@@ -165,7 +167,7 @@ def test_a_service_with_a_month_on_its_disk_is_soon_live_again(
     with served(tmp_path, "--twin", tmp_path / "twin", "--clock", "samples") as service:
         for number in range(50):  # so that there is a log to recover from
             water = {"stream": "buoy-1", **reading(number)}
-            water["values"] = {"current_speed_m_s": 0.5, "current_to_deg": 90.0}
+            water["values"] = {"current_speed_m_s": 0.5 + 0.01 * number, "current_to_deg": 90.0}
             service.client.post("samples", json={"samples": [water]}).raise_for_status()
         service.kill()
         began = time.monotonic()
@@ -193,9 +195,9 @@ def a_month(place, twin, every_s):
 def fill(session, stream, said, every_s):
     first = round((START - timedelta(days=30)).timestamp())
     session.each(
-        "INSERT INTO sample VALUES ('ace', ?, ?, -1, ?, '[]', ?)",
+        "INSERT INTO sample VALUES (?, ?, ?, ?, ?, ?, ?, ?)",
         [
-            (stream, t * 10**6, json.dumps(said), t * 10**6)
+            with_checksum("sample", "ace", stream, t * 10**6, -1, json.dumps(said), "[]", t * 10**6)
             for t in range(first, first + A_MONTH_S, every_s)
         ],
     )

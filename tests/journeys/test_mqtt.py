@@ -187,8 +187,9 @@ def test_a_publisher_that_is_killed_goes_on_where_it_was(twin, tmp_path):
     ):
         words = (record, "--to", mosquitto.url, "--spool", tmp_path / "spool")
         for _ in range(2):
+            before = len(numbers(place))
             with publishing(*words, "--speed", "4000"):
-                time.sleep(4.0)
+                wait_for_all(place, ["ace"], before + 100)
         with publishing(*words) as publisher:
             told = summary(publisher)
     assert told["read"] < 4000, "what was sent before is not read again"

@@ -36,7 +36,7 @@ class Outage:
     speed: float
 
 
-SHORT = Outage(minutes=20.0, every_s=10.0, depth_sensors=3, speed=120.0)
+SHORT = Outage(minutes=30.0, every_s=10.0, depth_sensors=3, speed=120.0)
 WHOLE = Outage(minutes=30.0, every_s=2.0, depth_sensors=25, speed=20.0)
 
 
@@ -120,7 +120,7 @@ def lost_and_found(service):
     return sorted(one for one in raised if one.startswith("silent."))
 
 
-@pytest.mark.parametrize("outage", [SHORT, pytest.param(WHOLE, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("outage", [SHORT, pytest.param(WHOLE, marks=pytest.mark.long)])
 def test_what_a_broker_missed_follows_behind_what_is_live_and_each_source_was_lost_once(
     tmp_path, outage, capsys
 ):

@@ -141,6 +141,20 @@ def test_a_load_beyond_its_limit_is_told_acknowledged_journaled_and_looked_back_
         assert not watched.asked_elsewhere(live.address)
 
 
+def test_alarms_of_one_cause_are_acknowledged_together(chromium: Path, live: Running) -> None:
+    excursion(live)
+    with opened_browser(chromium, webgl=False) as watched:
+        page = watched.page
+        page.goto(address(live, "read", "ack"))
+        page.get_by_role("tab", name="Alarms").click()
+        page.get_by_role("button", name="Acknowledge all: High load on 2 bridles").click()
+        page.get_by_label("Why").fill("Spring tide")
+        page.get_by_role("dialog").get_by_role("button", name="Acknowledge").click()
+        page.get_by_role("dialog").wait_for(state="hidden")
+        assert all(alarms_of(live)[name]["acknowledged"] for name in LOADED)
+        assert not watched.complaints
+
+
 def test_a_service_that_is_started_again_is_found_without_a_hand(
     chromium: Path, tmp_path: Path
 ) -> None:
@@ -188,6 +202,7 @@ def test_a_farm_shows_its_cages_the_worst_first_and_leads_to_each(
         told(live, 0.0, 0.5)
         live.post(buoy(speed=0.4), cage="cove")
         excursion(live)
+        live.post(depth(22.0, metres=14.2), cage="cove")  # within its timeout by the clock as it is
         with opened_browser(chromium, webgl=False) as watched:
             page = watched.page
             page.goto(address(live, "read"))

@@ -4,7 +4,6 @@ from datetime import timedelta
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Route
 
 from browser import Line, Watched, opened_browser
 from serviced import Running, buoy, depth, eventually, running
@@ -155,7 +154,7 @@ def test_who_reloads_before_the_service_has_answered_to_a_link_is_let_in_by_it(
 ) -> None:
     unanswered = []
 
-    def left_alone(route: Route) -> None:
+    def left_alone(route: "Route") -> None:
         unanswered.append(route)
 
     with opened_browser(chromium, webgl=False) as watched:

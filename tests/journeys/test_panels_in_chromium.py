@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from browser import opened_browser
-from serviced import Running, buoy, depth, eventually, running
+from serviced import Running, at, buoy, depth, eventually, running
 
 pytestmark = pytest.mark.usefixtures("built_page")
 
@@ -18,7 +18,8 @@ def live(tmp_path: Path):
         # At once: of the first alone the twin would find that its sensor fell silent since.
         one.post(
             *(buoy(float(minutes), speed=0.4) for minutes in range(-120, 1, 20)),
-            *(depth(float(minutes), metres=14.2) for minutes in range(-120, 1, 20)),
+            # No reading is quite like the one before: one that stands still is not valid.
+            *(depth(float(k), metres=14.2 + 0.01 * (k % 3)) for k in range(-120, 1, 20)),
         )
         yield one
 
@@ -30,9 +31,10 @@ def address(live: Running, *scopes: str) -> str:
 def beyond_what_was_learned(live: Running) -> None:
     """Let the cage extrapolate until the alarm about it is raised."""
     live.post(buoy(0.5, speed=1.9))
-    eventually(live.state, lambda state: state["valid"] and not state["in_domain"])
+    live.clock.at += timedelta(minutes=1)  # a reading ahead of the clock does not govern yet
+    eventually(live.state, lambda state: state["valid"] and not state["in_domain"], seconds=30.0)
     live.clock.at += timedelta(minutes=11)
-    eventually(live.state, lambda state: bool(state["alarms"]))
+    eventually(live.state, lambda state: bool(state["alarms"]), seconds=30.0)
 
 
 def opened(watched, where: str) -> None:
@@ -138,4 +140,32 @@ def test_a_comment_goes_into_the_journal(chromium: Path, live: Running) -> None:
         watched.page.get_by_role("dialog").wait_for(state="hidden")
         watched.page.get_by_role("tab", name="Journal").click()
         watched.until("document.body.innerText.includes('A <b>buoy</b> adrift')")
+        assert not watched.complaints
+
+
+def test_the_largest_load_is_the_measured_one_where_that_is_larger_and_its_shackle_is_named(
+    chromium: Path, live: Running
+) -> None:
+    live.post({"stream": "shackle-2", "t": at(0.0), "values": {"tension_kn": 61.5}})
+    with opened_browser(chromium, webgl=False) as watched:
+        opened(watched, address(live, "read"))
+        load = "document.querySelectorAll('.figure')[2].innerText"
+        watched.until(f"{load}.includes('measured by shackle 2')")
+        assert "61.5" in watched.page.evaluate(load)
+        assert not watched.complaints
+
+
+def test_the_flat_view_turns_with_the_current_and_is_left_by_any_side(
+    chromium: Path, live: Running
+) -> None:
+    with opened_browser(chromium) as watched:
+        watched.page.goto(address(live, "read"))
+        watched.until_drawn()
+        watched.page.keyboard.press("v")
+        caption = watched.page.locator(".flat-side figcaption")
+        caption.wait_for(state="visible")
+        assert "goes to the right: 090° E" in caption.inner_text()
+        watched.page.get_by_role("button", name="Top", exact=True).click()
+        watched.until_drawn()
+        assert watched.page.locator(".flat").count() == 0
         assert not watched.complaints

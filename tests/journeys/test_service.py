@@ -65,6 +65,7 @@ def until(ask, accept):
     return ask()
 
 
+@pytest.mark.slow
 def test_a_record_sent_by_http_outlives_a_kill_and_is_answered_in_its_past(twin, field, tmp_path):
     token = told("token", "new", "--data", tmp_path, "--scope", "ingest").splitlines()[-1]
     with serving(tmp_path, "--twin", twin) as (address, _):
@@ -82,6 +83,7 @@ def test_a_record_sent_by_http_outlives_a_kill_and_is_answered_in_its_past(twin,
         assert json.loads(told(*send))["duplicates"] == receipt["sent"]
 
 
+@pytest.mark.slow
 def test_an_interrupt_stops_a_service_quietly(twin, tmp_path):
     command = [*SEACAGE, "serve", "--data", tmp_path, "--port", "0", "--twin", twin, "--json"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
@@ -92,6 +94,7 @@ def test_an_interrupt_stops_a_service_quietly(twin, tmp_path):
         assert process.stderr.read() == b""
 
 
+@pytest.mark.slow
 def test_a_buoys_record_is_replayed_on_its_own_clock(twin, field, tmp_path):
     words = ("--twin", twin, "--record", field / "buoy-1.nc", "--speed", "3600")
     with serving(tmp_path, *words) as (_, client):

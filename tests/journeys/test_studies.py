@@ -28,6 +28,9 @@ RECIPE = Recipe(
     cases=60, held_out_cases=12, days=10.0, teaching_days=5, high_fidelity_points=60, seed=3
 )
 
+# All stand on a study that is made whole.
+pytestmark = pytest.mark.slow
+
 
 def chain(folder, **options) -> Chain:
     return Chain(folder=folder / "stages", cage=SMALL, recipe=RECIPE, workers=1, **options)

@@ -64,7 +64,7 @@ def test_a_field_killed_in_the_middle_goes_on_and_ends_with_the_same_bytes(
     running = subprocess.Popen(command(tmp_path, workers=2), stdout=subprocess.PIPE, text=True)
     assert running.stdout is not None
     while not list(tmp_path.rglob("*.safetensors")):
-        assert running.stdout.readline() == "virtual field\n"
+        assert running.stdout.readline() == "virtual field, simulated hours\n"
     os.kill(running.pid, signal.SIGKILL)
     running.wait()
     running.stdout.close()

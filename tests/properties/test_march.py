@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -350,17 +351,31 @@ class Stepper:
         self.position = x + h * self.velocity
 
 
-@settings(max_examples=10)
-@given(
-    mesh=meshes(most_rings=4, most_spokes=8),
-    law=st.sampled_from(["aarsnes", "loland", "morison"]),
-    cases=st.integers(1, 4),
-    each=st.sampled_from([50, 63, 100]),
-    hold=st.sampled_from([1, 4]),
-    held=st.booleans(),
-    seed=st.integers(0, 2**32 - 1),
-)
-def test_the_march_steps_as_it_says(mesh, law, cases, each, hold, held, seed):
+MARCHES = {
+    "mesh": meshes(most_rings=4, most_spokes=8),
+    "law": st.sampled_from(["aarsnes", "loland", "morison"]),
+    "cases": st.integers(1, 4),
+    "each": st.sampled_from([50, 63, 100]),
+    "hold": st.sampled_from([1, 4]),
+    "held": st.booleans(),
+    "seed": st.integers(0, 2**32 - 1),
+}
+
+
+@settings(max_examples=3)
+@given(**MARCHES)
+def test_the_march_steps_as_it_says(**march):
+    check_steps(**march)
+
+
+@pytest.mark.slow
+@settings(max_examples=20)
+@given(**MARCHES)
+def test_many_marches_step_as_they_say(**march):
+    check_steps(**march)
+
+
+def check_steps(mesh, law, cases, each, hold, held, seed):
     rng = np.random.default_rng(seed)
     cage = caged(mesh, rng)
     steps = Steps(

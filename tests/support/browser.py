@@ -1,15 +1,19 @@
 """A page in Debian's headless Chromium: what it shows, whom it asks and what it complains of."""
 
+from __future__ import annotations
+
 import io
 import json
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-from PIL import Image
-from playwright.sync_api import Page, Request, WebSocketRoute, sync_playwright
+
+if TYPE_CHECKING:  # Playwright is loaded by the tests that open a browser, not by their collection
+    from playwright.sync_api import Page, Request, WebSocketRoute
 
 _PLAIN = ("--no-sandbox",)
 # WebGL by software: slow, but the same picture on every machine.
@@ -57,6 +61,8 @@ class Watched:
 
     def colours(self, selector: str) -> int:
         """How many colours a part of the page shows; a blank one shows a handful."""
+        from PIL import Image
+
         picture = Image.open(io.BytesIO(self.page.locator(selector).first.screenshot()))
         return len(np.unique(np.asarray(picture.convert("RGB")).reshape(-1, 3), axis=0))
 
@@ -88,6 +94,8 @@ def opened_browser(
 ) -> Iterator[Watched]:
     """An empty page in a browser of our own; `context` goes to Playwright, as color_scheme."""
     flags = [*_PLAIN, *(_WITH_WEBGL if webgl else _WITHOUT_WEBGL)]
+    from playwright.sync_api import sync_playwright
+
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=chromium, args=flags)
         viewport = {"width": size[0], "height": size[1]}

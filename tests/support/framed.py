@@ -29,7 +29,8 @@ def decoded(message: bytes) -> Decoded:
     assert magic == b"SCFR"
     moved = 32
     spread = moved + aligned(6 * nodes)
-    said = spread + aligned(nodes)
+    spreads = 0 if flags & 16 else nodes
+    said = spread + aligned(spreads)
     assert len(message) == said + words
     displacement = np.frombuffer(message, "<i2", 3 * nodes, moved).reshape(-1, 3)
     return Decoded(
@@ -37,7 +38,7 @@ def decoded(message: bytes) -> Decoded:
         flags=flags,
         t_ms=t,
         displacement=displacement * unit,
-        sigma=np.frombuffer(message, "u1", nodes, spread) * sigma_unit,
+        sigma=np.frombuffer(message, "u1", spreads, spread) * sigma_unit,
         unit=unit,
         sigma_unit=sigma_unit,
         state=json.loads(message[said:]),

@@ -11,12 +11,13 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import httpx
-import uvicorn
 
 from seacage.service._access._tokens import Tokens
-from seacage.service._calls._api import Service, create_app
+from seacage.service._assembly import server
+from seacage.service._calls._api import Service
 from seacage.service._live._cage import LiveCage
 from seacage.service._live._metrics import Metrics
+from seacage.service._settings import Settings
 from seacage.service._store._store import Store
 from seacage.testing import stand_in_twin
 from seacage.twin import AlarmPolicy, Twin
@@ -25,15 +26,30 @@ NOON = datetime(2020, 2, 1, 12, tzinfo=UTC)
 
 
 class HandClock:
-    """Stands still until a test moves it."""
+    """Stands still until a test moves it: ``at`` goes on, and ``set`` sets it as a person would."""
 
     speed = 1.0
 
-    def __init__(self) -> None:
-        self.at = NOON
+    def __init__(self, at: datetime = NOON) -> None:
+        self._at, self._elapsed_s = at, 0.0
+
+    @property
+    def at(self) -> datetime:
+        return self._at
+
+    @at.setter
+    def at(self, t: datetime) -> None:
+        self._elapsed_s += (t - self._at).total_seconds()
+        self._at = t
+
+    def set(self, t: datetime) -> None:
+        self._at = t
 
     def now(self) -> datetime:
-        return self.at
+        return self._at
+
+    def elapsed_s(self) -> float:
+        return self._elapsed_s
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,6 +102,7 @@ def running(
     twin: Twin | None = None,
     policy: AlarmPolicy | None = None,
     port: int = 0,
+    proxies: tuple[str, ...] = (),
     **service,
 ) -> Iterator[Running]:
     """Serve cages until the block ends; what else the service is told goes through."""
@@ -96,9 +113,8 @@ def running(
     cages = {name: LiveCage(name=name, twin=twin, tick_s=0.3, **parts) for name in names}
     service = Service(cages=cages, store=store, tokens=tokens, metrics=metrics, **service)
     listener = socket.create_server(("127.0.0.1", port))
-    config = uvicorn.Config(create_app(service), ws="websockets-sansio", log_config=None)
-    server = uvicorn.Server(config)
-    thread = threading.Thread(target=asyncio.run, args=(server.serve([listener]),))
+    served = server(service, Settings(trusted_proxies=proxies))
+    thread = threading.Thread(target=asyncio.run, args=(served.serve([listener]),))
     thread.start()
     address = f"http://127.0.0.1:{listener.getsockname()[1]}"
     clients = [
@@ -112,6 +128,6 @@ def running(
     finally:
         for client in clients:
             client.close()
-        server.should_exit = True
+        served.should_exit = True
         thread.join()
         listener.close()

@@ -21,8 +21,10 @@ def sample(minutes=0, metres=14.0, stream="depth-1", **rest):
     return Sample(stream=stream, t=t, values={"depth_m": metres}, **rest)
 
 
-def put(store, *samples, cage="ace", amendments=()):
-    return store.append(cage, samples, ingested=NOON, amendments=amendments).result(timeout=20)
+def put(store, *samples, cage="ace", limits=None, ingested=NOON):
+    """Store samples, with their own flags or checked by limits; whether each was new."""
+    asked = store.append(cage, samples, ingested=ingested, limits=limits)
+    return asked.result(timeout=20).new
 
 
 @contextmanager

@@ -12,7 +12,17 @@ const ALARMS = {
     advice: "Check the sensor before you trust it; the net beside it behaves as expected.",
     value: 5.2, worst: 5.9, raise_at: 5, clear_at: 3,
   }],
-  silent: [{
+  silent: [...["depth-1", "depth-2", "shackle-3"].map((one) => ({
+    id: `silent.${one}`, kind: "silent", source: one, severity: 500, unit: "s",
+    title: `${one} is silent`, message: `${one} has said nothing for 1.8 h; 15 min is the limit.`,
+    advice: "Check its power, its radio and its clock.", value: 6500, worst: 6500, raise_at: 900, clear_at: 600,
+  })), {
+    id: "clock.service", kind: "clock", source: "service", severity: 600, unit: "1",
+    title: "Wrong clock: service", message: "The clock of the service was set back by 1.0 h at 03:12 UTC.",
+    advice: "Set the clock, and see that it is kept by NTP or GPS. What is shown follows the "
+      + "readings that are not ahead of the service's clock.",
+    value: 1, worst: 1, raise_at: 1, clear_at: 0,
+  }, {
     id: "silent.buoy-1", kind: "silent", source: "buoy-1", severity: 700, unit: "s",
     title: "buoy-1 is silent", message: "buoy-1 has said nothing for 2.0 h.",
     advice: "Check its power and its link; loads and shape are unknown until it is back.",

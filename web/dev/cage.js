@@ -7,6 +7,7 @@ const CORNERS = [[42.5, 42.5], [-42.5, 42.5], [-42.5, -42.5], [42.5, -42.5]];
 const CAPACITY_KN = 160;
 const SHACKLES = [6, 7, 8, 9, 10];
 const SENSOR_DEPTHS = [7, 15, 31];
+const REASON = "No sensor has trained level 2 here, so the error of the simulation is not known.";
 const radians = (degrees) => (degrees * Math.PI) / 180;
 
 const rest = [];
@@ -87,7 +88,7 @@ export function shapeIn(sea) {
     const dent = 2.6 * u * u * Math.sin(Math.PI * Math.min(1, depth * 1.4)) * (along < 0 ? 1 : 0.25);
     displacement.push((sway + dent) * east, (sway + dent) * north,
       7 * u * u * depth * (1 - 0.012 * along) + 0.15 * sea.hs_m * (1 - depth) * Math.sin(along / 9));
-    sigma.push(0.04 + 0.5 * u * depth);
+    sigma.push(0.1 + 3 * u * depth);
   }
   return { displacement, sigma };
 }
@@ -107,11 +108,17 @@ export function answersIn(sea, t, broken) {
     return 4 * Math.log(1 + Math.exp((10 + 230 * u * u * pull) / 4));
   });
   const bridles = low.map((kn, k) => {
-    const level = SHACKLES.includes(k) ? 2 : 1;
+    const shackle = SHACKLES.indexOf(k);
+    const level = shackle < 0 ? 1 : 2;
     const mean = kn * (level === 2 ? 1.13 : 1) * (broken && k === 7 ? 1.8 : 1);
+    const measured = level === 2 ? mean * (1 + 0.04 * wave(t, shackle)) : null;
     return {
-      name: `bridle-${k + 1}`, level, tension_kn: interval(mean, level === 2 ? 1 + 0.05 * mean : 2 + 0.14 * mean),
-      low_fidelity_kn: kn, utilisation: mean / CAPACITY_KN,
+      name: `bridle-${k + 1}`, level, in_domain: true,
+      tension_kn: level === 2 ? interval(mean, 1 + 0.05 * mean) : { mean, lower: null, upper: null },
+      interval_reason: level === 2 ? "" : REASON,
+      low_fidelity_kn: kn, utilisation: mean / CAPACITY_KN, measured_kn: measured,
+      measured_utilisation: level === 2 ? measured / CAPACITY_KN : null,
+      measured_by: level === 2 ? `shackle-${shackle + 1}` : null,
     };
   });
   const { displacement } = shapeIn(sea);
@@ -119,13 +126,13 @@ export function answersIn(sea, t, broken) {
     const { tension_kn: kn } = bridles[bridle];
     return {
       name: `shackle-${k + 1}`, unit: "kN", level: 2, low_fidelity: low[bridle], ...kn,
-      measured: kn.mean + 0.04 * kn.mean * wave(t, k), measured_age_s: 20,
+      in_domain: true, measured: bridles[bridle].measured_kn, measured_age_s: 20,
     };
   });
   const depths = sensorNodes.map((node, k) => {
     const metres = -(rest[node][2] + displacement[3 * node + 2]);
     return {
-      name: `depth-${k + 1}`, unit: "m", level: 2, low_fidelity: metres + 0.4, ...interval(metres, 0.35),
+      name: `depth-${k + 1}`, unit: "m", level: 2, in_domain: true, low_fidelity: metres + 0.4, ...interval(metres, 0.35),
       measured: metres + 0.2 * wave(t, k + 9), measured_age_s: 40,
     };
   });

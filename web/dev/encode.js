@@ -2,19 +2,23 @@
 
 const aligned = (at) => Math.ceil(at / 8) * 8;
 
-/** Encode; displacement x y z of each node in turn and sigma [m] are null without valid input. */
+/**
+ * Encode; displacement x y z of each node in turn and sigma [m] are null without valid input,
+ * sigma alone where no spread is known.
+ */
 export function encodeFrame({ t, flags, state, displacement, sigma }) {
   const words = new TextEncoder().encode(JSON.stringify(state));
-  const nodes = sigma?.length ?? 0;
+  const nodes = (displacement?.length ?? 0) / 3;
+  const noSpread = nodes && !sigma ? 16 : 0;
   const spreadAt = aligned(32 + 6 * nodes);
-  const wordsAt = aligned(spreadAt + nodes);
+  const wordsAt = aligned(spreadAt + (sigma?.length ?? 0));
   const buffer = new ArrayBuffer(wordsAt + words.length);
   const view = new DataView(buffer);
   const moved = unit(displacement ?? [], 32767);
   const spread = unit(sigma ?? [], 255);
   [..."SCFR"].forEach((letter, k) => view.setUint8(k, letter.charCodeAt(0)));
-  view.setUint16(4, 1, true);
-  view.setUint16(6, flags, true);
+  view.setUint16(4, 2, true);
+  view.setUint16(6, flags | noSpread, true);
   view.setFloat64(8, t, true);
   view.setUint32(16, nodes, true);
   view.setUint32(20, words.length, true);

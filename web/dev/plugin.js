@@ -1,19 +1,24 @@
 // A stand-in for the service, beside Vite: `npm run dev` shows the page without Python.
-// Any token opens it but "wrong". Cages: calm is well, storm has alarms, silent has no buoy.
+// Any token opens it but "wrong". Cages: calm is well, storm has alarms, silent has no
+// buoy, thin too little volume, dumb no sensor, taut a load at its limit.
 
 import { WebSocketServer } from "ws";
 
 import { alarmsFor, kpi } from "./alarms.js";
+import { largestKnown } from "../src/known-load.js";
 import { learned, seaAt, topologyOf } from "./cage.js";
-import { frameOf, historyOf, stateOf } from "./state.js";
+import { CONCERNS, frameOf, historyOf, stateOf } from "./state.js";
 
 const SPEED = 60;
 const EVERY_MS = 1000;
 const began = Date.now();
 const now = () => began + SPEED * (Date.now() - began);
 const cages = new Map([
-  { name: "calm", strength: 0.8 }, { name: "storm", strength: 1.15, trouble: "load" },
+  { name: "calm", strength: 0.8, spread: true }, { name: "storm", strength: 1.15, trouble: "load" },
   { name: "silent", strength: 0.8, trouble: "silent" },
+  { name: "thin", strength: 1, concerns: [CONCERNS.volume] },
+  { name: "dumb", strength: 0.8, concerns: [CONCERNS.measured] },
+  { name: "taut", strength: 1.1, concerns: [CONCERNS.load, CONCERNS.volume] },
 ].map((one) => [one.name, { ...one, book: alarmsFor(one.trouble, began) }]));
 
 const session = { who: "Night shift", scopes: ["read", "ack"], csrf: "made up", expires: "2100-01-01T00:00:00Z" };
@@ -28,7 +33,7 @@ function summaries() {
     return {
       name: one.name, origin: state.origin, valid: state.valid, in_domain: state.in_domain,
       t: state.t, age_s: state.age_s, reason: state.reason,
-      max_utilisation: state.valid ? Math.max(...state.bridles.map((b) => b.utilisation)) : null,
+      max_utilisation: largestKnown(state)?.share ?? null, concerns: state.concerns,
       volume_fraction: state.volume_fraction,
       current_speed_m_s: state.water?.current_speed_m_s ?? null,
       current_to_deg: state.water?.current_to_deg ?? null, waiting: waiting.length,

@@ -5,6 +5,16 @@ import { encodeFrame } from "./encode.js";
 
 const BEYOND_M_S = 0.9; // what the made-up twin has learned
 
+/** What keeps a cage from being well, in the service's words. */
+export const CONCERNS = {
+  volume: { kind: "volume", title: "Volume low",
+    message: "The net holds 71 % of its volume in still water; 80 % is the limit." },
+  measured: { kind: "measured", title: "Nothing measured",
+    message: "No sensor has given a valid reading within its timeout: all is predicted." },
+  load: { kind: "load", title: "Load at its limit",
+    message: "bridle-8 bears 82 % of its capacity, measured by shackle-2; 80 % is the limit." },
+};
+
 const iso = (t) => new Date(t).toISOString();
 
 /** A cage's state as JSON. `one` says how the cage fares: {name, strength, trouble}. */
@@ -20,13 +30,21 @@ export function stateOf(one, t, sea, alarms) {
       Object.assign(sensor, { mean: null, lower: null, upper: null, low_fidelity: null });
     }
   }
+  const has = (kind) => (one.concerns ?? []).some((concern) => concern.kind === kind);
+  if (has("measured")) {
+    for (const sensor of sensors) Object.assign(sensor, { measured: null, measured_age_s: null });
+    for (const bridle of bridles) Object.assign(bridle, { measured_kn: null, measured_utilisation: null });
+  }
+  if (has("load")) Object.assign(bridles[7], { measured_kn: 131, measured_utilisation: 0.82 });
   return {
     cage: one.name, t: iso(t), age_s: valid ? (t / 1e3) % 600 : 7300, valid,
     in_domain: valid && sea.current_speed_m_s < BEYOND_M_S,
     reason: valid ? "" : "buoy-1 has been silent for 2.0 h, longer than 0.5 h.",
     origin: "virtual field", water: valid ? sea : null, bridles, sensors, shape_level: 1,
-    volume_fraction: valid ? 1 - 0.22 * sea.current_speed_m_s ** 2 : null,
-    silent: valid ? [] : ["buoy-1"], amended: [], alarms,
+    volume_fraction: !valid ? null : has("volume") ? 0.71 : 1 - 0.22 * sea.current_speed_m_s ** 2,
+    silent: valid ? [] : ["buoy-1"], amended: [], alarms, concerns: one.concerns ?? [],
+    shape: { level: 1, in_domain: valid, interval_reason: one.spread ? ""
+      : "No sensor has trained level 2 of the shape, so its error is not known." },
   };
 }
 
@@ -34,6 +52,7 @@ export function stateOf(one, t, sea, alarms) {
 export function frameOf(one, t, sea, alarms, flags = 0) {
   const state = stateOf(one, t, sea, alarms);
   const shape = state.valid ? shapeIn(sea) : {};
+  if (!one.spread) shape.sigma = null;
   const said = (state.valid ? 1 : 0) | (state.in_domain ? 2 : 0) | flags;
   return encodeFrame({ t, flags: said, state, ...shape });
 }

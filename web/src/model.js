@@ -1,5 +1,6 @@
 // What the page knows: the one place that the scene and the panels read and ask.
 
+import { possible } from "./bounds.js";
 import { latestOnly } from "./latest.js";
 import { connect } from "./link.js";
 import { Refusal } from "./request.js";
@@ -246,6 +247,7 @@ export function viewOf(frame, mode, { staleAfterS = STALE_UNKNOWN_S, speed, isLo
   const came = performance.now();
   return {
     ...frame,
+    state: possible(frame.state),
     mode,
     /** Age of the input [s]; null where there is none. */
     get ageS() {

@@ -1,6 +1,7 @@
 // What the service sends: one little-endian binary frame per state of a cage.
 
 const MAGIC = 0x52464353; // "SCFR"
+const VERSION = 2;
 const HEADER = 32;
 const aligned = (at) => Math.ceil(at / 8) * 8;
 
@@ -8,6 +9,7 @@ export const VALID = 1;
 export const IN_DOMAIN = 2;
 export const PAST = 4;
 export const WHAT_IF = 8;
+export const NO_SPREAD = 16;
 
 /**
  * Read a frame.
@@ -16,7 +18,7 @@ export const WHAT_IF = 8;
  * @param {Float32Array} rest where the nodes are in still water, x y z of each in turn [m]
  * @returns {{t: number, flags: number, state: object, position: Float32Array|null,
  *   sigma: Float32Array|null}} t in ms since 1970 UTC; positions and sigma in metres, null
- *   without valid input
+ *   without valid input; sigma also where no honest spread is known
  */
 export function readFrame(buffer, rest) {
   const view = new DataView(buffer);
@@ -24,15 +26,16 @@ export function readFrame(buffer, rest) {
     throw new Error(`A frame begins with SCFR; these ${buffer.byteLength} bytes do not.`);
   }
   const version = view.getUint16(4, true);
-  if (version !== 1) {
-    throw new Error(`The service sends frames of version ${version}; this page reads 1. Load ` +
+  if (version !== VERSION) {
+    throw new Error(`The service sends frames of version ${version}; this page reads ${VERSION}. Load ` +
       "the page again.");
   }
   const nodes = view.getUint32(16, true);
   const spreadAt = aligned(HEADER + 6 * nodes);
-  const wordsAt = aligned(spreadAt + nodes);
-  const words = new Uint8Array(buffer, wordsAt, view.getUint32(20, true));
   const flags = view.getUint16(6, true);
+  const isSpread = (flags & NO_SPREAD) === 0;
+  const wordsAt = aligned(spreadAt + (isSpread ? nodes : 0));
+  const words = new Uint8Array(buffer, wordsAt, view.getUint32(20, true));
   const valid = (flags & VALID) !== 0;
   if (valid && 3 * nodes !== rest.length) {
     throw new Error(`A frame of ${nodes} nodes does not fit a net of ${rest.length / 3}.`);
@@ -42,7 +45,7 @@ export function readFrame(buffer, rest) {
     flags,
     state: JSON.parse(new TextDecoder().decode(words)),
     position: valid ? moved(view, rest) : null,
-    sigma: valid
+    sigma: valid && isSpread
       ? spread(new Uint8Array(buffer, spreadAt, nodes), view.getFloat32(28, true)) : null,
   };
 }

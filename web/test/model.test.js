@@ -263,7 +263,7 @@ test("a service that speaks another version stops the page with the reason", asy
   new DataView(newer).setUint16(4, 9, true);
   socket.onmessage({ data: newer });
   assert.equal(model.connection, "refused");
-  assert.match(model.why, /version 9; this page reads 1/);
+  assert.match(model.why, /version 9; this page reads 2/);
   mock.timers.tick(60_000);
   assert.equal(sockets.length, 1);
 });

@@ -12,9 +12,13 @@ import {
 import { Glide } from "../src/scene/glide.js";
 import { noticeFor } from "../src/scene/notice.js";
 import { pick, toSegment } from "../src/scene/pick.js";
+import { band, outline } from "../src/scene/silhouette.js";
 import { wordsFor } from "../src/scene/words.js";
 
 globalThis.matchMedia = () => ({ matches: false, addEventListener() {} });
+globalThis.localStorage = { getItem: () => null };
+globalThis.document = { documentElement: { dataset: {} } };
+const { tintOf } = await import("../src/scene/paint.js");
 const made = topologyOf("calm", 1);
 const topology = { ...made, rest: Float32Array.from(made.rest_position_m.flat()) };
 
@@ -128,6 +132,38 @@ test("without valid input a bridle shows dashes and the reason", () => {
   const said = wordsFor({ bridle: "bridle-1" }, topology, { state });
   assert.deepEqual(said.rows.map(([, value]) => value), ["–", "–", "–"]);
   assert.equal(said.note, "buoy-1 is silent.");
+});
+
+test("a line outside the training domain of its own level is labelled, and one without an interval says why", () => {
+  const bridle = { name: "bridle-1", level: 2, in_domain: false, interval_reason: "", utilisation: 0.2,
+    tension_kn: { mean: 32, lower: 30, upper: 34 } };
+  const state = { valid: true, in_domain: true, reason: "", sensors: [], bridles: [bridle] };
+  assert.match(wordsFor({ bridle: "bridle-1" }, topology, { state }).note, /Outside the training domain/);
+  const none = { mean: 32, lower: null, upper: null };
+  state.bridles = [{ ...bridle, level: 1, in_domain: true, interval_reason: "No sensor.", tension_kn: none }];
+  const said = wordsFor({ bridle: "bridle-1" }, topology, { state });
+  assert.equal(said.rows[1][1], "not known");
+  assert.equal(said.note, "From simulations alone. No sensor.");
+});
+
+test("a node without a spread says that it is not known, and why", () => {
+  const state = { valid: true, shape: { interval_reason: "No sensor has taught the shape." } };
+  const said = wordsFor({ node: 3 }, topology, { state, position: topology.rest, sigma: null });
+  assert.deepEqual(said.rows.at(-1), ["Uncertainty, σ", "not known"]);
+  assert.equal(said.note, "No sensor has taught the shape.");
+  assert.equal(tintOf(topology, { position: topology.rest, sigma: null }, { tint: "sigma" }), null);
+});
+
+test("the outline of the net goes from the collar to the tip and back, and the band is on both sides", () => {
+  const side = ([x, , z]) => [x, -z];
+  const line = outline(topology, topology.rest, side);
+  assert.equal(line.length, 2 * topology.rings + 1);
+  assert.deepEqual(line[topology.rings].map(Math.round), [0, 31]);
+  assert.deepEqual([line[0], line.at(-1)].map(([x]) => Math.round(x)), [-25, 25]);
+  const sigma = new Float32Array(topology.rest.length / 3).fill(1);
+  const [outer, inner] = band(topology, topology.rest, sigma, (net) => outline(topology, net, side));
+  assert.ok(outer[0][0] < line[0][0] - 1.5 && inner[0][0] > line[0][0] + 1.5);
+  assert.ok(outer[topology.rings][1] > 32.5);
 });
 
 test("every state of the page has its notice, and a live one none", () => {

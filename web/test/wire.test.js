@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { encodeFrame } from "../dev/encode.js";
-import { IN_DOMAIN, PAST, readFrame, VALID } from "../src/wire.js";
+import { IN_DOMAIN, NO_SPREAD, PAST, readFrame, VALID } from "../src/wire.js";
 
 const rest = Float32Array.from([0, 0, 0, 10, 0, -5, 0, 10, -31]);
 const displacement = [0.5, -0.25, 0, 40, 0, 3.2767, -12.5, 1e-3, 9];
@@ -64,10 +64,24 @@ test("what is no frame is refused in words", () => {
   assert.throws(() => readFrame(new ArrayBuffer(3), rest), /begins with SCFR/);
 });
 
-test("a frame of a newer service asks to load the page again", () => {
+test("a frame of another version asks to load the page again", () => {
   const newer = frame();
-  new DataView(newer).setUint16(4, 2, true);
-  assert.throws(() => readFrame(newer, rest), /version 2; this page reads 1/);
+  for (const version of [1, 3]) {
+    new DataView(newer).setUint16(4, version, true);
+    assert.throws(() => readFrame(newer, rest), new RegExp(`version ${version}; this page reads 2`));
+  }
+});
+
+test("where no spread is known the positions and the words come back, and sigma is null", () => {
+  const { flags, position, sigma: none, state } = readFrame(frame({ sigma: null }), rest);
+  assert.equal(flags, VALID | IN_DOMAIN | NO_SPREAD);
+  assert.equal(none, null);
+  assert.ok(Math.abs(position[3] - rest[3] - 40) < 1e-3);
+  assert.equal(state.reason, "naïve");
+});
+
+test("an empty spread takes no bytes", () => {
+  assert.equal(frame().byteLength - frame({ sigma: null }).byteLength, 8);
 });
 
 test("a frame for another net is refused", () => {

@@ -33,7 +33,10 @@ from seacage.cage._parts import (
 from seacage.cage._tangent_plane import TangentPlane
 from seacage.cage._toml import altered, parsed, written
 from seacage.cage._volume import enclosed_volume
-from seacage.conventions import InputError, towards
+from seacage.conventions import InputError, read_text, towards
+
+SNAPPED = 0.01
+"""A bridle that a node moves by more is warned of [deg]; bearings are seldom written finer."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -88,6 +91,21 @@ class Cage:
                     f"Cage {self.name}: {entry.name} sits on bridle {entry.bridle}, but there "
                     f"are {self.bridle_count}. Bridles are numbered from 1."
                 )
+        self._check_place()
+
+    def _check_place(self) -> None:
+        """Refuse a cage that its water or its mooring has no room for."""
+        deepest, water = max(self.mesh.tip_depth, self.frame.depth), self.site.water_depth
+        if deepest >= water:
+            raise InputError(
+                f"Cage {self.name}: it hangs {deepest:g} m deep in water of {water:g} m, and "
+                "no bed carries it. Check water_depth_m, tip_depth_m and the frame's depth_m."
+            )
+        if self.frame.side <= 2.0 * self.collar.radius:
+            raise InputError(
+                f"Cage {self.name}: its frame of side_m = {self.frame.side:g} has no room for a "
+                f"collar of radius_m = {self.collar.radius:g}. Give more than twice the radius."
+            )
 
     # Doors
 
@@ -106,11 +124,7 @@ class Cage:
     @classmethod
     def read(cls, path: str | Path) -> Self:
         """A cage from a TOML file, refused with the key's name where a key is wrong."""
-        try:
-            text = Path(path).read_text("utf-8")
-        except (OSError, UnicodeDecodeError) as error:
-            raise InputError(f"Cage.read: cannot read {path} as UTF-8 text ({error}).") from error
-        return cls.from_toml(text, source=str(path))
+        return cls.from_toml(read_text(path), source=str(path))
 
     @classmethod
     def from_toml(cls, text: str, *, source: str = "cage") -> Self:
@@ -257,6 +271,23 @@ class Cage:
     def bridle_nodes(self) -> Int[np.ndarray, " bridle"]:
         """The collar node that each bridle holds."""
         return _kept(np.array([self._nearest_spoke(b) for b in self.bridles.bearings]))
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is not as the file has it: bridles that were moved to the nearest spoke."""
+        held = (90.0 - 360.0 * self.bridle_nodes / self.spokes) % 360.0
+        moved = [
+            f"{name} from {bearing:g}° to {now:g}°"
+            for name, bearing, now in zip(
+                self.bridle_names, self.bridles.bearings, held.tolist(), strict=True
+            )
+            if abs((now - bearing + 180.0) % 360.0 - 180.0) > SNAPPED
+        ]
+        warning = (
+            f"Cage {self.name}: bridles are held at the nearest of {self.spokes} spokes, which "
+            f"moves {', '.join(moved)}. Their loads are those of the moved bridles."
+        )
+        return (warning,) if moved else ()
 
     @cached_property
     def corner_position(self) -> Float[np.ndarray, "corner 3"]:

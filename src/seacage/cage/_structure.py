@@ -23,7 +23,7 @@ from seacage.cage._structure_parts import (
 )
 from seacage.cage._toml import parsed, written
 from seacage.cage._volume import enclosed_volume
-from seacage.conventions import InputError
+from seacage.conventions import InputError, read_text
 
 _Part = TypeVar("_Part", bound=Named)
 
@@ -96,13 +96,7 @@ class Structure:
     @classmethod
     def read(cls, path: str | Path) -> Self:
         """A structure from a TOML file, refused with the key's name where a key is wrong."""
-        try:
-            text = Path(path).read_text("utf-8")
-        except (OSError, UnicodeDecodeError) as error:
-            raise InputError(
-                f"Structure.read: cannot read {path} as UTF-8 text ({error})."
-            ) from error
-        return cls.from_toml(text, source=str(path))
+        return cls.from_toml(read_text(path), source=str(path))
 
     @classmethod
     def from_toml(cls, text: str, *, source: str = "structure") -> Self:

@@ -2,7 +2,6 @@
 
 import difflib
 import json
-import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, Field, fields, is_dataclass, replace
 from numbers import Integral, Real
@@ -10,7 +9,7 @@ from types import UnionType
 from typing import Any, get_args, get_origin
 
 from seacage.cage._parts import key_of
-from seacage.conventions import InputError
+from seacage.conventions import InputError, NonsenseError, parse_toml
 
 
 def parsed(kind: type, text: str, *, source: str) -> Any:
@@ -20,14 +19,15 @@ def parsed(kind: type, text: str, *, source: str) -> Any:
     ------
     InputError
         Text that is no TOML, and any key that is unknown, missing or of the wrong type.
+    NonsenseError
+        Values that each may be, and not together.
     """
+    table = parse_toml(text, source)
     try:
-        table = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(
-            f"{source}: this is not TOML ({error}). Mend the line it names."
-        ) from error
-    return _built(kind, table, source)
+        return _built(kind, table, source)
+    except InputError as error:
+        said = str(error)
+        raise NonsenseError(said if source in said else f"{source}: {said}") from error
 
 
 def _built(kind: type, table: dict[str, Any], where: str) -> Any:

@@ -12,7 +12,7 @@ from jaxtyping import Float
 from seacage.cage import Cage
 from seacage.campaigns._pool import one_thread
 from seacage.conventions import InputError, Result, SeacageError
-from seacage.dynamics import LAWS, History, Mooring, MovingLaw, settle, simulate
+from seacage.dynamics import LAWS, PHYSICS, History, Mooring, MovingLaw, settle, simulate
 from seacage.ocean import SeaState
 
 _BLOCK = {"simulate": 16, "settle": 32}
@@ -96,7 +96,7 @@ class Block:
     wave_seeds: tuple[int, ...]
     duration: float
     simulator: Simulator
-    version: str
+    made_by: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -118,6 +118,11 @@ class Answers:
     core_seconds: float
 
 
+def made_by() -> str:
+    """The version of seacage that runs here, and the revision of its physics."""
+    return f"seacage {version('seacage')}, physics {PHYSICS}"
+
+
 def answered(block: Block) -> Answers:
     """Compute one block.
 
@@ -126,11 +131,10 @@ def answered(block: Block) -> Answers:
     SeacageError
         The worker runs another version of seacage than who asks.
     """
-    here = version("seacage")
-    if here != block.version:
+    if (here := made_by()) != block.made_by:
         raise SeacageError(
-            f"A worker runs seacage {here}, the campaign seacage {block.version}: their numbers "
-            "may differ. Install the same version on every worker."
+            f"A worker runs {here}, the campaign {block.made_by}: their numbers may differ. "
+            "Install the same version on every worker."
         )
     began = time.process_time()
     with one_thread():

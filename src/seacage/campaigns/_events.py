@@ -2,7 +2,6 @@
 
 import math
 import re
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
@@ -14,7 +13,7 @@ import numpy as np
 from seacage.cage import Cage
 from seacage.campaigns._hidden import Hidden
 from seacage.campaigns._spells import Spells
-from seacage.conventions import InputError
+from seacage.conventions import InputError, parse_toml, read_text
 from seacage.dynamics import Damage
 from seacage.records import Record, instant
 
@@ -214,10 +213,7 @@ def read_events(path: str | Path) -> tuple[Event, ...]:
     InputError
         No TOML, a key that is missing or unknown, a value that ``Event`` refuses.
     """
-    try:
-        table: Mapping[str, object] = tomllib.loads(Path(path).read_text("utf-8"))
-    except (OSError, ValueError) as error:
-        raise InputError(f"read_events: cannot read {path} as TOML ({error}).") from error
+    table: Mapping[str, object] = parse_toml(read_text(path), str(path))
     entries = table.get("event")
     if len(table) != 1 or not _are_tables(entries):
         raise InputError(f"{path}: write each event as a table [[event]], and nothing else.")

@@ -2,7 +2,6 @@
 
 import hashlib
 import math
-import tomllib
 from dataclasses import dataclass, fields, is_dataclass
 from importlib import resources
 from pathlib import Path
@@ -12,7 +11,7 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.cage import Cage
-from seacage.conventions import InputError
+from seacage.conventions import InputError, parse_toml, read_text
 from seacage.dynamics import Law
 
 
@@ -184,12 +183,9 @@ class Hidden:
             No TOML, or a key that is unknown, missing or no finite number.
         """
         own = resources.files("seacage.campaigns") / "hidden_ace.toml"
-        try:
-            content = own.read_bytes() if path is None else Path(path).read_bytes()
-            table = tomllib.loads(content.decode())
-        except (OSError, ValueError) as error:
-            raise InputError(f"Hidden.read: cannot read {path} as TOML ({error}).") from error
-        sha256 = hashlib.sha256(content).hexdigest()
+        text = own.read_text("utf-8") if path is None else read_text(path)
+        table = parse_toml(text, f"{path or own}")
+        sha256 = hashlib.sha256(text.encode()).hexdigest()
         return _built(cls, {**table, "sha256": sha256}, where=f"{path or own}")
 
     def true_cage(self, cage: Cage, growth: float) -> Cage:

@@ -2,6 +2,7 @@
 
 import csv
 import hashlib
+import io
 import itertools
 import json
 import math
@@ -12,7 +13,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from seacage.conventions import InputError
+from seacage.conventions import TABLE_BYTES, InputError, parse_json, read_text
 from seacage.ocean import MAX_CURRENT_SPEED, SeaState
 
 Range = tuple[float, float]
@@ -192,10 +193,10 @@ class Plan:
         5 sqrt(Hs).
         """
         path = Path(path)
+        text = read_text(path, most=TABLE_BYTES).removeprefix("\ufeff")
         try:
-            with path.open(encoding="utf-8-sig", newline="") as file:
-                rows = list(csv.reader(file))
-        except (OSError, UnicodeDecodeError, csv.Error) as error:
+            rows = list(csv.reader(io.StringIO(text, newline="")))
+        except csv.Error as error:
             raise InputError(f"{path}: cannot be read as a CSV file ({error}).") from error
         seas = _tabled(rows, str(path))
         return cls(name=name or path.stem, seas=seas, duration=duration, seed=seed)
@@ -203,10 +204,7 @@ class Plan:
     @classmethod
     def read(cls, path: str | Path) -> Self:
         """A plan from the JSON file that ``write`` makes."""
-        try:
-            return cls.from_json(Path(path).read_text("utf-8"))
-        except (OSError, UnicodeDecodeError) as error:
-            raise InputError(f"Plan.read: cannot read {path} as UTF-8 text ({error}).") from error
+        return cls.from_json(read_text(path, most=TABLE_BYTES))
 
     def write(self, path: str | Path) -> None:
         """Write a JSON file that ``read`` takes back, one case per line."""
@@ -216,7 +214,7 @@ class Plan:
     def from_json(cls, text: str) -> Self:
         """A plan from JSON text."""
         try:
-            table = json.loads(text)
+            table = parse_json(text, "Plan")
             seas = tuple(
                 _sea_of(_inside(case), f"Plan: case {number}")
                 for number, case in enumerate(table["cases"])
@@ -224,7 +222,7 @@ class Plan:
             return cls(
                 name=table["name"], seas=seas, duration=table["duration_s"], seed=table["seed"]
             )
-        except (KeyError, TypeError, json.JSONDecodeError) as error:
+        except (KeyError, TypeError) as error:
             raise InputError(
                 f"Plan: this is no plan ({error!r}). Expected the keys name, duration_s, seed and "
                 f"cases, each case with some of {', '.join(_DOOR)}."

@@ -67,7 +67,10 @@ def mapped(
     pool = ProcessPoolExecutor(workers, spawn, initializer=_begin, initargs=(board,))
     try:
         with _clean_start():
-            futures = {pool.submit(_at, at, work, task): task for at, task in enumerate(tasks)}
+            try:
+                futures = {pool.submit(_at, at, work, task): task for at, task in enumerate(tasks)}
+            except OSError as error:  # the pool broke, and closed its pipes, as a worker was begun
+                raise BrokenProcessPool from error
         pending = set(futures)
         while pending:
             ended, pending = wait(pending, _LOOK_EVERY, FIRST_COMPLETED)

@@ -12,12 +12,12 @@ import numpy as np
 from jaxtyping import Int
 
 from seacage.cage import Cage
-from seacage.campaigns._cases import Answers, Block, Simulator, answered
+from seacage.campaigns._cases import Answers, Block, Simulator, answered, made_by
 from seacage.campaigns._cluster import mapped_on_cluster
 from seacage.campaigns._plan import Plan
 from seacage.campaigns._pool import available_cores, mapped
 from seacage.conventions import InputError, Origin, Progress, unheard
-from seacage.dynamics import Mooring, MovingLaw
+from seacage.dynamics import PHYSICS, Mooring, MovingLaw
 from seacage.records import (
     NOT_RUN,
     CampaignRecord,
@@ -34,6 +34,7 @@ _IDENTITY = {
     "law": "load law",
     "method": "method",
     "product_version": "version of seacage",
+    "physics": "revision of the physics",
     "mooring": "mooring",
     "ramp_s": "ramp",
     "spin_up_s": "spin-up",
@@ -190,14 +191,14 @@ def _begun(
     other = [name for key, name in _IDENTITY.items() if found.get(key) != asked.get(key)]
     if other:
         raise InputError(
-            f"{store} holds a campaign with another {' and another '.join(other)}. "
-            "Give another folder, or delete this one."
+            f"{store} holds a campaign with another {' and another '.join(other)}: it can be read, "
+            "but not gone on with. Give another folder, or delete this one."
         )
     return result, size
 
 
 def _blocks(cage: Cage, plan: Plan, by: Simulator, size: int, firsts: Sequence[int]) -> list[Block]:
-    toml, number = cage.to_toml(), version("seacage")
+    toml = cage.to_toml()
     spans = [slice(first, first + size) for first in firsts]
     return [
         Block(
@@ -207,7 +208,7 @@ def _blocks(cage: Cage, plan: Plan, by: Simulator, size: int, firsts: Sequence[i
             wave_seeds=tuple(_wave_seed(plan, case) for case in range(len(plan))[span]),
             duration=plan.duration,
             simulator=by,
-            version=number,
+            made_by=made_by(),
         )
         for span in spans
     ]
@@ -252,6 +253,7 @@ def _attributes(cage: Cage, plan: Plan, by: Simulator) -> dict[str, Any]:
         "keywords": "aquaculture, net cage, mooring, numerical simulation",
         "source": f"seacage {number}, {by.method}, netting law {by.law}",
         "product_version": number,
+        "physics": PHYSICS,
         "origin": Origin.COMPUTED.value,
         "method": by.method,
         "cage": cage.to_toml(),

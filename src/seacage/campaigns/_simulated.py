@@ -1,5 +1,6 @@
 """The truth of a virtual field that is simulated in time, put together from its stretches."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
@@ -183,7 +184,7 @@ def simulate_share(
     workers
         Processes; None for one per available core.
     progress
-        Called as ("virtual field", done, total) in simulated hours, rounded.
+        Called as ("virtual field, simulated hours", done, total), in whole hours.
     """
     kept = Kept.opened(folder, asked.identity)
     which, shares = share
@@ -194,7 +195,8 @@ def simulate_share(
 
     def report(done: float) -> None:
         if progress is not None:
-            progress("virtual field", round(done * each), round(len(mine) * each))
+            total = math.ceil(len(mine) * each)
+            progress("virtual field, simulated hours", min(round(done * each), total), total)
 
     simulate_stretches(
         mine,

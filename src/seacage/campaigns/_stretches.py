@@ -17,7 +17,7 @@ from seacage.campaigns._pool import available_cores, mapped, one_thread, tell
 from seacage.campaigns._timetable import Stretch, Timetable, side_by_side
 from seacage.campaigns._weather import Weather
 from seacage.conventions import InputError, RecordError
-from seacage.dynamics import Followed, MovingLaw, follow, simulation_lanes
+from seacage.dynamics import PHYSICS, Followed, MovingLaw, follow, simulation_lanes
 
 _MANIFEST = "manifest.json"
 
@@ -121,7 +121,12 @@ class Kept:
         InputError
             It holds those of another field.
         """
-        asked = {"schema": "seacage stretches 1", "seacage": version("seacage"), **identity}
+        asked = {
+            "schema": "seacage stretches 1",
+            "seacage": version("seacage"),
+            "physics": PHYSICS,
+            **identity,
+        }
         manifest = folder / _MANIFEST
         if manifest.exists():
             found = _manifest(manifest)

@@ -4,13 +4,12 @@ from collections.abc import Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
-from importlib.metadata import version
 
 import numpy as np
 from jaxtyping import Float
 
 from seacage.cage import Cage
-from seacage.campaigns._cases import Block, Simulator, answered
+from seacage.campaigns._cases import Block, Simulator, answered, made_by
 from seacage.campaigns._current import generated_current
 from seacage.campaigns._hidden import Hidden
 from seacage.campaigns._pool import available_cores, mapped
@@ -146,7 +145,7 @@ def _blocks(cage: Cage, moments: Sequence[_Moments]) -> dict[Block, np.ndarray]:
                     wave_seeds=(0,) * len(part),
                     duration=0.0,
                     simulator=by,
-                    version=version("seacage"),
+                    made_by=made_by(),
                 )
                 blocks[block] = before + part
         before += len(one.growth)

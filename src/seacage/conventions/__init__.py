@@ -3,25 +3,48 @@
 from seacage.conventions._codes import RESULTS, Flag, Result
 from seacage.conventions._constants import GRAVITY, WATER_DENSITY, WATER_VISCOSITY
 from seacage.conventions._directions import compass, folded, towards
-from seacage.conventions._errors import InputError, ModelError, RecordError, SeacageError
+from seacage.conventions._errors import (
+    InputError,
+    ModelError,
+    NonsenseError,
+    RecordError,
+    SeacageError,
+)
+from seacage.conventions._intake import (
+    TABLE_BYTES,
+    TEXT_BYTES,
+    check_file,
+    parse_json,
+    parse_toml,
+    read_bytes,
+    read_text,
+)
 from seacage.conventions._origin import Origin
 from seacage.conventions._progress import Progress, unheard
 
 __all__ = [
     "GRAVITY",
     "RESULTS",
+    "TABLE_BYTES",
+    "TEXT_BYTES",
     "WATER_DENSITY",
     "WATER_VISCOSITY",
     "Flag",
     "InputError",
     "ModelError",
+    "NonsenseError",
     "Origin",
     "Progress",
     "RecordError",
     "Result",
     "SeacageError",
+    "check_file",
     "compass",
     "folded",
+    "parse_json",
+    "parse_toml",
+    "read_bytes",
+    "read_text",
     "towards",
     "unheard",
 ]

@@ -9,6 +9,10 @@ class InputError(SeacageError, ValueError):
     """A value at a door is impossible, out of range or has no unit."""
 
 
+class NonsenseError(InputError):
+    """A file that can be read, and says what cannot be; a command that was given it ends with 2."""
+
+
 class RecordError(InputError):
     """A file's structure is wrong, so that none of it can be trusted."""
 

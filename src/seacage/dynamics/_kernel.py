@@ -1,6 +1,7 @@
 """The compiled kernel, loaded and fed by ctypes."""
 
 import ctypes
+import os
 import platform
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,6 +19,8 @@ from seacage.dynamics._pattern import Pattern
 from seacage.dynamics._struct import DOUBLES, INTEGERS, Struct, pointer
 
 SUFFIX = {"Darwin": ".dylib", "Windows": ".dll"}.get(platform.system(), ".so")
+LEVELS = {"native": 0, "x86-64-v4": 4, "x86-64-v3": 3, "x86-64-v2": 2}
+"""The kernels that the build can make, best first, and the level of processor that each needs."""
 
 
 class _Assembly(Struct):
@@ -328,23 +331,67 @@ def _assembly(assembly: Assembly) -> Struct:
 
 @lru_cache(maxsize=1)
 def kernel() -> Kernel:
-    """The best kernel built for this machine.
+    """The best kernel that this machine can run.
+
+    ``SEACAGE_KERNEL`` in the environment names another: ``x86-64-v2``, ``-v3`` or ``-v4``.
+
+    Raises
+    ------
+    SeacageError
+        Where none was built, or the named one is not to be had.
+    """
+    name = chosen(*available(), os.environ.get("SEACAGE_KERNEL", ""))
+    return Kernel(library_of(name))
+
+
+def library_of(name: str) -> Path:
+    """Where the build puts the kernel of this name."""
+    return Path(__file__).with_name(f"_kernel_{name}{SUFFIX}")
+
+
+def available() -> tuple[list[str], int]:
+    """Names of the kernels that were built, best first, and the level that the processor can run.
 
     Raises
     ------
     SeacageError
         Where none was built.
     """
-    room = Path(__file__).parent
-    native = room / f"_kernel_native{SUFFIX}"
-    if native.exists():
-        return Kernel(native)
-    built = {level: room / f"_kernel_x86-64-v{level}{SUFFIX}" for level in (4, 3, 2)}
-    built = {level: path for level, path in built.items() if path.exists()}
+    built = [name for name in LEVELS if library_of(name).exists()]
     if not built:
         raise SeacageError(
             "The compiled kernel is missing: seacage was not installed but copied. "
             "Install it with pip (a C compiler is fetched where there is none)."
         )
-    able = ctypes.CDLL(str(built[min(built)])).seacage_level()
-    return Kernel(next(path for level, path in built.items() if level <= able))
+    plainest = min(built, key=LEVELS.__getitem__)
+    return built, ctypes.CDLL(str(library_of(plainest))).seacage_level()
+
+
+def chosen(built: Sequence[str], able: int, forced: str) -> str:
+    """The name of the kernel to load.
+
+    Parameters
+    ----------
+    built
+        Names of the kernels that were built, best first.
+    able
+        The highest level that the processor can run, of `LEVELS`.
+    forced
+        The kernel that is asked for; empty for the best.
+
+    Raises
+    ------
+    SeacageError
+        Where the kernel that is asked for is unknown, was not built or cannot be run.
+    """
+    runs = [name for name in built if LEVELS[name] <= able]
+    if not forced or forced in runs:
+        return forced or runs[0]
+    if forced not in LEVELS:
+        why = "is no kernel of seacage"
+    else:
+        why = "cannot be run by this processor" if forced in built else "was not built here"
+    raise SeacageError(
+        f"SEACAGE_KERNEL = {forced!r} {why}; "
+        f"set it to {' or '.join(runs)}, or unset it for the best."
+    )

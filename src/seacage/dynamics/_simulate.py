@@ -267,7 +267,6 @@ def _prepared(
             )
         assembly = rigged(cage)
     else:
-        _check_depth(cage)
         assembly = anchored(cage) if mooring == "catenary" else assembled(cage)
     if hold_collar:
         fixed = assembly.fixed.copy()
@@ -277,15 +276,6 @@ def _prepared(
         nothing = np.zeros_like(assembly.cylinders.drag_width)
         assembly = replace(assembly, cylinders=replace(assembly.cylinders, drag_width=nothing))
     return assembly
-
-
-def _check_depth(cage: Cage) -> None:
-    lowest, depth = -float(cage.design_position[:, 2].min()), cage.site.water_depth
-    if lowest >= depth:
-        raise InputError(
-            f"simulate: the net of cage {cage.name} hangs {lowest:g} m deep in water of {depth:g} "
-            "m, and no bed carries it. Check water_depth_m, tip_depth_m and ring_depths_m."
-        )
 
 
 def _rest(cage: Cage | Structure, *, hold_collar: bool) -> Float[np.ndarray, "node 3"]:

@@ -47,7 +47,7 @@ class Comparison:
         Of each reading [UTC].
     reading, low, multi, multi_std
         The sensor, the low-fidelity mean, the multifidelity mean and its standard deviation
-        for one reading [unit].
+        for one reading [unit], NaN where there is no interval.
     low_mae, multi_mae
         Mean absolute errors [unit].
     low_line, multi_line
@@ -191,19 +191,20 @@ def series_panel(
     shown = (comparison.time >= start) & (comparison.time < end)
     time, reading = comparison.time[shown], comparison.reading[shown]
     low, mean = comparison.low[shown], comparison.multi[shown]
-    half = _BAND * comparison.multi_std[shown]
+    half = np.nan_to_num(_BAND * comparison.multi_std[shown])
     # An answer holds until the buoy's next word, so only the changes need drawing.
     word = _changes(low, mean, half)
-    axes.fill_between(
-        time[word],
-        (mean - half)[word],
-        (mean + half)[word],
-        step="post",
-        color=MULTI,
-        alpha=0.16,
-        lw=0,
-        label="95 % interval",
-    )
+    if half.any():
+        axes.fill_between(
+            time[word],
+            np.maximum(mean - half, 0.0)[word],  # no rope pushes, no sensor hangs in the air
+            np.maximum(mean + half, 0.0)[word],
+            step="post",
+            color=MULTI,
+            alpha=0.16,
+            lw=0,
+            label="95 % interval",
+        )
     _draw_readings(axes, comparison.sensor, time, reading)
     held = {"drawstyle": "steps-post", "lw": 1.1}
     axes.plot(time[word], low[word], color=LOW, label="Low fidelity", **held)

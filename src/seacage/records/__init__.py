@@ -13,6 +13,7 @@ from seacage.records._campaign_store import (
 )
 from seacage.records._cf import NetcdfMap
 from seacage.records._check import (
+    AHEAD,
     Amendment,
     QualityState,
     Verdict,
@@ -20,7 +21,10 @@ from seacage.records._check import (
     amended,
     check_record,
     check_sample,
+    is_evaluated,
+    is_withdrawn,
     verdicts_on,
+    withdrawn,
 )
 from seacage.records._columns import Column, ColumnMap
 from seacage.records._field import FieldRecord
@@ -32,20 +36,29 @@ from seacage.records._history_file import (
 )
 from seacage.records._inspect import Inspection, inspect_file
 from seacage.records._keys import KEYS, Key
-from seacage.records._limits import DEFAULT_LIMITS, Limits, Range, Season, Steadiness
+from seacage.records._limits import (
+    DEFAULT_LIMITS,
+    GROUPS,
+    Limits,
+    Range,
+    Season,
+    Steadiness,
+)
 from seacage.records._limits_file import read_limits
 from seacage.records._maps import read_map
 from seacage.records._netcdf import write_record
 from seacage.records._reader import known_map, read_record
 from seacage.records._record import Record
 from seacage.records._rows import check_rows, read_rows
-from seacage.records._sample import Sample
+from seacage.records._sample import Sample, check_stream
 from seacage.records._shipped import shipped_maps
 from seacage.records._times import instant, moment
 from seacage.records._truth_file import TrueMeans
 
 __all__ = [
+    "AHEAD",
     "DEFAULT_LIMITS",
+    "GROUPS",
     "KEYS",
     "NOT_RUN",
     "STATISTICS",
@@ -77,11 +90,14 @@ __all__ = [
     "check_record",
     "check_rows",
     "check_sample",
+    "check_stream",
     "create_campaign",
     "export_campaign",
     "finish_campaign",
     "inspect_file",
     "instant",
+    "is_evaluated",
+    "is_withdrawn",
     "known_map",
     "moment",
     "read_campaign",
@@ -92,6 +108,7 @@ __all__ = [
     "read_rows",
     "shipped_maps",
     "verdicts_on",
+    "withdrawn",
     "write_cases",
     "write_history",
     "write_record",

@@ -14,7 +14,9 @@ from jaxtyping import Bool, Float, Int
 
 from seacage.conventions import Origin, RecordError, Result
 from seacage.ocean import SeaState
+from seacage.records._brief import brief
 from seacage.records._campaign_store import MEAN, NOT_RUN, SEA, campaign_unsummed, not_a_campaign
+from seacage.records._declared import check_netcdf
 
 if TYPE_CHECKING:
     import xarray
@@ -110,6 +112,8 @@ class CampaignRecord:
     volume_std: Float[np.ndarray, " case"] | None = None
     second_moment: Float[np.ndarray, "coordinate coordinate"] | None = None
 
+    __repr__ = brief
+
     def __len__(self) -> int:
         return len(self.seas)
 
@@ -191,6 +195,7 @@ def _opened(path: Path) -> "xarray.Dataset":
         if path.is_dir():
             dataset = xarray.open_dataset(path, engine="zarr", consolidated=False)
         else:
+            check_netcdf(path, whole=True)
             dataset = xarray.open_dataset(path, engine="h5netcdf")
     except (OSError, KeyError, ValueError) as error:
         raise not_a_campaign(path) from error

@@ -4,7 +4,6 @@
 # pyright: reportUnknownMemberType=false
 
 import re
-import tomllib
 from collections.abc import Hashable, Mapping
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
@@ -14,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple, Self
 import numpy as np
 from jaxtyping import Float, Shaped
 
-from seacage.conventions import Origin, RecordError
+from seacage.conventions import Origin, RecordError, parse_toml
 from seacage.records._columns import (
     Column,
     check_components,
@@ -24,6 +23,7 @@ from seacage.records._columns import (
     vectors_joined,
 )
 from seacage.records._csv import in_order
+from seacage.records._declared import check_netcdf
 from seacage.records._netcdf import NETCDF_TROUBLE
 from seacage.records._record import Record
 from seacage.records._toml import Table, check_filled, check_names, number_of, table_of, text_of
@@ -153,10 +153,7 @@ class NetcdfMap:
         RecordError
             No TOML, a misspelt key, a value that is refused or still ``?``.
         """
-        try:
-            table = tomllib.loads(text)
-        except tomllib.TOMLDecodeError as error:
-            raise RecordError(f"{where}: the map is no TOML ({error}).") from error
+        table = parse_toml(text, where, refusal=RecordError)
         check_filled(table, where=where)
         known = ("kind", "title", "origin", "time_zone", "depth_m", "range_m", "at", "columns")
         check_names(table, known, where=where)
@@ -188,6 +185,7 @@ def read_cf(path: Path, choice: NetcdfMap, *, stream: str) -> Record:
     if not path.is_file():
         raise RecordError(f"{path}: there is no such file.")
     try:
+        check_netcdf(path, whole=False)
         with xarray.open_dataset(path, engine=engine_of(path), decode_times=False) as dataset:
             return _record(path, dataset, choice, stream=stream)
     except RecordError:

@@ -20,7 +20,9 @@ _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Amendment:
-    """A flag that a sample gets when the next has come; it only ever grows worse by it.
+    """A flag of a sample that changed after the sample was checked.
+
+    The next sample may show that one was a spike, and a late sample that it was none.
 
     Parameters
     ----------
@@ -29,9 +31,11 @@ class Amendment:
     key
         Of the value.
     flag
-        To be taken where it is worse than the value's own.
+        The flag from now on; of a spike, to be taken where it is worse than the value's own.
     remark
         Why: one sentence.
+    was
+        The flag before; None where only the next sample is known, and not the one meant.
     """
 
     stream: str
@@ -39,6 +43,7 @@ class Amendment:
     key: str
     flag: Flag
     remark: str
+    was: Flag | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -139,6 +144,38 @@ def amended(sample: Sample, amendments: Iterable[Amendment]) -> Sample:
             flags = {**sample.flags, one.key: one.flag}
             sample = replace(sample, flags=flags, remarks=(*sample.remarks, one.remark))
     return sample
+
+
+AHEAD = "ahead of the clock"
+"""What the remark of a sample says that was withdrawn, and no other remark."""
+
+
+def withdrawn(sample: Sample, *, clock: datetime) -> Sample:
+    """Return a sample that counts no more: its time is ahead of a clock that has stepped back.
+
+    Parameters
+    ----------
+    sample
+        Of which every value is flagged FAIL; the raw values are kept.
+    clock
+        The time that it was set to.
+    """
+    by_s = (sample.t - clock).total_seconds()
+    remark = (
+        f"{sample.stream}: its time is {by_s:.0f} s {AHEAD} at {clock.isoformat()}. Flagged 4 "
+        "(fail) until it is sent again; the raw values are kept."
+    )
+    return replace(sample, flags=dict.fromkeys(sample.values, Flag.FAIL), remarks=(remark,))
+
+
+def is_withdrawn(sample: Sample) -> bool:
+    """Whether ``withdrawn`` made the sample: then it is as if it had never come."""
+    return any(AHEAD in remark for remark in sample.remarks)
+
+
+def is_evaluated(sample: Sample) -> bool:
+    """Whether a sample has passed the checks, with whatever flags."""
+    return Flag.NOT_EVALUATED not in sample.flags.values()
 
 
 def check_record(record: Record, limits: Limits = DEFAULT_LIMITS) -> Record:

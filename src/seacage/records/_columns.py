@@ -1,7 +1,6 @@
 """Column maps: what a foreign file's columns mean, declared and never guessed."""
 
 import re
-import tomllib
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
@@ -12,7 +11,7 @@ from typing import Self
 import numpy as np
 from jaxtyping import Float
 
-from seacage.conventions import Origin, RecordError
+from seacage.conventions import Origin, RecordError, parse_toml, read_text
 from seacage.records._toml import (
     Table,
     check_filled,
@@ -214,11 +213,7 @@ class ColumnMap:
         RecordError
             Also where the file cannot be read.
         """
-        try:
-            text = Path(path).read_text(encoding="utf-8")
-        except (OSError, UnicodeDecodeError) as error:
-            raise RecordError(f"{path}: the column map cannot be read ({error}).") from error
-        return cls.from_toml(text, where=str(path))
+        return cls.from_toml(read_text(path, refusal=RecordError), where=str(path))
 
     @classmethod
     def from_toml(cls, text: str, *, where: str = "column map") -> Self:
@@ -256,10 +251,7 @@ class ColumnMap:
         RecordError
             No TOML, a misspelt or missing key, a value that is refused.
         """
-        try:
-            table = tomllib.loads(text)
-        except tomllib.TOMLDecodeError as error:
-            raise RecordError(f"{where}: the column map is no TOML ({error}).") from error
+        table = parse_toml(text, where, refusal=RecordError)
         check_filled(table, where=where)
         of_text = ("delimiter", "decimal", "encoding", "skip_lines")
         known = ("title", "origin", "time", "columns", "ignored", "depth_m", *of_text)

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Self, cast
 
-from seacage.conventions import InputError, Origin, RecordError
+from seacage.conventions import InputError, Origin, RecordError, parse_json, read_text
+from seacage.records._brief import brief
 from seacage.records._netcdf import read_netcdf, write_record
 from seacage.records._record import Record
 from seacage.records._sample import check_stream
@@ -49,6 +50,8 @@ class FieldRecord:
     origin: Origin
     hidden_sha256: str | None = None
     notes: tuple[str, ...] = ()
+
+    __repr__ = brief
 
     def __post_init__(self) -> None:
         if not self.buoy.values.keys() >= set(_CURRENT):
@@ -122,15 +125,8 @@ class FieldRecord:
 
 
 def _description(path: Path) -> dict[str, Any]:
-    try:
-        description: object = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise RecordError(
-            f"{path}: there is no field record ({error.strerror}). Give the folder that "
-            "FieldRecord.write made."
-        ) from error
-    except ValueError as error:
-        raise RecordError(f"{path}: this is no JSON ({error}). Write the record anew.") from error
+    text = read_text(path, refusal=RecordError)
+    description: object = parse_json(text, str(path), refusal=RecordError)
     table = cast("dict[str, Any]", description if isinstance(description, dict) else {})
     if table.get("schema") != _SCHEMA:
         raise RecordError(

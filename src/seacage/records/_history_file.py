@@ -12,8 +12,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from jaxtyping import Float, Int
 
-from seacage.conventions import Origin, RecordError, Result
+from seacage.conventions import Origin, RecordError, Result, parse_json
 from seacage.ocean import SeaState
+from seacage.records._brief import brief
+from seacage.records._declared import check_netcdf
 
 if TYPE_CHECKING:
     import xarray
@@ -134,6 +136,8 @@ class HistoryRecord:
     settings: Mapping[str, str | int | float]
     version: str
 
+    __repr__ = brief
+
     def __post_init__(self) -> None:
         wanted = set(_statistic_names())
         if set(self.statistics) != wanted:
@@ -178,6 +182,7 @@ def read_history(path: Path | str) -> HistoryRecord:
     import xarray
 
     try:
+        check_netcdf(Path(path), whole=True)
         with xarray.open_dataset(path, engine="h5netcdf", decode_times=False) as dataset:
             return _record(dataset)
     except (OSError, KeyError, ValueError) as error:
@@ -303,6 +308,6 @@ def _record(dataset: "xarray.Dataset") -> HistoryRecord:
         volume_fraction=float(values["volume_fraction"]),
         result=int(values["result"]),
         diverged_at=float(values["diverged_at"]),
-        settings=json.loads(str(attributes["settings"])),
+        settings=parse_json(str(attributes["settings"]), "its settings"),
         version=str(attributes["product_version"]),
     )

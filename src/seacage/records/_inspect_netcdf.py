@@ -17,6 +17,7 @@ from seacage.records._cf import (
     vertical_of,
     zone_doubt,
 )
+from seacage.records._declared import check_netcdf
 from seacage.records._netcdf import NETCDF_TROUBLE
 
 if TYPE_CHECKING:
@@ -43,6 +44,7 @@ def inspect_netcdf(path: Path) -> Found:
     if not path.is_file():
         raise RecordError(f"{path}: there is no such file.")
     try:
+        check_netcdf(path, whole=False)
         with xarray.open_dataset(path, engine=engine_of(path), decode_times=False) as dataset:
             return _found(path, dataset)
     except RecordError:

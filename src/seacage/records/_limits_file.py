@@ -1,11 +1,10 @@
 """A site's own limits, from TOML."""
 
 import math
-import tomllib
 from dataclasses import fields, replace
 from pathlib import Path
 
-from seacage.conventions import RecordError
+from seacage.conventions import RecordError, parse_toml, read_text
 from seacage.records._limits import DEFAULT_LIMITS, Limits, Range, Season, Steadiness
 from seacage.records._toml import (
     Table,
@@ -40,10 +39,7 @@ def read_limits(path: Path | str) -> Limits:
         No TOML, an unknown quantity, group or limit, a value that is no number.
     """
     where = str(path)
-    try:
-        table = tomllib.loads(Path(path).read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise RecordError(f"{where}: the limits cannot be read ({error}).") from error
+    table = parse_toml(read_text(path, refusal=RecordError), where, refusal=RecordError)
     check_names(table, ("ranges", "steadiness", "climatology"), where=where)
     return replace(
         DEFAULT_LIMITS,

@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-from seacage.conventions import RecordError
+from seacage.conventions import RecordError, read_text
 from seacage.records._cf import NetcdfMap
 from seacage.records._columns import ColumnMap
 from seacage.records._shipped import shipped_maps
@@ -29,12 +29,10 @@ def read_map(source: Path | str) -> ColumnMap | NetcdfMap:
         return shipped_maps()[str(source)]
     path = Path(source)
     try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise RecordError(
-            f"{path}: the map cannot be read ({error}). Give a TOML file, or the name of a "
-            f"shipped map: {', '.join(shipped_maps())}."
-        ) from error
+        text = read_text(path, refusal=RecordError)
+    except RecordError as error:
+        names = ", ".join(shipped_maps())
+        raise RecordError(f"{error} Give a map, or the name of a shipped one: {names}.") from error
     if _NETCDF.search(text):
         return NetcdfMap.from_toml(text, where=str(path))
     return ColumnMap.from_toml(text, where=str(path))

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from seacage.conventions import Flag, Origin, RecordError
+from seacage.conventions import Flag, Origin, RecordError, read_bytes
+from seacage.records._declared import check_netcdf
 from seacage.records._keys import KEYS
 from seacage.records._record import Record
 
@@ -33,6 +34,7 @@ NETCDF_TROUBLE = (
 _SCHEMA = "seacage stream 1"
 _FLAG = "_flag"
 _SEAL = b"seacage sha256:\n"
+_SEALED_BYTES = 1 << 30
 _DIGEST = hashlib.sha256().digest_size
 _SEALED = -(len(_SEAL) + _DIGEST)
 _TIME = {
@@ -72,6 +74,7 @@ def read_netcdf(path: Path) -> Record:
 
     try:
         _check_seal(path)
+        check_netcdf(path, whole=True)
         with xarray.open_dataset(path, engine="h5netcdf", decode_times=False) as dataset:
             return _record(dataset)
     except NETCDF_TROUBLE as error:
@@ -94,7 +97,7 @@ def _seal(path: Path) -> None:
 
 def _check_seal(path: Path) -> None:
     """Refuse a sealed file that is not as it was written; one without a seal passes."""
-    content = path.read_bytes()
+    content = read_bytes(path, most=_SEALED_BYTES)
     body, seal, digest = content[:_SEALED], content[_SEALED:-_DIGEST], content[-_DIGEST:]
     if seal == _SEAL and hashlib.sha256(body).digest() != digest:
         raise ValueError("its checksum is not that of its bytes, so it was damaged")

@@ -26,7 +26,7 @@ class Spread(NamedTuple):
     too long, and exact where each bucket holds one reading.
     """
 
-    began: int  # of the readings without a gap [us]
+    began: int  # of the readings without a gap, the window's length ago at most [us]
     bucket: int
     low: Point  # of the open bucket
     high: Point
@@ -169,17 +169,20 @@ def _opened(time: int, point: Point, limits: Steadiness) -> Spread:
 
 def _spread(last: Spread, last_time: int, time: int, point: Point, limits: Steadiness) -> Spread:
     bucket = _bucket(time, limits)
+    oldest = time - limits.attenuated_s * SECOND
+    # No older than the window: so a late reading is forgotten when the window has passed it.
+    began = last.began if math.isinf(oldest) else max(last.began, math.floor(oldest))
     if bucket == last.bucket:
         return last._replace(
+            began=began,
             low=tuple(map(min, last.low, point)),
             high=tuple(map(max, last.high, point)),
         )
-    oldest = time - limits.attenuated_s * SECOND
     closed = tuple(
         one for one in (*last.closed, (last_time, last.low, last.high)) if one[0] > oldest
     )
     return Spread(
-        last.began,
+        began,
         bucket,
         point,
         point,

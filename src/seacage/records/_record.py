@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Bool, Shaped
 
 from seacage.conventions import Flag, InputError, Origin
+from seacage.records._brief import brief
 from seacage.records._keys import DIRECTIONS, check_keys
 from seacage.records._sample import Sample, check_stream
 from seacage.records._times import instant
@@ -70,6 +71,8 @@ class Record:
         object.__setattr__(self, "time", time)
         object.__setattr__(self, "values", values)
         object.__setattr__(self, "flags", flags)
+
+    __repr__ = brief
 
     def __len__(self) -> int:
         """How many times the stream spoke."""

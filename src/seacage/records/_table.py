@@ -3,20 +3,25 @@
 import csv
 import importlib
 import io
-import json
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
-from seacage.conventions import RecordError
+from seacage.conventions import TABLE_BYTES, RecordError, check_file, parse_json, read_bytes
 
 if TYPE_CHECKING:
     from seacage.records._columns import ColumnMap
 
 WHITESPACE = "whitespace"
 """The delimiter of tables whose cells any number of blanks part."""
+
+_JSON_BYTES = 16 << 20
+"""Most of a JSON answer, whose smallest parts take 30 times as much in memory."""
+
+_MOST_CELLS = 10_000_000
+"""Most cells of a Parquet file, whose size says nothing of them; as text they take 2 GB."""
 
 _COOPS_NAMES = {"t": "Date Time", "s": "Speed", "d": "Direction", "b": "Bin"}
 
@@ -85,9 +90,9 @@ def read_text(path: Path, encoding: str = "utf-8") -> str:
         No such file, or bytes that are no text.
     """
     try:
-        text = path.read_bytes().decode("utf-8-sig" if encoding == "utf-8" else encoding)
-    except OSError as error:
-        raise RecordError(f"{path}: the file cannot be read ({error.strerror}).") from error
+        most = _JSON_BYTES if path.suffix.lower() == ".json" else TABLE_BYTES
+        content = read_bytes(path, most=most, refusal=RecordError)
+        text = content.decode("utf-8-sig" if encoding == "utf-8" else encoding)
     except UnicodeError as error:
         place, what = "", "it"
         if isinstance(error, UnicodeDecodeError):
@@ -193,8 +198,12 @@ def _read_parquet(path: Path) -> Table:
             f"{path}: reading Parquet needs pyarrow, which is not installed. "
             "Install it with: pip install 'seacage[archive]'."
         ) from error
+    check_file(path, most=TABLE_BYTES, refusal=RecordError)
     try:
-        content = parquet.read_table(path)
+        with parquet.ParquetFile(path) as file:
+            texts = _texts_in(file.metadata)
+        with parquet.ParquetFile(path, read_dictionary=texts) as file:
+            content = file.read()
         names: list[str] = content.column_names
         columns = [_listed(column) for column in content.columns]
     except (OSError, ValueError, TypeError, NotImplementedError, OverflowError) as error:
@@ -206,9 +215,25 @@ def _read_parquet(path: Path) -> Table:
     return checked_table(path, [tuple(names), *rows], range(len(rows) + 1))
 
 
+def _texts_in(metadata: Any) -> list[str]:
+    """Columns of text in a Parquet file that declares no more than a table of text would hold."""
+    groups = [metadata.row_group(index) for index in range(metadata.num_row_groups)]
+    parts = [group.column(index) for group in groups for index in range(metadata.num_columns)]
+    cells, size = sum(one.num_values for one in parts), sum(one.total_byte_size for one in groups)
+    if cells > _MOST_CELLS or size > TABLE_BYTES:
+        raise ValueError(
+            f"it declares {cells} cells and {size} bytes, and at most {_MOST_CELLS} and "
+            f"{TABLE_BYTES} are read"
+        )
+    return sorted({one.path_in_schema for one in parts if one.physical_type == "BYTE_ARRAY"})
+
+
 def _listed(column: Any) -> list[object]:
     """Values of an Arrow column, whose nanoseconds Python has no time for."""
     arrow: Any = importlib.import_module("pyarrow")
+    if arrow.types.is_dictionary(column.type):  # each text once, however often it is repeated
+        chunks = [(one.dictionary.to_pylist(), one.indices.to_pylist()) for one in column.chunks]
+        return [None if at is None else texts[at] for texts, index in chunks for at in index]
     if arrow.types.is_timestamp(column.type):
         column = column.cast(arrow.timestamp("us", tz=column.type.tz), safe=False)
     return column.to_pylist()
@@ -224,10 +249,7 @@ def _cell(value: object) -> str:
 
 def _coops_table(path: Path, text: str) -> Table:
     """Read the JSON answer of NOAA's CO-OPS data service, under its CSV answer's names."""
-    try:
-        answer: object = json.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise RecordError(f"{path}: this is no JSON ({_one_line(error)}). Load it anew.") from error
+    answer: object = parse_json(text, str(path), refusal=RecordError)
     entries: object = cast("dict[str, object]", answer).get("data") if _is_table(answer) else None
     items = cast("list[dict[str, object]]", entries if isinstance(entries, list) else [None])
     if not all(_is_table(one) for one in items):

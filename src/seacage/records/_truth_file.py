@@ -11,6 +11,8 @@ import numpy as np
 from jaxtyping import Float, Shaped
 
 from seacage.conventions import Origin, RecordError
+from seacage.records._brief import brief
+from seacage.records._declared import check_netcdf
 from seacage.records._netcdf import NETCDF_TROUBLE
 
 if TYPE_CHECKING:
@@ -71,6 +73,8 @@ class TrueMeans:
     hs: Float[np.ndarray, " mean"]
     growth: Float[np.ndarray, " mean"]
 
+    __repr__ = brief
+
     def write(self, folder: Path | str) -> None:
         """Write ``bridles.nc``, ``shape.nc`` and ``water.nc``, in single precision."""
         folder = Path(folder)
@@ -98,6 +102,7 @@ class TrueMeans:
         for file, names in _FILES.items():
             path = Path(folder) / file
             try:
+                check_netcdf(path, whole=True)
                 with xarray.open_dataset(path, engine="h5netcdf", decode_times=False) as dataset:
                     found = _values(dataset, names)
                 if not np.array_equal(values.get("time", found["time"]), found["time"]):

@@ -3,11 +3,14 @@
 from collections.abc import Callable, Coroutine, Mapping
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from seacage.conventions import InputError
+import structlog
+
+from seacage.conventions import InputError, ModelError
 from seacage.service._access._audit import Audit
 from seacage.service._access._tokens import Tokens
-from seacage.service._calls._api import Service
+from seacage.service._calls._api import Service, create_app
 from seacage.service._live._cage import LiveCage
 from seacage.service._live._clock import Clock, FollowingClock, ReplayClock, WallClock
 from seacage.service._live._metrics import Metrics
@@ -20,7 +23,12 @@ from seacage.service._wires._notify import Herald, Webhook
 from seacage.service._wires._quarantine import Quarantine
 from seacage.service._wires._shards import cages_of
 from seacage.service._wires._tail import FileTail
-from seacage.twin import AlarmPolicy, Twin
+from seacage.twin import AlarmPolicy, Twin, read_key
+
+_log = structlog.get_logger(__name__)
+
+if TYPE_CHECKING:
+    import uvicorn
 
 Feed = Callable[[], Coroutine[None, None, None]]
 
@@ -30,11 +38,31 @@ def read_twins(settings: Settings) -> dict[str, Twin]:
 
     Raises
     ------
+    InputError
+        There is a key for twins, and it cannot be used.
     ModelError
-        A folder is no twin's, or changed by as little as a byte.
+        A folder is no twin's, changed by as little as a byte or not signed by the key, and none
+        was served before.
     """
-    twins = [(section.name, Twin.read(section.twin)) for section in own_cages(settings)]
+    key = read_key(settings.twin_key) if settings.twin_key else None
+    sections = own_cages(settings)
+    twins = [(one.name, _accepted(one, settings.data / "twins", key)) for one in sections]
     return {name or twin.cage.name: twin for name, twin in twins}
+
+
+def _accepted(section: CageSection, folder: Path, key: bytes | None) -> Twin:
+    """A cage's twin; with a key, where it is refused, the one that was served last."""
+    last = folder / (section.name or "twin")
+    try:
+        twin = Twin.read(section.twin, key=key)
+    except ModelError as error:
+        if key is None or not last.is_dir():
+            raise
+        _log.error("twin refused, the last one serves on", cage=last.name, reason=str(error))
+        return Twin.read(last, key=key)
+    if key is not None:
+        twin.write(last, key=key)
+    return twin
 
 
 def own_cages(settings: Settings) -> tuple[CageSection, ...]:
@@ -129,6 +157,7 @@ def _served_from(
             metrics=metrics,
             tick_s=settings.tick_s,
             policy=policies[name],
+            least_volume=settings.least_volume,
         )
         for name, twin in twins.items()
     }
@@ -138,6 +167,29 @@ def _served_from(
     if replay is not None and isinstance(clock, ReplayClock):
         feeds.append(partial(replay.feed, next(iter(cages.values())), clock))
     return _guarded(settings, cages, store, metrics, feeds)
+
+
+def server(service: Service, settings: Settings) -> "uvicorn.Server":
+    """Put a service behind HTTP, with a time and a bound for whoever connects."""
+    import uvicorn
+
+    from seacage.service._access._protocols import LimitedHttp, LimitedSocket
+
+    config = uvicorn.Config(
+        create_app(service),
+        http=LimitedHttp,
+        ws=LimitedSocket,
+        ws_max_size=4096,  # clients only send their token
+        log_config=None,
+        access_log=False,
+        server_header=False,
+        backlog=128,  # so many are taken at once, before any is counted
+        forwarded_allow_ips=list(settings.trusted_proxies),
+        timeout_graceful_shutdown=3,
+        ssl_certfile=settings.certificate,
+        ssl_keyfile=settings.key,
+    )
+    return uvicorn.Server(config)
 
 
 def _check_group(settings: Settings) -> None:

@@ -1,6 +1,7 @@
 """The command line: one file per group, each importing what it needs when it is called."""
 
 import os
+from typing import Annotated
 
 import typer
 
@@ -37,6 +38,27 @@ app = typer.Typer(
     add_completion=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
+
+
+def _print_version(asked: bool) -> bool:  # noqa: FBT001
+    if asked:
+        from seacage import __version__
+
+        typer.echo(f"seacage {__version__}")
+        raise typer.Exit
+    return asked
+
+
+@app.callback()
+def _options(
+    *,
+    version: Annotated[
+        bool,
+        typer.Option("--version", callback=_print_version, is_eager=True, help="Say the version."),
+    ] = False,
+) -> None:
+    del version
+
 
 app.command()(_settle.settle)
 app.command()(_simulate.simulate)

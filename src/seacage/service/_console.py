@@ -9,6 +9,7 @@ import time
 from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import contextmanager
 from enum import IntEnum
+from importlib.metadata import requires
 from typing import TYPE_CHECKING, Annotated, ParamSpec, TypeVar
 
 import typer
@@ -38,7 +39,8 @@ class Exit(IntEnum):
 
 
 EXIT_CODES = (
-    "Exit codes: 0 done; 1 the input was refused; 2 the command line was not understood; "
+    "Exit codes: 0 done; 1 the input was refused; 2 the command line was not understood, or a file "
+    "that it names makes no sense; "
     "3 the work failed; 4 a bound that was given is exceeded; 130 interrupted; 141 whoever read "
     "the output stopped reading."
 )
@@ -49,16 +51,20 @@ def guarded(command: Callable[P, R]) -> Callable[P, R]:
 
     @functools.wraps(command)
     def run(*args: P.args, **kwargs: P.kwargs) -> R:
-        from seacage.conventions import InputError, ModelError, SeacageError
+        from seacage.conventions import InputError, ModelError, NonsenseError, SeacageError
 
         try:
             return command(*args, **kwargs)
+        except NonsenseError as error:
+            raise stopped(str(error), Exit.USAGE) from error
         except (InputError, ModelError) as error:
             raise stopped(str(error), Exit.REFUSED) from error
         except BrokenPipeError as error:
             # As after `seacage … | head`: nobody is left to tell, also not when Python ends.
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             raise typer.Exit(Exit.UNHEARD) from error
+        except ModuleNotFoundError as error:
+            raise stopped(_of_an_extra(error), Exit.FAILED) from error
         except (SeacageError, OSError) as error:
             raise stopped(str(error), Exit.FAILED) from error
         except KeyboardInterrupt as error:
@@ -66,6 +72,19 @@ def guarded(command: Callable[P, R]) -> Callable[P, R]:
 
     run.__doc__ = _with_examples_kept(command.__doc__ or "")
     return run
+
+
+def _of_an_extra(error: ModuleNotFoundError) -> str:
+    """Name the extra that brings a module; a module of none is our own fault."""
+    package = (error.name or "").partition(".")[0]
+    for line in requires("seacage") or ():
+        known, _, condition = line.partition(";")
+        if package in re.split(r"\W", known) and (extra := re.search(r"'(?!dev)(\w+)'", condition)):
+            return (
+                f"This needs {package}, which the base install leaves out. "
+                f"Install it with: pip install 'seacage[{extra[1]}]'."
+            )
+    raise error
 
 
 def _with_examples_kept(text: str) -> str:

@@ -2,9 +2,34 @@
 
 import logging
 import sys
-from typing import Literal
+import time
+from collections import Counter
+from typing import Literal, cast
 
 import structlog
+
+from seacage.service._access._rates import Rates
+
+
+class _Repeats(logging.Filter):
+    """Let the first hundred lines of a kind pass and one in five seconds; count the others."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._rates, self._left_out = Rates(per_s=0.2, burst=100.0), Counter[str]()
+
+    def filter(self, record: logging.LogRecord) -> bool:
+        """Drop a line, or add to it how many of its kind were dropped."""
+        line = cast(object, record.msg)  # structlog's is a mapping
+        event = cast(dict[str, object], line) if isinstance(line, dict) else {"event": line}
+        kind = f"{record.name} {event.get('event')}"[:100]
+        if self._rates.wait_s(kind, time.monotonic()):
+            self._left_out[kind] += 1
+            return False
+        if left_out := self._left_out.pop(kind, 0):
+            more = f"{event.get('event')} ({left_out} more like it were not written)"
+            record.msg = event | {"event": more} if isinstance(line, dict) else more
+        return True
 
 
 def begin_logs(form: Literal["lines", "json"]) -> None:
@@ -30,6 +55,7 @@ def begin_logs(form: Literal["lines", "json"]) -> None:
         logger_factory=structlog.stdlib.LoggerFactory(),
     )
     handler = logging.StreamHandler(sys.stderr)
+    handler.addFilter(_Repeats())
     handler.setFormatter(
         structlog.stdlib.ProcessorFormatter(processor=renderer, foreign_pre_chain=stamped)
     )

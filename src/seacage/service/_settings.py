@@ -1,11 +1,11 @@
 """What a service is told: by its command line, else its environment, a file, or by default."""
 
-import tomllib
 from collections.abc import Mapping
+from ipaddress import ip_network
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
 from pydantic_settings import (
     BaseSettings,
     InitSettingsSource,
@@ -13,13 +13,16 @@ from pydantic_settings import (
     SettingsConfigDict,
 )
 
-from seacage.conventions import InputError
+from seacage.conventions import InputError, parse_toml, read_text
 from seacage.service._access._limits import Limits
 
 _LOOPBACK = ("127.0.0.1", "::1", "localhost")
 
 Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_.\-]{0,63}$")]
 """Of a site, a cage, a worker: it becomes part of addresses and topics."""
+
+Network = Annotated[str, AfterValidator(lambda text: str(ip_network(text)))]
+"""An address, or a network as ``10.0.0.0/8``."""
 
 
 class _Section(BaseModel):
@@ -144,6 +147,9 @@ class Settings(BaseSettings):
     ----------
     site
         Where the cages lie, as topics and scopes name it.
+    twin_key
+        File of the key that twins are signed with (``seacage train --sign``): with it no other
+        twin is taken, and where one is refused, the one that was served last goes on.
     data
         The folder that keeps everything the service writes.
     host, port
@@ -152,6 +158,8 @@ class Settings(BaseSettings):
         PEM files: with them it speaks HTTPS.
     insecure_http
         Listen without TLS where others can hear.
+    trusted_proxies
+        Addresses or networks of proxies that are believed about whose request they bring.
     tick_s
         Longest pause between two looks at the clock [s of the wall].
     clock, speed
@@ -166,6 +174,8 @@ class Settings(BaseSettings):
         See their sections.
     alarms
         Limits by kind or name, as ``seacage.twin.AlarmPolicy.from_dict`` takes them.
+    least_volume
+        Share of the still-water volume below which a cage is not called well [-].
     """
 
     model_config = SettingsConfigDict(
@@ -173,12 +183,14 @@ class Settings(BaseSettings):
     )
 
     site: Name = "site"
+    twin_key: Path | None = None
     data: Path = Path("var")
     host: str = "127.0.0.1"
     port: int = Field(default=8000, ge=0, le=65535)
     certificate: Path | None = None
     key: Path | None = None
     insecure_http: bool = False
+    trusted_proxies: tuple[Network, ...] = ()
     tick_s: float = Field(default=2.0, gt=0.0, le=60.0)
     clock: Literal["wall", "samples"] = "wall"
     speed: float = Field(default=1.0, ge=0.1, le=10_000.0)
@@ -191,6 +203,7 @@ class Settings(BaseSettings):
     alarms: dict[str, Any] = Field(default_factory=dict)
     webhooks: tuple[WebhookSection, ...] = ()
     limits: Limits = Limits()
+    least_volume: float = Field(default=0.8, ge=0.0, le=1.0)
 
     @model_validator(mode="after")
     def _certificate_needs_its_key(self) -> Self:
@@ -288,12 +301,7 @@ def _may_be_shown(name: str, value: object) -> bool:
 
 
 def _read(file: Path) -> dict[str, Any]:
-    try:
-        table = tomllib.loads(file.read_text("utf-8"))
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(f"{file} is not TOML: {error}.") from error
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{file} cannot be read ({error}).") from error
+    table = parse_toml(read_text(file), str(file), finite=True)
     unknown = sorted(table.keys() - Settings.model_fields.keys())
     if unknown:
         raise InputError(

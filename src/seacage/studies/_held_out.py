@@ -60,7 +60,7 @@ def comparison(score: SensorScore, readings: Readings) -> Comparison:
         reading=readings.reading,
         low=readings.low,
         multi=readings.multi,
-        multi_std=readings.multi_std,
+        multi_std=np.where(readings.level > 1, readings.multi_std, np.nan),
         low_mae=score.raw.low_mae,
         multi_mae=score.raw.multi_mae,
         low_line=score.low_line,

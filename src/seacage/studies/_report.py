@@ -210,7 +210,8 @@ class PaperReport:
                 [(score, score.raw) for score in self.sensors],
                 caption="Single readings. Coverage: share of means over a minute, as they teach, "
                 f"inside the {percent(NOMINAL)} interval. CRPS: continuous ranked probability "
-                "score of multifidelity on the same.",
+                "score of multifidelity on the same. A sensor that trained no level 2 has no "
+                "interval: its coverage and CRPS are of the emulator's own spread.",
             ),
         ]
 
@@ -269,7 +270,8 @@ class PaperReport:
                 figure,
                 caption="Left: multifidelity error over the low fidelity's of a twin that hears "
                 "the current. Middle: CRPS over the same. Right: share of means inside the 95 % "
-                "interval (virtual field). A sensor that was not taught answers at level 1.",
+                "interval (virtual field). A sensor that was not taught answers at level 1, with "
+                "the emulator's own spread, which is no interval.",
                 alternative="Errors, scores and coverage by way of teaching",
                 look="wide",
             ),

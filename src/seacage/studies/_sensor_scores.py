@@ -39,11 +39,14 @@ class Readings:
     reading, low, multi, multi_std
         The sensor, the low-fidelity mean, the multifidelity mean and the standard deviation
         that it gives for a reading [unit].
+    level
+        That answers; at level 1 the standard deviation is the emulator's own, and no interval.
     """
 
     sensor: str
     unit: str
     origin: Origin
+    level: int
     time: Shaped[np.ndarray, " t"]
     reading: Float[np.ndarray, " t"]
     low: Float[np.ndarray, " t"]
@@ -240,6 +243,7 @@ def _compared(answer: Answer, field: FieldRecord, sensor: str) -> Readings:
         sensor=sensor,
         unit=unit,
         origin=field.origin,
+        level=int(answer.sensor_level[column]),
         time=pairs.time[valid],
         reading=scale * pairs.value[valid],
         low=scale * answer.sensor_low.mean[row, column],

@@ -10,6 +10,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from seacage.conventions import RecordError
+from seacage.dynamics import PHYSICS
 
 MANIFEST = "stage.json"
 
@@ -49,6 +50,7 @@ class Stages:
         manifest = {
             "stage": stage,
             "seacage": version("seacage"),
+            "physics": PHYSICS,
             "code_sha256": code_sha256(rooms),
             "settings": dict(settings),
         }
@@ -72,7 +74,7 @@ def code_sha256(rooms: tuple[str, ...]) -> str:
     for room in rooms:
         root = Path(str(resources.files("seacage") / room))
         for path in sorted(root.rglob("*")):
-            if path.suffix in {".py", ".c", ".toml"}:
+            if path.suffix in {".py", ".c", ".h", ".toml"}:
                 digest.update(path.relative_to(root).as_posix().encode() + b"\0")
                 digest.update(path.read_bytes() + b"\0")
     return digest.hexdigest()

@@ -1,5 +1,6 @@
 """The state of an alarm, the limit that it is judged by, and the journal's lines."""
 
+import math
 from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
@@ -51,6 +52,12 @@ class Limit:
     severity: int = 500
 
     def __post_init__(self) -> None:
+        numbers = (self.raise_at, self.clear_at, self.on_delay_s, self.off_delay_s)
+        if not all(map(math.isfinite, (*numbers, self.repeat_after_s or 0.0))):
+            raise InputError(
+                f"Limit: {self}: one of its numbers is not finite, so the alarm would never be "
+                "raised, cleared or repeated. Take it out of service instead."
+            )
         if not self.clear_at <= self.raise_at:
             raise InputError(
                 f"Limit: clear_at = {self.clear_at:g} is above raise_at = {self.raise_at:g}; an "

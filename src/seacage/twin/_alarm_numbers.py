@@ -59,13 +59,7 @@ def _loads(
     detail = answer.reason[0] if valid and not answer.in_domain[0] else ""
     mean = answer.bridle_tension.mean[0]
     capacity = twin.cage.bridle_capacity
-    measured = dict[int, float]()
-    for shackle in twin.cage.shackles:
-        if shackle.name in distrusted or shackle.name in state.silent:
-            continue
-        load = _recent_mean(state.streams.get(shackle.name, ()), answered.t)
-        if load is not None:
-            measured[shackle.bridle] = load
+    measured = measured_loads(twin, state, answered.t, distrusted=distrusted)
     for bridle, name in enumerate(twin.bridle_names):
         known = [float(mean[bridle])] if valid else []
         known += [measured[bridle]] if bridle in measured else []
@@ -73,17 +67,30 @@ def _loads(
         yield Number(alarm=f"load.{name}", value=value, detail=detail)
 
 
-def _recent_mean(stream: Stream, now: datetime) -> float | None:
-    """Mean of a shackle's good readings of late [N]; None without any."""
-    since, total, count = now - timedelta(seconds=MEASURED_S), 0.0, 0
-    for taken in reversed(stream):
-        sample = taken.sample
-        if sample.t < since:
-            break
-        # A suspect reading never wakes anyone.
-        if sample.flags["tension_kn"] == Flag.GOOD:
-            total, count = total + sample.values["tension_kn"], count + 1
-    return 1000.0 * total / count if count else None
+def measured_loads(
+    twin: Twin, state: TwinState, now: datetime, *, distrusted: frozenset[str] = frozenset()
+) -> dict[int, float]:
+    """Load of each bridle whose shackle has given a good reading within its timeout [N]."""
+    loads = {
+        shackle.bridle: _recent_load(
+            state.streams.get(shackle.name, ()), now, twin.watch.sensor_silent_after_s
+        )
+        for shackle in twin.cage.shackles
+        if shackle.name not in distrusted | state.silent
+    }
+    return {bridle: load for bridle, load in loads.items() if load is not None}
+
+
+def _recent_load(stream: Stream, now: datetime, timeout_s: float) -> float | None:
+    """Mean of the last minute's good readings, else the newest if it is good [N]."""
+    known = [one.sample for one in stream if one.sample.t <= now]
+    since = now - timedelta(seconds=MEASURED_S)
+    recent = [one for one in known if one.t >= since] or [
+        one for one in known[-1:] if one.t >= now - timedelta(seconds=timeout_s)
+    ]
+    # A suspect reading never wakes anyone.
+    good = [one.values["tension_kn"] for one in recent if one.flags["tension_kn"] == Flag.GOOD]
+    return 1000.0 * sum(good) / len(good) if good else None
 
 
 def _volume(answered: Answered) -> Number:
@@ -95,9 +102,10 @@ def _volume(answered: Answered) -> Number:
 
 
 def _silences(state: TwinState, now: datetime) -> Iterator[Number]:
-    for name, stream in state.streams.items():
-        age_s = (now - stream[-1].sample.t).total_seconds()
-        yield Number(alarm=f"silent.{name}", value=max(0.0, age_s))
+    for name in state.streams:
+        latest = state.latest(name, now)
+        age_s = (now - latest.t).total_seconds() if latest else 0.0
+        yield Number(alarm=f"silent.{name}", value=age_s)
 
 
 def _input(twin: Twin, state: TwinState, answered: Answered, distrusted: frozenset[str]) -> Number:

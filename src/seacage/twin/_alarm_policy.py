@@ -46,6 +46,7 @@ USUAL: Mapping[str, Limit] = {
     ),
     "net": Limit(raise_at=1.0, clear_at=0.5, repeat_after_s=600.0, severity=900),
     "history": Limit(raise_at=1.0, clear_at=0.0, repeat_after_s=3600.0, severity=800),
+    "clock": Limit(raise_at=1.0, clear_at=0.0, repeat_after_s=7200.0, severity=600),
 }
 """By kind of alarm."""
 
@@ -149,6 +150,7 @@ def alarm_names(cage: Cage, buoy: str) -> frozenset[str]:
         "input": (buoy,),
         "domain": ("input",),
         "history": ("store",),
+        "clock": ("service", buoy, *cage.sensor_names),
     }
     return frozenset(f"{kind}.{source}" for kind, sources in by_kind.items() for source in sources)
 
@@ -171,9 +173,11 @@ def _altered(limit: Limit, entry: object, name: str) -> Limit:
         )
     for key, value in table.items():
         kinds = int if key in _WHOLE else (int, float)
-        if isinstance(value, bool) or not isinstance(value, kinds) or math.isnan(value):
+        if isinstance(value, bool) or not isinstance(value, kinds) or not math.isfinite(value):
             whole = "whole " if key in _WHOLE else ""
-            raise InputError(f"alarms, {name}: {key} = {value!r} is no {whole}number.")
+            raise InputError(
+                f"alarms, {name}: {key} = {value!r} is no {whole}number or not finite."
+            )
     try:
         return replace(limit, **table)
     except InputError as error:

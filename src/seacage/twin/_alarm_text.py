@@ -110,6 +110,12 @@ _WORDS: Mapping[str, _Words] = {
         advice="Check its power, its radio and its clock.",
         unit="s",
     ),
+    "clock": _Words(
+        title="Wrong clock: {source}",
+        message=_either(active="", calm="Its clock agrees with the others again."),
+        advice="Set the clock, and see that it is kept by NTP or GPS. What is shown follows the "
+        "readings that are not ahead of the service's clock.",
+    ),
     "input": _Words(
         title="No valid input from {source}",
         message=_either(

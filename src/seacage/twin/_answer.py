@@ -10,6 +10,9 @@ from seacage.surrogates import Prediction
 
 Interval = tuple[Float[np.ndarray, "case output"], Float[np.ndarray, "case output"]]
 
+NO_INTERVAL = "No sensor has trained level 2: how far the simulation is from the sea is not known."
+"""Why an answer of level 1 has no interval."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Answer:
@@ -24,29 +27,36 @@ class Answer:
         The input was there, passed its checks and was fresh.
     in_domain
         The input lies inside what level 1 was trained on; False means extrapolating.
+    bridle_in_domain, sensor_in_domain
+        The same of the level that answers: level 2 has a domain of its own, of the water in
+        which its sensor trained it, and rests on level 1's.
     reason
         One sentence where a row is not valid or extrapolates, else "".
     bridle_names, bridle_tension, bridle_level
         Best mean and standard deviation of each bridle's tension [N], and the fidelity that
-        gave them: 2 where a shackle has taught it, else 1.
+        gave them: 2 where a shackle has taught it, else 1. At level 1 the standard deviation is
+        the emulator's own, about the simulations.
     bridle_low
         The simulations alone [N].
     sensor_names, sensor_units, sensor, sensor_level
         What each sensor would read, with the scatter of its readings [N] or [m] depth. The
-        standard deviation at level 2 is calibrated: mean ± 1.96 of it is to hold 95 %.
+        standard deviation at level 2 is calibrated: mean ± 1.96 of it is to hold 95 %. At
+        level 1 it is the emulator's own.
     sensor_low
         The simulations alone at the sensor's place, with the emulator's spread [N] or [m].
     node_position, shape_level
         Of the whole net [m], x east, y north, z up.
     node_sigma
-        Standard deviation along the least known axis of each node [m], of the surrogate about
-        the simulations: what these miss of the real net is not in it at level 1.
+        Standard deviation along the least known axis of each node [m], the emulator's own: what
+        the simulations miss of the real net is not in it at level 1.
     volume_fraction
         Volume over the same model's volume in still water [-].
     """
 
     valid: Bool[np.ndarray, " case"]
     in_domain: Bool[np.ndarray, " case"]
+    bridle_in_domain: Bool[np.ndarray, "case line"]
+    sensor_in_domain: Bool[np.ndarray, "case sensor"]
     reason: tuple[str, ...]
     bridle_names: tuple[str, ...]
     bridle_tension: Prediction
@@ -76,18 +86,21 @@ class Answer:
         )
 
     def bridle_interval(self, *, z: float = 1.96) -> Interval:
-        """Interval of the tensions [N], mean ± z standard deviations; a rope never pushes."""
-        lower, upper = _interval(self.bridle_tension, z)
-        return np.maximum(lower, 0.0), upper
+        """Interval of the tensions [N], mean ± z standard deviations; NaN at level 1."""
+        return _interval(self.bridle_tension, self.bridle_level, z)
 
     def sensor_interval(self, *, z: float = 1.96) -> Interval:
-        """Interval of the sensors' readings [N] or [m], mean ± z standard deviations."""
-        return _interval(self.sensor, z)
-
-    def sensor_low_interval(self, *, z: float = 1.96) -> Interval:
-        """Interval of the simulations alone [N] or [m], mean ± z standard deviations."""
-        return _interval(self.sensor_low, z)
+        """Interval of the readings [N] or [m], mean ± z standard deviations; NaN at level 1."""
+        return _interval(self.sensor, self.sensor_level, z)
 
 
-def _interval(prediction: Prediction, z: float) -> Interval:
-    return prediction.mean - z * prediction.std, prediction.mean + z * prediction.std
+def interval_reason(level: int) -> str | None:
+    """Why answers of a level have no interval; None where they have one."""
+    return None if level > 1 else NO_INTERVAL
+
+
+def _interval(prediction: Prediction, level: Int[np.ndarray, " output"], z: float) -> Interval:
+    half = np.where(level > 1, z * prediction.std, np.nan)
+    # A rope never pushes, and no sensor hangs above the surface.
+    lower, upper = (np.maximum(prediction.mean + end, 0.0) for end in (-half, half))
+    return lower, upper

@@ -95,4 +95,4 @@ def _faults(book: AlarmBook, trouble: Mapping[str, str]) -> Iterator[Number]:
 
 def _is_fault(alarm: Alarm) -> bool:
     """Whether an alarm is the service's, as all are that the twin does not judge."""
-    return alarm.kind == "history" or alarm.kind not in USUAL
+    return alarm.kind in {"history", "clock"} or alarm.kind not in USUAL

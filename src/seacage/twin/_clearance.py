@@ -32,7 +32,9 @@ class Clearance:
         How far the point is from the net that is to be expected, once the twin's known error
         is taken off; negative where that net lies beyond the point [m].
     sigma
-        Standard deviation of that, across the net [m].
+        Standard deviation of that, across the net [m]. Where the twin has no discrepancy
+        (``PredictedNet.learned`` is None) it is the emulator's own, about the simulations, and
+        the probabilities below are no statement about the true net.
     below
         The distance that ``p_below`` asks about [m].
     p_below

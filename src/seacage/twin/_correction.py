@@ -1,5 +1,6 @@
 """Level 2 of one sensor: a line through level 1, and a NARGP of what the line leaves."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal, Self
@@ -7,7 +8,8 @@ from typing import Literal, Self
 import numpy as np
 from jaxtyping import Float, Shaped
 
-from seacage.surrogates import NARGP, FittedNARGP, Prediction, Predicts, Together
+from seacage.conventions import InputError
+from seacage.surrogates import NARGP, Domain, FittedNARGP, Prediction, Predicts, Together
 from seacage.twin._align import Pairs
 
 GAIN_SD = 0.5
@@ -58,6 +60,13 @@ class Spread:
     water_sd: float = 0.0
     white: float = 0.0
     by: Literal["own", "carried", "none"] = "none"
+
+    def __post_init__(self) -> None:
+        if not all(0.0 <= one < math.inf for one in (self.scale, self.water_sd, self.white)):
+            raise InputError(
+                f"Spread: scale = {self.scale:g}, water_sd = {self.water_sd:g} m/s and white = "
+                f"{self.white:g} are no spreads. Give numbers of at least 0."
+            )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -119,6 +128,11 @@ class Correction:
         """Condition on more readings; gain, hyperparameters, spread and level 1 stay."""
         below = self.rest.lower.predict(x).mean
         return replace(self, rest=self.rest.updated(x, pairs.value - self.gain * below))
+
+    @property
+    def domain(self) -> Domain:
+        """Of the features of the water that trained it."""
+        return Domain.of(self.rest.upper[-1].cases()[:, :-1])
 
     @property
     def noise(self) -> float:

@@ -9,17 +9,25 @@ from typing import cast
 
 import numpy as np
 
-from seacage.conventions import ModelError
+from seacage.conventions import TABLE_BYTES, TEXT_BYTES, ModelError, parse_json, read_bytes
+from seacage.twin._signature import is_signed, signature
 
 SETTINGS = "model.json"
 ARRAYS = "arrays.safetensors"
 MANIFEST = "manifest.json"
+SIGNATURE = "manifest.hmac"
+
+_MOST_BYTES = {SETTINGS: TEXT_BYTES, ARRAYS: TABLE_BYTES, MANIFEST: 4096, SIGNATURE: 4096}
 
 
 def write_folder(
-    folder: Path, settings: Mapping[str, object], arrays: Mapping[str, np.ndarray]
+    folder: Path,
+    settings: Mapping[str, object],
+    arrays: Mapping[str, np.ndarray],
+    *,
+    key: bytes | None = None,
 ) -> None:
-    """Write the three files beside the folder, then put them in its place.
+    """Write the files beside the folder, with a key also a signature, then put them in its place.
 
     Raises
     ------
@@ -38,6 +46,8 @@ def write_folder(
         ARRAYS: save({name: np.ascontiguousarray(values) for name, values in arrays.items()}),
     }
     contents[MANIFEST] = _json({name: _sha256(content) for name, content in contents.items()})
+    if key is not None:
+        contents[SIGNATURE] = signature(key, contents[MANIFEST])
     fresh, old = (folder.with_name(f".{folder.name}.{part}") for part in ("new", "old"))
     for leftover in (fresh, old):
         shutil.rmtree(leftover, ignore_errors=True)
@@ -50,40 +60,57 @@ def write_folder(
     shutil.rmtree(old, ignore_errors=True)
 
 
-def read_folder(folder: Path) -> tuple[dict[str, object], dict[str, np.ndarray]]:
+def read_folder(
+    folder: Path, *, key: bytes | None = None
+) -> tuple[dict[str, object], dict[str, np.ndarray]]:
     """Read settings and arrays, once every byte is what the manifest says.
+
+    With a key the manifest must be signed by it; without one a signature is passed by.
 
     Raises
     ------
     ModelError
-        A file is missing, foreign or changed, or an array is not plain numbers.
+        A file is missing, foreign, changed, too large or a link, an array is not plain numbers,
+        or the signature is missing or another's.
     """
-    contents = _sealed(folder)
+    contents = _sealed(folder, key)
     settings = _parsed(contents[SETTINGS], folder / SETTINGS)
     return settings, _arrays(contents[ARRAYS], folder / ARRAYS)
 
 
-def _sealed(folder: Path) -> dict[str, bytes]:
+def _sealed(folder: Path, key: bytes | None) -> dict[str, bytes]:
     expected = {SETTINGS, ARRAYS, MANIFEST}
     found = {path.name for path in folder.iterdir()} if folder.is_dir() else set[str]()
-    if found != expected:
-        odd = ", ".join(sorted(found ^ expected))
+    if found - {SIGNATURE} != expected:
+        odd = ", ".join(sorted((found - {SIGNATURE}) ^ expected))
         raise ModelError(
             f"{folder} is not a whole twin's folder: {odd} is missing or does not belong there. "
             f"It holds {', '.join(sorted(expected))} and nothing else."
         )
-    try:
-        contents = {name: (folder / name).read_bytes() for name in expected}
-    except OSError as error:
-        raise ModelError(f"{folder} cannot be read: {error}.") from error
+    manifest = _content(folder, MANIFEST)
+    if key is not None:
+        _check_signature(folder, key, manifest, signed=SIGNATURE in found)
+    contents = {name: _content(folder, name) for name in (SETTINGS, ARRAYS)}
     seal = {name: _sha256(contents[name]) for name in (SETTINGS, ARRAYS)}
     # Compared as bytes, so that a changed blank in the manifest counts too.
-    if contents[MANIFEST] != _json(seal):
+    if manifest != _json(seal):
         raise ModelError(
             f"{folder}: its files are not those that its manifest was written for, so at least "
             "one byte has changed. Copy the twin again, or train it anew."
         )
     return contents
+
+
+def _content(folder: Path, name: str) -> bytes:
+    return read_bytes(folder / name, most=_MOST_BYTES[name], refusal=ModelError, links=False)
+
+
+def _check_signature(folder: Path, key: bytes, manifest: bytes, *, signed: bool) -> None:
+    if not signed or not is_signed(key, manifest, _content(folder, SIGNATURE)):
+        raise ModelError(
+            f"{folder} is {'signed by another key' if signed else 'not signed'}, and only twins "
+            "that the key of the settings signs are taken. Train it with --sign KEYFILE."
+        )
 
 
 def _arrays(content: bytes, path: Path) -> dict[str, np.ndarray]:
@@ -103,10 +130,7 @@ def _arrays(content: bytes, path: Path) -> dict[str, np.ndarray]:
 
 
 def _parsed(content: bytes, path: Path) -> dict[str, object]:
-    try:
-        settings = json.loads(content)
-    except ValueError as error:
-        raise ModelError(f"{path} is not JSON ({error}).") from error
+    settings: object = parse_json(content, str(path), refusal=ModelError)
     if not isinstance(settings, dict):
         raise ModelError(f"{path} holds no settings.")
     return cast("dict[str, object]", settings)

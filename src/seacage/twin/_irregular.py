@@ -1,5 +1,6 @@
 """What the tests for irregularity remember of one sensor, and what a reading adds to it."""
 
+import math
 from dataclasses import dataclass, replace
 from datetime import datetime
 from itertools import takewhile
@@ -7,7 +8,7 @@ from typing import Self
 
 from seacage.conventions import Flag
 from seacage.records import Sample
-from seacage.twin._state import Stream
+from seacage.twin._state import Stream, latest_in
 
 STUCK_S = 1800.0
 """A live sensor's noise does not let it repeat a number for so long [s]."""
@@ -27,15 +28,15 @@ class Sense:
     heard
         Time of the newest reading taken in.
     values, since, repeats
-        That reading by its door keys, since when it has been the very same, and how often it
-        was said again.
+        That reading by its door keys, None for what is no number; since when it has been the very
+        same, and how often it was said again.
     count, error
         Of the block of time that is being averaged: good readings, and the sum of their
         distances from what the twin said [N] or [m].
     """
 
     heard: datetime | None = None
-    values: tuple[float, ...] = ()
+    values: tuple[float | None, ...] = ()
     since: datetime | None = None
     repeats: int = 0
     count: int = 0
@@ -59,8 +60,8 @@ class Sense:
         said
             What the twin expects [N] or [m]; None where it expects nothing.
         """
-        values = tuple(sample.values.values())
-        same = values == self.values
+        values = tuple(one if math.isfinite(one) else None for one in sample.values.values())
+        same = values == self.values and None not in values
         sense = replace(
             self,
             heard=sample.t,
@@ -87,9 +88,10 @@ class Sense:
         return self.still_s >= STUCK_S
 
 
-def unheard(stream: Stream, since: datetime | None) -> list[Sample]:
-    """Return what a stream said after a time, oldest first, as far as the twin remembers."""
+def unheard(stream: Stream, since: datetime | None, now: datetime) -> list[Sample]:
+    """Return what a stream sent after a time, oldest first, as far as the twin remembers."""
     if since is None:
-        return [stream[-1].sample] if stream else []
+        latest = latest_in(stream, now)
+        return [latest.sample] if latest else []
     newer = takewhile(lambda taken: taken.sample.t > since, reversed(stream))
-    return [taken.sample for taken in newer][::-1]
+    return [taken.sample for taken in newer if taken.sample.t <= now][::-1]

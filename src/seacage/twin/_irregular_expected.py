@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Self
 
 import numpy as np
 from jaxtyping import Float
@@ -14,11 +13,6 @@ class Expected:
 
     shift: Float[np.ndarray, " sensor"]
     spread: Float[np.ndarray, "sensor sensor"]
-
-    @classmethod
-    def nothing(cls, count: int) -> Self:
-        """Return no shift of so many sensors, for certain."""
-        return cls(shift=np.zeros(count), spread=np.zeros((count, count)))
 
     def and_also(self, others: Iterable["Expected"]) -> "Expected":
         """Add other shifts that have nothing to do with it."""

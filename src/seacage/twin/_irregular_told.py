@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from datetime import datetime
 from typing import Self
 
 from seacage.cage import Cage
@@ -81,7 +82,7 @@ class Suspicion:
         opened = self.opened.ticked(answered)
         over = self.opened.number is not None and opened.number != self.opened.number
         after = self._ended(twin, answered, active) if over else self
-        return replace(after, senses=_heard(after.senses, state), opened=opened)
+        return replace(after, senses=_heard(after.senses, state, answered.t), opened=opened)
 
     def _ended(self, twin: Twin, answered: Answered, active: frozenset[str]) -> Self:
         block = closed(self.opened, self.senses, twin, answered)
@@ -202,14 +203,14 @@ def distrusted_in(senses: Mapping[str, Sense], active: frozenset[str]) -> frozen
     return frozenset(stuck | wrong)
 
 
-def _heard(senses: Mapping[str, Sense], state: TwinState) -> dict[str, Sense]:
+def _heard(senses: Mapping[str, Sense], state: TwinState, now: datetime) -> dict[str, Sense]:
     after = dict(senses)
     for name, stream in state.streams.items():
         sense = after.get(name, Sense())
         # As trained: the intervals that follow the readings would follow a drift too.
         tracked = state.tracked.get(name)
-        said = tracked.said[0] if tracked and tracked.said else None
-        for sample in unheard(stream, sense.heard):
+        said = tracked.expected[0] if tracked and tracked.expected else None
+        for sample in unheard(stream, sense.heard, now):
             sense = sense.taken(sample, said)
         after[name] = sense
     return after

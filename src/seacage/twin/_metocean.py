@@ -10,7 +10,7 @@ from jaxtyping import Bool, Float, Int
 from seacage.conventions import towards
 from seacage.ocean import SeaState
 from seacage.records import Record
-from seacage.surrogates import current_features, wave_features
+from seacage.surrogates import Domain, current_features, wave_features
 
 Input = Literal["current", "waves"]
 
@@ -80,6 +80,21 @@ class Metocean:
             wave_direction=self.wave_direction[index],
         )
 
+    @classmethod
+    def joined(cls, parts: Sequence[Self]) -> Self:
+        """Put the rows of several one after the other."""
+        return cls(
+            current_velocity=np.concatenate([one.current_velocity for one in parts]),
+            hs=np.concatenate([one.hs for one in parts]),
+            wave_direction=np.concatenate([one.wave_direction for one in parts]),
+        )
+
+    def distinct(self) -> tuple[Self, Int[np.ndarray, " case"]]:
+        """Return each water once, and for each row which of them it is."""
+        table = np.column_stack([self.current_velocity, self.hs, self.wave_direction])
+        _, first, place = np.unique(table, axis=0, return_index=True, return_inverse=True)
+        return self.rows(first), place.ravel()
+
     def same(self, other: Self) -> bool:
         """Whether the other holds the same numbers; what neither knows is the same."""
         return all(
@@ -123,3 +138,29 @@ class Metocean:
     def known(self, inputs: tuple[Input, ...]) -> Bool[np.ndarray, " case"]:
         """Where all of these inputs are."""
         return np.all(np.isfinite(self.features(inputs)), axis=1)
+
+
+def nearest_inside(
+    x: Float[np.ndarray, "case feature"], domain: Domain
+) -> Float[np.ndarray, "case feature"]:
+    """Return features of the nearest water inside a domain.
+
+    Each vector is drawn into the box of its components, and then to the largest length. Slower
+    water than any inside keeps its vector and takes the least length.
+
+    Parameters
+    ----------
+    x
+        As ``Metocean.features`` makes them: (length, east, north) of each input.
+    domain
+        Of such features.
+    """
+    inside = x.copy()
+    for first in range(0, x.shape[1], 3):
+        least, most = domain.lower[first : first + 3], domain.upper[first : first + 3]
+        vector = np.clip(x[:, first + 1 : first + 3], least[1:], most[1:])
+        length = np.linalg.norm(vector, axis=1, keepdims=True)
+        shorter = np.minimum(length, most[0])
+        inside[:, first + 1 : first + 3] = vector * shorter / np.maximum(length, 1e-12)
+        inside[:, first] = np.maximum(shorter, least[0])[:, 0]
+    return inside

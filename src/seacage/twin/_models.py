@@ -18,7 +18,7 @@ from seacage.surrogates import (
 )
 from seacage.twin._answer import Answer
 from seacage.twin._correction import Correction, Corrections
-from seacage.twin._metocean import Input, Metocean
+from seacage.twin._metocean import Input, Metocean, nearest_inside
 
 BLOCK = 512
 """Rows answered at once: the shapes of more would crowd a small computer's memory."""
@@ -88,8 +88,14 @@ class Models:
     @cached_property
     def together(self) -> Corrections | None:
         """Level 2 of the cage's sensors, in their order; None where there is none."""
-        models = [self.upper[name] for name in self.cage.sensor_names if name in self.upper]
+        models = [self.upper[name] for name in self.upper_domains]
         return Corrections.of(models) if models else None
+
+    @cached_property
+    def upper_domains(self) -> Mapping[str, Domain]:
+        """Of the features that trained level 2, by sensor, in the cage's order."""
+        names = [name for name in self.cage.sensor_names if name in self.upper]
+        return {name: self.upper[name].domain for name in names}
 
     def lower(self, sensor: str) -> Predicts:
         """Level 1 of one sensor [N] or [m]."""
@@ -120,7 +126,7 @@ class Models:
 
         Outside the domain the variance grows by the square of how far the mean has moved from
         the nearest milder water inside: what the models say about the way beyond the edge is
-        not to be relied on.
+        not to be relied on. Outside its own domain, that of level 2 grows so too.
         """
         valid = np.array([not one for one in trouble], dtype=bool)
         rows = np.flatnonzero(valid)
@@ -132,10 +138,13 @@ class Models:
         numbers = {name: _scattered([block[name] for block in blocks], valid) for name in blocks[0]}
         in_domain = valid.copy()
         in_domain[rows] = inside
+        bridle_in_domain, sensor_in_domain = self._own_domains(water, in_domain)
         beyond = self._beyond()
         return Answer(
             valid=valid,
             in_domain=in_domain,
+            bridle_in_domain=bridle_in_domain,
+            sensor_in_domain=sensor_in_domain,
             reason=tuple(
                 one or ("" if here else beyond)
                 for one, here in zip(trouble, in_domain, strict=True)
@@ -160,6 +169,21 @@ class Models:
         speed = np.linalg.norm(water.current_velocity, axis=1)
         trained = self.domain.contains(water.features(self.inputs))
         return trained & (speed <= self.edge[0] + ROUNDING)
+
+    def _own_domains(
+        self, water: Metocean, in_domain: Bool[np.ndarray, " case"]
+    ) -> tuple[Bool[np.ndarray, "case line"], Bool[np.ndarray, "case sensor"]]:
+        """Where bridles and sensors are in the domain of the level that answers."""
+        bridle = np.tile(in_domain[:, None], self.cage.bridle_count)
+        sensor = np.tile(in_domain[:, None], len(self.cage.sensor_names))
+        rows, lines = np.flatnonzero(in_domain), self._lines()
+        x = water.rows(rows).features(self.inputs)
+        for name, domain in self.upper_domains.items():
+            column = self.cage.sensor_names.index(name)
+            sensor[rows, column] = domain.contains(x)
+            if name in lines:
+                bridle[:, lines[name]] = sensor[:, column]
+        return bridle, sensor
 
     def _numbers(self, water: Metocean, inside: Bool[np.ndarray, " case"]) -> Numbers:
         said = self._said(water)
@@ -209,7 +233,8 @@ class Models:
         steepness = np.zeros_like(low.mean)
         if self.together.water_sd.any():
             steepness = self.steepness(water)[:, taught]
-        behind = self.together.behind(water.features(self.inputs), low, steepness)
+        x = water.features(self.inputs)
+        behind = self._widened_outside(x, self.together.behind(x, low, steepness))
         sensor.mean[:, taught] = behind.mean
         sensor.std[:, taught] = np.sqrt(behind.std**2 + self.together.noise)
         lines = [line for name, line in self._lines().items() if name in self.upper]
@@ -217,6 +242,19 @@ class Models:
             bridle.mean[:, lines] = behind.mean[:, -len(lines) :]
             bridle.std[:, lines] = behind.std[:, -len(lines) :]
         return {"bridle": bridle, "sensor": sensor}
+
+    def _widened_outside(self, x: Features, behind: Prediction) -> Prediction:
+        """Widen each level 2 outside its own domain."""
+        std = behind.std.copy()
+        for column, (name, domain) in enumerate(self.upper_domains.items()):
+            beyond = ~domain.contains(x)
+            if beyond.any():
+                edge = nearest_inside(x[beyond], domain)
+                there = self.upper[name].behind(edge, self.lower(name).predict(edge)).mean
+                std[beyond, column] = np.hypot(
+                    std[beyond, column], behind.mean[beyond, column] - there
+                )
+        return Prediction(mean=behind.mean, std=std)
 
     def _lines(self) -> dict[str, int]:
         return {one.name: one.bridle for one in self.cage.shackles}

@@ -1,9 +1,14 @@
-"""Intervals that adapt to the sensors that are there: their readings judge what was said."""
+"""Intervals that adapt to the sensors that are there, by what their readings show of them.
+
+Ten minutes of readings are taken in at once, when ten minutes more have passed: by then samples
+that were on their way have come. So the intervals of a time depend on the samples alone, and not
+on the order in which they came or on when the service was stopped.
+"""
 
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from datetime import datetime, timedelta
+from datetime import UTC, datetime, timedelta
 
 from seacage.conventions import Flag, InputError
 from seacage.records import Sample
@@ -12,76 +17,104 @@ from seacage.surrogates import AdaptiveConformal
 DEVIATIONS = 1.96
 """Half the width of an interval, in standard deviations; it holds 95 %."""
 
+BLOCK_US = 600_000_000
+"""Length of a block of readings that the intervals are adapted to at once [us]."""
+
+_BLOCK = timedelta(microseconds=BLOCK_US)
+_EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
+
+Expected = tuple[float, float]
+"""Mean and standard deviation of a sensor's reading, as trained [N] or [m]."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Tracked:
-    """What a twin said of a sensor, and how well its intervals have held.
+    """What a twin expects of a sensor, and how well its intervals have held.
 
     Parameters
     ----------
     factor
         Of the standard deviation, from the readings so far [-].
-    said
-        Mean and standard deviation of the last answer, as trained [N] or [m]; None where it was
-        not valid.
-    judged
+    expected
+        By the last answer; None where it was not valid.
+    counted
         Time of the last reading that counted.
     """
 
     factor: float = 1.0
-    said: tuple[float, float] | None = None
-    judged: datetime | None = None
+    expected: Expected | None = None
+    counted: datetime | None = None
 
 
-def judged_by(tracked: Tracked, sample: Sample, *, rate: float, every_s: float) -> Tracked:
-    """Let a reading judge what was said before it came.
+def adapted_at(t: datetime) -> datetime:
+    """When a reading of some time takes effect on the intervals."""
+    return block_begin(t) + 2 * _BLOCK
+
+
+def adapted_at_us(t: int) -> int:
+    """``adapted_at`` in microseconds since 1970 UTC."""
+    return t - t % BLOCK_US + 2 * BLOCK_US
+
+
+def block_begin(t: datetime) -> datetime:
+    """When the block of a time begins."""
+    return t - (t - _EPOCH) % _BLOCK
+
+
+def counts(tracked: Tracked, sample: Sample, *, every_s: float) -> bool:
+    """Whether a sensor's interval adapts to one of its readings.
 
     Sound readings alone count, and one in so many seconds: those between are the same error
     again.
+    """
+    ((key, _),) = sample.values.items()
+    due = tracked.counted is None or sample.t >= tracked.counted + timedelta(seconds=every_s)
+    return due and sample.flags[key] == Flag.GOOD
+
+
+def adapted_by(tracked: Tracked, sample: Sample, expected: Expected, *, rate: float) -> Tracked:
+    """Adapt a sensor's interval to a reading that counts.
 
     Parameters
     ----------
     tracked
         Of the sensor.
     sample
-        Of the sensor, with its flags, in SI by its key.
+        Of the sensor, in the unit of its key.
+    expected
+        In the water at its time.
     rate
-        Step of the factor's logarithm per reading that counts; 0 changes nothing [-].
-    every_s
-        Between readings that count [s].
+        Step of the factor's logarithm; 0 changes nothing [-].
     """
     ((key, value),) = sample.values.items()
-    soon = tracked.judged and sample.t < tracked.judged + timedelta(seconds=every_s)
-    if tracked.said is None or soon or sample.flags.get(key) != Flag.GOOD or not rate > 0.0:
-        return tracked
-    mean, std = tracked.said
+    mean, std = expected
     reading = value * (1000.0 if key == "tension_kn" else 1.0)
     held = abs(reading - mean) <= DEVIATIONS * tracked.factor * std
     factor = AdaptiveConformal(rate=rate).stepped(tracked.factor, held=held)
-    return replace(tracked, factor=factor, judged=sample.t)
+    return replace(tracked, factor=factor, counted=sample.t)
 
 
-def answered_with(
-    tracked: Mapping[str, Tracked], said: Mapping[str, tuple[float, float] | None]
+def expecting(
+    tracked: Mapping[str, Tracked], expected: Mapping[str, Expected | None]
 ) -> dict[str, Tracked]:
-    """Remember what was said of each sensor, to be judged by its next reading."""
+    """Remember what an answer expects of each sensor."""
     return {
-        name: replace(tracked.get(name, Tracked()), said=numbers) for name, numbers in said.items()
+        name: replace(tracked.get(name, Tracked()), expected=one) for name, one in expected.items()
     }
 
 
 def factors_to_json(tracked: Mapping[str, Tracked]) -> str:
-    """Write how far the intervals of each sensor were adapted, and when it was last judged."""
+    """Write how far the intervals of each sensor were adapted, and by which reading last."""
     return json.dumps(
         {
-            name: {"factor": one.factor, "judged": one.judged and one.judged.isoformat()}
+            name: {"factor": one.factor, "judged": one.counted and one.counted.isoformat()}
             for name, one in tracked.items()
         }
     )
 
 
 def factors_from_json(text: str) -> dict[str, Tracked]:
-    """Read back what ``factors_to_json`` wrote; what was last said is said anew.
+    """Read back what ``factors_to_json`` wrote; what was expected is found anew.
 
     Raises
     ------
@@ -92,7 +125,7 @@ def factors_from_json(text: str) -> dict[str, Tracked]:
         return {
             name: Tracked(
                 factor=float(one["factor"]),
-                judged=None if one["judged"] is None else datetime.fromisoformat(one["judged"]),
+                counted=None if one["judged"] is None else datetime.fromisoformat(one["judged"]),
             )
             for name, one in json.loads(text).items()
         }

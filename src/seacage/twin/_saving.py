@@ -1,5 +1,6 @@
 """A twin as settings that JSON can hold and arrays by name, and back."""
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, TypeVar
@@ -8,6 +9,7 @@ import numpy as np
 
 from seacage.cage import Cage
 from seacage.conventions import ModelError, Origin, SeacageError
+from seacage.records import check_stream
 from seacage.surrogates import (
     Domain,
     Fitted,
@@ -115,7 +117,9 @@ def restored(
             f"this seacage reads {FORMAT!r} of version {VERSION}. Train the twin anew."
         )
     try:
-        header = TypeAdapter(Header).validate_python(dict(settings))
+        # Strictly, as in JSON: a text such as "nan" is no number.
+        header = TypeAdapter(Header).validate_json(json.dumps(settings), strict=True)
+        check_stream(header.buoy)
         models = _models(header, settings["models"], arrays)
         discrepancy = _discrepancy(settings.get("discrepancy"), arrays, models.cage)
     except (KeyError, TypeError, ValueError, SeacageError) as error:

@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.cage import Cage
-from seacage.conventions import InputError, Origin, Progress, unheard
+from seacage.conventions import InputError, NonsenseError, Origin, Progress, unheard
 from seacage.records import CampaignRecord, FieldRecord, moment
 from seacage.surrogates import (
     Domain,
@@ -23,7 +23,7 @@ from seacage.surrogates import (
 from seacage.twin._align import Pairs, align, spread_out, teaching_window
 from seacage.twin._calibrate import Lessons, Taught, calibrated
 from seacage.twin._correction import Correction
-from seacage.twin._metocean import Input, Metocean
+from seacage.twin._metocean import INPUT_KEYS, Input, Metocean
 from seacage.twin._models import Models
 from seacage.twin._provenance import Lesson, Provenance
 from seacage.twin._twin import Twin
@@ -110,9 +110,15 @@ def train(
         What to learn from; the default suits one buoy and 300 readings of each sensor.
     progress
         Called after each model.
+
+    Raises
+    ------
+    NonsenseError
+        Inputs that the field's buoy or the campaign never had.
     """
     training = Training() if training is None else training
     report: Progress = progress or unheard
+    _check_inputs(campaign, field, training)
     begun = _begun(cage, campaign, field, base, training, report)
     kept = begun.models.upper
     asked = [name for name in cage.sensor_names if field and name in field.sensors]
@@ -142,6 +148,21 @@ def train(
         lessons=told,
     )
     return replace(begun, models=models, provenance=provenance)
+
+
+def _check_inputs(
+    campaign: CampaignRecord | None, field: FieldRecord | None, training: Training
+) -> None:
+    for key in (key for name in training.inputs for key in INPUT_KEYS[name]):
+        if field and not (key in field.buoy.values and np.any(field.buoy.usable(key))):
+            raise NonsenseError(
+                f"train: {field.buoy.stream} has no {key}, which the inputs "
+                f"{','.join(training.inputs)} ask for. Train with what it has."
+            )
+    if campaign and "waves" in training.inputs and not any(sea.hs for sea in campaign.seas):
+        raise NonsenseError(
+            "train: the campaign has no waves, which the inputs ask for. Simulate one with waves."
+        )
 
 
 def update(twin: Twin, field: FieldRecord, *, points: int = 60, mean_s: float = 60.0) -> Twin:

@@ -11,7 +11,8 @@ import numpy as np
 from seacage.cage import Cage
 from seacage.conventions import InputError, Origin
 from seacage.ocean import SeaState
-from seacage.records import Record, Sample
+from seacage.records import Amendment, Record, Sample
+from seacage.twin._adaptation import Adapter
 from seacage.twin._answer import Answer
 from seacage.twin._discrepancy import Discrepancy
 from seacage.twin._events import Answered, Event
@@ -19,11 +20,12 @@ from seacage.twin._folder import read_folder, write_folder
 from seacage.twin._held import Held
 from seacage.twin._metocean import INPUT_KEYS, Metocean
 from seacage.twin._models import Models
-from seacage.twin._online import answered_with, factors_from_json, judged_by
+from seacage.twin._online import Expected, expecting, factors_from_json
 from seacage.twin._provenance import Provenance
+from seacage.twin._reading import failed, held_reading
 from seacage.twin._saving import restored, saved
 from seacage.twin._state import TwinState, Watch
-from seacage.twin._step import failed, held_reading, listened
+from seacage.twin._step import forgotten, received
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -53,18 +55,20 @@ class Twin:
     discrepancy: Discrepancy | None = None
 
     @classmethod
-    def read(cls, folder: str | Path) -> Self:
-        """Read a twin that ``write`` saved.
+    def read(cls, folder: str | Path, *, key: bytes | None = None) -> Self:
+        """Read a twin that ``write`` saved, and with a key only one that the key signs.
 
         Raises
         ------
         ModelError
             A file is missing, foreign, of another version, or changed by as little as a byte.
         """
-        return cls(**restored(*read_folder(Path(folder)), source=str(folder)))
+        return cls(**restored(*read_folder(Path(folder), key=key), source=str(folder)))
 
-    def write(self, folder: str | Path) -> None:
+    def write(self, folder: str | Path, *, key: bytes | None = None) -> None:
         """Save as a folder of JSON and safetensors, sealed by a manifest of SHA-256 sums.
+
+        With a key, such as ``read_key`` reads, the manifest is signed by HMAC-SHA256.
 
         An earlier twin there is replaced.
 
@@ -74,7 +78,7 @@ class Twin:
             The folder holds something else.
         """
         parts = self.models, self.provenance, self.buoy, self.watch, self.discrepancy
-        write_folder(Path(folder), *saved(*parts))
+        write_folder(Path(folder), *saved(*parts), key=key)
 
     @property
     def cage(self) -> Cage:
@@ -133,7 +137,7 @@ class Twin:
                 trouble[row] = trouble[row] or failed(buoy.stream, key, int(buoy.flags[key][row]))
         return self.models.answer(Metocean.of_record(buoy), trouble)
 
-    def start(self, adapted: str | None = None) -> TwinState:
+    def start(self, adapted: str | None = None, *, until: datetime | None = None) -> TwinState:
         """Return the state before the first step.
 
         Parameters
@@ -141,13 +145,16 @@ class Twin:
         adapted
             From ``TwinState.adapted`` of another time; None begins with the intervals as
             trained.
+        until
+            And its ``adapted_until``; None goes on from the first step.
 
         Raises
         ------
         InputError
             ``adapted`` is something else.
         """
-        return TwinState(tracked=factors_from_json(adapted) if adapted is not None else {})
+        tracked = factors_from_json(adapted) if adapted is not None else {}
+        return TwinState(tracked=tracked, adapted_until=until)
 
     def step(
         self, state: TwinState, sample: Sample | None, now: datetime
@@ -173,31 +180,48 @@ class Twin:
             the answer.
         """
         before = state
-        state, notices = listened(state, sample, now, patience=self._patience(), watch=self.watch)
-        if sample is not None:
-            state = self._judged(before, state, sample.stream)
-        if sample is None or state.latest(self.buoy) != before.latest(self.buoy):
+        state, notices = self.receive(state, () if sample is None else (sample,), now)
+        if sample is None or _newest(state, self.buoy) != _newest(before, self.buoy):
             state, answered = self._answered(state, now)
             return state, (*notices, answered)
         return state, notices
 
-    def _judged(self, before: TwinState, state: TwinState, stream: str) -> TwinState:
-        """Let a sensor's new reading judge what was last said of it."""
-        newest = state.latest(stream)
-        if stream not in state.tracked or newest is None or newest == before.latest(stream):
-            return state
-        after = judged_by(
-            state.tracked[stream],
-            newest,
-            rate=self.watch.adapt_rate,
-            every_s=self.watch.adapt_every_s,
+    def receive(
+        self,
+        state: TwinState,
+        samples: Sequence[Sample],
+        now: datetime,
+        *,
+        amendments: Sequence[Amendment] = (),
+    ) -> tuple[TwinState, tuple[Event, ...]]:
+        """Take many samples in, without an answer; a tick gives it then.
+
+        Parameters
+        ----------
+        state, now
+            As for ``step``.
+        samples
+            In any order. Those that carry flags are believed; the others are checked.
+        amendments
+            Flags of earlier samples that have changed since.
+        """
+        state, notices = received(
+            state,
+            samples,
+            now,
+            timeouts=self._timeouts(),
+            watch=self.watch,
+            amendments=amendments,
         )
-        return replace(state, tracked={**state.tracked, stream: after})
+        adapter = Adapter(models=self.models, buoy=self.buoy, watch=self.watch)
+        state = adapter.adapted(state, now)
+        return forgotten(state, now, disorder_s=self.watch.disorder_s), notices
 
     def _answered(self, state: TwinState, now: datetime) -> tuple[TwinState, Answered]:
         stale_after_s = self.watch.stale_after_s
+        stream = state.streams.get(self.buoy, ())
         reading = held_reading(
-            state, now, buoy=self.buoy, keys=self._keys(), stale_after_s=stale_after_s
+            stream, now, buoy=self.buoy, keys=self._keys(), stale_after_s=stale_after_s
         )
         unknown = Metocean.from_columns({}, 1)
         water = unknown if reading.metocean is None else reading.metocean
@@ -207,15 +231,15 @@ class Twin:
         else:
             answer = self.models.answer(water, [reading.trouble])
             held = Held(models=self.models, water=water, answer=answer)
-        tracked = answered_with(state.tracked, self._said(answer))
+        tracked = expecting(state.tracked, self._expected(answer))
         state = replace(state, tracked=tracked, held=None if reading.trouble else held)
         answer = self._adapted(answer, state)
         return state, Answered(
             t=now, answer=answer, metocean=reading.metocean, input_age_s=reading.age_s
         )
 
-    def _said(self, answer: Answer) -> dict[str, tuple[float, float] | None]:
-        """Say what of the sensors that have taught is to be judged."""
+    def _expected(self, answer: Answer) -> dict[str, Expected | None]:
+        """What is expected of the sensors that have level 2."""
         mean, std = answer.sensor.mean[0].tolist(), answer.sensor.std[0].tolist()
         return {
             name: (mean[column], std[column]) if answer.valid[0] else None
@@ -238,6 +262,11 @@ class Twin:
     def _keys(self) -> list[str]:
         return [key for name in self.models.inputs for key in INPUT_KEYS[name]]
 
-    def _patience(self) -> dict[str, float]:
+    def _timeouts(self) -> dict[str, float]:
         sensors = dict.fromkeys(self.sensor_names, self.watch.sensor_silent_after_s)
         return {self.buoy: self.watch.stale_after_s, **sensors}
+
+
+def _newest(state: TwinState, stream: str) -> Sample | None:
+    """The newest sample of a stream that governed at the state's clock."""
+    return state.latest(stream, state.clock)

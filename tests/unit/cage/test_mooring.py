@@ -97,3 +97,15 @@ def test_a_cage_without_bridles_is_refused():
 def test_each_bridle_has_one_length_offset():
     with pytest.raises(InputError, match=r"12 bearings_deg but 1 length_offset_m"):
         ACE.altered(bridles={"length_offset_m": [0.1]})
+
+
+def test_a_bridle_that_a_spoke_moves_is_warned_of_from_where_to_where():
+    assert ACE.warnings == ()
+    assert ACE.rotated(17.0).warnings == ()
+    bearings = list(ACE.bridles.bearings)
+    bearings[0] = 60.0
+    (warning,) = ACE.altered(bridles={"bearings_deg": bearings}).warnings
+    assert "which moves bridle-1 from 60° to 56.25°." in warning
+    bearings[3] = 359.0
+    (warning,) = ACE.altered(bridles={"bearings_deg": bearings}).warnings
+    assert "bridle-1 from 60° to 56.25°, bridle-4 from 359° to 0°." in warning

@@ -86,6 +86,7 @@ def test_a_point_on_the_net_is_at_distance_nought_and_many_points_answer_as_one(
     assert len(CAGE.nearest(point[:0], shape).distance) == 0
 
 
+@pytest.mark.slow
 def test_ten_thousand_distances_are_those_to_every_triangle_in_turn():
     shape = bent_net(6)
     random = np.random.default_rng(7)

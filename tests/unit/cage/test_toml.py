@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from seacage.cage import Cage
-from seacage.conventions import InputError
+from seacage.conventions import InputError, NonsenseError
 
 ACE = Cage.named("ace")
 TEXT = ACE.to_toml()
@@ -182,16 +182,42 @@ def test_text_that_is_no_toml_is_refused_with_its_line():
 
 
 def test_a_file_that_is_not_there_is_refused_by_its_name(tmp_path):
-    with pytest.raises(InputError, match=r"Cage.read: cannot read .*nowhere\.toml"):
+    with pytest.raises(InputError, match=r"nowhere\.toml: the file cannot be read"):
         Cage.read(tmp_path / "nowhere.toml")
 
 
 def test_a_file_that_is_no_text_is_refused(tmp_path):
     (tmp_path / "photo.toml").write_bytes(b"\xff\xd8\xff")
-    with pytest.raises(InputError, match=r"cannot read .*photo\.toml as UTF-8 text"):
+    with pytest.raises(InputError, match=r"photo\.toml: .*no UTF-8 text"):
         Cage.read(tmp_path / "photo.toml")
 
 
 def test_an_unknown_name_is_refused_with_the_known_ones():
     with pytest.raises(InputError, match="no cage 'moon'; there are: ace"):
         Cage.named("moon")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("water_depth_m = 191.0", "water_depth_m = 22.0", "hangs 31 m deep in water of 22 m"),
+        ("water_depth_m = 191.0", "water_depth_m = 31.0", "water_depth_m, tip_depth_m and the"),
+        ("\ndepth_m = 8.0", "\ndepth_m = 200.0", "it hangs 200 m deep in water of 191 m"),
+        ("side_m = 85.0", "side_m = 40.0", "no room for a collar of radius_m = 25"),
+        ("side_m = 85.0", "side_m = 50.0", "more than twice the radius"),
+        ("bearings_deg = [67.5, ", "bearings_deg = [", "11 bearings_deg but 12 length_offset_m"),
+        ("radius_m = 25.0", "radius_m = nan", "radius_m = nan must be a finite number"),
+    ],
+)
+def test_a_file_that_makes_no_sense_is_refused_with_its_name(tmp_path, old, new, said):
+    path = tmp_path / "mine.toml"
+    path.write_text(edited(old, new))
+    with pytest.raises(NonsenseError, match=f"^{path}: .*{said}"):
+        Cage.read(path)
+
+
+def test_a_file_that_goes_deep_is_refused(tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text("a = " + "[" * 100_000)
+    with pytest.raises(InputError, match=r"mine\.toml: this is not TOML \(its parts lie more than"):
+        Cage.read(path)

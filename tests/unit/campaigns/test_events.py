@@ -159,7 +159,7 @@ def test_a_file_holds_events_in_any_order(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("[[event]", "as TOML"),
+        ("[[event]", "not TOML"),
         ("", "as a table"),
         ('[event]\nkind = "stuck"\n', "as a table"),
         ("event = [3]\n", "as a table"),

@@ -67,6 +67,7 @@ def test_the_truth_is_near_what_the_sensors_say(field: VirtualField) -> None:
         assert abs(np.median(error)) < (0.6 if key == "tension_kn" else 0.1)
 
 
+@pytest.mark.slow
 def test_the_seed_changes_the_noise_and_neither_the_cage_nor_its_responses(
     small_cage: Cage, stand_in: StandIn, tmp_path: Path
 ) -> None:

@@ -129,6 +129,7 @@ def test_sensors_have_their_errors_and_shackles_their_windows(
     assert 20.0 < hours["depth-1"] < 24.0
 
 
+@pytest.mark.slow
 def test_a_depth_sensor_takes_waves_for_depth_and_the_truth_does_not(
     field: VirtualField, rough: VirtualField
 ) -> None:
@@ -153,6 +154,7 @@ def test_the_buoy_carries_the_waves_held_and_is_not_always_heard(
     assert set(heard.values) == {*BUOY.values, "hs_m", "tp_s", "wave_from_deg"}
 
 
+@pytest.mark.slow
 def test_a_buoy_that_measures_waves_needs_no_other_record(made: Maker, rough: VirtualField) -> None:
     again = made(rough.truth.buoy)
     for name in ("depth-1", "shackle-1"):
@@ -163,6 +165,7 @@ def test_a_buoy_that_measures_waves_needs_no_other_record(made: Maker, rough: Vi
     np.testing.assert_allclose(again.means.hs, rough.means.hs, rtol=0.3)
 
 
+@pytest.mark.slow
 def test_the_means_are_those_of_the_readings_and_of_the_water(
     small_cage: Cage, made: Maker
 ) -> None:
@@ -213,12 +216,13 @@ def broken(small_cage: Cage, tmp_path_factory: pytest.TempPathFactory) -> dict[s
 
 
 # 13 hours before the cut, the hour that begins with it, 11 hours after
+@pytest.mark.slow
 @pytest.mark.parametrize("stop_after", [0, 13, 25])
 def test_a_stopped_field_goes_on_and_ends_with_the_same_bytes(
     made: Maker, broken: dict[str, bytes], tmp_path: Path, stop_after: int
 ) -> None:
-    def stop(_stage: str, done: int, total: int) -> None:
-        assert total == 25
+    def stop(stage: str, done: int, total: int) -> None:
+        assert (stage, total) == ("virtual field, simulated hours", 25)
         if done == stop_after:
             raise StoppedError
 

@@ -45,8 +45,9 @@ def test_the_default_plan_leaves_the_papers_curve_of_periods() -> None:
     plan = Plan.named("default", 1, 500)
     _, _, hs, tp, _ = columns(plan).T
     ratio = tp / (5.0 * np.sqrt(hs))
-    assert 0.8 <= ratio.min() < 0.82
-    assert 2.18 < ratio.max() <= 2.2
+    # The period is the ratio times a root, and here divided by it again.
+    assert 0.8 - 1e-12 <= ratio.min() < 0.82
+    assert 2.18 < ratio.max() <= 2.2 + 1e-12
     assert plan.name == "default"
     assert Plan.named("current", 1, 500).seas == Plan.sample(1, 500, hs=(0.0, 0.0)).seas
 
@@ -136,7 +137,7 @@ def test_an_empty_plan_is_refused() -> None:
     ],
 )
 def test_a_file_that_is_no_plan_is_refused(text: str) -> None:
-    with pytest.raises(InputError, match="this is no plan"):
+    with pytest.raises(InputError, match=r"this is no (plan|JSON)"):
         Plan.from_json(text)
 
 
@@ -147,7 +148,7 @@ def test_a_bad_sea_state_in_a_file_is_refused_as_anywhere() -> None:
 
 
 def test_a_file_that_is_not_there_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"cannot read .*plan\.json"):
+    with pytest.raises(InputError, match=r"plan\.json: the file cannot be read"):
         Plan.read(tmp_path / "plan.json")
 
 
@@ -197,5 +198,5 @@ def test_a_table_that_is_no_plan_is_refused_with_its_row(
 
 
 def test_a_table_that_is_not_there_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"seas\.csv: cannot be read"):
+    with pytest.raises(InputError, match=r"seas\.csv: .*cannot be read"):
         Plan.table(tmp_path / "seas.csv")

@@ -36,6 +36,7 @@ def test_answers_come_with_their_tasks() -> None:
     assert sorted(mapped(abs, tasks, workers=1)) == [(-5, 5), (-3, 3), (4, 4)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("workers", [1, 2])
 def test_tasks_say_how_far_they_are_while_they_work(workers: int) -> None:
     heard: list[float] = []
@@ -62,6 +63,7 @@ def test_workers_compute_on_one_thread_and_this_process_is_left_as_it_was(
     assert sys.modules["__main__"] is main
 
 
+@pytest.mark.slow
 def test_a_script_without_a_guard_runs_once(tmp_path: Path) -> None:
     script = tmp_path / "script.py"
     script.write_text(UNGUARDED)
@@ -69,6 +71,7 @@ def test_a_script_without_a_guard_runs_once(tmp_path: Path) -> None:
     assert told.stdout.splitlines() == ["script", "[1, 2, 3]"]
 
 
+@pytest.mark.slow
 def test_closing_early_drops_what_has_not_begun() -> None:
     began = time.monotonic()
     with closing(mapped(time.sleep, [0.01, 0.01, *[0.5] * 200], workers=2)) as finished:

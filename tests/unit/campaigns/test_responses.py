@@ -82,6 +82,7 @@ def test_the_grid_is_settled_once_and_kept(
     np.testing.assert_array_equal(again.value, first.value)
 
 
+@pytest.mark.slow
 def test_another_cage_is_settled_anew_beside_the_first(
     small_cage: Cage, stand_in: StandIn, tmp_path: Path
 ) -> None:

@@ -11,7 +11,7 @@ from seacage.cage import Cage
 from seacage.campaigns import Plan, Simulator, campaign_status, run_campaign, run_share
 from seacage.campaigns._cases import answered
 from seacage.conventions import InputError, RecordError, Result, SeacageError
-from seacage.dynamics import simulate
+from seacage.dynamics import PHYSICS, simulate
 from seacage.records import read_campaign
 from seacage.service._commands._campaign import run as run_command
 from stand_in import StandIn
@@ -117,7 +117,9 @@ def test_each_case_has_a_seed_of_its_own_that_no_neighbour_changes(
     assert len({*many.wave_seed.tolist(), *other.wave_seed.tolist()}) == 60
 
 
-@pytest.mark.parametrize("stop_at", [0, 16, 96])
+@pytest.mark.parametrize(
+    "stop_at", [16, *(pytest.param(at, marks=pytest.mark.slow) for at in (0, 96))]
+)
 def test_a_stopped_campaign_goes_on_and_ends_with_the_same_bytes(
     small_cage: Cage, stand_in: StandIn, tmp_path: Path, stop_at: int
 ) -> None:
@@ -129,6 +131,7 @@ def test_a_stopped_campaign_goes_on_and_ends_with_the_same_bytes(
     assert contents(out) == contents(tmp_path / "whole")
 
 
+@pytest.mark.slow
 def test_a_campaign_stopped_before_its_sum_says_so_and_is_summed_by_the_next_run(
     small_cage: Cage, stand_in: StandIn, tmp_path: Path
 ) -> None:
@@ -143,6 +146,7 @@ def test_a_campaign_stopped_before_its_sum_says_so_and_is_summed_by_the_next_run
     assert contents(tmp_path / "c") == contents(tmp_path / "whole")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shares", [2, 3, 7])
 def test_shares_make_the_same_store_as_one_run(
     small_cage: Cage, stand_in: StandIn, tmp_path: Path, shares: int
@@ -225,6 +229,17 @@ def test_a_folder_with_another_campaign_is_refused_in_one_sentence(
         run_campaign(small_cage, Plan.sample(2, 100), out, workers=1, law="loland")
 
 
+def test_a_campaign_of_other_physics_is_read_and_not_gone_on_with(
+    small_cage: Cage, stand_in: StandIn, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    out, plan = tmp_path / "c", Plan.sample(1, 2)
+    made = run_campaign(small_cage, plan, out, workers=1)
+    monkeypatch.setattr("seacage.campaigns._run.PHYSICS", PHYSICS + 1)
+    with pytest.raises(InputError, match="another revision of the physics: it can be read, but"):
+        run_campaign(small_cage, plan, out, workers=1)
+    np.testing.assert_array_equal(read_campaign(out).bridle_tension, made.bridle_tension)
+
+
 @pytest.mark.parametrize(
     ("options", "says"),
     [
@@ -256,6 +271,7 @@ def test_a_cage_that_cannot_be_simulated_leaves_no_store(
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.slow
 def test_the_answers_do_not_depend_on_the_size_of_a_block(
     small_cage: Cage, stand_in: StandIn, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -283,8 +299,8 @@ def test_a_way_to_answer_that_does_not_exist_is_refused(
 def test_a_worker_with_another_version_refuses_to_answer(
     small_cage: Cage, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("seacage.campaigns._run.version", lambda _: "9.9")
-    with pytest.raises(SeacageError, match=r"the campaign seacage 9\.9: their numbers"):
+    monkeypatch.setattr("seacage.campaigns._run.made_by", lambda: "seacage 9.9, physics 7")
+    with pytest.raises(SeacageError, match=r"the campaign seacage 9\.9, physics 7: their numbers"):
         run_campaign(small_cage, Plan.sample(1, 2), tmp_path / "c", workers=1)
     assert answered.__module__ == "seacage.campaigns._cases"  # by which name it travels
 

@@ -125,6 +125,7 @@ def test_a_frame_cut_slack_bears_nothing_where_it_was_designed():
     np.testing.assert_array_equal(bar_tension(slack.bars, slack.position[None])[0, frame], 0.0)
 
 
+@pytest.mark.slow
 def test_it_rests_with_the_tensions_of_the_file_and_its_corners_in_place():
     still = SeaState(current_speed=0.0, current_to=0.0)
     springs, lines = (

@@ -61,6 +61,7 @@ def test_a_stretch_is_the_same_beside_others():
     np.testing.assert_array_equal(together.time[1], 100.0 + 2.0 * np.arange(10))
 
 
+@pytest.mark.slow
 def test_stretches_join_where_one_ends_and_the_next_begins():
     weather = Tide(speed=0.5, period=4.0 * 3600.0, hs=0.6)
     long = follow(CAGE, [weather], [0.0], watched=[36, 64], **BRIEF | {"duration": 340.0})
@@ -75,6 +76,7 @@ def test_stretches_join_where_one_ends_and_the_next_begins():
     )
 
 
+@pytest.mark.slow
 def test_in_a_steady_current_the_cage_comes_to_rest_where_simulate_finds_it():
     weather = Tide(speed=0.5, growth=0.0)
     # so that nothing differs but how the wake is found: stiffer ropes come never
@@ -119,6 +121,7 @@ def test_a_bridle_that_parts_bears_no_more_and_its_neighbours_take_over():
     assert np.all(after[-1, [6, 8]] > 1.1 * before[-1, [6, 8]])
 
 
+@pytest.mark.slow
 def test_what_is_damaged_from_the_beginning_is_damaged_before_counting_begins():
     weather, cut = Tide(speed=0.6), (Damage(bridle=7),)
     long = follow(CAGE, [weather], [0.0], breaking=cut, **BRIEF | {"duration": 300.0})

@@ -59,7 +59,8 @@ def test_from_near_an_equilibrium_it_gets_there():
         state = nearer(PARTS, flow, state, BALANCE)
     assert state.residual[0] <= BALANCE.tolerance
     force = np.linalg.norm(nodal_force(PARTS, flow, state.position)[0], axis=1)
-    assert force.max() == state.residual[0]
+    # The same sums, perhaps in another order: of loads of some 1e3 N, to their last bits.
+    assert force.max() == pytest.approx(state.residual[0], abs=1e-9)
     assert state.iterations[0] < 25.0  # a case that is done stays as it is
     assert state.sign[0] == 1.0  # what hangs is stable
 

@@ -490,11 +490,6 @@ REFUSED = {
         {"twine_drag": (1.2, np.nan), "law": "morison"},
         r"twine_drag = .*nan",
     ),
-    "a net below the sea bed": (
-        (SMALL.altered(site={"water_depth_m": 20.0}), SEA),
-        {},
-        r"hangs 21 m deep in water of 20 m.*water_depth_m",
-    ),
     "no worker": ((SMALL, SEA), {"workers": 0}, r"workers = 0"),
     "a cage that sinks": (
         (SMALL.altered(sinker_tube={"weight_n_m": 50_000.0}), SEA),

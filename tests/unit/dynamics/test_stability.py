@@ -27,13 +27,15 @@ def highest_frequency(assembly):
     return np.sqrt(np.linalg.eigvalsh(stretch.T * rate @ stretch)[-1])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("time_step", [0.001, 0.002, 0.004])
 def test_with_what_is_lent_no_mode_of_the_net_is_too_fast_for_the_step(time_step):
     steady, _ = steadied(ACE, time_step)
     ratio = np.sqrt(2.0) * ACE.bars.damping_ratio.max()
     # where the undamped step would end, less for damping that is taken at the old velocity
     limit = 2.0 / time_step * (np.sqrt(1.0 + ratio**2) - ratio)
-    assert highest_frequency(steady) <= limit
+    # The bound is that of the stiffest bar; an eigenvalue of 963 unknowns is exact to 1e-13 of it.
+    assert highest_frequency(steady) <= limit * (1.0 + 1e-9)
 
 
 def test_a_step_short_enough_needs_no_mass():
@@ -45,7 +47,7 @@ def test_a_step_short_enough_needs_no_mass():
 def test_mass_is_lent_where_it_is_needed_and_nothing_else_changes():
     steady, lent = steadied(ACE, 0.004)
     assert np.all(lent >= 0.0)
-    assert np.all(lent <= MOST_ADDED * ACE.mass)
+    assert np.all(lent <= MOST_ADDED * ACE.mass * (1.0 + 1e-12))  # a product rounded otherwise
     assert np.any(lent > 0.0)
     np.testing.assert_array_equal(steady.mass, ACE.mass + lent)
     assert replace(steady, mass=ACE.mass).bars is ACE.bars
@@ -56,7 +58,7 @@ def test_mass_is_lent_where_it_is_needed_and_nothing_else_changes():
 def test_a_longer_step_lends_more():
     _, short = steadied(ACE, 0.003)
     _, long = steadied(ACE, 0.004)
-    assert np.all(long >= short)
+    assert np.all(long >= short * (1.0 - 1e-12))  # equal where neither needs any, but for rounding
     assert long.sum() > short.sum()
 
 

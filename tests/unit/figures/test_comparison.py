@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from matplotlib.colors import to_hex
 
 from seacage.conventions import InputError, Origin
 from seacage.figures import Comparison, density_figure, rows_figure, series_figure
@@ -40,6 +39,8 @@ def test_both_panels_share_limits_and_counts(comparison):
 
 
 def test_the_dashed_line_is_y_equals_x_and_the_red_one_the_given_fit(comparison):
+    from matplotlib.colors import to_hex
+
     low, *_ = density_figure(comparison).axes
     diagonal, fit = low.lines
     assert diagonal.is_dashed()
@@ -69,6 +70,18 @@ def test_a_series_shows_only_its_time_and_names_its_four_parts(comparison):
     assert {len(line.get_xdata()) for line in axes.lines} == {120}
     names = [text.get_text() for text in axes.get_legend().get_texts()]
     assert names == ["95 % interval", "shackle-1", "Low fidelity", "Multifidelity"]
+
+
+def test_a_band_ends_where_a_rope_goes_slack_and_is_not_drawn_without_an_interval(comparison):
+    span = {"start": START, "end": START + np.timedelta64(2, "h")}
+    wide = replace(comparison, multi_std=np.full(400, 9.0))
+    (band,) = series_figure(wide, **span).axes[0].collections
+    assert band.get_paths()[0].vertices[:, 1].min() == 0.0
+    none = replace(comparison, multi_std=np.full(400, np.nan))
+    (axes,) = series_figure(none, **span).axes
+    assert len(axes.collections) == 0
+    names = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert names == ["shackle-1", "Low fidelity", "Multifidelity"]
 
 
 def test_a_lifted_net_stands_higher_on_the_page(comparison):

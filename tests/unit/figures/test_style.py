@@ -2,9 +2,7 @@
 
 import xml.etree.ElementTree as ET
 
-import matplotlib as mpl
 import numpy as np
-from matplotlib import pyplot as plt
 
 from seacage.figures import shape_error_figure, svg_text, write_figure
 
@@ -25,6 +23,9 @@ def test_the_ending_of_the_path_chooses_the_format(tmp_path):
 
 
 def test_drawing_leaves_the_callers_settings_and_pyplot_alone():
+    import matplotlib as mpl
+    from matplotlib import pyplot as plt
+
     before = mpl.rcParams.copy()
     svg_text(figure())
     assert mpl.rcParams.copy() == before

@@ -98,7 +98,7 @@ def test_stretching_keeps_a_crest_from_growing_exponentially():
     elevation = surface_elevation(waves, np.zeros(2), time)
     at_surface, _ = water_motion(waves, np.column_stack([np.zeros((500, 2)), elevation]), time)
     bound = np.sum(waves.amplitude * waves.angular_frequency)
-    assert np.all(np.abs(at_surface[:, 0]) <= bound)
+    assert np.all(np.abs(at_surface[:, 0]) <= bound * (1.0 + 1e-12))  # a sum in another order
     angle = -time[:, None] * waves.angular_frequency + waves.phase
     linear = np.cos(angle) @ (waves.amplitude * waves.angular_frequency)
     # deep water: cosh/sinh at z = 0 is 1 to 1e-6

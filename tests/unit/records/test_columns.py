@@ -49,7 +49,7 @@ def test_a_map_is_read_from_toml(tmp_path):
         ('sense = "from"', "", r"'dir': nothing says where its direction points"),
         ('sense = "from"', 'sense = "to"', r'Declare sense as "towards" or "from"'),
         ('"current_speed"', '"speed"', r"the quantity 'speed' is unknown. Say one of current_s"),
-        ('"current_speed"', '"hs"\nunit = "m"', r"map.toml: the column map is no TOML"),
+        ('"current_speed"', '"hs"\nunit = "m"', r"map.toml: this is not TOML"),
         ('title = "Buoy of the south site"', "", r"title is missing"),
         ('"measured"', '"guessed"', r"origin = 'guessed' is unknown"),
         ('zone = "+01:00"', "", r"map.toml, \[time\]: zone is missing"),

@@ -69,7 +69,7 @@ def test_writing_over_an_older_one_leaves_the_newer(tmp_path, field):
 
 
 def test_a_folder_without_one_is_refused(tmp_path):
-    with pytest.raises(RecordError, match=r"field.json: there is no field record \(No such file"):
+    with pytest.raises(RecordError, match=r"field.json: the file cannot be read \(No such file"):
         FieldRecord.read(tmp_path)
 
 

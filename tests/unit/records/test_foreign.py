@@ -407,7 +407,7 @@ def test_a_map_of_the_other_kind_is_refused(tmp_path):
         ("[ranges.hs]\nfail = [0, 5]", "the key 'hs' is unknown. Did you mean 'hs_m'"),
         ("[steadiness.waves]\njmp = 1", "the key 'jmp' is unknown. Did you mean 'jump'"),
         ("[steadiness.waves]\njump = true", "jump = True is no number"),
-        ("x", "the limits cannot be read"),
+        ("x", "this is not TOML"),
         ("[[climatology.hs_m]]\nmonths = [0, 1]", r"months = \[0.0, 1.0\] are none"),
         ("[climatology]\nhs_m = [1]", "hs_m is no list of tables"),
     ],

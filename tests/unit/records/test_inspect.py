@@ -2,6 +2,7 @@
 
 import pytest
 
+from public_files import PUBLIC, public_file
 from seacage.conventions import RecordError
 from seacage.records import inspect_file, read_map, read_record
 
@@ -59,30 +60,10 @@ def test_days_and_months_that_cannot_be_told_apart_are_asked_for(tmp_path):
     assert "Suspicious: day and month cannot be told apart in it." in found.findings
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        "buoy_current_s08010_2018.csv",
-        "buoy_waves_ndbc46097_2019_08.csv",
-        "shelf_current_profile_norkyst_2018q1.csv",
-        "waves_nora10_1977_1979.csv",
-    ],
-)
-def test_a_file_that_is_known_is_said_to_be(shared, name):
-    assert "It fits a known map and needs none" in " ".join(
-        inspect_file(shared / "data" / name).findings
-    )
-
-
-def test_a_profiler_file_is_asked_for_its_zone_bin_and_origin(shared):
-    pytest.importorskip("xarray")
-    found = inspect_file(shared / "data" / "adcp_awac_snippet.nc")
-    said = "Suspicious: its attribute 'comments' says 'times PDT', and times in CF are UTC."
-    assert said in found.findings
-    assert 'time_zone = "?"  # "UTC" if CF holds, "-07:00" if the attribute' in found.map_text
-    assert found.open_questions == 3
-    for question in ("origin", "time_zone", "range_m"):
-        assert f'{question} = "?"' in found.map_text
+@pytest.mark.parametrize("name", PUBLIC)
+def test_a_file_that_is_known_is_said_to_be(tmp_path, name):
+    found = inspect_file(public_file(tmp_path, name, rows=3))
+    assert "It fits a known map and needs none" in " ".join(found.findings)
 
 
 @pytest.mark.parametrize("content", [b"", b"\xff\xfe\x00", b"\x00\x01", b"a\n", b'"\n1;2\n'])

@@ -99,3 +99,12 @@ def test_times_go_to_numpy_and_back_to_the_microsecond():
     time = datetime(2018, 3, 25, 1, 59, 59, 999999, tzinfo=UTC)
     assert moment(instant(time)) == time
     assert instant(time.astimezone(UTC)) == np.datetime64("2018-03-25T01:59:59.999999")
+
+
+def test_a_long_record_prints_itself_short():
+    long = record(minutes=range(10_000), depth_m=np.linspace(5.0, 15.0, 10_000))
+    text = repr(long)
+    assert len(text) < 300
+    assert "stream='depth-1'" in text
+    assert "depth_m" in text
+    assert "[10000]" in text

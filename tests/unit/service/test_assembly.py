@@ -1,9 +1,10 @@
 import asyncio
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from seacage.conventions import InputError
+from seacage.conventions import InputError, ModelError
 from seacage.records import Sample
 from seacage.service._assembly import assembled, read_twins, store_place
 from seacage.service._live._replay import replay_of
@@ -47,6 +48,51 @@ def test_workers_part_the_cages_and_leave_none_out(tmp_path):
     ]
     assert all(served)
     assert sorted(served[0] + served[1]) == [cage["name"] for cage in cages]
+
+
+KEY = bytes(range(32))
+
+
+@pytest.fixture
+def keyed(tmp_path):
+    """Settings with a key, and one cage of a twin that it signs."""
+    stand_in_twin().write(tmp_path / "twin", key=KEY)
+    (tmp_path / "key").write_bytes(KEY)
+    (tmp_path / "key").chmod(0o600)
+    cages = [{"name": "north", "twin": tmp_path / "twin"}]
+    return told(tmp_path, cages=cages, twin_key=tmp_path / "key")
+
+
+def test_where_there_is_a_key_an_unsigned_twin_is_refused(tmp_path, keyed):
+    (tmp_path / "twin" / "manifest.hmac").unlink()
+    with pytest.raises(ModelError, match="is not signed"):
+        read_twins(keyed)
+
+
+@pytest.mark.parametrize("key", [None, bytes(32)], ids=["unsigned", "of another key"])
+def test_a_twin_that_is_refused_leaves_the_one_that_was_served_last(tmp_path, keyed, key):
+    before = read_twins(keyed)["north"]
+    other = replace(stand_in_twin(), buoy="buoy-2")
+    other.write(tmp_path / "twin", key=key)
+    served = read_twins(keyed)["north"]
+    assert served.buoy == before.buoy == "buoy-1"
+    assert served.provenance == before.provenance
+    other.write(tmp_path / "twin", key=KEY)
+    assert read_twins(keyed)["north"].buoy == "buoy-2"
+
+
+def test_the_last_twin_too_must_be_signed(tmp_path, keyed):
+    read_twins(keyed)
+    for folder in (tmp_path / "twin", tmp_path / "data" / "twins" / "north"):
+        stand_in_twin().write(folder)
+    with pytest.raises(ModelError, match="north is not signed"):
+        read_twins(keyed)
+
+
+def test_a_key_that_others_can_read_stops_the_start(tmp_path, keyed):
+    (tmp_path / "key").chmod(0o644)
+    with pytest.raises(InputError, match="chmod 600"):
+        read_twins(keyed)
 
 
 def test_a_folder_is_served_by_one_process(tmp_path, ended, monkeypatch):

@@ -5,13 +5,14 @@ import sys
 import pytest
 import typer
 
-from seacage.conventions import InputError, ModelError, SeacageError
+from seacage.conventions import InputError, ModelError, NonsenseError, SeacageError
 from seacage.service._console import Exit, guarded, progress_bar, without_nan
 
 
 @pytest.mark.parametrize(
     ("error", "code"),
     [
+        (NonsenseError("no"), Exit.USAGE),
         (InputError("no"), Exit.REFUSED),
         (ModelError("no"), Exit.REFUSED),
         (SeacageError("no"), Exit.FAILED),

@@ -40,3 +40,22 @@ def test_a_log_that_cannot_be_written_stops_nobody(monkeypatch):
     begin_logs("lines")
     closed.close()
     structlog.get_logger("seacage.test").warning("flagged")
+
+
+def test_a_line_that_is_repeated_is_counted_and_not_written_again(capsys, monkeypatch):
+    now = [0.0]
+    monkeypatch.setattr("seacage.service._logs.time.monotonic", lambda: now[0])
+    begin_logs("json")
+    for _ in range(1000):
+        logging.getLogger("asyncio").error("no %s", "socket")
+        structlog.get_logger("seacage.test").warning("dropped", address="10.0.0.1")
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == 200
+    now[0] = 10.0
+    logging.getLogger("asyncio").error("no %s", "socket")
+    structlog.get_logger("seacage.test").warning("dropped", address="10.0.0.1")
+    said = [json.loads(line)["event"] for line in capsys.readouterr().err.splitlines()]
+    more = "(900 more like it were not written)"
+    assert said == [f"no socket {more}", f"dropped {more}"]
+    logging.getLogger("asyncio").error("another")
+    assert json.loads(capsys.readouterr().err)["event"] == "another"

@@ -43,3 +43,9 @@ def test_where_the_data_lie_is_said_once_and_where_the_service_may_write(name):
     assert "SEACAGE_" not in text, "a variable would go before the file, and nobody would see it"
     data = read_settings(PACKAGING / "seacage.toml").data
     assert f"WorkingDirectory={data}" in text or f"VOLUME {data}" in text
+
+
+def test_the_unit_lets_as_many_connections_be_open_as_the_settings_do():
+    text = (PACKAGING / "seacage.service").read_text()
+    files = next(line for line in text.splitlines() if line.startswith("LimitNOFILE="))
+    assert int(files.partition("=")[2]) > 2 * Settings().limits.connections

@@ -1,6 +1,8 @@
+from pathlib import Path
+
 import pytest
 
-from seacage.conventions import InputError
+from seacage.conventions import InputError, NonsenseError
 from seacage.service._settings import Settings, read_settings, without_password
 
 
@@ -85,6 +87,29 @@ def test_a_setting_that_does_not_do_is_named(file, text, named):
         read_settings(file(text))
 
 
+@pytest.mark.parametrize(
+    ("text", "named"),
+    [
+        ("[alarms.load]\nraise_at = inf", "alarms.load.raise_at = inf is no finite number"),
+        (
+            '[[cages]]\ntwin = "a"\n[cages.alarms.load]\nclear_at = nan',
+            "cages.alarms.load.clear_at",
+        ),
+        ("[store]\nkeep_days = inf", "store.keep_days = inf"),
+    ],
+)
+def test_a_number_that_is_none_is_nonsense_and_the_file_is_named(file, text, named):
+    with pytest.raises(NonsenseError, match=f"seacage.toml: {named}"):
+        read_settings(file(text))
+
+
+def test_a_settings_file_is_bounded_in_depth_and_in_kind(file):
+    with pytest.raises(InputError, match="more than 32 deep"):
+        read_settings(file("a = " + "[" * 100_000))
+    with pytest.raises(InputError, match="no regular file"):
+        read_settings(Path("/dev/zero"))
+
+
 def test_a_fault_does_not_show_a_password(file):
     with pytest.raises(InputError) as error:
         read_settings(file('[mqtt]\nurl = ["mqtt://u:secret@h"]\n'))
@@ -111,3 +136,9 @@ def test_a_worker_is_one_of_the_workers_and_shares_named_cages(file):
         read_settings(file("worker = 2\nworkers = 2\n"))
     with pytest.raises(InputError, match="take a name each"):
         read_settings(file('workers = 2\n[[cages]]\ntwin = "."\n'))
+
+
+@pytest.mark.parametrize("proxy", ["proxy.example", "10.0.0.1/8", "*", ""])
+def test_a_trusted_proxy_is_an_address_or_a_network(proxy):
+    with pytest.raises(InputError, match="trusted_proxies"):
+        read_settings(trusted_proxies=[proxy])

@@ -99,6 +99,7 @@ def test_versions_come_from_the_lock():
     assert all(version[0].isdecimal() for version in found.values())
 
 
+@pytest.mark.slow
 def test_a_study_of_one_problem_ends_in_a_page_and_goes_on_where_it_was(tmp_path, monkeypatch):
     monkeypatch.setattr(_benchmark, "PROBLEMS", (problem_named("currin"),))
     own = tuple(one for one in own_methods() if one.name in {OURS, HIGH_ONLY})
@@ -120,6 +121,7 @@ def test_a_study_of_one_problem_ends_in_a_page_and_goes_on_where_it_was(tmp_path
     assert page == study.report
 
 
+@pytest.mark.slow
 def test_what_is_not_there_is_left_out_of_the_page_but_never_ours(tmp_path, monkeypatch):
     monkeypatch.setattr(_benchmark, "PROBLEMS", (problem_named("currin"),))
     own = tuple(one for one in own_methods() if one.name in {OURS, HIGH_ONLY})

@@ -47,6 +47,7 @@ def scores():
     )
 
 
+@pytest.mark.slow
 def test_a_twin_is_held_against_the_truth_offline_and_online_and_against_nargp_alone():
     depth, shackle = scores()
     for score in (depth, shackle):

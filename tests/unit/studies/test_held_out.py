@@ -15,6 +15,7 @@ def at_hours(hours: np.ndarray) -> Readings:
         sensor="depth-1",
         unit="m",
         origin=Origin.VIRTUAL_FIELD,
+        level=2,
         time=MIDNIGHT + (hours * 3600e6).astype("timedelta64[us]"),
         reading=ones,
         low=ones,

@@ -73,6 +73,7 @@ def test_a_sensor_that_was_never_there_is_not_judged(case):
     assert {one.sensor for one in case.null.sensors} == {"depth-2", "shackle-2"}
 
 
+@pytest.mark.slow
 def test_a_sensor_that_lived_shortly_is_judged_on_shorter_means():
     windows = made_windows(days=4, each=6)
     field = field_of(windows, sensors=[0])
@@ -112,6 +113,7 @@ def test_a_fault_that_no_check_found_is_no_noise():
     assert np.abs(noise(trial(error))).max() < 0.5
 
 
+@pytest.mark.slow
 def test_waves_are_heard_where_the_buoy_reports_them():
     windows = made_windows(days=16, each=6)
     wavy = replace(

@@ -16,6 +16,7 @@ def readings(count: int, **columns: np.ndarray) -> Readings:
         "sensor": "shackle-1",
         "unit": "kN",
         "origin": Origin.VIRTUAL_FIELD,
+        "level": 2,
         "time": START + np.arange(count) * np.timedelta64(60, "s"),
         "reading": truth + 0.5 * rng.standard_normal(count),
         "low": 0.5 * truth,

@@ -68,6 +68,7 @@ def study(trial, tmp_path_factory):
     return shape_study(models, trial, stages, left_out=left_out, progress=unheard), stages
 
 
+@pytest.mark.slow
 def test_what_hears_the_waves_beats_what_does_not(study):
     scores = study[0].scores
     assert scores[SHAPE].mae < 0.5 * scores[SHAPE_CURRENT].mae
@@ -78,6 +79,7 @@ def test_what_hears_the_waves_beats_what_does_not(study):
     assert scores[PCA_PAPER].modes == 3
 
 
+@pytest.mark.slow
 def test_a_second_study_trains_nothing_again_and_says_the_same(study, trial):
     models, left_out = shape_models(CAGE, waves=True, networks=False)
     again = shape_study(models, trial, study[1], left_out=left_out, progress=refuse)
@@ -97,6 +99,7 @@ def test_a_cage_without_the_symmetry_is_told_of_and_the_rest_goes_on(trial, tmp_
     assert study.left_out[0].startswith("ShapeGP, folded is missing")
 
 
+@pytest.mark.slow
 def test_the_nets_drawn_are_a_fast_and_a_slow_test_case(study):
     harsh, mild = study[0].cases
     speed = np.sort(study[0].current_speed)
@@ -107,6 +110,7 @@ def test_the_nets_drawn_are_a_fast_and_a_slow_test_case(study):
     assert distance == pytest.approx(study[0].scores[SHAPE].case_worst[harsh.row])
 
 
+@pytest.mark.slow
 def test_the_variance_is_counted_over_cases_and_over_all_time_steps(study):
     shares = study[0].variance
     assert len(shares) == 4

@@ -41,15 +41,18 @@ def test_the_ratio_is_expected_at_1_where_the_level_below_tells_most(alike: Fitt
     assert ratio(alike) == pytest.approx(1.0, rel=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", [NARGP(linear=False, restarts=0), AR1(restarts=0)])
 def test_the_published_methods_expect_no_ratio(model: NARGP | AR1) -> None:
     assert ratio(model.fit([(X1, low(X1)), (X2, high(X2))])) == 0.0
 
 
+@pytest.mark.slow
 def test_levels_of_unlike_size_expect_no_ratio() -> None:
     assert ratio(NARGP(restarts=0).fit([(X1, low(X1)), (X2, far(X2))])) == 0.0
 
 
+@pytest.mark.slow
 def test_cases_that_span_little_mislead_less_where_1_is_expected(
     alike: FittedNARGP, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -95,6 +98,7 @@ def test_an_update_meets_its_cases(alike: FittedNARGP) -> None:
     assert np.all(np.abs(after - high(MORE)) < 0.1 * np.abs(before - high(MORE)) + 0.05)
 
 
+@pytest.mark.slow
 def test_a_case_left_out_is_expected_on_the_line() -> None:
     fitted = NARGP(restarts=0).fit([(X1, low(X1)), (X2, high(X2))])
     left_out = fitted.upper[0].leave_one_out()
@@ -102,6 +106,7 @@ def test_a_case_left_out_is_expected_on_the_line() -> None:
     assert np.all(np.abs(left_out.mean - high(X2)) < 3.0 * spread)
 
 
+@pytest.mark.slow
 def test_levels_above_follow_one_that_learns_more() -> None:
     top = np.array([[0.3, 0.4], [0.5, 0.35], [0.4, 0.6], [0.9, 0.8]])
     fitted = NARGP(restarts=0).fit([(X1, low(X1)), (X2, high(X2)), (top, high(top))])
@@ -123,6 +128,7 @@ def test_a_model_saved_without_a_line_has_none(alike: FittedNARGP) -> None:
     np.testing.assert_array_equal(again.predict(NEW).mean, alike.own[0].predict(NEW).mean)
 
 
+@pytest.mark.slow
 def test_levels_asked_together_keep_their_lines(alike: FittedNARGP) -> None:
     other = NARGP(restarts=0).fit([(X1, low(X1)), (X2, far(X2))])
     below = alike.predict(NEW, level=1)

@@ -107,6 +107,7 @@ def test_two_points_are_a_sound_if_modest_lesson(noise) -> None:
     assert coverage(Y, answer.mean, answer.std) > 0.6
 
 
+@pytest.mark.slow
 @every_chain
 def test_two_points_of_the_higher_level_are_enough_to_answer(model) -> None:
     fitted = replace(model, ensemble="auto").fit([(X, Y), (X[:2], 3.0 * Y[:2] + 1.0)])

@@ -26,6 +26,7 @@ def evidence(rows: int) -> Evidence:
     return Evidence.of(SMOOTH, WhiteNoise(), x, np.sin(2.0 * x))
 
 
+@pytest.mark.slow
 def test_draws_have_the_moments_of_the_posterior() -> None:
     # Three hyperparameters can be integrated on a grid: the mean of each is compared in its sd.
     of = evidence(4)
@@ -62,6 +63,7 @@ def test_few_points_are_less_sure_with_an_ensemble() -> None:
     assert np.median(fits[0].std) > 1.3 * np.median(fits[1].std)
 
 
+@pytest.mark.slow
 def test_many_points_get_one_choice_and_few_get_an_ensemble() -> None:
     for rows, members in ((FEW, MEMBERS), (FEW + 1, 1)):
         x = some(rows)
@@ -118,6 +120,7 @@ def test_an_unknown_choice_is_refused() -> None:
         unchecked(object.__new__(GaussianProcess), ensemble="some")
 
 
+@pytest.mark.slow
 def test_the_spread_of_each_draw_of_few_points_is_widened_and_no_mean(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -46,6 +46,7 @@ def test_the_papers_network_learns_to_lean(paper: FittedGCN) -> None:
     assert miss(paper) < 0.75 * still
 
 
+@pytest.mark.slow
 def test_the_modal_network_beats_the_papers(modal: FittedGCN, paper: FittedGCN) -> None:
     assert miss(modal) < 0.5 * miss(paper)
 

@@ -37,6 +37,7 @@ def missed(parameters) -> np.ndarray:
     return np.sqrt(np.mean((answer - TARGET) ** 2, axis=(0, 2)))
 
 
+@pytest.mark.slow
 def test_training_brings_the_network_nearer_to_its_cases() -> None:
     parameters, epochs = taught()
     assert epochs == 40

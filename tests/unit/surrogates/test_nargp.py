@@ -44,6 +44,7 @@ def two_levels() -> FittedNARGP:
     return NARGP(restarts=1).fit([(X1, low(X1)), (X2, high(X2))], seed=0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("linear", [True, False])
 def test_it_learns_the_pedagogical_example_that_one_fidelity_cannot(linear: bool) -> None:
     fitted = NARGP(linear=linear, restarts=1).fit([(X1, low(X1)), (X2, high(X2))], seed=0)
@@ -75,6 +76,7 @@ def test_a_level_that_does_not_exist_is_refused(two_levels: FittedNARGP, level: 
         two_levels.predict(NEW, level=level)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("known", [50, 9])
 def test_uncertainty_agrees_with_a_hundred_thousand_draws_through_three_levels(known: int) -> None:
     # With 9 inputs level 1 is poor, and hands much uncertainty up.
@@ -171,6 +173,7 @@ def test_level_1_is_never_updated(two_levels: FittedNARGP) -> None:
         two_levels.updated(X2, high(X2), level=1)
 
 
+@pytest.mark.slow
 def test_inputs_need_not_be_nested() -> None:
     apart = X2 + 0.007
     fitted = NARGP(restarts=1).fit([(X1, low(X1)), (apart, high(apart))], seed=0)
@@ -203,6 +206,7 @@ def test_inputs_that_should_be_nested_and_are_not_are_counted() -> None:
         NARGP().fit([(X1, low(X1)), (apart, high(apart))], nested=True)
 
 
+@pytest.mark.slow
 def test_a_lent_level_1_answers_as_an_own_one() -> None:
     base = GaussianProcess(restarts=1).fit(X1, low(X1))
     fitted = NARGP(restarts=0).fit([(X2, high(X2))], lower=base)

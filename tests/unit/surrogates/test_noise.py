@@ -149,6 +149,7 @@ def test_an_unknown_noise_is_refused() -> None:
         unchecked(object.__new__(GaussianProcess), noise="pink")
 
 
+@pytest.mark.slow
 def test_levels_of_fidelity_may_have_outliers_too() -> None:
     x = LINE[::4]
     y = TRUTH[::4] ** 2 + 0.01 * scatter(3)[::4]

@@ -72,7 +72,8 @@ def test_the_doubt_includes_what_the_modes_leave_out() -> None:
     fitted = PcaGP(modes=1, restarts=0).fit(x, shapes)
     answer = fitted.predict(x)
     left_out = fitted.basis.truncation.reshape(5, 3)
-    assert (answer.std >= left_out).all()
+    # Variances are added, and the root of a sum with next to nothing may round down.
+    assert (answer.std >= left_out * (1.0 - 1e-12)).all()
     inside = np.mean(np.abs(answer.mean - shapes) < 1.96 * answer.std)
     assert 0.88 < inside <= 1.0
 

@@ -14,6 +14,7 @@ def low(x: np.ndarray) -> np.ndarray:
     return np.sin(12.0 * x[:, 0])
 
 
+@pytest.mark.slow
 def test_a_ratio_and_a_drift_are_learned_from_few_points() -> None:
     def high(x: np.ndarray) -> np.ndarray:
         return 2.5 * low(x) + x[:, 0]
@@ -25,6 +26,7 @@ def test_a_ratio_and_a_drift_are_learned_from_few_points() -> None:
     assert coverage(high(NEW), answer.mean, answer.std) > 0.8
 
 
+@pytest.mark.slow
 def test_what_is_no_ratio_needs_more_than_a_line() -> None:
     levels = [(X1, low(X1)), (X1[::3], low(X1[::3]) ** 2)]
     models = (AR1(restarts=1, ensemble="never"), NARGP(restarts=1, ensemble="never"))
@@ -33,6 +35,7 @@ def test_what_is_no_ratio_needs_more_than_a_line() -> None:
     assert rmse(truth, bent) < 0.2 * rmse(truth, straight)
 
 
+@pytest.mark.slow
 def test_its_ratio_carries_doubt_up_exactly() -> None:
     # Where level 2 is a ratio of level 1 and nothing else, so is its spread.
     few = X1[::5]
@@ -42,6 +45,7 @@ def test_its_ratio_carries_doubt_up_exactly() -> None:
     assert np.median(above.std / below.std) == pytest.approx(3.0, rel=0.05)
 
 
+@pytest.mark.slow
 def test_it_is_saved_as_the_chain_that_it_is() -> None:
     fitted = AR1(restarts=0).fit([(X1, low(X1)), (X2, 2.0 * low(X2))])
     back = decode(*encode(fitted))

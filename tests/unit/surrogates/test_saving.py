@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+from functools import cache
 
 import numpy as np
 import pytest
@@ -12,6 +13,8 @@ from seacage.surrogates import (
     NARGP,
     FittedGaussianProcess,
     FittedNARGP,
+    FittedPcaGP,
+    FittedShapeGP,
     GaussianProcess,
     PcaGP,
     ShapeGP,
@@ -24,25 +27,29 @@ Y = np.sin(2.0 * X[:, 0]) + X[:, 1]
 SHAPES = np.sin(X @ np.random.default_rng(1).standard_normal((2, 12))).reshape(25, 4, 3)
 
 
+@cache
 def process() -> FittedGaussianProcess:
     return GaussianProcess(restarts=0, ensemble="never").fit(X, Y)
 
 
+@cache
 def two_levels() -> FittedNARGP:
     return NARGP(restarts=0).fit([(X, Y), (X[::2], Y[::2] ** 2)])
 
 
-@pytest.mark.parametrize(
-    "fitted",
-    [
-        process(),
-        two_levels(),
-        PcaGP(modes=2, restarts=0).fit(X, SHAPES),
-        ShapeGP(restarts=0).fit(X, SHAPES),
-    ],
-    ids=lambda fitted: type(fitted).__name__,
-)
-def test_decoding_finds_the_kind_of_what_was_encoded(fitted) -> None:
+@cache
+def components() -> FittedPcaGP:
+    return PcaGP(modes=2, restarts=0).fit(X, SHAPES)
+
+
+@cache
+def shapes() -> FittedShapeGP:
+    return ShapeGP(restarts=0).fit(X, SHAPES)
+
+
+@pytest.mark.parametrize("fit", [process, two_levels, components, shapes])
+def test_decoding_finds_the_kind_of_what_was_encoded(fit) -> None:
+    fitted = fit()
     settings, arrays = encode(fitted)
     back = decode(json.loads(json.dumps(settings)), arrays)
     assert type(back) is type(fitted)
@@ -50,13 +57,14 @@ def test_decoding_finds_the_kind_of_what_was_encoded(fitted) -> None:
 
 
 def test_what_a_fitted_model_says_of_itself_is_saved() -> None:
-    pca = PcaGP(modes=2, restarts=0).fit(X, SHAPES)
+    pca = components()
     back = decode(*encode(pca))
     assert (back.modes, back.explained_variance) == (pca.modes, pca.explained_variance)
-    shape = ShapeGP(restarts=0).fit(X, SHAPES)
+    shape = shapes()
     assert decode(*encode(shape)).compression_error_m == shape.compression_error_m
 
 
+@pytest.mark.slow
 def test_a_lent_level_1_is_not_saved_twice() -> None:
     base = GaussianProcess(restarts=0).fit(X, np.stack([Y, Y**2], axis=1)).output(0)
     fitted = NARGP(restarts=0).fit([(X[::2], Y[::2] ** 2)], lower=base)
@@ -67,6 +75,7 @@ def test_a_lent_level_1_is_not_saved_twice() -> None:
     np.testing.assert_array_equal(back.predict(X).std, fitted.predict(X).std)
 
 
+@pytest.mark.slow
 def test_a_lent_level_1_has_to_be_given_back() -> None:
     lent = NARGP(restarts=0).fit([(X, Y**2)], lower=process())
     with pytest.raises(ModelError, match="needs its level 1 given"):

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from scipy import stats
 
 from seacage.conventions import InputError
 from seacage.surrogates import block_bootstrap, coverage, crps, mae, mnll, rmse, skill
@@ -22,6 +21,8 @@ def test_a_table_scores_as_its_entries() -> None:
 
 
 def test_the_crps_is_the_integral_of_the_squared_distance_of_distributions() -> None:
+    from scipy import stats
+
     at = np.linspace(-30.0, 30.0, 200_001)
     expected = []
     for truth, mean, std in zip(TRUTH, MEAN, STD, strict=True):
@@ -37,6 +38,8 @@ def test_the_crps_of_a_sure_prediction_is_its_absolute_error() -> None:
 
 
 def test_the_likelihood_is_that_of_the_normal_distribution() -> None:
+    from scipy import stats
+
     expected = -np.mean(stats.norm.logpdf(TRUTH, MEAN, STD))
     assert mnll(TRUTH, MEAN, STD) == pytest.approx(expected)
 

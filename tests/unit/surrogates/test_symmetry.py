@@ -86,7 +86,7 @@ def test_images_share_their_say_without_a_jump() -> None:
     shares = symmetry.shares(metocean_features(out))
     np.testing.assert_allclose(shares[0], 1.0 / 8.0)
     assert np.abs(np.diff(shares, axis=0)).max() < 0.01
-    assert shares[-1].max() == 1.0
+    assert shares[-1].max() == pytest.approx(1.0, rel=1e-12)  # shares of a sum
 
 
 def test_a_net_that_does_not_fall_on_itself_is_refused() -> None:

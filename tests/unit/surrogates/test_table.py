@@ -112,6 +112,7 @@ def test_a_level_of_a_multilevel_model_has_a_table_of_its_own(nargp) -> None:
     assert error.max() < 0.05
 
 
+@pytest.mark.slow
 def test_precision_below_the_least_std_is_not_paid_for() -> None:
     x = np.random.default_rng(10).uniform(-1.0, 1.0, (40, 1))
     certain = GaussianProcess(restarts=0).fit(x, np.sin(4.0 * x[:, 0]))
@@ -124,6 +125,7 @@ def test_precision_below_the_least_std_is_not_paid_for() -> None:
     assert missed.max() < 1e-5
 
 
+@pytest.mark.slow
 def test_the_spread_may_be_followed_less_closely_than_the_mean() -> None:
     x = np.random.default_rng(10).uniform(-1.0, 1.0, (40, 1))
     certain = GaussianProcess(restarts=0).fit(x, np.sin(4.0 * x[:, 0]))

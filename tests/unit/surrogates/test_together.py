@@ -18,24 +18,24 @@ def low(x: np.ndarray) -> np.ndarray:
     return np.sin(4.0 * x[:, 0]) + x[:, 1] ** 2
 
 
-BASE = GaussianProcess(restarts=0).fit(X1, low(X1))
+@pytest.fixture(scope="module")
+def models() -> tuple[FittedNARGP, ...]:
+    base = GaussianProcess(restarts=0).fit(X1, low(X1))
 
+    def taught(model: AbstractMultifidelity, points: int, size: float) -> FittedNARGP:
+        x = X1[:points]
+        noise = 0.05 * np.random.default_rng(points).standard_normal(points)
+        value = size * (1.3 * low(x) + 0.4 * low(x) ** 2 - x[:, 1] + noise)
+        return model.fit([(x, value)], lower=base)
 
-def taught(model: AbstractMultifidelity, points: int, size: float) -> FittedNARGP:
-    x = X1[:points]
-    noise = 0.05 * np.random.default_rng(points).standard_normal(points)
-    value = size * (1.3 * low(x) + 0.4 * low(x) ** 2 - x[:, 1] + noise)
-    return model.fit([(x, value)], lower=BASE)
-
-
-MODELS = (
-    taught(NARGP(restarts=0, ensemble="never"), 45, 1.0),
-    taught(NARGP(restarts=0, ensemble="never", linear=False), 30, 2e4),
-    taught(AR1(restarts=0, ensemble="never"), 38, 5.0),
-    taught(NARGP(restarts=0, noise="by-input", ensemble="never"), 41, 0.1),
-    taught(NARGP(restarts=0, noise="per-output", ensemble="never"), 41, 0.1),
-    taught(NARGP(restarts=0, ensemble="always"), 12, 1.0),
-)
+    return (
+        taught(NARGP(restarts=0, ensemble="never"), 45, 1.0),
+        taught(NARGP(restarts=0, ensemble="never", linear=False), 30, 2e4),
+        taught(AR1(restarts=0, ensemble="never"), 38, 5.0),
+        taught(NARGP(restarts=0, noise="by-input", ensemble="never"), 41, 0.1),
+        taught(NARGP(restarts=0, noise="per-output", ensemble="never"), 41, 0.1),
+        taught(NARGP(restarts=0, ensemble="always"), 12, 1.0),
+    )
 
 
 class Known:
@@ -67,20 +67,24 @@ def said(rows: int, models: int, spread: float) -> Prediction:
     return Prediction(mean=random.normal(0.0, 0.8, (rows, models)), std=std)
 
 
-@pytest.mark.parametrize("model", MODELS)
-def test_one_level_answers_what_its_model_answers(model: FittedNARGP) -> None:
-    agree((model,), NEW, said(len(NEW), 1, 0.01))
+@pytest.mark.parametrize("which", range(6))
+def test_one_level_answers_what_its_model_answers(
+    which: int, models: tuple[FittedNARGP, ...]
+) -> None:
+    agree((models[which],), NEW, said(len(NEW), 1, 0.01))
 
 
 @pytest.mark.parametrize("rows", [0, 1, 9])
 @pytest.mark.parametrize("spread", [0.0, 0.01, 2.0])
-def test_unlike_levels_answer_what_each_answers_alone(rows: int, spread: float) -> None:
+def test_unlike_levels_answer_what_each_answers_alone(
+    rows: int, spread: float, models: tuple[FittedNARGP, ...]
+) -> None:
     # With the largest spread their rules differ, from row to row and from level to level.
-    agree(MODELS, NEW[:rows], said(rows, len(MODELS), spread))
+    agree(models, NEW[:rows], said(rows, len(models), spread))
 
 
 def test_rows_that_are_too_many_to_hold_at_once_are_answered_alike(
-    monkeypatch: pytest.MonkeyPatch,
+    monkeypatch: pytest.MonkeyPatch, models: tuple[FittedNARGP, ...]
 ) -> None:
     monkeypatch.setattr(together, "CELLS", 2000)
-    agree(MODELS, NEW, said(len(NEW), len(MODELS), 0.5))
+    agree(models, NEW, said(len(NEW), len(models), 0.5))

@@ -50,6 +50,9 @@ def test_a_fault_that_has_no_limit_of_its_own_is_judged_as_lost_history_is():
         ({"load": {"severity": 5000}}, "alarms, load: Limit: severity = 5000"),
         ({"load": {"raise_at": 0.1}}, "alarms, load: Limit: clear_at = 0.7 is above"),
         ({"load": {"raise_at": float("nan")}}, "is no number"),
+        ({"load": {"raise_at": float("inf")}}, "raise_at = inf is no number or not finite"),
+        ({"load": {"clear_at": float("-inf")}}, "clear_at = -inf"),
+        ({"load": {"repeat_after_s": float("inf")}}, "repeat_after_s = inf"),
     ],
 )
 def test_a_table_that_makes_no_sense_is_refused_in_a_sentence(table, says):
@@ -67,3 +70,9 @@ def test_without_a_cage_any_source_of_a_known_kind_may_have_a_limit():
         repeat_after_s=1800.0,
         severity=700,
     )
+
+
+@pytest.mark.parametrize("number", ["raise_at", "clear_at", "on_delay_s", "repeat_after_s"])
+def test_a_limit_is_made_of_finite_numbers(number):
+    with pytest.raises(InputError, match="not finite"):
+        Limit(**{"raise_at": 1.0, "clear_at": 0.5, number: float("inf")})

@@ -39,6 +39,7 @@ def test_more_hours_of_the_same_readings_are_trusted_more():
     assert 1.0 < hour < days
 
 
+@pytest.mark.slow
 def test_a_correction_carries_to_water_that_its_lesson_never_saw():
     x = np.linspace(0.0, 1.0, 60)[:, None]
     lower = GaussianProcess().fit(x, 10.0 * x[:, 0] ** 2)
@@ -69,6 +70,7 @@ def taught_by(value, low, every):
     return Correction.learned(pairs, x, said, restarts=0, seed=0), pairs
 
 
+@pytest.mark.slow
 def test_a_lesson_of_noise_alone_is_seldom_believed():
     random = np.random.default_rng(5)
     low = np.sin(np.arange(72) / 7.0)

@@ -1,12 +1,14 @@
+import hmac
 import json
 import shutil
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from seacage.conventions import ModelError
+from seacage.conventions import InputError, ModelError
 from seacage.testing import stand_in_seas, stand_in_twin
-from seacage.twin import Twin
+from seacage.twin import Twin, read_key
 
 
 @pytest.fixture(scope="module")
@@ -124,3 +126,139 @@ def test_a_folder_of_something_else_is_left_alone(tmp_path):
     with pytest.raises(ModelError, match="is not a twin's folder"):
         stand_in_twin().write(tmp_path)
     assert (tmp_path / "thesis.tex").read_text() == "years of work"
+
+
+# --- what would fill the memory, or is no number --------------------------------------------------
+
+
+def test_a_huge_file_is_refused_by_its_size(copy):
+    with (copy / "model.json").open("r+b") as file:
+        file.truncate(300 << 20)
+    with pytest.raises(ModelError, match=r"model\.json .*has 314572800 bytes"):
+        Twin.read(copy)
+
+
+@pytest.mark.parametrize("name", ["model.json", "arrays.safetensors", "manifest.json"])
+def test_a_link_in_a_twins_folder_is_refused_even_one_to_the_right_bytes(copy, tmp_path, name):
+    for target in ((copy / name).rename(tmp_path / name), Path("/dev/zero")):
+        (copy / name).unlink(missing_ok=True)
+        (copy / name).symlink_to(target)
+        with pytest.raises(ModelError, match=f"{name}: .*no regular file"):
+            Twin.read(copy)
+
+
+def changed(settings, path, value):
+    *parts, last = path
+    inner = settings
+    for part in parts:
+        inner = inner[part]
+    inner[last] = value
+    return settings
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "said"),
+    [
+        (("spreads", "shackle-1", "scale"), float("nan"), "NaN is no finite number"),
+        (("spreads", "shackle-1", "scale"), "nan", "Input should be a valid number"),
+        (("spreads", "shackle-1", "water_sd"), -1.0, "no spreads"),
+        (("spreads", "shackle-1", "scale"), -0.5, "no spreads"),
+        (("edge",), ["0", "inf"], "Input should be a valid number"),
+        (("watch", "future_s"), "inf", "Input should be a valid number"),
+        (("buoy",), "../../etc/passwd", "no stream's name"),
+    ],
+)
+def test_what_cannot_be_is_refused_though_it_is_sealed(copy, path, value, said):
+    settings = json.loads((copy / "model.json").read_text())
+    resealed(copy, changed(settings, path, value))
+    with pytest.raises(ModelError, match=said):
+        Twin.read(copy)
+
+
+def test_settings_that_lie_deep_are_refused(copy):
+    settings = json.loads((copy / "model.json").read_text())
+    deep = []
+    for _ in range(500):
+        deep = [deep]
+    resealed(copy, settings | {"more": deep})
+    with pytest.raises(ModelError, match="more than 32 deep"):
+        Twin.read(copy)
+
+
+# --- signatures -----------------------------------------------------------------------------------
+
+KEY = bytes(range(32))
+
+
+@pytest.fixture
+def signed(tmp_path):
+    stand_in_twin().write(tmp_path / "signed", key=KEY)
+    return tmp_path / "signed"
+
+
+def test_a_signed_twin_is_read_with_its_key_and_without_any(signed):
+    for key in (KEY, None):
+        assert Twin.read(signed, key=key).provenance == stand_in_twin().provenance
+
+
+def test_a_signature_is_hmac_sha256_over_the_manifest(signed):
+    manifest = (signed / "manifest.json").read_bytes()
+    expected = hmac.new(KEY, manifest, "sha256").hexdigest()
+    assert (signed / "manifest.hmac").read_text() == expected + "\n"
+
+
+def test_an_unsigned_twin_is_refused_where_there_is_a_key(copy):
+    with pytest.raises(ModelError, match="is not signed"):
+        Twin.read(copy, key=KEY)
+
+
+def test_a_twin_of_another_key_is_refused(signed):
+    with pytest.raises(ModelError, match="signed by another key"):
+        Twin.read(signed, key=bytes(32))
+
+
+def test_who_seals_a_changed_twin_again_cannot_sign_it(signed):
+    settings = json.loads((signed / "model.json").read_text())
+    resealed(signed, settings)  # the same content, written otherwise
+    assert Twin.read(signed)
+    resealed(signed, settings | {"edge": [0.0, 1.0]})
+    with pytest.raises(ModelError, match="signed by another key"):
+        Twin.read(signed, key=KEY)
+
+
+@pytest.mark.parametrize("length", [0, 10, 64, 65, 70])
+def test_a_signature_of_another_length_is_no_signature(signed, length):
+    path = signed / "manifest.hmac"
+    path.write_bytes((path.read_bytes() * 2)[:length].ljust(length, b"0"))
+    if length != 65:
+        with pytest.raises(ModelError, match="signed by another key"):
+            Twin.read(signed, key=KEY)
+
+
+def key_file(path, content, rights=0o600):
+    path.write_bytes(content)
+    path.chmod(rights)
+    return path
+
+
+def test_a_key_is_read_to_the_last_byte(tmp_path):
+    assert read_key(key_file(tmp_path / "key", KEY + b"\n", 0o400)) == KEY + b"\n"
+
+
+@pytest.mark.parametrize("rights", [0o640, 0o604, 0o620, 0o666])
+def test_a_key_that_others_may_use_is_refused(tmp_path, rights):
+    with pytest.raises(InputError, match=f"rights {rights:o}.*chmod 600"):
+        read_key(key_file(tmp_path / "key", KEY, rights))
+
+
+@pytest.mark.parametrize(
+    ("content", "said"), [(b"", "0 bytes"), (KEY[:15], "15 bytes"), (bytes(5000), "at most 4096")]
+)
+def test_a_key_that_can_be_guessed_or_is_none_is_refused(tmp_path, content, said):
+    with pytest.raises(InputError, match=said):
+        read_key(key_file(tmp_path / "key", content))
+
+
+def test_a_key_that_is_not_there_is_named(tmp_path):
+    with pytest.raises(InputError, match="nowhere: the file cannot be read"):
+        read_key(tmp_path / "nowhere")

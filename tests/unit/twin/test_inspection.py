@@ -47,6 +47,7 @@ def test_within_a_part_one_can_swim_from_waypoint_to_waypoint():
     assert np.abs(np.diff(way.position[:, 2])).max() < 9.0
 
 
+@pytest.mark.slow
 def test_rows_come_back_the_way_they_went_and_a_spiral_never_turns():
     net = net_in(stand_in_twin(), 0.0, 0.0)
 

@@ -133,10 +133,12 @@ def test_a_sensor_that_is_far_off_is_told_within_hours_and_no_other(name):
     assert "more" in watch.said[f"irregular.{name}"]
 
 
+@pytest.mark.slow
 def test_quiet_days_raise_nothing():
     assert Watched().through(quiet(5, 5.0)).raised == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("way", [1.0, -1.0])
 def test_a_drift_raises_its_sensor_alone_and_within_days(way):
     days = 6
@@ -150,6 +152,7 @@ def test_a_sensor_that_is_usually_off_by_as_much_is_not_raised():
     assert Watched().through(quiet(9, 3.0) + only("depth-2", 0.8 * OWN[1])).raised == []
 
 
+@pytest.mark.slow
 def test_a_sensor_that_was_mended_is_believed_within_two_days():
     watch = learned().through(quiet(11, 1.0) + only("depth-1", 10.0 * OWN[0]))
     assert watch.active == {"irregular.depth-1"}

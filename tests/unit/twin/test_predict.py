@@ -6,7 +6,7 @@ import pytest
 from seacage.conventions import Flag, InputError
 from seacage.ocean import SeaState
 from seacage.testing import stand_in_campaign, stand_in_field, stand_in_seas, stand_in_twin
-from seacage.twin import Answered, Metocean, replay
+from seacage.twin import Answered, Metocean, interval_reason, replay
 
 
 def numbers(answer):
@@ -134,8 +134,85 @@ def test_still_water_leaves_the_whole_volume():
 def test_a_rope_never_pushes():
     answer = stand_in_twin().predict(stand_in_seas(40, seed=2, current_speed=2.0))
     assert answer.bridle_tension.mean.min() >= 0.0
-    assert answer.bridle_interval()[0].min() >= 0.0
     assert answer.bridle_low.min() >= 0.0
+
+
+def test_no_interval_reaches_below_a_slack_rope_or_above_the_surface():
+    answer = stand_in_twin().predict(stand_in_seas(40, seed=2, current_speed=2.0))
+    for lower, upper in (answer.bridle_interval(), answer.sensor_interval()):
+        assert np.nanmin(lower) == 0.0
+        assert (upper >= lower)[np.isfinite(lower)].all()
+
+
+def test_a_bridle_that_no_shackle_trained_has_a_spread_and_no_interval():
+    answer = stand_in_twin().predict(stand_in_seas(5))
+    (lower, upper), alone = answer.bridle_interval(), answer.bridle_level == 1
+    assert alone.sum() == 7
+    for end in (lower, upper):
+        assert np.isnan(end[:, alone]).all()
+        assert np.isfinite(end[:, ~alone]).all()
+    assert np.isfinite(answer.bridle_tension.std).all()
+    assert "No sensor has trained level 2" in str(interval_reason(1))
+    assert interval_reason(2) is None
+
+
+def test_a_sensor_that_trained_nothing_has_no_interval():
+    twin = stand_in_twin()
+    bare = replace(twin, models=replace(twin.models, upper={}))
+    lower, upper = bare.predict(stand_in_seas(5)).sensor_interval()
+    assert np.isnan(lower).all()
+    assert np.isnan(upper).all()
+
+
+def half_a_tide():
+    """A twin whose level 2 of a shackle was trained by water that ran west alone."""
+    twin = stand_in_twin()
+    model = twin.models.upper["shackle-1"]
+    (process,) = model.rest.upper
+    west = process.cases()[:, 1] < -0.1
+    members = tuple(
+        one.reconditioned(one.x[west], one.observed()[west], doubt=one.doubt[west])
+        for one in process.members
+    )
+    trained = replace(model, rest=replace(model.rest, own=(replace(process, members=members),)))
+    return replace(twin, models=twin.models.taught("shackle-1", trained)), process.cases()[west]
+
+
+def test_level_2_outside_its_own_domain_is_labelled_and_widened():
+    twin, trained = half_a_tide()
+    # The nearest water that trained it to a current to the east is the least westerly.
+    north = np.clip(0.0, trained[:, 2].min(), trained[:, 2].max())
+    velocity = [trained[len(trained) // 2, 1:3], [0.4, 0.0], [trained[:, 1].max(), north]]
+    still = Metocean.of([SeaState(current_speed=0.0, current_to=0.0)] * 3)
+    water = replace(still, current_velocity=np.array(velocity))
+    answer, whole = twin.predict(water), stand_in_twin().predict(water)
+    assert answer.in_domain.all()
+    column = answer.sensor_names.index("shackle-1")
+    line = twin.cage.shackles[0].bridle
+    assert answer.sensor_in_domain[:2, column].tolist() == [True, False]
+    assert answer.bridle_in_domain[:2, line].tolist() == [True, False]
+    # The other sensors were trained all round, and level 1 alone answers the other bridles.
+    others = [k for k in range(len(answer.sensor_names)) if k != column]
+    assert answer.sensor_in_domain[:2, others].all()
+    assert np.delete(answer.bridle_in_domain[:2], line, axis=1).all()
+    np.testing.assert_allclose(answer.sensor.std[:, others], whole.sensor.std[:, others])
+    step = abs(answer.sensor.mean[1, column] - answer.sensor.mean[2, column])
+    assert answer.sensor.std[1, column] >= 0.99 * step > whole.sensor.std[1, column]
+    assert answer.bridle_tension.std[1, line] >= 0.99 * step
+
+
+def test_slack_and_fast_water_are_outside_what_trained_level_2():
+    twin, trained = half_a_tide()
+    least, most = trained[:, 0].min(), trained[:, 0].max()
+    assert most < 0.9
+    seas = [
+        SeaState(current_speed=0.5 * least, current_to=270.0),
+        SeaState(current_speed=0.99, current_to=270.0),
+    ]
+    answer = twin.predict(seas)
+    column = answer.sensor_names.index("shackle-1")
+    assert answer.in_domain.all()
+    assert not answer.sensor_in_domain[:, column].any()
 
 
 def test_faster_water_than_was_trained_is_answered_and_said_to_be():

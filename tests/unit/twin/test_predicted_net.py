@@ -41,6 +41,7 @@ def test_what_is_expected_is_the_net_less_its_known_drift():
     assert 1.1 < away.sigma[0] < 2.0
 
 
+@pytest.mark.slow
 def test_of_a_hundred_foretellings_so_many_come_true():
     random = np.random.default_rng(5)
     foretold, happened = [], []
@@ -109,7 +110,11 @@ def test_a_paths_closest_approach_is_where_its_points_are_nearest_and_its_bounds
     path = np.array([[0.0, 0.0, -5.0], [15.0, 0.0, -8.0], [15.0, 12.0, -8.0]])
     said = net.along(path)
     assert said.clearance.distance[said.closest] == said.clearance.distance.min()
-    assert said.clearance.p_below.max() <= said.p_least <= said.p_below <= said.p_most <= 1.0
+    # Where one point decides, bound and probability are the same sum added in two orders.
+    rounding = 1 + 1e-12
+    assert said.clearance.p_below.max() <= said.p_least * rounding
+    assert said.p_least <= said.p_below * rounding <= said.p_most * rounding**2
+    assert said.p_most <= 1.0
     through = net.along(np.array([[0.0, 0.0, -5.0], [60.0, 0.0, -5.0]]))
     assert through.p_below > 0.99
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from seacage.conventions import Flag, InputError
-from seacage.records import Sample
+from seacage.records import Amendment, Sample
 from seacage.testing import stand_in_twin
 from seacage.twin import Answered, Flagged, StreamBack, StreamSilent, TwinState, replay
 
@@ -152,12 +152,42 @@ def test_a_late_reading_beside_a_spike_shows_that_it_was_none():
     assert state.amended == ()
 
 
-def test_a_sample_later_than_the_disorder_allowed_is_set_aside():
-    state, events = played(buoy(30), buoy(0))
-    (late,) = only(events, Flagged)
-    assert not late.used
-    assert "more than 600 s after a later one" in late.reason
-    assert state == played(buoy(30))[0]
+def test_a_late_sample_governs_where_nothing_later_is_known():
+    waves = {"hs_m": 1.5, "tp_s": 6.0, "wave_from_deg": 250.0}
+    late = Sample(stream="buoy-1", t=NOON, values=waves)
+    state, _ = played(buoy(30), late, late)
+    assert [taken.sample.t for taken in state.streams["buoy-1"]][-1] == NOON + timedelta(minutes=30)
+    assert state.streams["buoy-1"][-1].newest["hs_m"].values == waves
+    newer = Sample(stream="buoy-1", t=NOON + timedelta(minutes=10), values={**waves, "hs_m": 1.7})
+    state, _ = played(buoy(30), newer, late)
+    assert state.streams["buoy-1"][-1].newest["hs_m"].values["hs_m"] == 1.7
+
+
+def test_a_sample_that_carries_flags_is_believed():
+    twin = stand_in_twin()
+    checked = replace(buoy(), flags={"current_speed_m_s": Flag.FAIL, "current_to_deg": Flag.GOOD})
+    _, (flagged, answered) = twin.step(twin.start(), checked, NOON)
+    assert flagged.sample == checked
+    assert "current_speed_m_s is flagged 4" in answered.answer.reason[0]
+    wild = depth(1, 1e6)
+    believed = replace(wild, flags={"depth_m": Flag.GOOD})
+    state, events = twin.step(twin.start(), believed, wild.t)
+    assert events == ()
+    assert state.latest("depth-2") == believed
+
+
+def test_an_amendment_changes_the_reading_in_force_both_ways():
+    twin = stand_in_twin()
+    good = dict.fromkeys(buoy().values, Flag.GOOD)
+    state, _ = twin.step(twin.start(), replace(buoy(), flags=good), NOON)
+    for flag, was, valid in ((Flag.FAIL, Flag.GOOD, False), (Flag.GOOD, Flag.FAIL, True)):
+        change = Amendment(
+            stream="buoy-1", t=NOON, key="current_to_deg", flag=flag, was=was, remark="Why."
+        )
+        state, _ = twin.receive(state, [], NOON, amendments=[change])
+        state, (*_, answered) = twin.step(state, None, NOON)
+        assert bool(answered.answer.valid[0]) is valid
+        assert state.amended == ((change,) if flag > was else ())
 
 
 def test_a_sample_from_the_future_is_quarantined_and_its_clock_named():
@@ -169,11 +199,28 @@ def test_a_sample_from_the_future_is_quarantined_and_its_clock_named():
     assert state.latest("buoy-1") is None
 
 
-def test_a_sample_a_minute_ahead_is_taken():
+def test_a_sample_a_minute_ahead_is_taken_and_governs_when_its_time_has_come():
     twin = stand_in_twin()
-    _, (event,) = twin.step(twin.start(), buoy(minutes=1), NOON)
-    assert isinstance(event, Answered)
-    assert event.input_age_s == 0.0
+    state, events = twin.step(twin.start(), buoy(minutes=1), NOON)
+    assert events == ()
+    for minutes, valid in ((0.5, False), (1.0, True), (2.0, True)):
+        state, (event,) = twin.step(state, None, NOON + timedelta(minutes=minutes))
+        assert bool(event.answer.valid[0]) is valid
+    assert event.input_age_s == 60.0
+
+
+@pytest.mark.parametrize("back_s", [60.0, 3600.0, 3 * 3600.0, 400 * 86400.0])
+def test_a_clock_that_goes_back_leaves_the_newest_reading_that_is_not_ahead_of_it(back_s):
+    twin = stand_in_twin()
+    state, _ = twin.step(twin.start(), buoy(0, speed=0.2), NOON)
+    ahead = NOON + timedelta(seconds=back_s)
+    state, _ = twin.step(state, replace(buoy(speed=0.9), t=ahead), ahead)
+    for minutes in range(1, 6):
+        now = NOON + timedelta(seconds=10 * minutes)
+        speed = 0.3 + 0.01 * minutes
+        state, (event,) = twin.step(state, replace(buoy(speed=speed), t=now), now)
+        assert event.metocean.current_velocity[0, 0] == pytest.approx(speed)
+        assert event.input_age_s == 0.0
 
 
 def test_a_stream_that_this_cage_does_not_have_is_named():

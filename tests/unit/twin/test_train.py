@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seacage.cage import Cage
-from seacage.conventions import Flag, InputError, Origin
+from seacage.conventions import Flag, InputError, NonsenseError, Origin
 from seacage.testing import stand_in_campaign, stand_in_field, stand_in_seas, stand_in_twin
 from seacage.twin import Training, align, train, update
 
@@ -59,6 +59,7 @@ def test_without_a_field_record_everything_answers_at_level_one():
     assert answer.sensor.mean == pytest.approx(answer.sensor_low.mean)
 
 
+@pytest.mark.slow
 def test_a_sensor_with_too_few_sound_readings_stays_at_level_one():
     field = with_sensors(stand_in_field(coarse(), days=1.0), "depth-1", "depth-2")
     bad = field.sensors["depth-2"]
@@ -79,6 +80,7 @@ def test_a_sensor_without_any_sound_reading_stays_at_level_one():
     assert twin.origin == Origin.COMPUTED
 
 
+@pytest.mark.slow
 def test_a_sensor_moved_to_another_bridle_is_trained_from_the_same_campaign():
     cage = coarse()
     moved = replace(
@@ -90,6 +92,7 @@ def test_a_sensor_moved_to_another_bridle_is_trained_from_the_same_campaign():
     assert np.flatnonzero(answer.bridle_level == 2).tolist() == [moved.shackles[0].bridle]
 
 
+@pytest.mark.slow
 def test_training_twice_with_one_seed_gives_one_twin():
     field = with_sensors(stand_in_field(coarse(), days=1.0), "depth-1", "shackle-1")
     once, twice = (taught_by(field).predict(stand_in_seas(5, seed=9)) for _ in range(2))
@@ -97,6 +100,7 @@ def test_training_twice_with_one_seed_gives_one_twin():
     np.testing.assert_array_equal(once.node_position, twice.node_position)
 
 
+@pytest.mark.slow
 def test_the_papers_choice_is_the_first_readings_in_a_row():
     field = with_sensors(stand_in_field(coarse(), days=1.0), "depth-1")
     spread, paper = (
@@ -141,6 +145,7 @@ def moved(cage):
     )
 
 
+@pytest.mark.slow
 def test_moved_and_added_sensors_are_taught_alone_and_all_else_stays_what_it_was():
     base, cage = stand_in_twin(), moved(coarse())
     twin = train(cage, None, stand_in_field(cage), base=base, training=FEW)
@@ -181,6 +186,25 @@ def test_a_base_that_asks_for_other_inputs_is_refused():
         )
 
 
+def test_inputs_that_nobody_measured_are_refused_by_their_key():
+    training = replace(FEW, inputs=("current", "waves"))
+    campaign = stand_in_campaign(coarse(), stand_in_seas(40))
+    field = stand_in_field(coarse(), days=1.0)
+    with pytest.raises(NonsenseError, match="buoy-1 has no hs_m, which the inputs current,waves"):
+        train(coarse(), campaign, field, training=training)
+    none = np.full(len(field.buoy), np.nan)
+    values = {**field.buoy.values, "hs_m": none, "wave_from_deg": none}
+    never = replace(field, buoy=replace(field.buoy, values=values, flags={}))
+    with pytest.raises(NonsenseError, match="buoy-1 has no hs_m"):
+        train(coarse(), campaign, never, training=training)
+
+
+def test_a_campaign_in_still_water_teaches_no_waves():
+    campaign = stand_in_campaign(coarse(), stand_in_seas(40))
+    with pytest.raises(NonsenseError, match="the campaign has no waves"):
+        train(coarse(), campaign, training=replace(FEW, inputs=("current", "waves")))
+
+
 def test_a_campaign_or_a_base_is_needed_and_not_both():
     for given in (None, stand_in_campaign(coarse(), stand_in_seas(40))):
         with pytest.raises(InputError, match="either a campaign"):
@@ -214,6 +238,7 @@ def test_without_new_readings_an_update_changes_nothing():
     assert twin.models.upper == base.models.upper
 
 
+@pytest.mark.slow
 def test_a_short_lesson_is_calibrated_by_sensors_that_stayed_and_a_long_one_by_itself():
     lessons = stand_in_twin().provenance.lessons
     assert lessons["depth-1"].calibrated == "own"
@@ -228,11 +253,13 @@ def test_a_short_lesson_is_calibrated_by_sensors_that_stayed_and_a_long_one_by_i
     assert longer.provenance.lessons["shackle-1"].calibrated == "carried"
 
 
+@pytest.mark.slow
 def test_a_short_lesson_that_nobody_stayed_beside_is_judged_by_its_own_hours():
     field = with_sensors(stand_in_field(coarse(), days=1.0), "shackle-1")
     assert taught_by(field).provenance.lessons["shackle-1"].calibrated == "own"
 
 
+@pytest.mark.slow
 def test_the_papers_choice_is_a_few_minutes_of_depth_and_a_few_seconds_of_load():
     field = stand_in_field(coarse(), days=1.0, sensor_s=2.0)
     field = with_sensors(field, "depth-1", "shackle-1")

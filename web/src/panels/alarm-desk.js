@@ -68,13 +68,31 @@ export class AlarmDesk {
     try {
       await this.model.call("POST", this.path(`alarms/${encodeURIComponent(id)}/${action}`), { why, seconds });
     } catch (error) {
-      if (error.status === FORBIDDEN) {
-        this.denied = true;
-        this.#tell();
-      }
+      this.refused(error);
       throw error;
     }
     await this.look();
+  }
+
+  /** Acknowledge alarms of one cause together; what was done stays done where one is refused. */
+  async acknowledge(ids, { why }) {
+    try {
+      for (const id of ids) {
+        await this.model.call("POST", this.path(`alarms/${encodeURIComponent(id)}/acknowledge`), { why, seconds: null });
+      }
+    } catch (error) {
+      this.refused(error);
+      throw error;
+    } finally {
+      await this.look();
+    }
+  }
+
+  /** Remember that this token may not. */
+  refused(error) {
+    if (error.status !== FORBIDDEN) return;
+    this.denied = true;
+    this.#tell();
   }
 
   path(rest) {

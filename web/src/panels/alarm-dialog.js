@@ -29,12 +29,12 @@ export class AlarmDialog {
     document.body.append(this.dialog);
   }
 
-  /** Ask for a reason for an action on an alarm. */
-  ask(alarm, name) {
+  /** Ask for a reason for an action on an alarm, or for acknowledging a group of one cause. */
+  ask(alarm, name, group = null) {
     const action = ACTIONS[name];
-    Object.assign(this, { alarm, name });
-    write(this.title, action.title);
-    write(this.about, alarm.title);
+    Object.assign(this, { alarm, name, group });
+    write(this.title, group ? `Acknowledge these ${group.ids.length} alarms` : action.title);
+    write(this.about, group ? group.title : alarm.title);
     write(this.words, action.explain);
     write(this.go, action.word);
     write(this.label, action.demand ? "Why" : "Why (you may leave this empty)");
@@ -61,7 +61,8 @@ export class AlarmDialog {
     if (this.why.required && !why) return this.say("Say why: spaces alone tell the next shift nothing.");
     this.go.disabled = true;
     try {
-      await this.desk.act(this.alarm.id, this.name, { why, seconds });
+      if (this.group) await this.desk.acknowledge(this.group.ids, { why });
+      else await this.desk.act(this.alarm.id, this.name, { why, seconds });
       this.dialog.close();
     } catch (error) {
       this.say(error.message);

@@ -2,6 +2,7 @@
 
 import { make } from "../dom.js";
 import { ACTIONS, actionsFor } from "./alarm-actions.js";
+import { grouped, titleOf, unseen } from "./alarm-groups.js";
 import { empty, write } from "./dom.js";
 import { moment, unbroken } from "./format.js";
 import { icon, rankIcon } from "./icons.js";
@@ -32,9 +33,27 @@ export class AlarmList {
       alarm.active || !alarm.acknowledged || alarm.shelved || alarm.in_service === false);
     this.none.replaceChildren(...nothing(alarms, told, fault));
     const kept = document.activeElement?.dataset?.act;
-    this.list.replaceChildren(...ordered(told).map((alarm) => this.item(alarm)));
+    this.list.replaceChildren(...grouped(ordered(told)).map((group) => this.group(group)));
     // The list is made anew; whoever stood on a button still stands there.
     if (kept) this.list.querySelector(`[data-act="${CSS.escape(kept)}"]`)?.focus();
+  }
+
+  /** Alarms of one cause under one heading; one alone as it is. */
+  group(group) {
+    if (group.length === 1) return this.item(group[0]);
+    const [first] = group;
+    const how = rank(Math.max(...group.map(({ severity }) => severity)));
+    const title = titleOf(group);
+    const ids = unseen(group).map(({ id }) => id);
+    const item = make("li", { className: "alarm-group" },
+      make("header", {}, make("span", { className: "alarm-mark" }, rankIcon(how)),
+        make("div", { className: "alarm-words" }, make("h3", {}, title),
+          make("p", { className: "alarm-standing" }, together(group))),
+        ...(ids.length ? [this.button({ id: `group.${first.id}`, title }, "acknowledge",
+          { ids, title }, ids.length === group.length ? "Acknowledge all" : `Acknowledge ${ids.length}`)] : [])),
+      make("ol", { className: "alarms" }, ...group.map((alarm) => this.item(alarm))));
+    item.dataset.rank = waits(first) ? how : "quiet";
+    return item;
   }
 
   item(alarm) {
@@ -55,12 +74,12 @@ export class AlarmList {
     return item;
   }
 
-  button(alarm, name) {
+  button(alarm, name, group = null, word = ACTIONS[name].word) {
     const main = name === "acknowledge" ? " main" : "";
     const button = make("button", {
-      type: "button", className: `button small${main}`, ariaLabel: `${ACTIONS[name].word}: ${alarm.title}`,
-      onclick: () => (this.desk.denied ? this.refuse() : this.ask(alarm, name)),
-    }, ACTIONS[name].word);
+      type: "button", className: `button small${main}`, ariaLabel: `${word}: ${alarm.title}`,
+      onclick: () => (this.desk.denied ? this.refuse() : this.ask(alarm, name, group)),
+    }, word);
     button.dataset.act = `${alarm.id} ${name}`;
     if (this.desk.denied) {
       button.ariaDisabled = "true";
@@ -89,6 +108,14 @@ export class AlarmList {
       onclick: () => this.model.select(there),
     }, "Show")];
   }
+}
+
+/** Since when a group is there, and how it stands. */
+function together(group) {
+  const since = Math.min(...group.map((alarm) => Date.parse(alarm.since)).filter(Number.isFinite));
+  const open = unseen(group).length;
+  return unbroken(`${group[0].active ? "active" : "cleared"}, ${open || "all"} ${open ? "not " : ""}acknowledged`
+    + `${Number.isFinite(since) ? ` · since ${moment(since)}` : ""}`);
 }
 
 function facts(alarm) {

@@ -6,7 +6,7 @@ import { make } from "../dom.js";
 import { styled } from "../theme.js";
 import { write } from "./dom.js";
 import { fixed, half, known, moment, time, titled } from "./format.js";
-import { joined, nearest } from "./plotted.js";
+import { joined, nearest, widened } from "./plotted.js";
 
 const HEIGHT = 138;
 const [LOWER, UPPER, MEASURED, LOW, MEAN] = [1, 2, 3, 4, 5];
@@ -110,7 +110,7 @@ export class Chart {
     const mean = k < 0 ? null : this.rows[MEAN][k];
     const read = this.lastBefore(MEASURED, at);
     const measured = read < 0 ? null : this.rows[MEASURED][read];
-    const interval = { lower: this.rows[LOWER][k], upper: this.rows[UPPER][k] };
+    const interval = { mean, lower: this.rows[LOWER][k], upper: this.rows[UPPER][k] };
     const when = pointed && k >= 0 ? `${time(1000 * this.rows[0][k])}  ` : "";
     this.now.replaceChildren(when, make("b", {}, fixed(mean, decimals)),
       make("span", { className: "pm" }, ` ${half(interval, decimals)} ${known(mean) ? unit : ""}`),
@@ -153,11 +153,6 @@ export class Chart {
 
 const hidden = (label) => ({ label, stroke: "transparent", width: 0, points: { show: false } });
 
-function widened(low, high) {
-  if (!known(low) || !known(high)) return [0, 1];
-  const margin = Math.max(0.08 * (high - low), 0.02 * Math.abs(high), 0.05);
-  return [low - margin, high + margin];
-}
 
 /** So many decimals as the step between two marks has. */
 const places = ([first, second]) =>

@@ -1,15 +1,19 @@
 // The past as columns: the service's history, and what has come since.
 // Times are in s since 1970 UTC, as uPlot has them.
 
+import { possibleSeries } from "../bounds.js";
+
 const FAIL = 4; // of QARTOD
 const SAME_S = 0.002; // ages are rounded to a millisecond
 
 /** Read a history of the service. */
 export function columnsOf(history) {
-  const series = (table) => Object.fromEntries(Object.entries(table).map(([name, one]) => [name, {
-    unit: one.unit, level: one.level, low: [...one.low_fidelity], mean: [...one.mean],
-    lower: [...one.lower], upper: [...one.upper],
-  }]));
+  const series = (table) => Object.fromEntries(Object.entries(table).map(([name, raw]) => {
+    const one = possibleSeries(raw);
+    return [name, { unit: one.unit, level: one.level, reason: one.interval_reason ?? "",
+      low: one.low_fidelity, mean: one.mean,
+      lower: one.lower ?? one.mean.map(() => null), upper: one.upper ?? one.mean.map(() => null) }];
+  }));
   return {
     t: history.t.map(seconds),
     speed: [...history.current_speed_m_s],

@@ -1,19 +1,22 @@
 // A cage among others: what it does in three seconds, in a tile.
 
 import { make } from "../dom.js";
-import { bearing, beyond, counted, fixed, known, percent, span } from "./format.js";
+import { bearing, counted, fixed, known, percent, span } from "./format.js";
 import { icon } from "./icons.js";
 import { rank } from "./ranks.js";
+import { concerned } from "./verdict.js";
 import { waterArrow } from "./water-arrow.js";
 
 /** What a tile says: {kind, icon, words, detail}. */
-export function tileVerdict({ waiting, worst_severity: severity, worst_title: title, valid, in_domain: within, reason }) {
+export function tileVerdict(cage) {
+  const { waiting, worst_severity: severity, worst_title: title, valid, reason } = cage;
   if (waiting) {
     const kind = rank(severity);
     return { kind, icon: kind, words: counted(waiting, "alarm"), detail: title ?? "" };
   }
   if (!valid) return { kind: "none", icon: "none", words: "No valid input", detail: reason ?? "" };
-  if (!within) return { kind: "beyond", icon: "beyond", words: "Extrapolating", detail: beyond(reason) };
+  const concern = concerned(cage);
+  if (concern) return { kind: concern.kind, icon: concern.icon, words: concern.headline, detail: concern.detail };
   return { kind: "well", icon: "well", words: "All well", detail: "" };
 }
 
@@ -25,7 +28,7 @@ export function summed(cages) {
   return `${counted(cages.length, "cage")}, ${words[well] ?? `${well} of them well`}`;
 }
 
-const PLACE = { critical: 0, warning: 1, none: 2, note: 3, beyond: 4, well: 5 };
+const PLACE = { critical: 0, warning: 1, none: 2, note: 3, beyond: 4, caution: 5, well: 6 };
 
 /** The worst first, then by name. */
 export function byNeed(cages) {
@@ -50,7 +53,7 @@ export function tile(cage, { present, enter }) {
     make("span", { className: "tile-load" },
       make("span", { className: "share-line" }, make("span", { className: "share-bar" }, fill),
         make("span", { className: "share" }, percent(cage.max_utilisation))),
-      make("span", { className: "tile-note" }, "largest load, of capacity")),
+      make("span", { className: "tile-note" }, "largest known load, of capacity")),
     make("span", { className: "tile-sea" }, arrow, current),
     make("span", { className: "tile-age" }, known(cage.age_s) ? `input ${span(cage.age_s)} old` : "no input yet"));
   button.dataset.kind = kind;

@@ -28,9 +28,17 @@ export const percent = (share) => (known(share) ? `${Math.round(100 * share)} %`
 export const unbroken = (words) =>
   words.replace(/(\d) (?=%|(?:kN|m\/s|m|s|min|h|deg)\b)/g, "$1\u00a0");
 
-/** Half the width of an interval, as what follows the mean; never said to be nothing. */
+/**
+ * An interval, as what follows the mean: half its width, never said to be nothing; its ends where
+ * it reaches less far to one side, as where nothing can be below zero.
+ */
 export function half(interval, decimals = 1) {
-  if (!known(interval?.lower) || !known(interval?.upper)) return "";
+  const { mean, lower, upper } = interval ?? {};
+  if (!known(lower) || !known(upper)) return "";
+  const middle = (lower + upper) / 2;
+  if (known(mean) && Math.abs(middle - mean) > 0.6 * 10 ** -decimals) {
+    return `(${fixed(lower, decimals)} to ${fixed(upper, decimals)})`;
+  }
   const text = ((interval.upper - interval.lower) / 2).toFixed(decimals);
   return Number(text) ? `± ${text}` : `± <${(10 ** -decimals).toFixed(decimals)}`;
 }

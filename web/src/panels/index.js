@@ -61,6 +61,7 @@ export function mountPanels(model) {
     ...Object.fromEntries(TABS.map(({ name, key }) => [key, () => tabs.show(name, { focus: true })])),
     l: () => timeline.live(), " ": () => timeline.play(), ",": () => timeline.step(-1),
     ".": () => timeline.step(1), f: () => farm.open(), t: otherTheme, "?": () => help.open(),
+    v: () => model.options.set("view", model.options.view === "flat" ? "3d" : "flat"),
     Escape: () => model.select(null),
   });
 }

@@ -1,5 +1,6 @@
 // What is said of each bridle: as the twin answers, as simulated, as measured.
 
+import { knownLoad } from "../known-load.js";
 import { rank, waits } from "./ranks.js";
 
 /**
@@ -7,29 +8,33 @@ import { rank, waits } from "./ranks.js";
  * are those of the bridles in the scene.
  */
 export function loadRows(topology, state, colours = []) {
-  const read = new Map(state.sensors.map((sensor) => [sensor.name, sensor.measured]));
   const shackles = new Map(topology.shackles.map(({ name, bridle }) => [bridle, name]));
   const ranks = alarmed(state.alarms ?? []);
   return state.bridles.map((bridle, k) => {
     const capacity = topology.bridle_capacity_kn[k];
     const share = (kn) => (Number.isFinite(kn) ? kn / capacity : null);
-    const measured = read.get(shackles.get(k)) ?? null;
+    const measured = bridle.measured_kn ?? null;
+    const top = knownLoad(bridle, state);
     const interval = intervalOf(bridle);
     return {
       name: bridle.name, level: bridle.level, shackle: shackles.get(k) ?? null, capacity,
       kn: bridle.tension_kn.mean, interval, lowKn: bridle.low_fidelity_kn, measuredKn: measured,
       mean: bridle.utilisation, lower: share(interval?.lower), upper: share(interval?.upper),
       low: share(bridle.low_fidelity_kn), measured: share(measured),
-      colour: colours[k], rank: ranks.get(bridle.name) ?? ranks.get(shackles.get(k)) ?? null,
+      topKn: top?.kn ?? null, top: top?.share ?? null,
+      within: bridle.in_domain ?? true, reason: bridle.interval_reason ?? "", colour: colours[k],
+      // An alarm of the shackle, such as its silence, is none of the bridle.
+      rank: ranks.get(bridle.name) ?? null,
     };
   });
 }
 
 /**
- * Where the load of a bridle lies; null where no shackle has taught it. The simulation alone
- * knows how well it is followed, not how far it is off at sea.
+ * Where the load of a bridle lies; null where no honest interval is known, as where no shackle has
+ * taught it: the simulation alone knows how well it is followed, not how far it is off at sea.
  */
-export const intervalOf = (bridle) => (bridle?.level > 1 ? bridle.tension_kn : null);
+export const intervalOf = (bridle) =>
+  (bridle?.level > 1 && Number.isFinite(bridle.tension_kn.lower) ? bridle.tension_kn : null);
 
 /** The largest share that is to be seen. */
 export function largest(rows) {

@@ -2,6 +2,7 @@
 
 import { make } from "../dom.js";
 import { bridleColours } from "../scene/paint.js";
+import { noSpread } from "../scene/words.js";
 import { onTheme } from "../theme.js";
 import { explain, write } from "./dom.js";
 import { fixed, half, known, percent, plain, spoken, titled, withUnit } from "./format.js";
@@ -9,6 +10,7 @@ import { largest, loadRows } from "./load-rows.js";
 import { Rose } from "./rose.js";
 import { scaleFor } from "./scale.js";
 
+const NO_INTERVAL = "No interval is known here.";
 const HEADS = ["Bridle", "Twin", "Simulated", "Measured", "Of capacity"];
 
 export class Loads {
@@ -41,9 +43,8 @@ export class Loads {
     this.body.replaceChildren(...this.rows.map(({ row }) => row));
     const limits = topology.bridle_capacity_kn;
     const [low, high] = [Math.min(...limits), Math.max(...limits)];
-    write(this.caption, `Capacity ${low === high ? "" : `${fixed(low, 0)} to `}${fixed(high, 0)} kN ` +
-      "each; tensions in kN. Level 2 is taught by a shackle. Level 1 is simulation alone: its " +
-      "interval says how surely the simulation is known, not how far it is from the cage.");
+    this.capacity = `Capacity ${low === high ? "" : `${fixed(low, 0)} to `}${fixed(high, 0)} kN each; ` +
+      "tensions in kN. Level 2 is taught by a shackle, level 1 is simulation alone.";
     this.show();
     this.select();
   }
@@ -72,6 +73,10 @@ export class Loads {
       words: roseWords(loads, water),
     });
     loads.forEach((load, k) => fill(this.rows[k], load, this.end));
+    const reason = loads.find(({ kn, interval }) => known(kn) && !interval)?.reason;
+    const shape = view.position && !view.sigma ? noSpread(view.state) : "";
+    write(this.caption, [this.capacity, reason && `No interval at level 1: ${lowered(reason)}`,
+      shape && `No ±2σ of the net: ${lowered(shape)}`].filter(Boolean).join(" "));
   }
 
   select() {
@@ -86,25 +91,31 @@ export class Loads {
 
 function fill({ row, level, cells, fill: bar, share }, load, end) {
   const [twin, low, measured] = cells;
-  write(level, String(load.level));
-  level.title = load.level > 1 ? `level ${load.level}: taught by ${load.shackle ?? "a shackle"}`
-    : "level 1: simulation alone";
+  write(level, `${load.level}${load.within ? "" : " outside"}`);
+  level.classList.toggle("outside", !load.within);
+  level.title = (load.level > 1 ? `level ${load.level}: taught by ${load.shackle ?? "a shackle"}`
+    : "level 1: simulation alone")
+    + (load.within ? "" : ", and outside the training domain of this level");
   twin.replaceChildren(make("b", {}, fixed(load.kn)),
     make("span", { className: "pm" }, half(load.interval)));
+  twin.title = known(load.kn) && !load.interval ? load.reason || NO_INTERVAL : "";
   write(low, fixed(load.lowKn));
   write(measured, load.shackle ? fixed(load.measuredKn) : "");
-  measured.title = load.shackle && !known(load.measuredKn) ? `${plain(load.shackle)} is silent` : "";
-  write(share, percent(load.mean));
-  bar.style.width = `${Math.min(100, (100 * (load.mean ?? 0)) / Math.max(1, end))}%`;
-  bar.style.backgroundColor = known(load.mean) ? load.colour : "";
+  measured.title = load.shackle && !known(load.measuredKn)
+    ? `${plain(load.shackle)} has given no good reading within its timeout` : "";
+  write(share, percent(load.top));
+  bar.style.width = `${Math.min(100, (100 * (load.top ?? 0)) / Math.max(1, end))}%`;
+  bar.style.backgroundColor = known(load.top) ? load.colour : "";
   row.dataset.rank = load.rank ?? "";
 }
 
 function roseWords(loads, water) {
-  const known = loads.filter(({ mean }) => mean !== null);
-  if (!known.length) return "Rose of bridle loads: no valid input, no loads.";
-  const top = known.reduce((a, b) => (b.mean > a.mean ? b : a));
+  const loaded = loads.filter(({ top }) => known(top));
+  if (!loaded.length) return "Rose of bridle loads: no valid input, no loads.";
+  const most = loaded.reduce((a, b) => (b.top > a.top ? b : a));
   const flow = Number.isFinite(water?.current_to_deg) ? ` The current goes ${spoken(water.current_to_deg)}.` : "";
-  return `Rose of bridle loads, north up. Largest: ${plain(top.name)}, ` +
-    `${withUnit(top.kn, "kN")}, ${percent(top.mean)} of capacity.${flow} The table has all.`;
+  return `Rose of bridle loads, north up. Largest: ${plain(most.name)}, ` +
+    `${withUnit(most.topKn, "kN")}, ${percent(most.top)} of capacity.${flow} The table has all.`;
 }
+
+const lowered = (sentence) => sentence[0].toLowerCase() + sentence.slice(1);

@@ -1,6 +1,7 @@
 // The sea and the cage now, in four numbers.
 
 import { make } from "../dom.js";
+import { largestKnown } from "../known-load.js";
 import { write } from "./dom.js";
 import { DASH, bearing, compass, fixed, half, known, percent, plain } from "./format.js";
 import { intervalOf } from "./load-rows.js";
@@ -30,12 +31,14 @@ export class Now {
       towards("towards", water?.current_to_deg));
     this.current.turn(water?.current_to_deg);
     this.sayWaves(water);
-    const top = highest(state);
-    this.load.say(fixed(top?.tension_kn.mean), `${half(intervalOf(top))} kN`, top
-      ? `${plain(top.name)}, ${percent(top.utilisation)} of capacity${top.level > 1 ? "" : ", simulated"}` : "");
+    const top = largestKnown(state);
+    const interval = top && !top.by ? intervalOf(top.bridle) : null;
+    this.load.say(fixed(top?.kn), `${half(interval)} kN`, top ? loadWords(top) : "");
+    this.load.mark(concernOf(state, "load"));
     const share = state?.valid ? state.volume_fraction : null;
     this.volume.say(known(share) ? String(Math.round(100 * share)) : DASH, "%",
       known(share) ? "of that in still water" : "");
+    this.volume.mark(concernOf(state, "volume"));
     this.explain(state);
   }
 
@@ -50,18 +53,22 @@ export class Now {
   explain(state) {
     const silent = state?.silent ?? [];
     const words = !state ? ""
-      : !state.valid ? `${state.reason || "No usable reading yet."} Numbers come back with the next good reading.`
+      : !state.valid ? `${state.reason || "No usable reading yet."} Predictions come back with the next good reading.`
       : silent.length ? `Silent: ${silent.join(", ")}. The answer does without.` : "";
     this.why.hidden = !words;
     write(this.why, words);
   }
 }
 
-/** The bridle nearest its capacity; null without valid input. */
-export function highest(state) {
-  const loaded = state?.valid ? state.bridles.filter(({ utilisation }) => known(utilisation)) : [];
-  return loaded.length ? loaded.reduce((a, b) => (b.utilisation > a.utilisation ? b : a)) : null;
+/** Where a largest load is, how large, and who says so. */
+export function loadWords({ name, share, by, bridle }) {
+  const source = by ? `measured by ${plain(by)}` : bridle.level > 1 ? "predicted" : "simulated";
+  return `${plain(name)}, ${percent(share)} of capacity, ${source}`;
 }
+
+/** What is not well about something, in words; empty where nothing is. */
+const concernOf = (state, kind) =>
+  state?.concerns?.find((one) => one.kind === kind)?.message ?? "";
 
 function towards(word, degrees) {
   return known(degrees) ? `${word} ${bearing(degrees)} ${compass(degrees)}` : "";
@@ -76,5 +83,9 @@ function figure(name, pointer) {
     write(unit, number === DASH ? "" : its);
     write(note, words);
   };
-  return { box, say, turn: (degrees) => pointer.turn(degrees) };
+  const mark = (why) => {
+    box.toggleAttribute("data-beyond", Boolean(why));
+    box.title = why;
+  };
+  return { box, say, mark, turn: (degrees) => pointer.turn(degrees) };
 }

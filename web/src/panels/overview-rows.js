@@ -2,12 +2,29 @@
 
 import { rank } from "./ranks.js";
 
-/** The largest share of capacity over all bridles at each time; null where nothing is known. */
-export function largestOver(columns, capacities) {
+const TIMEOUT_S = 900; // of a shackle, so long its reading counts
+
+/** The readings of a shackle in force at each time; null where there is none. */
+function heldAt(times, { t, value }) {
+  let k = -1;
+  return times.map((now) => {
+    while (k + 1 < t.length && t[k + 1] <= now) k += 1;
+    return k >= 0 && now - t[k] <= TIMEOUT_S ? value[k] : null;
+  });
+}
+
+/**
+ * The largest share of capacity over all bridles at each time, predicted or measured; null where
+ * a bridle is not known.
+ */
+export function largestOver(columns, capacities, shackles = []) {
   const all = Object.values(columns.bridles).map(({ mean }, k) => [mean, capacities[k]]);
+  const measured = shackles.filter(({ name }) => columns.measured?.[name]).map(({ name, bridle }) =>
+    [heldAt(columns.t, columns.measured[name]), capacities[bridle]]);
   return columns.t.map((_, at) => {
     const shares = all.map(([mean, kn]) => (mean[at] === null ? null : mean[at] / kn));
-    return shares.includes(null) || !shares.length ? null : Math.max(...shares);
+    if (shares.includes(null) || !shares.length) return null;
+    return Math.max(...shares, ...measured.map(([value, kn]) => (value[at] ?? 0) / kn));
   });
 }
 

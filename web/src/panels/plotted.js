@@ -73,6 +73,13 @@ export function joined(rows, gap) {
   return [table.t, table.lower, table.upper, table.measured, table.low, table.mean];
 }
 
+/** The ends of an axis; nothing that is charted can be below zero, unless it was read so. */
+export function widened(low, high) {
+  if (!Number.isFinite(low) || !Number.isFinite(high)) return [0, 1];
+  const margin = Math.max(0.08 * (high - low), 0.02 * Math.abs(high), 0.05);
+  return [low < 0 ? low - margin : Math.max(0, low - margin), high + margin];
+}
+
 /** The place of the time nearest to one, in rows in time order; -1 in none. */
 export function nearest(times, t) {
   let [low, high] = [0, times.length - 1];

@@ -21,16 +21,20 @@ export function standing(alarm) {
   return alarm.acknowledged ? "cleared" : "cleared, not acknowledged";
 }
 
-/** Order: those that wait first, of these those nobody has seen, then by severity, then newest. */
+/** Order: those that are active, then those that have cleared and that nobody has seen, then those
+ * that are put aside; of each those nobody has seen first, then by severity, then newest. */
 export function ordered(alarms) {
-  const place = (alarm) => (waits(alarm) ? (alarm.acknowledged ? 1 : 0) : 2);
+  const place = (alarm) =>
+    (!waits(alarm) ? 4 : alarm.active ? 0 : 2) + (waits(alarm) && alarm.acknowledged ? 1 : 0);
   const since = (alarm) => (alarm.since ? Date.parse(alarm.since) : 0);
   return [...alarms].sort(
     (a, b) => place(a) - place(b) || b.severity - a.severity || since(b) - since(a));
 }
 
-/** The worst of those that wait; null if none does. */
+/** The worst of those that wait, one that is active before one that has cleared; null if none. */
 export function worst(alarms) {
   const waiting = alarms.filter(waits);
-  return waiting.length ? waiting.reduce((a, b) => (b.severity > a.severity ? b : a)) : null;
+  const isWorse = (a, b) =>
+    (a.active === b.active ? a.severity > b.severity : a.active);
+  return waiting.length ? waiting.reduce((a, b) => (isWorse(b, a) ? b : a)) : null;
 }

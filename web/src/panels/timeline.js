@@ -12,6 +12,7 @@ import { SPANS } from "./past.js";
 import { Playback, SPEEDS } from "./playback.js";
 
 const STEPS = 1000; // of the slider
+const NEAR = 0.2; // of the span: so near to an end its words make room
 
 export class Timeline {
   constructor(holder, model, past, desk) {
@@ -38,6 +39,7 @@ export class Timeline {
     this.paint = painted(() => this.show());
     model.on("topology", () => this.paint());
     model.on("view", ({ mode }) => this.seen(mode));
+    model.on("connection", () => this.paint());
     past.on(() => this.paint());
     desk.on(() => this.remark());
     onTheme(() => this.paint());
@@ -119,13 +121,21 @@ export class Timeline {
     const shown = this.travelled ?? end;
     this.slider.value = Math.round((STEPS * (shown - start)) / spanMs);
     this.slider.setAttribute("aria-valuetext", travels ? moment(shown) : "now");
-    write(this.label, travels ? moment(shown) : "now");
-    write(this.from, `${day(start)} ${time(start)}`);
-    write(this.to, moment(end));
-    const shares = columns && topology ? largestOver(columns, topology.bridle_capacity_kn) : [];
+    this.write((shown - start) / spanMs, travels ? moment(shown) : "", `${day(start)} ${time(start)}`);
+    const shares = columns && topology ? largestOver(columns, topology.bridle_capacity_kn, topology.shackles) : [];
     const times = shares.length ? columns.t : [];
     paintOverview(this.canvas, { times, shares, marks: this.marks, start, end,
       gap: topology?.stale_after_s ?? Infinity });
+  }
+
+  /** Write each time where it is: the begin, the time travelled to, and now at the end. */
+  write(share, travelled, from) {
+    write(this.label, travelled);
+    this.label.style.left = `${100 * Math.min(1, Math.max(0, share))}%`;
+    this.label.dataset.side = share < NEAR ? "left" : share > 1 - NEAR ? "right" : "";
+    write(this.from, travelled && share < NEAR ? "" : from);
+    const end = this.model.connection === "live" ? "now" : moment(this.past.end);
+    write(this.to, travelled && share > 1 - NEAR ? "" : end);
   }
 
   mode(mode) {

@@ -1,8 +1,10 @@
 // What has just happened, said once at the edge of the page.
 
 import { make } from "../dom.js";
+import { grouped, titleOf } from "./alarm-groups.js";
 import { fresh } from "./fresh.js";
 import { icon, rankIcon } from "./icons.js";
+import { sourceOf } from "./load-rows.js";
 import { rank } from "./ranks.js";
 import { sound } from "./sound.js";
 
@@ -27,10 +29,17 @@ export class Toasts {
   compare(alarms) {
     const news = this.before ? fresh(this.before, alarms) : [];
     this.before = alarms;
-    for (const alarm of news) this.put(rank(alarm.severity), alarm.title, alarm.message, true);
+    for (const group of grouped(news)) this.announce(group);
     const worst = ["critical", "warning", "note"]
       .find((one) => news.some(({ severity }) => rank(severity) === one));
     if (worst) sound(worst);
+  }
+
+  announce(group) {
+    const worst = group.reduce((a, b) => (b.severity > a.severity ? b : a));
+    const words = group.length === 1 ? worst.message
+      : group.map(({ id }) => sourceOf(id)).join(", ");
+    this.put(rank(worst.severity), titleOf(group), words, true);
   }
 
   put(how, title, words, isAlarm = false) {

@@ -1,13 +1,14 @@
 // The first line: what an operator has to know in three seconds.
 
-import { beyond, counted, moment, plain, span } from "./format.js";
+import { grouped, titleOf } from "./alarm-groups.js";
+import { beyond, counted, moment, plain, span, titled } from "./format.js";
 import { rank, waits, worst } from "./ranks.js";
 
 /**
  * One judgement on the whole: {kind, icon, headline, detail}.
  *
- * Worst first: no connection, then no valid input, then alarms, then an answer beyond what was
- * learned. Nothing is well without an input that says so.
+ * Worst first: no connection, then no valid input, then alarms, then what the service is concerned
+ * about and an answer beyond what was learned. Nothing is well without an input that says so.
  */
 export function judged({ connection, why = "", live }) {
   const state = live?.state;
@@ -31,29 +32,43 @@ function ofLoads(state) {
   const first = worst(alarms);
   if (first) {
     const kind = rank(first.severity);
-    const more = alarms.length > 1 ? ` and ${alarms.length - 1} more` : "";
+    const group = grouped(alarms).find((one) => one.includes(first));
+    const others = alarms.length - group.length;
+    const more = others ? ` and ${others} more` : "";
     const over = first.active ? "" : ", over by now";
     const told = state.in_domain || first.id.startsWith("domain.");
     const extra = told ? "" : " The twin is extrapolating.";
-    return said(kind, kind, counted(alarms.length, "alarm"), `${first.title}${over}${more}.${extra}`);
+    return said(kind, kind, counted(alarms.length, "alarm"), `${titleOf(group)}${over}${more}.${extra}`);
   }
-  if (!state.in_domain) {
-    return said("beyond", "beyond", "Extrapolating", beyond(state.reason));
+  return concerned(state) ?? said("well", "well", "All well", "Loads and net within their limits.");
+}
+
+/** What keeps a cage without alarms from being well; null where nothing does. */
+export function concerned({ in_domain: within, reason, concerns = [], silent = [] }) {
+  const [load] = concerns.filter(({ kind }) => kind === "load");
+  const messages = concerns.map(({ message }) => titled(message));
+  // A load at its limit has the colour of the alarm that it will raise.
+  if (load) return said("warning", "warning", load.title, messages.join(" "));
+  if (!within) return said("beyond", "beyond", "Extrapolating", [beyond(reason), ...messages].join(" "));
+  if (messages.length) return said("caution", "caution", concerns[0].title, messages.join(" "));
+  if (silent.length) {
+    return said("caution", "caution", "Partly measured", `Silent: ${silent.map(plain).join(", ")}.`);
   }
-  const silent = (state.silent ?? []).map(plain);
-  return said("well", "well", "All well",
-    silent.length ? `But silent: ${silent.join(", ")}.` : "Loads and net within their limits.");
+  return null;
 }
 
 function withoutInput(state) {
   const alarms = (state.alarms ?? []).filter(waits);
   const also = alarms.length ? ` ${counted(alarms.length, "alarm")}.` : "";
   if (state.age_s === null) {
-    return said("none", "wait", "Waiting for a first reading", `No loads are shown.${also}`);
+    return said("none", "wait", "Waiting for a first reading", `Nothing is predicted.${also}`);
   }
   const first = worst(alarms);
-  return said(first ? rank(first.severity) : "none", "none", "No valid input",
-    `${state.reason || "The newest reading is not usable."} No loads are shown.${also}`);
+  const load = (state.concerns ?? []).find(({ kind }) => kind === "load");
+  const kind = first ? rank(first.severity) : load ? "warning" : "none";
+  const measured = load ? `${titled(load.message)} ` : "";
+  return said(kind, "none", "No valid input",
+    `${measured}${state.reason || "The newest reading is not usable."} Nothing is predicted.${also}`);
 }
 
 const said = (kind, icon, headline, detail) => ({ kind, icon, headline, detail });

@@ -1,11 +1,11 @@
 // What if: another sea, and what the net and the loads would do in it.
 
 import { make } from "../dom.js";
+import { largestPredicted } from "../known-load.js";
 import { dial } from "./dial.js";
 import { write } from "./dom.js";
 import { bearing, beyond, compass, fixed, known, titled } from "./format.js";
 import { icon } from "./icons.js";
-import { highest } from "./now.js";
 import { change, choices, introduced, learnedWords, seaNow } from "./sea-wanted.js";
 
 export class WhatIf {
@@ -135,12 +135,12 @@ export class WhatIf {
 }
 
 function compared(now, then) {
-  const load = [highest(now), highest(then)];
+  const load = [largestPredicted(now), largestPredicted(then)];
   const share = (state) => (state?.valid && known(state.volume_fraction) ? 100 * state.volume_fraction : NaN);
   const least = (state) => (state?.valid ? Math.min(...depths(state)) : NaN);
   return [
-    row("Largest load", load.map((one) => one?.tension_kn.mean), "kN", 1),
-    row("Of its capacity", load.map((one) => 100 * (one?.utilisation ?? NaN)), "%", 0,
+    row("Largest load, predicted", load.map((one) => one?.kn), "kN", 1),
+    row("Of its capacity", load.map((one) => 100 * (one?.share ?? NaN)), "%", 0,
       load.map((one) => (one ? titled(one.name) : ""))),
     row("Cage volume", [share(now), share(then)], "%", 1),
     row("Shallowest depth sensor", [least(now), least(then)], "m", 1),

@@ -4,6 +4,7 @@ import { draw, make } from "../dom.js";
 import { onTheme, theme } from "../theme.js";
 import { gradient } from "./colours.js";
 import { loadEnd, tintOf } from "./paint.js";
+import { noSpread } from "./words.js";
 
 const SIDES = { oblique: "Oblique", side: "Side", top: "Top" };
 const TINTS = { plain: "Net: plain", moved: "Net: movement", sigma: "Net: uncertainty" };
@@ -13,8 +14,8 @@ const TOGGLES = {
   sea: ["Surface", "Show the sea’s surface"],
 };
 
-/** Add them; `scene()` is the view that is shown. */
-export function mountControls(model, options, holder, { scene, flatOnly }) {
+/** Add them; `look` turns to a named side, in three dimensions. */
+export function mountControls(model, options, holder, { look, flatOnly }) {
   const pressed = new Map();
   const button = (name, words, title, does) => {
     const made = make("button", { type: "button", title }, words);
@@ -23,11 +24,12 @@ export function mountControls(model, options, holder, { scene, flatOnly }) {
     return made;
   };
   const sides = Object.entries(SIDES).map(([name, words]) =>
-    button(name, words, `Look from this side`, () => scene().look(name)));
-  const flat = button("flat", "2-D", "Draw flat, from the side and from above", () =>
+    button(name, words, "Look from this side", () => look(name)));
+  const flat = button("flat", "2-D", "Draw flat, from the side and from above (V)", () =>
     options.set("view", options.view === "flat" ? "3d" : "flat"));
   const toggles = Object.entries(TOGGLES).map(([name, [words, title]]) =>
-    button(name, words, title, () => options.set(name, !options[name])));
+    button(name, words, title, () =>
+      pressed.get(name).ariaDisabled !== "true" && options.set(name, !options[name])));
   const tint = make("select", {
     title: "What the net’s colour says", "aria-label": "Colour of the net",
   }, ...Object.entries(TINTS).map(([value, words]) => make("option", { value }, words)));
@@ -37,10 +39,20 @@ export function mountControls(model, options, holder, { scene, flatOnly }) {
     const isFlat = flatOnly || options.view === "flat";
     for (const name of Object.keys(TOGGLES)) pressed.get(name).ariaPressed = String(options[name]);
     flat.ariaPressed = String(isFlat);
-    for (const one of [...sides, pressed.get("shell"), pressed.get("sea"), tint]) one.hidden = isFlat;
+    for (const one of [pressed.get("sea"), tint]) one.hidden = isFlat;
     tint.value = options.tint;
   };
+  /** Where no spread is known there is no shell to show; the button says why. */
+  const spread = () => {
+    const { view } = model;
+    const without = Boolean(view?.position && !view.sigma);
+    const shell = pressed.get("shell");
+    shell.ariaDisabled = String(without);
+    shell.title = without ? noSpread(view.state) : TOGGLES.shell[1];
+    tint.querySelector("[value=sigma]").disabled = without;
+  };
   options.on(show);
+  model.on("view", spread);
   show();
   holder.append(
     make("div", { className: "scene-tools", role: "toolbar", "aria-label": "How the net is drawn" },
@@ -54,6 +66,8 @@ export function mountControls(model, options, holder, { scene, flatOnly }) {
 function legend(model, options) {
   const load = scale("Bridle load, of capacity");
   const net = scale("");
+  const envelope = make("div", { className: "legend-envelope", hidden: true },
+    make("span", { className: "envelope-mark" }), make("span"));
   const lock = make("button", {
     type: "button", className: "legend-lock", title: "Lock the scale to the capacity",
     "aria-label": "Lock the scale to the capacity",
@@ -73,13 +87,16 @@ function legend(model, options) {
     const tint = model.topology && options.view === "3d"
       && tintOf(model.topology, model.view ?? {}, options);
     net.element.hidden = !tint;
+    envelope.hidden = !options.shell || !model.view?.position;
+    envelope.dataset.known = Boolean(model.view?.sigma);
+    envelope.lastChild.textContent = model.view?.sigma ? "±2σ of the net" : "±2σ is not known";
     if (tint) net.show(how, "0", `${tint.end} ${tint.unit}`, tint.name);
   };
   for (const name of ["view", "topology"]) model.on(name, show);
   options.on(show);
   onTheme(show);
   show();
-  return make("div", { className: "scene-legend" }, net.element, load.element);
+  return make("div", { className: "scene-legend" }, net.element, load.element, envelope);
 }
 
 function scale(name) {

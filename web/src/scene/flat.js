@@ -6,21 +6,25 @@ import { onTheme } from "../theme.js";
 import { extent, ringNodes, towards, tubeRing } from "./geometry.js";
 import { sensorPlaces } from "./places.js";
 import { bridleColours, sensorColour } from "./paint.js";
+import { band, outline } from "./silhouette.js";
 import { Tip } from "./tip.js";
-import { fixed, wordsFor } from "./words.js";
+import { compass } from "../panels/format.js";
+import { bearing, fixed, wordsFor } from "./words.js";
 
-const PAD = 8; // metres around the drawing
+const PAD = 5; // metres around the drawing
+const SLACK_M_S = 0.03; // below it a direction says nothing
 
 export class FlatView {
   constructor(model, options, holder) {
     Object.assign(this, { model, options, holder });
-    this.side = drawing("Side view, seen from the south: east to the right");
+    this.side = drawing("The net from the side");
     this.plan = drawing("From above: north up");
+    this.heading = 90; // that the side view looks across [compass degrees]
     this.table = make("table", { className: "flat-table" });
     this.element = make("div", { className: "flat", tabIndex: 0, role: "group",
       "aria-label": "The net from the side and from above" },
-    this.side.figure, this.plan.figure,
-    make("div", { className: "flat-words" }, this.table));
+    this.side.figure, make("div", { className: "flat-words" }, this.table), this.plan.figure);
+    this.side.figure.className = "flat-side";
     holder.append(this.element);
     this.tip = new Tip(holder);
     for (const { svg } of [this.side, this.plan]) this.listen(svg);
@@ -36,12 +40,27 @@ export class FlatView {
 
   build(topology) {
     this.topology = topology;
-    const { frame, depth } = extent(topology);
     const aside = topology.corner_position_m.flat().filter((_, k) => k % 3 < 2).map(Math.abs);
-    const reach = Math.max(...aside, 0.72 * frame) + PAD;
-    this.side.svg.setAttribute("viewBox", `${-reach} ${-PAD} ${2 * reach} ${1.25 * depth + PAD}`);
+    const reach = Math.max(...aside, 0.72 * extent(topology).frame) + PAD;
     this.plan.svg.setAttribute("viewBox", `${-reach} ${-reach} ${2 * reach} ${2 * reach}`);
     this.show();
+  }
+
+  /** Turn the side view across the current, which then goes to the right; the last way in none. */
+  turn(view) {
+    const water = view?.state.valid ? view.state.water : null;
+    const flows = water?.current_speed_m_s > SLACK_M_S && Number.isFinite(water.current_to_deg);
+    if (flows) this.heading = water.current_to_deg;
+    const [east, north] = towards(this.heading);
+    const along = ([x, y]) => x * east + y * north;
+    const { depth, reach: net } = extent(this.topology);
+    const reach = Math.max(net, ...this.topology.corner_position_m.map((one) => Math.abs(along(one)))) + PAD;
+    this.side.svg.setAttribute("viewBox", `${-reach} ${-PAD} ${2 * reach} ${1.12 * depth + PAD}`);
+    const way = `${bearing(this.heading)} ${compass(this.heading)}`;
+    this.side.caption.textContent = flows
+      ? `From the side, across the current, which goes to the right: ${way}`
+      : `From the side, ${way} to the right; no current is known`;
+    return ([x, y, z]) => [along([x, y]), -z];
   }
 
   show() {
@@ -50,7 +69,7 @@ export class FlatView {
     const view = model.view;
     const position = view?.position ?? topology.rest;
     const seen = { topology, view, position, options: this.options, chosen: model.selection };
-    this.side.svg.replaceChildren(...sketch(seen, ([x, , z]) => [x, -z], "side"));
+    this.side.svg.replaceChildren(...sketch(seen, this.turn(view), "side"));
     this.plan.svg.replaceChildren(...sketch(seen, ([x, y]) => [x, -y], "plan"));
     this.fill(view);
   }
@@ -81,7 +100,7 @@ export class FlatView {
         nodes.reduce((sum, node) => sum + array[3 * node + axis], 0) / nodes.length;
       const position = view?.position;
       const moved = position && [0, 1, 2].map((axis) => mean(position, axis) - mean(rest, axis));
-      const sigma = position
+      const sigma = position && view.sigma
         && nodes.reduce((most, node) => Math.max(most, view.sigma[node]), 0);
       const aside = moved && Math.hypot(moved[0], moved[1]);
       return [name, fixed(position && -mean(position, 2), 1), fixed(aside, 1),
@@ -106,7 +125,8 @@ export class FlatView {
 function drawing(caption) {
   const svg = draw("svg", { role: "img", "aria-label": caption, class: "flat-drawing",
     preserveAspectRatio: "xMidYMid meet" });
-  return { svg, figure: make("figure", {}, svg, make("figcaption", {}, caption)) };
+  const words = make("figcaption", {}, caption);
+  return { svg, caption: words, figure: make("figure", {}, svg, words) };
 }
 
 function sketch({ topology, view, position, options, chosen }, project, kind) {
@@ -119,10 +139,17 @@ function sketch({ topology, view, position, options, chosen }, project, kind) {
   if (kind === "side") {
     const { frame } = extent(topology);
     parts.push(draw("line", { x1: -2 * frame, x2: 2 * frame, y1: 0, y2: 0, class: "flat-sea" }));
-  }
+  } else parts.push(...north(topology));
   parts.push(mooring(topology, project));
   if (options.ghost && view?.position) {
     parts.push(draw("path", { d: path(topology.rest, topology.edges), class: "flat-ghost" }));
+  }
+  if (options.shell && view?.position && view.sigma) {
+    const line = (net) => (kind === "side" ? outline(topology, net, project)
+      : ringNodes(topology, tubeRing(topology)).map((node) => at(net, node)));
+    const d = band(topology, position, view.sigma, line)
+      .map((points) => `M${points.map((one) => one.map(short).join(" ")).join("L")}Z`).join("");
+    parts.push(draw("path", { d, class: "flat-band", "fill-rule": "evenodd" }));
   }
   parts.push(draw("path", { d: path(position, topology.edges), class: "flat-net" }),
     draw("path", { d: loop(tubeRing(topology)), class: "flat-tube" }));
@@ -142,8 +169,14 @@ function sketch({ topology, view, position, options, chosen }, project, kind) {
       "data-kind": "sensor", "data-name": name }));
   }
   const water = view?.state.valid ? view.state.water : null;
-  if (water?.current_speed_m_s > 0.03) parts.push(arrow(topology, water, project));
+  if (water?.current_speed_m_s > SLACK_M_S) parts.push(arrow(topology, water, project));
   return parts;
+}
+
+/** The edge of the plan to which north is. */
+function north(topology) {
+  const edge = Math.max(...topology.corner_position_m.map(([, y]) => y));
+  return [draw("text", { x: 0, y: -edge - 2, class: "flat-name" }, "N")];
 }
 
 function mooring({ corner_position_m: corners }, project) {
@@ -159,7 +192,7 @@ function arrow(topology, water, project) {
   const { reach, depth } = extent(topology);
   const [east, north] = towards(water.current_to_deg);
   const length = Math.max(4, 22 * water.current_speed_m_s);
-  const along = (metres) => project([metres * east, metres * north, -0.3 * depth]);
+  const along = (metres) => project([metres * east, metres * north, -0.62 * depth]);
   const [from, to] = [along(-reach - 3 - length), along(-reach - 3)];
   const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
   const size = Math.hypot(dx, dy);
@@ -170,7 +203,9 @@ function arrow(topology, water, project) {
   const head = `M${to.map(short).join(" ")}L${barb(1)}L${barb(-1)}Z`;
   return draw("g", { class: "flat-current" },
     draw("line", { x1: from[0], y1: from[1], x2: to[0] - 2.4 * u, y2: to[1] - 2.4 * v }),
-    draw("path", { d: head }));
+    draw("path", { d: head }),
+    draw("text", { x: (from[0] + to[0]) / 2, y: Math.max(from[1], to[1]) + 4.5, class: "flat-name" },
+      fixed(water.current_speed_m_s, 2, "m/s")));
 }
 
 const short = (metres) => metres.toFixed(2);

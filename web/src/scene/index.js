@@ -31,10 +31,19 @@ export function mountScene(model, holder) {
     }
   }
 
-  options.on((name) => name === "view" && choose());
-  mountControls(model, options, holder, { scene: () => scene, flatOnly });
+  /** Look from a side; where the net is drawn flat, that leads back to three dimensions. */
+  async function look(name) {
+    const atOnce = options.view === "flat";
+    if (atOnce) options.set("view", "3d");
+    await chosen;
+    scene?.look(name, { atOnce });
+  }
+
+  let chosen = null;
+  options.on((name) => { if (name === "view") chosen = choose(); });
+  mountControls(model, options, holder, { look, flatOnly });
   mountNotice(model, holder);
-  choose();
+  chosen = choose();
 }
 
 function canDraw3d() {

@@ -1,10 +1,11 @@
 // The netting in three dimensions: panels, twines, the still-water ghost and the ±2σ shell.
 
 import {
-  AdditiveBlending, BufferAttribute, BufferGeometry, Color, DoubleSide, DynamicDrawUsage, Group,
-  LineBasicMaterial, LineSegments, Mesh, NormalBlending, ShaderMaterial, SRGBColorSpace,
+  BufferAttribute, BufferGeometry, Color, DoubleSide, DynamicDrawUsage, Group, LineBasicMaterial,
+  LineSegments, Mesh, ShaderMaterial, SRGBColorSpace,
 } from "three";
 
+import { Envelope } from "./envelope.js";
 import { nodeNormals, triangles } from "./geometry.js";
 
 // Panels are clearest where they are seen edge on, as cloth is; the meshes drawn on them stand for
@@ -78,24 +79,15 @@ export class Net extends Group {
     this.ghost = new LineSegments(new BufferGeometry(),
       new LineBasicMaterial({ transparent: true, opacity: 0.22, depthWrite: false }));
     this.ghost.geometry.setAttribute("position", new BufferAttribute(Float32Array.from(rest), 3));
-    this.ghost.geometry.setIndex(edges.filter(([a, b]) => keep(a, b, spokes, rings)).flat());
+    const few = Uint16Array.from(edges.filter(([a, b]) => keep(a, b, spokes, rings)).flat());
+    this.ghost.geometry.setIndex(new BufferAttribute(few, 1));
 
-    this.shells = [1, -1].map((side) => {
-      const shell = new Mesh(new BufferGeometry(), panelMaterial(0.15, 0, meshRows));
-      for (const name of ["position", "tint"]) {
-        shell.geometry.setAttribute(name, attribute(new Float32Array(rest.length)));
-      }
-      shell.geometry.setAttribute("normal", this.normal3);
-      shell.geometry.setAttribute("place", place);
-      shell.geometry.setIndex(new BufferAttribute(this.index, 1));
-      shell.userData.side = side;
-      shell.renderOrder = 3;
-      return shell;
-    });
+    this.shell = new Envelope({ rest, index: this.index, normal: this.normal3,
+      edges: new BufferAttribute(few, 1) });
     this.panels.renderOrder = 2;
     this.twines.renderOrder = 2;
     this.ghost.renderOrder = 1;
-    this.add(this.ghost, this.panels, this.twines, ...this.shells);
+    this.add(this.ghost, this.panels, this.twines, this.shell);
     this.follow(rest, null);
   }
 
@@ -105,15 +97,7 @@ export class Net extends Group {
     this.position3.needsUpdate = true;
     nodeNormals(this.position3.array, this.index, this.normal3.array);
     this.normal3.needsUpdate = true;
-    for (const shell of this.shells) {
-      const at = shell.geometry.attributes.position;
-      at.array.forEach((_, k) => {
-        const out = 2 * shell.userData.side * (sigma ? sigma[Math.floor(k / 3)] : 0);
-        at.array[k] = position[k] + out * this.normal3.array[k];
-      });
-      at.needsUpdate = true;
-      shell.geometry.computeBoundingSphere();
-    }
+    this.shell.follow(position, sigma);
     this.panels.geometry.computeBoundingSphere();
     this.twines.geometry.boundingSphere = this.panels.geometry.boundingSphere;
   }
@@ -133,13 +117,7 @@ export class Net extends Group {
     this.twines.material.color.set(twine);
     this.twines.material.opacity = dark ? 0.4 : 0.5;
     this.ghost.material.color.set(ghost);
-    const linear = new Color(shell);
-    for (const one of this.shells) {
-      const { tint } = one.geometry.attributes;
-      for (let k = 0; k < tint.count; k += 1) tint.setXYZ(k, linear.r, linear.g, linear.b);
-      tint.needsUpdate = true;
-      one.material.blending = dark ? AdditiveBlending : NormalBlending;
-    }
+    this.shell.dress(shell, dark);
   }
 }
 

@@ -20,7 +20,7 @@ export function noticeFor({ connection, why, view }) {
       kind: never ? "empty" : "invalid",
       title: never ? "Waiting for the first reading" : "No valid input",
       words: `${view.state.reason || "No current has been measured yet."} The net is drawn as it ` +
-        "hangs in still water; no load is shown.",
+        "hangs in still water; nothing is predicted.",
     };
   }
   if (view.stale) {

@@ -1,5 +1,6 @@
 // Which colour the net, the bridles and the sensors have.
 
+import { knownLoad } from "../known-load.js";
 import { styled, theme } from "../theme.js";
 import { alarmed, cssColour, scaleColour } from "./colours.js";
 import { movedBy } from "./geometry.js";
@@ -16,9 +17,9 @@ export const roundEnd = (values) => {
 /** The scale of the bridles' utilisation: its end, 1 where it is locked. */
 export const loadEnd = (view, { locked }) =>
   locked || !view?.state.valid ? 1
-    : roundEnd(view.state.bridles.map(({ utilisation }) => utilisation ?? 0));
+    : roundEnd(view.state.bridles.map((bridle) => knownLoad(bridle, view.state)?.share ?? 0));
 
-/** CSS colours of the bridles: by utilisation, unless an alarm speaks. */
+/** CSS colours of the bridles: by the largest known load, unless an alarm speaks. */
 export function bridleColours(topology, view, options) {
   const alarms = alarmed(view?.state);
   const end = loadEnd(view, options);
@@ -26,8 +27,8 @@ export function bridleColours(topology, view, options) {
   return topology.bridle_names.map((name, k) => {
     const bridle = view?.state.bridles[k];
     if (alarms.has(name)) return styled(RANK[alarms.get(name)]);
-    if (!bridle || bridle.utilisation === null) return styled("--rope");
-    return cssColour(bridle.utilisation / end, how);
+    const load = bridle && knownLoad(bridle, view.state);
+    return load ? cssColour(load.share / end, how) : styled("--rope");
   });
 }
 
@@ -41,7 +42,7 @@ export function sensorColour(view, name) {
 
 /** What the netting's colour says: {values, end, unit, name}; null where it is plain. */
 export function tintOf(topology, { position, sigma } = {}, { tint }) {
-  if (tint === "plain" || !position) return null;
+  if (tint === "plain" || !position || (tint === "sigma" && !sigma)) return null;
   const values = tint === "moved" ? movedBy(position, topology.rest) : sigma;
   const name = tint === "moved" ? "Net moved from rest" : "Net uncertainty, σ";
   return { values, end: roundEnd(values), unit: "m", name };

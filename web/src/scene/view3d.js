@@ -113,6 +113,7 @@ export class View3d {
     if (!this.topology) return;
     this.shown = view;
     this.glide.aim(view.position, view.sigma, performance.now());
+    this.envelop();
     const water = view.state.valid ? view.state.water : null;
     this.arrows.follow(water);
     this.sea.follow(water);
@@ -121,10 +122,15 @@ export class View3d {
   }
 
   applyOptions() {
-    const { ghost, shell, sea } = this.options;
+    const { ghost, sea } = this.options;
     this.net.ghost.visible = ghost;
-    for (const one of this.net.shells) one.visible = shell;
     this.sea.surface.visible = sea;
+    this.envelop();
+  }
+
+  /** Show where the net may be, where that is asked for and known. */
+  envelop() {
+    this.net.shell.visible = this.options.shell && Boolean(this.shown?.sigma);
   }
 
   optionChanged(name) {
@@ -141,7 +147,7 @@ export class View3d {
     const dark = theme() === "dark";
     const [twine, ghost, collar, rope, buoy] =
       ["--twine", "--ghost", "--collar", "--rope", "--buoy"].map(styled);
-    this.net.dress({ twine, ghost, shell: styled("--accent"), dark });
+    this.net.dress({ twine, ghost, shell: styled("--envelope"), dark });
     this.mooring.dress({ collar, rope, buoy });
     this.arrows.dress({ water: styled("--water"), wave: styled("--wave") });
     this.sea.dress({ water: styled("--sea-0"), crest: styled("--crest"), ring: ghost, dark });

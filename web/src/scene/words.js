@@ -1,5 +1,6 @@
 // What is said of a node, a bridle or a sensor that the reader points at.
 
+import { knownLoad } from "../known-load.js";
 import { bearingOf } from "./geometry.js";
 
 const MINUS = "−";
@@ -37,7 +38,7 @@ export function wordsFor(selection, topology, view) {
   return ofNode(selection.node, topology, view);
 }
 
-function ofNode(node, { rest, rings, spokes }, { position, sigma }) {
+function ofNode(node, { rest, rings, spokes }, { position, sigma, state }) {
   const tip = node === rings * spokes;
   const at = [0, 1, 2].map((axis) => (position ?? rest)[3 * node + axis]);
   const still = [0, 1, 2].map((axis) => rest[3 * node + axis]);
@@ -48,23 +49,27 @@ function ofNode(node, { rest, rings, spokes }, { position, sigma }) {
     ["East, north", `${fixed(at[0], 1)}, ${fixed(at[1], 1, "m")}`]];
   if (!position) return { title, rows, note: "In still water: there is no valid input." };
   rows.push(["Moved from rest", fixed(Math.hypot(...at.map((x, k) => x - still[k])), 2, "m")],
-    ["Uncertainty, σ", fixed(sigma[node], 2, "m")]);
-  return { title, rows };
+    ["Uncertainty, σ", sigma ? fixed(sigma[node], 2, "m") : "not known"]);
+  return { title, rows, note: sigma ? "" : noSpread(state) };
 }
+
+/** Why no spread of the shape is known, in a sentence. */
+export const noSpread = (state) =>
+  state?.shape?.interval_reason || "How far the net may be from here is not known.";
 
 function ofBridle(name, topology, state) {
   const k = topology.bridle_names.indexOf(name);
   const bridle = state.bridles[k];
   if (!bridle) return null;
   const kn = bridle.tension_kn;
+  const load = knownLoad(bridle, state);
   const rows = [["Tension", fixed(kn.mean, 1, "kN")],
-    ["95 % interval", interval(bridle.level, kn, 1, "kN")],
-    ["Of its capacity", bridle.utilisation === null ? "–"
-      : `${fixed(100 * bridle.utilisation, 0)} % of ${fixed(topology.bridle_capacity_kn[k], 0, "kN")}`]];
+    ["95 % interval", interval(bridle, kn, 1, "kN")],
+    ["Of its capacity", load
+      ? `${fixed(100 * load.share, 0)} % of ${fixed(topology.bridle_capacity_kn[k], 0, "kN")}` : "–"]];
   const shackle = topology.shackles.find((one) => one.bridle === k);
-  const sensor = shackle && state.sensors.find((one) => one.name === shackle.name);
-  if (sensor) rows.push([`Measured, ${shackle.name}`, fixed(sensor.measured, 1, "kN")]);
-  return { title: name, rows, note: level(bridle.level, state) };
+  if (shackle) rows.push([`Measured, ${shackle.name}`, fixed(bridle.measured_kn, 1, "kN")]);
+  return { title: name, rows, note: level(bridle, state) };
 }
 
 function ofSensor(name, topology, state) {
@@ -73,24 +78,26 @@ function ofSensor(name, topology, state) {
   const decimals = sensor.unit === "m" ? 2 : 1;
   const age = sensor.measured_age_s;
   const rows = [
-    ["Measured", sensor.measured === null ? "– (silent)"
+    ["Measured", sensor.measured === null ? "– (nothing valid of late)"
       : `${fixed(sensor.measured, decimals, sensor.unit)}${age === null ? "" : `, ${lasting(age)} ago`}`],
     ["Predicted", fixed(sensor.mean, decimals, sensor.unit)],
-    ["95 % interval", interval(sensor.level, sensor, decimals, sensor.unit)],
+    ["95 % interval", interval(sensor, sensor, decimals, sensor.unit)],
     ["Simulation alone", fixed(sensor.low_fidelity, decimals, sensor.unit)],
   ];
   const bridle = topology.shackles.find((one) => one.name === name)?.bridle;
   const on = bridle === undefined ? "depth sensor on the net" : `on ${topology.bridle_names[bridle]}`;
-  return { title: `${name}, ${on}`, rows, note: level(sensor.level, state) };
+  return { title: `${name}, ${on}`, rows, note: level(sensor, state) };
 }
 
 /** How far the simulation alone is off at sea, nobody knows. */
-function interval(number, bounds, decimals, unit) {
-  return number > 1 || bounds.mean === null ? range(bounds, decimals, unit) : "not known";
+function interval({ level: number }, bounds, decimals, unit) {
+  if (bounds.mean === null) return "–";
+  return number > 1 && Number.isFinite(bounds.lower) ? range(bounds, decimals, unit) : "not known";
 }
 
-function level(number, { valid, in_domain: inDomain, reason }) {
+function level({ level: number, in_domain: within = true, interval_reason: why }, { valid, in_domain: inDomain, reason }) {
   if (!valid) return reason || "There is no valid input.";
   if (!inDomain) return "Extrapolated beyond what was learned.";
-  return number > 1 ? "Learned from measurements." : "From simulations alone.";
+  if (!within) return "Outside the training domain of its own level.";
+  return number > 1 ? "Learned from measurements." : `From simulations alone. ${why ?? ""}`.trim();
 }

@@ -28,6 +28,21 @@ test("a slow answer is waited for, however many updates come meanwhile", async (
   assert.deepEqual(desk.alarms, [load]);
 });
 
+test("alarms of one cause are acknowledged together, with one reason", async () => {
+  const asked = [];
+  const model = modelOf(async (method, path, body) => {
+    asked.push([method, path, body?.why]);
+    return { alarms: [] };
+  });
+  const desk = new AlarmDesk(model);
+  await desk.acknowledge(["load.bridle-3", "load.bridle-4"], { why: "Spring tide" });
+  assert.deepEqual(asked, [
+    ["POST", "cages/ace/alarms/load.bridle-3/acknowledge", "Spring tide"],
+    ["POST", "cages/ace/alarms/load.bridle-4/acknowledge", "Spring tide"],
+    ["GET", "cages/ace/alarms", undefined],
+  ]);
+});
+
 test("they are asked for again once one has changed, and not for another cage's", async () => {
   const asked = [];
   const model = modelOf(() => new Promise((come) => asked.push(come)));

@@ -6,7 +6,8 @@ import { largest, loadRows } from "../../src/panels/load-rows.js";
 import { INNER, OUTER, azimuths, polar, radius } from "../../src/panels/rose-shape.js";
 import { ringsOf, scaleFor } from "../../src/panels/scale.js";
 import { change } from "../../src/panels/sea-wanted.js";
-import { highest } from "../../src/panels/now.js";
+import { largestKnown } from "../../src/known-load.js";
+import { loadWords } from "../../src/panels/now.js";
 
 const near = (a, b) => assert.ok(Math.abs(a - b) < 1e-9, `${a} is not ${b}`);
 
@@ -47,7 +48,8 @@ const state = {
   sensors: [{ name: "shackle-1", measured: 60 }],
   bridles: [
     { name: "bridle-1", level: 1, utilisation: 0.5, low_fidelity_kn: 50, tension_kn: { mean: 50, lower: 40, upper: 60 } },
-    { name: "bridle-2", level: 2, utilisation: 0.25, low_fidelity_kn: 40, tension_kn: { mean: 50, lower: 45, upper: 55 } },
+    { name: "bridle-2", level: 2, utilisation: 0.25, low_fidelity_kn: 40, tension_kn: { mean: 50, lower: 45, upper: 55 },
+      measured_kn: 60, measured_utilisation: 0.3, measured_by: "shackle-1" },
   ],
 };
 
@@ -68,11 +70,52 @@ test("without valid input a row has no number", () => {
   const bridles = state.bridles.map((one) => ({ ...one, utilisation: null, low_fidelity_kn: null, tension_kn: nothing }));
   const [one] = loadRows(topology, { ...state, bridles });
   assert.deepEqual([one.mean, one.lower, one.upper, one.low], [null, null, null, null]);
-  assert.equal(highest({ ...state, valid: false }), null);
+  assert.equal(largestKnown({ ...state, bridles: bridles.slice(0, 1) }), null);
 });
 
-test("the highest load is the one nearest its own capacity", () => {
-  assert.equal(highest(state).name, "bridle-1");
+test("the largest load is the one nearest its own capacity", () => {
+  assert.equal(largestKnown(state).name, "bridle-1");
+});
+
+const read = (share, rest = {}) => ({ ...state, ...rest, bridles: state.bridles.map((one) =>
+  (one.measured_by ? { ...one, measured_kn: 200 * share, measured_utilisation: share } : one)) });
+
+test("a shackle that reads more than any prediction gives the largest load, and is named", () => {
+  const top = largestKnown(read(0.6));
+  assert.deepEqual([top.name, top.kn, top.by], ["bridle-2", 120, "shackle-1"]);
+  assert.equal(loadWords(top), "bridle 2, 60 % of capacity, measured by shackle 1");
+  assert.match(loadWords(largestKnown(state)), /simulated$/);
+});
+
+test("a measured load is known where nothing is predicted for want of input", () => {
+  const nothing = { mean: null, lower: null, upper: null };
+  const { bridles } = read(0.6);
+  const unknown = bridles.map((one) => ({ ...one, utilisation: null, tension_kn: nothing }));
+  assert.equal(largestKnown({ ...state, valid: false, bridles: unknown }).kn, 120);
+});
+
+test("a shackle that reads irregularly has no say in the largest load, as in the load's alarm", () => {
+  const alarms = [{ id: "irregular.shackle-1", severity: 500, active: true }];
+  assert.equal(largestKnown(read(0.6, { alarms })).name, "bridle-1");
+});
+
+test("the rose, the table and the bar show the larger of what is known of a bridle", () => {
+  const [one, two] = loadRows(topology, read(0.6));
+  assert.deepEqual([one.top, two.top, two.topKn], [0.5, 0.6, 120]);
+});
+
+test("a silent shackle outlines itself and not its bridle", () => {
+  const alarms = [{ id: "silent.shackle-1", severity: 500, active: true }];
+  assert.equal(loadRows(topology, { ...state, alarms })[1].rank, null);
+  const load = [{ id: "load.bridle-2", severity: 700, active: true }];
+  assert.equal(loadRows(topology, { ...state, alarms: load })[1].rank, "warning");
+});
+
+test("a bridle of level 2 without an interval shows none, and says why", () => {
+  const bridles = state.bridles.map((one) => ({ ...one, in_domain: false, interval_reason: "No sensor.",
+    tension_kn: { ...one.tension_kn, lower: null, upper: null } }));
+  const [, two] = loadRows(topology, { ...state, bridles });
+  assert.deepEqual([two.interval, two.lower, two.reason, two.within], [null, null, "No sensor.", false]);
 });
 
 test("a change has its sign, and none is said where a side is not known", () => {
@@ -91,9 +134,12 @@ test("a farm is summed up in words", () => {
 
 test("the cage in the greatest need comes first on the farm", () => {
   const cage = (name, changes = {}) => ({ name, waiting: 0, valid: true, in_domain: true, ...changes });
-  const cages = [cage("b"), cage("a"), cage("odd", { in_domain: false }),
+  const concerns = [{ kind: "volume", title: "Volume low", message: "The net holds 70 %." }];
+  const cages = [cage("b"), cage("a"), cage("odd", { in_domain: false }), cage("thin", { concerns }),
     cage("mute", { valid: false }), cage("bad", { waiting: 2, worst_severity: 900, worst_title: "Load" })];
-  assert.deepEqual(byNeed(cages).map(({ name }) => name), ["bad", "mute", "odd", "a", "b"]);
-  assert.deepEqual(tileVerdict(cages[4]),
+  assert.deepEqual(byNeed(cages).map(({ name }) => name), ["bad", "mute", "odd", "thin", "a", "b"]);
+  assert.deepEqual(tileVerdict(cages[3]), { kind: "caution", icon: "caution", words: "Volume low",
+    detail: "The net holds 70 %." });
+  assert.deepEqual(tileVerdict(cages[5]),
     { kind: "critical", icon: "critical", words: "2 alarms", detail: "Load" });
 });

@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { append, columnsOf, trim } from "../../src/panels/columns.js";
-import { joined, nearest, quantities, rowsOf } from "../../src/panels/plotted.js";
+import { joined, nearest, quantities, rowsOf, widened } from "../../src/panels/plotted.js";
 import { largestOver, marksOf, runs } from "../../src/panels/overview-rows.js";
 
 const at = (s) => new Date(1000 * s).toISOString();
@@ -130,6 +130,19 @@ test("the nearest time is found", () => {
 test("the overview has the largest share, and none where a bridle is not known", () => {
   const columns = { t: [0, 1], bridles: { a: { mean: [80, 40] }, b: { mean: [20, null] } } };
   assert.deepEqual(largestOver(columns, [160, 100]), [0.5, null]);
+});
+
+test("the overview counts what a shackle measured, until that is too old", () => {
+  const columns = { t: [0, 600, 1600], bridles: { a: { mean: [16, 16, 16] } },
+    measured: { "shackle-1": { t: [500], value: [80] } } };
+  assert.deepEqual(largestOver(columns, [160], [{ name: "shackle-1", bridle: 0 }]), [0.1, 0.5, 0.1]);
+});
+
+test("no axis of tensions or depths reaches below zero, unless a reading does", () => {
+  assert.equal(widened(0, 10)[0], 0);
+  assert.equal(widened(0.1, 10)[0], 0);
+  assert.ok(widened(14, 15)[0] > 13.5);
+  assert.ok(widened(-0.2, 1)[0] < -0.2);
 });
 
 test("the overview is not drawn through a gap", () => {

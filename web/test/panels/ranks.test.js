@@ -26,6 +26,14 @@ test("what nobody has seen comes first, then the worst, then the newest", () => 
   assert.deepEqual(ordered(alarms).map(({ id }) => id), ["worst", "new", "old", "seen", "shelved"]);
 });
 
+test("what is active stands above what has cleared, however bad that was", () => {
+  const alarms = [
+    alarm("gone", { active: false, severity: 900 }), alarm("seen", { acknowledged: true, severity: 300 }),
+    alarm("here", { severity: 400 }),
+  ];
+  assert.deepEqual(ordered(alarms).map(({ id }) => id), ["here", "seen", "gone"]);
+});
+
 test("the worst is of those that wait", () => {
   assert.equal(worst([alarm("a", { shelved: true }), alarm("b", { in_service: false })]), null);
   assert.equal(worst([alarm("a"), alarm("b", { severity: 900 })]).id, "b");

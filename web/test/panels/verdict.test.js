@@ -19,12 +19,44 @@ test("a quiet cage is well", () => {
   assert.equal(now().kind, "well");
 });
 
-test("a silent sensor is told even when all is well", () => {
-  assert.match(now({ silent: ["depth-2"] }).detail, /depth 2/);
+test("with a silent sensor all is not well, and it is named", () => {
+  const { headline, detail } = now({ silent: ["depth-2"] });
+  assert.equal(headline, "Partly measured");
+  assert.match(detail, /depth 2/);
+});
+
+const concern = (kind, title, message) => ({ kind, title, message });
+const VOLUME = concern("volume", "Volume low", "The net holds 71 % of its volume in still water; 80 % is the limit.");
+
+test("a net that has lost volume is not well, and the limit is said", () => {
+  const { kind, headline, detail } = now({ concerns: [VOLUME] });
+  assert.deepEqual([kind, headline], ["caution", "Volume low"]);
+  assert.match(detail, /80 % is the limit/);
+});
+
+test("a load at its alarm's limit has the alarm's colour before the alarm is raised", () => {
+  const load = concern("load", "Load at its limit", "bridle-8 bears 82 % of its capacity, measured by shackle-2.");
+  const { kind, headline, detail } = now({ concerns: [load, VOLUME] });
+  assert.deepEqual([kind, headline], ["warning", "Load at its limit"]);
+  assert.match(detail, /^Bridle 8 bears 82 %.*measured by shackle 2\. The net holds/);
+});
+
+test("where nothing is measured all is not well", () => {
+  const nothing = concern("measured", "Nothing measured", "No sensor has given a valid reading.");
+  assert.equal(now({ concerns: [nothing] }).headline, "Nothing measured");
+  assert.equal(now({ concerns: [nothing], in_domain: false }).headline, "Extrapolating");
+  assert.match(now({ concerns: [nothing], in_domain: false }).detail, /No sensor/);
+});
+
+test("an active alarm comes before a worse one that has cleared", () => {
+  const gone = alarm({ id: "net.net", severity: 900, title: "The net may be torn", active: false });
+  const { kind, detail } = now({ alarms: [gone, alarm({ severity: 600 })] });
+  assert.equal(kind, "warning");
+  assert.match(detail, /^Load on bridle-3 and 1 more/);
 });
 
 test("the worst alarm gives the colour and the words", () => {
-  const alarms = [alarm({ severity: 550, title: "depth-2 drifts" }), alarm()];
+  const alarms = [alarm({ id: "irregular.depth-2", severity: 550, title: "depth-2 drifts" }), alarm()];
   const { kind, headline, detail } = now({ alarms });
   assert.equal(kind, "critical");
   assert.equal(headline, "2 alarms");
@@ -44,7 +76,7 @@ test("without valid input nothing is well, and the reason is given", () => {
   const { kind, headline, detail } = now({ valid: false, reason: "buoy-1 is silent.", alarms: [alarm()] });
   assert.equal(headline, "No valid input");
   assert.equal(kind, "critical");
-  assert.match(detail, /buoy-1 is silent\. No loads are shown\. 1 alarm\./);
+  assert.match(detail, /buoy-1 is silent\. Nothing is predicted\. 1 alarm\./);
 });
 
 test("a cage that never heard anything waits for a first reading", () => {

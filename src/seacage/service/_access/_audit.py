@@ -1,12 +1,14 @@
 """The audit log: who did what and when, one line of JSON each."""
 
 import json
-import os
 from datetime import UTC, datetime
 from pathlib import Path
 
 import structlog
 
+from seacage.service._small_files import append_line
+
+_LONGEST = 200  # characters of a field
 _log = structlog.get_logger(__name__)
 
 
@@ -16,11 +18,13 @@ class Audit:
     Parameters
     ----------
     path
-        Of the log; None keeps none. It is opened for each line, so that it can be rotated.
+        Of the log; None keeps none.
+    most
+        Of the log [bytes]; beyond, it becomes the one before (``audit.before.jsonl``).
     """
 
-    def __init__(self, path: Path | None) -> None:
-        self._path = path
+    def __init__(self, path: Path | None, *, most: int = 4 << 20) -> None:
+        self._path, self._most = path, most
 
     def write(
         self, did: str, *, who: str, token: str = "", source: str = "", **rest: object
@@ -40,16 +44,8 @@ class Audit:
             return
         line = {"t": datetime.now(UTC).isoformat(), "who": who, "token": token}
         line |= {"source": source, "did": did, **rest}
+        line = {key: one[:_LONGEST] if isinstance(one, str) else one for key, one in line.items()}
         try:
-            _append(self._path, json.dumps(line) + "\n")
+            append_line(self._path, json.dumps(line), most=self._most)
         except OSError as error:
             _log.exception("the audit log takes no line", error=str(error), **line)
-
-
-def _append(path: Path, line: str) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    file = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
-    try:
-        os.write(file, line.encode())
-    finally:
-        os.close(file)

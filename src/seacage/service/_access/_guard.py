@@ -4,18 +4,23 @@ import hmac
 import ipaddress
 import math
 import time
+from collections import Counter
 from datetime import UTC, datetime
 from typing import Annotated, NoReturn
 
 from fastapi import Depends, HTTPException, Request
 from fastapi.security import APIKeyCookie, HTTPAuthorizationCredentials, HTTPBearer
+from fastapi.security.utils import get_authorization_scheme_param
 from starlette.requests import HTTPConnection
 
 from seacage.service._access._audit import Audit
+from seacage.service._access._connections import Connections
 from seacage.service._access._limits import Limits
 from seacage.service._access._rates import Rates
+from seacage.service._access._reads import Reads
 from seacage.service._access._sessions import Session, Sessions
 from seacage.service._access._tokens import Grant, Tokens
+from seacage.service._live._metrics import Metrics
 
 COOKIE = "seacage_session"
 """Name of the cookie of a session."""
@@ -24,6 +29,7 @@ CSRF_HEADER = "x-csrf-token"
 """What a write by cookie repeats from the session."""
 
 _READING = {"GET", "HEAD", "OPTIONS"}
+_FORWARDED = {"forwarded", "x-forwarded-for", "x-real-ip"}
 
 _bearer = HTTPBearer(auto_error=False, description="A token from `seacage token new`.")
 _cookie = APIKeyCookie(
@@ -39,8 +45,8 @@ class Gate:
 
     Parameters
     ----------
-    tokens
-        That are known.
+    tokens, metrics
+        Those that are known, and where it is counted who is turned away.
     limits
         How much one asker may ask.
     audit
@@ -53,14 +59,18 @@ class Gate:
         self,
         tokens: Tokens,
         *,
+        metrics: Metrics,
         limits: Limits | None = None,
         audit: Audit | None = None,
         site: str = "",
     ) -> None:
         self.tokens, self.site = tokens, site
         self.limits, self.audit = limits or Limits(), audit or Audit(None)
-        self.sessions = Sessions(tokens, lasting_s=self.limits.session_s)
         some = self.limits
+        self.sessions = Sessions(tokens, lasting_s=some.session_s, most=some.sessions_per_token)
+        self.connections = Connections(some, metrics)
+        self.live = Counter[str]()  # open live connections, by the id of their token
+        self.reads = Reads(rows=some.read_rows, rows_per_token=some.read_rows_per_token)
         self._asked = Rates(per_s=some.requests_per_s, burst=some.burst)
         self._refused = Rates(per_s=some.refusals_per_s, burst=some.refusal_burst)
 
@@ -72,6 +82,23 @@ class Gate:
         found = self.sessions.find(cookie, datetime.now(UTC)) if cookie else None
         return None if found is None else (found[1], found[0])
 
+    def admit(self, connection: HTTPConnection) -> tuple[Grant, Session | None]:
+        """Find who asks, by what the headers carry.
+
+        Raises
+        ------
+        HTTPException
+            As for ``refuse``.
+        """
+        scheme, sent = get_authorization_scheme_param(connection.headers.get("authorization"))
+        token = sent if sent and scheme.lower() == "bearer" else None
+        cookie = connection.cookies.get(COOKIE)
+        found = self.known(token, cookie)
+        if found is None:
+            self.refuse(source_of(connection), sent=bool(token or cookie))
+        self.connections.knows(connection, found[0].id)
+        return found
+
     def pace(self, grant: Grant) -> None:
         """Hold up whoever asks too often.
 
@@ -82,8 +109,8 @@ class Gate:
         """
         _hold_up(self._asked.wait_s(grant.id, time.monotonic()), "This token asks too often.")
 
-    def refuse(self, source: str) -> NoReturn:
-        """Refuse whoever is not known.
+    def refuse(self, source: str, *, sent: bool) -> NoReturn:
+        """Refuse whoever is not known, and say whether a token or a session was sent at all.
 
         Raises
         ------
@@ -92,10 +119,12 @@ class Gate:
         """
         wait_s = self._refused.wait_s(source, time.monotonic())
         _hold_up(wait_s, "This address has tried too many tokens that are not known.")
+        unknown = "This token or session is not known here: mistyped, revoked, or at its end. "
         raise HTTPException(
             401,
-            "Send a token as 'Authorization: Bearer …'; `seacage token new` makes one.",
-            {"WWW-Authenticate": "Bearer"},
+            f"{unknown if sent else ''}Send a token as 'Authorization: Bearer …'; "
+            "`seacage token new` makes one.",
+            {"WWW-Authenticate": "Bearer" + sent * ' error="invalid_token"'},
         )
 
     def from_our_page(self, connection: HTTPConnection) -> bool:
@@ -110,8 +139,9 @@ def gate_of(connection: HTTPConnection) -> Gate:
 
 
 def source_of(connection: HTTPConnection) -> str:
-    """The address that asks."""
-    return connection.client.host if connection.client else ""
+    """The address that asks, as a trusted proxy names it; what is no address is ``?``."""
+    host = connection.client.host if connection.client else ""
+    return host if _address(host) else "?"
 
 
 class Permit:
@@ -125,20 +155,17 @@ class Permit:
     action
         The scope it takes.
     open_to_loopback
-        Ask no token of this machine.
+        Ask no token of this machine's own programs; what a proxy brings is not theirs.
     """
 
     def __init__(self, action: str, *, open_to_loopback: bool = False) -> None:
         self._action, self._open_to_loopback = action, open_to_loopback
 
-    async def __call__(self, request: Request, bearer: Credentials, cookie: Cookie) -> None:
-        if self._open_to_loopback and _is_loopback(source_of(request)):
+    async def __call__(self, request: Request, _bearer: Credentials, _cookie: Cookie) -> None:
+        if self._open_to_loopback and _is_local(request):
             return
         gate = gate_of(request)
-        found = gate.known(bearer.credentials if bearer else None, cookie)
-        if found is None:
-            gate.refuse(source_of(request))
-        grant, session = found
+        grant, session = gate.admit(request)
         state = request.state
         state.who, state.token, state.action = grant.who, grant.id, self._action
         state.grant = grant
@@ -187,8 +214,13 @@ def _hold_up(wait_s: float, why: str) -> None:
         raise HTTPException(429, f"{why} Ask again in {seconds} s.", {"Retry-After": str(seconds)})
 
 
-def _is_loopback(host: str) -> bool:
+def _is_local(connection: HTTPConnection) -> bool:
+    address = _address(source_of(connection))
+    return bool(address and address.is_loopback) and _FORWARDED.isdisjoint(connection.headers)
+
+
+def _address(host: str) -> ipaddress.IPv4Address | ipaddress.IPv6Address | None:
     try:
-        return ipaddress.ip_address(host).is_loopback
+        return ipaddress.ip_address(host)
     except ValueError:
-        return False
+        return None

@@ -2,16 +2,17 @@
 
 import hmac
 import json
-import os
 import secrets
-from collections import OrderedDict
+from collections import Counter, OrderedDict
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from pathlib import Path
+from threading import Lock
 
 import structlog
 
 from seacage.service._access._tokens import Grant, Tokens, digest
+from seacage.service._small_files import write_small
 
 _MOST_SESSIONS = 1000
 _log = structlog.get_logger(__name__)
@@ -45,9 +46,12 @@ class Sessions:
         That they stand for; the sessions lie beside them.
     lasting_s
         How long one lasts after it was begun or renewed [s].
+    most
+        Of one token; its oldest ends when another begins.
     """
 
-    def __init__(self, tokens: Tokens, *, lasting_s: float) -> None:
+    def __init__(self, tokens: Tokens, *, lasting_s: float, most: int = 50) -> None:
+        self._most, self._lock = most, Lock()
         self._tokens, self._lasting = tokens, timedelta(seconds=lasting_s)
         self._path = tokens.folder / "sessions.json"
         self._open = _read(self._path)
@@ -70,28 +74,34 @@ class Sessions:
 
     def end(self, cookie: str) -> None:
         """Close a session, if there is one."""
-        if self._open.pop(digest(cookie), None):
-            self._write()
+        with self._lock:
+            if self._open.pop(digest(cookie), None):
+                self._write()
 
     def _opened(self, cookie: str, token_sha256: str, now: datetime) -> Session:
         expires = now + self._lasting
-        self._open[digest(cookie)] = token_sha256, expires
-        self._open.move_to_end(digest(cookie))
-        if len(self._open) > _MOST_SESSIONS:
-            self._open.popitem(last=False)
-        self._write()
+        with self._lock:
+            for old in [one for one, (_, end) in self._open.items() if end <= now]:
+                del self._open[old]
+            self._open[digest(cookie)] = token_sha256, expires
+            self._open.move_to_end(digest(cookie))
+            own = Counter(token for token, _ in self._open.values())
+            most = own.most_common(1)[0][0]  # who has most loses one where there are too many
+            if own[token_sha256] > self._most:
+                self._end_oldest(token_sha256)
+            elif len(self._open) > _MOST_SESSIONS:
+                self._end_oldest(most)
+            self._write()
         return _session(cookie, token_sha256, expires)
+
+    def _end_oldest(self, token_sha256: str) -> None:
+        del self._open[next(key for key, (of, _) in self._open.items() if of == token_sha256)]
 
     def _write(self) -> None:
         """Replace the file at once; a disk that does not take it costs a session its next start."""
         kept = {key: [token, end.isoformat()] for key, (token, end) in self._open.items()}
-        fresh = self._path.with_suffix(".new")
         try:
-            self._path.parent.mkdir(parents=True, exist_ok=True)
-            file = os.open(fresh, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
-            with os.fdopen(file, "w", encoding="utf-8") as stream:
-                json.dump(kept, stream)
-            fresh.replace(self._path)
+            write_small(self._path, json.dumps(kept))
         except OSError as error:
             _log.warning("the sessions are not kept", file=str(self._path), error=str(error))
 

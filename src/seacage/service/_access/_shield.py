@@ -2,9 +2,10 @@
 
 from fastapi import HTTPException
 from starlette.datastructures import MutableHeaders
+from starlette.requests import HTTPConnection
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from seacage.service._access._guard import Gate
+from seacage.service._access._guard import Gate, source_of
 
 _HEADERS = {
     "content-security-policy": (
@@ -20,12 +21,15 @@ _HEADERS = {
 _REFUSALS = {401, 403, 429}
 _READING = {"GET", "HEAD", "OPTIONS"}
 _PLAIN = {"read", "ingest"}  # questions and samples: too many to write down, and no deeds
+_SIGN_IN, _SIGN_IN_BYTES = "/session", 4096
 
 
 class Shield:
-    """Add the browser's rules to every answer, cut bodies that are too long, and keep the audit.
+    """Add the browser's rules to every answer, bound bodies, and keep the audit.
 
-    Written down are refusals, and what people change.
+    No body is read of whoever is not known, but that of who signs in. Written down are refusals,
+    and what people change. Rows that a long answer took out of the
+    budget are given back when it has gone.
 
     Parameters
     ----------
@@ -41,10 +45,15 @@ class Shield:
             await self._app(scope, receive, send)
             return
         gate: Gate = scope["app"].state.service.gate
-        limit, received = gate.limits.body_bytes, 0
+        connection, source = HTTPConnection(scope), source_of(HTTPConnection(scope))
+        gate.connections.asks(connection, source)
+        signs_in, received = scope["path"] == _SIGN_IN, 0
+        limit = _SIGN_IN_BYTES if signs_in else gate.limits.body_bytes
+        known = signs_in or scope["method"] in _READING
 
         async def counted() -> Message:
-            nonlocal received
+            nonlocal known, received
+            known = known or bool(gate.admit(connection))
             message = await receive()
             received += len(message.get("body", b""))
             if received > limit:
@@ -56,13 +65,17 @@ class Shield:
                 headers = MutableHeaders(scope=message)
                 for name, value in _HEADERS.items():
                     headers.setdefault(name, value)
-                _written(gate, scope, message["status"])
+                _written(gate, scope, source, message["status"])
             await send(message)
 
-        await self._app(scope, counted, ruled)
+        try:
+            await self._app(scope, counted, ruled)
+        finally:
+            if (reading := scope.get("state", {}).get("reading")) is not None:
+                gate.reads.give_back(*reading)
 
 
-def _written(gate: Gate, scope: Scope, status: int) -> None:
+def _written(gate: Gate, scope: Scope, source: str, status: int) -> None:
     state = scope.get("state", {})
     deed = scope["method"] not in _READING and state.get("action", "read") not in _PLAIN
     if deed or status in _REFUSALS:
@@ -70,6 +83,6 @@ def _written(gate: Gate, scope: Scope, status: int) -> None:
             f"{scope['method']} {scope['path'][:200]}",
             who=state.get("who", ""),
             token=state.get("token", ""),
-            source=scope["client"][0] if scope.get("client") else "",
+            source=source,
             status=status,
         )

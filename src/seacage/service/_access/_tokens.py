@@ -3,7 +3,7 @@
 import hashlib
 import hmac
 import json
-import os
+import logging
 import re
 import secrets
 from collections.abc import Iterable, Mapping
@@ -13,10 +13,12 @@ from pathlib import Path
 from typing import Any
 
 from seacage.conventions import InputError
+from seacage.service._small_files import rewrite_small
 
 _SCOPE = re.compile(r"admin|(read|ingest|ack)(:[A-Za-z0-9][A-Za-z0-9_.-]{0,63})?")
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._@-]{0,63}")
 _ID_DIGITS = 12
+_log = logging.getLogger(__name__)  # Python's own: commands keep stdout for their answer
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,8 +63,9 @@ class Grant:
 class Tokens:
     """The tokens of a data folder, and those that live only as long as this service.
 
-    The file grows by one line per token made or revoked, so that the commands need no lock and
-    a running service sees the new line.
+    The file grows by one line per token made or revoked, and a running service sees the new line.
+    A line that cannot be read is reported and shuts nobody out: all others stay in force, and so
+    does what the service had read of it before.
 
     Parameters
     ----------
@@ -75,7 +78,8 @@ class Tokens:
         self._path = folder / "tokens.jsonl"
         self._passing: list[Grant] = []
         self._kept: list[Grant] = []
-        self._seen: tuple[int, int] | None = None
+        self._damaged: list[str] = []
+        self._seen: tuple[int, int, int] | None = None
 
     def mint(self, scopes: Iterable[str], *, keep: bool, name: str = "") -> str:
         """Make a token and return it; nobody can read it again.
@@ -123,12 +127,24 @@ class Tokens:
         """Return the tokens that were written down and not revoked."""
         try:
             status = self._path.stat()
+            if self._seen != (seen := (status.st_ino, status.st_mtime_ns, status.st_size)):
+                self._read()
+                self._seen = seen
         except FileNotFoundError:
-            return []
-        if self._seen != (status.st_mtime_ns, status.st_size):
-            self._kept = _standing(self._path)
-            self._seen = (status.st_mtime_ns, status.st_size)
+            self._kept, self._damaged, self._seen = [], [], None
+        except OSError as error:
+            _log.warning("%s cannot be read (%s); the tokens stay as they were", self._path, error)
         return self._kept
+
+    @property
+    def damage(self) -> str:
+        """What could not be read of the file, and what to do; empty where all could."""
+        if not self._damaged:
+            return ""
+        return (
+            f"{self._path} holds what is no token: {'; '.join(self._damaged[:3])}. The others stay "
+            "in force. Delete the line, and make its token anew."
+        )
 
     @property
     def lacks_admin(self) -> bool:
@@ -151,9 +167,9 @@ class Tokens:
         found = [grant for grant in self.all() if named in {grant.name, grant.id}]
         if len(found) != 1:
             there = ", ".join(grant.who for grant in self.all()) or "none"
+            many = f"{len(found)} tokens are" if found else "No token is"
             raise InputError(
-                f"{len(found)} tokens are called {named!r}. There are {there}; `seacage token "
-                "list` shows their ids."
+                f"{many} called {named!r}. There are {there}; `seacage token list` shows their ids."
             )
         self._append({"revoked": found[0].sha256})
         return found[0]
@@ -171,14 +187,27 @@ class Tokens:
         return name
 
     def _append(self, entry: Mapping[str, object]) -> None:
-        self._path.parent.mkdir(parents=True, exist_ok=True)
         line = json.dumps(entry) + "\n"
-        file = os.open(self._path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
-        try:
-            os.write(file, line.encode())
-            os.fsync(file)
-        finally:
-            os.close(file)
+        # A last line without its end was cut off, and must not swallow this one.
+        rewrite_small(self._path, lambda text: text.removesuffix("\n") + "\n" * bool(text) + line)
+
+    def _read(self) -> None:
+        """Read the file; of a damaged one what was known before stays, unless it is revoked."""
+        grants, revoked, self._damaged = dict[str, Grant](), set[str](), []
+        for number, line in enumerate(self._path.read_bytes().split(b"\n"), start=1):
+            try:
+                entry = json.loads(line or b"{}")
+                if "revoked" in entry:
+                    revoked.add(str(entry["revoked"]))
+                elif line:
+                    grant = _grant(entry)
+                    grants[grant.sha256] = grant
+            except (ValueError, KeyError, TypeError) as error:
+                self._damaged.append(f"line {number} ({error!r:.80})")
+        if self._damaged:
+            grants = {grant.sha256: grant for grant in self._kept} | grants
+            _log.error("%s", self.damage)
+        self._kept = [grant for grant in grants.values() if grant.sha256 not in revoked]
 
 
 def checked_scopes(scopes: Iterable[str]) -> tuple[str, ...]:
@@ -202,25 +231,8 @@ def checked_scopes(scopes: Iterable[str]) -> tuple[str, ...]:
 
 def digest(token: str) -> str:
     """Hash a token or a cookie."""
-    return hashlib.sha256(token.encode()).hexdigest()
-
-
-def _standing(path: Path) -> list[Grant]:
-    grants, revoked = list[Grant](), set[str]()
-    for line in path.read_text("utf-8").splitlines():
-        if not line:
-            continue
-        try:
-            entry = json.loads(line)
-            if "revoked" in entry:
-                revoked.add(str(entry["revoked"]))
-            else:
-                grants.append(_grant(entry))
-        except (ValueError, KeyError, TypeError) as error:
-            raise InputError(
-                f"{path} holds a line that is no token ({error}). Delete the line."
-            ) from error
-    return [grant for grant in grants if grant.sha256 not in revoked]
+    # Half a character, as JSON can carry it, is in no token and must not be an error either.
+    return hashlib.sha256(token.encode("utf-8", "surrogatepass")).hexdigest()
 
 
 def _grant(entry: Mapping[str, Any]) -> Grant:

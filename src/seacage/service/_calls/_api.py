@@ -8,7 +8,9 @@ from importlib.metadata import version
 import structlog
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
-from fastapi.responses import FileResponse, JSONResponse, PlainTextResponse, Response
+from fastapi.responses import JSONResponse, PlainTextResponse, Response
+from starlette.middleware.gzip import DEFAULT_EXCLUDED_CONTENT_TYPES, GZipMiddleware
+from starlette.routing import Match, Mount
 
 from seacage.conventions import InputError
 from seacage.service._access._audit import Audit
@@ -18,7 +20,7 @@ from seacage.service._access._shield import Shield
 from seacage.service._access._tokens import Tokens
 from seacage.service._calls._alarm_routes import alarms
 from seacage.service._calls._clearance_routes import rov
-from seacage.service._calls._downloads import downloads
+from seacage.service._calls._downloads import NETCDF, downloads
 from seacage.service._calls._examples import with_examples
 from seacage.service._calls._page_files import PAGE, PageFiles
 from seacage.service._calls._routes import around, cages
@@ -27,10 +29,20 @@ from seacage.service._calls._session_routes import sessions
 from seacage.service._calls._stream import sockets
 from seacage.service._calls._whatif import what_if
 from seacage.service._live._cage import LiveCage
+from seacage.service._live._frame import MEDIA_TYPE
 from seacage.service._live._metrics import Metrics
+from seacage.service._rov._rov_files import MCAP
 from seacage.service._store._store import Store, StoreError
 
 _FAULTS = 5  # of a request, as many as anyone reads
+_METHODS = ("DELETE", "GET", "PATCH", "POST", "PUT")
+_PACKED = 1000  # the shortest answer that is worth it to compress [bytes]
+_UNPACKED = (
+    *DEFAULT_EXCLUDED_CONTENT_TYPES,
+    MEDIA_TYPE,
+    NETCDF,
+    MCAP,
+)  # packed, or short and often
 _log = structlog.get_logger(__name__)
 
 
@@ -62,7 +74,9 @@ class Service:
         audit: Audit | None = None,
     ) -> None:
         self.cages, self.store, self.tokens, self.metrics = cages, store, tokens, metrics
-        self.gate = Gate(tokens, limits=limits, audit=audit, site=site)
+        self.gate = Gate(tokens, metrics=metrics, limits=limits, audit=audit, site=site)
+        metrics.damaged.set_function(lambda: float(store.damage.count))
+        metrics.unverified.set_function(lambda: float(store.damage.unverified))
         self._feeds = feeds
         self._tasks: list[asyncio.Task[None]] = []
 
@@ -113,10 +127,14 @@ def create_app(service: Service) -> FastAPI:
         openapi_url=None,  # its own call asks for a token from elsewhere
     )
     app.state.service = service
+    app.add_middleware(
+        GZipMiddleware, minimum_size=_PACKED, compresslevel=5, exclude_content_types=_UNPACKED
+    )
     app.add_middleware(Shield)
     app.add_exception_handler(StoreError, _unavailable)
     app.add_exception_handler(InputError, _refused)
     app.add_exception_handler(RequestValidationError, _malformed)
+    app.add_exception_handler(405, _other_methods)
     for router in (around, sessions, cages, alarms, what_if, downloads, rov, things, sockets):
         app.include_router(router)
     described = app.openapi
@@ -127,10 +145,9 @@ def create_app(service: Service) -> FastAPI:
     return app
 
 
-def _page() -> Response:
-    index = PAGE / "index.html"
-    if index.is_file():
-        return FileResponse(index)
+async def _page(request: Request) -> Response:
+    if (PAGE / "index.html").is_file():
+        return await PageFiles(directory=PAGE).get_response("index.html", request.scope)
     return PlainTextResponse(
         "The page is not built here: run `make page`, or install a wheel, which brings it. "
         "The interface is described at /openapi.json.\n",
@@ -144,6 +161,17 @@ def _unavailable(_: Request, error: Exception) -> JSONResponse:
 
 def _refused(_: Request, error: Exception) -> JSONResponse:
     return JSONResponse({"detail": str(error)}, status_code=422)
+
+
+def _other_methods(request: Request, _: Exception) -> JSONResponse:
+    """Name the methods of all calls of a path, of which each is a route of its own."""
+    calls = [one for one in request.app.routes if not isinstance(one, Mount)]  # of files
+    asked = {name: {**request.scope, "method": name} for name in _METHODS}
+    methods = [
+        name for name in _METHODS if any(one.matches(asked[name])[0] == Match.FULL for one in calls)
+    ]
+    detail = f"This path does not take {request.method}."
+    return JSONResponse({"detail": detail}, 405, {"Allow": ", ".join(methods or ["GET"])})
 
 
 def _malformed(_: Request, error: Exception) -> JSONResponse:

@@ -4,7 +4,8 @@ from typing import Annotated, Any
 
 from fastapi import Depends, HTTPException, Path, Query, Request
 
-from seacage.service._access._guard import Permit
+from seacage.service._access._guard import Permit, gate_of
+from seacage.service._access._tokens import Grant
 from seacage.service._forms._schemas import Problem, Reach
 from seacage.service._live._cage import LiveCage
 
@@ -45,10 +46,21 @@ WRITE: Responses = {**READ, **BODY}
 """What a call may answer that takes a body for a cage."""
 
 
-def _cage(request: Request, cage: Annotated[str, Path(max_length=64)]) -> LiveCage:
+def cages_of(request: Request) -> dict[str, LiveCage]:
+    """The cages that whoever asks may ask about; all where no token was needed."""
     cages: dict[str, LiveCage] = request.app.state.service.cages
+    grant: Grant | None = getattr(request.state, "grant", None)
+    if grant is None:
+        return cages
+    action, site = request.state.action, gate_of(request).site
+    return {name: one for name, one in cages.items() if grant.allows(action, name, site=site)}
+
+
+def _cage(request: Request, cage: Annotated[str, Path(max_length=64)]) -> LiveCage:
+    cages = cages_of(request)
     if cage not in cages:
-        raise HTTPException(404, f"No cage is called {cage!r}. There are {', '.join(cages)}.")
+        there = ", ".join(cages) or "none that this token opens"
+        raise HTTPException(404, f"No cage is called {cage!r}. There are {there}.")
     return cages[cage]
 
 
@@ -66,7 +78,10 @@ From = Annotated[
 To = Annotated[
     Reach | None, Query(alias="to", description="Last time, left out.", examples=[_WHEN])
 ]
-Limit = Annotated[int, Query(ge=1, le=10_000, description="At most so many.", examples=[1000])]
+MOST_ROWS = 10_000
+"""Of an answer."""
+
+Limit = Annotated[int, Query(ge=1, le=MOST_ROWS, description="At most so many.", examples=[1000])]
 Stream = Annotated[
     str | None,
     Query(max_length=64, pattern=_NAME, description="All if left out.", examples=["buoy-1"]),
@@ -79,4 +94,20 @@ Width = Annotated[
 ]
 
 may_read, may_ingest = [Depends(Permit("read"))], [Depends(Permit("ingest"))]
+
+PAGE = 2000
+"""Samples that an answer without an end holds at a time."""
+
+
+async def _costs(request: Request) -> None:
+    reads, token = gate_of(request).reads, request.state.token
+    asked = request.query_params.get("limit", "")[:6]
+    rows = min(max(PAGE, int(asked) if asked.isdecimal() else 0), MOST_ROWS)
+    await reads.take(token, rows)
+    request.state.reading = token, rows  # given back by the shield
+
+
+may_read_rows = [*may_read, Depends(_costs)]
+"""For calls whose answers are long: they take their rows out of a budget while they are made."""
+
 may_acknowledge = [Depends(Permit("ack"))]

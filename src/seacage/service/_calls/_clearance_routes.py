@@ -46,8 +46,8 @@ def ask_clearance(live: Live, body: ClearanceAsked, at: At = None) -> ClearanceA
 
     Distances are to the net as the shape's call gives it, two triangles to a panel. The
     probability takes in what the twin knows of its own error; where that is not known
-    (``shape_error`` null) it rests on the surrogate's spread alone, and is too sure. Waves,
-    the age of the reading and objects beside the net are not in it.
+    (``shape_error`` null) there is none. Waves, the age of the reading and objects beside the
+    net are not in it.
     """
     net = _net(live, at, allow_stale=body.allow_stale, most_age_s=body.max_age_s)
     return clearance_answer(net, body)

@@ -2,20 +2,20 @@
 
 import csv
 import io
-import shutil
 import tempfile
 from collections.abc import Iterator, Sequence
 from datetime import datetime, timedelta
 from importlib.util import find_spec
 from itertools import chain
 from pathlib import Path
+from typing import BinaryIO, TypeVar
 
 from fastapi import APIRouter, HTTPException
-from fastapi.responses import FileResponse, StreamingResponse
-from starlette.background import BackgroundTask
+from fastapi.responses import StreamingResponse
 
 from seacage.records import Sample
 from seacage.service._calls._calls import (
+    PAGE,
     READ,
     From,
     Limit,
@@ -23,17 +23,20 @@ from seacage.service._calls._calls import (
     Responses,
     Stream,
     To,
-    may_read,
+    may_read_rows,
     refusal,
 )
+from seacage.service._calls._files import Replayed, csv_text, replayed_in_blocks, write_netcdf
 from seacage.service._live._cage import LiveCage
 from seacage.service._live._past import readings_between
 
-_PAGE = 5000  # samples that are held at a time
+_PIECE = 1 << 16  # of a file, sent at once [bytes]
 _COLUMNS = ("t", "stream", "seq", "quantity", "value", "flag")
-_CSV, _NETCDF = "text/csv", "application/x-netcdf"
+_CSV, NETCDF = "text/csv", "application/x-netcdf"
 
-downloads = APIRouter(prefix="/api/v1/cages", tags=["downloads"], dependencies=may_read)
+downloads = APIRouter(prefix="/api/v1/cages", tags=["downloads"])
+
+_Part = TypeVar("_Part")
 
 
 def _file(kind: str, description: str) -> Responses:
@@ -45,6 +48,7 @@ _NO_NETCDF = refusal(501, "NetCDF is not installed.", "NetCDF needs seacage[sim]
 
 @downloads.get(
     "/{cage}/samples.csv",
+    dependencies=may_read_rows,
     response_class=StreamingResponse,
     responses=_file(_CSV, "A row per value, with its flag."),
 )
@@ -52,59 +56,68 @@ def download_samples(
     live: Live, stream: Stream = None, start: From = None, end: To = None
 ) -> StreamingResponse:
     """Give all stored samples of a span, in time order, however many there are."""
-    pages = _pages(live, stream, start, end)
-    first = next(pages)  # a store that cannot be read is said before the answer begins
-    text = _table(chain([first], pages))
+    text = _table(_begun(_pages(live, stream, start, end)))
     return StreamingResponse(text, media_type=_CSV, headers=_named(live, "samples.csv"))
 
 
 @downloads.get(
     "/{cage}/history.csv",
-    response_class=FileResponse,
+    dependencies=may_read_rows,
+    response_class=StreamingResponse,
     responses=_file(_CSV, "A row per reading of the buoy."),
 )
 def download_history(
     live: Live, start: From = None, end: To = None, limit: Limit = 1000
-) -> FileResponse:
+) -> StreamingResponse:
     """Give the answers to the last of the buoy's readings in a span, with intervals, as a table."""
-    return _history(live, "history.csv", _CSV, start, end, limit)
+    text = csv_text(_history(live, start, end, limit))
+    return StreamingResponse(text, media_type=_CSV, headers=_named(live, "history.csv"))
 
 
 @downloads.get(
     "/{cage}/history.nc",
-    response_class=FileResponse,
-    responses=_file(_NETCDF, "CF-NetCDF, with the whole shape.") | _NO_NETCDF,
+    dependencies=may_read_rows,
+    response_class=StreamingResponse,
+    responses=_file(NETCDF, "CF-NetCDF, with the whole shape.") | _NO_NETCDF,
 )
 def download_netcdf(
     live: Live, start: From = None, end: To = None, limit: Limit = 1000
-) -> FileResponse:
+) -> StreamingResponse:
     """Give the same as CF-NetCDF, with where every node of the net was."""
     if find_spec("xarray") is None:
         raise HTTPException(
             501, "NetCDF needs seacage[sim], which this service lacks. Ask for CSV."
         )
-    return _history(live, "history.nc", _NETCDF, start, end, limit)
+    file, size = _written(_history(live, start, end, limit))
+    headers = _named(live, "history.nc") | {"Content-Length": str(size)}
+    return StreamingResponse(_pieces(file), media_type=NETCDF, headers=headers)
 
 
 def _history(
-    live: LiveCage, name: str, kind: str, start: datetime | None, end: datetime | None, limit: int
-) -> FileResponse:
-    from seacage.service._calls._files import Replayed
-
+    live: LiveCage, start: datetime | None, end: datetime | None, limit: int
+) -> Iterator[Replayed]:
     twin = live.twin
     buoy = readings_between(twin, live.store, live.name, start=start, end=end, limit=limit)
-    answer = twin.predict_record(buoy)
-    folder = Path(tempfile.mkdtemp(prefix="seacage-"))
-    forget = BackgroundTask(shutil.rmtree, folder, ignore_errors=True)
-    replayed = Replayed(buoy=buoy, answer=answer, cage=twin.cage, origin=str(twin.origin))
-    try:
-        replayed.write(folder / name)
-    except BaseException:
-        shutil.rmtree(folder, ignore_errors=True)
-        raise
-    return FileResponse(
-        folder / name, media_type=kind, headers=_named(live, name), background=forget
-    )
+    return _begun(replayed_in_blocks(twin, buoy))
+
+
+def _begun(parts: Iterator[_Part]) -> Iterator[_Part]:
+    """Make the first part now, so that what cannot be made is said before the answer begins."""
+    return chain([next(parts)], parts)
+
+
+def _written(blocks: Iterator[Replayed]) -> tuple[BinaryIO, int]:
+    """Write blocks into a file that has no name any more: it goes with whoever reads it."""
+    with tempfile.TemporaryDirectory(prefix="seacage-") as folder:
+        path = Path(folder, "history.nc")
+        write_netcdf(blocks, path)
+        return path.open("rb"), path.stat().st_size
+
+
+def _pieces(file: BinaryIO) -> Iterator[bytes]:
+    with file:
+        while piece := file.read(_PIECE):
+            yield piece
 
 
 def _named(live: LiveCage, name: str) -> dict[str, str]:
@@ -116,8 +129,8 @@ def _pages(
 ) -> Iterator[list[Sample]]:
     """Read page by page, each whole up to its last time, which begins the next."""
     while True:
-        page = live.store.samples(live.name, stream=stream, start=start, end=end, limit=_PAGE)
-        if len(page) < _PAGE:
+        page = live.store.samples(live.name, stream=stream, start=start, end=end, limit=PAGE)
+        if len(page) < PAGE:
             yield page
             return
         last = page[-1].t

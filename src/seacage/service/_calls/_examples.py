@@ -2,6 +2,8 @@
 
 from typing import Any
 
+from seacage.twin import interval_reason
+
 _T = "2018-01-26T23:08:00Z"
 _VALUES = {
     "current_speed_m_s": 0.5,
@@ -11,6 +13,7 @@ _VALUES = {
     "wave_from_deg": 270.0,
 }
 _SAMPLE = {"stream": "buoy-1", "t": _T, "seq": 1, "values": _VALUES}
+_NO_INTERVAL = interval_reason(1)
 _INTERVAL = {"mean": 41.2, "lower": 36.9, "upper": 45.5}
 _WAITING = {
     "id": "load.bridle-3",
@@ -48,7 +51,9 @@ _STATE = {
         {
             "name": "bridle-7",
             "level": 2,
+            "in_domain": True,
             "tension_kn": _INTERVAL,
+            "interval_reason": None,
             "low_fidelity_kn": 38.7,
             "utilisation": 0.2575,
         }
@@ -58,27 +63,33 @@ _STATE = {
             "name": "depth-1",
             "unit": "m",
             "level": 2,
+            "in_domain": True,
             "low_fidelity": 14.4,
             "mean": 14.1,
             "lower": 13.8,
             "upper": 14.4,
+            "interval_reason": None,
             "measured": 14.2,
             "measured_age_s": 2.0,
         }
     ],
     "shape_level": 1,
+    "shape": {"level": 1, "in_domain": True, "interval_reason": _NO_INTERVAL},
     "volume_fraction": 0.87,
     "silent": [],
     "amended": [],
     "alarms": [_WAITING],
+    "concerns": [],
 }
 _SERIES = {
     "unit": "kN",
     "level": 2,
+    "in_domain": [True],
     "low_fidelity": [38.7],
     "mean": [41.2],
     "lower": [36.9],
     "upper": [45.5],
+    "interval_reason": None,
 }
 _HISTORY = {
     "t": [_T],
@@ -232,7 +243,9 @@ SCHEMAS: dict[str, Any] = {
     "Receipt": {
         "accepted": 1,
         "duplicates": 0,
-        "rejected": [{"index": 1, "reason": "No stream is called 'buoy-9'. There are buoy-1."}],
+        "rejected": [
+            {"index": 1, "reason": "No stream is called 'buoy-9'.", "retry": False},
+        ],
     },
     "Root": {
         "value": [{"name": "Things", "url": "/sta/v1.1/Things"}],
@@ -250,8 +263,10 @@ SCHEMAS: dict[str, Any] = {
         "t": _T,
         "valid": True,
         "level": 1,
+        "in_domain": True,
         "node_position_m": [[25.4, 0.1, 0.0]],
-        "sigma_m": [0.08],
+        "sigma_m": None,
+        "interval_reason": _NO_INTERVAL,
     },
     "SignIn": {"token": "as-seacage-token-new-printed-it"},
     "State": _STATE,

@@ -1,32 +1,38 @@
 """Answers as files: a table, lines of JSON, or CF-NetCDF with the whole shape."""
 
 import csv
+import io
 import json
 import math
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from seacage.cage import Cage
 from seacage.conventions import InputError
-from seacage.dynamics import Response
 from seacage.ocean import SeaState
 from seacage.records import KEYS, Record
 from seacage.surrogates import Prediction
-from seacage.twin import Answer
+from seacage.twin import Answer, Twin, interval_reason
 
 if TYPE_CHECKING:
     import xarray
 
-_Z = 1.96
+    from seacage.dynamics import Response
+
+BLOCK = 512
+"""Rows that are answered and written at once; the shapes of more would crowd the memory."""
+
 _DOOR = {"N": ("kn", 1e-3), "m": ("m", 1.0)}
 
 Column = list[Any]
+Table = Float[np.ndarray, "t output"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -56,7 +62,7 @@ class Replayed:
         """
         check_form(path)
         unborn = path.with_name(f".{path.name}.unborn")
-        _FORMS[path.suffix](self, unborn)
+        _FORMS[path.suffix](iter([self]), unborn)
         unborn.replace(path)
 
 
@@ -70,6 +76,20 @@ def check_form(path: Path) -> None:
     """
     if path.suffix not in _FORMS:
         raise InputError(f"{path} ends in no form that is known. End it in {', '.join(_FORMS)}.")
+
+
+def replayed_in_blocks(twin: Twin, buoy: Record) -> Iterator[Replayed]:
+    """Answer a buoy's record block by block; at least one, which may be empty."""
+    for first in range(0, max(len(buoy), 1), BLOCK):
+        rows = slice(first, first + BLOCK)
+        some = replace(
+            buoy,
+            time=buoy.time[rows],
+            values={key: column[rows] for key, column in buoy.values.items()},
+            flags={key: column[rows] for key, column in buoy.flags.items()},
+        )
+        answer = twin.predict_record(some)
+        yield Replayed(buoy=some, answer=answer, cage=twin.cage, origin=str(twin.origin))
 
 
 def joined(answers: list[Answer]) -> Answer:
@@ -87,6 +107,8 @@ def joined(answers: list[Answer]) -> Answer:
     return Answer(
         valid=rows(lambda answer: answer.valid),
         in_domain=rows(lambda answer: answer.in_domain),
+        bridle_in_domain=rows(lambda answer: answer.bridle_in_domain),
+        sensor_in_domain=rows(lambda answer: answer.sensor_in_domain),
         reason=tuple(reason for answer in answers for reason in answer.reason),
         bridle_names=first.bridle_names,
         bridle_tension=both(lambda answer: answer.bridle_tension),
@@ -118,76 +140,102 @@ def _columns(replayed: Replayed) -> Iterator[tuple[str, Column]]:
     for key, values in buoy.values.items():
         yield key, _known(values)
         yield f"{key}_flag", buoy.flags[key].tolist()
-    low = _bridle_low(replayed.cage, answer)
+    sensor, bridle = answer.sensor_interval(), answer.bridle_interval()
     for k, name in enumerate(answer.sensor_names):
         unit, scale = _DOOR[answer.sensor_units[k]]
         yield f"{name}_level", [int(answer.sensor_level[k])] * len(buoy)
-        yield from _interval_columns(f"{name}_low", unit, _of(answer.sensor_low, k, scale))
-        yield from _interval_columns(name, unit, _of(answer.sensor, k, scale))
+        yield f"{name}_in_domain", answer.sensor_in_domain[:, k].tolist()
+        low, best = answer.sensor_low.mean[:, k], answer.sensor.mean[:, k]
+        yield from _interval_columns(f"{name}_low", unit, scale * low)
+        yield from _interval_columns(
+            name, unit, scale * best, *(scale * end[:, k] for end in sensor)
+        )
     for k, name in enumerate(answer.bridle_names):
         yield f"{name}_level", [int(answer.bridle_level[k])] * len(buoy)
-        yield from _interval_columns(f"{name}_low", "kn", _of(low, k, 1e-3), least=0.0)
-        best = _of(answer.bridle_tension, k, 1e-3)
-        yield from _interval_columns(name, "kn", best, least=0.0)
-    bottom = replayed.cage.bottom_node
-    depth = Prediction(mean=-answer.node_position[:, bottom, 2], std=answer.node_sigma[:, bottom])
+        yield f"{name}_in_domain", answer.bridle_in_domain[:, k].tolist()
+        yield from _interval_columns(f"{name}_low", "kn", 1e-3 * answer.bridle_low[:, k])
+        best = 1e-3 * answer.bridle_tension.mean[:, k]
+        yield from _interval_columns(name, "kn", best, *(1e-3 * end[:, k] for end in bridle))
     yield "shape_level", [answer.shape_level] * len(buoy)
+    yield "shape_in_domain", answer.in_domain.tolist()
+    yield "shape_interval_reason", [interval_reason(answer.shape_level)] * len(buoy)
+    depth = -answer.node_position[:, replayed.cage.bottom_node, 2]
     yield from _interval_columns("shape_bottom_depth", "m", depth)
-    yield "shape_largest_sigma_m", _known(answer.node_sigma.max(axis=1))
+    yield "shape_largest_sigma_m", [None] * len(buoy)
     yield "volume_fraction", _known(answer.volume_fraction)
 
 
 def _interval_columns(
-    name: str, unit: str, said: Prediction, *, least: float = -math.inf
+    name: str,
+    unit: str,
+    mean: Float[np.ndarray, " t"],
+    lower: Float[np.ndarray, " t"] | None = None,
+    upper: Float[np.ndarray, " t"] | None = None,
 ) -> Iterator[tuple[str, Column]]:
-    yield f"{name}_{unit}", _known(said.mean)
-    yield f"{name}_lower_{unit}", _known(np.maximum(said.mean - _Z * said.std, least))
-    yield f"{name}_upper_{unit}", _known(said.mean + _Z * said.std)
-
-
-def _of(said: Prediction, column: int, scale: float) -> Prediction:
-    return Prediction(mean=scale * said.mean[:, column], std=scale * said.std[:, column])
-
-
-def _bridle_low(cage: Cage, answer: Answer) -> Prediction:
-    """Level 1 of every bridle; what a shackle has taught keeps its spread at the shackle."""
-    std = answer.bridle_tension.std.copy()
-    for shackle in cage.shackles:
-        if answer.bridle_level[shackle.bridle] > 1:
-            std[:, shackle.bridle] = answer.sensor_low.std[
-                :, answer.sensor_names.index(shackle.name)
-            ]
-    return Prediction(mean=answer.bridle_low, std=std)
+    yield f"{name}_{unit}", _known(mean)
+    for side, end in (("lower", lower), ("upper", upper)):
+        yield f"{name}_{side}_{unit}", [None] * len(mean) if end is None else _known(end)
 
 
 def _known(values: Float[np.ndarray, " t"]) -> Column:
     return [round(v, 6) if math.isfinite(v) else None for v in values.tolist()]
 
 
-def _write_csv(replayed: Replayed, path: Path) -> None:
-    columns = dict(_columns(replayed))
-    with path.open("w", encoding="utf-8", newline="") as file:
-        table = csv.writer(file)
-        table.writerow(columns)
+def csv_text(blocks: Iterator[Replayed]) -> Iterator[str]:
+    """Write answers as a table, block by block."""
+    for count, block in enumerate(blocks):
+        columns, text = dict(_columns(block)), io.StringIO()
+        table = csv.writer(text)
+        if count == 0:
+            table.writerow(columns)
         table.writerows(zip(*columns.values(), strict=True))
+        yield text.getvalue()
 
 
-def _write_lines(replayed: Replayed, path: Path) -> None:
-    columns = dict(_columns(replayed))
+def _write_csv(blocks: Iterator[Replayed], path: Path) -> None:
+    with path.open("w", encoding="utf-8", newline="") as file:
+        file.writelines(csv_text(blocks))
+
+
+def _write_lines(blocks: Iterator[Replayed], path: Path) -> None:
     with path.open("w", encoding="utf-8") as file:
-        for row in zip(*columns.values(), strict=True):
-            file.write(json.dumps(dict(zip(columns, row, strict=True))) + "\n")
+        for columns in (dict(_columns(block)) for block in blocks):
+            for row in zip(*columns.values(), strict=True):
+                file.write(json.dumps(dict(zip(columns, row, strict=True))) + "\n")
 
 
 # --- CF-NetCDF ---
 
 
-def _write_netcdf(replayed: Replayed, path: Path) -> None:
+def write_netcdf(blocks: Iterator[Replayed], path: Path) -> None:
+    """Write answers as CF-NetCDF, block by block."""
+    first = _dataset(next(blocks))
+    timed = [name for name, one in first.variables.items() if one.dims[:1] == ("time",)]
+    chunk = max(1, first.sizes["time"])
+    encoding: dict[Any, Any] = {
+        name: {"chunksizes": (chunk, *first[name].shape[1:])} for name in timed
+    }
+    for name in ("node_position", "node_sigma"):
+        encoding[name] |= {"zlib": True, "complevel": 1}
+    encoding["time"] |= {"units": "microseconds since 1970-01-01", "dtype": "int64"}
+    first.to_netcdf(path, engine="h5netcdf", encoding=encoding, unlimited_dims=["time"])  # pyright: ignore[reportUnknownMemberType]
+    with import_module("h5netcdf").File(path, "a") as file:
+        for block in blocks:
+            dataset, begin = _dataset(block), file.dimensions["time"].size
+            file.resize_dimension("time", begin + len(block.buoy))
+            for name in timed:
+                values = block.buoy.time.astype(int) if name == "time" else dataset[name].values
+                file[name][begin:] = values
+
+
+def _dataset(replayed: Replayed) -> "xarray.Dataset":
     import xarray
 
     answer = replayed.answer
     sensors = {unit: _places(answer, unit) for unit in ("m", "N")}
-    low = _bridle_low(replayed.cage, answer)
+    sensor, bridle = answer.sensor_interval(), answer.bridle_interval()
+    low, low_of_bridle = answer.sensor_low.mean, np.asarray(answer.bridle_low)
+    best, best_of_bridle = answer.sensor.mean, answer.bridle_tension.mean
     variables: dict[str, tuple[tuple[str, ...], Any, dict[str, Any]]] = {
         "valid": (("time",), answer.valid.astype(np.int8), _said("1", "input passed its checks")),
         "in_domain": (
@@ -197,14 +245,15 @@ def _write_netcdf(replayed: Replayed, path: Path) -> None:
         ),
         "reason": (("time",), np.array(answer.reason, dtype=object), {}),
         **_buoy_variables(replayed.buoy),
-        **_interval_variables("depth_low", "depth_sensor", answer.sensor_low, sensors["m"], "m"),
-        **_interval_variables("depth", "depth_sensor", answer.sensor, sensors["m"], "m"),
-        **_interval_variables(
-            "shackle_tension_low", "shackle", answer.sensor_low, sensors["N"], "kN"
-        ),
-        **_interval_variables("shackle_tension", "shackle", answer.sensor, sensors["N"], "kN"),
-        **_interval_variables("bridle_tension_low", "bridle", low, slice(None), "kN"),
-        **_interval_variables("bridle_tension", "bridle", answer.bridle_tension, slice(None), "kN"),
+        **_interval_variables("depth_low", "depth_sensor", low, None, sensors["m"]),
+        **_interval_variables("depth", "depth_sensor", best, sensor, sensors["m"]),
+        **_interval_variables("shackle_tension_low", "shackle", low, None, sensors["N"]),
+        **_interval_variables("shackle_tension", "shackle", best, sensor, sensors["N"]),
+        **_interval_variables("bridle_tension_low", "bridle", low_of_bridle, None, slice(None)),
+        **_interval_variables("bridle_tension", "bridle", best_of_bridle, bridle, slice(None)),
+        "depth_in_domain": _flags("depth_sensor", answer.sensor_in_domain[:, sensors["m"]]),
+        "shackle_in_domain": _flags("shackle", answer.sensor_in_domain[:, sensors["N"]]),
+        "bridle_in_domain": _flags("bridle", answer.bridle_in_domain),
         "depth_level": (("depth_sensor",), answer.sensor_level[sensors["m"]], _said("1", "level")),
         "shackle_level": (("shackle",), answer.sensor_level[sensors["N"]], _said("1", "level")),
         "bridle_level": (("bridle",), answer.bridle_level, _said("1", "level")),
@@ -215,13 +264,13 @@ def _write_netcdf(replayed: Replayed, path: Path) -> None:
         ),
         "node_sigma": (
             ("time", "node"),
-            answer.node_sigma.astype(np.float32),
-            _said("m", "standard deviation; the 95 % interval is 1.96 of it on either side"),
+            np.full(answer.node_sigma.shape, np.nan, dtype=np.float32),
+            _said("m", "standard deviation; not a number where none is known"),
         ),
         "volume_fraction": (("time",), answer.volume_fraction, _said("1", "of still water")),
     }
     names = np.array(answer.sensor_names, dtype=object)
-    dataset = xarray.Dataset(
+    return xarray.Dataset(
         variables,
         coords={
             "time": replayed.buoy.time.astype("datetime64[ns]"),
@@ -231,9 +280,9 @@ def _write_netcdf(replayed: Replayed, path: Path) -> None:
             "axis": np.array(["x", "y", "z"], dtype=object),
         },
         attrs=_attributes("Answers of a twin to a buoy's record", replayed.cage)
-        | {"origin": replayed.origin, "shape_level": answer.shape_level},
+        | {"origin": replayed.origin, "shape_level": answer.shape_level}
+        | {"shape_interval_reason": interval_reason(answer.shape_level) or ""},
     )
-    _write(dataset, path, large=("node_position", "node_sigma"))
 
 
 def _places(answer: Answer, unit: str) -> np.ndarray:
@@ -252,21 +301,23 @@ def _buoy_variables(buoy: Record) -> dict[str, Any]:
 
 
 def _interval_variables(
-    name: str, dim: str, said: Prediction, columns: Any, unit: str
+    name: str, dim: str, mean: Table, interval: tuple[Table, Table] | None, columns: Any
 ) -> dict[str, Any]:
-    scale, least = (1e-3, 0.0) if unit == "kN" else (1.0, -np.inf)
-    # A shackle's reading may be below zero by its bias; a rope's tension may not.
-    least = least if dim == "bridle" else -np.inf
-    mean, std = scale * said.mean[:, columns], scale * said.std[:, columns]
-    dims = ("time", dim)
+    unit, scale = ("m", 1.0) if dim == "depth_sensor" else ("kN", 1e-3)
+    lower, upper = interval or (np.full_like(mean, np.nan),) * 2
+    kinds = {"": (mean, "mean"), "_lower": (lower, "95 %, lower"), "_upper": (upper, "95 %, upper")}
     return {
-        name: (dims, mean, _said(unit, "mean")),
-        f"{name}_lower": (dims, np.maximum(mean - _Z * std, least), _said(unit, "95 %, lower")),
-        f"{name}_upper": (dims, mean + _Z * std, _said(unit, "95 %, upper")),
+        f"{name}{end}": (("time", dim), scale * values[:, columns], _said(unit, long_name))
+        for end, (values, long_name) in kinds.items()
     }
 
 
-def write_response(path: Path, cage: Cage, sea: SeaState, law: str, response: Response) -> None:
+def _flags(dim: str, inside: Bool[np.ndarray, "t output"]) -> Any:
+    said = _said("1", "inside what the level that answers was trained on; 0 is extrapolating")
+    return ("time", dim), inside.astype(np.int8), said
+
+
+def write_response(path: Path, cage: Cage, sea: SeaState, law: str, response: "Response") -> None:
     """Write one equilibrium as CF-NetCDF."""
     import xarray
 
@@ -300,7 +351,7 @@ def write_response(path: Path, cage: Cage, sea: SeaState, law: str, response: Re
             "wave_from_deg": sea.wave_from,
         },
     )
-    _write(dataset, path)
+    dataset.to_netcdf(path, engine="h5netcdf")  # pyright: ignore[reportUnknownMemberType]
 
 
 def _said(units: str, long_name: str) -> dict[str, Any]:
@@ -315,16 +366,12 @@ def _attributes(title: str, cage: Cage) -> dict[str, Any]:
         "cage": cage.name,
         "cage_toml": cage.to_toml(),
         "axes": "x east, y north, z up; z = 0 at still water",
+        **({"comment": " ".join(cage.warnings)} if cage.warnings else {}),
     }
 
 
-def _write(dataset: "xarray.Dataset", path: Path, *, large: tuple[str, ...] = ()) -> None:
-    encoding = {name: {"zlib": True, "complevel": 1} for name in large}
-    dataset.to_netcdf(path, engine="h5netcdf", encoding=encoding)  # pyright: ignore[reportUnknownMemberType]
-
-
-_FORMS: Mapping[str, Callable[[Replayed, Path], None]] = {
+_FORMS: Mapping[str, Callable[[Iterator[Replayed], Path], None]] = {
     ".csv": _write_csv,
     ".jsonl": _write_lines,
-    ".nc": _write_netcdf,
+    ".nc": write_netcdf,
 }

@@ -1,6 +1,7 @@
 """A cage's history: a span of any length, told in so many points."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from functools import partial
 
@@ -9,13 +10,14 @@ from jaxtyping import Float
 
 from seacage.conventions import Flag
 from seacage.records import Sample
+from seacage.service._calls._files import joined, replayed_in_blocks
 from seacage.service._forms._samples import BUOY_KEYS
 from seacage.service._forms._schemas import History, Measured
 from seacage.service._live._answers import history_of, usable_value
 from seacage.service._live._past import record_of
 from seacage.service._store._aggregates import WIDTHS_S, Aggregate
 from seacage.service._store._store import Store
-from seacage.twin import Twin
+from seacage.twin import Answer, Twin
 
 READ_LIMIT = 10_000
 """Readings that one history looks at one by one; of more, spans of minutes are looked at."""
@@ -55,7 +57,14 @@ def history_between(
         sensor: measured_between(store, cage, sensor, start=start, end=end, limit=limit)
         for sensor in twin.sensor_names
     }
-    return history_of(buoy, twin.predict_record(buoy), measured, thinned=thinned)
+    answers = [_without_nodes(one.answer) for one in replayed_in_blocks(twin, buoy)]
+    return history_of(buoy, joined(answers), measured, thinned=thinned)
+
+
+def _without_nodes(answer: Answer) -> Answer:
+    """Drop where the nodes were, which no history shows, and which is most of its memory."""
+    rows = len(answer.valid)
+    return replace(answer, node_position=np.empty((rows, 0, 3)), node_sigma=np.empty((rows, 0)))
 
 
 def measured_between(

@@ -18,6 +18,8 @@ class PageFiles(StaticFiles):
     async def get_response(self, path: str, scope: Scope) -> Response:
         """Answer with a file."""
         answer = await super().get_response(path, scope)
+        if "etag" in answer.headers:  # weak, as a compressed file is not the same bytes
+            answer.headers["etag"] = f"W/{answer.headers['etag'].removeprefix('W/')}"
         if path.startswith("assets/") and answer.status_code == 200:
             answer.headers["cache-control"] = _FOR_EVER
         return answer

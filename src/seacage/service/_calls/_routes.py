@@ -1,8 +1,11 @@
 """The calls of the HTTP interface: the service itself, its cages, their samples and answers."""
 
-from fastapi import APIRouter, Depends, Request, Response
-from fastapi.responses import JSONResponse
+from collections.abc import Iterator, Sequence
 
+from fastapi import APIRouter, Depends, Request, Response
+from fastapi.responses import JSONResponse, StreamingResponse
+
+from seacage.records import Sample
 from seacage.service._access._guard import Permit
 from seacage.service._calls._calls import (
     READ,
@@ -18,11 +21,13 @@ from seacage.service._calls._calls import (
     Stream,
     To,
     Width,
+    cages_of,
     may_ingest,
     may_read,
+    may_read_rows,
 )
 from seacage.service._calls._history import history_between
-from seacage.service._forms._samples import read_samples
+from seacage.service._forms._samples import read_samples, time_of
 from seacage.service._forms._schemas import (
     AggregateOut,
     AggregatesOut,
@@ -36,11 +41,11 @@ from seacage.service._forms._schemas import (
     State,
     Topology,
 )
-from seacage.service._live._answers import sample_of, shape_of, state_of, summary_of
-from seacage.service._live._cage import LiveCage
+from seacage.service._live._answers import sample_of, shape_of, summary_of
 from seacage.service._live._frame import MEDIA_TYPE, Flags, frame_of
 from seacage.service._live._past import state_at
 
+_TOGETHER = 500  # samples that are written at once
 _HEALTH = {**REFUSED, 503: {"model": Health, "description": "The service cannot do its work."}}
 FRAME: Responses = {
     200: {
@@ -63,7 +68,10 @@ async def healthz() -> Health:
 @around.get("/readyz", response_model=Health, responses=_HEALTH)
 async def readyz(request: Request) -> Response:
     """Say whether samples are taken and every cage is being stepped."""
-    trouble = request.app.state.service.trouble()
+    service = request.app.state.service
+    trouble = service.trouble()
+    if trouble and len(cages_of(request)) < len(service.cages):
+        trouble = "not ready"  # why, may be another cage's affair
     health = Health(status=trouble or "ready")
     return JSONResponse(health.model_dump(), status_code=503 if trouble else 200)
 
@@ -75,7 +83,8 @@ async def readyz(request: Request) -> Response:
 )
 async def metrics(request: Request) -> Response:
     """Tell Prometheus what happened."""
-    text = request.app.state.service.metrics.text()
+    service, cages = request.app.state.service, cages_of(request)
+    text = service.metrics.text(None if len(cages) == len(service.cages) else cages)
     return Response(text, media_type="text/plain; version=0.0.4; charset=utf-8")
 
 
@@ -88,7 +97,7 @@ async def openapi(request: Request) -> JSONResponse:
 @cages.get("", dependencies=may_read, responses=REFUSED)
 async def list_cages(request: Request) -> Cages:
     """List the cages: whether each answers, its worst load and its worst alarm."""
-    live: dict[str, LiveCage] = request.app.state.service.cages
+    live = cages_of(request)
     return Cages(cages=[summary_of(name, one.snapshot.state) for name, one in live.items()])
 
 
@@ -97,22 +106,25 @@ async def post_samples(request: Request, body: SamplesIn, live: Live) -> Receipt
     """Take samples in any order; 201 says that those accepted are on disk.
 
     A sample is known by (stream, t, seq): sent again it counts as a duplicate and changes
-    nothing.
+    nothing. Of those rejected, the ones with ``retry`` are ahead of the service's clock: send
+    them again once their time has come.
     """
     samples, rejected = read_samples(body.samples, live.streams, until=live.latest_allowed)
+    for ahead in (body.samples[one.index] for one in rejected if one.retry):
+        live.refuse_ahead(ahead.stream, time_of(ahead))
     new = await live.take(samples)
     receipt = Receipt(accepted=sum(new), duplicates=len(new) - sum(new), rejected=rejected)
     _counted(request, live.name, receipt)
     return receipt
 
 
-@cages.get("/{cage}/samples", dependencies=may_read, responses=READ)
+@cages.get("/{cage}/samples", dependencies=may_read_rows, responses=READ, response_model=SamplesOut)
 def get_samples(
     live: Live, stream: Stream = None, start: From = None, end: To = None, limit: Limit = 1000
-) -> SamplesOut:
+) -> StreamingResponse:
     """Give back stored samples in time order, the first ones of the span."""
     samples = live.store.samples(live.name, stream=stream, start=start, end=end, limit=limit)
-    return SamplesOut(samples=[sample_of(sample) for sample in samples])
+    return StreamingResponse(_samples_text(samples), media_type="application/json")
 
 
 @cages.get("/{cage}/latest", dependencies=may_read, responses=READ)
@@ -155,8 +167,8 @@ def get_state(live: Live, at: At = None) -> State:
     """Say what the cage does: loads, sensors, volume, each with its level and 95 % interval."""
     if at is None:
         return live.snapshot.state
-    state, answered = state_at(live.twin, live.store, live.name, at)
-    return state_of(live.name, live.twin, answered, state)
+    memory, answered = state_at(live.twin, live.store, live.name, at)
+    return live.state_of(answered, memory)
 
 
 @cages.get("/{cage}/shape", dependencies=may_read, responses=READ)
@@ -175,7 +187,7 @@ def get_frame(live: Live, at: At = None) -> Response:
     if at is None:
         return Response(live.snapshot.frame, media_type=MEDIA_TYPE)
     memory, answered = state_at(live.twin, live.store, live.name, at)
-    state = state_of(live.name, live.twin, answered, memory)
+    state = live.state_of(answered, memory)
     frame = frame_of(state, answered, live.rest_position, about=Flags.PAST)
     return Response(frame, media_type=MEDIA_TYPE)
 
@@ -186,8 +198,10 @@ def get_topology(live: Live) -> Topology:
     return live.topology
 
 
-@cages.get("/{cage}/history", dependencies=may_read, responses=READ)
-def get_history(live: Live, start: From = None, end: To = None, limit: Limit = 1000) -> History:
+@cages.get("/{cage}/history", dependencies=may_read_rows, responses=READ, response_model=History)
+def get_history(
+    live: Live, start: From = None, end: To = None, limit: Limit = 1000
+) -> StreamingResponse:
     """Answer to the buoy's readings in a span, and show what the sensors read.
 
     Where the buoy read more often than ``limit``, ``thinned`` is true, and the answers are spread
@@ -195,7 +209,24 @@ def get_history(live: Live, start: From = None, end: To = None, limit: Limit = 1
     A sensor that read more often is told by means of one or ten minutes. Intervals are as
     trained.
     """
-    return history_between(live.twin, live.store, live.name, start=start, end=end, limit=limit)
+    history = history_between(live.twin, live.store, live.name, start=start, end=end, limit=limit)
+    return StreamingResponse(_history_text(history), media_type="application/json")
+
+
+def _samples_text(samples: Sequence[Sample]) -> Iterator[str]:
+    """Write samples as JSON, some hundred at a time."""
+    yield '{"samples":['
+    for first in range(0, len(samples), _TOGETHER):
+        some = samples[first : first + _TOGETHER]
+        yield "," * (first > 0) + ",".join(sample_of(one).model_dump_json() for one in some)
+    yield "]}"
+
+
+def _history_text(history: History) -> Iterator[str]:
+    """Write a history as JSON, one of its parts at a time."""
+    for count, name in enumerate(History.model_fields):
+        yield "{,"[count > 0] + history.model_dump_json(include={name})[1:-1]
+    yield "}"
 
 
 def _counted(request: Request, cage: str, receipt: Receipt) -> None:

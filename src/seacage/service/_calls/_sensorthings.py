@@ -10,8 +10,7 @@ from pydantic import BaseModel, Field
 
 from seacage.conventions import InputError
 from seacage.records import Sample
-from seacage.service._access._guard import gate_of
-from seacage.service._calls._calls import READ, REFUSED, may_read
+from seacage.service._calls._calls import READ, REFUSED, cages_of, may_read
 from seacage.service._calls._things import (
     OBSERVATIONS,
     OBSERVED,
@@ -305,10 +304,7 @@ def get_observations(request: Request, id: Id, options: Listing) -> Entity:  # n
 
 def _catalogue(request: Request) -> Catalogue:
     """What the token may read; the guard knew it a moment ago."""
-    gate, cages = gate_of(request), request.app.state.service.cages
-    grant = request.state.grant
-    mine = {n: one for n, one in cages.items() if grant.allows("read", n, site=gate.site)}
-    return Catalogue(cages=mine, address=str(request.base_url).rstrip("/"))
+    return Catalogue(cages=cages_of(request), address=str(request.base_url).rstrip("/"))
 
 
 def _ordered(of: str, found: list[Entity], asked: Asked) -> list[Entity]:

@@ -1,5 +1,6 @@
 """Signing in, for the page: a token is given once and a cookie stands for it."""
 
+import asyncio
 from datetime import UTC, datetime
 from typing import Annotated
 
@@ -26,11 +27,13 @@ async def sign_in(request: Request, response: Response, body: SignIn) -> Session
         raise HTTPException(403, "Only the page of this service may sign in by itself.")
     grant = gate.tokens.grant(body.token)
     if grant is None:
-        gate.refuse(source_of(request))
+        gate.refuse(source_of(request), sent=True)
     gate.pace(grant)
+    gate.connections.knows(request, grant.id)
     _remember(request, grant)
-    gate.sessions.end(request.cookies.get(COOKIE, ""))
-    cookie, session = gate.sessions.begin(grant, datetime.now(UTC))
+    # Threads wait for the disk: the loop serves others meanwhile.
+    await asyncio.to_thread(gate.sessions.end, request.cookies.get(COOKIE, ""))
+    cookie, session = await asyncio.to_thread(gate.sessions.begin, grant, datetime.now(UTC))
     _hand_over(request, response, cookie)
     return _said(grant, session)
 
@@ -40,7 +43,8 @@ async def who_am_i(request: Request, response: Response, cookie: Cookie) -> Sess
     """Say who is signed in, as a page asks that was loaded again; the session lasts anew."""
     session, grant = _session(request, cookie)
     assert cookie is not None
-    session = gate_of(request).sessions.renew(cookie, datetime.now(UTC)) or session
+    renew = gate_of(request).sessions.renew
+    session = await asyncio.to_thread(renew, cookie, datetime.now(UTC)) or session
     _hand_over(request, response, cookie)
     return _said(grant, session)
 
@@ -51,7 +55,7 @@ async def sign_out(request: Request, response: Response, cookie: Cookie, _: Csrf
     session, grant = _session(request, cookie)
     _remember(request, grant)
     check_csrf(request, session)
-    gate_of(request).sessions.end(cookie or "")
+    await asyncio.to_thread(gate_of(request).sessions.end, cookie or "")
     response.delete_cookie(COOKIE, httponly=True, samesite="strict")
 
 
@@ -70,7 +74,7 @@ def _session(request: Request, cookie: str | None) -> tuple[Session, Grant]:
     gate = gate_of(request)
     found = gate.known(None, cookie)
     if found is None or found[1] is None:
-        gate.refuse(source_of(request))
+        gate.refuse(source_of(request), sent=bool(cookie))
     gate.pace(found[0])
     return found[1], found[0]
 

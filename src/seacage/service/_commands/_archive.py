@@ -40,8 +40,8 @@ def write(
         seacage archive write archive --store var/samples.sqlite
     """
     from seacage.service._store._archive import Archive
-    from seacage.service._store._days import cages, days_before, readable, rows_of_day
-    from seacage.service._store._rows import microseconds, moment_of
+    from seacage.service._store._days import cages, days_before, rows_of_day
+    from seacage.service._store._rows import microseconds, moment_of, readable
     from seacage.service._store._store import look_into
 
     until = microseconds((before or datetime.now(UTC)).replace(tzinfo=UTC))
@@ -53,9 +53,9 @@ def write(
             for stream, day in days_before(session, name, until)
         ]
         for done, (name, stream, day) in enumerate(days, start=1):
-            pairs = readable(rows_of_day(session, name, stream, day))
-            archive.write(name, stream, moment_of(day).date(), [sample for _, sample in pairs])
-            count += len(pairs)
+            samples = [one for _, one in readable(rows_of_day(session, name, stream, day))]
+            archive.write(name, stream, moment_of(day).date(), samples)
+            count += len(samples)
             progress("archive", done, len(days))
     tell(
         {"folder": str(folder), "files": len(days), "samples": count},

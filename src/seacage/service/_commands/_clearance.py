@@ -82,6 +82,7 @@ def clearance(
         seacage clearance way.csv --path --most 0.05 --to http://127.0.0.1:8000 --token TOKEN
         seacage clearance --point 20,0,-8 --twin twin --current-speed 0.4 --current-to 90
     """
+    from seacage.conventions import InputError
     from seacage.service._rov._clearance import clearance_answer
     from seacage.service._rov._clearance_table import asked_of, write_clearances
 
@@ -100,10 +101,16 @@ def clearance(
     )
     if out is not None:
         write_clearances(out, rows, answer)
-    likeliest = max(one.p_below for one in answer.points)
-    p = answer.path.p_below if answer.path else likeliest
+    known = [one.p_below for one in answer.points if one.p_below is not None]
+    p = answer.path.p_below if answer.path else max(known, default=None)
     tell(answer.model_dump(mode="json"), as_json=as_json, rows=_clearance_rows(answer, out))
-    if most is not None and p > most:
+    if most is not None and p is None:
+        raise InputError(
+            f"clearance: whether the net is nearer than {below:g} m cannot be held against --most "
+            f"{most:g}, for this twin's shape error is not known. Leave --most out and go by the "
+            "distance."
+        )
+    if most is not None and p is not None and p > most:
         raise stopped(
             f"clearance: the net is nearer than {below:g} m with probability {p:.3f}, which is "
             f"more than {most:g}.",
@@ -147,16 +154,22 @@ def _clearance_rows(answer: "ClearanceAnswer", out: Path | None) -> list[tuple[s
 
 
 def _point_row(point: "PointClearance", below_m: float) -> str:
+    said = f"{point.distance_m:.2f} m {'inside' if point.inside else 'outside'}"
+    if point.p_below is None:
+        return said
     return (
-        f"{point.distance_m:.2f} m {'inside' if point.inside else 'outside'}; expected "
-        f"{point.expected_m:.2f} m ± {point.sigma_m:.2f} m; nearer than {below_m:g} m with "
-        f"probability {point.p_below:.3f}"
+        f"{said}; expected {point.expected_m:.2f} m ± {point.sigma_m:.2f} m; nearer than "
+        f"{below_m:g} m with probability {point.p_below:.3f}"
     )
 
 
 def _path_row(path: "PathAnswer", below_m: float) -> str:
+    said = (
+        f"{path.length_m:.1f} m; closest {path.closest.distance_m:.2f} m after {path.along_m:.1f} m"
+    )
+    if path.p_below is None:
+        return said
     return (
-        f"{path.length_m:.1f} m; closest {path.closest.distance_m:.2f} m after "
-        f"{path.along_m:.1f} m; nearer than {below_m:g} m somewhere with probability "
+        f"{said}; nearer than {below_m:g} m somewhere with probability "
         f"{path.p_below:.3f} ({path.p_least:.3f} to {path.p_most:.3f})"
     )

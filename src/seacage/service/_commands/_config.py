@@ -144,9 +144,10 @@ def _writable(folder: Path) -> str:
 
 def _caged(settings: "Settings", folder: Path, name: str | None) -> str:
     from seacage.service._assembly import policy_of
-    from seacage.twin import Twin
+    from seacage.twin import Twin, read_key
 
-    twin = Twin.read(folder)
+    key = read_key(settings.twin_key) if settings.twin_key else None
+    twin = Twin.read(folder, key=key)
     policy_of(settings, name or twin.cage.name, twin)
     return f"{folder} is whole: {twin.cage.node_count} nodes, {len(twin.sensor_names)} sensors"
 

@@ -14,6 +14,7 @@ import typer
 from seacage.service._commands._findings import Finding, tell_findings
 from seacage.service._console import Exit, Json, guarded
 
+_LOOK_S = 20.0
 _EXTRAS = {
     "sim": ("xarray", "zarr", "h5netcdf", "dask", "matplotlib"),
     "gcn": ("jax", "optax"),
@@ -29,6 +30,10 @@ def doctor(
     data: Annotated[Path, typer.Option(file_okay=False, help="The service's data folder.")] = Path(
         "var"
     ),
+    store: Annotated[
+        str | None,
+        typer.Option(help="postgresql://user@host/name, or a file. [default: that in --data]"),
+    ] = None,
     port: Annotated[int, typer.Option(min=1, max=65535, help="The service's port.")] = 8000,
     as_json: Json = False,
 ) -> None:
@@ -43,7 +48,9 @@ def doctor(
         _python,
         _physics,
         _store,
+        lambda: _rows(store or str(data / "samples.sqlite")),
         lambda: _disk(data),
+        lambda: _tokens(data),
         lambda: _port(port),
         lambda: _demonstration(data),
     )
@@ -82,11 +89,37 @@ def _store() -> Finding:
     return Finding(what="Store", state="ok" if fine else "wrong", said=said)
 
 
+def _rows(place: str) -> Finding:
+    """Verify the stored rows, as many as can be in some seconds."""
+    from seacage.service._store._store import StoreError, look_into
+    from seacage.service._store._verify import verified
+
+    if "://" not in place and not Path(place).exists():
+        return Finding(what="Stored rows", state="absent", said=f"no store in {place}")
+    try:
+        with look_into(place) as session:
+            said, wrong = verified(session, seconds=_LOOK_S), session.damage.said
+            if session.checksums is not None:
+                said += f"; data_checksums of the server are {session.checksums}"
+    except StoreError as error:
+        return Finding(what="Stored rows", state="wrong", said=str(error))
+    return Finding(what="Stored rows", state="wrong" if wrong else "ok", said=wrong or said)
+
+
 def _disk(data: Path) -> Finding:
     place = next(one for one in (data, *data.resolve().parents) if one.exists())
     free = shutil.disk_usage(place).free / 1e9
     said = f"{free:.0f} GB free for {data}" + ("; free some" if free < 1.0 else "")
     return Finding(what="Disk", state="wrong" if free < 1.0 else "ok", said=said)
+
+
+def _tokens(data: Path) -> Finding:
+    from seacage.service._access._tokens import Tokens
+
+    tokens = Tokens(data)
+    count = len(tokens.all())
+    said = tokens.damage or f"{count} in {data}"
+    return Finding(what="Tokens", state="wrong" if tokens.damage else "ok", said=said)
 
 
 def _port(port: int) -> Finding:

@@ -122,10 +122,11 @@ def _write_way(
 
 
 def _inspection_rows(answer: "InspectionAnswer", out: Path | None) -> list[tuple[str, str]]:
-    likeliest = max(one.p_below for one in answer.waypoints)
+    known = [one.p_below for one in answer.waypoints if one.p_below is not None]
+    likeliest = f"with {max(known):.3f} at most" if known else "with a probability not known"
     return [
         ("Waypoints", f"{len(answer.waypoints)} in {answer.parts} parts"),
         ("Left out", f"{answer.left_out} that could not keep off the net"),
-        ("Too near", f"the net is nearer than {answer.below_m:g} m with {likeliest:.3f} at most"),
+        ("Too near", f"the net is nearer than {answer.below_m:g} m {likeliest}"),
         *about_rows(answer, out),
     ]

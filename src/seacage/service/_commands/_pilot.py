@@ -79,7 +79,7 @@ def about_rows(
 ) -> list[tuple[str, str]]:
     """Say what an answer rests on, and where it was written."""
     learned = answer.shape_error
-    error = f"learned from: {learned}" if learned else "not known; the probabilities are too sure"
+    error = f"learned from: {learned}" if learned else "not known, and so no probability"
     rows = [("Shape error", error), ("State", f"{answer.state_age_s:.0f} s old")]
     if not answer.in_domain:
         rows.append(("Extrapolating", "the twin has not learned about such a current"))

@@ -4,7 +4,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from datetime import UTC, datetime, timedelta
+from datetime import timedelta
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from seacage.service._wires._courier import Courier
     from seacage.service._wires._publisher import Batch, Published
     from seacage.service._wires._spool import Spool
-
-_AHEAD = timedelta(minutes=1)
 
 
 @guarded
@@ -59,6 +57,10 @@ def publish(
         Literal["wait", "drop-oldest"],
         typer.Option(help="Then the source waits, or the oldest samples are given up."),
     ] = "wait",
+    keep_ahead_days: Annotated[
+        float,
+        typer.Option(min=0.0, help="Try samples ahead of the service's clock for so long [d]."),
+    ] = 7.0,
     patience_s: Annotated[
         float | None,
         typer.Option(min=1.0, help="Give up when nothing is acknowledged for so long [s]."),
@@ -80,28 +82,46 @@ def publish(
     afterwards new samples go first, and the others follow. To send a record a second time,
     name a new spool.
 
+    Samples that the service refuses as ahead of its clock stay in the spool and are tried again
+    every minute (with --speed: of the record's time), also by the next run; after
+    --keep-ahead-days they are set aside, with the reason, in a file beside the spool.
+
     Example: a logger's file, for ever.
         seacage publish logger.csv --follow --columns map.toml --to mqtt://127.0.0.1:1883
     Example: lines like {"stream": "depth-2", "t": "2026-01-02T03:04:05Z", "values": {…}}.
         read-sensors | seacage publish - --to http://127.0.0.1:8000 --token TOKEN
     """
     from seacage.conventions import InputError
+    from seacage.service._logs import begin_logs
     from seacage.service._wires._publisher import Publisher
 
     if follow and (source == "-" or Path(source).is_dir() or speed is not None):
         raise InputError("publish: --follow is for a growing file, at the speed at which it grows.")
-    refused = _Refused()
+    begin_logs("lines")
+    refused, pace = _Refused(), speed or 1.0
     with (
         _courier(to, cage, site, token, ca) as courier,  # first: it refuses a wrong address
         _spool(spool, to, cage, site, spool_most, when_full) as kept,
         progress_bar() as progress,
     ):
         batches = _batches(source, kept, refused, stream, columns, follow=follow, speed=speed)
-        done = Publisher(kept, courier, patience_s=patience_s, progress=progress).run(batches)
+        done = Publisher(
+            kept,
+            courier,
+            retry_s=max(1.0, 60.0 / pace),
+            keep_ahead=timedelta(days=keep_ahead_days / pace),
+            patience_s=patience_s,
+            progress=progress,
+        ).run(batches)
     _tell(done, refused, as_json=as_json)
-    if refused.count or done.rejected:
+    if refused.count or done.rejected or done.quarantined:
+        count = refused.count + done.rejected + done.quarantined
+        raise stopped(f"{count} samples were refused; see the summary.", Exit.REFUSED)
+    if done.ahead:
         raise stopped(
-            f"{refused.count + done.rejected} samples were refused; see the summary.", Exit.REFUSED
+            f"{done.ahead} samples are ahead of the service's clock and wait in {spool}. Check "
+            "the clocks of source and service, and run this again with the same spool.",
+            Exit.FAILED,
         )
 
 
@@ -129,17 +149,12 @@ def _batches(
     speed: float | None,
 ) -> "Iterator[Batch]":
     from seacage.conventions import InputError
-    from seacage.records import KEYS, ColumnMap, FieldRecord, read_map, read_record
+    from seacage.records import ColumnMap, FieldRecord, read_map, read_record
     from seacage.service._wires._sources import arriving, line_batches, record_batches, tail_batches
     from seacage.service._wires._tail import Place, Tail
 
     if source == "-":
-        return line_batches(
-            arriving(sys.stdin.fileno()),
-            streams=lambda _: tuple(KEYS),
-            until=lambda: datetime.now(UTC) + _AHEAD,
-            refuse=refused,
-        )
+        return line_batches(arriving(sys.stdin.fileno()), refuse=refused)
     path = Path(source)
     if not path.exists() and not follow:
         raise InputError(f"{path}: there is no such record. Name a file, a folder, or - for stdin.")
@@ -202,6 +217,8 @@ def _tell(done: "Published", refused: _Refused, *, as_json: bool) -> None:
             "reasons": reasons,
             "dropped": done.dropped,
             "spooled": done.waiting,
+            "ahead": done.ahead,
+            "quarantined": done.quarantined,
         },
         as_json=as_json,
         rows=[
@@ -210,5 +227,7 @@ def _tell(done: "Published", refused: _Refused, *, as_json: bool) -> None:
             ("Refused", f"{done.rejected} by the service, {refused.count} before"),
             *(("", reason) for reason in reasons[:5]),
             ("Spooled", f"{done.waiting} wait, {done.dropped} were given up"),
+            ("Ahead", f"{done.ahead} of these wait for the service's clock"),
+            ("Set aside", str(done.quarantined)),
         ],
     )

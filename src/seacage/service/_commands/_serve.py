@@ -1,5 +1,6 @@
 """``seacage serve``: the live service."""
 
+import os
 import socket
 from contextlib import suppress
 from dataclasses import dataclass
@@ -106,7 +107,7 @@ def serve(
         seacage serve --config seacage.toml
     """
     from seacage.conventions import InputError
-    from seacage.service._assembly import assembled
+    from seacage.service._assembly import assembled, server
     from seacage.service._logs import begin_logs
     from seacage.service._settings import read_settings
 
@@ -129,6 +130,7 @@ def serve(
         raise InputError("serve: --demo shows the demonstration's own twin. Leave --twin out.")
     settings.check_host()
     begin_logs(settings.log)
+    os.umask(0o077)  # what a service writes is its owner's alone
     # The port first: minutes of preparation should not end at a port that is taken.
     with _listening(settings.host, settings.port) as listener:
         twins, replay = _prepared(settings, demo=demo, record=record)
@@ -138,7 +140,8 @@ def serve(
         service = assembled(settings, twins, replay=replay, speed=pace)
         greeting = _greeting(settings, service, listener, pace if replay else None)
         tell(greeting.said, as_json=as_json, rows=greeting.rows)
-        _run(service, settings, listener)
+        with suppress(KeyboardInterrupt):  # Ctrl-C is how a service is stopped
+            server(service, settings).run(sockets=[listener])
 
 
 def _listening(host: str, port: int) -> socket.socket:
@@ -189,13 +192,15 @@ def _greeting(
     scheme = "https" if settings.certificate else "http"
     host = f"[{settings.host}]" if ":" in settings.host else settings.host
     address = f"{scheme}://{host}:{listener.getsockname()[1]}/"
-    token, cages = service.tokens.mint(["read"], keep=False, name="this start"), list(service.cages)
+    # A replay is forgotten at the next start: who looks at it may try its alarms too.
+    scopes = ["read"] if speed is None else ["read", "ack"]
+    token, cages = service.tokens.mint(scopes, keep=False, name="this start"), list(service.cages)
     came = _sources(settings) if speed is None else f"a replay at {speed:g} × real time"
     said: dict[str, object] = {"address": address, "token": token, "cage": cages[0], "cages": cages}
     rows = [
         ("Cage" if len(cages) == 1 else "Cages", f"{', '.join(cages)}, fed by {came}"),
         ("Page", f"{address}#token={token}"),
-        ("Token", f"{token}  (reads; good until this service stops)"),
+        ("Token", f"{token}  ({', '.join(scopes)}; good until this service stops)"),
     ]
     if service.tokens.lacks_admin:
         admin = service.tokens.mint(["admin"], keep=True, name="first start")
@@ -206,23 +211,3 @@ def _greeting(
 
 def _sources(settings: "Settings") -> str:
     return "samples by HTTP and MQTT" if settings.mqtt else "samples by HTTP"
-
-
-def _run(service: "Service", settings: "Settings", listener: socket.socket) -> None:
-    import uvicorn
-
-    from seacage.service._calls._api import create_app
-
-    config = uvicorn.Config(
-        create_app(service),
-        ws="websockets-sansio",
-        ws_max_size=4096,  # clients only send their token
-        log_config=None,
-        access_log=False,
-        server_header=False,
-        timeout_graceful_shutdown=3,
-        ssl_certfile=settings.certificate,
-        ssl_keyfile=settings.key,
-    )
-    with suppress(KeyboardInterrupt):  # Ctrl-C is how a service is stopped
-        uvicorn.Server(config).run(sockets=[listener])

@@ -21,10 +21,13 @@ Law = Annotated[
 
 
 def read_cage(name: str) -> "Cage":
-    """A shipped cage by its name, else a file."""
+    """A shipped cage by its name, else a file; what the cage warns of goes to stderr."""
     from seacage.cage import Cage
 
-    return Cage.read(name) if name.endswith(".toml") else Cage.named(name)
+    cage = Cage.read(name) if name.endswith(".toml") else Cage.named(name)
+    for warning in cage.warnings:
+        typer.echo(f"seacage: warning: {warning}", err=True)
+    return cage
 
 
 @guarded
@@ -61,10 +64,10 @@ def settle(
     from seacage.dynamics import settle as settled
     from seacage.ocean import SeaState
 
-    subject = read_cage(cage)
     sea = SeaState(
         current_speed=current_speed, current_to=current_to, hs=hs, tp=tp, wave_from=wave_from
     )
+    subject = read_cage(cage)
     response = settled(subject, sea, law=law, mean_waves=mean_waves)
     answer = _answer(subject, response)
     if out is not None:
@@ -84,6 +87,7 @@ def _answer(cage: "Cage", response: "Response") -> dict[str, object]:
     return {
         "cage": cage.name,
         "origin": "computed",
+        "warnings": list(cage.warnings),
         "result": int(response.result),
         "residual_n": float(response.residual),
         "net_force_kn": force.round(3).tolist(),

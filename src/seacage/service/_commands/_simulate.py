@@ -148,6 +148,7 @@ def _answer(
     return {
         "cage": cage.name,
         "origin": "computed",
+        "warnings": list(cage.warnings),
         "result": int(history.result),
         **settings,
         "net_force_kn": _said(history.net_force, 1e-3),
@@ -240,7 +241,7 @@ def _write(
         volume_fraction=float(history.volume_fraction),
         result=int(history.result),
         diverged_at=float(history.diverged_at),
-        settings=settings,
+        settings=settings | ({"comment": " ".join(cage.warnings)} if cage.warnings else {}),
         version=version("seacage"),
     )
     write_history(record, path)

@@ -53,18 +53,23 @@ def train(
         float, typer.Option(min=0.1, help="Longest that a sensor teaches; the rest can judge.")
     ] = 25.0,
     seed: Annotated[int, typer.Option(min=0, help="Of the choice and the searches.")] = 0,
+    sign: Annotated[
+        Path | None, typer.Option(metavar="KEYFILE", help="Sign the twin with this key.")
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """Train a twin from simulations and sensors.
 
     Simulations teach loads and shape; each sensor then corrects what it measures. The twin's
-    folder holds JSON and safetensors sealed by SHA-256 sums; reading it runs no code.
+    folder holds JSON and safetensors sealed by SHA-256 sums; reading it runs no code. With
+    --sign a service that has the same key takes it, and no other.
 
     Example:
         seacage train --campaign ace.zarr --field field --out twin
     """
+    from seacage.conventions import NonsenseError
     from seacage.records import FieldRecord
-    from seacage.twin import Training
+    from seacage.twin import Training, read_key
     from seacage.twin import train as trained
 
     drawn, simulated, begun = _level_one(campaign, base)
@@ -75,16 +80,21 @@ def train(
         days=days,
         seed=seed,
     )
-    with progress_bar() as progress:
-        twin = trained(
-            read_cage(cage) if cage else drawn,
-            simulated,
-            FieldRecord.read(field) if field else None,
-            base=begun,
-            training=training,
-            progress=progress,
-        )
-    twin.write(out)
+    key = read_key(sign) if sign else None
+    try:
+        with progress_bar() as progress:
+            twin = trained(
+                read_cage(cage) if cage else drawn,
+                simulated,
+                FieldRecord.read(field) if field else None,
+                base=begun,
+                training=training,
+                progress=progress,
+            )
+    except NonsenseError as error:
+        given = " with ".join(str(path) for path in (field, campaign or base) if path)
+        raise NonsenseError(f"{given}: {error}") from error
+    twin.write(out, key=key)
     lessons = twin.provenance.lessons
     levels = {name: 2 if name in lessons else 1 for name in twin.sensor_names}
     taught = {name: lessons[name].points if name in lessons else 0 for name in levels}

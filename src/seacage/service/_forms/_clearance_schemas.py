@@ -67,7 +67,8 @@ class PointClearance(_Answered):
     ``"wgs84"``). ``expected_m`` and ``sigma_m`` are of the true net, the twin's known error
     taken off; negative says that it is to be expected beyond the point. The probabilities are
     that the true net is nearer than 1 m, or than ``below_m``, on either side, and that the
-    point truly is on the other side of it.
+    point truly is on the other side of it. They and ``sigma_m`` are null where the shape's
+    error is not known.
     """
 
     distance_m: float
@@ -76,10 +77,10 @@ class PointClearance(_Answered):
     nearest_place: Place | None
     normal: list[float]
     expected_m: float
-    sigma_m: float
-    p_below_1m: float
-    p_below: float
-    p_through: float
+    sigma_m: float | None
+    p_below_1m: float | None
+    p_below: float | None
+    p_through: float | None
     state_age_s: float
 
 
@@ -88,7 +89,7 @@ class PathAnswer(_Answered):
 
     ``closest`` is where it comes nearest to the predicted net, ``at_m`` and ``at_place`` where
     that is. ``p_below`` lies between ``p_least``, as if one error held all along, and
-    ``p_most``, as if each point had its own.
+    ``p_most``, as if each point had its own; all are null where the shape's error is not known.
     """
 
     length_m: float
@@ -97,10 +98,10 @@ class PathAnswer(_Answered):
     at_m: list[float]
     at_place: Place | None
     closest: PointClearance
-    p_below_1m: float
-    p_below: float
-    p_least: float
-    p_most: float
+    p_below_1m: float | None
+    p_below: float | None
+    p_least: float | None
+    p_most: float | None
 
 
 class _NetAnswer(_Answered):
@@ -110,7 +111,10 @@ class _NetAnswer(_Answered):
     state_age_s: float
     shape_error: Annotated[
         str | None,
-        Field(description="Where the shape's known error comes from; null: not known."),
+        Field(
+            description="Where the shape's known error comes from; null: not known, and so "
+            "neither sigma_m nor any probability."
+        ),
     ]
     below_m: float
 
@@ -148,8 +152,8 @@ class Waypoint(_Answered):
     part: int
     distance_m: float
     expected_m: float
-    sigma_m: float
-    p_below: float
+    sigma_m: float | None
+    p_below: float | None
 
 
 class InspectionAnswer(_NetAnswer):

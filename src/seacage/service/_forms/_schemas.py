@@ -3,13 +3,21 @@
 from datetime import UTC, datetime
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, JsonValue
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, JsonValue
+from pydantic.config import JsonDict
 
 Name = Annotated[str, Field(min_length=1, max_length=64)]
 """Of a cage, a stream, a sensor."""
 
 
 _YEARS = range(1900, 2200)
+
+
+def _spelled(t: object) -> object:
+    # A bare number, also as text, would be taken for seconds since 1970.
+    if not isinstance(t, datetime) and not (isinstance(t, str) and t[4:5] == "-"):
+        raise ValueError("a time is written in ISO 8601, as 2018-01-26T23:08:00Z, not as a number")
+    return t
 
 
 def _with_zone(t: datetime) -> datetime:
@@ -24,7 +32,12 @@ def _of_our_time(t: datetime) -> datetime:
     return t
 
 
-Time = Annotated[datetime, AfterValidator(_with_zone), AfterValidator(_of_our_time)]
+Time = Annotated[
+    datetime,
+    BeforeValidator(_spelled),
+    AfterValidator(_with_zone),
+    AfterValidator(_of_our_time),
+]
 """With its zone."""
 
 _FIRST, _LAST = datetime(1900, 1, 1, tzinfo=UTC), datetime(2200, 1, 1, tzinfo=UTC)
@@ -34,7 +47,7 @@ def _reachable(t: datetime) -> datetime:
     return min(max(_with_zone(t), _FIRST), _LAST)
 
 
-Reach = Annotated[datetime, AfterValidator(_reachable)]
+Reach = Annotated[datetime, BeforeValidator(_spelled), AfterValidator(_reachable)]
 """A time that something is asked of: far away from all that is stored, one is as good as any."""
 
 BATCH_LIMIT = 1000
@@ -49,15 +62,19 @@ class _Answered(BaseModel):
     model_config = ConfigDict(frozen=True)
 
 
+_T: JsonDict = {"anyOf": [{"type": "string", "format": "date-time"}, {}]}
+
+
 class SampleIn(_Asked):
     """One reading of one stream.
 
     ``values`` are numbers by quantity, or null where the source has none. A number that cannot
-    be true is stored with its flag; anything but a number has the sample rejected.
+    be true is stored with its flag; anything but a number, or a time that is none, has the sample
+    rejected, and the others of the request stored.
     """
 
     stream: Name
-    t: Annotated[Time, Field(strict=False, description="Of the source, UTC.")]
+    t: Annotated[JsonValue, Field(description="Of the source, UTC, as text.", json_schema_extra=_T)]
     seq: Annotated[int | None, Field(ge=0, lt=2**63)] = None
     values: Annotated[dict[str, JsonValue], Field(min_length=1, max_length=16)]
 
@@ -69,10 +86,14 @@ class SamplesIn(_Asked):
 
 
 class Rejection(_Answered):
-    """A sample that was not stored, by its place in the request."""
+    """A sample that was not stored, by its place in the request.
+
+    ``retry`` says that the same sample may be taken later: its time is ahead of the clock.
+    """
 
     index: int
     reason: str
+    retry: bool = False
 
 
 class Receipt(_Answered):
@@ -119,7 +140,7 @@ class AggregatesOut(_Answered):
 
 
 class Interval(_Answered):
-    """Mean and 95 % interval; null without valid input."""
+    """Mean and 95 % interval; null without valid input, the interval also without level 2."""
 
     mean: float | None
     lower: float | None
@@ -129,29 +150,50 @@ class Interval(_Answered):
 class BridleState(_Answered):
     """A bridle's load now.
 
-    ``level`` is the fidelity of the answer: 2 where a shackle has taught it, else 1;
-    ``utilisation`` is the mean over the line's capacity.
+    ``level`` is the fidelity of the answer: 2 where a shackle has taught it, else 1, and
+    ``in_domain`` is of that level. Level 1 has no interval, and ``interval_reason`` says why;
+    it is null where there is one. ``utilisation`` is the mean over the line's capacity.
+    ``measured_kn`` is what its shackle measured, as the load's alarm takes it: the last minute's
+    mean, else the newest in time.
     """
 
     name: str
     level: int
+    in_domain: bool
     tension_kn: Interval
+    interval_reason: str | None
     low_fidelity_kn: float | None
     utilisation: float | None
+    measured_kn: float | None = None
+    measured_utilisation: float | None = None
+    measured_by: str | None = None
 
 
 class SensorState(_Answered):
-    """What a sensor should read now, by simulation alone and as taught, and what it does read."""
+    """What a sensor should read now, by simulation alone and as taught, and what it does read.
+
+    ``level``, ``in_domain`` and ``interval_reason`` are as for a bridle.
+    """
 
     name: str
     unit: str
     level: int
+    in_domain: bool
     low_fidelity: float | None
     mean: float | None
     lower: float | None
     upper: float | None
+    interval_reason: str | None
     measured: float | None
     measured_age_s: float | None
+
+
+class ShapeState(_Answered):
+    """What answers for the shape, and why its standard deviation is not known; null if it is."""
+
+    level: int
+    in_domain: bool
+    interval_reason: str | None
 
 
 class Water(_Answered):
@@ -165,11 +207,15 @@ class Water(_Answered):
 
 
 class Amended(_Answered):
-    """A reading that the next one showed to be a spike: what was shown of it, take back."""
+    """A reading whose flag became worse after it came: what was shown of it, take back.
+
+    ``was`` is the flag before; null where that is not known.
+    """
 
     stream: str
     t: datetime
     quantity: str
+    was: int | None
     flag: int
     reason: str
 
@@ -187,13 +233,21 @@ class AlarmBrief(_Answered):
     since: datetime | None
 
 
+class Concern(_Answered):
+    """Why a cage is not called well, though no alarm may be active: what, and by which limit."""
+
+    kind: Literal["load", "volume", "measured"]
+    title: str
+    message: str
+
+
 class State(_Answered):
     """A cage at one time.
 
     Without valid input ``valid`` is false, ``reason`` says why, and every computed number is
-    null. ``in_domain`` false means extrapolating beyond what was learned. ``age_s`` is the age
-    of the input. ``origin`` says how the sensors' numbers were made. ``amended`` holds the
-    readings of the last minutes whose flags grew worse after they came.
+    null. ``in_domain`` false means extrapolating beyond what level 1 was trained on.
+    ``age_s`` is the age of the input. ``origin`` says how the sensors' numbers were made.
+    ``amended`` holds the readings of the last minutes whose flags grew worse after they came.
     """
 
     cage: str
@@ -207,31 +261,40 @@ class State(_Answered):
     bridles: list[BridleState]
     sensors: list[SensorState]
     shape_level: int
+    shape: ShapeState
     volume_fraction: float | None
     silent: list[str]
     amended: list[Amended]
     alarms: list[AlarmBrief] = []
+    concerns: list[Concern] = []
 
 
-class Shape(_Answered):
-    """The net at one time: x east, y north, z up; empty without valid input."""
+class Shape(ShapeState):
+    """The net at one time: x east, y north, z up; empty without valid input.
+
+    ``sigma_m`` is null where no standard deviation is known, and ``interval_reason`` says why.
+    """
 
     t: datetime
     valid: bool
-    level: int
     node_position_m: list[list[float]]
-    sigma_m: list[float]
+    sigma_m: list[float] | None
 
 
 class Series(_Answered):
-    """A quantity over the history's times."""
+    """A quantity over the history's times; ``in_domain`` is of the level that answers.
+
+    Where ``interval_reason`` says why there is no interval, ``lower`` and ``upper`` hold nulls.
+    """
 
     unit: str
     level: int
+    in_domain: list[bool]
     low_fidelity: list[float | None]
     mean: list[float | None]
     lower: list[float | None]
     upper: list[float | None]
+    interval_reason: str | None
 
 
 class Measured(_Answered):
@@ -308,6 +371,7 @@ class Topology(_Answered):
 class CageSummary(_Answered):
     """A cage of this service: whether it answers, its largest load and its worst alarm.
 
+    ``max_utilisation`` is the largest that is known, predicted or measured.
     ``waiting`` counts the alarms that somebody should look at: those neither shelved nor both
     cleared and acknowledged.
     """
@@ -326,6 +390,7 @@ class CageSummary(_Answered):
     waiting: int
     worst_severity: int | None
     worst_title: str | None
+    concerns: list[Concern] = []
 
 
 class Cages(_Answered):

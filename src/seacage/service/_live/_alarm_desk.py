@@ -7,6 +7,7 @@ from concurrent.futures import Future
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from functools import partial
+from types import MappingProxyType
 
 import structlog
 
@@ -125,17 +126,36 @@ class AlarmDesk:
         self._book, self._kept_at = AlarmBook.new(), None
         self._unkept.clear()
 
-    def look(self, state: TwinState, answered: Answered) -> tuple[Happened, ...]:
-        """Judge every alarm once more, by the answer of a tick."""
+    @property
+    def looked_at(self) -> datetime | None:
+        """The time of the last look that the book holds; None before the first."""
+        return self._book.t
+
+    def look(
+        self,
+        state: TwinState,
+        answered: Answered,
+        *,
+        faults: Mapping[str, str] = MappingProxyType({}),
+    ) -> tuple[Happened, ...]:
+        """Assess every alarm once more, by the answer of a tick.
+
+        Parameters
+        ----------
+        state, answered
+            Of the twin.
+        faults
+            Of the service, beside those of the store: a sentence by the alarm's name.
+        """
         self._book, happened = assess(
             self._book,
             twin=self._twin,
             state=state,
             answered=answered,
             policy=self.policy,
-            trouble=self._trouble(),
+            trouble={**faults, **self._trouble()},
         )
-        due = self._kept_at is None or answered.t - self._kept_at >= _KEPT_EVERY
+        due = self._kept_at is None or abs(answered.t - self._kept_at) >= _KEPT_EVERY
         if happened or self._unkept or due:
             self._kept_at = answered.t
             self._keep(happened)

@@ -2,11 +2,11 @@
 
 import hashlib
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from datetime import UTC, datetime
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from seacage.cage import Cage
 from seacage.conventions import Flag, compass
@@ -25,12 +25,21 @@ from seacage.service._forms._schemas import (
     Series,
     ShacklePlace,
     Shape,
+    ShapeState,
     State,
     Topology,
     Water,
 )
 from seacage.surrogates import Prediction
-from seacage.twin import Answer, Answered, Metocean, Twin, TwinState
+from seacage.twin import (
+    Answer,
+    Answered,
+    Metocean,
+    Twin,
+    TwinState,
+    interval_reason,
+    measured_loads,
+)
 
 _UNUSABLE = (Flag.FAIL, Flag.MISSING)
 _PERIOD = "tp_s"
@@ -62,21 +71,32 @@ def state_of(name: str, twin: Twin, answered: Answered, memory: TwinState) -> St
         in_domain=bool(answer.in_domain[0]),
         reason=answer.reason[0],
         origin=str(twin.origin),
-        water=_water(answered.metocean, _period(memory, twin.buoy)),
-        bridles=_bridles(twin.cage, answer),
+        water=_water(answered.metocean, _period(memory, twin.buoy, answered.t)),
+        bridles=_bridles(twin.cage, answer, measured_loads(twin, memory, answered.t)),
         sensors=_sensors(answer, memory, answered.t, twin.watch.sensor_silent_after_s),
         shape_level=answer.shape_level,
+        shape=_shape_state(answer),
         volume_fraction=_number(answer.volume_fraction[0], 4),
         silent=sorted(memory.silent),
         amended=[_amended(one) for one in memory.amended],
     )
 
 
+def known_loads(state: State) -> Iterator[tuple[float, str, str]]:
+    """Each bridle's loads as far as they are known: share of capacity [-], bridle and source."""
+    distrusted = {one.id for one in state.alarms if one.active}
+    for one in state.bridles:
+        if one.utilisation is not None:
+            yield one.utilisation, one.name, "predicted"
+        by, share = one.measured_by, one.measured_utilisation
+        if share is not None and f"irregular.{by}" not in distrusted:
+            yield share, one.name, f"measured by {by}"
+
+
 def summary_of(name: str, state: State) -> CageSummary:
     """Say in one line how a cage is."""
     waiting = [alarm for alarm in state.alarms if not alarm.shelved]
-    worst = max(waiting, key=lambda alarm: alarm.severity, default=None)
-    loads = [one.utilisation for one in state.bridles if one.utilisation is not None]
+    worst = max(waiting, key=lambda alarm: (alarm.active, alarm.severity), default=None)
     return CageSummary(
         name=name,
         origin=state.origin,
@@ -85,29 +105,37 @@ def summary_of(name: str, state: State) -> CageSummary:
         t=state.t,
         age_s=state.age_s,
         reason=state.reason,
-        max_utilisation=max(loads, default=None),
+        max_utilisation=max((share for share, _, _ in known_loads(state)), default=None),
         volume_fraction=state.volume_fraction,
         current_speed_m_s=state.water.current_speed_m_s if state.water else None,
         current_to_deg=state.water.current_to_deg if state.water else None,
         waiting=len(waiting),
         worst_severity=worst.severity if worst else None,
         worst_title=worst.title if worst else None,
+        concerns=state.concerns,
     )
 
 
-def _bridles(cage: Cage, answer: Answer) -> list[BridleState]:
+def _bridles(cage: Cage, answer: Answer, measured: Mapping[int, float]) -> list[BridleState]:
     tension, (lower, upper) = answer.bridle_tension.mean[0], answer.bridle_interval()
+    read = [measured.get(k, math.nan) for k in range(len(cage.bridle_names))]
+    shackles = {one.bridle: one.name for one in cage.shackles}
     return [
         BridleState(
             name=bridle,
             level=int(answer.bridle_level[k]),
+            in_domain=bool(answer.bridle_in_domain[0, k]),
             tension_kn=Interval(
                 mean=_number(tension[k] / 1e3),
                 lower=_number(lower[0, k] / 1e3),
                 upper=_number(upper[0, k] / 1e3),
             ),
+            interval_reason=interval_reason(int(answer.bridle_level[k])),
             low_fidelity_kn=_number(answer.bridle_low[0, k] / 1e3),
             utilisation=_number(tension[k] / cage.bridle_capacity[k], 4),
+            measured_kn=_number(read[k] / 1e3),
+            measured_utilisation=_number(read[k] / cage.bridle_capacity[k], 4),
+            measured_by=shackles.get(k),
         )
         for k, bridle in enumerate(answer.bridle_names)
     ]
@@ -119,7 +147,7 @@ def _sensors(
     (lower, upper), states = answer.sensor_interval(), list[SensorState]()
     for k, sensor in enumerate(answer.sensor_names):
         unit, scale = _DOOR_UNIT[answer.sensor_units[k]]
-        sample = memory.latest(sensor)
+        sample = memory.latest(sensor, now)
         measured = usable_value(sample) if sample else None
         age = (now - sample.t).total_seconds() if sample and measured is not None else None
         fresh = age is not None and age <= silent_after_s
@@ -128,10 +156,12 @@ def _sensors(
                 name=sensor,
                 unit=unit,
                 level=int(answer.sensor_level[k]),
+                in_domain=bool(answer.sensor_in_domain[0, k]),
                 low_fidelity=_number(answer.sensor_low.mean[0, k] * scale),
                 mean=_number(answer.sensor.mean[0, k] * scale),
                 lower=_number(lower[0, k] * scale),
                 upper=_number(upper[0, k] * scale),
+                interval_reason=interval_reason(int(answer.sensor_level[k])),
                 measured=_number(measured) if fresh else None,
                 measured_age_s=_number(age) if fresh else None,
             )
@@ -140,8 +170,14 @@ def _sensors(
 
 
 def _amended(one: Amendment) -> Amended:
+    was = None if one.was is None else int(one.was)
     return Amended(
-        stream=one.stream, t=one.t, quantity=one.key, flag=int(one.flag), reason=one.remark
+        stream=one.stream,
+        t=one.t,
+        quantity=one.key,
+        was=was,
+        flag=int(one.flag),
+        reason=one.remark,
     )
 
 
@@ -153,14 +189,23 @@ def usable_value(sample: Sample) -> float | None:
 
 def shape_of(answered: Answered) -> Shape:
     """Say where the net is at one time; nowhere without valid input."""
-    answer = answered.answer
+    answer, about = answered.answer, _shape_state(answered.answer)
     valid = bool(answer.valid[0])
+    known = valid and about.interval_reason is None
     return Shape(
         t=answered.t,
         valid=valid,
-        level=answer.shape_level,
         node_position_m=answer.node_position[0].round(_DECIMALS).tolist() if valid else [],
-        sigma_m=answer.node_sigma[0].round(_DECIMALS).tolist() if valid else [],
+        sigma_m=answer.node_sigma[0].round(_DECIMALS).tolist() if known else None,
+        **dict(about),
+    )
+
+
+def _shape_state(answer: Answer) -> ShapeState:
+    return ShapeState(
+        level=answer.shape_level,
+        in_domain=bool(answer.in_domain[0]),
+        interval_reason=interval_reason(answer.shape_level),
     )
 
 
@@ -215,13 +260,22 @@ def history_of(
         current_speed_m_s=_usable(buoy, "current_speed_m_s"),
         current_to_deg=_usable(buoy, "current_to_deg"),
         bridles={
-            name: _series("N", int(answer.bridle_level[k]), low, answer.bridle_tension, bridle, k)
+            name: _series(
+                "N",
+                int(answer.bridle_level[k]),
+                answer.bridle_in_domain,
+                low,
+                answer.bridle_tension,
+                bridle,
+                k,
+            )
             for k, name in enumerate(answer.bridle_names)
         },
         sensors={
             name: _series(
                 answer.sensor_units[k],
                 int(answer.sensor_level[k]),
+                answer.sensor_in_domain,
                 answer.sensor_low.mean,
                 answer.sensor,
                 sensor,
@@ -236,16 +290,24 @@ def history_of(
 
 
 def _series(
-    si_unit: str, level: int, low: Table, best: Prediction, interval: tuple[Table, Table], k: int
+    si_unit: str,
+    level: int,
+    in_domain: Bool[np.ndarray, "case output"],
+    low: Table,
+    best: Prediction,
+    interval: tuple[Table, Table],
+    k: int,
 ) -> Series:
     unit, scale = _DOOR_UNIT[si_unit]
     return Series(
         unit=unit,
         level=level,
+        in_domain=in_domain[:, k].tolist(),
         low_fidelity=_column(low[:, k] * scale),
         mean=_column(best.mean[:, k] * scale),
         lower=_column(interval[0][:, k] * scale),
         upper=_column(interval[1][:, k] * scale),
+        interval_reason=interval_reason(level),
     )
 
 
@@ -260,10 +322,9 @@ def sample_of(sample: Sample) -> SampleOut:
     )
 
 
-def _period(memory: TwinState, buoy: str) -> float | None:
-    """The buoy's last word on the period, which no twin is asked with; None where it failed."""
-    stream = memory.streams.get(buoy)
-    sample = stream[-1].newest.get(_PERIOD) if stream else None
+def _period(memory: TwinState, buoy: str, now: datetime) -> float | None:
+    """The buoy's newest period, which is no input of any twin; None where it failed."""
+    sample = memory.newest(buoy, now).get(_PERIOD)
     if sample is None or sample.flags[_PERIOD] in _UNUSABLE:
         return None
     return sample.values[_PERIOD]

@@ -4,9 +4,10 @@ import asyncio
 import time
 from collections import deque
 from collections.abc import Generator, Mapping, Sequence
+from concurrent.futures import Future
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
-from datetime import datetime, timedelta
+from datetime import datetime
 from functools import cached_property
 from typing import assert_never
 
@@ -14,18 +15,19 @@ import numpy as np
 import structlog
 from jaxtyping import Float
 
-from seacage.conventions import InputError
-from seacage.records import Sample
+from seacage.records import DEFAULT_LIMITS, Sample
 from seacage.service._forms._samples import BUOY_KEYS
-from seacage.service._forms._schemas import State, Topology
+from seacage.service._forms._schemas import AlarmBrief, State, Topology
 from seacage.service._live._alarm_desk import AlarmDesk
 from seacage.service._live._answers import state_of, topology_of
-from seacage.service._live._checks import Checks
 from seacage.service._live._clock import Clock, FollowingClock, latest_allowed
+from seacage.service._live._concerns import concerns_of
 from seacage.service._live._frame import frame_of
+from seacage.service._live._live_twin import LiveTwin
 from seacage.service._live._mailbox import Mailbox
 from seacage.service._live._metrics import Metrics
-from seacage.service._live._past import answered_in, state_at, streams_of
+from seacage.service._live._past import streams_of
+from seacage.service._store._kept_samples import Stored
 from seacage.service._store._store import Store
 from seacage.twin import (
     Alarm,
@@ -44,9 +46,6 @@ _GATHERED_S = 0.1
 
 MOST_WAITING = 20_000
 """Samples that may wait to be stepped through, some 20 MB; who sends more is made to wait."""
-
-_KEPT_EVERY = timedelta(minutes=1)
-"""How far the intervals were adapted is kept so often."""
 
 _log = structlog.get_logger(__name__)
 
@@ -70,8 +69,9 @@ class Snapshot:
 class LiveCage:
     """A twin that listens.
 
-    ``take`` is the only way in: it checks, stores and queues samples, and returns once they are
-    on disk. ``run`` steps the twin with what was queued and with the ticks of the clock.
+    ``take`` is the only way in: it stores samples, which checks them, and queues them, and returns
+    once they are on disk. ``run`` steps the twin with what was queued and with the ticks of the
+    clock.
 
     Parameters
     ----------
@@ -86,6 +86,8 @@ class LiveCage:
         Longest pause between two looks at the clock [s of the wall].
     policy
         Limits of the alarms; None for the usual.
+    least_volume
+        Share of the still-water volume below which the cage is not called well [-].
     """
 
     def __init__(
@@ -98,12 +100,14 @@ class LiveCage:
         metrics: Metrics,
         tick_s: float = 2.0,
         policy: AlarmPolicy | None = None,
+        least_volume: float = 0.8,
     ) -> None:
         store.claim(name)
         self.name, self.twin, self.store, self.clock = name, twin, store, clock
-        self._metrics, self._tick_s = metrics, tick_s
+        self._metrics, self._tick_s, self._least_volume = metrics, tick_s, least_volume
         self._streams = _quantities(twin)
-        self._pending: deque[Sample] = deque()
+        self._pending: deque[Stored] = deque()
+        self._waiting = 0
         self._arrived, self._room = asyncio.Event(), asyncio.Event()
         self._room.set()
         self._stepping = asyncio.Lock()
@@ -112,12 +116,10 @@ class LiveCage:
         self.rest_position = np.array(self._topology.rest_position_m)
         limits = policy or AlarmPolicy.default(twin.cage, buoy=twin.buoy, watch=twin.watch)
         self.desk = AlarmDesk(cage=name, twin=twin, store=store, policy=limits)
-        self._kept_at: datetime | None = None
-        self._state, answered = self._found()
-        self._checks = Checks(
-            {stream: taken[-1].quality for stream, taken in self._state.streams.items()}
+        self.live = LiveTwin(
+            name=name, twin=twin, store=store, clock=clock, desk=self.desk, tick_s=tick_s
         )
-        self.snapshot = self._shown(answered)
+        self.snapshot = self._shown(self.live.answered)
 
     @property
     def streams(self) -> Mapping[str, tuple[str, ...]]:
@@ -138,6 +140,20 @@ class LiveCage:
     def latest_allowed(self) -> datetime:
         """The time after which a sample's own clock must be wrong."""
         return latest_allowed(self.clock, self.twin.watch.future_s)
+
+    def state_of(
+        self, answered: Answered, memory: TwinState, *, alarms: Sequence[AlarmBrief] = ()
+    ) -> State:
+        """Say what the cage does at one time, and what of it is not well."""
+        state = state_of(self.name, self.twin, answered, memory)
+        state = state.model_copy(update={"alarms": list(alarms)})
+        policy, least = self.desk.policy, self._least_volume
+        concerns = concerns_of(state, memory, policy=policy, least_volume=least)
+        return state.model_copy(update={"concerns": list(concerns)})
+
+    def refuse_ahead(self, stream: str, t: datetime) -> None:
+        """Note that a sample was refused as later than ``latest_allowed``."""
+        self.live.clocks.refused(stream, t)
 
     async def take(self, samples: Sequence[Sample]) -> tuple[bool, ...]:
         """Check, store and queue samples; returns after the commit.
@@ -160,27 +176,18 @@ class LiveCage:
             for sample in samples:
                 self.clock.hear(sample.t)
         with self._metrics.commits.labels(self.name).time():
-            new = await self._stored(samples)
-        self._pending.extend(s for s, fresh in zip(samples, new, strict=True) if fresh)
-        if len(self._pending) >= MOST_WAITING:
-            self._room.clear()
-        self._arrived.set()
-        return new
+            stored = await self._stored(samples)
+        return stored.new
 
     async def begin(self, backlog: Sequence[Sample]) -> None:
         """Forget everything and stand where a backlog ends, as a replay does at its start."""
         async with self._stepping:
             await asyncio.to_thread(self.store.forget, self.name)
             self.desk.begin_anew()
-            self._checks = Checks({})
-            self._pending.clear()
-            self._room.set()
+            self._emptied()
             await self._stored(backlog)
-            now = self.clock.now()
-            self._state, answered = await asyncio.to_thread(
-                state_at, self.twin, self.store, self.name, now
-            )
-            self._publish(answered)
+            self._emptied()
+            self._publish(await asyncio.to_thread(self.live.begin))
 
     async def run(self) -> None:
         """Step the twin for ever."""
@@ -189,12 +196,12 @@ class LiveCage:
             with suppress(TimeoutError):
                 async with asyncio.timeout(self._tick_s):
                     await self._arrived.wait()
+            ticked = not self._arrived.is_set()
             self._arrived.clear()
             async with self._stepping:
-                samples = list(self._pending)
-                self._pending.clear()
-                self._room.set()
-                answered, events = await asyncio.to_thread(self._stepped, samples)
+                answered, events = await asyncio.to_thread(
+                    self._stepped, self._emptied(), ticked=ticked
+                )
                 self._note(events)
                 self._publish(answered)
             await asyncio.sleep(_GATHERED_S)
@@ -238,54 +245,44 @@ class LiveCage:
             self._mailboxes.discard(mailbox)
             self._metrics.clients.labels(self.name).dec()
 
-    async def _stored(self, samples: Sequence[Sample]) -> tuple[bool, ...]:
-        checks = self._checks
-        checked = checks.check(samples)
-        try:
-            new = await asyncio.wrap_future(
-                self.store.append(
-                    self.name,
-                    checked.samples,
-                    ingested=self.clock.now(),
-                    amendments=checked.amendments,
-                )
-            )
-        except asyncio.CancelledError:
-            checks.keep(checked)  # what was asked is done, whoever still waits
-            raise
-        except Exception:
-            checks.forget(checked)
-            raise
-        checks.keep(checked)
-        return new
+    async def _stored(self, samples: Sequence[Sample]) -> Stored:
+        asked = self.store.append(
+            self.name, samples, ingested=self.clock.now(), limits=DEFAULT_LIMITS
+        )
+        loop = asyncio.get_running_loop()
 
-    def _stepped(self, samples: Sequence[Sample]) -> tuple[Answered, list[Event]]:
-        """Step through the samples, then tick: the newest answer is as old as this call."""
-        noticed, events = list[Event](), tuple[Event, ...]()
-        timer = self._metrics.steps.labels(self.name)
-        for sample in (*samples, None):
-            with timer.time():
-                self._state, events = self.twin.step(self._state, sample, self.clock.now())
-            noticed += [event for event in events if not isinstance(event, Answered)]
-        answered = answered_in(events)
-        assert answered is not None  # a tick is always answered
-        self.desk.look(self._state, answered)
-        self._keep_adapted(answered.t)
-        return answered, noticed
+        def queue(_: "Future[Stored]") -> None:
+            with suppress(RuntimeError):  # the loop has ended; the next start finds the samples
+                loop.call_soon_threadsafe(self._queue, asked)
 
-    def _found(self) -> tuple[TwinState, Answered]:
-        """Where the twin stood, from what the store kept of it."""
-        now, adapted = self.clock.now(), self.store.adapted(self.name)
-        try:
-            return state_at(self.twin, self.store, self.name, now, adapted=adapted)
-        except InputError as error:
-            _log.warning("intervals as trained", cage=self.name, reason=str(error))
-            return state_at(self.twin, self.store, self.name, now)
+        asked.add_done_callback(queue)  # what is on disk counts, whoever still waits
+        return await asyncio.wrap_future(asked)
 
-    def _keep_adapted(self, t: datetime) -> None:
-        if self._kept_at is None or abs(t - self._kept_at) >= _KEPT_EVERY:
-            self._kept_at = t
-            self.store.keep_adapted(self.name, self._state.adapted)
+    def _queue(self, asked: "Future[Stored]") -> None:
+        if asked.exception() is not None:
+            return
+        stored = asked.result()
+        if any(stored.new) or stored.amendments:
+            self._pending.append(stored)
+            self._waiting += sum(stored.new)
+        if self._waiting >= MOST_WAITING:
+            self._room.clear()
+        self._arrived.set()
+
+    def _emptied(self) -> list[Stored]:
+        """Take all that waits to be stepped through."""
+        arrived = list(self._pending)
+        self._pending.clear()
+        self._waiting = 0
+        self._room.set()
+        return arrived
+
+    def _stepped(
+        self, arrived: Sequence[Stored], *, ticked: bool
+    ) -> tuple[Answered, tuple[Event, ...]]:
+        """Step through samples at once, and tick: the answer is as old as this call."""
+        with self._metrics.steps.labels(self.name).time():
+            return self.live.step(arrived, ticked=ticked)
 
     def _note(self, events: Sequence[Event]) -> None:
         for event in events:
@@ -312,8 +309,7 @@ class LiveCage:
             mailbox.put(self.snapshot)
 
     def _shown(self, answered: Answered) -> Snapshot:
-        state = state_of(self.name, self.twin, answered, self._state)
-        state = state.model_copy(update={"alarms": self.desk.waiting()})
+        state = self.state_of(answered, self.live.state, alarms=self.desk.waiting())
         return Snapshot(answered=answered, state=state, rest_position=self.rest_position)
 
 

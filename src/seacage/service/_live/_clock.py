@@ -5,6 +5,9 @@ from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from typing import Protocol, runtime_checkable
 
+AHEAD_S = 60.0
+"""How far ahead of the wall a clock that follows its samples may go [s]."""
+
 
 @runtime_checkable
 class Clock(Protocol):
@@ -19,6 +22,13 @@ class Clock(Protocol):
         """Return the time at the cage, UTC."""
         ...
 
+    def elapsed_s(self) -> float:
+        """Return a time that never steps, from any origin [s at the cage].
+
+        ``now`` and this one go on alike, unless somebody sets the clock.
+        """
+        ...
+
 
 @dataclass(frozen=True, slots=True)
 class WallClock:
@@ -30,13 +40,17 @@ class WallClock:
         """Return the time of this machine, UTC."""
         return datetime.now(UTC)
 
+    def elapsed_s(self) -> float:
+        """Return the machine's monotonic time [s]."""
+        return time.monotonic()
+
 
 class FollowingClock:
     """A clock that stands where the newest sample stands, and runs on from there.
 
     For records that somebody publishes as if they were live: what is ahead of it is not a fault
-    of the sender but the time itself. It never goes back; before the first sample it tells the
-    wall's time.
+    of the sender but the time itself. It never goes back, and never further than a minute beyond
+    the wall's time, which no record has reached yet; before the first sample it tells the wall's.
 
     Parameters
     ----------
@@ -52,9 +66,19 @@ class FollowingClock:
 
     def now(self) -> datetime:
         """Return the time at the cage, UTC."""
+        wall = datetime.now(UTC)
         if self._at is None:
-            return datetime.now(UTC)
-        return self._at + timedelta(seconds=(time.monotonic() - self._heard) * self.speed)
+            return wall
+        run_s = (time.monotonic() - self._heard) * self.speed
+        return min(self._at + timedelta(seconds=run_s), self.latest_allowed())
+
+    def elapsed_s(self) -> float:
+        """Return the clock's own time: that it follows its samples is no step [s]."""
+        return self.now().timestamp()
+
+    def latest_allowed(self) -> datetime:
+        """Return the time that no sample may be later than."""
+        return datetime.now(UTC) + timedelta(seconds=AHEAD_S)
 
     def hear(self, t: datetime) -> None:
         """Stand at a sample's time, if that is later."""
@@ -82,6 +106,10 @@ class ReplayClock:
         """Return the replay's time, UTC."""
         return self._start + timedelta(seconds=(time.monotonic() - self._began) * self.speed)
 
+    def elapsed_s(self) -> float:
+        """Return the replay's own time: that it begins again is no step [s]."""
+        return self.now().timestamp()
+
     def wait_s(self, t: datetime) -> float:
         """Seconds of the wall until the replay reaches a time; 0 where it has passed."""
         return max(0.0, (t - self.now()).total_seconds() / self.speed)
@@ -98,10 +126,10 @@ def latest_allowed(clock: Clock, ahead_s: float) -> datetime:
     Parameters
     ----------
     clock
-        Of the cage; one that follows its samples calls none of them wrong.
+        Of the cage; one that follows its samples believes them up to the wall's time.
     ahead_s
         How far a source's clock may be ahead [s].
     """
     if isinstance(clock, FollowingClock):
-        return datetime.max.replace(tzinfo=UTC)
+        return clock.latest_allowed()
     return clock.now() + timedelta(seconds=ahead_s)

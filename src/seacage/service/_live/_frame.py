@@ -13,7 +13,7 @@ MEDIA_TYPE = "application/vnd.seacage.frame"
 """Of a frame in an HTTP answer."""
 
 _HEADER = struct.Struct("<4sHHdIIff")
-_MAGIC, _VERSION, _ALIGNED = b"SCFR", 1, 8
+_MAGIC, _VERSION, _ALIGNED = b"SCFR", 2, 8
 _FINEST = 1e-6  # a unit of nothing would divide by nothing [m]
 
 
@@ -25,6 +25,7 @@ class Flags(IntFlag):
     IN_DOMAIN = 2
     PAST = 4
     WHAT_IF = 8
+    NO_SPREAD = 16
 
 
 def frame_of(
@@ -38,8 +39,9 @@ def frame_of(
 
     The header: ``SCFR``, version (u16), flags (u16), time in ms since 1970 UTC (f64), nodes
     (u32), bytes of the JSON (u32), metres per unit of displacement and of spread (f32 each).
-    Then int16 displacement, x y z of each node in turn; uint8 spread; the state. Both units
-    follow the largest number of the frame, so that none is cut off.
+    Then int16 displacement, x y z of each node in turn; uint8 spread, empty where the flag
+    ``NO_SPREAD`` says that none is known; the state. Both units follow the largest number of the
+    frame, so that none is cut off.
 
     Parameters
     ----------
@@ -53,8 +55,11 @@ def frame_of(
     answer = answered.answer
     displacement, sigma = np.zeros((0, 3)), np.zeros(0)
     if state.valid:
-        displacement, sigma = answer.node_position[0] - rest_position, answer.node_sigma[0]
-        about |= Flags.VALID
+        displacement, about = answer.node_position[0] - rest_position, about | Flags.VALID
+    if state.shape.interval_reason:
+        about |= Flags.NO_SPREAD
+    elif state.valid:
+        sigma = answer.node_sigma[0]
     if state.in_domain:
         about |= Flags.IN_DOMAIN
     moved_by, moved = _in_units(displacement, np.dtype("<i2"))
@@ -65,7 +70,7 @@ def frame_of(
         _VERSION,
         about,
         state.t.timestamp() * 1e3,
-        len(sigma),
+        len(displacement),
         len(words),
         moved_by,
         spread_by,

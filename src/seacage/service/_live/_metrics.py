@@ -1,9 +1,10 @@
 """What Prometheus is told about the service."""
 
 from collections import Counter as Counted
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 
-from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, generate_latest
+from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, Metric, generate_latest
+from prometheus_client.registry import Collector
 
 _STEP_BUCKETS = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.5)
 _WAIT_BUCKETS = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0)
@@ -46,6 +47,18 @@ class Metrics:
         self.clients = Gauge(
             "seacage_live_clients", "Open live connections.", ("cage",), registry=registry
         )
+        self.dropped = Counter(
+            "seacage_connections_dropped",
+            "Connections that the service ended because of a bound.",
+            ("why",),
+            registry=registry,
+        )
+        self.closed = Counter(
+            "seacage_live_closed",
+            "Live connections that the service closed, by code.",
+            ("code",),
+            registry=registry,
+        )
 
         self.commits = Histogram(
             "seacage_commit_seconds",
@@ -68,6 +81,16 @@ class Metrics:
             registry=registry,
         )
 
+        self.damaged = Gauge(
+            "seacage_store_damaged_rows",
+            "Stored rows found damaged or missing since the start; none of them is served.",
+            registry=registry,
+        )
+        self.unverified = Gauge(
+            "seacage_store_unverified_rows",
+            "Stored rows without a checksum, as 0.1.0 wrote them, found since the start.",
+            registry=registry,
+        )
         self.messages = Counter(
             "seacage_broker_messages",
             "Messages that a broker has brought.",
@@ -86,6 +109,12 @@ class Metrics:
             ("broker",),
             registry=registry,
         )
+        self.behind = Gauge(
+            "seacage_broker_behind",
+            "1 while a backlog drains, and the newest of each stream goes before it.",
+            ("broker",),
+            registry=registry,
+        )
         self.quarantined = Gauge(
             "seacage_quarantined",
             "Messages and lines that could not be read, set aside since the start.",
@@ -98,9 +127,21 @@ class Metrics:
         for word in _WORDS.values():
             self.alarms.labels(cage, word).set(counts[word])
 
-    def text(self) -> bytes:
-        """Everything in Prometheus' text format."""
-        return generate_latest(self._registry)
+    def text(self, cages: Collection[str] | None = None) -> bytes:
+        """Everything in Prometheus' text format, or only what is about some cages."""
+        return generate_latest(self._registry if cages is None else _Part(self._registry, cages))
+
+
+class _Part(Collector):
+    """What a registry holds of some cages alone."""
+
+    def __init__(self, whole: CollectorRegistry, cages: Collection[str]) -> None:
+        self._whole, self._cages = whole, cages
+
+    def collect(self) -> Iterable[Metric]:
+        for metric in self._whole.collect():
+            metric.samples = [s for s in metric.samples if s.labels.get("cage") in self._cages]
+            yield metric
 
 
 def _word(severity: int) -> str:

@@ -1,17 +1,31 @@
 """The twin in the past: its states are not stored but folded again from the samples."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from datetime import datetime, timedelta
+from functools import partial
 
 import numpy as np
+import structlog
 
-from seacage.conventions import Flag, Origin
-from seacage.records import Record, Sample, instant
+from seacage.conventions import Flag, InputError, Origin
+from seacage.records import Amendment, Record, Sample, instant
 from seacage.service._forms._samples import BUOY_KEYS
+from seacage.service._store._adapted import Adaptation
 from seacage.service._store._store import Store
-from seacage.twin import Answered, Event, Twin, TwinState
+from seacage.twin import (
+    ADAPTATION_BLOCK,
+    Answered,
+    Event,
+    Twin,
+    TwinState,
+    adapted_at,
+    block_begin,
+)
 
-_CONTEXT = 4  # samples of a stream: the newest governs, the checks look a little further back
+_MOST = 1_000_000  # samples of a stream in the minutes that a twin remembers
+_INSTANT = timedelta(microseconds=1)
+_log = structlog.get_logger(__name__)
 
 
 def streams_of(twin: Twin) -> tuple[str, ...]:
@@ -25,30 +39,117 @@ def answered_in(events: Sequence[Event]) -> Answered | None:
 
 
 def state_at(
-    twin: Twin, store: Store, cage: str, at: datetime, *, adapted: str | None = None
+    twin: Twin, store: Store, cage: str, at: datetime, *, kept: Adaptation | None = None
 ) -> tuple[TwinState, Answered]:
     """Fold a twin's state and answer at a time from what had been measured until then.
+
+    It is what a service would have shown that had got all samples until then in the order of
+    their times, with the flags that those had shown, and intervals adapted as far as then.
 
     Parameters
     ----------
     twin, store, cage, at
         Whose state, from what, and when.
-    adapted
-        How far the intervals had been adapted; None takes them as trained, or nearly so.
+    kept
+        How far the intervals were adapted; None where the store has it.
     """
-    end = at + timedelta(microseconds=1)
-    recent = [
-        sample
-        for stream in streams_of(twin)
-        for sample in store.samples(cage, stream=stream, end=end, limit=_CONTEXT, newest=True)
-    ]
-    state = twin.start(adapted)
-    for sample in sorted(recent, key=lambda sample: sample.t):
-        state, _ = twin.step(state, sample, sample.t)
+    kept = kept or store.adaptation(cage, at=at)
+    state = remembered(twin, store, cage, at, kept=kept, until=block_begin(at))
     state, events = twin.step(state, None, at)
     answered = answered_in(events)
     assert answered is not None  # a tick is always answered
     return state, answered
+
+
+def remembered(
+    twin: Twin, store: Store, cage: str, at: datetime, *, kept: Adaptation | None, until: datetime
+) -> TwinState:
+    """Put together what a twin remembers at a time, from what is stored.
+
+    Parameters
+    ----------
+    twin, store, cage, at
+        Whose, from what, and when.
+    kept
+        How far the intervals were adapted; None leaves them as trained.
+    until
+        To which blocks they were.
+    """
+    begin = until - ADAPTATION_BLOCK
+    # With those that are a little ahead: they are there already, and govern when their time comes.
+    end = at + timedelta(seconds=twin.watch.future_s) + _INSTANT
+    state = _started(twin, cage, kept, until)
+    samples = list[Sample]()
+    for stream in streams_of(twin):
+        one = partial(store.samples, cage, stream=stream, newest=True, withdrawn=False, known_at=at)
+        samples += (
+            store.newest_of_each(cage, stream, at=begin - _INSTANT)
+            if stream == twin.buoy
+            else one(end=begin, limit=1)
+        )
+        samples += one(start=begin, end=end, limit=_MOST)
+    state, _ = twin.receive(state, samples, at)
+    return replace(state, amendments=amendments_at(twin, store, cage, at))
+
+
+def amendments_at(twin: Twin, store: Store, cage: str, at: datetime) -> tuple[Amendment, ...]:
+    """Flags of the last minutes that later samples had made worse until a time."""
+    start = at - ADAPTATION_BLOCK
+    return tuple(
+        one
+        for stream in streams_of(twin)
+        for one in store.amendments(cage, stream, start=start, known_at=at)
+    )
+
+
+def adaptations(
+    twin: Twin,
+    store: Store,
+    cage: str,
+    *,
+    kept: Adaptation | None,
+    start: datetime,
+    end: datetime,
+) -> Iterator[Adaptation]:
+    """Adapt a twin's intervals anew, block by block, from what is stored.
+
+    Parameters
+    ----------
+    twin, store, cage
+        Whose, and from what.
+    kept
+        How far they were adapted before.
+    start, end
+        The first and the last time at which they change, both of them ends of blocks.
+    """
+    at = start
+    while at <= end:
+        following = _first_since(twin, store, cage, at - 2 * ADAPTATION_BLOCK)
+        if following is None:
+            return
+        if (due := adapted_at(following)) > at:
+            at = due  # nothing changes before
+            continue
+        state = remembered(twin, store, cage, at, kept=kept, until=at - ADAPTATION_BLOCK)
+        kept = Adaptation(t=at, factors=state.adapted)
+        yield kept
+        at += ADAPTATION_BLOCK
+
+
+def _first_since(twin: Twin, store: Store, cage: str, start: datetime) -> datetime | None:
+    found = (
+        store.samples(cage, stream=stream, start=start, limit=1, withdrawn=False)
+        for stream in streams_of(twin)
+    )
+    return min((samples[0].t for samples in found if samples), default=None)
+
+
+def _started(twin: Twin, cage: str, kept: Adaptation | None, until: datetime) -> TwinState:
+    try:
+        return twin.start(kept.factors if kept else None, until=until)
+    except InputError as error:
+        _log.warning("intervals as trained", cage=cage, reason=str(error))
+        return twin.start(until=until)
 
 
 def readings_between(

@@ -60,8 +60,8 @@ def inspection_answer(net: PredictedNet, asked: InspectionAsked) -> InspectionAn
         way.part.tolist(),
         _rounded(way.clearance.distance),
         _rounded(way.clearance.expected),
-        _rounded(way.clearance.sigma),
-        _rounded(way.clearance.p_below),
+        _known(net, way.clearance.sigma),
+        _known(net, way.clearance.p_below),
         strict=True,
     )
     names = list(Waypoint.model_fields)
@@ -83,10 +83,10 @@ def _points(
         places_of(net.cage, frame, stated.position),
         _rounded(in_frame(frame, stated.normal)),
         _rounded(stated.expected),
-        _rounded(stated.sigma),
-        _rounded(stated.p_below),
-        _rounded(other.p_below),
-        _rounded(stated.p_through),
+        _known(net, stated.sigma),
+        _known(net, stated.p_below),
+        _known(net, other.p_below),
+        _known(net, stated.p_through),
         strict=True,
     )
     names = [name for name in PointClearance.model_fields if name != "state_age_s"]
@@ -103,6 +103,8 @@ def _path(net: PredictedNet, asked: ClearanceAsked, point: Points) -> PathAnswer
     (closest,) = _points(net, asked.frame, stated.clearance.rows(here), other.clearance.rows(here))
     (at_m,) = _rounded(in_frame(asked.frame, stated.point[here]))
     (at_place,) = places_of(net.cage, asked.frame, stated.point[here])
+    p = np.array([stated.p_below, other.p_below, other.p_least, other.p_most])
+    names = ("p_below_1m", "p_below", "p_least", "p_most")
     return PathAnswer(
         length_m=round(float(stated.along[-1]), _DECIMALS),
         looked_at=len(stated.point),
@@ -110,10 +112,7 @@ def _path(net: PredictedNet, asked: ClearanceAsked, point: Points) -> PathAnswer
         at_m=at_m,
         at_place=at_place,
         closest=closest,
-        p_below_1m=round(stated.p_below, _DECIMALS),
-        p_below=round(other.p_below, _DECIMALS),
-        p_least=round(other.p_least, _DECIMALS),
-        p_most=round(other.p_most, _DECIMALS),
+        **dict(zip(names, _known(net, p), strict=True)),
     )
 
 
@@ -126,6 +125,11 @@ def _about(net: PredictedNet, frame: FrameName, below: float) -> dict[str, Any]:
         "shape_error": None if net.learned is None else str(net.learned),
         "below_m": below,
     }
+
+
+def _known(net: PredictedNet, values: Float[np.ndarray, " point"]) -> list[Any]:
+    """Say what rests on the shape's error; nothing where that is not known."""
+    return [None] * len(values) if net.learned is None else _rounded(values)
 
 
 def _rounded(values: Float[np.ndarray, "point *rest"]) -> list[Any]:

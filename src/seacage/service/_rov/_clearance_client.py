@@ -11,7 +11,7 @@ from seacage.service._forms._clearance_schemas import (
     InspectionAnswer,
     InspectionAsked,
 )
-from seacage.service._wires._post import POST_FAILED, post_to_cage
+from seacage.service._wires._post import POST_FAILED, AbstractCaller
 from seacage.twin import StaleError
 
 
@@ -20,22 +20,8 @@ class AskError(SeacageError):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Asker:
-    """Asks about one cage of one service.
-
-    Parameters
-    ----------
-    address
-        Of the service: ``http://127.0.0.1:8000``.
-    cage
-        Its name there.
-    token
-        With the scope read.
-    """
-
-    address: str
-    cage: str
-    token: str
+class Asker(AbstractCaller):
+    """Asks about one cage of one service; its token has the scope read."""
 
     def clearance(self, asked: ClearanceAsked) -> ClearanceAnswer:
         """Ask how far points are from the net."""
@@ -60,7 +46,7 @@ class Asker:
             Nobody answers, or not so.
         """
         try:
-            status, answer = post_to_cage(self.address, self.cage, call, body, token=self.token)
+            status, answer = self.post(call, body)
         except POST_FAILED as error:
             raise AskError(f"{self.address} does not answer ({error}). Is it running?") from error
         if status == HTTPStatus.OK:

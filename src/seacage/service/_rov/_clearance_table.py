@@ -1,10 +1,11 @@
 """Points and ways as CSV, whose header names frame and unit."""
 
 import csv
+import io
 from collections.abc import Sequence
 from pathlib import Path
 
-from seacage.conventions import InputError
+from seacage.conventions import TABLE_BYTES, InputError, read_text
 from seacage.service._forms._clearance_schemas import (
     ClearanceAnswer,
     ClearanceAsked,
@@ -32,15 +33,15 @@ def read_points(path: Path) -> tuple[FrameName, list[Row]]:
         No such header, or a cell that is no number, with its line.
     """
     try:
-        with path.open(newline="", encoding="utf-8-sig") as file:
-            table = csv.DictReader(file)
-            head = set(table.fieldnames or ())
-            frame = _frame_of(head, path)
-            rows = [
-                _row(row, HEADS[frame], f"{path}, line {number}")
-                for number, row in enumerate(table, start=2)
-            ]
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        text = read_text(path, most=TABLE_BYTES).removeprefix("\ufeff")
+        table = csv.DictReader(io.StringIO(text, newline=""))
+        head = set(table.fieldnames or ())
+        frame = _frame_of(head, path)
+        rows = [
+            _row(row, HEADS[frame], f"{path}, line {number}")
+            for number, row in enumerate(table, start=2)
+        ]
+    except csv.Error as error:
         raise InputError(f"{path} cannot be read as CSV ({error}).") from error
     if not rows:
         raise InputError(f"{path} has a header and no point. Give a line for each.")

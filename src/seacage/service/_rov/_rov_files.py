@@ -20,7 +20,7 @@ Points = Float[np.ndarray, "point 3"]
 def net_mcap(net: PredictedNet) -> bytes:
     """Write the predicted net: its nodes, its panels as triangles, and the collar as a path.
 
-    ``/seacage/net/nodes`` is a PointCloud2 with the surrogate's sigma of each node [m],
+    ``/seacage/net/nodes`` is a PointCloud2 of the nodes, ``sigma`` not a number, as none is known,
     ``/seacage/net/mesh`` a Marker of triangles, ``/seacage/net/collar`` a Path; all in metres
     east, north and up of the cage's centre.
     """
@@ -28,7 +28,9 @@ def net_mcap(net: PredictedNet) -> bytes:
     collar = net.node_position[[*net.cage.ring_nodes(0), 0]]
     return ros.written(
         {
-            "/seacage/net/nodes": ros.cloud(net.node_position, net.node_sigma),
+            "/seacage/net/nodes": ros.cloud(
+                net.node_position, np.full_like(net.node_sigma, np.nan)
+            ),
             "/seacage/net/mesh": ros.mesh(net.node_position, _triangles(net.cage.panels)),
             "/seacage/net/collar": ros.path(collar, np.roll(collar, -1, axis=0) - collar),
         }
@@ -62,7 +64,7 @@ def net_geojson(net: PredictedNet) -> bytes:
         place[[*(cage.node(ring, spoke) for ring in range(cage.rings)), cage.bottom_node]]
         for spoke in range(cage.spokes)
     ]
-    about = {**_about(net), "sigma_m": round(float(net.node_sigma.max()), 3)}
+    about = {**_about(net), "sigma_m": None}
     return _collection(
         _feature("Polygon", [rings[0].tolist()], {"part": "collar", **about}),
         _feature(

@@ -103,9 +103,9 @@ def _usable(readings: str) -> Iterator[tuple[str, float]]:
 
 
 def _summary(values: list[float]) -> tuple[int, float, float, float]:
-    n, least, most = len(values), min(values), max(values)
+    n, least, most = len(values), min(values) + 0.0, max(values) + 0.0  # SQLite knows no -0.0
     try:
         mean = math.fsum(values) / n
     except OverflowError:  # the sum of numbers that are each still one
         mean = math.fsum(value / n for value in values)
-    return n, min(max(mean, least), most), least, most
+    return n, min(max(mean, least), most) + 0.0, least, most

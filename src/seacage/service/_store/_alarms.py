@@ -4,14 +4,18 @@ import json
 from collections.abc import Sequence
 from datetime import datetime
 
-from seacage.service._store._rows import microseconds, moment_of
+from seacage.service._store._checksum import with_checksum
+from seacage.service._store._rows import DAY_US, microseconds, moment_of
 from seacage.service._store._session import AbstractSession
+from seacage.service._store._tally import recount
 from seacage.twin import Action, Happened
 
 _KEEP_BOOK = """
-INSERT INTO alarm_book VALUES (?, ?) ON CONFLICT (cage) DO UPDATE SET book = excluded.book"""
-_KEEP_LINE = "INSERT INTO journal (cage, t, line) VALUES (?, ?, ?)"
-_LINES = "SELECT t, line FROM journal WHERE cage = ? AND t >= ? AND t < ? ORDER BY "
+INSERT INTO alarm_book VALUES (?, ?, ?)
+ON CONFLICT (cage) DO UPDATE SET book = excluded.book, crc = excluded.crc"""
+_KEEP_LINE = "INSERT INTO journal (cage, t, line, crc) VALUES (?, ?, ?, ?)"
+_LINES = "SELECT t, line, crc FROM journal WHERE cage = ? AND t >= ? AND t < ? ORDER BY "
+_BOOK = "SELECT book, crc FROM alarm_book WHERE cage = ?"
 _ORDERS = {True: "t DESC, number DESC LIMIT ?", False: "t, number LIMIT ?"}
 
 
@@ -19,13 +23,19 @@ def keep_alarms(
     session: AbstractSession, cage: str, book: str, journal: Sequence[Happened]
 ) -> None:
     """Replace the book of a cage and add lines to its journal."""
-    session.rows(_KEEP_BOOK, (cage, book))
-    session.each(_KEEP_LINE, [(cage, microseconds(one.t), _line(one)) for one in journal])
+    session.rows(_KEEP_BOOK, with_checksum("alarm_book", cage, book))
+    keep_lines(session, [(cage, microseconds(one.t), _line(one)) for one in journal])
+
+
+def keep_lines(session: AbstractSession, lines: Sequence[tuple[str, int, str]]) -> None:
+    """Add lines to the journal: cage, time [us] and JSON."""
+    session.each(_KEEP_LINE, [with_checksum("journal", *one) for one in lines])
+    recount(session, "journal", {(cage, "", t - t % DAY_US) for cage, t, _ in lines})
 
 
 def alarm_book(session: AbstractSession, cage: str) -> str | None:
     """Read the book of a cage; None where none was kept."""
-    rows = session.rows("SELECT book FROM alarm_book WHERE cage = ?", (cage,))
+    rows = session.intact("alarm_book", _BOOK, (cage,), (cage,))
     return rows[0][0] if rows else None
 
 
@@ -41,7 +51,8 @@ def journal_between(
     """Read lines in time order, as ``Store.journal`` says."""
     first = -(2**62) if start is None else microseconds(start)
     last = 2**62 if end is None else microseconds(end)
-    rows = session.rows(_LINES + _ORDERS[newest], (cage, first, last, limit))
+    between = (cage, first, last)
+    rows = session.intact("journal", _LINES + _ORDERS[newest], between, (cage,), limit=limit)
     return [_happened(t, line) for t, line in (reversed(rows) if newest else rows)]
 
 

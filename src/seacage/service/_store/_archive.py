@@ -3,7 +3,6 @@
 import fcntl
 import hashlib
 import json
-import os
 from collections.abc import Generator, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from datetime import date, datetime
@@ -13,11 +12,11 @@ from urllib.parse import quote, unquote
 
 from seacage.conventions import SeacageError
 from seacage.records import Sample
+from seacage.service._small_files import write_small
 from seacage.service._store._archive_table import ArchiveError, packed, unpacked
 from seacage.service._store._rows import microseconds
 
 _MANIFEST = "manifest.json"
-_UNBORN = ".unborn"
 _ALL = 2**62
 
 Manifest = Mapping[date, Mapping[str, Any]]
@@ -60,9 +59,10 @@ class Archive:
             digest = hashlib.sha256(content).hexdigest()
             name = f"{day.isoformat()}-{digest[:12]}.parquet"
             entry = {"file": name, "sha256": digest, "samples": len(both)}
-            _put(folder / name, content)
+            write_small(folder / name, content, mode=0o644)
             said = {kept.isoformat(): one for kept, one in {**manifest, day: entry}.items()}
-            _put(folder / _MANIFEST, json.dumps(said, indent=1, sort_keys=True).encode())
+            text = json.dumps(said, indent=1, sort_keys=True).encode()
+            write_small(folder / _MANIFEST, text, mode=0o644)
             for left in folder.glob(f"{day.isoformat()}-*"):
                 if left.name != name:
                     left.unlink()
@@ -213,21 +213,6 @@ def _named(folder: Path) -> list[str]:
     if not folder.is_dir():
         return []
     return sorted(unquote(one.name) for one in folder.iterdir() if one.is_dir())
-
-
-def _put(path: Path, content: bytes) -> None:
-    """Write a file so that it is whole or not there, whenever the power goes."""
-    unborn = path.with_name(path.name + _UNBORN)
-    with unborn.open("wb") as file:
-        file.write(content)
-        file.flush()
-        os.fsync(file.fileno())
-    unborn.replace(path)
-    place = os.open(path.parent, os.O_RDONLY)
-    try:
-        os.fsync(place)
-    finally:
-        os.close(place)
 
 
 @contextmanager

@@ -1,13 +1,13 @@
 """Whole UTC days of the store: found, sealed, and deleted sample by sample."""
 
 from collections.abc import Iterator, Sequence
-from typing import Any
 
-from seacage.conventions import SeacageError
-from seacage.records import Sample
+from seacage.service._store._checksum import with_checksum
 from seacage.service._store._kept_aggregates import renew_between
-from seacage.service._store._rows import DAY_US, sample_of_row
+from seacage.service._store._quality import retire_memory
+from seacage.service._store._rows import DAY_US, SampleRow
 from seacage.service._store._session import AbstractSession
+from seacage.service._store._tally import recount
 
 # Down the index from name to name; a DISTINCT would read every sample.
 _CAGES = """
@@ -28,17 +28,14 @@ WITH RECURSIVE named(name) AS (
 SELECT name FROM named WHERE name IS NOT NULL"""
 _NEXT = "SELECT min(t) FROM sample WHERE cage = ? AND stream = ? AND t >= ?"
 _ROWS = """
-SELECT stream, t, seq, readings, remarks FROM sample
+SELECT stream, t, seq, readings, remarks, t_ingest, crc FROM sample
 WHERE cage = ? AND stream = ? AND t >= ? AND t < ? ORDER BY t, seq"""
-_SEAL = "INSERT INTO sealed VALUES (?, ?, ?) ON CONFLICT DO NOTHING"
+_SEAL = "INSERT INTO sealed VALUES (?, ?, ?, ?) ON CONFLICT DO NOTHING"
 
 # Exactly what was read: a sample that was amended since is left for the next time.
 _DELETE = """
 DELETE FROM sample
 WHERE cage = ? AND stream = ? AND t = ? AND seq = ? AND readings = ? AND remarks = ?"""
-
-DayRow = tuple[Any, ...]
-"""Stream, t, seq, readings and remarks of a sample."""
 
 
 def cages(session: AbstractSession) -> list[str]:
@@ -55,31 +52,22 @@ def days_before(session: AbstractSession, cage: str, before: int) -> Iterator[tu
             day = _next_day(session, cage, stream, day + DAY_US)
 
 
-def rows_of_day(session: AbstractSession, cage: str, stream: str, day: int) -> list[DayRow]:
+def rows_of_day(session: AbstractSession, cage: str, stream: str, day: int) -> list[SampleRow]:
     """Read a day's samples as they are stored."""
-    return session.rows(_ROWS, (cage, stream, day, day + DAY_US))
-
-
-def readable(rows: Sequence[DayRow]) -> list[tuple[DayRow, Sample]]:
-    """Pair rows with their samples; what the disk has spoilt is left out, and so stays."""
-    pairs: list[tuple[DayRow, Sample]] = []
-    for row in rows:
-        try:
-            pairs.append((row, sample_of_row(row)))
-        except (ValueError, TypeError, OverflowError, AttributeError, SeacageError):
-            continue
-    return pairs
+    return session.intact("sample", _ROWS, (cage, stream, day, day + DAY_US), (cage,))
 
 
 def seal(session: AbstractSession, cage: str, stream: str, day: int) -> None:
-    """Make the aggregates of a day final."""
+    """Make the aggregates of a day final, and forget how its samples were checked."""
     renew_between(session, cage, stream, day, day + DAY_US)
-    session.rows(_SEAL, (cage, stream, day))
+    retire_memory(session, (cage, stream), day + DAY_US)
+    session.rows(_SEAL, with_checksum("sealed", cage, stream, day))
 
 
-def delete(session: AbstractSession, cage: str, rows: Sequence[DayRow]) -> None:
+def delete(session: AbstractSession, cage: str, rows: Sequence[SampleRow]) -> None:
     """Delete the samples that were read as these rows."""
-    session.each(_DELETE, [(cage, *row) for row in rows])
+    session.each(_DELETE, [(cage, *row[:5]) for row in rows])
+    recount(session, "sample", {(cage, row[0], row[1] - row[1] % DAY_US) for row in rows})
 
 
 def _next_day(session: AbstractSession, cage: str, stream: str, start: int) -> int | None:

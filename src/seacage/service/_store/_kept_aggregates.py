@@ -10,8 +10,10 @@ from collections.abc import Sequence
 from datetime import datetime, timedelta
 
 from seacage.service._store._aggregates import WIDEST_US, WIDTHS_S, Aggregate, Summary, summaries
+from seacage.service._store._checksum import with_checksum
 from seacage.service._store._rows import DAY_US, microseconds, moment_of
 from seacage.service._store._session import AbstractSession
+from seacage.service._store._tally import recount
 
 RESTED = timedelta(seconds=30)
 """A span is summed up when nothing has come for it for so long."""
@@ -19,14 +21,16 @@ RESTED = timedelta(seconds=30)
 _AT_ONCE = 20  # spans in one transaction: ten minutes at 2 s are 300 samples each
 
 _MARKED = "SELECT cage, stream, t FROM mark WHERE touched < ? ORDER BY touched LIMIT ?"
-_MARKED_IN = "SELECT t FROM mark WHERE cage = ? AND stream = ? AND t >= ? AND t < ?"
-_SEALED_IN = "SELECT t FROM sealed WHERE cage = ? AND stream = ? AND t >= ? AND t < ?"
+_MARKED_IN = "SELECT t, touched, crc FROM mark WHERE cage = ? AND stream = ? AND t >= ? AND t < ?"
+_SEALED_IN = "SELECT t, crc FROM sealed WHERE cage = ? AND stream = ? AND t >= ? AND t < ?"
 _UNMARK = "DELETE FROM mark WHERE cage = ? AND stream = ? AND t = ?"
-_SAMPLES = "SELECT t, readings FROM sample WHERE cage = ? AND stream = ? AND t >= ? AND t < ?"
+_SAMPLES = """
+SELECT stream, t, seq, readings, remarks, t_ingest, crc FROM sample
+WHERE cage = ? AND stream = ? AND t >= ? AND t < ?"""
 _CLEAR = "DELETE FROM aggregate WHERE cage = ? AND stream = ? AND t >= ? AND t < ?"
-_KEEP = "INSERT INTO aggregate VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)"
+_KEEP = "INSERT INTO aggregate VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"
 _KEPT = """
-SELECT t, n, mean, least, most FROM aggregate
+SELECT t, n, mean, least, most, crc FROM aggregate
 WHERE cage = ? AND stream = ? AND quantity = ? AND width = ? AND t >= ? AND t < ?
 ORDER BY t LIMIT ?"""
 
@@ -66,7 +70,8 @@ def aggregates_between(
     # A marked span may turn out empty, so as many more are read as could fall away.
     enough = limit + len(marked) * WIDTHS_S[-1] // width_s
     spans: dict[int, list[Sequence[float]]] = {t: [] for t in marked}
-    for row in session.rows(_KEPT, (*of, key, width_s, first, last, enough)):
+    kept = (*of, key, width_s)
+    for row in session.intact("aggregate", _KEPT, (*kept, first, last), kept, limit=enough):
         spans.setdefault(row[0] - row[0] % WIDEST_US, []).append(row)
     found: list[Sequence[float]] = []
     for t in sorted(spans):
@@ -87,9 +92,10 @@ def aggregates_between(
 def _marked(session: AbstractSession, cage: str, stream: str, start: int, end: int) -> set[int]:
     """Where the marked spans of a stream begin, but for those of sealed days."""
     between = (cage, stream, start, end)
-    days = session.rows(_SEALED_IN, (cage, stream, start - start % DAY_US, end))
+    of = (cage, stream)
+    days = session.intact("sealed", _SEALED_IN, (*of, start - start % DAY_US, end), of)
     sealed = {t for (t,) in days}
-    marked = {t for (t,) in session.rows(_MARKED_IN, between)}
+    marked = {t for t, _ in session.intact("mark", _MARKED_IN, between, of)}
     return {t for t in marked if t - t % DAY_US not in sealed} if sealed else marked
 
 
@@ -102,13 +108,15 @@ def _renew(session: AbstractSession, spans: Sequence[Span]) -> None:
     ]
     fresh = [(*span[:2], *summary) for span in live for summary in _summed(session, span)]
     session.each(_CLEAR, [(*span, span[2] + WIDEST_US) for span in live])
-    session.each(_KEEP, fresh)
+    session.each(_KEEP, [with_checksum("aggregate", *row) for row in fresh])
+    days = {(cage, stream, t - t % DAY_US) for cage, stream, t in live}
+    recount(session, "aggregate", days)
     session.each(_UNMARK, spans)
 
 
 def _summed(session: AbstractSession, span: Span) -> list[Summary]:
-    rows = session.rows(_SAMPLES, (*span, span[2] + WIDEST_US))
-    return summaries((t, readings) for t, readings in rows)
+    rows = session.intact("sample", _SAMPLES, (*span, span[2] + WIDEST_US), span[:1])
+    return summaries((row[1], row[3]) for row in rows)
 
 
 def _aggregate(row: Sequence[float]) -> Aggregate:

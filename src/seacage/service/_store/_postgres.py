@@ -6,6 +6,7 @@ from contextlib import contextmanager
 from datetime import MAXYEAR, UTC, datetime
 from typing import TYPE_CHECKING, Any
 
+from seacage.service._store._checksum import Damage, checksum
 from seacage.service._store._pool import Pool
 from seacage.service._store._rows import Row, microseconds, moment_of
 from seacage.service._store._session import (
@@ -15,7 +16,7 @@ from seacage.service._store._session import (
     DamageError,
     StoreError,
 )
-from seacage.service._store._tables import tables
+from seacage.service._store._tables import tables, upgrade
 
 if TYPE_CHECKING:
     from psycopg import Connection
@@ -33,9 +34,9 @@ _WORDS = {
 # with one key the first counts, as in SQLite.
 _INSERT = """
 INSERT INTO sample
-SELECT cage, stream, t, seq, readings, remarks, t_ingest FROM unnest(
-    ?::text[], ?::text[], ?::bigint[], ?::bigint[], ?::text[], ?::text[], ?::bigint[]
-) WITH ORDINALITY AS asked (cage, stream, t, seq, readings, remarks, t_ingest, place)
+SELECT cage, stream, t, seq, readings, remarks, t_ingest, crc FROM unnest(
+    ?::text[], ?::text[], ?::bigint[], ?::bigint[], ?::text[], ?::text[], ?::bigint[], ?::bigint[]
+) WITH ORDINALITY AS asked (cage, stream, t, seq, readings, remarks, t_ingest, crc, place)
 ORDER BY cage, stream, t, seq, place
 ON CONFLICT DO NOTHING
 RETURNING cage, stream, t, seq"""
@@ -48,6 +49,9 @@ _THERE = "SELECT relname FROM pg_class WHERE relnamespace = current_schema()::re
 _PARTITIONS = """
 SELECT c.relname FROM pg_inherits i JOIN pg_class c ON c.oid = i.inhrelid
 WHERE i.inhparent = 'sample'::regclass"""
+_WITH_CHECKSUM = """
+SELECT relname FROM pg_class c JOIN pg_attribute a ON a.attrelid = c.oid
+WHERE relnamespace = current_schema()::regnamespace AND attname = 'crc'"""
 _BRIN = "CREATE INDEX IF NOT EXISTS sample_t ON sample USING brin (t)"
 
 _EARLY = "sample_early"
@@ -65,6 +69,8 @@ _KEEPALIVE = (
     "SET tcp_keepalives_idle = 15; SET tcp_keepalives_interval = 5; SET tcp_keepalives_count = 3"
 )
 
+_DAMAGED = {"XX001", "XX002"}  # data or an index that is corrupted
+
 _AGAIN_S = 1.0  # between two attempts to reach a server that does not answer
 _PATIENCE_S = 5
 
@@ -76,13 +82,18 @@ class PostgresSession(AbstractSession):
     passing = " FOR UPDATE SKIP LOCKED"
     lateral = True
 
-    def __init__(self, connection: "Connection[tuple[Any, ...]]") -> None:
-        self._connection = connection
+    def __init__(self, connection: "Connection[tuple[Any, ...]]", damage: Damage) -> None:
+        self._connection, self.damage = connection, damage
 
     def rows(self, sql: str, values: Sequence[object] = ()) -> Answer:
         """Run one statement."""
         cursor = self._connection.execute(_spelt(sql), values)
         return cursor.fetchall() if cursor.description else []
+
+    @property
+    def checksums(self) -> str | None:
+        """Whether the server keeps checksums of its pages."""
+        return self.rows("SHOW data_checksums")[0][0]
 
     def each(self, sql: str, rows: Iterable[Sequence[object]]) -> None:
         """Run one statement for each row, all in one pipeline."""
@@ -93,7 +104,8 @@ class PostgresSession(AbstractSession):
         """Insert all by one statement."""
         if not rows:
             return ()
-        columns = [list(column) for column in zip(*rows, strict=True)]
+        written = [(*row, checksum("sample", row)) for row in rows]
+        columns = [list(column) for column in zip(*written, strict=True)]
         new = set(self.rows(_INSERT, columns))
         told: list[bool] = []
         for row in rows:
@@ -125,7 +137,8 @@ class PostgresDatabase(AbstractDatabase):
                 "The store is on PostgreSQL, and its driver psycopg is not installed. "
                 "Install it: pip install 'seacage[postgres]'."
             ) from error
-        self._psycopg, self._url = psycopg, url
+        self._psycopg, self._url, self.damage = psycopg, url, Damage()
+        self.damaged = []
         with self._said("does not open as the store of samples"):
             # A URL may hold a password, and an error is read by many.
             told = conninfo_to_dict(url)
@@ -154,7 +167,9 @@ class PostgresDatabase(AbstractDatabase):
             self._readers.lent() as connection,
             connection.transaction(),
         ):
-            yield PostgresSession(connection)
+            yield PostgresSession(connection, self.damage)
+
+    shared = True
 
     def renew(self, error: DamageError) -> bool:
         """A server's files are its own affair."""
@@ -197,6 +212,9 @@ class PostgresDatabase(AbstractDatabase):
                 # Even "if not exists" locks a table that is there, against all that write into it.
                 if _made_by(statement) not in there:
                     self._writer.execute(statement.encode())
+            checked = {name for (name,) in self._writer.execute(_WITH_CHECKSUM).fetchall()}
+            for statement in upgrade(_WORDS, there - checked):
+                self._writer.execute(statement.encode())
             return {name for (name,) in self._writer.execute(_PARTITIONS).fetchall()}
 
     def _reach(self) -> None:
@@ -205,7 +223,7 @@ class PostgresDatabase(AbstractDatabase):
         self._tried = time.monotonic()
         connection = self._opened()
         with self._closed_unless_well(connection):
-            session = PostgresSession(connection)
+            session = PostgresSession(connection, self.damage)
             gone = [cage for cage in sorted(self._claimed) if not self.claim(session, cage)]
             if gone:
                 raise StoreError(
@@ -245,7 +263,8 @@ class PostgresDatabase(AbstractDatabase):
             yield
         except self._psycopg.Error as error:
             place = getattr(self, "_place", "The address of the store")
-            raise StoreError(
+            kind = DamageError if error.sqlstate in _DAMAGED else StoreError
+            raise kind(
                 f"{place} {what} ({' '.join(str(error).split())}). "
                 "Check the server, its disk and its rights."
             ) from error
@@ -257,7 +276,7 @@ class _Parting(PostgresSession):
     def __init__(
         self, connection: "Connection[tuple[Any, ...]]", database: PostgresDatabase
     ) -> None:
-        super().__init__(connection)
+        super().__init__(connection, database.damage)
         self._database = database
 
     def insert(self, rows: Sequence[Row]) -> tuple[bool, ...]:

@@ -3,9 +3,11 @@
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
 from contextlib import AbstractContextManager
+from pathlib import Path
 from typing import Any
 
 from seacage.conventions import SeacageError
+from seacage.service._store._checksum import UNVERIFIED, Damage, checksum
 from seacage.service._store._rows import Row
 
 Answer = list[tuple[Any, ...]]
@@ -24,7 +26,12 @@ class FullError(StoreError):
 
 
 class AbstractSession(ABC):
-    """One transaction: statements with ``?`` for each value."""
+    """One transaction: statements with ``?`` for each value.
+
+    ``damage`` is where rows are counted that are not as they were written.
+    """
+
+    damage: Damage
 
     locking: str = ""
     """What a SELECT ends with, so that no other process changes its rows until the commit."""
@@ -35,9 +42,63 @@ class AbstractSession(ABC):
     lateral: bool = False
     """Whether a subquery of FROM may look at its neighbours."""
 
+    ordered: bool = False
+    """Whether names are ordered as Python does."""
+
+    @property
+    def checksums(self) -> str | None:
+        """Whether the server keeps checksums of its pages, on or off; None without a server."""
+        return None
+
     @abstractmethod
     def rows(self, sql: str, values: Sequence[object] = ()) -> Answer:
         """Run one statement; the rows that it answers."""
+
+    def intact(
+        self,
+        table: str,
+        sql: str,
+        values: Sequence[object] = (),
+        head: Sequence[object] = (),
+        *,
+        limit: int | None = None,
+    ) -> Answer:
+        """Run a SELECT and leave out the rows that are not as they were written.
+
+        Parameters
+        ----------
+        table
+            From which it selects.
+        sql, values
+            It answers whole rows but for ``head``, the checksum last.
+        head
+            The first columns.
+        limit
+            The last value, where the statement has one: so many intact rows are wanted.
+
+        Returns
+        -------
+        rows
+            Without the checksum.
+        """
+        spare = 0
+        while True:
+            bound = () if limit is None else (limit + spare,)
+            rows = self.rows(sql, (*values, *bound))
+            good = self.whole(table, rows, head)
+            if limit is None or len(good) >= limit or len(rows) < limit + spare:
+                return good[:limit]
+            spare = 2 * (len(rows) - len(good))
+
+    def whole(self, table: str, rows: Answer, head: Sequence[object] = ()) -> Answer:
+        """Leave out the rows that are not as they were written, and the checksum of the others."""
+        good: Answer = []
+        for row in rows:
+            if row[-1] in {UNVERIFIED, checksum(table, (*head, *row[:-1]))}:
+                good.append(row[:-1])
+            else:
+                self.damage.note(table, (*head, *row))
+        return good
 
     @abstractmethod
     def each(self, sql: str, rows: Iterable[Sequence[object]]) -> None:
@@ -57,6 +118,17 @@ class AbstractDatabase(ABC):
 
     lost: str | None = None
     """Why history was moved aside; None where nothing was."""
+
+    damage: Damage
+
+    damaged: list[Path]
+    """Files that were moved aside and are still to be salvaged."""
+
+    shared: bool = False
+    """Whether other processes may serve other cages from it."""
+
+    round: int = 0
+    """How often it was begun anew."""
 
     @abstractmethod
     def writing(self) -> AbstractContextManager[AbstractSession]:

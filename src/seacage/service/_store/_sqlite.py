@@ -8,6 +8,8 @@ from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
 
+from seacage.service._small_files import keep_private
+from seacage.service._store._checksum import CHECKED, UNVERIFIED, Damage, checksum
 from seacage.service._store._claim import FileClaim
 from seacage.service._store._pool import Pool
 from seacage.service._store._reserve import Reserve
@@ -20,7 +22,7 @@ from seacage.service._store._session import (
     FullError,
     StoreError,
 )
-from seacage.service._store._tables import tables
+from seacage.service._store._tables import tables, upgrade
 
 _WORDS = {
     "integer": "INTEGER",
@@ -30,9 +32,13 @@ _WORDS = {
     "checked": " STRICT",
     "parted": " WITHOUT ROWID, STRICT",
 }
-_INSERT = "INSERT INTO sample VALUES (?, ?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING"
+_INSERT = "INSERT INTO sample VALUES (?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING"
 _HEADER = b"SQLite format 3\0"
-_VERSION = 1
+_VERSION = 2  # 1: rows without a checksum
+_NO_CHECKSUM = """
+SELECT name FROM sqlite_schema s WHERE type = 'table' AND NOT EXISTS (
+    SELECT 1 FROM pragma_table_info(s.name) WHERE name = 'crc'
+)"""
 _DAMAGED = {sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB}
 _FULL = {
     sqlite3.SQLITE_FULL,
@@ -47,8 +53,10 @@ _LOOK_S = 2.0
 class SqliteSession(AbstractSession):
     """A transaction of one connection."""
 
-    def __init__(self, connection: sqlite3.Connection) -> None:
-        self._connection = connection
+    ordered = True
+
+    def __init__(self, connection: sqlite3.Connection, damage: Damage) -> None:
+        self._connection, self.damage = connection, damage
 
     def rows(self, sql: str, values: Sequence[object] = ()) -> Answer:
         """Run one statement."""
@@ -61,14 +69,15 @@ class SqliteSession(AbstractSession):
     def insert(self, rows: Sequence[Row]) -> tuple[bool, ...]:
         """Insert all at once; only where some were known it has to be found which."""
         connection = self._connection
+        written = [(*row, checksum("sample", row)) for row in rows]
         before = connection.total_changes
         connection.execute("SAVEPOINT samples")
-        connection.executemany(_INSERT, rows)
+        connection.executemany(_INSERT, written)
         if connection.total_changes - before == len(rows):
             new = (True,) * len(rows)
         else:
             connection.execute("ROLLBACK TO samples")
-            new = tuple(connection.execute(_INSERT, row).rowcount == 1 for row in rows)
+            new = tuple(connection.execute(_INSERT, row).rowcount == 1 for row in written)
         connection.execute("RELEASE samples")
         return new
 
@@ -93,10 +102,15 @@ class SqliteDatabase(AbstractDatabase):
     """
 
     def __init__(self, path: Path) -> None:
-        self._path = path
+        self._path, self.damage = path, Damage()
         self._readers = Pool(self._reader)
         self._claim = FileClaim(path.with_name(path.name + "-lock"))
         self._reserve = Reserve(path.with_name(path.name + "-reserve"))
+        self.damaged = [
+            one
+            for one in sorted(path.parent.glob(f"{path.name}.damaged-*Z"))
+            if not one.with_name(one.name + ".copied").exists()
+        ]
         try:
             with _said(path, "does not open as the store of samples"):
                 self._writer = _opened(path)
@@ -110,7 +124,7 @@ class SqliteDatabase(AbstractDatabase):
         with _said(self._path, "takes no samples"):
             connection.execute("BEGIN IMMEDIATE")
             try:
-                yield SqliteSession(connection)
+                yield SqliteSession(connection, self.damage)
                 connection.execute("COMMIT")
             except BaseException:
                 if connection.in_transaction:
@@ -122,7 +136,7 @@ class SqliteDatabase(AbstractDatabase):
         """Read one moment of the file."""
         with _said(self._path, "cannot be read"), self._readers.lent() as connection:
             connection.execute("BEGIN")
-            yield SqliteSession(connection)
+            yield SqliteSession(connection, self.damage)
             connection.execute("COMMIT")
 
     def renew(self, error: DamageError) -> bool:
@@ -159,9 +173,12 @@ class SqliteDatabase(AbstractDatabase):
         aside = _moved_aside(self._path)
         with _said(self._path, "does not open as the store of samples"):
             self._writer = _opened(self._path)
+        self.round += 1
+        self.damage.clear()
+        self.damaged.append(aside)
         self.lost = (
             f"{self._path} was damaged ({error.__cause__}) and begun anew; what was in it lies in "
-            f"{aside}. Look after the disk, and restore from a copy or the archive."
+            f"{aside}. Look after the disk."
         )
 
     def _reader(self) -> sqlite3.Connection:
@@ -172,8 +189,20 @@ class SqliteDatabase(AbstractDatabase):
 def sqlite_look(path: Path) -> Generator[AbstractSession]:
     """Read one moment of a file that another process may be writing."""
     with _said(path, "cannot be read"), closing(_reading(path)) as connection:
+        _complete(connection)
         connection.execute("BEGIN")
-        yield SqliteSession(connection)
+        yield SqliteSession(connection, Damage())
+
+
+def _complete(connection: sqlite3.Connection) -> None:
+    """Add to tables of 0.1.0, which only a service may change, what they lack, for this look."""
+    there = {name for (name,) in connection.execute("SELECT name FROM sqlite_schema")}
+    for name in _without_checksum(connection):
+        view = f"SELECT *, {UNVERIFIED} AS crc FROM main.{name}"  # noqa: S608
+        connection.execute(f"CREATE TEMP VIEW {name} AS {view}")
+    for table in tables(_WORDS):
+        if table.startswith("CREATE TABLE") and table.split()[5] not in there:
+            connection.execute(table.replace("CREATE", "CREATE TEMP", 1))
 
 
 _text = partial(str, encoding="utf-8", errors="replace")  # a flipped bit must not stop a query
@@ -191,19 +220,21 @@ def _reading(path: Path) -> sqlite3.Connection:
 
 
 def _opened(path: Path) -> sqlite3.Connection:
-    path.parent.mkdir(parents=True, exist_ok=True)
+    keep_private(path)
     _check_header(path)
     connection = sqlite3.connect(path, isolation_level=None, check_same_thread=False)
     try:
         connection.text_factory = _text
         connection.execute("PRAGMA journal_mode = WAL")
         connection.execute("PRAGMA synchronous = FULL")
+        connection.execute("PRAGMA secure_delete = ON")  # what was deleted is never salvaged
         _look_through(connection)
-        version = _version(connection, path)
-        for table in tables(_WORDS):
-            connection.execute(table)
-        if version < _VERSION:  # else nothing is written: a full disk must not keep it shut
-            connection.execute(f"PRAGMA user_version = {_VERSION}")
+        # Where there is nothing to make nothing is written: a full disk must not keep it shut.
+        if _version(connection, path) < _VERSION:
+            connection.execute("BEGIN IMMEDIATE")
+            if _version(connection, path) < _VERSION:
+                _make_tables(connection)
+            connection.execute("COMMIT")
     except BaseException:
         connection.close()
         raise
@@ -237,9 +268,38 @@ def _look_through(connection: sqlite3.Connection) -> None:
         raise DamageError("The store's file is damaged.") from sqlite3.DatabaseError(found[0])
 
 
+def _make_tables(connection: sqlite3.Connection) -> None:
+    """Make the tables, or bring those of version 1 up to date, and seal their description."""
+    for table in tables(_WORDS):
+        connection.execute(table)
+    for statement in upgrade(_WORDS, _without_checksum(connection)):
+        connection.execute(statement)
+    connection.execute(f"PRAGMA user_version = {_VERSION}")
+    connection.execute(f"PRAGMA application_id = {_seal(connection)}")
+
+
+def _without_checksum(connection: sqlite3.Connection) -> list[str]:
+    return [name for (name,) in connection.execute(_NO_CHECKSUM) if name in CHECKED]
+
+
+def _seal(connection: sqlite3.Connection) -> int:
+    """Checksum of the description of the tables, which no other look covers."""
+    known = ", ".join(f"'{name}'" for name in CHECKED)
+    described = connection.execute(
+        f"SELECT name, tbl_name, sql FROM sqlite_schema WHERE tbl_name IN ({known}, 'tally') "  # noqa: S608
+        "AND type IN ('table', 'index') AND sql IS NOT NULL ORDER BY name"
+    ).fetchall()
+    return checksum(f"schema {_VERSION}", described) >> 1 or 1
+
+
 def _version(connection: sqlite3.Connection, path: Path) -> int:
     """Of the tables; refused where it is newer than this seacage."""
     (version,) = connection.execute("PRAGMA user_version").fetchone()
+    (seal,) = connection.execute("PRAGMA application_id").fetchone()
+    if (version == _VERSION) != (seal == _seal(connection)):
+        raise DamageError(f"{path} is damaged.") from sqlite3.DatabaseError(
+            "the description of its tables is not what was written"
+        )
     if version > _VERSION:
         raise StoreError(
             f"{path} was written by a newer seacage (tables of version {version}, known up to "

@@ -1,31 +1,67 @@
 """The live store: every sample once, on disk before it is acknowledged."""
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import Future
-from datetime import datetime
+from contextlib import suppress
+from datetime import datetime, timedelta
 from pathlib import Path
+from typing import TypeVar
 
-from seacage.records import Amendment, Sample
-from seacage.service._store._adapted import adapted, keep_adapted
+from seacage.records import Amendment, Limits, Sample
+from seacage.service._store._adapted import (
+    Adaptation,
+    Refold,
+    adaptation_at,
+    cut_adaptations,
+    keep_adaptations,
+    refold_of,
+)
 from seacage.service._store._aggregates import Aggregate, check_aggregate
 from seacage.service._store._alarms import alarm_book, journal_between, keep_alarms
 from seacage.service._store._archive import Archive
 from seacage.service._store._archive_found import completed, latest_of
+from seacage.service._store._care import Caretaker
+from seacage.service._store._checksum import Damage
 from seacage.service._store._kept_aggregates import aggregates_between, renew_rested
-from seacage.service._store._kept_samples import Append, latest_samples, samples_between
+from seacage.service._store._kept_samples import (
+    Append,
+    Stored,
+    amendments_since,
+    latest_samples,
+    reinstate_samples,
+    samples_at,
+    samples_between,
+    withdraw_samples,
+)
 from seacage.service._store._place import database_at, look_into
+from seacage.service._store._quality import newest_keys
 from seacage.service._store._retired import retired
-from seacage.service._store._rows import microseconds, row_of
-from seacage.service._store._session import AbstractSession, StoreError
+from seacage.service._store._rows import check_seq, microseconds
+from seacage.service._store._session import AbstractSession, DamageError, StoreError
 from seacage.service._store._writer import Writer
 from seacage.twin import Happened
 
 __all__ = ["Store", "StoreError", "look_into", "open_store"]
 
+T = TypeVar("T")
+
 _PATIENCE_S = 5.0  # a server may take a moment to see that a process was killed
 _LOOK_S = 0.2
-_TABLES = ("sample", "aggregate", "mark", "sealed", "alarm_book", "adapted", "journal")
+_AHEAD = timedelta(seconds=60)  # so far a source's clock may be ahead
+_TABLES = (
+    "sample",
+    "quality",
+    "aggregate",
+    "mark",
+    "sealed",
+    "alarm_book",
+    "adapted",
+    "adaptation",
+    "refold",
+    "journal",
+    "tally",
+)
 
 
 def open_store(place: Path | str, *, archive: Path | None = None) -> "Store":
@@ -64,16 +100,27 @@ class Store:
         self._archive = archive
         self._database = database_at(place)
         self._writer = Writer(self._database, chore=_chore)
+        self._unread: dict[str, StoreError] = {}
+        self._care = Caretaker(self._database, self._writer, self._read, self._look)
+        if self._database.damaged:
+            self._care.begin()
 
     @property
     def fault(self) -> str | None:
-        """Why the last write failed; None while all is well."""
-        return self._writer.fault
+        """Why the last write or a read failed; None while all is well."""
+        unread = list(self._unread.values())
+        return self._writer.fault or (str(unread[0]) if unread else None)
 
     @property
     def lost(self) -> str | None:
-        """Why history was moved aside; None where nothing was."""
-        return self._database.lost
+        """What history was moved aside or is damaged; None where nothing is."""
+        said = (self._database.lost, self._care.said, self._database.damage.said)
+        return " ".join(filter(None, said)) or None
+
+    @property
+    def damage(self) -> Damage:
+        """Rows that were found damaged or missing, and how many nobody can verify."""
+        return self._database.damage
 
     def claim(self, cage: str) -> None:
         """Be the one process that serves a cage until the store is closed.
@@ -94,6 +141,7 @@ class Store:
                     "or give this one cages and, with SQLite, a folder of its own."
                 )
             time.sleep(_LOOK_S)
+        self._care.begin(cage)
 
     def append(
         self,
@@ -101,9 +149,12 @@ class Store:
         samples: Sequence[Sample],
         *,
         ingested: datetime,
-        amendments: Sequence[Amendment] = (),
-    ) -> "Future[tuple[bool, ...]]":
-        """Store samples, each once by (stream, t, seq); the future resolves after the commit.
+        limits: Limits | None = None,
+    ) -> "Future[Stored]":
+        """Check samples and store each once by (stream, t, seq); resolves after the commit.
+
+        Their flags, and those of what is stored already, come out as if all had come in the order
+        of their times.
 
         Parameters
         ----------
@@ -111,16 +162,60 @@ class Store:
             What to store, and whose.
         ingested
             When they came.
-        amendments
-            What they taught of samples before them, in the store or among these.
+        limits
+            To check with; None stores the flags that they carry.
+
+        Raises
+        ------
+        InputError
+            A number that is negative or has more than 63 bits.
+        """
+        for sample in samples:
+            check_seq(sample)
+        return self._writer.append(Append(cage, tuple(samples), ingested, limits))
+
+    def withdraw(
+        self, cage: str, stream: str, *, clock: datetime, now: datetime, limits: Limits
+    ) -> "Future[int]":
+        """Withdraw samples that are ahead of a clock that has stepped back, some at a time.
+
+        They are flagged FAIL and count no more, until they are sent again: nothing is compared
+        with them, and they are no stream's latest.
+
+        Parameters
+        ----------
+        cage, stream
+            Whose.
+        clock
+            What it was set to.
+        now
+            What it says now; samples up to a minute ahead of it stay.
+        limits
+            To check with what is left.
 
         Returns
         -------
-        new
-            For each sample whether it was not known before.
+        count
+            How many flags changed; 0 once nothing is left to withdraw.
         """
-        rows = tuple(row_of(cage, sample, ingested) for sample in samples)
-        return self._writer.append(Append(cage, rows, tuple(amendments)))
+        after, control, of = now + _AHEAD, self._writer.control, (cage, stream)
+
+        def work(session: AbstractSession) -> int:
+            cut_adaptations(session, cage, after)
+            return withdraw_samples(session, control, of, clock=clock, after=after, limits=limits)
+
+        return self._writer.ask(work)
+
+    def reinstate(
+        self, cage: str, stream: str, *, clock: datetime, now: datetime, limits: Limits
+    ) -> "Future[int]":
+        """Take back what ``withdraw`` did for a clock that was wrong itself, some at a time."""
+        until, control, of = now + _AHEAD, self._writer.control, (cage, stream)
+        return self._writer.ask(
+            lambda session: reinstate_samples(
+                session, control, of, clock=clock, until=until, limits=limits
+            )
+        )
 
     def samples(
         self,
@@ -131,6 +226,8 @@ class Store:
         end: datetime | None = None,
         limit: int,
         newest: bool = False,
+        withdrawn: bool = True,
+        known_at: datetime | None = None,
     ) -> list[Sample]:
         """Read samples in time order, start <= t < end.
 
@@ -144,11 +241,26 @@ class Store:
             At most so many.
         newest
             Of more than ``limit`` the last rather than the first.
+        withdrawn
+            Those too that were withdrawn, as they are ahead of a clock that has stepped back.
+        known_at
+            Give the flags that the samples until then had shown; None for those of now. What is
+            archived has those of now.
         """
-        with self._database.reading() as session:
-            found = samples_between(
-                session, cage, stream=stream, start=start, end=end, limit=limit, newest=newest
-            )
+        found = self._read(
+            "samples",
+            lambda session: samples_between(
+                session,
+                cage,
+                stream=stream,
+                start=start,
+                end=end,
+                limit=limit,
+                newest=newest,
+                withdrawn=withdrawn,
+                known_at=known_at,
+            ),
+        )
         if self._archive is None:
             return found
         return completed(
@@ -163,9 +275,11 @@ class Store:
         )
 
     def latest(self, cage: str, *, at: datetime | None = None) -> dict[str, Sample]:
-        """Read the newest sample of each stream, or the newest until a time, it included."""
-        with self._database.reading() as session:
-            latest = latest_samples(session, cage, at=at)
+        """Read the newest sample of each stream, or the newest until a time, it included.
+
+        What was withdrawn is left out.
+        """
+        latest = self._read("latest", lambda session: latest_samples(session, cage, at=at))
         if self._archive is None:
             return latest
         return latest_of(latest, self._archive, cage, at=at)
@@ -203,8 +317,9 @@ class Store:
             A direction, no quantity, or a width that is not kept.
         """
         check_aggregate(key, width_s)
-        with self._database.reading() as session:
-            return aggregates_between(
+        return self._read(
+            "aggregates",
+            lambda session: aggregates_between(
                 session,
                 cage,
                 stream=stream,
@@ -213,7 +328,8 @@ class Store:
                 start=start,
                 end=end,
                 limit=limit,
-            )
+            ),
+        )
 
     def keep_alarms(self, cage: str, *, book: str, journal: Sequence[Happened]) -> "Future[None]":
         """Keep the book of alarms and what happened to them, both or neither.
@@ -234,17 +350,48 @@ class Store:
 
     def alarm_book(self, cage: str) -> str | None:
         """Read the book that was kept last; None where there was none."""
-        with self._database.reading() as session:
-            return alarm_book(session, cage)
+        return self._read("alarm_book", lambda session: alarm_book(session, cage))
 
-    def keep_adapted(self, cage: str, factors: str) -> "Future[None]":
-        """Keep how far the intervals of a cage's twin were adapted, as JSON."""
-        return self._writer.ask(lambda session: keep_adapted(session, cage, factors))
+    def newest_of_each(self, cage: str, stream: str, *, at: datetime) -> list[Sample]:
+        """Read the last samples of a stream until a time that carried each of its quantities."""
 
-    def adapted(self, cage: str) -> str | None:
-        """Read what ``keep_adapted`` kept last; None where there was nothing."""
-        with self._database.reading() as session:
-            return adapted(session, cage)
+        def newest(session: AbstractSession) -> list[Sample]:
+            keys = newest_keys(session, (cage, stream), microseconds(at))
+            return samples_at(session, cage, stream, keys, known_at=at)
+
+        return self._read("newest", newest)
+
+    def amendments(
+        self, cage: str, stream: str, *, start: datetime, known_at: datetime
+    ) -> tuple[Amendment, ...]:
+        """Read which flags of samples since a time later ones have made worse, until a time."""
+        return self._read(
+            "amendments",
+            lambda session: amendments_since(session, (cage, stream), start, known_at=known_at),
+        )
+
+    def keep_adaptations(
+        self, cage: str, kept: Sequence[Adaptation], *, refold: Refold | None = None
+    ) -> "Future[None]":
+        """Keep how far the intervals of a cage's twin were adapted.
+
+        Parameters
+        ----------
+        cage, kept
+            Whose, and from when on.
+        refold
+            What was asked for by ``refold`` and is done: all from then on is replaced.
+        """
+        rows = tuple(kept)
+        return self._writer.ask(lambda session: keep_adaptations(session, cage, rows, refold))
+
+    def adaptation(self, cage: str, *, at: datetime) -> Adaptation | None:
+        """Read the factors in force at a time; None where none were kept until then."""
+        return self._read("adaptation", lambda session: adaptation_at(session, cage, at))
+
+    def refold(self, cage: str) -> Refold | None:
+        """Read what has to be adapted anew as samples came late; None where nothing has."""
+        return self._read("refold", lambda session: refold_of(session, cage))
 
     def journal(
         self,
@@ -268,8 +415,12 @@ class Store:
         newest
             Of more than ``limit`` the last rather than the first.
         """
-        with self._database.reading() as session:
-            return journal_between(session, cage, start=start, end=end, limit=limit, newest=newest)
+        return self._read(
+            "journal",
+            lambda session: journal_between(
+                session, cage, start=start, end=end, limit=limit, newest=newest
+            ),
+        )
 
     def retire(self, cage: str, *, before: datetime) -> int:
         """Delete the samples of whole UTC days before a time; their aggregates stay, final.
@@ -296,12 +447,13 @@ class Store:
             The archive or the database does not take it; then nothing is deleted that is not
             archived.
         """
-        return retired(self._database, self._writer, self._archive, cage, microseconds(before))
+        return retired(self._read, self._writer, self._archive, cage, microseconds(before))
 
     def forget(self, cage: str) -> None:
         """Delete all that is kept of a cage; only a replay does so, before it begins anew."""
 
         def delete(session: AbstractSession) -> None:
+            self._writer.control.forget()
             for table in _TABLES:
                 session.rows(f"DELETE FROM {table} WHERE cage = ?", (cage,))  # noqa: S608
 
@@ -309,8 +461,47 @@ class Store:
 
     def close(self) -> None:
         """Finish what was asked and close the database."""
+        self._care.close()
         self._writer.close()
         self._database.close()
+
+    def _read(self, what: str, ask: Callable[[AbstractSession], T]) -> T:
+        """Read; of a damaged file that can be begun anew, from the new one."""
+        try:
+            begun = self._database.round
+            try:
+                answer = self._read_once(ask)
+            except DamageError as error:
+                self._renew(begun, error)
+                answer = self._read_once(ask)
+        except StoreError as error:
+            self._unread = {**self._unread, what: error}
+            self._care.begin()  # which looks until the way is open again
+            raise
+        if self._unread:  # a way that is open again is so for all, a damaged page is not
+            self._unread = {
+                one: error
+                for one, error in self._unread.items()
+                if one != what and isinstance(error, DamageError)
+            }
+        return answer
+
+    def _read_once(self, ask: Callable[[AbstractSession], T]) -> T:
+        with self._database.reading() as session:
+            return ask(session)
+
+    def _renew(self, begun: int, error: DamageError) -> None:
+        def renewed(_: AbstractSession) -> None:
+            if self._database.round == begun:
+                raise error  # which has the writer begin anew, and then do this again
+
+        self._writer.ask(renewed, vital=True).result()
+        self._care.begin()
+
+    def _look(self) -> None:
+        if self._unread:
+            with suppress(StoreError):
+                self._read("trial", lambda session: session.rows("SELECT t FROM trial"))
 
 
 def _chore(session: AbstractSession) -> None:

@@ -11,7 +11,8 @@ from typing import Any, TypeVar
 
 import structlog
 
-from seacage.service._store._kept_samples import Append, append_all
+from seacage.service._store._kept_samples import Append, Stored, append_all
+from seacage.service._store._quality import QualityControl
 from seacage.service._store._session import (
     AbstractDatabase,
     AbstractSession,
@@ -56,6 +57,7 @@ class Writer:
         self, database: AbstractDatabase, *, chore: Callable[[AbstractSession], object]
     ) -> None:
         self._database, self._chore = database, chore
+        self.control = QualityControl()  # to be used in a transaction alone
         self._next_chore = time.monotonic() + _CHORE_S
         self._queue: queue.SimpleQueue[_Asked | None] = queue.SimpleQueue()
         self._closing = threading.Lock()
@@ -65,7 +67,7 @@ class Writer:
         self._thread = threading.Thread(target=self._run, name="store", daemon=True)
         self._thread.start()
 
-    def append(self, work: Append) -> "Future[tuple[bool, ...]]":
+    def append(self, work: Append) -> "Future[Stored]":
         """Store samples."""
         return self._ask(work, vital=False)
 
@@ -140,6 +142,7 @@ class Writer:
         try:
             answers = self._committed([asked.work for asked in batch])
         except BaseException as error:
+            self.control.forget()
             was_full = self._full
             self._note(error)
             if self._full and not was_full:
@@ -173,6 +176,7 @@ class Writer:
         try:
             return self._written(works)
         except DamageError as error:
+            self.control.forget()
             if not self._database.renew(error):
                 raise
             return self._written(works)
@@ -184,7 +188,8 @@ class Writer:
             for samples, group in groupby(works, lambda work: isinstance(work, Append)):
                 if samples:
                     appends = [work for work in group if isinstance(work, Append)]
-                    answers += append_all(session, appends, touched=time.time_ns() // 1000)
+                    touched = time.time_ns() // 1000
+                    answers += append_all(session, appends, self.control, touched=touched)
                 else:
                     answers += [work(session) for work in group if not isinstance(work, Append)]
         return answers

@@ -63,10 +63,12 @@ class HttpCourier:
         except SendError:
             time.sleep(_PAUSE_S)
             return []
-        refused = {one.index: one.reason for one in receipt.rejected}
+        reasons = {one.index: one.reason for one in receipt.rejected}
+        ahead = {one.index for one in receipt.rejected if one.retry}
         return [
-            Settled(stream=one.stream, t=one.t, seq=one.seq, rejected=refused.get(index))
+            Settled(stream=one.stream, t=one.t, seq=one.seq, rejected=why, retry=index in ahead)
             for index, one in enumerate(samples)
+            for why in (reasons.get(index),)
         ]
 
     def close(self) -> None:

@@ -2,9 +2,11 @@
 
 import asyncio
 import json
+import time
 from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from datetime import timedelta
 from pathlib import Path
 
 import structlog
@@ -20,8 +22,13 @@ from seacage.service._wires._mqtt_messages import LARGEST, Settled, read_observe
 from seacage.service._wires._mqtt_topics import Topics, shared
 from seacage.service._wires._quarantine import Quarantine
 
-_AHEAD = 2000  # messages that the broker may send before the first of them is acknowledged
+_AHEAD = 2000  # messages that may wait here; Mosquitto 2.0.11 sends more, unless it is not read
+_AHEAD_BYTES = 32 << 20
 _BATCH = 1000  # messages that are stored together
+_BATCH_BYTES = 1 << 20
+_STREAMS = 10_000  # of which the newest message is kept
+_OLD = timedelta(seconds=10)  # a sample of a backlog, or of a source whose clock is behind
+_LASTS_S = 10.0  # from the last sign of a backlog until there is none
 _RETRY_S = 1.0
 _SESSION_S = 7 * 86_400
 _KEPT = 1000  # alarms that wait for a broker
@@ -50,8 +57,12 @@ class MqttFeed:
 
     A message is acknowledged to the broker, and to its sender, once its samples are on disk;
     until then the broker keeps it. While the store takes nothing, nothing is acknowledged, and
-    the broker stops after as many messages as fit in the queue. A message that cannot be read
+    no more is read from the broker than fits in the queue. A message that cannot be read
     is set aside with its reason, acknowledged and forgotten.
+
+    While the queue is full or old samples come, there is a second connection, on which the
+    broker sends what is said from now on: the newest message of each stream goes before what
+    waits, so that answers are those of now. It comes again in its turn, as a duplicate.
 
     Parameters
     ----------
@@ -97,11 +108,23 @@ class MqttFeed:
     ) -> None:
         self._topics, self._cages, self._metrics = Topics(site), dict(cages), metrics
         self._quarantine, self._state_every_s = quarantine, state_every_s
-        self._queue: deque[Heard] = deque()
+        self._queue, self._bytes = deque[Heard](), 0
+        self._behind = asyncio.Event()
+        self._behind_at = 0.0
         self._filled, self._empty = asyncio.Event(), asyncio.Event()
         self._empty.set()
         self._alarms: deque[tuple[str, bytes]] = deque(maxlen=_KEPT)
         broker = Broker.parse(url, ca=ca)
+        self._newest = _Newest()
+        self._live = Link(
+            broker,
+            client_id=f"{client_id}-live",
+            filters=[self._topics.observed(cage) for cage in cages],
+            listener=self._newest,
+            receive_maximum=_AHEAD,
+            session_s=0,
+            qos=0,
+        )
         self._link = Link(
             broker,
             client_id=client_id,
@@ -114,6 +137,7 @@ class MqttFeed:
         self._messages = metrics.messages.labels(str(broker))
         metrics.connected.labels(str(broker)).set_function(lambda: float(self.fault is None))
         metrics.waiting.labels(str(broker)).set_function(lambda: float(len(self._queue)))
+        metrics.behind.labels(str(broker)).set_function(lambda: float(self._behind.is_set()))
 
     @property
     def fault(self) -> str | None:
@@ -128,6 +152,7 @@ class MqttFeed:
         async with asyncio.TaskGroup() as work:
             work.create_task(self._link.run())
             work.create_task(self._store())
+            work.create_task(self._show_newest())
             for cage in self._cages.values():
                 work.create_task(self._tell_states(cage))
 
@@ -146,6 +171,10 @@ class MqttFeed:
         self._messages.inc()
         if len(self._queue) < _AHEAD or heard.sure:
             self._queue.append(heard)
+            self._bytes += len(heard.payload)
+            if self._filled_by(1.0):
+                self._link.pause(paused=True)
+                self._fall_behind()
             self._empty.clear()
             self._filled.set()
         else:
@@ -158,15 +187,51 @@ class MqttFeed:
     async def _store(self) -> None:
         while True:
             await self._filled.wait()
-            batch = [self._queue.popleft() for _ in range(min(_BATCH, len(self._queue)))]
-            taken = [one for heard in batch if (one := self._read(heard))]
-            by_cage: dict[str, list[_Taken]] = {}
-            for one in taken:
-                by_cage.setdefault(one.cage, []).append(one)
-            await asyncio.gather(*(self._kept(cage, of) for cage, of in by_cage.items()))
+            await self._keep(self._next())
             if not self._queue:
                 self._filled.clear()
                 self._empty.set()
+
+    def _next(self) -> list[Heard]:
+        batch, left = list[Heard](), self._bytes - _BATCH_BYTES
+        while self._queue and len(batch) < _BATCH and self._bytes > left:
+            batch.append(self._queue.popleft())
+            self._bytes -= len(batch[-1].payload)
+        if not self._filled_by(0.5):
+            self._link.pause(paused=False)
+        return batch
+
+    def _filled_by(self, part: float) -> bool:
+        return len(self._queue) >= part * _AHEAD or self._bytes >= part * _AHEAD_BYTES
+
+    def _fall_behind(self) -> None:
+        self._behind_at = time.monotonic()
+        self._behind.set()
+
+    async def _show_newest(self) -> None:
+        """While a backlog drains, keep the newest message of each stream before it."""
+        while True:
+            await self._behind.wait()
+            beside = [asyncio.create_task(work) for work in (self._live.run(), self._keep_newest())]
+            try:
+                while (left_s := self._behind_at + _LASTS_S - time.monotonic()) > 0.0:
+                    await asyncio.sleep(left_s)
+            finally:
+                for task in beside:
+                    task.cancel()
+                await asyncio.gather(*beside, return_exceptions=True)
+            self._behind.clear()
+
+    async def _keep_newest(self) -> None:
+        while True:
+            await self._keep(await self._newest.take())
+
+    async def _keep(self, batch: Sequence[Heard]) -> None:
+        by_cage: dict[str, list[_Taken]] = {}
+        for heard in batch:
+            if (one := self._read(heard)) is not None:
+                by_cage.setdefault(one.cage, []).append(one)
+        await asyncio.gather(*(self._kept(cage, of) for cage, of in by_cage.items()))
 
     def _read(self, heard: Heard) -> _Taken | None:
         address = self._topics.address(heard.topic)
@@ -177,9 +242,14 @@ class MqttFeed:
         if read.fault:
             return self._set_aside(heard, read.fault)
         for one in read.refused:
+            if one.retry:  # its sender keeps it and tries again and again
+                cage.refuse_ahead(one.stream, one.t)
+                continue
             self._quarantine.put(
                 heard.topic, heard.payload, one.rejected or "", now=cage.clock.now()
             )
+        if read.samples and cage.clock.now() - read.samples[-1].t > _OLD:
+            self._fall_behind()
         return _Taken(heard, cage.name, address.stream, read.samples, read.refused)
 
     def _set_aside(self, heard: Heard, reason: str) -> None:
@@ -223,18 +293,44 @@ class MqttFeed:
         with cage.watched() as mailbox:
             while True:
                 snapshot = await mailbox.take()
-                self._link.publish(topic, snapshot.state.model_dump_json().encode(), retain=True)
+                text = snapshot.state.model_dump_json().encode()
+                self._link.publish(topic, text, qos=0, retain=True)  # soon there is another
                 self._say_alarms()
                 await asyncio.sleep(self._state_every_s)
 
     def _say_alarms(self) -> None:
-        while self._alarms and self._link.publish(*self._alarms[0]):
+        # Where nothing is read, nobody sees that an alarm was received.
+        while self._alarms and not self._filled_by(1.0) and self._link.publish(*self._alarms[0]):
             self._alarms.popleft()
 
     def _cage_of(self, heard: Heard) -> str:
         """For a counter, which strangers must not fill with names."""
         address = self._topics.address(heard.topic)
         return address.cage if address and address.cage in self._cages else ""
+
+
+class _Newest:
+    """Listens for the newest message of each stream; what came before it is gone."""
+
+    def __init__(self) -> None:
+        self._latest: dict[str, Heard] = {}
+        self._filled = asyncio.Event()
+
+    def hear(self, heard: Heard) -> None:
+        """See ``Listener``."""
+        if heard.topic in self._latest or len(self._latest) < _STREAMS:
+            self._latest[heard.topic] = heard
+            self._filled.set()
+
+    async def settled(self) -> None:
+        """See ``Listener``."""
+
+    async def take(self) -> list[Heard]:
+        """Wait for messages and take them."""
+        await self._filled.wait()
+        self._filled.clear()
+        taken, self._latest = list(self._latest.values()), {}
+        return taken
 
 
 def _will(topic: str, cages: Sequence[str]) -> Will:

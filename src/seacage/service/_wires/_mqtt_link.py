@@ -93,6 +93,8 @@ class Link:
         See ``connecting``.
     will
         What the broker says when this client is lost.
+    qos
+        0 to hear only what is said from now on, of which the broker keeps nothing.
     """
 
     def __init__(
@@ -105,9 +107,11 @@ class Link:
         receive_maximum: int,
         session_s: int,
         will: Will | None = None,
+        qos: int = 1,
     ) -> None:
         self._broker, self._client_id, self._filters = broker, client_id, tuple(filters)
-        self._listener, self._will = listener, will
+        self._listener, self._will, self._qos = listener, will, qos
+        self._connection: _Connection | None = None
         self._properties = connecting(receive_maximum=receive_maximum, session_s=session_s)
         self._client: Client | None = None
         self._fault: str | None = f"{broker} has not answered yet."
@@ -123,6 +127,11 @@ class Link:
             return False
         sent = self._client.publish(topic, payload, qos, retain)
         return sent.rc == MQTTErrorCode.MQTT_ERR_SUCCESS
+
+    def pause(self, *, paused: bool) -> None:
+        """Read nothing of what the broker sends, so that it has to keep it, or read on."""
+        if self._connection is not None:
+            self._connection.pause(paused=paused)
 
     async def run(self) -> None:
         """Connect, again and again."""
@@ -146,6 +155,7 @@ class Link:
     async def _connected(self) -> None:
         """Be connected until it ends, and raise why."""
         connection = _Connection(self._broker.client(self._client_id, manual_ack=True))
+        self._connection = connection
         client = connection.client
         client.on_message = self._on_message
         if self._will is not None:
@@ -156,7 +166,7 @@ class Link:
                 await connection.greeted.wait()
             if connection.ended.is_set():
                 raise _Ended(connection.reason)
-            client.subscribe([(one, SubscribeOptions(qos=1)) for one in self._filters])
+            client.subscribe([(one, SubscribeOptions(qos=self._qos)) for one in self._filters])
             self._client, self._fault = client, None
             _log.info("broker found", broker=str(self._broker), client=self._client_id)
             if self._will is not None:
@@ -166,7 +176,7 @@ class Link:
         finally:
             if self._will is not None:
                 self.publish(self._will.topic, self._will.gone, retain=True)
-            self._client = None
+            self._client = self._connection = None
             connection.close()
 
     def _on_message(self, client: Client, _: object, message: MQTTMessage) -> None:
@@ -192,6 +202,7 @@ class _Connection:
         self.client = client
         self.greeted, self.ended = asyncio.Event(), asyncio.Event()
         self.reason = "it closed the connection"
+        self._paused = False
         self._loop = asyncio.get_running_loop()
         self._misc: asyncio.TimerHandle | None = None
         self._watched: Any = None
@@ -226,6 +237,17 @@ class _Connection:
         self._on_register_write(self.client, None, self._watched)
         self._keep()
 
+    def pause(self, *, paused: bool) -> None:
+        """Stop reading, or go on."""
+        if self._watched is None or paused == self._paused:
+            return
+        self._paused = paused
+        if paused:
+            self._loop.remove_reader(self._watched)
+        else:
+            self._loop.add_reader(self._watched, self._read)
+            self._loop.call_soon(self._read)  # what TLS has unpacked makes no socket readable
+
     def close(self) -> None:
         """Say goodbye, and leave the event loop."""
         if self._misc is not None:
@@ -245,17 +267,19 @@ class _Connection:
 
     def _read(self) -> None:
         try:
-            self.client.loop_read()
-            # What TLS has already unpacked makes no socket readable.
-            while self._watched is not None and getattr(self._watched, "pending", int)():
+            while self._watched is not None and not self._paused:
                 self.client.loop_read()
+                # What TLS has already unpacked makes no socket readable.
+                if self._watched is None or not getattr(self._watched, "pending", int)():
+                    break
         except Exception as error:  # noqa: BLE001  # whatever paho makes of broken bytes
             self._forget()
             self._end(f"its bytes cannot be read: {error}")
 
     def _keep(self) -> None:
         self._misc = self._loop.call_later(_MISC_S, self._keep)
-        self.client.loop_misc()
+        if not self._paused:  # paho would miss the broker's answers to its pings
+            self.client.loop_misc()
 
     def _forget(self) -> None:
         if self._watched is not None:

@@ -23,6 +23,7 @@ class _Settled(BaseModel):
     t: Annotated[Time, Field(strict=False)]
     seq: int | None = None
     rejected: str | None = None
+    retry: bool = False
 
 
 class _Observed(BaseModel):
@@ -39,12 +40,16 @@ _SETTLED = TypeAdapter(Annotated[list[_Settled], Field(max_length=BATCH_LIMIT)])
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Settled:
-    """What became of a sample at the service: it has it, or it refused it and why."""
+    """What became of a sample at the service: it has it, or it refused it and why.
+
+    With ``retry`` it may take it later: the sample is ahead of its clock.
+    """
 
     stream: str
     t: datetime
     seq: int | None
     rejected: str | None = None
+    retry: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -83,9 +88,9 @@ def read_observed(
     asked = [SampleIn.model_construct(stream=stream, **dict(one)) for one in read]
     samples, rejected = read_samples(asked, streams, until=until)
     refused = tuple(
-        Settled(stream=stream, t=one.t, seq=one.seq, rejected=rejection.reason)
-        for rejection in rejected
-        for one in (read[rejection.index],)
+        Settled(stream=stream, t=one.t, seq=one.seq, rejected=why.reason, retry=why.retry)
+        for why in rejected
+        for one in (read[why.index],)
     )
     return Observed(samples=tuple(samples), refused=refused)
 
@@ -107,6 +112,7 @@ def settled_text(settled: Sequence[Settled]) -> bytes:
     lines = [
         {"t": one.t.isoformat(), "seq": one.seq}
         | ({} if one.rejected is None else {"rejected": one.rejected})
+        | ({"retry": True} if one.retry else {})
         for one in settled
     ]
     return _compact(lines[0] if len(lines) == 1 else lines)
@@ -124,9 +130,7 @@ def read_settled(stream: str, payload: bytes) -> tuple[Settled, ...]:
         read = _SETTLED.validate_json(_as_list(payload))
     except ValidationError as error:
         raise InputError(f"{stream}: an acknowledgement cannot be read: {_first(error)}") from error
-    return tuple(
-        Settled(stream=stream, t=one.t, seq=one.seq, rejected=one.rejected) for one in read
-    )
+    return tuple(Settled(stream=stream, **one.model_dump()) for one in read)
 
 
 def _as_list(payload: bytes) -> bytes:

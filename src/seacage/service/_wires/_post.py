@@ -1,7 +1,9 @@
 """JSON posted over HTTP or HTTPS, once."""
 
 import http.client
+from abc import ABC
 from collections.abc import Mapping
+from dataclasses import dataclass
 from urllib.parse import quote, urlsplit
 
 from seacage.conventions import InputError
@@ -48,18 +50,26 @@ def post(
         connection.close()
 
 
-def post_to_cage(
-    service: str, cage: str, call: str, body: str, *, token: str, timeout_s: float = 60.0
-) -> tuple[int, bytes]:
-    """Post to one of a cage's calls; see ``post``.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AbstractCaller(ABC):
+    """Calls about one cage of one service.
 
     Parameters
     ----------
-    service, cage, call
-        Address of the service, name of the cage there, and of the call.
-    body, token, timeout_s
-        What is sent, who sends it, and for how long one waits [s].
+    address
+        Of the service: ``http://127.0.0.1:8000``.
+    cage
+        Its name there.
+    token
+        With the scope that the calls take.
     """
-    headers = {"Authorization": f"Bearer {token}"}
-    address = f"{service.rstrip('/')}/api/v1/cages/{quote(cage, safe='')}/{call}"
-    return post(address, body, headers=headers, timeout_s=timeout_s)
+
+    address: str
+    cage: str
+    token: str
+
+    def post(self, call: str, body: str, *, timeout_s: float = 60.0) -> tuple[int, bytes]:
+        """Post JSON to one of the cage's calls, once; see ``post`` of this module."""
+        headers = {"Authorization": f"Bearer {self.token}"}
+        address = f"{self.address.rstrip('/')}/api/v1/cages/{quote(self.cage, safe='')}/{call}"
+        return post(address, body, headers=headers, timeout_s=timeout_s)

@@ -5,11 +5,13 @@ import time
 from collections.abc import Generator, Iterable
 from contextlib import contextmanager
 from dataclasses import dataclass
+from datetime import timedelta
 
 from seacage.conventions import Progress, SeacageError, unheard
 from seacage.records import Sample
 from seacage.service._forms._schemas import BATCH_LIMIT
 from seacage.service._wires._courier import Courier
+from seacage.service._wires._mqtt_messages import Settled
 from seacage.service._wires._sender import SendError
 from seacage.service._wires._spool import Spool
 
@@ -40,8 +42,10 @@ class Published:
         Samples that it refused, and why, of the first ones.
     dropped
         Samples that had to make room in the spool.
-    waiting
-        Samples that are still in the spool.
+    waiting, ahead
+        Samples that are still in the spool, and how many of these as their time has not come.
+    quarantined
+        Samples that were set aside, beside the spool.
     """
 
     read: int
@@ -50,6 +54,8 @@ class Published:
     reasons: tuple[str, ...]
     dropped: int
     waiting: int
+    ahead: int
+    quarantined: int
 
 
 class Publisher:
@@ -59,10 +65,16 @@ class Publisher:
     does, what comes from then on is live and goes first; what had piled up fills the rest of
     each request, oldest first.
 
+    Samples that are ahead of the service's clock go last, with what room a request has, those
+    first whose time comes first. Where the service still takes none of these, all wait.
+
     Parameters
     ----------
     spool, courier
         Where samples wait, and what carries them.
+    retry_s, keep_ahead
+        How long samples ahead of the service's clock wait until they are tried again [s], and
+        for how long they are tried before they are set aside.
     patience_s
         How long nothing may be acknowledged before it gives up [s]; None never does.
     progress
@@ -74,10 +86,14 @@ class Publisher:
         spool: Spool,
         courier: Courier,
         *,
+        retry_s: float = 60.0,
+        keep_ahead: timedelta = timedelta(days=7),
         patience_s: float | None = None,
         progress: Progress = unheard,
     ) -> None:
         self._spool, self._courier = spool, courier
+        self._retry_s, self._keep_ahead, self._retry_at = retry_s, keep_ahead, float("-inf")
+        self._tried: list[Sample] = []
         self._patience_s, self._progress = patience_s, progress
         self._read = self._acknowledged = self._rejected = 0
         self._reasons: list[str] = []
@@ -94,10 +110,12 @@ class Publisher:
             reasons=tuple(self._reasons),
             dropped=self._spool.dropped,
             waiting=len(self._spool),
+            ahead=self._spool.ahead,
+            quarantined=self._spool.quarantined,
         )
 
     def run(self, source: Iterable[Batch]) -> Published:
-        """Publish until the source has ended and everything is acknowledged.
+        """Publish until the source has ended and all but what is ahead is acknowledged.
 
         Raises
         ------
@@ -127,13 +145,19 @@ class Publisher:
         return self.published
 
     def _next(self, live_after: int, *, silent: bool) -> list[Sample]:
-        if silent:
-            return self._spool.next(1, live_after=self._spool.newest - 1)
-        return self._spool.next(BATCH_LIMIT, live_after=live_after)
+        limit = 1 if silent else BATCH_LIMIT
+        batch = self._spool.next(limit, live_after=self._spool.newest - 1 if silent else live_after)
+        self._tried = []
+        if self._spool.ahead and len(batch) < limit and time.monotonic() >= self._retry_at:
+            self._spool.expire(self._keep_ahead)
+            self._tried = self._spool.next_ahead(limit - len(batch))
+        return batch + self._tried
 
     def _sent(self, batch: list[Sample]) -> bool:
         """Send a batch; whether anybody acknowledged anything."""
-        settled = self._courier.send(batch)
+        answers = self._courier.send(batch)
+        self._hold([one for one in answers if one.retry], answered=bool(answers))
+        settled = [one for one in answers if not one.retry]
         refused = [one.rejected for one in settled if one.rejected is not None]
         gone = self._spool.settle(settled)  # fewer than settled where some were said twice
         self._acknowledged += max(0, gone - len(refused))
@@ -141,7 +165,18 @@ class Publisher:
         self._reasons += refused[: _REASONS - len(self._reasons)]
         done = self._acknowledged + self._rejected
         self._progress("publish", done, done + len(self._spool))
-        return bool(settled)
+        return bool(answers)
+
+    def _hold(self, ahead: list[Settled], *, answered: bool) -> None:
+        """Keep what is ahead of the service's clock, and wait where it took nothing of it."""
+        again = {(one.stream, one.t, one.seq) for one in ahead}
+        first = not self._spool.ahead
+        if ahead:
+            self._spool.hold(ahead)
+            self._spool.expire(self._keep_ahead)
+        stuck = self._tried and all((o.stream, o.t, o.seq) in again for o in self._tried)
+        if answered and (first or stuck):
+            self._retry_at = time.monotonic() + self._retry_s
 
     def _check_patience(self, silent_s: float) -> None:
         if self._patience_s is not None and silent_s > self._patience_s:

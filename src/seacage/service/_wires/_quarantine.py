@@ -7,6 +7,8 @@ from pathlib import Path
 
 import structlog
 
+from seacage.service._small_files import append_line
+
 _SHOWN = 1000  # bytes of a payload that are kept
 _QUIET_S = 10.0
 _log = structlog.get_logger(__name__)
@@ -28,7 +30,6 @@ class Quarantine:
 
     def __init__(self, path: Path | None, *, most: int = 4 << 20) -> None:
         self._path, self._most = path, most
-        self._size = path.stat().st_size if path is not None and path.exists() else 0
         self._count = self._unsaid = 0
         self._said = float("-inf")
 
@@ -37,8 +38,10 @@ class Quarantine:
         """How many were set aside since the service began."""
         return self._count
 
-    def put(self, origin: str, payload: bytes, reason: str, *, now: datetime) -> None:
-        """Set a message aside.
+    def put(
+        self, origin: str, payload: bytes, reason: str, *, now: datetime, sync: bool = False
+    ) -> bool:
+        """Set a message aside; False where the disk did not take it.
 
         Parameters
         ----------
@@ -46,25 +49,21 @@ class Quarantine:
             The topic, or the file and line, that it came by.
         payload, reason, now
             What, why and when.
+        sync
+            Wait until this and all before it are on disk.
         """
         self._count += 1
         self._say(origin, reason)
         if self._path is None:
-            return
+            return False
         line = {"t": now.isoformat(), "from": origin[:_SHOWN], "reason": reason[:_SHOWN]}
         line |= {"bytes": len(payload), "payload": payload[:_SHOWN].decode("utf-8", "replace")}
         try:
-            self._write(self._path, json.dumps(line) + "\n")
-        except OSError as error:  # a full disk: what is refused here was no sample
+            append_line(self._path, json.dumps(line), most=self._most, sync=sync)
+        except OSError as error:
             self._say(str(self._path), f"the file takes nothing ({error})")
-
-    def _write(self, path: Path, line: str) -> None:
-        if self._size + len(line) > self._most:
-            path.replace(path.with_suffix(".before" + path.suffix))
-            self._size = 0
-        with path.open("a", encoding="utf-8") as file:
-            file.write(line)
-        self._size += len(line)
+            return False
+        return True
 
     def _say(self, origin: str, reason: str) -> None:
         now = time.monotonic()

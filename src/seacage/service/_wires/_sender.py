@@ -9,7 +9,7 @@ from seacage.conventions import InputError, SeacageError
 from seacage.records import Sample
 from seacage.service._forms._schemas import BATCH_LIMIT, Receipt
 from seacage.service._wires._mqtt_messages import said
-from seacage.service._wires._post import POST_FAILED, post_to_cage
+from seacage.service._wires._post import POST_FAILED, AbstractCaller
 
 _LATER = (429, 503)
 
@@ -19,24 +19,17 @@ class SendError(SeacageError):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Sender:
+class Sender(AbstractCaller):
     """Sends samples to one cage of one service.
 
     Parameters
     ----------
-    address
-        Of the service: ``http://127.0.0.1:8000``.
-    cage
-        Its name there.
-    token
-        With the scope ingest.
+    address, cage, token
+        Where to; the token has the scope ingest.
     patience_s
         Pauses between tries while the service is away or has too much to do [s].
     """
 
-    address: str
-    cage: str
-    token: str
     patience_s: tuple[float, ...] = (0.5, 1.0, 2.0, 4.0, 8.0)
 
     def send(self, samples: Sequence[Sample]) -> Receipt:
@@ -64,9 +57,7 @@ class Sender:
         answer = ""
         for patience_s in (*self.patience_s, None):
             try:
-                status, raw = post_to_cage(
-                    self.address, self.cage, "samples", body, token=self.token, timeout_s=30.0
-                )
+                status, raw = self.post("samples", body, timeout_s=30.0)
                 answer = raw.decode("utf-8", "replace")
             except POST_FAILED as error:
                 status, answer = 503, str(error)

@@ -3,19 +3,20 @@
 import heapq
 import os
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from datetime import datetime, timedelta
+from collections.abc import Iterable, Iterator, Sequence
+from datetime import UTC, datetime, timedelta
 
 from pydantic import ValidationError
 
 from seacage.conventions import InputError
-from seacage.records import Record, Sample
+from seacage.records import KEYS, Record, Sample
 from seacage.service._forms._samples import read_samples
 from seacage.service._forms._schemas import BATCH_LIMIT, SampleIn
 from seacage.service._wires._publisher import Batch
 from seacage.service._wires._tail import Refuse, Tail
 
 _SECOND = timedelta(seconds=1)
+_ALWAYS = datetime.max.replace(tzinfo=UTC)
 
 
 def paced(
@@ -84,20 +85,16 @@ def arriving(descriptor: int) -> Iterator[list[bytes]]:
 def line_batches(
     arrived: Iterable[Sequence[bytes]],
     *,
-    streams: Callable[[str], tuple[str, ...]],
-    until: Callable[[], datetime],
     refuse: Refuse,
 ) -> Iterator[Batch]:
     """Read one sample from each line of JSON, as in a request to the service.
+
+    Whether its time has come, the service says: its clock counts, and not this machine's.
 
     Parameters
     ----------
     arrived
         Lines, each with its end; one without counts as cut.
-    streams
-        The quantities that a stream may carry.
-    until
-        A sample of a later time has a wrong clock.
     refuse
         Is told which line, the line, and why it cannot be read.
     """
@@ -107,16 +104,14 @@ def line_batches(
         for line in lines:
             number += 1
             try:
-                samples += _read(line, streams, until())
+                samples += _read(line)
             except InputError as error:
                 refuse(f"line {number}", line, str(error))
         if samples:
             yield Batch(samples=tuple(samples), source="lines", place=str(number))
 
 
-def _read(
-    line: bytes, streams: Callable[[str], tuple[str, ...]], until: datetime
-) -> Sequence[Sample]:
+def _read(line: bytes) -> Sequence[Sample]:
     """The sample of a line, or none of an empty one."""
     if not line.endswith(b"\n"):
         raise InputError("The input ended inside this line.")
@@ -127,7 +122,7 @@ def _read(
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         raise InputError(f"{'.'.join(map(str, first['loc']))}: {first['msg']}.") from error
-    samples, rejected = read_samples([asked], {asked.stream: streams(asked.stream)}, until=until)
+    samples, rejected = read_samples([asked], {asked.stream: tuple(KEYS)}, until=_ALWAYS)
     if rejected:
         raise InputError(rejected[0].reason)
     return samples

@@ -1,9 +1,10 @@
 """An edge publisher's memory: samples on disk until the service has them."""
 
 import json
+import os
 import sqlite3
 import threading
-from collections.abc import Generator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from contextlib import contextmanager
 from datetime import UTC, datetime, timedelta
 from math import nan
@@ -12,10 +13,13 @@ from typing import Any
 
 from seacage.conventions import InputError, SeacageError
 from seacage.records import Sample
+from seacage.service._small_files import keep_private
 from seacage.service._wires._mqtt_messages import Settled, said
+from seacage.service._wires._quarantine import Quarantine
 
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 _NO_SEQ = -1
+_TOGETHER = 1000  # samples that are set aside in one transaction
 
 _SCHEMA = """
 CREATE TABLE IF NOT EXISTS sample (
@@ -26,11 +30,31 @@ CREATE TABLE IF NOT EXISTS sample (
     said TEXT NOT NULL,
     UNIQUE (stream, t, seq)
 ) STRICT;
+CREATE TABLE IF NOT EXISTS ahead (         -- refused, as their time has not come
+    t INTEGER NOT NULL,
+    stream TEXT NOT NULL,
+    seq INTEGER NOT NULL,
+    said TEXT NOT NULL,
+    since INTEGER NOT NULL,                -- when first refused
+    reason TEXT NOT NULL,
+    PRIMARY KEY (t, stream, seq)
+) STRICT, WITHOUT ROWID;
+CREATE INDEX IF NOT EXISTS ahead_since ON ahead (since);
 CREATE TABLE IF NOT EXISTS place (source TEXT PRIMARY KEY, place TEXT NOT NULL) STRICT;
 """
 
-_INSERT = "INSERT INTO sample (stream, t, seq, said) VALUES (?, ?, ?, ?) ON CONFLICT DO NOTHING"
+_INSERT = """
+INSERT INTO sample (stream, t, seq, said) SELECT ?1, ?2, ?3, ?4
+WHERE NOT EXISTS (SELECT 1 FROM ahead WHERE stream = ?1 AND t = ?2 AND seq = ?3)
+ON CONFLICT DO NOTHING
+"""
+_HOLD = """
+INSERT INTO ahead SELECT t, stream, seq, said, ?4, ?5 FROM sample
+WHERE stream = ?1 AND t = ?2 AND seq = ?3 ON CONFLICT DO NOTHING
+"""
 _SETTLE = "DELETE FROM sample WHERE stream = ? AND t = ? AND seq = ?"
+_SETTLE_AHEAD = "DELETE FROM ahead WHERE stream = ? AND t = ? AND seq = ?"
+_EXPIRED = "SELECT stream, t, seq, said, reason FROM ahead WHERE since <= ? ORDER BY since LIMIT ?"
 _OLDEST = "DELETE FROM sample WHERE id IN (SELECT id FROM sample ORDER BY id LIMIT ?)"
 _PLACE = "INSERT INTO place VALUES (?, ?) ON CONFLICT DO UPDATE SET place = excluded.place"
 
@@ -44,7 +68,11 @@ class Spool:
 
     What ``put`` has returned for is on disk, and stays there until it is settled. How far a
     source was read is written in the same transaction as its samples, so after a kill it is
-    read on from just there. One process at a time may use a spool.
+    read on from just there. One process at a time may use a spool, and only its owner read it.
+
+    Samples that the service refuses as ahead of its clock wait apart, as many as the spool
+    holds of others, so that they take no room from these. What cannot be sent is set aside in a
+    file beside the spool: it is named like it and ends with ``.quarantine.jsonl``.
 
     Parameters
     ----------
@@ -57,6 +85,8 @@ class Spool:
     drop_oldest
         What happens where it is full: with it the oldest samples make room, and ``dropped``
         counts them; without it ``put`` says so, and the source has to wait.
+    now
+        Tells the time by which samples wait.
 
     Raises
     ------
@@ -67,15 +97,23 @@ class Spool:
     """
 
     def __init__(
-        self, path: Path, *, to: str, most: int = 1_000_000, drop_oldest: bool = False
+        self,
+        path: Path,
+        *,
+        to: str,
+        most: int = 1_000_000,
+        drop_oldest: bool = False,
+        now: Callable[[], datetime] = lambda: datetime.now(UTC),
     ) -> None:
-        self._path, self._most, self._drop_oldest = path, most, drop_oldest
+        self._path, self._most, self._drop_oldest, self._now = path, most, drop_oldest, now
         self._lock = threading.RLock()
+        self._quarantine = Quarantine(path.with_name(f"{path.name}.quarantine.jsonl"), most=1 << 30)
         self.dropped = 0
         try:
-            path.parent.mkdir(parents=True, exist_ok=True)
+            keep_private(path)
             self._connection = _opened(path)
             self._count: int = self._all("SELECT count(*) FROM sample")[0][0]
+            self._ahead: int = self._all("SELECT count(*) FROM ahead")[0][0]
         except (sqlite3.Error, OSError) as error:
             raise SpoolError(
                 f"{path} does not open as a spool ({error}). Another publisher may be using it; "
@@ -90,7 +128,17 @@ class Spool:
 
     def __len__(self) -> int:
         """How many samples wait."""
-        return self._count
+        return self._count + self._ahead
+
+    @property
+    def ahead(self) -> int:
+        """How many of them are ahead of the service's clock."""
+        return self._ahead
+
+    @property
+    def quarantined(self) -> int:
+        """How many were set aside since the spool was opened."""
+        return self._quarantine.count
 
     @property
     def newest(self) -> int:
@@ -134,18 +182,65 @@ class Spool:
         live_after
             Samples after this number are live; older ones fill what is left, oldest first.
         """
-        query = "SELECT stream, said FROM sample WHERE id {} ? ORDER BY id LIMIT ?"
+        query = "SELECT stream, t, seq, said FROM sample WHERE id {} ? ORDER BY id LIMIT ?"
         with self._lock:
             rows = self._all(query.format(">"), live_after, limit)
             rows += self._all(query.format("<="), live_after, limit - len(rows))
-        return [_sample(*row) for row in rows]
+            return self._read(rows)
+
+    def next_ahead(self, limit: int) -> list[Sample]:
+        """The samples ahead of the service's clock whose time comes first, at most so many."""
+        query = "SELECT stream, t, seq, said FROM ahead ORDER BY t LIMIT ?"
+        with self._lock:
+            return self._read(self._all(query, limit))
+
+    def hold(self, settled: Sequence[Settled]) -> None:
+        """Keep samples apart that the service refused as ahead of its clock."""
+        since, keys = _microseconds(self._now()), [_key(one) for one in settled]
+        rows = [(*_key(one), since, one.rejected or "") for one in settled]
+        with self._lock, self._transaction():
+            self._ahead += self._changed(_HOLD, rows)
+            self._count -= self._changed(_SETTLE, keys)
+
+    def expire(self, age: timedelta) -> None:
+        """Set samples aside that have been held for so long, or that there is no room for."""
+        with self._lock:
+            rows = self._all(_EXPIRED, _microseconds(self._now() - age), _TOGETHER)
+            if (over := min(self._ahead - self._most, _TOGETHER)) > len(rows):
+                rows = self._all(_EXPIRED, _microseconds(self._now()), over)
+            self._set_aside(rows)
 
     def settle(self, settled: Sequence[Settled]) -> int:
         """Forget samples that the service has or has refused; how many of them waited."""
+        return self._forget([_key(one) for one in settled])
+
+    def _forget(self, keys: Sequence[tuple[object, ...]]) -> int:
         with self._lock, self._transaction():
-            gone = self._changed(_SETTLE, [_key(one) for one in settled])
+            gone, ahead = self._changed(_SETTLE, keys), self._changed(_SETTLE_AHEAD, keys)
             self._count -= gone
-            return gone
+            self._ahead -= ahead
+            return gone + ahead
+
+    def _read(self, rows: Sequence[Any]) -> list[Sample]:
+        """Read samples; those that a fault of the disk has changed are set aside."""
+        samples, torn = list[Sample](), list[tuple[object, ...]]()
+        for *key, text in rows:
+            try:
+                samples.append(_sample(key[0], text))
+            except (ValueError, KeyError, TypeError, AttributeError):
+                torn.append((*key, text, "It cannot be read any more."))
+        self._set_aside(torn)
+        return samples
+
+    def _set_aside(self, rows: Sequence[Any]) -> None:
+        kept = list[tuple[object, ...]]()
+        for number, (stream, t, seq, text, reason) in enumerate(rows, start=1):
+            line = f'{{"stream": {json.dumps(stream)}, {text[1:]}'.encode()  # as publish reads it
+            sync = number == len(rows)  # which writes those before it too
+            if self._quarantine.put(str(self._path), line, reason, now=self._now(), sync=sync):
+                kept.append((stream, t, seq))
+        if kept:
+            self._forget(kept)
 
     def close(self) -> None:
         """Close the file."""
@@ -154,7 +249,7 @@ class Spool:
 
     @contextmanager
     def _transaction(self) -> Generator[None]:
-        connection, count = self._connection, self._count
+        connection, counts = self._connection, (self._count, self._ahead)
         try:
             connection.execute("BEGIN IMMEDIATE")
             yield
@@ -162,7 +257,7 @@ class Spool:
         except sqlite3.Error as error:
             if connection.in_transaction:
                 connection.execute("ROLLBACK")
-            self._count = count
+            self._count, self._ahead = counts
             raise SpoolError(f"{self._path} takes nothing ({error}). Free the disk.") from error
 
     def _changed(self, statement: str, rows: Sequence[tuple[object, ...]]) -> int:
@@ -176,8 +271,14 @@ class Spool:
 
 
 def _opened(path: Path) -> sqlite3.Connection:
+    log = path.with_name(f"{path.name}-wal")
+    os.close(os.open(path, os.O_RDWR | os.O_CREAT, 0o600))
+    for one in (path, log):  # those of 0.1.0 could be read by all
+        if one.exists():
+            one.chmod(0o600)
     connection = sqlite3.connect(path, isolation_level=None, check_same_thread=False, timeout=1.0)
     try:
+        connection.text_factory = _text
         connection.execute("PRAGMA locking_mode = EXCLUSIVE")
         connection.execute("PRAGMA journal_mode = WAL")
         connection.execute("PRAGMA synchronous = FULL")
@@ -186,6 +287,10 @@ def _opened(path: Path) -> sqlite3.Connection:
         connection.close()
         raise
     return connection
+
+
+def _text(content: bytes) -> str:
+    return content.decode("utf-8", "replace")
 
 
 def _row(sample: Sample) -> tuple[object, ...]:

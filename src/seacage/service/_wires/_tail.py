@@ -4,6 +4,7 @@ import asyncio
 import hashlib
 import json
 import os
+import sys
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field
@@ -12,9 +13,10 @@ from typing import BinaryIO, Self
 
 import structlog
 
-from seacage.conventions import RecordError
+from seacage.conventions import RecordError, check_file
 from seacage.records import ColumnMap, Sample, check_rows, read_rows
 from seacage.service._live._cage import LiveCage
+from seacage.service._small_files import write_small
 from seacage.service._store._store import StoreError
 from seacage.service._wires._quarantine import Quarantine
 
@@ -113,6 +115,8 @@ class Tail:
             self._file = None
 
     def _opened(self) -> bool:
+        if self.path.exists():  # a pipe would hold the opening for ever
+            check_file(self.path, most=sys.maxsize, refusal=RecordError)
         try:
             self._file = self.path.open("rb")
         except FileNotFoundError:
@@ -254,7 +258,10 @@ class FileTail:
         every_s: float = 1.0,
     ) -> None:
         self._cage, self._quarantine, self._kept, self._every_s = cage, quarantine, kept, every_s
-        place = Place.parse(kept.read_text("utf-8")) if kept and kept.exists() else Place()
+        said = kept.read_text("utf-8", "replace") if kept and kept.exists() else str(Place())
+        place = Place.parse(said)
+        if str(place) != said:
+            _log.warning("place cannot be read, so the file is read anew", path=str(kept))
         self._tail = Tail(
             path=path, columns=columns, stream=stream, refuse=self._refuse, place=place
         )
@@ -295,9 +302,7 @@ class FileTail:
 
     def _keep(self) -> None:
         if self._kept is not None:
-            beside = self._kept.with_suffix(".new")
-            beside.write_text(str(self._tail.place), encoding="utf-8")
-            beside.replace(self._kept)
+            write_small(self._kept, str(self._tail.place))
 
     def _refuse(self, where: str, row: bytes, reason: str) -> None:
         self._quarantine.put(where, row, reason, now=self._cage.clock.now())

@@ -27,6 +27,24 @@ def test_a_line_says_who_did_what_and_when_and_is_the_owners_alone(tmp_path):
     assert stat.S_IMODE(path.stat().st_mode) == 0o600
 
 
+def test_a_log_is_bounded_and_so_is_each_field(tmp_path):
+    audit = Audit(tmp_path / "audit.jsonl", most=2000)
+    for number in range(20):
+        audit.write("POST /x" * 1000, who="ada" * 1000, source="1" * 30_000, number=number)
+    files = {file.name: file.read_text() for file in tmp_path.iterdir()}
+    assert sorted(files) == ["audit.before.jsonl", "audit.jsonl"]
+    assert all(len(text) <= 2000 for text in files.values())
+    assert lines(tmp_path / "audit.jsonl")[-1]["number"] == 19
+
+
+def test_a_forged_address_is_not_written_down(tmp_path):
+    path = tmp_path / "audit.jsonl"
+    with running(tmp_path, audit=Audit(path)) as one:
+        forged = {"X-Forwarded-For": "x" * 30_000, "Authorization": "Bearer guess"}
+        httpx.get(f"{one.address}/api/v1/cages", headers=forged)
+    assert [line["source"] for line in lines(path)] == ["127.0.0.1"]
+
+
 def test_a_disk_that_takes_no_line_stops_nobody(tmp_path):
     (tmp_path / "audit.jsonl").mkdir()
     Audit(tmp_path / "audit.jsonl").write("POST /x", who="ada")

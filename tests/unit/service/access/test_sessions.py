@@ -47,6 +47,22 @@ def test_the_oldest_of_too_many_sessions_ends(tokens, monkeypatch):
     assert sessions.find(second, NOON) is not None
 
 
+def test_where_there_are_too_many_sessions_who_has_most_loses_one(tokens, monkeypatch):
+    monkeypatch.setattr("seacage.service._access._sessions._MOST_SESSIONS", 3)
+    sessions, ada, bob = Sessions(tokens, lasting_s=60.0), grant_in(tokens), grant_in(tokens)
+    of_ada, _ = sessions.begin(ada, NOON)
+    of_bob = [sessions.begin(bob, NOON)[0] for _ in range(3)]
+    assert sessions.find(of_ada, NOON) is not None
+    assert [sessions.find(one, NOON) is not None for one in of_bob] == [False, True, True]
+
+
+def test_a_session_that_has_ended_takes_no_room(tokens):
+    sessions = Sessions(tokens, lasting_s=60.0)
+    sessions.begin(grant_in(tokens), NOON)
+    sessions.begin(grant_in(tokens), NOON + timedelta(seconds=60))
+    assert len(sessions._open) == 1
+
+
 def test_a_service_that_is_started_again_knows_its_sessions(tokens, tmp_path):
     cookie, session = Sessions(tokens, lasting_s=60.0).begin(grant_in(tokens), NOON)
     again = Sessions(Tokens(tmp_path), lasting_s=60.0)
@@ -82,7 +98,7 @@ def test_a_damaged_file_signs_nobody_in_and_stops_nobody(tokens, tmp_path, text)
 
 def test_a_disk_that_takes_nothing_still_lets_people_in(tmp_path):
     tokens = Tokens(tmp_path)
-    (tmp_path / "sessions.new").mkdir()  # where the file would be written
+    (tmp_path / "sessions.json.new").mkdir()  # where the file would be written
     sessions = Sessions(tokens, lasting_s=60.0)
     grant = tokens.grant(tokens.mint(["read"], keep=False))
     cookie, _ = sessions.begin(grant, NOON)

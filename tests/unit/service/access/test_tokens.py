@@ -1,3 +1,7 @@
+import errno
+import os
+from concurrent.futures import ThreadPoolExecutor
+
 import pytest
 
 from seacage.conventions import InputError
@@ -71,7 +75,7 @@ def test_a_revoked_token_opens_nothing_from_then_on(tmp_path):
     assert revoked.name == "ada"
     assert running.grant(token) is None
     assert running.grant(other) is not None
-    with pytest.raises(InputError, match="0 tokens are called 'ada'"):
+    with pytest.raises(InputError, match="No token is called 'ada'"):
         running.revoke("ada")
 
 
@@ -96,7 +100,62 @@ def test_a_folder_without_an_admin_says_so(tmp_path):
     assert not tokens.lacks_admin
 
 
-def test_a_damaged_line_is_named(tmp_path):
-    (tmp_path / "tokens.jsonl").write_text("{}\n")
-    with pytest.raises(InputError, match=r"tokens\.jsonl holds a line that is no token"):
-        Tokens(tmp_path).grant("any")
+@pytest.mark.parametrize(
+    "rest", ['{"sha256": "0123', "{}", "null", '{"sha256": 1, "scopes": ["all"]}', "\xff\xfe", "["]
+)
+def test_a_line_that_a_full_disk_cut_off_shuts_nobody_out_and_is_named(tmp_path, rest):
+    token = Tokens(tmp_path).mint(["read"], keep=True, name="ada")
+    with (tmp_path / "tokens.jsonl").open("ab") as file:
+        file.write(rest.encode("latin-1"))
+    tokens = Tokens(tmp_path)
+    assert tokens.grant(token).who == "ada"
+    assert tokens.grant("guess") is None
+    assert f"{tmp_path / 'tokens.jsonl'} holds what is no token: line 2" in tokens.damage
+
+
+def test_a_token_that_a_running_service_knows_outlives_damage_to_its_line(tmp_path):
+    running, path = Tokens(tmp_path), tmp_path / "tokens.jsonl"
+    ada = running.mint(["read"], keep=True, name="ada")
+    bob = running.mint(["read"], keep=True, name="bob")
+    assert running.grant(ada) is not None
+    lines = path.read_text().splitlines()
+    path.write_text(lines[0][:20] + "\n" + lines[1] + "\n")
+    assert running.grant(ada) is not None
+    Tokens(tmp_path).revoke("bob")
+    assert running.grant(bob) is None
+    assert running.grant(ada) is not None
+
+
+def test_a_token_made_after_a_line_was_cut_off_is_known(tmp_path):
+    tokens = Tokens(tmp_path)
+    tokens.mint(["read"], keep=True)
+    with (tmp_path / "tokens.jsonl").open("a") as file:
+        file.write('{"sha256": "0123')
+    assert Tokens(tmp_path).grant(tokens.mint(["read"], keep=True)) is not None
+
+
+def test_a_disk_that_takes_no_token_leaves_those_that_were_there(tmp_path, monkeypatch):
+    tokens = Tokens(tmp_path)
+    token = tokens.mint(["read"], keep=True)
+    before = (tmp_path / "tokens.jsonl").read_bytes()
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(OSError, match="No space left"):
+        tokens.mint(["read"], keep=True)
+    assert (tmp_path / "tokens.jsonl").read_bytes() == before
+    assert [file.name for file in tmp_path.iterdir()] == ["tokens.jsonl"]
+    assert Tokens(tmp_path).grant(token) is not None
+
+
+def full(*_):
+    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+
+def test_tokens_that_many_make_at_once_are_all_kept(tmp_path):
+    with ThreadPoolExecutor(8) as pool:
+        made = list(pool.map(lambda _: Tokens(tmp_path).mint(["read"], keep=True), range(40)))
+    tokens = Tokens(tmp_path)
+    assert all(tokens.grant(token) for token in made)
+
+
+def test_a_token_with_half_a_character_is_only_unknown(tmp_path):
+    assert Tokens(tmp_path).grant("\ud800") is None

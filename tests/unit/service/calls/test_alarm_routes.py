@@ -21,7 +21,7 @@ def operator(live: Running):
 def beyond_what_was_learned(live: Running):
     """Let the cage extrapolate for longer than the alarm's delay, and return the alarm."""
     live.post(buoy(speed=2.5))
-    eventually(live.state, lambda state: state["valid"] and not state["in_domain"])
+    eventually(lambda: alarm(live), lambda one: one and one["value"] == 1.0)
     live.clock.at += timedelta(minutes=11)
     return eventually(lambda: alarm(live), lambda one: one and one["active"])
 

@@ -54,6 +54,21 @@ def test_distances_are_to_the_net_that_the_shape_call_shows(swum):
     assert said["path"] is None
 
 
+def test_without_a_known_error_of_the_shape_there_are_distances_and_no_probability(live):
+    live.post(buoy(-1))
+    eventually(live.state, lambda state: state["valid"])
+    said = asked(live, points_m=POINTS, as_path=True)
+    assert said["shape_error"] is None
+    probabilities = ("p_below_1m", "p_below")
+    for one in said["points"]:
+        assert one["distance_m"] > 0.0
+        assert one["expected_m"] == pytest.approx(one["distance_m"], abs=2e-4)
+        assert {one[key] for key in ("sigma_m", "p_through", *probabilities)} == {None}
+    assert {said["path"][key] for key in ("p_least", "p_most", *probabilities)} == {None}
+    way = live.reader.post("/api/v1/cages/ace/inspection", json={"row_spacing_m": 5.0}).json()
+    assert {(one["sigma_m"], one["p_below"]) for one in way["waypoints"]} == {(None, None)}
+
+
 def test_north_east_down_is_the_same_answer_turned(swum):
     enu = asked(swum, points_m=POINTS)
     ned = asked(swum, frame="ned", points_m=[[n, e, -u] for e, n, u in POINTS])
@@ -82,9 +97,12 @@ def test_latitude_and_longitude_are_the_same_answer_somewhere_on_earth(swum):
 def test_a_path_says_where_it_comes_nearest_and_how_likely_it_is_too_near(swum):
     said = asked(swum, points_m=POINTS, as_path=True, below_m=2.0)
     path = said["path"]
-    assert path["closest"]["distance_m"] <= min(one["distance_m"] for one in said["points"])
-    assert path["p_least"] <= path["p_below"] <= path["p_most"]
-    assert path["p_below"] >= path["p_below_1m"] > 0.9
+    # Distances are given to the millimetre; bounds and probability are sums in another order.
+    nearest = min(one["distance_m"] for one in said["points"])
+    rounding = 1.0 + 1e-12
+    assert path["closest"]["distance_m"] <= nearest + 1e-3
+    assert path["p_least"] <= path["p_below"] * rounding <= path["p_most"] * rounding**2
+    assert path["p_below"] * rounding >= path["p_below_1m"] > 0.9
     assert path["length_m"] == pytest.approx(
         sum(np.linalg.norm(np.diff(np.array(POINTS), axis=0), axis=1)), abs=1e-3
     )
@@ -199,6 +217,7 @@ def test_the_net_is_read_back_from_mcap(swum, tmp_path):
     nodes = np.frombuffer(cloud.data.tobytes(), "<f4").reshape(-1, 4)
     assert [field.name for field in cloud.fields] == ["x", "y", "z", "sigma"]
     np.testing.assert_allclose(nodes[:, :3], shape, atol=1e-3)
+    assert np.isnan(nodes[:, 3]).all()
     mesh = found["/seacage/net/mesh"]
     corners = np.array([[p.x, p.y, p.z] for p in mesh.points]).reshape(-1, 3, 3)
     assert mesh.type == mesh.TRIANGLE_LIST

@@ -1,10 +1,13 @@
+import asyncio
 import csv
 import io
+import tempfile
 
 import pytest
 import xarray
 
-from serviced import Running, at, buoy, depth
+from seacage.service._access._limits import Limits
+from serviced import Running, at, buoy, depth, eventually
 
 PATIENCE_S = 60.0  # the first NetCDF loads xarray
 
@@ -40,7 +43,7 @@ def test_samples_come_as_a_table_with_a_row_per_value(fed: Running):
 
 @pytest.mark.parametrize("size", [1, 2, 3, 5])
 def test_a_table_of_many_pages_holds_each_sample_once(fed: Running, monkeypatch, size):
-    monkeypatch.setattr("seacage.service._calls._downloads._PAGE", size)
+    monkeypatch.setattr("seacage.service._calls._downloads.PAGE", size)
     fed.post(depth(-9), depth(-8), depth(-8, stream="depth-3"))
     rows = table(fed.reader.get("/api/v1/cages/ace/samples.csv?stream=depth-2"))
     assert [row["t"][14:16] for row in rows] == ["45", "51", "52"]
@@ -71,6 +74,85 @@ def test_the_answers_come_as_netcdf_with_the_whole_shape(fed: Running, tmp_path)
         assert dataset.attrs["Conventions"].startswith("CF-1.11")
         assert dataset["node_position"].shape == (3, fed.cage.twin.cage.node_count, 3)
         assert dataset["valid"].values.tolist() == [1, 0, 1]
+
+
+def blocks_seen(fed: Running, monkeypatch, size):
+    """Answer in blocks of so many rows; how many rows the twin is asked for at a time."""
+    monkeypatch.setattr("seacage.service._calls._files.BLOCK", size)
+    seen, twin = [], type(fed.cage.twin)
+    answer = twin.predict_record
+    monkeypatch.setattr(
+        twin, "predict_record", lambda self, rows: seen.append(len(rows)) or answer(self, rows)
+    )
+    return seen
+
+
+def test_a_long_netcdf_is_written_in_blocks_and_is_the_same_file(
+    fed: Running, monkeypatch, tmp_path
+):
+    path = "/api/v1/cages/ace/history.nc"
+    fed.post(buoy(-5) | {"t": "2020-02-01T11:55:00.000250Z"}, buoy(-4, speed=None))
+    for name, size in (("whole.nc", 512), ("blocks.nc", 2)):
+        with monkeypatch.context() as patch:
+            seen = blocks_seen(fed, patch, size)
+            content = fed.reader.get(path, timeout=PATIENCE_S).content
+        (tmp_path / name).write_bytes(content)
+    assert seen == [2, 2, 1]
+    with (
+        xarray.open_dataset(tmp_path / "whole.nc", engine="h5netcdf") as whole,
+        xarray.open_dataset(tmp_path / "blocks.nc", engine="h5netcdf") as blocks,
+    ):
+        xarray.testing.assert_allclose(whole, blocks)
+        assert (whole.attrs, list(whole.time.values)) == (blocks.attrs, list(blocks.time.values))
+        assert list(whole.reason.values) == list(blocks.reason.values)
+
+
+@pytest.mark.parametrize("name", ["history", "history.csv"])
+def test_a_long_answer_is_made_in_blocks_and_is_the_same(fed: Running, monkeypatch, name):
+    path = f"/api/v1/cages/ace/{name}"
+    whole = fed.reader.get(path).text
+    seen = blocks_seen(fed, monkeypatch, 2)
+    assert fed.reader.get(path).text == whole
+    assert seen == [2, 1]
+
+
+def test_a_file_is_gone_from_the_disk_before_it_is_sent(fed: Running, monkeypatch, tmp_path):
+    folder = tmp_path / "temporary"
+    folder.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(folder))
+    path = "/api/v1/cages/ace/history.nc"
+    with fed.reader.stream("GET", path, timeout=PATIENCE_S) as answer:
+        assert answer.status_code == 200
+        assert list(folder.iterdir()) == []
+        assert len(answer.read()) == int(answer.headers["content-length"])
+
+
+@pytest.mark.parametrize("name", ["history", "history.csv", "history.nc", "samples", "samples.csv"])
+def test_beyond_its_budget_a_long_answer_has_to_wait(fed: Running, name):
+    reads, path = fed.service.gate.reads, f"/api/v1/cages/ace/{name}?limit=10000"
+    limits = Limits()
+    for others in range(limits.read_rows // limits.read_rows_per_token):
+        asyncio.run(reads.take(f"other-{others}", limits.read_rows_per_token))
+    answer = fed.reader.get(path)
+    assert answer.status_code == 429
+    assert int(answer.headers["retry-after"]) >= 1
+    assert fed.reader.get("/api/v1/cages/ace/state").status_code == 200
+    reads.give_back("other-0", limits.read_rows_per_token)
+    for _ in range(3):  # each has given its rows back
+        assert fed.reader.get(path, timeout=PATIENCE_S).status_code == 200
+
+
+def test_who_leaves_in_the_middle_gives_the_budget_back(fed: Running, monkeypatch):
+    path, many = "/api/v1/cages/ace/samples?limit=10000", 5000
+    sample = fed.cage.store.samples("ace", limit=1)
+    monkeypatch.setattr(fed.cage.store, "samples", lambda *_, **__: sample * 20 * many)
+    plain = {"Accept-Encoding": "identity"}  # packed, it would fit into what the system holds
+    with fed.reader.stream("GET", path, headers=plain) as answer:
+        assert answer.status_code == 200
+        assert fed.reader.get(path).status_code == 429
+    monkeypatch.undo()
+    again = eventually(lambda: fed.reader.get(path).status_code, lambda code: code == 200)
+    assert again == 200
 
 
 @pytest.mark.parametrize("name", ["samples.csv", "history.csv", "history.nc"])

@@ -63,7 +63,8 @@ def test_a_spike_is_taken_back_wherever_it_was_shown(live: Running):
     samples = live.reader.get("/api/v1/cages/ace/samples", params={"stream": "depth-2"}).json()
     assert [one["flags"]["depth_m"] for one in samples["samples"]] == [1, 1, 4, 3]
     (amended,) = eventually(lambda: live.state()["amended"], bool)
-    assert (amended["stream"], amended["quantity"], amended["flag"]) == ("depth-2", "depth_m", 4)
+    assert (amended["stream"], amended["quantity"]) == ("depth-2", "depth_m")
+    assert (amended["was"], amended["flag"]) == (3, 4)
     assert amended["t"] == "2020-02-01T11:58:00Z"
     assert "stands out" in amended["reason"]
     history = live.reader.get("/api/v1/cages/ace/history").json()
@@ -90,7 +91,9 @@ def test_before_the_first_reading_there_is_no_number_and_a_reason(idle: Running)
     assert computed(state) == []
 
 
-def test_a_buoy_reading_becomes_loads_with_intervals_and_levels(live: Running):
+def test_a_buoy_reading_becomes_loads_with_levels_and_intervals_where_they_are_honest(
+    live: Running,
+):
     live.post(buoy(-6), depth(-1))
     state = eventually(live.state, lambda one: one["valid"] and one["sensors"][1]["measured"])
     assert state["valid"]
@@ -100,21 +103,45 @@ def test_a_buoy_reading_becomes_loads_with_intervals_and_levels(live: Running):
     assert [bridle["level"] for bridle in state["bridles"]] == [1] * 6 + [2] * 5 + [1]
     for bridle in state["bridles"]:
         tension = bridle["tension_kn"]
-        assert tension["lower"] <= tension["mean"] <= tension["upper"]
+        assert bridle["in_domain"]
+        if bridle["level"] == 1:
+            assert tension["mean"] > 0.0
+            assert tension["lower"] is tension["upper"] is None
+            assert "No sensor has trained level 2" in bridle["interval_reason"]
+        else:
+            assert 0.0 <= tension["lower"] <= tension["mean"] <= tension["upper"]
+            assert bridle["interval_reason"] is None
         assert bridle["utilisation"] == pytest.approx(tension["mean"] / 160.0, abs=1e-4)
     sensor = state["sensors"][1]
     assert (sensor["name"], sensor["unit"], sensor["measured"]) == ("depth-2", "m", 14.0)
     assert sensor["measured_age_s"] == 60.0
+    assert (sensor["level"], sensor["in_domain"], sensor["interval_reason"]) == (2, True, None)
+    assert "No sensor has trained level 2" in state["shape"]["interval_reason"]
+    assert (state["shape"]["level"], state["shape"]["in_domain"]) == (1, True)
 
 
-def test_the_shape_has_a_place_and_a_spread_for_every_node(live: Running):
+def test_the_history_has_intervals_only_where_a_sensor_trained_them(live: Running):
+    live.post(buoy(-6), buoy(-18, speed=0.3))
+    eventually(live.state, lambda one: one["valid"])
+    history = live.reader.get("/api/v1/cages/ace/history").json()
+    for series in (*history["bridles"].values(), *history["sensors"].values()):
+        known = series["level"] == 2
+        assert (series["interval_reason"] is None) == known
+        assert series["in_domain"] == [True, True]
+        for end in (*series["lower"], *series["upper"]):
+            assert (end is not None and end >= 0.0) if known else end is None
+
+
+def test_the_shape_has_a_place_for_every_node_and_no_spread(live: Running):
     live.post(buoy())
     shape = eventually(
         lambda: live.reader.get("/api/v1/cages/ace/shape").json(), lambda one: one["valid"]
     )
     nodes = live.cage.twin.cage.node_count
-    assert len(shape["node_position_m"]) == len(shape["sigma_m"]) == nodes
-    assert shape["level"] == 1
+    assert len(shape["node_position_m"]) == nodes
+    assert shape["sigma_m"] is None
+    assert "No sensor has trained level 2" in shape["interval_reason"]
+    assert (shape["level"], shape["in_domain"]) == (1, True)
 
 
 def test_a_stale_buoy_takes_all_computed_numbers_away(live: Running):
@@ -159,8 +186,17 @@ def test_faster_water_than_was_learned_is_answered_as_extrapolation(live: Runnin
         (depth() | {"values": {"depth_m": True}}, "no number"),
         (depth() | {"values": {"depth_m": 10**400}}, "no number"),
         (buoy(minutes=30.0), "ahead of the cage's clock"),
+        (depth() | {"t": 20261122}, "ISO 8601"),
+        (depth() | {"t": "20261122"}, "ISO 8601"),
+        (depth() | {"t": True}, "ISO 8601"),
+        (depth() | {"t": "2020-02-01T12:00:00"}, "its zone"),
+        (depth() | {"t": "2020-02-31T12:00:00Z"}, "t: "),
+        (depth() | {"t": "0001-01-01T00:00:00+01:00"}, "t: "),
     ],
-    ids=["stream", "quantity", "string", "boolean", "huge", "future"],
+    ids=[
+        *("stream", "quantity", "string", "boolean", "huge", "future"),
+        *("number", "digits", "true", "no zone", "no day", "first year"),
+    ],
 )
 def test_a_sample_that_cannot_be_kept_is_rejected_alone_with_a_reason(live: Running, sample, why):
     receipt = live.post(sample, depth(-2)).json()
@@ -168,6 +204,12 @@ def test_a_sample_that_cannot_be_kept_is_rejected_alone_with_a_reason(live: Runn
     (rejection,) = receipt["rejected"]
     assert rejection["index"] == 0
     assert why in rejection["reason"].replace("No ", "no ").replace("is no", "no")
+    assert rejection["retry"] is ("ahead" in why)
+
+
+def test_a_stream_that_is_ahead_of_the_clock_is_named_by_an_alarm(live: Running):
+    live.post(buoy(minutes=1.0), depth(minutes=30.0))
+    assert list(live.cage.live.clocks.faults()) == ["clock.depth-2"]
 
 
 @pytest.mark.parametrize(
@@ -177,10 +219,9 @@ def test_a_sample_that_cannot_be_kept_is_rejected_alone_with_a_reason(live: Runn
         b"[]",
         b'{"samples": []}',
         b'{"samples": [{"stream": "buoy-1"}]}',
-        b'{"samples": [{"stream": "buoy-1", "t": "2020-02-01T12:00:00", "values": {"hs_m": 1}}]}',
         b'{"samples": [{"stream": "b", "t": "2020-02-01T12:00:00Z", "values": {"a": 1}, "x": 1}]}',
     ],
-    ids=["no JSON", "no object", "no samples", "no time", "no zone", "unknown key"],
+    ids=["no JSON", "no object", "no samples", "no time", "unknown key"],
 )
 def test_a_malformed_body_is_refused_as_documented(idle: Running, body):
     answer = idle.logger.post("/api/v1/cages/ace/samples", content=body, headers=JSON)
@@ -197,6 +238,14 @@ def test_a_body_that_is_too_long_is_cut_off(idle: Running):
 def test_more_samples_than_a_request_takes_are_refused(idle: Running):
     answer = idle.post(*[depth()] * 1001)
     assert answer.status_code == 422
+
+
+@pytest.mark.parametrize("bare", ["0.5", "20261122", "-1e3", "noon"])
+@pytest.mark.parametrize("call", ["state?at", "samples?to", "history.csv?from", "latest?at"])
+def test_a_bare_number_is_no_time_in_a_question(idle: Running, call, bare):
+    answer = idle.reader.get(f"/api/v1/cages/ace/{call}={bare}")
+    assert answer.status_code == 422
+    assert "ISO 8601" in answer.json()["detail"]
 
 
 @pytest.mark.parametrize("query", ["limit=0", "limit=10001", "from=yesterday", "at=2020-01-01"])
@@ -289,9 +338,9 @@ def test_the_pages_message_can_be_asked_for_now_and_in_the_past(live: Running):
     live.post(buoy(-120, speed=0.2), buoy(0, speed=0.6))
     ask = lambda **at: frame_of(live.reader.get("/api/v1/cages/ace/frame", params=at))  # noqa: E731
     now = eventually(ask, lambda frame: frame.state["valid"])
-    assert now.flags == Flags.VALID | Flags.IN_DOMAIN
+    assert now.flags == Flags.VALID | Flags.IN_DOMAIN | Flags.NO_SPREAD
     past = ask(at=at(-60))
-    assert past.flags == Flags.VALID | Flags.IN_DOMAIN | Flags.PAST
+    assert past.flags == now.flags | Flags.PAST
     assert past.state["water"]["current_speed_m_s"] == pytest.approx(0.2)
     assert np.abs(past.displacement).max() < np.abs(now.displacement).max()
 
@@ -299,7 +348,7 @@ def test_the_pages_message_can_be_asked_for_now_and_in_the_past(live: Running):
 def test_water_that_is_only_imagined_is_answered_and_leaves_no_trace(live: Running):
     asked = {"current_speed_m_s": 0.5, "current_to_deg": 90.0}
     frame = frame_of(live.reader.post("/api/v1/cages/ace/whatif", json=asked))
-    assert frame.flags == Flags.VALID | Flags.IN_DOMAIN | Flags.WHAT_IF
+    assert frame.flags == Flags.VALID | Flags.IN_DOMAIN | Flags.WHAT_IF | Flags.NO_SPREAD
     expected = live.cage.twin.predict(SeaState(current_speed=0.5, current_to=90.0))
     assert frame.state["bridles"][0]["tension_kn"]["mean"] == pytest.approx(
         expected.bridle_tension.mean[0, 0] / 1e3, abs=5e-4

@@ -4,7 +4,8 @@ import httpx
 import pytest
 
 from seacage.service._access._guard import COOKIE
-from serviced import Running, buoy
+from seacage.service._access._limits import Limits
+from serviced import Running, buoy, running
 
 
 @pytest.fixture
@@ -12,6 +13,10 @@ def page(idle: Running) -> Iterator[httpx.Client]:
     """A browser of somebody who may do everything, not yet signed in."""
     with httpx.Client(base_url=idle.address) as client:
         yield client
+
+
+def token_of(one: Running, *scopes) -> str:
+    return one.service.tokens.mint(scopes or ["read"], keep=False)
 
 
 def signed_in(idle: Running, page: httpx.Client, *scopes, **headers) -> httpx.Response:
@@ -33,9 +38,12 @@ def test_a_token_buys_a_cookie_that_no_script_and_no_other_page_can_use(idle, pa
     assert "Max-Age=43200" in again.headers["set-cookie"]
 
 
-def test_behind_tls_the_cookie_stays_there(idle, page):
-    # A proxy on this machine says how it was reached.
-    answer = signed_in(idle, page, **{"X-Forwarded-Proto": "https"})
+def test_behind_tls_the_cookie_stays_there(idle, page, tmp_path):
+    # A proxy on this machine says how it was reached, where the settings name it.
+    by_tls = {"X-Forwarded-Proto": "https"}
+    assert "Secure" not in signed_in(idle, page, **by_tls).headers["set-cookie"]
+    with running(tmp_path, proxies=("127.0.0.1",)) as one:
+        answer = httpx.post(f"{one.address}/session", json={"token": token_of(one)}, headers=by_tls)
     assert "Secure" in answer.headers["set-cookie"]
 
 
@@ -77,6 +85,24 @@ def test_a_session_opens_no_more_than_its_token(idle, page):
     headers = {"X-CSRF-Token": csrf}
     answer = page.post("/api/v1/cages/ace/samples", json={"samples": [buoy()]}, headers=headers)
     assert answer.status_code == 403
+
+
+def test_whoever_signs_in_often_ends_only_sessions_of_their_own(tmp_path):
+    with running(tmp_path, limits=Limits(sessions_per_token=3)) as one:
+        admin, reader = token_of(one, "admin"), token_of(one, "read")
+        cookies = [
+            httpx.post(f"{one.address}/session", json={"token": token}).cookies[COOKIE]
+            for token in (admin, *[reader] * 5)
+        ]
+        standing = [
+            httpx.get(f"{one.address}/session", cookies={COOKIE: cookie}).is_success
+            for cookie in cookies
+        ]
+        assert standing == [True, False, False, True, True, True]
+
+
+def test_signing_in_takes_no_long_body(idle, page):
+    assert page.post("/session", json={"token": "x" * 5000}).status_code == 413
 
 
 def test_a_wrong_token_signs_nobody_in(page):

@@ -1,4 +1,5 @@
 import json
+import logging
 import time
 
 import httpx
@@ -8,7 +9,8 @@ from websockets.sync.client import connect
 
 from framed import decoded
 from seacage.service._access._guard import COOKIE
-from serviced import Running, buoy
+from seacage.service._access._limits import Limits
+from serviced import Running, buoy, eventually, running
 
 
 def opened(live: Running, *, cage="ace", **how):
@@ -57,7 +59,8 @@ def test_a_reading_reaches_the_page(live: Running):
         while not (frame := received(socket)).state["valid"]:
             assert time.monotonic() < end
     assert frame.displacement.shape == (len(topology["rest_position_m"]), 3)
-    assert frame.sigma.shape == (len(topology["rest_position_m"]),)
+    assert len(frame.displacement) == len(topology["rest_position_m"])
+    assert frame.sigma.shape == (0,)
 
 
 def test_a_topology_that_changes_is_sent_again_before_the_next_frame(live: Running):
@@ -83,6 +86,90 @@ def test_without_a_token_in_the_first_message_it_closes(idle: Running, first):
     with opened(idle) as socket:
         socket.send(first)
         assert closed_with(socket) == 4401
+
+
+@pytest.fixture
+def errors(caplog):
+    """What was logged as an error: a traceback of the service is one."""
+    return lambda: [one.getMessage() for one in caplog.records if one.levelno >= logging.ERROR]
+
+
+def counted(live: Running, code):
+    return live.service.metrics.closed.labels(str(code))._value.get()
+
+
+@pytest.mark.parametrize(
+    ("first", "code"),
+    [
+        ('{"token": "\\ud800"}', 4401),
+        ('{"token": 1}', 4401),
+        ("[" * 999, 4401),
+        (b'{"token": null}', 1003),
+        (b"\xff", 1003),
+    ],
+)
+def test_an_odd_first_message_is_closed_with_a_code_and_counted(idle: Running, errors, first, code):
+    before = counted(idle, code)
+    with opened(idle) as socket:
+        socket.send(first)
+        assert closed_with(socket) == code
+    assert counted(idle, code) == before + 1
+    assert errors() == []
+
+
+def test_bytes_after_the_token_end_the_connection_with_a_code(idle: Running, errors):
+    with opened(idle) as socket:
+        socket.send(token(idle, "read"))
+        socket.send(b"bytes")
+        assert closed_at_last(socket) == 1003
+    assert errors() == []
+
+
+def test_a_client_that_closes_while_it_is_being_closed_is_no_error(idle: Running, errors):
+    before = counted(idle, 4401)
+    for _ in range(20):
+        with opened(idle) as socket:
+            socket.send('{"token": "guess"}')
+            socket.close()
+    eventually(lambda: counted(idle, 4401), lambda count: count == before + 20)
+    assert errors() == []
+
+
+def test_a_client_that_leaves_before_its_first_message_is_no_error(idle: Running, errors):
+    with opened(idle):
+        pass
+    with opened(idle) as socket:  # answered after the other was dealt with
+        socket.send("{}")
+        assert closed_with(socket) == 4401
+    assert errors() == []
+
+
+def test_a_long_name_of_a_cage_fits_its_closing(idle: Running, errors):
+    with opened(idle, cage="%C3%A9" * 100) as socket:
+        socket.send(token(idle, "read"))
+        assert closed_with(socket) == 4404
+    assert errors() == []
+
+
+def test_one_token_cannot_hold_all_live_connections(tmp_path):
+    with running(tmp_path, limits=Limits(live_per_token=2, live_clients=3)) as one:
+        mine, other, third = (token(one, "read") for _ in range(3))
+        with opened(one) as first, opened(one) as second, opened(one) as more:
+            for socket in (first, second):
+                socket.send(mine)
+                received(socket)
+            more.send(mine)
+            assert closed_with(more) == 4429
+            with opened(one) as theirs, opened(one) as too_many:
+                theirs.send(other)
+                assert received(theirs)["kind"] == "topology"
+                too_many.send(third)
+                assert closed_with(too_many) == 4429
+            first.close()
+            eventually(one.service.gate.live.total, lambda count: count == 1)
+            with opened(one) as again:
+                again.send(mine)
+                assert received(again)["kind"] == "topology"
 
 
 def test_a_first_message_that_comes_too_late_costs_nobody_the_token(
@@ -171,3 +258,12 @@ def test_the_way_from_an_answer_to_the_page_is_timed_without_the_first(live: Run
         while not count.get() and time.monotonic() < end:
             time.sleep(0.02)
         assert 0.0 < count.get() < 5.0
+
+
+def test_a_client_that_closes_between_two_states_is_no_error(live: Running, errors):
+    for _ in range(10):
+        with opened(live) as socket:
+            socket.send(token(live, "read"))
+            received(socket)
+    assert eventually(live.service.gate.live.total, lambda count: count == 0) == 0
+    assert errors() == []

@@ -68,7 +68,7 @@ def test_a_written_plan_is_taken_as_it_is_but_for_what_is_said(tmp_path: Path):
     ("words", "says"),
     [
         (("--plan", "papper"), "no plan 'papper'; there are: paper, default, current"),
-        (("--plan", "none.json"), "cannot read none.json"),
+        (("--plan", "none.json"), "none.json: the file cannot be read"),
         (("--range", "hs=0,2"), "Keys: current_speed_m_s, current_to_deg, hs_m"),
         (("--range", "hs_m=2"), "expected two numbers"),
         (("--range", "hs_m=2,x"), "could not convert"),

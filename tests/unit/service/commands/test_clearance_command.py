@@ -153,6 +153,9 @@ def test_a_running_service_is_asked_about_its_net_now(live: Running, way, tmp_pa
     body = {"points_m": [[0, 0, -5], [18, 0, -8], [18, 9, -8]], "as_path": True}
     assert answer == live.reader.post("/api/v1/cages/ace/clearance", json=body).json()
     assert answer["shape_error"] is None
+    assert "not known, and so no probability" in run("clearance", way, "--path", *to).stdout
+    unheld = run("clearance", way, "--path", "--most", "0.5", *to, code=1)
+    assert "shape error is not known" in unheld.stderr
     out = tmp_path / "way.mcap"
     told("inspect-path", "--row-spacing", "5", "--step", "3", "--out", out, *to)
     assert out.read_bytes().startswith(b"\x89MCAP")

@@ -1,6 +1,11 @@
 import csv
 import json
+import shutil
+import sqlite3
+from contextlib import closing
 from dataclasses import replace
+from importlib.metadata import version
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,10 +13,16 @@ import typer
 from safetensors.numpy import load_file
 from typer.testing import CliRunner
 
+import seacage
 from seacage.cage import Cage
+from seacage.service._access._tokens import Tokens
 from seacage.service._cli import app
+from seacage.service._store._store import open_store
 from seacage.testing import stand_in_campaign, stand_in_field, stand_in_seas, stand_in_twin
+from seacage.twin import Twin
+from stores import put, sample, schema
 
+FROZEN = Path(__file__).parents[3] / "frozen" / "0.1.0"
 COMMANDS = [
     "settle",
     "simulate",
@@ -138,6 +149,78 @@ def test_a_refused_sea_state_ends_with_1_and_one_sentence(small_cage):
     assert "412 deg is outside [0, 360]" in result.stderr
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("water_depth_m = 191.0", "water_depth_m = 6.0", "hangs 31 m deep in water of 6 m"),
+        ("side_m = 85.0", "side_m = 45.0", "no room for a collar"),
+        ("length_offset_m = [0.0, ", "length_offset_m = [", "12 bearings_deg but 11"),
+        ("tip_depth_m", "tip_deph_m", "did you mean 'tip_depth_m'?"),
+    ],
+)
+@pytest.mark.parametrize("command", ["settle", "simulate"])
+def test_a_cage_file_that_makes_no_sense_ends_with_2_and_its_name(
+    small_cage, command, old, new, said
+):
+    small_cage.write_text(small_cage.read_text().replace(old, new))
+    sea = ("--current-speed", 0.4, "--current-to", 90)
+    result = run(command, *sea, "--cage", small_cage)
+    assert result.exit_code == 2
+    assert result.stderr.startswith(f"seacage: {small_cage}")
+    assert said in result.stderr
+    assert result.stderr.count("\n") == 1
+
+
+def test_a_bridle_that_a_spoke_moves_is_warned_of_in_the_result_and_on_the_shell(tmp_path):
+    import xarray
+
+    path, out = tmp_path / "mine.toml", tmp_path / "mine.nc"
+    text = Cage.named("ace").altered(mesh={"spokes": 16}).to_toml()
+    path.write_text(text.replace("bearings_deg = [67.5", "bearings_deg = [60.0"))
+    words = ("settle", "--current-speed", 0.4, "--current-to", 90, "--cage", path, "--out", out)
+    result = run(*words, "--json")
+    assert result.exit_code == 0
+    (warning,) = json.loads(result.stdout)["warnings"]
+    assert "moves bridle-1 from 60° to 67.5°." in warning
+    assert result.stderr == f"seacage: warning: {warning}\n"
+    with xarray.open_dataset(out) as kept:
+        assert kept.attrs["comment"] == warning
+
+
+def test_waves_that_a_field_never_had_are_refused_with_its_folder(tmp_path, monkeypatch):
+    cage = stand_in_twin().cage
+    campaign = stand_in_campaign(cage, stand_in_seas(30))
+    monkeypatch.setattr("seacage.records.read_campaign", lambda _: campaign)
+    stand_in_field(cage, days=1.0).write(tmp_path / "field")
+    words = ("--campaign", tmp_path, "--field", tmp_path / "field", "--out", tmp_path / "twin")
+    result = run("train", *words, "--inputs", "current,waves")
+    assert result.exit_code == 2
+    assert f"{tmp_path / 'field'} with {tmp_path}: train: buoy-1 has no hs_m" in result.stderr
+    assert not (tmp_path / "twin").exists()
+
+
+def test_a_twin_is_signed_with_the_key_of_a_file(tmp_path, monkeypatch):
+    monkeypatch.setattr("seacage.twin.train", lambda *_, **__: stand_in_twin())
+    stand_in_twin().write(tmp_path / "base")
+    key = tmp_path / "key"
+    key.write_bytes(bytes(range(32)))
+    words = ("train", "--base", tmp_path / "base", "--out", tmp_path / "twin", "--sign", key)
+    key.chmod(0o644)
+    assert run(*words).exit_code == 1
+    assert not (tmp_path / "twin").exists()
+    key.chmod(0o600)
+    assert run(*words).exit_code == 0
+    assert Twin.read(tmp_path / "twin", key=bytes(range(32)))
+
+
+def test_settings_with_a_limit_that_is_no_number_end_with_2_and_the_files_name(tmp_path):
+    (tmp_path / "farm.toml").write_text("[alarms.load]\nraise_at = inf\n")
+    for command in (("serve",), ("config", "check")):
+        result = run(*command, "--config", tmp_path / "farm.toml")
+        assert result.exit_code == 2
+        assert "farm.toml: alarms.load.raise_at = inf is no finite number" in result.stderr
+
+
 def test_a_campaign_runs_tells_how_far_it_is_and_becomes_netcdf(small_cage, tmp_path):
     store, out = tmp_path / "small.zarr", tmp_path / "small.nc"
     short = ("--duration", 10, "--spin-up", 5, "--ramp", 5, "--cage", small_cage, "--workers", 1)
@@ -185,13 +268,32 @@ def test_every_row_of_a_record_is_answered_or_says_why_not(buoy, twin, tmp_path)
         rows = list(csv.DictReader(file))
     computed = [name for name in rows[0] if name.endswith(("_kn", "_m")) or "fraction" in name]
     assert len(computed) > 8 * 6 + 12 * 6
+    bare = [f"bridle-{k}" for k in (1, 2, 3, 4, 5, 6, 12)] + ["shape_bottom_depth"]
+    low = [name for name in rows[0] if "_low_lower_" in name or "_low_upper_" in name]
+    none = [
+        name
+        for name in rows[0]
+        if name.startswith(tuple(f"{one}_{end}" for one in bare for end in ("lower", "upper")))
+    ]
+    none += [*low, "shape_largest_sigma_m"]
+    assert len(none) == 2 * 8 + 2 * 20 + 1
     for row in rows:
         good = row["valid"] == "True"
-        assert all((row[name] != "") is good for name in computed)
+        assert all((row[name] != "") is good for name in computed if name not in none)
+        assert {row[name] for name in none} == {""}
+        assert "No sensor has trained level 2" in row["shape_interval_reason"]
         assert {row[f"bridle-{k}_level"] for k in (1, 12)} == {"1"}
         assert row["bridle-7_level"] == "2"
     assert "flagged 4" in rows[1]["reason"]
     assert rows[2]["extrapolating"] == "True"
+    for name in ("bridle-1", "shape"):
+        assert [row[f"{name}_in_domain"] for row in rows] == ["True", "False", "False", "True"]
+    # Its shackle was never there in water that ran north.
+    inside = [row["bridle-7_in_domain"] for row in rows]
+    assert inside == ["True", "False", "False", "False"]
+    for row in rows:
+        ends = [float(row[name] or 0.0) for name in computed if "_lower_" in name]
+        assert min(ends) >= 0.0
 
 
 def test_step_by_step_and_in_blocks_are_the_same_answers(buoy, twin, tmp_path):
@@ -220,7 +322,19 @@ def test_the_netcdf_file_holds_the_whole_shape_and_nothing_where_there_is_no_inp
         assert kept.attrs["origin"] == "virtual field"
         assert kept.sizes["node"] == stand_in_twin().cage.node_count
         assert kept.valid.values.tolist() == [1, 0, 1, 1]
-        for name in ("node_position", "bridle_tension", "shackle_tension_low_upper", "depth"):
+        trained = kept.bridle_level.values == 2
+        assert np.isfinite(kept.bridle_tension_lower.values[0]).tolist() == trained.tolist()
+        for name in ("shackle_tension_low_upper", "node_sigma"):
+            assert np.isnan(kept[name].values).all(), name
+        assert kept.bridle_in_domain.values.tolist() == [
+            [1] * 12,
+            [0] * 12,
+            [0] * 12,
+            # The shackles were never there in water that ran north.
+            (~trained).astype(int).tolist(),
+        ]
+        assert "No sensor has trained level 2" in kept.attrs["shape_interval_reason"]
+        for name in ("node_position", "bridle_tension", "shackle_tension_upper", "depth"):
             finite = np.isfinite(kept[name].values).reshape(4, -1)
             assert finite.all(axis=1).tolist() == [True, False, True, True], name
             assert not finite[1].any(), name
@@ -245,6 +359,7 @@ def test_a_damaged_twin_is_refused(buoy, twin, tmp_path):
     assert not (tmp_path / "a.csv").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(400)  # trains three times, which a crowded machine takes minutes for
 def test_a_twin_is_trained_and_scored_on_what_did_not_teach_it(tmp_path, monkeypatch):
     cage = stand_in_twin().cage
@@ -304,6 +419,51 @@ def test_the_doctor_finds_the_physics_sound(tmp_path):
     assert physics["state"] == "ok"
 
 
+def test_the_doctor_names_a_line_that_is_no_token(tmp_path):
+    Tokens(tmp_path).mint(["read"], keep=True)
+    assert answer("doctor", "--data", tmp_path)["ok"]
+    with (tmp_path / "tokens.jsonl").open("a") as file:
+        file.write('{"sha256": "01')
+    result = run("doctor", "--data", tmp_path, "--json")
+    assert result.exit_code == 3
+    finding = next(one for one in json.loads(result.stdout)["findings"] if one["what"] == "Tokens")
+    assert (finding["state"], "line 2" in finding["said"]) == ("wrong", True)
+
+
+def test_the_doctor_counts_the_rows_that_nobody_can_verify(tmp_path):
+    copy = tmp_path / "old.sqlite"
+    shutil.copy(FROZEN / "store.sqlite", copy)
+    before = copy.read_bytes()
+    (rows,) = [
+        one["said"]
+        for one in answer("doctor", "--data", tmp_path, "--store", copy)["findings"]
+        if one["what"] == "Stored rows"
+    ]
+    assert "0 rows are as they were written" in rows
+    assert "unverified" in rows
+    assert copy.read_bytes() == before
+
+
+def test_the_doctor_tells_of_a_row_that_the_disk_has_changed(tmp_path):
+    place = tmp_path / "samples.sqlite"
+    with closing(open_store(place)) as store:
+        put(store, sample(0), sample(1))
+    assert answer("doctor", "--data", tmp_path)["ok"]
+    with closing(sqlite3.connect(place)) as disk, disk:
+        disk.execute("UPDATE sample SET readings = replace(readings, '14', '94')")
+    result = run("doctor", "--data", tmp_path, "--json")
+    assert result.exit_code == 3
+    assert "2 stored rows are not as they were written" in result.stdout
+
+
+@pytest.mark.postgres
+def test_the_doctor_says_whether_the_server_keeps_checksums(postgres, tmp_path):
+    with schema(postgres) as url:
+        said = answer("doctor", "--data", tmp_path, "--store", url)["findings"]
+    (rows,) = [one["said"] for one in said if one["what"] == "Stored rows"]
+    assert "data_checksums of the server are o" in rows
+
+
 def test_serving_beyond_this_machine_takes_a_decision(tmp_path, twin):
     result = run("serve", "--data", tmp_path, "--twin", twin, "--host", "0.0.0.0")
     assert result.exit_code == 1
@@ -329,3 +489,11 @@ def test_a_data_folder_that_takes_no_files_is_refused_plainly(tmp_path, twin):
 def test_settings_that_cannot_be_are_refused(tmp_path, twin, words):
     words = [twin if word == "TWIN" else word for word in words]
     assert run("serve", "--data", tmp_path, *words).exit_code == 1
+
+
+def test_the_version_is_that_of_the_package():
+    answer = run("--version")
+    assert answer.exit_code == 0
+    assert answer.stdout == f"seacage {version('seacage')}\n"
+    assert seacage.__version__ == version("seacage")
+    assert Path(seacage.__file__).with_name("py.typed").is_file()

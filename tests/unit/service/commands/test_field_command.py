@@ -60,6 +60,7 @@ def test_a_calm_sea_has_no_waves(follower: Follower, words: list[str], tmp_path:
     assert "hs_m" not in FieldRecord.read(tmp_path / "out").buoy.values
 
 
+@pytest.mark.slow
 def test_a_record_drives_the_field_in_its_first_days_with_its_own_waves(
     follower: Follower, words: list[str], tmp_path: Path
 ) -> None:
@@ -78,6 +79,7 @@ def test_a_record_drives_the_field_in_its_first_days_with_its_own_waves(
     np.testing.assert_array_equal(truth.buoy.values["hs_m"], 1.5)
 
 
+@pytest.mark.slow
 def test_events_come_from_words_and_from_a_file(
     follower: Follower, words: list[str], tmp_path: Path
 ) -> None:
@@ -94,6 +96,7 @@ def test_events_come_from_words_and_from_a_file(
     ]
 
 
+@pytest.mark.slow
 def test_a_share_simulates_its_part_and_writes_no_record(
     follower: Follower, words: list[str], tmp_path: Path
 ) -> None:

@@ -1,4 +1,5 @@
 import json
+from datetime import timedelta
 
 import pytest
 from typer.testing import CliRunner
@@ -11,6 +12,12 @@ HEADER = "time,current_speed_m_s,current_to_deg\n"
 
 def publish(*words):
     return CliRunner().invoke(app, ["publish", *map(str, words)], catch_exceptions=False)
+
+
+@pytest.fixture(autouse=True)
+def logs_as_they_were(monkeypatch):
+    """The command's logs would go to a stream that ends with the test."""
+    monkeypatch.setattr("seacage.service._logs.begin_logs", lambda _: None)
 
 
 @pytest.fixture
@@ -41,6 +48,21 @@ def test_a_sample_that_is_refused_is_said_and_the_code_is_1(live: Running, recor
     assert told["rejected"] == 20
     assert "No stream is called 'buoy-9'" in told["reasons"][0]
     assert "20 samples were refused" in result.stderr
+
+
+def test_what_is_ahead_of_the_services_clock_waits_for_the_next_run(live: Running, tmp_path, to):
+    record = tmp_path / "fast.csv"
+    record.write_text(HEADER + "".join(f"{at(minute)},0.5,90\n" for minute in range(40, 60)))
+    result = publish(record, *to)
+    assert result.exit_code == 3
+    told = json.loads(result.stdout)
+    assert (told["acknowledged"], told["rejected"], told["ahead"]) == (0, 0, 20)
+    assert "20 samples are ahead of the service's clock" in result.stderr
+    live.clock.at += timedelta(hours=1)
+    result = publish(record, *to)
+    assert result.exit_code == 0
+    assert json.loads(result.stdout)["acknowledged"] == 20
+    assert len(live.cage.store.samples("ace", limit=100)) == 20
 
 
 def test_where_nobody_answers_the_samples_wait_and_the_code_is_3(record, tmp_path):

@@ -1,24 +1,14 @@
 import asyncio
-from concurrent.futures import Future
-from contextlib import closing, suppress
+from contextlib import closing
 from datetime import timedelta
 
-from seacage.conventions import Flag
 from seacage.records import Sample
 from seacage.service._live import _cage
 from seacage.service._live._cage import LiveCage
 from seacage.service._live._metrics import Metrics
-from seacage.service._store._store import Store, StoreError
+from seacage.service._store._store import Store
 from seacage.testing import stand_in_twin
 from serviced import NOON, HandClock
-
-
-class HandStore(Store):
-    """Commits when a test says so."""
-
-    def append(self, _, samples, **__):
-        self.asked = [*getattr(self, "asked", ()), (samples, Future())]
-        return self.asked[-1][1]
 
 
 def depth(minutes, metres):
@@ -60,26 +50,3 @@ def test_who_sends_more_than_the_twin_can_step_through_is_made_to_wait(tmp_path,
     with closing(Store(tmp_path / "samples.sqlite")) as store:
         parts = {"store": store, "clock": HandClock(), "metrics": Metrics()}
         asyncio.run(work(LiveCage(name="ace", twin=stand_in_twin(), **parts)))
-
-
-def test_a_commit_that_fails_leaves_what_was_asked_beside_it_to_compare_with(tmp_path):
-    async def work(store):
-        parts = {"store": store, "clock": HandClock(), "metrics": Metrics()}
-        cage = LiveCage(name="ace", twin=stand_in_twin(), **parts)
-        takes = [asyncio.create_task(cage.take([depth(k, 14.0 + k / 10)])) for k in range(2)]
-        await asyncio.sleep(0)
-        (_, lost), (_, kept) = store.asked
-        lost.set_exception(StoreError("The disk is full."))
-        kept.set_result((True,))
-        with suppress(StoreError):
-            await takes[0]
-        assert await takes[1] == (True,)
-        last = asyncio.create_task(cage.take([depth(2, 24.0)]))
-        await asyncio.sleep(0)
-        (flagged,), committed = store.asked[-1]
-        committed.set_result((True,))
-        await last
-        return flagged
-
-    with closing(HandStore(tmp_path / "samples.sqlite")) as store:
-        assert asyncio.run(work(store)).flags["depth_m"] != Flag.GOOD

@@ -1,3 +1,4 @@
+from dataclasses import replace
 from datetime import UTC, datetime
 
 import numpy as np
@@ -41,12 +42,28 @@ def test_a_frame_holds_the_net_to_half_a_unit(twin, rest, speed):
     # Half a unit, and what single precision loses of the unit over 32,767 of them.
     near = {"rtol": 1e-6, "atol": 0.501 * frame.unit}
     np.testing.assert_allclose(frame.displacement, answered.answer.node_position[0] - rest, **near)
-    near = {"rtol": 1e-6, "atol": 0.501 * frame.sigma_unit}
-    np.testing.assert_allclose(frame.sigma, answered.answer.node_sigma[0], **near)
     assert frame.unit < 1e-3, "finer than a millimetre, while the net moves by metres"
     assert frame.state == state.model_dump(mode="json")
     assert frame.t_ms == NOON.timestamp() * 1e3
-    assert (frame.version, frame.flags) == (1, Flags.VALID | Flags.IN_DOMAIN)
+    assert (frame.version, frame.flags) == (2, Flags.VALID | Flags.IN_DOMAIN | Flags.NO_SPREAD)
+
+
+def test_a_net_that_no_sensor_trained_has_no_spread_in_a_frame(twin, rest):
+    state, message = framed(twin, rest, answered_by(twin, 0.5))
+    frame = decoded(message)
+    assert frame.flags & Flags.NO_SPREAD
+    assert frame.sigma.size == 0
+    assert len(frame.displacement) == len(rest)
+    assert "No sensor has trained level 2" in state.shape.interval_reason
+
+
+def test_a_spread_that_is_known_is_in_the_frame(twin, rest):
+    answered = answered_by(twin, 0.5)
+    answered = replace(answered, answer=replace(answered.answer, shape_level=2))
+    frame = decoded(framed(twin, rest, answered)[1])
+    assert not frame.flags & Flags.NO_SPREAD
+    near = {"rtol": 1e-6, "atol": 0.501 * frame.sigma_unit}
+    np.testing.assert_allclose(frame.sigma, answered.answer.node_sigma[0], **near)
 
 
 @pytest.mark.parametrize("metres", [40.0, 1e4, 0.0])
@@ -67,7 +84,8 @@ def test_without_valid_input_a_frame_holds_no_net(twin, rest):
 
 def test_a_frame_says_that_it_is_of_the_past_or_of_what_would_be(twin, rest):
     _, message = framed(twin, rest, answered_by(twin, 0.5), about=Flags.PAST | Flags.WHAT_IF)
-    assert decoded(message).flags == Flags.VALID | Flags.IN_DOMAIN | Flags.PAST | Flags.WHAT_IF
+    about = Flags.PAST | Flags.WHAT_IF | Flags.NO_SPREAD
+    assert decoded(message).flags == Flags.VALID | Flags.IN_DOMAIN | about
 
 
 def test_a_topology_is_known_by_a_hash_of_all_it_says(twin):

@@ -1,66 +1,99 @@
-from dataclasses import replace
-from datetime import UTC, datetime, timedelta
+from datetime import timedelta
 
 import pytest
 
+from lived import Lived
 from seacage.records import Sample
-from seacage.service._live._past import state_at
-from seacage.service._store._store import Store
-from seacage.testing import stand_in_twin
-from serviced import buoy, eventually, running
-
-NOON = datetime(2020, 2, 1, 12, tzinfo=UTC)
+from seacage.service._store._checksum import with_checksum
+from serviced import NOON, buoy, eventually, running
 
 
 @pytest.fixture
-def store(tmp_path):
-    one = Store(tmp_path / "samples.sqlite")
-    yield one
-    one.close()
+def one(tmp_path):
+    lived = Lived(tmp_path / "samples.sqlite")
+    yield lived
+    lived.close()
 
 
-def samples():
-    water = {"current_speed_m_s": 0.4, "current_to_deg": 90.0}
-    buoy = [
-        Sample(stream="buoy-1", t=NOON + timedelta(minutes=minute), values=water)
-        for minute in range(0, 60, 12)
-    ]
-    # Far from what the twin says, and never still for long.
-    depth = [
+def hour(one, *, minutes=60):
+    """An hour of a calm sea, with a sensor that reads far from what the twin expects."""
+    shown = []
+    for minute in range(minutes):
+        one.clock.at = NOON + timedelta(minutes=minute)
+        if minute % 12 == 0:
+            water = {"current_speed_m_s": 0.4, "current_to_deg": 90.0 + 0.1 * minute}
+            one.arrive(Sample(stream="buoy-1", t=one.clock.now(), values=water))
+        far = {"depth_m": 9.0 + 0.1 * (minute % 7)}
+        one.arrive(Sample(stream="depth-1", t=one.clock.now(), values=far))
+        shown.append(one.tick())
+    return shown
+
+
+def width(shown):
+    (depth,) = (sensor for sensor in shown["sensors"] if sensor["name"] == "depth-1")
+    return depth["upper"] - depth["lower"]
+
+
+def test_intervals_adapted_to_the_sensors_survive_a_restart(one):
+    shown = hour(one)
+    assert width(shown[-1]) > 1.3 * width(shown[0])
+    one.restart()
+    assert one.tick() == shown[-1]
+
+
+def test_the_past_has_the_intervals_that_it_had(one):
+    shown = hour(one)
+    for minute in (0, 11, 12, 29, 30, 45, 59):
+        assert one.at(NOON + timedelta(minutes=minute)) == shown[minute]
+    assert one.at(NOON - timedelta(minutes=1))["reason"] == (
+        "buoy-1 has not said current_speed_m_s yet."
+    )
+
+
+def test_the_past_does_not_know_yet_that_a_reading_was_a_spike(one):
+    shown = {}
+    for minute, metres in enumerate((7.0, 7.1, 30.0, 7.1)):
+        one.clock.at = NOON + timedelta(minutes=minute)
+        one.arrive(Sample(stream="depth-1", t=one.clock.now(), values={"depth_m": metres}))
+        shown[minute] = one.tick()
+    assert [len(shown[minute]["amended"]) for minute in range(4)] == [0, 0, 0, 1]
+    for minute, live in shown.items():
+        assert one.at(NOON + timedelta(minutes=minute)) == live
+
+
+def test_samples_hours_late_change_what_was_learned_from_their_time(one):
+    hour(one, minutes=5)
+    one.clock.at = NOON + timedelta(hours=5)
+    one.tick()
+    before = one.state.tracked["depth-1"].factor
+    far = [
         Sample(
             stream="depth-1",
-            t=NOON + timedelta(minutes=minute + 0.5),
+            t=NOON + timedelta(minutes=minute, seconds=30),
             values={"depth_m": 9.0 + 0.1 * (minute % 7)},
         )
-        for minute in range(60)
+        for minute in range(5, 10)
     ]
-    return sorted([*buoy, *depth], key=lambda one: one.t)
+    one.arrive(*far)
+    water = {"current_speed_m_s": 0.4, "current_to_deg": 91.0}
+    one.arrive(Sample(stream="buoy-1", t=NOON + timedelta(minutes=6), values=water))
+    one.tick()
+    assert one.state.tracked["depth-1"].factor == before
+    one.clock.at += timedelta(seconds=31)
+    one.tick()
+    late = one.state.tracked["depth-1"].factor
+    assert late > before
+    one.restart()
+    assert one.state.tracked["depth-1"].factor == late
 
 
-def test_intervals_adapted_to_the_sensors_survive_a_restart(store):
-    twin = stand_in_twin()
-    twin = replace(twin, watch=replace(twin.watch, adapt_rate=0.05))
-    state = twin.start()
-    for one in samples():
-        state, _ = twin.step(state, one, one.t)
-    store.append("ace", samples(), ingested=NOON).result(timeout=10)
-    at = NOON + timedelta(hours=1)
-    again, answered = state_at(twin, store, "ace", at, adapted=state.adapted)
-    assert again.tracked["depth-1"].factor == pytest.approx(state.tracked["depth-1"].factor)
-    assert again.tracked["depth-1"].factor > 1.3
-    plain, trained = state_at(twin, store, "ace", at)
-    column = answered.answer.sensor_names.index("depth-1")
-    assert answered.answer.sensor.std[0, column] > trained.answer.sensor.std[0, column]
-    assert answered.answer.sensor.mean == pytest.approx(trained.answer.sensor.mean)
-    assert plain.streams["depth-1"][-1].sample == again.streams["depth-1"][-1].sample
-
-
-def test_a_live_cage_goes_on_with_its_intervals_or_as_trained_where_they_are_lost(tmp_path):
+def test_a_live_cage_goes_on_as_trained_where_its_intervals_are_lost(tmp_path):
     with running(tmp_path) as live:
         live.post(buoy())
         state = eventually(live.state, lambda state: state["valid"])
-        kept = live.cage.store.adapted
-        assert "depth-1" in eventually(lambda: kept("ace"), lambda text: text and "depth-1" in text)
-        live.cage.store.keep_adapted("ace", "what is this?").result(timeout=10)
+        store, cage = live.cage.store, live.cage.name
+        write = "INSERT INTO adaptation VALUES (?, ?, ?, ?)"
+        row = with_checksum("adaptation", cage, int(NOON.timestamp()) * 10**6, "what is this?")
+        store._writer.ask(lambda session: session.rows(write, row)).result(timeout=10)
     with running(tmp_path) as live:
         assert live.state()["sensors"] == state["sensors"]

@@ -20,6 +20,9 @@ class NoonClock:
     def now(self):
         return NOON
 
+    def elapsed_s(self):
+        return 0.0
+
 
 @pytest.fixture
 def store(tmp_path):

@@ -152,6 +152,7 @@ for k in range(10**6):
 """
 
 
+@pytest.mark.slow
 def test_a_kill_leaves_the_days_that_were_written(archive, pytestconfig):
     support = str(pytestconfig.rootpath / "tests" / "support")
     command = [sys.executable, "-c", KILLED, archive.folder]

@@ -95,7 +95,7 @@ def test_a_file_that_is_no_database_is_moved_aside_and_said_to_be_lost(path):
         assert put(store, sample()) == (True,)
         assert "damaged" in store.lost
         assert "not a database" in store.lost
-        (aside,) = path.parent.glob("samples.sqlite.damaged-*")
+        (aside,) = path.parent.glob("samples.sqlite.damaged-*Z")
         assert aside.name in store.lost
     assert aside.read_text().startswith("no database")
     with opened(path) as store:

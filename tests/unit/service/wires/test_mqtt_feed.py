@@ -1,5 +1,6 @@
 import asyncio
 import json
+from contextlib import contextmanager
 from types import SimpleNamespace
 
 import numpy as np
@@ -23,9 +24,14 @@ class Sent(list):
 
     fault = None
 
+    paused = False
+
     def publish(self, topic, payload, **_):
         self.append((topic, json.loads(payload)))
         return True
+
+    def pause(self, *, paused):
+        self.paused = paused
 
 
 @pytest.fixture
@@ -178,10 +184,23 @@ def test_what_cannot_be_read_is_set_aside_with_its_reason_and_forgotten(
 
 
 def test_a_refused_sample_is_told_to_its_sender_which_would_send_it_for_ever(one):
+    say(one, reading(-60 * 24 * 365 * 51))
+    settled(one)
+    ((_, told),) = one.sent
+    assert "is before 1970" in told["rejected"]
+    assert "retry" not in told
+
+
+def test_of_a_sample_ahead_of_the_clock_the_sender_is_told_to_retry_and_its_stream_is_named(
+    one, tmp_path
+):
     say(one, reading(60))
     settled(one)
     ((_, told),) = one.sent
     assert "ahead of the cage's clock" in told["rejected"]
+    assert told["retry"]
+    assert "clock.buoy-1" in one.cage.live.clocks.faults()
+    assert not (tmp_path / "quarantine.jsonl").exists(), "it comes again every minute"
 
 
 def test_messages_that_nobody_waits_for_cannot_fill_the_memory(one):
@@ -189,6 +208,110 @@ def test_messages_that_nobody_waits_for_cannot_fill_the_memory(one):
         say(one, b"{}", sure=False)
     assert len(one.feed._queue) == 2000
     assert one.counted("dropped") == 3000
+
+
+def test_while_too_much_waits_nothing_is_read_and_then_reading_goes_on(one):
+    for number in range(1999):
+        say(one, reading(-number / 1000))
+    assert not one.sent.paused
+    say(one, reading(-2))
+    assert one.sent.paused
+    assert (
+        'seacage_broker_behind{broker="mqtt://127.0.0.1:1883"} 1.0' in one.metrics.text().decode()
+    )
+    settled(one)
+    assert not one.sent.paused
+    assert all(one.acknowledged)
+
+
+def test_large_messages_pause_the_reading_earlier(one):
+    large = b"[" + b" " * 250_000 + json.dumps(reading(-1)).encode() + b"]"
+    for _ in range(200):
+        say(one, large)
+        if one.sent.paused:
+            break
+    assert len(one.feed._queue) * len(large) < 34 << 20
+    settled(one)
+    assert not one.sent.paused
+
+
+def newest(one, minute):
+    """Have the second connection bring a reading."""
+    content = json.dumps(reading(minute)).encode()
+    one.feed._newest.hear(Heard(topic=OBS, payload=content, acknowledge=list, sure=False))
+
+
+async def until(done):
+    while not done():
+        await asyncio.sleep(0.01)
+
+
+@contextmanager
+def working(*works):
+    tasks = [asyncio.create_task(work) for work in works]
+    yield
+    for task in tasks:
+        task.cancel()
+
+
+@pytest.fixture
+def connections(one, monkeypatch):
+    """How many second connections were made and ended."""
+    count = SimpleNamespace(made=0, ended=0)
+
+    async def connected():
+        count.made += 1
+        try:
+            await asyncio.Event().wait()
+        finally:
+            count.ended += 1
+
+    monkeypatch.setattr("seacage.service._wires._mqtt_feed._LASTS_S", 0.1)
+    monkeypatch.setattr(one.feed._live, "run", connected)
+    return count
+
+
+@pytest.mark.usefixtures("connections")
+def test_while_a_backlog_drains_the_newest_of_each_stream_is_kept_before_it(one, monkeypatch):
+    take, stuck = one.cage.take, asyncio.Event()
+
+    async def busy(samples):
+        if len(samples) > 10:
+            await stuck.wait()  # what had waited
+        return await take(samples)
+
+    async def work():
+        with working(one.feed._store(), one.feed._show_newest()):
+            await until(one.feed._behind.is_set)
+            for minute in (-3, -2, -1):
+                newest(one, minute)
+            await until(one.kept)
+            live = [sample.t.isoformat() for sample in one.kept()]
+            stuck.set()
+            await one.feed.settled()
+            await until(lambda: not one.feed._behind.is_set())
+        return live
+
+    monkeypatch.setattr(one.cage, "take", busy)
+    for number in range(2500):
+        say(one, reading(-60 - number / 1000))
+    live = asyncio.run(asyncio.wait_for(work(), 60))
+    assert live == [at(-1)], "the newest alone, and before any of the others"
+    assert all(one.acknowledged)
+
+
+def test_while_old_samples_come_there_is_a_second_connection_and_then_no_more(one, connections):
+    async def work():
+        with working(one.feed._store(), one.feed._show_newest()):
+            say(one, reading(0))
+            await one.feed.settled()
+            assert not one.feed._behind.is_set()
+            say(one, reading(-30))
+            await until(lambda: connections.made)
+            await until(lambda: connections.ended)
+            await until(lambda: not one.feed._behind.is_set())
+
+    asyncio.run(asyncio.wait_for(work(), 60))
 
 
 def test_journal_lines_wait_for_a_broker(one):
@@ -201,7 +324,7 @@ def test_journal_lines_wait_for_a_broker(one):
 
 
 @pytest.mark.parametrize(
-    "count", [5_000, pytest.param(100_000, marks=[pytest.mark.slow, pytest.mark.timeout(1800)])]
+    "count", [5_000, pytest.param(100_000, marks=[pytest.mark.long, pytest.mark.timeout(1800)])]
 )
 def test_no_mutated_message_stops_the_feed(one, tmp_path, count):
     random = np.random.default_rng(3)

@@ -79,6 +79,44 @@ def test_the_broker_sends_no_more_than_it_may_ahead_of_acknowledgements(tmp_path
         asyncio.run(work(mosquitto.url))
 
 
+def test_what_is_not_read_stays_at_the_broker_and_comes_when_reading_goes_on(tmp_path):
+    async def work(url):
+        async with (
+            running(link(url, ears := Ears(), receive_maximum=1000)) as one,
+            running(link(url, Ears(), client_id="other", filters=["b"])) as other,
+        ):
+            await until(lambda: one.fault is None and other.fault is None)
+            one.pause(paused=True)
+            for number in range(300):
+                other.publish("a/b", b"%d" % number)
+            await until(lambda: not other._client._out_messages)
+            await asyncio.sleep(0.5)
+            assert not ears.heard
+            one.pause(paused=False)
+            await until(lambda: len(ears.heard) == 300)
+
+    with broker(tmp_path) as mosquitto:
+        asyncio.run(work(mosquitto.url))
+
+
+def test_without_a_session_what_is_said_from_now_on_is_heard_and_nothing_else(tmp_path):
+    async def work(url):
+        async with running(link(url, Ears(), client_id="other", filters=["b"])) as other:
+            live = {"qos": 0, "session_s": 0}
+            async with running(link(url, ears := Ears(), **live)) as one:
+                await until(lambda: one.fault is None and other.fault is None)
+                await until(lambda: other.publish("a/b", b"now") and ears.heard)
+            other.publish("a/b", b"missed")
+            await until(lambda: not other._client._out_messages)
+            async with running(link(url, ears := Ears(), **live)) as one:
+                await until(lambda: one.fault is None)
+                await until(lambda: other.publish("a/b", b"later") and ears.heard)
+                assert set(ears.heard) == {b"later"}
+
+    with broker(tmp_path) as mosquitto:
+        asyncio.run(work(mosquitto.url))
+
+
 def test_a_broker_that_comes_back_is_found_within_ten_seconds(tmp_path):
     async def work(mosquitto):
         async with running(link(mosquitto.url, ears := Ears())) as one:

@@ -19,6 +19,8 @@ class Service:
 
     def __init__(self):
         self.had, self.sizes, self.away = [], [], 0
+        self.clock = float("inf")  # minutes after noon that are not ahead of it
+        self.tries = []
 
     def send(self, samples):
         self.sizes.append(len(samples))
@@ -26,15 +28,19 @@ class Service:
             self.away -= 1
             time.sleep(0.01)
             return []
-        self.had += [(one.t - NOON) // timedelta(minutes=1) for one in samples]
+        minutes = [(one.t - NOON) // timedelta(minutes=1) for one in samples]
+        self.tries.append(minutes)
+        self.had += [minute for minute in minutes if minute <= self.clock]
         return [
-            Settled(
+            Settled(stream=one.stream, t=one.t, seq=one.seq, rejected="It is ahead.", retry=True)
+            if minute > self.clock
+            else Settled(
                 stream=one.stream,
                 t=one.t,
                 seq=one.seq,
                 rejected="Too deep." if one.values["depth_m"] > 99.0 else None,
             )
-            for one in samples
+            for one, minute in zip(samples, minutes, strict=True)
         ]
 
     def close(self):
@@ -122,3 +128,62 @@ def test_a_source_that_fails_is_said_after_what_it_gave_has_arrived(spool):
     with pytest.raises(InputError, match="no table"):
         Publisher(spool, service).run(source())
     assert service.had == [0]
+
+
+def test_what_is_ahead_of_the_services_clock_waits_and_delays_nothing(spool):
+    service = Service()
+    service.clock = 2
+    done = Publisher(spool, service).run([batch(0, 5), batch(1, 6), batch(2)])
+    assert sorted(service.had) == [0, 1, 2]
+    assert (done.acknowledged, done.rejected, done.ahead, done.waiting) == (3, 0, 2, 2)
+    tried = [minute for minutes in service.tries for minute in minutes]
+    assert sorted(tried) == [0, 1, 2, 5, 6], "within a minute, once"
+
+
+def test_after_a_restart_what_was_ahead_is_tried_again_and_the_rest_waits_on(spool):
+    service = Service()
+    service.clock = 2
+    Publisher(spool, service).run([batch(5, 6, 9)])
+    service.clock = 6
+    done = Publisher(spool, service).run([batch(1)])
+    assert sorted(service.had) == [1, 5, 6]
+    assert (done.acknowledged, done.ahead) == (3, 1)
+    service.clock = 9
+    assert Publisher(spool, service).run([]).acknowledged == 1
+    assert len(spool) == 0
+
+
+def test_what_was_ahead_goes_while_the_source_goes_on(spool):
+    service = Service()
+    service.clock = 2
+
+    def source():
+        yield batch(5, 6)
+        while not spool.ahead:
+            time.sleep(0.005)
+        service.clock = 6
+        while spool.ahead:
+            time.sleep(0.005)
+        yield batch(1)
+
+    done = Publisher(spool, service, retry_s=0.0).run(source())
+    assert sorted(service.had) == [1, 5, 6]
+    assert done.acknowledged == 3
+
+
+def test_what_stays_ahead_is_set_aside_with_the_reason(spool, tmp_path):
+    service = Service()
+    service.clock = 2
+    done = Publisher(spool, service, keep_ahead=timedelta(0)).run([batch(1, 5)])
+    assert (done.acknowledged, done.quarantined, done.waiting) == (1, 1, 0)
+    assert "It is ahead." in (tmp_path / "spool.quarantine.jsonl").read_text()
+
+
+def test_while_the_service_is_away_what_is_ahead_asks_for_it_too(spool):
+    service = Service()
+    service.clock = 2
+    Publisher(spool, service).run([batch(5, 6, 7)])
+    service.away, service.clock = 3, 9
+    done = Publisher(spool, service).run([])
+    assert service.sizes[-4:-1] == [1, 1, 1]
+    assert done.acknowledged == 3

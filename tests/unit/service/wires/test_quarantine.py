@@ -29,6 +29,14 @@ def test_the_file_has_a_bound_also_after_a_restart(tmp_path):
 
 
 def test_where_nothing_can_be_written_it_still_counts(tmp_path):
-    quarantine = Quarantine(tmp_path / "missing" / "quarantine.jsonl")
-    quarantine.put("topic", b"", "reason", now=NOON)
+    (tmp_path / "file").touch()
+    quarantine = Quarantine(tmp_path / "file" / "quarantine.jsonl")
+    assert not quarantine.put("topic", b"", "reason", now=NOON)
     assert quarantine.count == 1
+
+
+def test_a_line_that_a_full_disk_cut_off_spoils_no_other(tmp_path):
+    path = tmp_path / "quarantine.jsonl"
+    path.write_text('{"t": "2020-')
+    assert Quarantine(path).put("a/topic", b"{}", "reason", now=NOON)
+    assert json.loads(path.read_text().splitlines()[-1])["reason"] == "reason"

@@ -2,13 +2,13 @@ import json
 import os
 import threading
 import time
-from datetime import UTC, datetime, timedelta
+from datetime import UTC, datetime
 
 import numpy as np
 import pytest
 
 from seacage.conventions import Origin
-from seacage.records import KEYS, Record
+from seacage.records import Record
 from seacage.service._wires._sources import (
     arriving,
     line_batches,
@@ -59,8 +59,6 @@ def lines(*texts):
     batches = list(
         line_batches(
             [texts],
-            streams=lambda _: tuple(KEYS),
-            until=lambda: NOON + timedelta(hours=1),
             refuse=lambda *what: refused.append(what),
         )
     )
@@ -83,7 +81,6 @@ def test_each_line_is_a_sample():
     [
         (b"nonsense\n", "Invalid JSON"),
         (line(t="yesterday"), "t: "),
-        (line(t="2020-02-01T14:00:00Z"), "ahead of"),
         (line(values={"tension": 3.0}), "has no quantity"),
         (line()[:-1], "ended inside this line"),
         (b"\xff\n", "Invalid JSON"),
@@ -94,6 +91,12 @@ def test_a_bad_line_is_refused_with_its_number_and_the_others_are_not(bad, reaso
     assert len(samples) == 2
     assert (where, row) == ("line 2", bad)
     assert reason in why
+
+
+def test_whether_a_samples_time_has_come_is_for_the_service_to_say():
+    samples, refused = lines(line(t="2190-02-01T12:00:00Z"))
+    assert len(samples) == 1
+    assert not refused
 
 
 def test_a_stream_that_is_no_name_is_refused():

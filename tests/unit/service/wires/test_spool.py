@@ -1,6 +1,9 @@
 import json
 import math
+import shutil
 import signal
+import sqlite3
+import stat
 import subprocess
 import sys
 from datetime import UTC, datetime, timedelta
@@ -10,7 +13,9 @@ import pytest
 from seacage.conventions import InputError
 from seacage.records import Sample
 from seacage.service._wires._mqtt_messages import Settled
+from seacage.service._wires._sources import line_batches
 from seacage.service._wires._spool import Spool, SpoolError
+from serviced import HandClock
 
 NOON = datetime(2020, 2, 1, 12, tzinfo=UTC)
 
@@ -87,6 +92,110 @@ def test_a_full_spool_may_give_up_its_oldest_and_counts_them(tmp_path):
     assert times(spool.next(99, live_after=0)) == list(range(3, 13))
     assert (len(spool), spool.dropped) == (10, 3)
     spool.close()
+
+
+def ahead(*samples):
+    return [
+        Settled(stream=one.stream, t=one.t, seq=one.seq, rejected="It is ahead.", retry=True)
+        for one in samples
+    ]
+
+
+def quarantined(tmp_path):
+    path = tmp_path / "spool.quarantine.jsonl"
+    return [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
+
+
+def test_what_is_ahead_of_the_services_clock_waits_apart_also_after_a_restart(tmp_path):
+    spool = Spool(tmp_path / "spool", to="here", most=10)
+    put(spool, sample(2), sample(1), sample(0))
+    spool.hold(ahead(sample(2), sample(1)))
+    spool.close()
+    spool = Spool(tmp_path / "spool", to="here", most=10)
+    assert (len(spool), spool.ahead) == (3, 2)
+    assert times(spool.next(9, live_after=0)) == [0]
+    assert times(spool.next_ahead(9)) == [1, 2], "those first whose time comes first"
+    put(spool, sample(1))
+    assert times(spool.next(9, live_after=0)) == [0], "read again it goes on waiting"
+    assert spool.settle(settled(sample(1), sample(0))) == 2
+    assert (len(spool), spool.ahead) == (1, 1)
+    spool.close()
+
+
+def test_what_is_ahead_takes_no_room_from_the_others_and_beyond_its_own_is_set_aside(
+    spool, tmp_path
+):
+    for minute in range(0, 30, 10):
+        assert put(spool, *map(sample, range(minute, minute + 10)))
+        spool.hold(ahead(*map(sample, range(minute, minute + 10))))
+        spool.expire(timedelta(days=7))
+    assert (len(spool), spool.ahead, spool.quarantined) == (10, 10, 20)
+    assert len(quarantined(tmp_path)) == 20
+
+
+def test_after_a_week_what_is_ahead_is_set_aside_with_the_reason_and_can_be_sent_again(tmp_path):
+    clock = HandClock()
+    spool = Spool(tmp_path / "spool", to="here", now=clock.now)
+    put(spool, sample(0), sample(1))
+    spool.hold(ahead(sample(0)))
+    clock.at += timedelta(days=6)
+    spool.hold(ahead(sample(0), sample(1)))
+    clock.at += timedelta(days=1)
+    spool.expire(timedelta(days=7))
+    assert times(spool.next_ahead(9)) == [1], "a later refusal does not begin the week anew"
+    (line,) = quarantined(tmp_path)
+    assert line["reason"] == "It is ahead."
+    (again,) = line_batches([[line["payload"].encode() + b"\n"]], refuse=pytest.fail)
+    assert again.samples == (sample(0),)
+    spool.close()
+
+
+def test_what_cannot_be_set_aside_stays(spool, tmp_path):
+    put(spool, sample(0))
+    spool.hold(ahead(sample(0)))
+    (tmp_path / "spool.quarantine.jsonl").mkdir()
+    spool.expire(timedelta(0))
+    assert times(spool.next_ahead(9)) == [0]
+
+
+def test_a_spool_can_be_read_by_its_owner_alone(tmp_path):
+    for name in ("spool", "spool-wal"):
+        (tmp_path / name).touch(0o644)
+    spool = Spool(tmp_path / "spool", to="here")
+    put(spool, sample(0))
+    files = [one for one in tmp_path.iterdir() if one.is_file()]
+    assert len(files) >= 2
+    assert {stat.S_IMODE(one.stat().st_mode) for one in files} == {0o600}
+    spool.close()
+
+
+def test_a_sample_that_the_disk_spoiled_is_set_aside_and_takes_no_other_with_it(tmp_path):
+    spool = Spool(tmp_path / "spool", to="here")
+    put(spool, *map(sample, range(5)))
+    spool.close()
+    with sqlite3.connect(tmp_path / "spool") as damaged:
+        damaged.execute("UPDATE sample SET said = substr(said, 1, 20) WHERE id = 2")
+        damaged.execute("UPDATE sample SET said = CAST(x'7bff7d' AS TEXT) WHERE id = 4")
+    damaged.close()
+    spool = Spool(tmp_path / "spool", to="here")
+    assert times(spool.next(9, live_after=0)) == [0, 2, 4]
+    assert len(spool) == 3
+    assert [line["reason"] for line in quarantined(tmp_path)] == ["It cannot be read any more."] * 2
+    spool.close()
+
+
+def test_a_log_that_a_full_disk_cut_off_loses_what_was_put_in_last_alone(spool, tmp_path):
+    for minute in range(5):
+        put(spool, sample(minute), place=str(minute))
+    for name in ("spool", "spool-wal"):
+        shutil.copy(tmp_path / name, tmp_path / f"cut-{name}")
+    log = tmp_path / "cut-spool-wal"
+    with log.open("r+b") as file:
+        file.truncate(log.stat().st_size - 100)
+    after = Spool(tmp_path / "cut-spool", to="here")
+    assert times(after.next(9, live_after=0)) == [0, 1, 2, 3]
+    assert after.place("file") == "3", "the source is read again from there"
+    after.close()
 
 
 def test_after_a_restart_all_is_there_and_the_place_too(tmp_path):

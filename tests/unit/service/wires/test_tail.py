@@ -3,6 +3,7 @@ from datetime import UTC, datetime
 from types import SimpleNamespace
 
 import pytest
+from structlog.testing import capture_logs
 
 from seacage.conventions import RecordError
 from seacage.records import ColumnMap
@@ -241,3 +242,12 @@ def test_rows_that_the_disk_does_not_take_are_read_again(cage, logger, tmp_path,
     tail = feed(cage, logger, tmp_path)
     run_until(tail, lambda: len(cage.store.samples("ace", limit=9)) == 1)
     assert refusals == [None, "The disk is full.", "The disk is full."]
+
+
+def test_a_place_that_a_full_disk_cut_off_is_said_and_the_file_read_anew(cage, logger, tmp_path):
+    logger.write(HEADER + row(0) + row(1))
+    (tmp_path / "place.json").write_bytes(b'{"offset": 12, "he\xff')
+    with capture_logs() as said:
+        tail = feed(cage, logger, tmp_path)
+    assert "place cannot be read" in said[0]["event"]
+    run_until(tail, lambda: minutes(cage.store.samples("ace", limit=100)) == [0, 1])

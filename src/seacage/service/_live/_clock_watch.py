@@ -1,0 +1,99 @@
+"""Clocks that are wrong: the service's own, where it steps, and those of streams that are ahead."""
+
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+
+from seacage.service._live._clock import Clock
+
+STEP_S = 5.0
+"""What a clock may be set by, between two looks, without being said to have stepped [s]."""
+
+_LASTS_S = 600.0  # an alarm stands so long after the last sign of a fault
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Step:
+    """A clock that was set.
+
+    Parameters
+    ----------
+    expected, now
+        What it would have told, and what it told.
+    """
+
+    expected: datetime
+    now: datetime
+
+    @property
+    def by_s(self) -> float:
+        """How far it went ahead, or below zero back [s]."""
+        return (self.now - self.expected).total_seconds()
+
+
+class ClockWatch:
+    """Compares a cage's clock with one that never steps, and streams with the clock.
+
+    Parameters
+    ----------
+    clock
+        Of the cage.
+    streams
+        How many streams there are: where all are ahead it is the clock that is behind.
+    """
+
+    def __init__(self, clock: Clock, *, streams: int) -> None:
+        self._clock, self._streams = clock, streams
+        self._last = clock.now(), clock.elapsed_s()
+        self._step: tuple[Step, float] | None = None
+        self._ahead: dict[str, tuple[float, float]] = {}
+
+    def look(self) -> Step | None:
+        """Look at the clock once more; how it stepped since the last look, if it did."""
+        (before, since), now, elapsed = self._last, self._clock.now(), self._clock.elapsed_s()
+        self._last = now, elapsed
+        step = Step(expected=before + timedelta(seconds=elapsed - since), now=now)
+        if abs(step.by_s) < STEP_S:
+            return None
+        self._step = step, elapsed
+        self._ahead.clear()
+        return step
+
+    def refused(self, stream: str, t: datetime) -> None:
+        """Note that a sample was refused as ahead of the clock."""
+        ahead_s = (t - self._clock.now()).total_seconds()
+        self._ahead[stream] = ahead_s, self._clock.elapsed_s()
+
+    def accepted(self, stream: str) -> None:
+        """Note that a sample was taken, so that its stream's clock is right again."""
+        self._ahead.pop(stream, None)
+
+    def faults(self) -> dict[str, str]:
+        """Name the alarms that stand, each with a sentence."""
+        now = self._clock.elapsed_s()
+        marked = self._ahead.copy().items()  # doors add to it while the twin is stepped
+        ahead = {name: by for name, (by, at) in marked if now - at < _LASTS_S}
+        faults = {
+            f"clock.{name}": f"The last sample of {name} was {_time(by_s)} ahead of the service's "
+            "clock; such samples wait until their time has come."
+            for name, by_s in ahead.items()
+        }
+        if len(ahead) > 1 and len(ahead) == self._streams:
+            faults = {
+                "clock.service": f"All {len(ahead)} streams are ahead of the service's clock, by "
+                f"{_time(min(ahead.values()))} at least: it is likely to be behind."
+            }
+        if self._step is not None and now - self._step[1] < _LASTS_S:
+            step = self._step[0]
+            way = "ahead" if step.by_s > 0.0 else "back"
+            faults["clock.service"] = (
+                f"The service's clock was set {way} by {_time(abs(step.by_s))}, to "
+                f"{step.now:%Y-%m-%d %H:%M:%S} UTC."
+            )
+        return faults
+
+
+def _time(seconds: float) -> str:
+    for unit, length in (("days", 86400.0), ("h", 3600.0), ("min", 60.0)):
+        if seconds >= 2.0 * length:
+            return f"{seconds / length:.1f} {unit}"
+    return f"{seconds:.0f} s"

@@ -1,0 +1,259 @@
+"""One cage's twin, stepped: with stored samples, with ticks, and by a clock that is set."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+
+import structlog
+
+from seacage.records import DEFAULT_LIMITS
+from seacage.service._live._alarm_desk import AlarmDesk
+from seacage.service._live._clock import Clock
+from seacage.service._live._clock_watch import ClockWatch, Step
+from seacage.service._live._past import (
+    adaptations,
+    amendments_at,
+    answered_in,
+    state_at,
+    streams_of,
+)
+from seacage.service._store._adapted import Adaptation, Refold
+from seacage.service._store._kept_samples import Stored
+from seacage.service._store._session import StoreError
+from seacage.service._store._store import Store
+from seacage.twin import (
+    ADAPTATION_BLOCK,
+    Answered,
+    Event,
+    Twin,
+    TwinState,
+    block_begin,
+)
+
+_RESTED = timedelta(seconds=30)  # without late samples, before the intervals are adapted anew
+_AT_ONCE = 6  # blocks of intervals adapted anew in one step
+_CHUNKS = 3  # of samples of a stream that one step withdraws: the others wait for the next
+_UNKEPT = timedelta(days=1)  # of readings that the intervals are adapted to at a first start
+_CAUGHT_UP = timedelta(minutes=2)  # more than the alarm book is ever behind
+_EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
+_log = structlog.get_logger(__name__)
+
+
+class LiveTwin:
+    """The state of a cage's twin, and all that moves it.
+
+    What it shows depends on the stored samples and the clock alone, and not on the order in which
+    they came or on when the service was stopped and started.
+
+    Parameters
+    ----------
+    name, twin, store, clock
+        Of the cage.
+    desk
+        Where its alarms are assessed.
+    tick_s
+        Between two assessments [s of the wall].
+    """
+
+    def __init__(
+        self, *, name: str, twin: Twin, store: Store, clock: Clock, desk: AlarmDesk, tick_s: float
+    ) -> None:
+        self._name, self._twin, self._store, self._clock = name, twin, store, clock
+        self._desk = desk
+        self._period = timedelta(seconds=tick_s * clock.speed)
+        self.clocks = ClockWatch(clock, streams=len(streams_of(twin)))
+        self._went_back: list[Step] = []
+        self._withdrawing: list[tuple[Step, str]] = []
+        self._reinstating: list[tuple[Step, str]] = []
+        self.begin()
+        self._catch_up()
+
+    @property
+    def answered(self) -> Answered:
+        """The answer of the last step."""
+        return self._answered
+
+    @property
+    def state(self) -> TwinState:
+        """What the twin remembers now."""
+        return self._state
+
+    def begin(self) -> Answered:
+        """Fold the state from what is stored, as at a start."""
+        now = self._clock.now()
+        self._folded: list[Adaptation] | None = None
+        self._looked: datetime | None = None
+        self._refold = self._store.refold(self._name)
+        kept = self._adapt_until(now)
+        self._state, self._answered = state_at(self._twin, self._store, self._name, now, kept=kept)
+        self._kept_until = self._state.adapted_until
+        return self._answered
+
+    def step(
+        self, arrived: Sequence[Stored], *, ticked: bool = True
+    ) -> tuple[Answered, tuple[Event, ...]]:
+        """Take in what was stored since the last step, and answer now.
+
+        Parameters
+        ----------
+        arrived
+            In the order in which it was stored.
+        ticked
+            Assess the alarms though the clock may not have gone on.
+        """
+        now = self._clock.now()
+        if (step := self.clocks.look()) is not None:
+            self._follow_clock(step)
+        amendments = [one for stored in arrived for one in stored.amendments]
+        samples = [sample for stored in arrived for sample in stored.fresh]
+        for sample in samples:
+            self.clocks.accepted(sample.stream)
+        self._settle_clock(now)
+        self._state, noticed = self._twin.receive(self._state, samples, now, amendments=amendments)
+        if amendments or any(stored.again for stored in arrived):
+            shown = amendments_at(self._twin, self._store, self._name, now)
+            self._state = replace(self._state, amendments=shown)
+        self._keep_adaptation()
+        if any(stored.late for stored in arrived):
+            self._refold, self._folded = self._store.refold(self._name), None
+        self._adapt_anew(now)
+        self._look(now, ticked=ticked)
+        self._state, events = self._twin.step(self._state, None, now)
+        answered = answered_in(events)
+        assert answered is not None  # a tick is always answered
+        self._answered = answered
+        events = tuple(one for one in events if not isinstance(one, Answered))
+        return answered, (*noticed, *events)
+
+    # Alarms
+
+    def _look(self, now: datetime, *, ticked: bool) -> None:
+        """Assess the alarms at full ticks of the clock, so that it does not matter who asks."""
+        due = self._tick(now)
+        if due != self._looked:
+            self._assess(due)
+            self._looked = due
+        elif ticked:
+            self._assess(now)
+
+    def _assess(self, at: datetime) -> None:
+        self._state, events = self._twin.step(self._state, None, at)
+        answered = answered_in(events)
+        assert answered is not None
+        self._desk.look(self._state, answered, faults=self.clocks.faults())
+
+    def _catch_up(self) -> None:
+        """Assess the alarms at the ticks since the book was kept, as who was killed would have."""
+        now, last = self._clock.now(), self._desk.looked_at
+        if last is None or last >= now:
+            return
+        end = min(now, last + _CAUGHT_UP)
+        at = self._tick(last) + self._period
+        while at <= end:
+            self._assess(at)
+            self._looked = at
+            at += self._period
+        self._state, _ = self._twin.step(self._state, None, now)
+
+    def _tick(self, at: datetime) -> datetime:
+        return at - (at - _EPOCH) % self._period
+
+    # Intervals
+
+    def _adapt_until(self, now: datetime) -> Adaptation | None:
+        """Adapt the intervals to the blocks that ended while nobody was there."""
+        kept, until = self._store.adaptation(self._name, at=now), block_begin(now)
+        if kept is None:  # none were kept before a stop, or a clock that went back took them
+            missed = list(self._adaptations(None, until - _UNKEPT, until))
+        elif kept.t is None:  # of 0.1.0, from now on
+            missed = [Adaptation(t=until, factors=kept.factors)]
+        else:
+            missed = list(self._adaptations(kept, kept.t + ADAPTATION_BLOCK, until))
+        self._keep(missed)
+        return missed[-1] if missed else kept
+
+    def _keep_adaptation(self) -> None:
+        until = self._state.adapted_until
+        if until is not None and (self._kept_until is None or until > self._kept_until):
+            self._kept_until = until
+            self._keep([Adaptation(t=until, factors=self._state.adapted)])
+
+    def _adapt_anew(self, now: datetime) -> None:
+        """Adapt the intervals anew from where late samples belong, once these have rested."""
+        refold = self._refold
+        if refold is None or timedelta(0) <= now - refold.touched < _RESTED:
+            return
+        if self._folded is None:
+            self._folded, self._fold = [], self._folding(refold)
+        for kept in self._fold:
+            self._folded.append(kept)
+            if len(self._folded) % _AT_ONCE == 0:
+                return
+        self._keep(self._folded, refold=refold)
+        last = self._store.adaptation(self._name, at=now)
+        self._state = self._state.with_factors(last.factors if last else None)
+        self._refold, self._folded = self._store.refold(self._name), None
+
+    def _folding(self, refold: Refold) -> Iterator[Adaptation]:
+        before = refold.t - timedelta(microseconds=1)
+        kept, start = self._store.adaptation(self._name, at=before), refold.t
+        while start <= (end := block_begin(self._clock.now())):
+            for one in self._adaptations(kept, start, end):
+                kept = one
+                yield one
+            start = end + ADAPTATION_BLOCK
+
+    def _adaptations(
+        self, kept: Adaptation | None, start: datetime, end: datetime
+    ) -> Iterator[Adaptation]:
+        return adaptations(self._twin, self._store, self._name, kept=kept, start=start, end=end)
+
+    def _keep(self, kept: Sequence[Adaptation], *, refold: Refold | None = None) -> None:
+        """Keep factors; where the disk takes none they are found again after the next start."""
+        done = self._store.keep_adaptations(self._name, kept, refold=refold)
+        if refold is not None:
+            try:
+                done.result()
+            except StoreError as error:
+                _log.warning("intervals not kept", cage=self._name, reason=str(error))
+
+    # Clocks that step
+
+    def _follow_clock(self, step: Step) -> None:
+        _log.error("the clock was set", cage=self._name, by_s=step.by_s, now=str(step.now))
+        streams = streams_of(self._twin)
+        self.begin()
+        if step.by_s < 0.0:
+            self._went_back.append(step)
+            self._withdrawing += [(step, stream) for stream in streams]
+            return
+        # Where a clock went back for a while only, what was withdrawn meanwhile was right.
+        undone = [one for one in self._went_back if one.expected <= step.now]
+        self._went_back = [one for one in self._went_back if one not in undone]
+        self._withdrawing = [one for one in self._withdrawing if one[0] not in undone]
+        self._reinstating += [(one, stream) for one in undone for stream in streams]
+
+    def _settle_clock(self, now: datetime) -> None:
+        """Withdraw samples that are ahead of a clock that went back, or take them back."""
+        changed = 0
+        try:
+            for tasks, change in (
+                (self._withdrawing, self._store.withdraw),
+                (self._reinstating, self._store.reinstate),
+            ):
+                for step, stream in list(tasks):
+                    counts = (
+                        change(
+                            self._name, stream, clock=step.now, now=now, limits=DEFAULT_LIMITS
+                        ).result()
+                        for _ in range(_CHUNKS)
+                    )
+                    for count in counts:
+                        changed += count
+                        if not count:
+                            tasks.remove((step, stream))
+                            break
+        except StoreError as error:
+            _log.warning("clock not settled yet", cage=self._name, reason=str(error))
+        if changed:
+            self.begin()

@@ -1,0 +1,536 @@
+"""Quality control in the store: each stream is checked in the order of its times, once.
+
+Samples get their flags in the transaction that stores them. One that comes late takes its place
+in time, and what follows it is checked again, as far as it makes a difference. So the flags are
+those of the samples that are stored, whatever came when and however often the service stopped.
+
+What the checks remember is kept as checkpoints, each in the transaction of its sample: the
+memory after any sample is that of the checkpoint before it, and of a few samples more.
+"""
+
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from datetime import datetime
+from functools import cache
+from math import isfinite
+from typing import TYPE_CHECKING
+
+from seacage.conventions import Flag
+from seacage.records import (
+    AHEAD,
+    GROUPS,
+    Amendment,
+    Limits,
+    QualityState,
+    Sample,
+    check_sample,
+    is_withdrawn,
+    withdrawn,
+)
+from seacage.service._store._checksum import checksum, with_checksum
+from seacage.service._store._rows import (
+    DAY_US,
+    Own,
+    SampleRow,
+    microseconds,
+    own_flags,
+    readable,
+    readings_text,
+    remarks_text,
+)
+from seacage.service._store._session import AbstractSession, DamageError
+
+if TYPE_CHECKING:
+    from pydantic import TypeAdapter
+
+EVERY = 256
+"""Samples between two checkpoints: a start, or a late sample, checks about so many again."""
+
+_AT_ONCE = 1000
+_HELD = 4 * _AT_ONCE  # entries of a long walk that wait to be written
+_LONGEST_S = 7 * 86_400.0
+_SECOND = 1_000_000
+
+_SAMPLES = """
+SELECT stream, t, seq, readings, remarks, t_ingest, crc FROM sample
+WHERE cage = ? AND stream = ?"""
+_FROM = f"{_SAMPLES} AND (t > ? OR (t = ? AND seq > ?)) ORDER BY t, seq LIMIT ?"
+_AT = f"{_SAMPLES} AND t = ? ORDER BY seq"
+_LAST = f"{_SAMPLES} AND t <= ? ORDER BY t DESC, seq DESC LIMIT ?"
+_AHEAD = f"{_SAMPLES} AND t > ? AND remarks NOT LIKE ? ORDER BY t DESC, seq DESC LIMIT ?"
+_GONE = f"{_SAMPLES} AND t <= ? AND remarks LIKE ? ORDER BY t, seq LIMIT ?"
+# What nobody has verified does not become so by an amendment.
+_AMEND = """
+UPDATE sample SET readings = ?, remarks = ?, crc = CASE WHEN crc < 0 THEN crc ELSE ? END
+WHERE cage = ? AND stream = ? AND t = ? AND seq = ?"""
+
+_MEMORY = "SELECT t, seq, memory, crc FROM quality WHERE cage = ? AND stream = ?"
+_BEFORE = f"{_MEMORY} AND (t < ? OR (t = ? AND seq < ?)) ORDER BY t DESC, seq DESC LIMIT ?"
+_BEHIND = f"{_MEMORY} AND (t > ? OR (t = ? AND seq > ?)) ORDER BY t, seq LIMIT ?"
+_KEEP = """
+INSERT INTO quality VALUES (?, ?, ?, ?, ?, ?)
+ON CONFLICT (cage, stream, t, seq) DO UPDATE SET memory = excluded.memory, crc = excluded.crc"""
+_CUT = "DELETE FROM quality WHERE cage = ? AND stream = ? AND t > ?"
+_RETIRE = """
+DELETE FROM quality WHERE cage = ? AND stream = ? AND t < (
+    SELECT max(t) FROM quality WHERE cage = ? AND stream = ? AND t < ?)"""
+
+_SEALED = "SELECT t, crc FROM sealed WHERE cage = ? AND stream = ? AND t >= ? AND t <= ?"
+
+Key = tuple[int, int]
+"""Time [us] and number: what a sample is known by in its stream."""
+
+Of = tuple[str, str]
+"""Cage and stream."""
+
+_FIRST: Key = (-(2**62), -1)
+_END: Key = (2**62, 2**62)
+
+
+@dataclass(frozen=True, slots=True)
+class Memory:
+    """What the checks remember after a stream's samples up to one of them.
+
+    Parameters
+    ----------
+    quality
+        Of the tests that look back.
+    newest
+        The last sample that carried each quantity, by door key.
+    at
+        The last sample of all.
+    since
+        Samples since the last checkpoint.
+    """
+
+    quality: QualityState = field(default_factory=QualityState)
+    newest: Mapping[str, Key] = field(default_factory=dict[str, Key])
+    at: Key = _FIRST
+    since: int = 0
+
+    def same(self, other: "Memory") -> bool:
+        """Whether whatever comes next is checked the same."""
+        return self.quality == other.quality and self.newest == other.newest
+
+    def after(
+        self, key: Key, sample: Sample, limits: Limits
+    ) -> tuple["Memory", Sample, tuple[Amendment, ...]]:
+        """Check the next sample: what is then remembered, its flags, and those that it amends."""
+        quality, own = check_sample(self.quality, sample, limits)
+        memory = Memory(
+            quality=replace(quality, amended=()),
+            newest={**self.newest, **dict.fromkeys(sample.values, key)},
+            at=key,
+            since=self.since + 1,
+        )
+        return memory, own, quality.amended
+
+    @property
+    def open(self) -> set[int]:
+        """Times of the samples that the next one may still amend [us]."""
+        return {anchor.time for anchor in self.quality.anchors.values()}
+
+
+@dataclass(slots=True)
+class Checked:
+    """What one transaction does to a stream.
+
+    Parameters
+    ----------
+    fresh
+        The samples that were not known, by key, with their flags.
+    amended
+        Of these, where a later one has amended a flag already.
+    again
+        Those among them whose row is there: they had been withdrawn.
+    amendments
+        Flags of stored samples that change.
+    walked
+        Whether stored samples were checked again.
+    """
+
+    fresh: dict[Key, Sample] = field(default_factory=dict[Key, Sample])
+    amended: dict[Key, dict[str, Own]] = field(default_factory=dict[Key, dict[str, Own]])
+    again: set[Key] = field(default_factory=set[Key])
+    amendments: list[Amendment] = field(default_factory=list[Amendment])
+    walked: bool = False
+
+
+class QualityControl:
+    """Checks the samples that a store takes, and remembers what the next are compared with.
+
+    It belongs to the one writer, which calls ``forget`` where a transaction has failed: what is
+    remembered is then read again.
+    """
+
+    def __init__(self) -> None:
+        self._memory: dict[Of, Memory] = {}
+        self._beyond: set[Of] = set()  # where withdrawn samples lie after the memory
+
+    def forget(self, of: Of | None = None) -> None:
+        """Forget a stream, or everything; the store has it."""
+        if of is None:
+            self._memory.clear()
+        else:
+            self._memory.pop(of, None)
+
+    def check(
+        self, session: AbstractSession, of: Of, samples: Mapping[Key, Sample], limits: Limits
+    ) -> Checked:
+        """Check samples of one stream, each in its place, and write what they amend.
+
+        Parameters
+        ----------
+        session, of
+            The transaction, and whose samples.
+        samples
+            As they came. Those that come back as ``fresh`` are the caller's to write.
+        limits
+            To check with.
+        """
+        end = self._remembered(session, of, limits)
+        doubtful = [key for key in samples if key <= end.at or of in self._beyond]
+        known = _known(session, of, doubtful)
+        again = {key for key, (_, one) in known.items() if is_withdrawn(one)}
+        fresh = deque(sorted(key for key in samples if key not in known or key in again))
+        checked = Checked(again=again)
+        for key in _of_sealed_days(session, of, fresh):
+            # Its neighbours have left the store.
+            _, checked.fresh[key] = check_sample(QualityState(), samples[key], limits)
+            fresh.remove(key)
+        if fresh:
+            walk = _Walk(session, of, end, limits, checked)
+            if fresh[0] <= end.at:
+                checked.walked = True
+                walk.memory = _root(session, of, fresh[0], limits)
+                _check_again(walk, end, fresh, samples)
+            while fresh:
+                key = fresh.popleft()
+                walk.take(key, samples[key])
+            walk.finish()
+            self._memory[of] = walk.memory
+        return checked
+
+    def withdraw(
+        self, session: AbstractSession, of: Of, *, clock: datetime, after: int, limits: Limits
+    ) -> Checked:
+        """Withdraw samples of a stream after a time [us], some at a time, the newest first."""
+        checked = Checked()
+        rows = _rows(session, _AHEAD, (*of, after, f"%{AHEAD}%"), limit=_AT_ONCE)
+        if not rows:
+            return checked
+        session.rows(_CUT, (*of, after))
+        gone = [
+            _Entry(withdrawn(sample, clock=clock), _key(row), row) for row, sample in readable(rows)
+        ]
+        _write(session, of, gone, checked)
+        # What they had shown of the samples before them is taken back.
+        walk = _Walk(session, of, _recalled(session, of, limits, until=after), limits, checked)
+        walk.open_again()
+        walk.finish()
+        self._memory.pop(of, None)
+        return checked
+
+    def _remembered(self, session: AbstractSession, of: Of, limits: Limits) -> Memory:
+        if of not in self._memory:
+            memory = _recalled(session, of, limits)
+            if memory.since >= EVERY:
+                memory = _keep(session, of, memory)
+            self._memory[of] = memory
+            last = readable(_rows(session, _LAST, (*of, _END[0]), limit=1))
+            beyond = any(is_withdrawn(sample) for _, sample in last)
+            (self._beyond.add if beyond else self._beyond.discard)(of)
+        return self._memory[of]
+
+
+def newest_keys(session: AbstractSession, of: Of, at: int) -> set[Key]:
+    """Find the last samples of a stream until a time [us] that carried each quantity."""
+    root = _checkpoint(session, of, _BEFORE, (at, _END[1]))
+    if root is None:
+        rows = reversed(_rows(session, _LAST, (*of, at), limit=4 * EVERY))
+        found = ((row, sample) for row, sample in readable(rows) if not is_withdrawn(sample))
+    else:
+        found = _stored(session, of, root.at, until=(at, _END[1]))
+    newest = dict[str, Key]() if root is None else dict(root.newest)
+    for row, sample in found:
+        newest |= dict.fromkeys(sample.values, _key(row))
+    return set(newest.values())
+
+
+def withdrawn_samples(
+    session: AbstractSession, of: Of, *, clock: datetime, until: int
+) -> dict[Key, Sample]:
+    """Find samples until a time [us] that were withdrawn by a clock, the first of them."""
+    which = (*of, until, f"%{AHEAD} at {clock.isoformat()}%")
+    rows = _rows(session, _GONE, which, limit=_AT_ONCE)
+    return {_key(row): sample for row, sample in readable(rows)}
+
+
+def retire_memory(session: AbstractSession, of: Of, before: int) -> None:
+    """Delete the checkpoints before a time [us] but for the last."""
+    session.rows(_RETIRE, (*of, *of, before))
+
+
+@dataclass(slots=True)
+class _Entry:
+    """A sample that was checked: as its own check found it, and what later ones showed of it."""
+
+    own: Sample
+    key: Key
+    row: SampleRow | None = None  # as it is stored
+    later: dict[str, tuple[Flag, int, str]] = field(
+        default_factory=dict[str, tuple[Flag, int, str]]
+    )
+
+    @property
+    def sample(self) -> Sample:
+        """With the flags that it has now."""
+        if not self.later:
+            return self.own
+        flags = {key: flag for key, (flag, _, _) in self.later.items()}
+        remarks = (remark for _, _, remark in self.later.values())
+        return replace(
+            self.own, flags={**self.own.flags, **flags}, remarks=(*self.own.remarks, *remarks)
+        )
+
+    @property
+    def amended(self) -> dict[str, Own]:
+        return {key: (int(self.own.flags[key]), t) for key, (_, t, _) in self.later.items()}
+
+
+class _Walk:
+    """The checks on their way along a stream, and what changes by them."""
+
+    def __init__(
+        self, session: AbstractSession, of: Of, memory: Memory, limits: Limits, checked: Checked
+    ) -> None:
+        self.session, self.of, self.memory, self.limits = session, of, memory, limits
+        self._checked = checked
+        self._entries: dict[Key, _Entry] = {}
+
+    def pass_by(self, key: Key, sample: Sample) -> None:
+        """Go past a sample whose flags stay as they are."""
+        self.memory, _, _ = self.memory.after(key, sample, self.limits)
+
+    def take(
+        self, key: Key, sample: Sample, row: SampleRow | None = None, *, again: bool = False
+    ) -> None:
+        """Check a sample in its place; ``row`` is what is stored of it.
+
+        Where samples are checked again the checkpoints that there are serve, as long as they lie
+        near enough.
+        """
+        self.memory, own, amendments = self.memory.after(key, sample, self.limits)
+        for one in amendments:
+            self._amend(one, key[0])
+        self._entries[key] = _Entry(own, key, row)
+        if self.memory.since >= EVERY * (2 if again else 1):
+            self.keep()
+        if len(self._entries) > _HELD:
+            self._write(lambda entry: entry.key[0] not in self.memory.open)
+
+    def keep(self) -> None:
+        """Make a checkpoint here."""
+        self.memory = _keep(self.session, self.of, self.memory)
+
+    def open_again(self) -> None:
+        """Take up the samples that the next may amend, without what was found of them later."""
+        for t in self.memory.open:
+            self._load(t)
+
+    def finish(self, until: Key = _END) -> None:
+        """Write what has changed until a sample, and leave what follows as it is stored."""
+        self._write(lambda entry: entry.key <= until)
+        self._entries.clear()
+
+    def _amend(self, one: Amendment, by: int) -> None:
+        t = microseconds(one.t)
+        if not (meant := self._at(t)):
+            self._load(t)
+            meant = self._at(t)
+        for entry in meant:
+            if one.flag > entry.own.flags.get(one.key, one.flag):
+                entry.later[one.key] = (one.flag, by, one.remark)
+
+    def _at(self, t: int) -> list[_Entry]:
+        return [entry for key, entry in self._entries.items() if key[0] == t]
+
+    def _load(self, t: int) -> None:
+        for row, sample in readable(_rows(self.session, _AT, (*self.of, t))):
+            if not is_withdrawn(sample) and _key(row) not in self._entries:
+                flags = own_flags(row[3])
+                later = sum(flag != sample.flags[key] for key, flag in flags.items())
+                remarks = sample.remarks[: len(sample.remarks) - later]
+                own = replace(sample, flags=flags, remarks=remarks)
+                self._entries[_key(row)] = _Entry(own, _key(row), row)
+
+    def _write(self, which: Callable[[_Entry], bool]) -> None:
+        done = [entry for entry in self._entries.values() if which(entry)]
+        for entry in done:
+            del self._entries[entry.key]
+        _write(self.session, self.of, done, self._checked)
+
+
+def _check_again(
+    walk: _Walk, end: Memory, fresh: deque[Key], samples: Mapping[Key, Sample]
+) -> None:
+    """Check late samples and what follows them, until it makes no difference any more."""
+    kept = _checkpoint(walk.session, walk.of, _BEHIND, fresh[0])
+    same_from: Key | None = None
+    began = False
+    for row, sample in _stored(walk.session, walk.of, walk.memory.at, until=end.at):
+        key = _key(row)
+        while fresh and fresh[0] < key:
+            if not began:
+                began = True
+                walk.open_again()
+            late = fresh.popleft()
+            walk.take(late, samples[late], again=True)
+            same_from = None
+        if not began:
+            walk.pass_by(key, sample)
+            continue
+        walk.take(key, sample, row, again=True)
+        if kept is not None and key == kept.at:
+            same_from = key if same_from is None and walk.memory.same(kept) else same_from
+            walk.keep()
+            kept = _checkpoint(walk.session, walk.of, _BEHIND, key)
+        more = fresh and fresh[0] <= end.at
+        if same_from and not more and min(walk.memory.open, default=key[0]) > same_from[0]:
+            walk.finish(same_from)
+            walk.memory = end
+            return
+    if not began:
+        walk.open_again()
+
+
+def _root(session: AbstractSession, of: Of, key: Key, limits: Limits) -> Memory:
+    """What was remembered a little before a sample."""
+    kept = _checkpoint(session, of, _BEFORE, key)
+    return kept or _begun(session, of, key[0], limits)
+
+
+def _recalled(session: AbstractSession, of: Of, limits: Limits, *, until: int = _END[0]) -> Memory:
+    """What is remembered after the last sample until a time [us], from the last checkpoint on."""
+    kept = _checkpoint(session, of, _BEFORE, (until, _END[1]))
+    memory = kept or _begun(session, of, until, limits)
+    for row, sample in _stored(session, of, memory.at, until=(until, _END[1])):
+        memory, _, _ = memory.after(_key(row), sample, limits)
+    return memory
+
+
+def _begun(session: AbstractSession, of: Of, t: int, limits: Limits) -> Memory:
+    """Where to begin without a checkpoint: at the first sample, or as far back as the tests look.
+
+    Only stores of 0.1.0 have more samples before their first checkpoint than are looked at here.
+    """
+    last = [sample for _, sample in readable(_rows(session, _LAST, (*of, t), limit=4 * EVERY))]
+    if not last:
+        return Memory()
+    seen, reach_s = {key for one in last for key in one.values}, 0.0
+    for group, keys in GROUPS.items():
+        if not seen.isdisjoint(keys):
+            steady = limits.steadiness[group]
+            times = (steady.attenuated_s, steady.flat_fail_s, steady.gap_s)
+            reach_s = max(reach_s, *(one for one in times if isfinite(one)), 0.0)
+    reach = 2 * round(min(reach_s, _LONGEST_S) * _SECOND)
+    return Memory(at=(min(microseconds(last[-1].t), microseconds(last[0].t) - reach), -2))
+
+
+def _stored(
+    session: AbstractSession, of: Of, after: Key, *, until: Key
+) -> Iterator[tuple[SampleRow, Sample]]:
+    """Read the samples of a stream in order, but for those that are withdrawn."""
+    while rows := _rows(session, _FROM, (*of, after[0], *after), limit=_AT_ONCE):
+        for row, sample in readable(rows):
+            if _key(row) > until:
+                return
+            if not is_withdrawn(sample):
+                yield row, sample
+        if _key(rows[-1]) <= after:
+            raise DamageError(f"{of[0]}: samples of {of[1]} lie in disorder on the disk.")
+        after = _key(rows[-1])
+
+
+def _known(
+    session: AbstractSession, of: Of, keys: Sequence[Key]
+) -> dict[Key, tuple[SampleRow, Sample]]:
+    """Find which of some samples are stored."""
+    found = dict[Key, tuple[SampleRow, Sample]]()
+    times = sorted({t for t, _ in keys})
+    for first in range(0, len(times), _AT_ONCE):
+        some = times[first : first + _AT_ONCE]
+        places = ", ".join("?" * len(some))
+        rows = _rows(session, f"{_SAMPLES} AND t IN ({places})", (*of, *some))
+        found |= {_key(row): (row, sample) for row, sample in readable(rows)}
+    return {key: found[key] for key in keys if key in found}
+
+
+def _of_sealed_days(session: AbstractSession, of: Of, keys: Sequence[Key]) -> list[Key]:
+    if not keys:
+        return []
+    first, last = keys[0][0], keys[-1][0]
+    days = session.intact("sealed", _SEALED, (*of, first - first % DAY_US, last), of)
+    sealed = {t for (t,) in days}
+    return [key for key in keys if key[0] - key[0] % DAY_US in sealed] if sealed else []
+
+
+def _write(session: AbstractSession, of: Of, entries: Sequence[_Entry], checked: Checked) -> None:
+    """Write the entries that differ from what is stored; those that are not stored are fresh."""
+    changes = list[tuple[object, ...]]()
+    for entry in entries:
+        sample = entry.sample
+        if entry.row is None:
+            checked.fresh[entry.key] = sample
+            checked.amended[entry.key] = entry.amended
+            continue
+        texts = readings_text(sample, entry.amended), remarks_text(sample)
+        if texts != entry.row[3:5]:
+            crc = checksum("sample", (*of, *entry.key, *texts, entry.row[5]))
+            changes.append((*texts, crc, *of, *entry.key))
+            checked.amendments += _amendments(entry.row, sample)
+    session.each(_AMEND, changes)
+
+
+def _amendments(row: SampleRow, sample: Sample) -> Iterator[Amendment]:
+    ((_, before),) = readable([row])
+    for key, flag in sample.flags.items():
+        if flag != (was := before.flags[key]):
+            why = [remark for remark in sample.remarks if f" {key} " in remark]
+            remark = why[-1] if why else f"{sample.stream}: {key} is good after all."
+            yield Amendment(
+                stream=sample.stream, t=sample.t, key=key, flag=flag, was=was, remark=remark
+            )
+
+
+def _checkpoint(session: AbstractSession, of: Of, which: str, key: Key) -> Memory | None:
+    rows = session.intact("quality", which, (*of, key[0], *key), of, limit=1)
+    if not rows:
+        return None
+    ((t, seq, text),) = rows
+    quality, newest = _adapter().validate_json(text)
+    return Memory(quality=quality, newest=newest, at=(t, seq))
+
+
+def _keep(session: AbstractSession, of: Of, memory: Memory) -> Memory:
+    text = _adapter().dump_json((memory.quality, dict(memory.newest))).decode()
+    session.rows(_KEEP, with_checksum("quality", *of, *memory.at, text))
+    return replace(memory, since=0)
+
+
+def _rows(
+    session: AbstractSession, sql: str, values: Sequence[object], *, limit: int | None = None
+) -> list[SampleRow]:
+    return session.intact("sample", sql, values, values[:1], limit=limit)
+
+
+def _key(row: SampleRow) -> Key:
+    return row[1], row[2]
+
+
+@cache
+def _adapter() -> "TypeAdapter[tuple[QualityState, dict[str, Key]]]":
+    from pydantic import TypeAdapter
+
+    return TypeAdapter(tuple[QualityState, dict[str, Key]])

@@ -1,0 +1,104 @@
+from dataclasses import replace
+from datetime import timedelta
+
+import pytest
+
+from seacage.conventions import Flag
+from seacage.records import Sample
+from seacage.service._forms._schemas import AlarmBrief
+from seacage.service._live._answers import state_of, summary_of
+from seacage.service._live._concerns import concerns_of
+from seacage.testing import stand_in_twin
+from seacage.twin import AlarmPolicy, Answered
+from serviced import NOON
+
+SEA = {"current_speed_m_s": 0.5, "current_to_deg": 90.0}
+
+
+def at(minutes: float):
+    return NOON + timedelta(minutes=minutes)
+
+
+def shackle(minutes: float, kilonewtons: float) -> Sample:
+    return Sample(stream="shackle-2", t=at(minutes), values={"tension_kn": kilonewtons})
+
+
+def depth(minutes: float, metres: float) -> Sample:
+    return Sample(stream="depth-2", t=at(minutes), values={"depth_m": metres})
+
+
+def seen(*samples: Sample, minutes: float = 0.0, least_volume: float = 0.0):
+    """State and concerns of a cage that has received samples, in a current of 0.5 m/s."""
+    twin = stand_in_twin()
+    memory = twin.start()
+    for sample in (Sample(stream="buoy-1", t=NOON, values=SEA), *samples):
+        memory, _ = twin.step(memory, sample, max(sample.t, memory.clock or sample.t))
+    memory, events = twin.step(memory, None, at(minutes))
+    answered = next(event for event in reversed(events) if isinstance(event, Answered))
+    state = state_of("ace", twin, answered, memory)
+    policy = AlarmPolicy.default(twin.cage, buoy=twin.buoy, watch=twin.watch)
+    found = concerns_of(state, memory, policy=policy, least_volume=least_volume)
+    return state, {one.kind: one for one in found}
+
+
+def test_a_cage_with_a_valid_reading_and_everything_within_its_limits_has_no_concern():
+    assert seen(depth(0, 14.2))[1] == {}
+
+
+def test_a_net_below_the_least_volume_is_a_concern_with_its_limit():
+    _, concerns = seen(depth(0, 14.2), least_volume=0.999)
+    assert concerns.keys() == {"volume"}
+    assert concerns["volume"].message.endswith("100 % is the limit.")
+
+
+def test_a_measured_load_at_its_alarms_limit_is_a_concern_before_any_alarm_is_raised():
+    state, concerns = seen(shackle(0, 128.0))
+    assert state.alarms == []
+    said = "bridle-8 bears 80 % of its capacity, measured by shackle-2; 80 % is the limit."
+    assert concerns["load"].message == said
+    assert summary_of("ace", state).max_utilisation == pytest.approx(0.8)
+
+
+def test_a_measured_load_holds_until_its_shackle_is_silent_as_its_alarm_takes_it():
+    for minutes, measured in ((14.0, 60.0), (16.0, None)):
+        state, _ = seen(shackle(0, 60.0), minutes=minutes)
+        assert state.bridles[7].measured_kn == measured
+
+
+def test_waves_count_by_their_mean_over_the_last_minute():
+    state, _ = seen(*(shackle(k / 12, 50.0 + 20.0 * (k % 2)) for k in range(12)), minutes=1.0)
+    assert state.bridles[7].measured_kn == pytest.approx(60.0)
+
+
+def test_a_load_of_a_shackle_that_reads_irregularly_is_not_believed():
+    state, _ = seen(shackle(0, 128.0))
+    alarm = AlarmBrief(
+        id="irregular.shackle-2",
+        severity=500,
+        title="shackle-2 reads irregularly",
+        message="",
+        active=True,
+        acknowledged=False,
+        shelved=False,
+        since=NOON,
+    )
+    state = state.model_copy(update={"alarms": [alarm]})
+    assert summary_of("ace", state).max_utilisation < 0.5
+
+
+def test_a_cage_of_which_no_sensor_has_given_a_valid_reading_is_not_measured():
+    assert seen()[1]["measured"].title == "Nothing measured"
+    assert seen(depth(0, 14.2), minutes=16)[1]["measured"].title == "Nothing measured"
+
+
+def test_a_sensor_that_sends_nothing_valid_within_its_timeout_is_named_though_it_is_not_silent():
+    ill = tuple(depth(minutes, -40.0 - minutes) for minutes in range(0, 20, 5))
+    state, concerns = seen(shackle(15, 20.0), *ill, minutes=16)
+    assert state.silent == []
+    assert concerns["measured"].title == "Partly measured"
+    assert "depth-2" in concerns["measured"].message
+
+
+def test_one_bad_reading_after_a_good_one_is_no_concern():
+    bad = replace(depth(5, -40.0), flags={"depth_m": Flag.FAIL}, remarks=())
+    assert seen(depth(0, 14.2), bad, minutes=6)[1] == {}
