@@ -244,12 +244,14 @@ class Models:
         return {"bridle": bridle, "sensor": sensor}
 
     def _widened_outside(self, x: Features, behind: Prediction) -> Prediction:
-        """Widen each level 2 outside its own domain."""
+        """Widen each level 2 outside its own domain, without a step at its edge."""
         std = behind.std.copy()
         for column, (name, domain) in enumerate(self.upper_domains.items()):
-            beyond = ~domain.contains(x)
+            edge = nearest_inside(x, domain)
+            # Not ``contains``, whose margin would make a step that no table can follow.
+            beyond = np.any(np.abs(edge - x) > ROUNDING, axis=1)
             if beyond.any():
-                edge = nearest_inside(x[beyond], domain)
+                edge = edge[beyond]
                 there = self.upper[name].behind(edge, self.lower(name).predict(edge)).mean
                 std[beyond, column] = np.hypot(
                     std[beyond, column], behind.mean[beyond, column] - there

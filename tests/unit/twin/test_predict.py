@@ -178,6 +178,18 @@ def half_a_tide():
     return replace(twin, models=twin.models.taught("shackle-1", trained)), process.cases()[west]
 
 
+def test_the_spread_of_level_2_has_no_step_at_the_edge_of_its_own_domain():
+    twin = stand_in_twin()
+    # From slack water out past the edge of the domain, which lies inside level 1's.
+    speed = np.linspace(0.0, 0.95, 2000)
+    velocity = speed[:, None] * np.array([np.cos(0.6), np.sin(0.6)])
+    water = replace(Metocean.from_columns({}, len(speed)), current_velocity=velocity)
+    answer = twin.predict(water)
+    assert not answer.sensor_in_domain.all(axis=0).any()
+    step = np.abs(np.diff(answer.sensor.std, axis=0)) / answer.sensor.std[:-1]
+    assert step.max() < 0.05
+
+
 def test_level_2_outside_its_own_domain_is_labelled_and_widened():
     twin, trained = half_a_tide()
     # The nearest water that trained it to a current to the east is the least westerly.
