@@ -2,7 +2,7 @@
 
 import itertools
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from datetime import UTC, datetime, timedelta
 from urllib.parse import quote
 
@@ -10,6 +10,7 @@ import psycopg
 from psycopg.conninfo import conninfo_to_dict
 
 from seacage.records import Sample
+from seacage.service._store._store import open_store
 
 NOON = datetime(2020, 2, 1, 12, tzinfo=UTC)
 
@@ -25,6 +26,10 @@ def put(store, *samples, cage="ace", limits=None, ingested=NOON):
     """Store samples, with their own flags or checked by limits; whether each was new."""
     asked = store.append(cage, samples, ingested=ingested, limits=limits)
     return asked.result(timeout=20).new
+
+
+def opened(path):
+    return closing(open_store(path))
 
 
 @contextmanager

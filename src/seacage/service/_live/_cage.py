@@ -132,11 +132,6 @@ class LiveCage:
         return self._topology
 
     @property
-    def watchers(self) -> int:
-        """How many live connections there are."""
-        return len(self._mailboxes)
-
-    @property
     def latest_allowed(self) -> datetime:
         """The time after which a sample's own clock must be wrong."""
         return latest_allowed(self.clock, self.twin.watch.future_s)
@@ -146,10 +141,9 @@ class LiveCage:
     ) -> State:
         """Say what the cage does at one time, and what of it is not well."""
         state = state_of(self.name, self.twin, answered, memory)
-        state = state.model_copy(update={"alarms": list(alarms)})
         policy, least = self.desk.policy, self._least_volume
         concerns = concerns_of(state, memory, policy=policy, least_volume=least)
-        return state.model_copy(update={"concerns": list(concerns)})
+        return state.model_copy(update={"alarms": list(alarms), "concerns": list(concerns)})
 
     def refuse_ahead(self, stream: str, t: datetime) -> None:
         """Note that a sample was refused as later than ``latest_allowed``."""

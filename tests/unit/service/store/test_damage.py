@@ -1,7 +1,6 @@
 """Damage that no disk reports: found, told, left out, and what is whole is kept."""
 
 import random
-from contextlib import contextmanager
 from datetime import timedelta
 from pathlib import Path
 
@@ -11,24 +10,15 @@ from seacage.records import DEFAULT_LIMITS
 from seacage.service._store import _care
 from seacage.service._store._adapted import Adaptation
 from seacage.service._store._kept_aggregates import renew_rested
-from seacage.service._store._store import StoreError, open_store
+from seacage.service._store._store import StoreError
 from seacage.twin import Action, Happened
 from serviced import depth, eventually, running
-from stores import NOON, put, sample
+from stores import NOON, opened, put, sample
 
 STREAMS = ("depth-1", "depth-2", "depth-3")
 A_DAY = 60 * 24
 BOOK = '{"book": "' + 1500 * "alarm " + '"}'  # longer than a page
 FROZEN = Path(__file__).parents[3] / "frozen" / "0.1.0"
-
-
-@contextmanager
-def opened(path):
-    store = open_store(path)
-    try:
-        yield store
-    finally:
-        store.close()
 
 
 @pytest.fixture

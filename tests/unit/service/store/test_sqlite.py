@@ -7,23 +7,14 @@ import sqlite3
 import subprocess
 import sys
 import time
-from contextlib import closing, contextmanager
+from contextlib import closing
 from datetime import timedelta
 
 import pytest
 
 from seacage.conventions import SeacageError
 from seacage.service._store._store import StoreError, open_store
-from stores import NOON, put, sample
-
-
-@contextmanager
-def opened(path):
-    store = open_store(path)
-    try:
-        yield store
-    finally:
-        store.close()
+from stores import NOON, opened, put, sample
 
 
 @pytest.fixture
