@@ -13,7 +13,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 # A file's tests go to one worker, so that its fixtures are made once.
 PYTEST := $(BIN)/python -m pytest -n $(WORKERS) --dist loadfile
 OUTSIDE := mosquitto,postgres,node,chromium
-FAST := not slow and not long and not mosquitto and not postgres and not node and not chromium
+FAST := not slow and not mosquitto and not postgres and not node and not chromium
 KERNEL := src/seacage/dynamics
 BUILT := $(wildcard $(KERNEL)/_kernel_*.so $(KERNEL)/_kernel_*.dylib)
 PAGE := src/seacage/service/page/sources.sha256
@@ -43,11 +43,11 @@ test-times: .venv/.dev .venv/.project ## where the fast tests' processor time go
 
 test-rest: .venv/.dev .venv/.project $(PAGE) ## the slow tests, and those with Mosquitto, PostgreSQL, Node or Chromium
 	tools/services.sh
-	SEACAGE_REQUIRE=$(OUTSIDE) $(PYTEST) -m "not ($(FAST)) and not long"
+	SEACAGE_REQUIRE=$(OUTSIDE) $(PYTEST) -m "not ($(FAST))"
 
-test-long: .venv/.dev .venv/.project $(PAGE) ## the long forms: thousands of histories, messages and calls
+test-long: .venv/.dev .venv/.project $(PAGE) ## the long forms of some tests: thousands of histories, messages and calls, in hours
 	tools/services.sh
-	SEACAGE_REQUIRE=$(OUTSIDE) $(PYTEST) -m "long"
+	SEACAGE_LONG=1 SEACAGE_REQUIRE=$(OUTSIDE) $(PYTEST) -m "long"
 
 test-all: .venv/.dev .venv/.project $(PAGE) ## every test; none may skip for want of an outside program
 	tools/services.sh

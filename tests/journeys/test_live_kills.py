@@ -17,6 +17,7 @@ from seacage.service._store._checksum import with_checksum
 from seacage.service._store._place import database_at
 from seacage.service._store._store import open_store
 from seacage.testing import stand_in_twin
+from sized import sized
 
 pytestmark = pytest.mark.timeout(900)
 
@@ -111,9 +112,10 @@ def stored(place):
 
 
 @pytest.mark.mosquitto
-@pytest.mark.parametrize("kills", [5, pytest.param(25, marks=pytest.mark.slow)])
+@pytest.mark.long
+@pytest.mark.timeout(sized(900, 7200))
 def test_a_service_killed_while_it_is_fed_keeps_every_acknowledged_sample_once_and_its_alarms(
-    tmp_path, kills
+    tmp_path,
 ):
     stand_in_twin().write(tmp_path / "twin")
     place, moment = tmp_path / "data" / "samples.sqlite", random.Random(0)
@@ -131,7 +133,7 @@ def test_a_service_killed_while_it_is_fed_keeps_every_acknowledged_sample_once_a
         assert before[0]["active"]
         assert before[0]["acknowledged"]
         with meanwhile(by_http(service.client, acknowledged), by_mqtt(talker, said)):
-            for _ in range(kills):
+            for _ in range(sized(25, 500)):
                 time.sleep(moment.uniform(0.1, 1.5))
                 promised = len(acknowledged)
                 service.kill()

@@ -20,6 +20,7 @@ from seacage.service._store._rows import microseconds
 from seacage.service._store._store import look_into
 from seacage.testing import stand_in_campaign, stand_in_field, stand_in_seas, stand_in_twin
 from seacage.twin import Training, train
+from sized import sized
 
 pytestmark = [pytest.mark.mosquitto, pytest.mark.timeout(900)]
 
@@ -120,10 +121,11 @@ def lost_and_found(service):
     return sorted(one for one in raised if one.startswith("silent."))
 
 
-@pytest.mark.parametrize("outage", [SHORT, pytest.param(WHOLE, marks=pytest.mark.long)])
+@pytest.mark.long
 def test_what_a_broker_missed_follows_behind_what_is_live_and_each_source_was_lost_once(
-    tmp_path, outage, capsys
+    tmp_path, capsys
 ):
+    outage = sized(SHORT, WHOLE)
     twin, place = twin_with(outage.depth_sensors), tmp_path / "data" / "samples.sqlite"
     twin.write(tmp_path / "twin")
     with (

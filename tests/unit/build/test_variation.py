@@ -47,27 +47,27 @@ def test_an_order_is_random_but_the_same_for_all_workers(request: pytest.Fixture
 
 
 def expressions() -> list[Expression]:
-    """Of `make test`, `make test-rest` and `make test-long`."""
+    """Of `make test` and `make test-rest`."""
     text = (ROOT / "Makefile").read_text()
     fast = re.search(r"^FAST := (.*)$", text, re.MULTILINE)
     assert fast
     return [
         Expression.compile(re.sub(r"\$\(FAST\)", fast[1], found))
-        for target in ("test", "test-rest", "test-long")
+        for target in ("test", "test-rest")
         for found in re.findall(
             rf'^{target}:[^#]*##.*\n(?:\t.*\n)*?\t.*-m "(.*)"', text, re.MULTILINE
         )
     ]
 
 
-def test_every_test_but_the_long_forms_runs_in_ci_once(pytestconfig: pytest.Config) -> None:
+def test_every_test_runs_in_ci_once(pytestconfig: pytest.Config) -> None:
     runs = (ROOT / ".ci/run").read_text()
     assert re.search(r"^env \$variation make test$", runs, re.MULTILINE)
     assert re.search(r"^make test-rest$", runs, re.MULTILINE)
-    all_three = expressions()
-    assert len(all_three) == 3
+    both = expressions()
+    assert len(both) == 2
     for name, marks in pytestconfig.stash[MARKS].items():
-        chosen = [one.evaluate(lambda mark, **_: mark in marks) for one in all_three]  # noqa: B023
+        chosen = [one.evaluate(lambda mark, **_: mark in marks) for one in both]  # noqa: B023
         assert sum(chosen) == 1, name
 
 

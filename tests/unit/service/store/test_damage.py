@@ -13,6 +13,7 @@ from seacage.service._store._kept_aggregates import renew_rested
 from seacage.service._store._store import StoreError
 from seacage.twin import Action, Happened
 from serviced import depth, eventually, running
+from sized import sized
 from stores import NOON, opened, put, sample
 
 STREAMS = ("depth-1", "depth-2", "depth-3")
@@ -99,10 +100,10 @@ def looked_at(path):
             return {}, store.lost, str(error)
 
 
-@pytest.mark.parametrize(
-    "flips", [12, pytest.param(300, marks=[pytest.mark.long, pytest.mark.timeout(3600)])]
-)
-def test_no_flipped_bit_changes_or_hides_anything_in_silence(path, flips, record_property):
+@pytest.mark.long
+@pytest.mark.timeout(sized(120, 3600))
+def test_no_flipped_bit_changes_or_hides_anything_in_silence(path, record_property):
+    flips = sized(12, 300)
     fill(path, count=120, lines=40)
     truth, said, _ = looked_at(path)
     assert said is None
