@@ -53,12 +53,13 @@ test-all: .venv/.dev .venv/.project $(PAGE) ## every test; none may skip for wan
 	tools/services.sh
 	SEACAGE_REQUIRE=$(OUTSIDE) $(PYTEST)
 
-lint: .venv/.dev .venv/.project ## style, types, imports and spelling
+lint: .venv/.dev .venv/.project ## style, types, imports, spelling, and what is hard to read
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/pyright
 	$(BIN)/lint-imports
 	$(BIN)/typos
+	$(BIN)/python tools/house.py
 
 check: lint test ## lint, then the fast tests
 
