@@ -13,7 +13,7 @@ OUR_OWN = {
     "service/_small_files.py": {".read_bytes"},
     "service/_wires/_spool.py": {"json.loads", ".read_bytes", ".read_text"},
     "service/_wires/_tail.py": {"json.loads", ".read_text"},  # the place in a table
-    "twin/_online.py": {"json.loads"},  # a column of the store
+    "twin/_interval_factors.py": {"json.loads"},  # a column of the store
     "campaigns/_stretches.py": {"json.loads", ".read_bytes", ".read_text"},
     "studies": {"json.loads", ".read_bytes", ".read_text", "np.load"},
     # What comes with the package.

@@ -8,11 +8,11 @@ from hypothesis import strategies as st
 
 from seacage.conventions import InputError
 from seacage.twin import Alarm, AlarmBook
-from seacage.twin._irregular import Sense
-from seacage.twin._irregular_block import Open
-from seacage.twin._irregular_told import Suspicion
-from seacage.twin._irregular_usual import Usual
-from seacage.twin._irregular_weighed import Belief
+from seacage.twin._faults._baseline import Usual
+from seacage.twin._faults._detector import Suspicion
+from seacage.twin._faults._evidence import Belief
+from seacage.twin._faults._residuals import Open
+from seacage.twin._faults._sensor import Sense
 
 EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 NUMBERS = st.floats(allow_nan=False, allow_infinity=False)

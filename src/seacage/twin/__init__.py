@@ -1,39 +1,51 @@
 """The live loop as pure functions: sample in, events out."""
 
 from seacage.twin._adaptation import ADAPTATION_BLOCK
-from seacage.twin._alarm import Action, Alarm, Changed, Happened, Limit
 from seacage.twin._alarm_book import AlarmBook
-from seacage.twin._alarm_handled import (
+from seacage.twin._alarms import (
+    Action,
+    Alarm,
+    AlarmKpi,
+    AlarmPolicy,
+    AlarmText,
+    Changed,
+    Happened,
+    Limit,
     acknowledge,
+    alarm_kpi,
+    described,
+    measured_loads,
     put_in_service,
     remark,
     shelve,
     take_out_of_service,
     unshelve,
 )
-from seacage.twin._alarm_kpi import AlarmKpi, alarm_kpi
-from seacage.twin._alarm_numbers import measured_loads
-from seacage.twin._alarm_policy import AlarmPolicy
-from seacage.twin._alarm_text import AlarmText, described
-from seacage.twin._align import Pairs, align, spread_out, teaching_window
 from seacage.twin._answer import Answer, interval_reason
 from seacage.twin._assess import assess
-from seacage.twin._clearance import Clearance, PathClearance
 from seacage.twin._correction import Correction, Said, Spread
 from seacage.twin._discrepancy import Discrepancy
 from seacage.twin._events import Answered, Event, Flagged, StreamBack, StreamSilent
-from seacage.twin._inspection import InspectionPath, Pattern, Side, inspection_path
+from seacage.twin._interval_factors import adapted_at, adapted_at_us, block_begin
 from seacage.twin._metocean import Metocean
 from seacage.twin._models import Models
-from seacage.twin._online import adapted_at, adapted_at_us, block_begin
-from seacage.twin._predicted_net import PredictedNet, StaleError
+from seacage.twin._pairs import Pairs, align, spread_out, teaching_window
 from seacage.twin._provenance import Lesson, Provenance
-from seacage.twin._replay import replay
-from seacage.twin._signature import read_key
+from seacage.twin._rov import (
+    Clearance,
+    InspectionPath,
+    PathClearance,
+    Pattern,
+    PredictedNet,
+    Side,
+    StaleError,
+    inspection_path,
+)
+from seacage.twin._saving import read_key
 from seacage.twin._state import TwinState, Watch
 from seacage.twin._tabulated import Loads, TabulatedTwin
-from seacage.twin._train import Training, train, update
-from seacage.twin._twin import Twin
+from seacage.twin._training import Training, train, update
+from seacage.twin._twin import Twin, replay
 
 __all__ = [
     "ADAPTATION_BLOCK",

@@ -5,9 +5,16 @@ from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 
 from seacage.records import Sample
+from seacage.twin._interval_factors import (
+    BLOCK_US,
+    Expected,
+    Tracked,
+    adapted_by,
+    block_begin,
+    counts,
+)
 from seacage.twin._metocean import INPUT_KEYS, Metocean
 from seacage.twin._models import Models
-from seacage.twin._online import BLOCK_US, Expected, Tracked, adapted_by, block_begin, counts
 from seacage.twin._reading import Reading, held_reading
 from seacage.twin._state import TwinState, Watch
 

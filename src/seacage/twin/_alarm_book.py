@@ -7,8 +7,8 @@ from functools import cache
 from typing import TYPE_CHECKING, Self
 
 from seacage.conventions import InputError
-from seacage.twin._alarm import Alarm, Changed
-from seacage.twin._irregular_told import Suspicion
+from seacage.twin._alarms import Alarm, Changed
+from seacage.twin._faults import Suspicion
 
 if TYPE_CHECKING:
     from pydantic import TypeAdapter

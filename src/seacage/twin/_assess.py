@@ -5,13 +5,19 @@ from dataclasses import replace
 from datetime import datetime
 from types import MappingProxyType
 
-from seacage.twin._alarm import Alarm, Changed, Happened
 from seacage.twin._alarm_book import AlarmBook
-from seacage.twin._alarm_judged import judged
-from seacage.twin._alarm_numbers import Number, numbers
-from seacage.twin._alarm_policy import USUAL, AlarmPolicy
+from seacage.twin._alarms import (
+    USUAL,
+    Alarm,
+    AlarmPolicy,
+    Changed,
+    Happened,
+    Number,
+    judged,
+    numbers,
+)
 from seacage.twin._events import Answered
-from seacage.twin._irregular_told import distrusted_in
+from seacage.twin._faults import distrusted_in
 from seacage.twin._state import TwinState
 from seacage.twin._twin import Twin
 

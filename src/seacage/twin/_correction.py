@@ -10,7 +10,7 @@ from jaxtyping import Float, Shaped
 
 from seacage.conventions import InputError
 from seacage.surrogates import NARGP, Domain, FittedNARGP, Prediction, Predicts, Together
-from seacage.twin._align import Pairs
+from seacage.twin._pairs import Pairs
 
 GAIN_SD = 0.5
 """How far from 1 a gain is expected: the simulations may be half wrong, seldom more."""

@@ -7,8 +7,10 @@ from datetime import datetime, timedelta
 
 from seacage.conventions import Flag
 from seacage.records import Amendment, QualityState, Sample, check_sample, is_evaluated
-from seacage.twin._held import Held
-from seacage.twin._online import Tracked, expecting, factors_from_json, factors_to_json
+from seacage.twin._answer import Answer
+from seacage.twin._interval_factors import Tracked, expecting, factors_from_json, factors_to_json
+from seacage.twin._metocean import Metocean
+from seacage.twin._models import Models
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,6 +66,19 @@ class Taken:
 
 Stream = tuple[Taken, ...]
 """The last minutes of a stream in time order, so that a late sample finds its place."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Held:
+    """What these models answered to this water, before any interval was adapted."""
+
+    models: Models
+    water: Metocean
+    answer: Answer
+
+    def answers(self, models: Models, water: Metocean) -> bool:
+        """Whether the models would only say it again."""
+        return models is self.models and water.same(self.water)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,6 +1,6 @@
 """The trained twin: its models, where they come from, and the live loop around them."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import datetime
 from pathlib import Path
@@ -16,15 +16,13 @@ from seacage.twin._adaptation import Adapter
 from seacage.twin._answer import Answer
 from seacage.twin._discrepancy import Discrepancy
 from seacage.twin._events import Answered, Event
-from seacage.twin._folder import read_folder, write_folder
-from seacage.twin._held import Held
+from seacage.twin._interval_factors import Expected, expecting, factors_from_json
 from seacage.twin._metocean import INPUT_KEYS, Metocean
 from seacage.twin._models import Models
-from seacage.twin._online import Expected, expecting, factors_from_json
 from seacage.twin._provenance import Provenance
 from seacage.twin._reading import failed, held_reading
-from seacage.twin._saving import restored, saved
-from seacage.twin._state import TwinState, Watch
+from seacage.twin._saving import read_folder, restored, saved, write_folder
+from seacage.twin._state import Held, TwinState, Watch
 from seacage.twin._step import forgotten, received
 
 
@@ -265,6 +263,19 @@ class Twin:
     def _timeouts(self) -> dict[str, float]:
         sensors = dict.fromkeys(self.sensor_names, self.watch.sensor_silent_after_s)
         return {self.buoy: self.watch.stale_after_s, **sensors}
+
+
+def replay(twin: Twin, samples: Iterable[Sample]) -> Iterator[Event]:
+    """Step a twin through samples in the order in which they come.
+
+    The clock is the latest time that a sample has had, so the same samples give the same
+    events whenever they are played.
+    """
+    state = twin.start()
+    for sample in samples:
+        now = sample.t if state.clock is None else max(sample.t, state.clock)
+        state, events = twin.step(state, sample, now)
+        yield from events
 
 
 def _newest(state: TwinState, stream: str) -> Sample | None:

@@ -13,11 +13,11 @@ from seacage.cage import Cage
 from seacage.conventions import Flag
 from seacage.records import Sample
 from seacage.twin import AlarmBook
-from seacage.twin._irregular import Sense
-from seacage.twin._irregular_block import Block
-from seacage.twin._irregular_explained import explanations, taken_over
-from seacage.twin._irregular_told import LEAD, LIMIT, PATIENCE, Suspicion
-from seacage.twin._irregular_weighed import Belief
+from seacage.twin._faults._detector import LEAD, LIMIT, PATIENCE, Suspicion
+from seacage.twin._faults._evidence import Belief
+from seacage.twin._faults._hypotheses import explanations, taken_over
+from seacage.twin._faults._residuals import Block
+from seacage.twin._faults._sensor import Sense
 
 ACE = Cage.named("ace")
 NAMES = ACE.sensor_names

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from seacage.twin._events import Answered
-from seacage.twin._irregular import Sense
+from seacage.twin._faults._sensor import Sense
 from seacage.twin._metocean import Metocean
 from seacage.twin._twin import Twin
 

@@ -11,10 +11,10 @@ from seacage.cage import Cage, Nearest
 from seacage.conventions import InputError, Origin, SeacageError
 from seacage.ocean import SeaState
 from seacage.twin._answer import Answer
-from seacage.twin._clearance import Clearance, PathClearance, sampled
 from seacage.twin._discrepancy import ShapeError
 from seacage.twin._events import Answered
 from seacage.twin._metocean import Metocean
+from seacage.twin._rov._clearance import Clearance, PathClearance, sampled
 from seacage.twin._twin import Twin
 
 PATCH_RINGS = 3

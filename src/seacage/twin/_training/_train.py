@@ -20,12 +20,12 @@ from seacage.surrogates import (
     mnll,
     window_design,
 )
-from seacage.twin._align import Pairs, align, spread_out, teaching_window
-from seacage.twin._calibrate import Lessons, Taught, calibrated
 from seacage.twin._correction import Correction
 from seacage.twin._metocean import INPUT_KEYS, Input, Metocean
 from seacage.twin._models import Models
+from seacage.twin._pairs import Pairs, align, spread_out, teaching_window
 from seacage.twin._provenance import Lesson, Provenance
+from seacage.twin._training._calibration import Lessons, Taught, calibrated
 from seacage.twin._twin import Twin
 
 KERNELS = ("matern-5/2", "squared-exponential")

@@ -3,8 +3,8 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from seacage.twin._alarm import Alarm, Limit
-from seacage.twin._alarm_policy import AlarmPolicy
+from seacage.twin._alarms._alarm import Alarm, Limit
+from seacage.twin._alarms._policy import AlarmPolicy
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

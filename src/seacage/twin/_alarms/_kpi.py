@@ -7,7 +7,7 @@ from datetime import datetime, timedelta
 from statistics import median
 
 from seacage.conventions import InputError
-from seacage.twin._alarm import Action, Happened
+from seacage.twin._alarms._alarm import Action, Happened
 
 CHATTERING = 3
 """An alarm that is raised so often within an hour chatters."""

@@ -3,16 +3,16 @@ from datetime import UTC, datetime, timedelta
 import pytest
 
 from seacage.conventions import InputError
-from seacage.twin._alarm import Action, Alarm, Limit
-from seacage.twin._alarm_handled import (
+from seacage.twin._alarms._alarm import Action, Alarm, Limit
+from seacage.twin._alarms._lifecycle import (
     acknowledge,
+    judged,
     put_in_service,
     remark,
     shelve,
     take_out_of_service,
     unshelve,
 )
-from seacage.twin._alarm_judged import judged
 
 START = datetime(2020, 1, 18, tzinfo=UTC)
 LIMIT = Limit(raise_at=100.0, clear_at=90.0)

@@ -10,7 +10,7 @@ from typing import cast
 import numpy as np
 
 from seacage.conventions import TABLE_BYTES, TEXT_BYTES, ModelError, parse_json, read_bytes
-from seacage.twin._signature import is_signed, signature
+from seacage.twin._saving._signature import is_signed, signature
 
 SETTINGS = "model.json"
 ARRAYS = "arrays.safetensors"

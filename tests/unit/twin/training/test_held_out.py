@@ -6,12 +6,11 @@ import pytest
 from seacage.surrogates import coverage
 from seacage.testing import stand_in_field, stand_in_twin
 from seacage.twin import Spread, align, spread_out
-from seacage.twin._calibration import (
+from seacage.twin._training._calibration import carried_spread, own_spread
+from seacage.twin._training._held_out import (
     Judged,
     apart,
     blocks_in,
-    carried_spread,
-    own_spread,
     stretches,
     white_noise,
     without_in_turn,

@@ -1,25 +1,27 @@
 """Who judges whose lesson: a sensor its own, or sensors that stayed those that did not."""
 
-from collections.abc import Callable, Mapping
+import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from seacage.twin._align import Pairs
-from seacage.twin._calibration import (
+import numpy as np
+
+from seacage.surrogates import conformal_factor, variance_components
+from seacage.twin._correction import LEAST_SHARE, Correction, Spread
+from seacage.twin._models import Models
+from seacage.twin._pairs import Pairs
+from seacage.twin._provenance import Lesson
+from seacage.twin._training._held_out import (
     DAY,
     Judged,
     apart,
     blocks_in,
-    carried_spread,
     evenly,
-    own_spread,
     span_s,
     stretches,
     white_noise,
     without_in_turn,
 )
-from seacage.twin._correction import Correction
-from seacage.twin._models import Models
-from seacage.twin._provenance import Lesson
 
 SHORT = 2.0 * DAY
 """A lesson shorter than this says little of other days [s]."""
@@ -127,6 +129,56 @@ def calibrated(model: Correction, lessons: Lessons, sensor: str) -> Correction:
         white=model.spread.white,
     )
     return replace(model, spread=own_spread(model, kept, blocks))
+
+
+def own_spread(model: Correction, kept: Judged, blocks: int) -> Spread:
+    """Calibrate by a sensor's own readings, each judged by a lesson without its days.
+
+    Two variances are fitted to the squared errors, each as large as it has to be: the lesson's
+    own, scaled, and that of the current which the buoy does not tell. Both are then scaled so
+    that the intervals hold their share, and a little more where the blocks are few.
+
+    Parameters
+    ----------
+    model
+        Of all the lesson.
+    kept
+        Readings beside lessons without them.
+    blocks
+        Independent readings that they are worth.
+    """
+    terms = np.column_stack([kept.doubt, kept.steepness**2])
+    # Some are below 0, as the noise is known on average alone.
+    square = kept.error**2 - kept.white
+    scale2, water2 = variance_components(terms, square).tolist()
+    # A twin that is as good as its sensors can be is still not perfect.
+    least = LEAST_SHARE * float(np.mean(kept.error**2)) / float(np.mean(kept.doubt))
+    scale2 = max(scale2, least) if water2 == 0.0 else scale2
+    fitted = replace(model.spread, scale=math.sqrt(scale2), water_sd=math.sqrt(water2), by="own")
+    factor = conformal_factor(kept.score(fitted), independent=max(blocks, 2))
+    return replace(fitted, scale=fitted.scale * factor, water_sd=fitted.water_sd * factor)
+
+
+def carried_spread(model: Correction, others: Sequence[Judged], days: float) -> Spread:
+    """Calibrate a short lesson by how much such lessons failed sensors that stayed longer.
+
+    Each sensor that stayed was taught on the short lesson's own hours, and judged on its other
+    days. How much too sure of itself it was there is taken to be alike for all sensors of a
+    cage, for it is what those hours lacked: other currents, and a net that grows.
+
+    Parameters
+    ----------
+    model
+        Of the short lesson.
+    others
+        Readings of each sensor that stayed, beside its short lesson.
+    days
+        On which they judged, all sensors together.
+    """
+    plain = Spread()
+    independent = max(days, 2.0)
+    factors = [conformal_factor(one.score(plain), independent=independent) for one in others]
+    return replace(model.spread, scale=float(np.mean(factors)), by="carried")
 
 
 def _less_noise(model: Correction, lessons: Lessons, pairs: Pairs) -> Correction:

@@ -8,8 +8,8 @@ from jaxtyping import Float, Int
 
 from seacage.cage import Cage, Nearest
 from seacage.conventions import InputError, compass
-from seacage.twin._clearance import Clearance
-from seacage.twin._predicted_net import PredictedNet
+from seacage.twin._rov._clearance import Clearance
+from seacage.twin._rov._predicted_net import PredictedNet
 
 Side = Literal["inside", "outside"]
 Pattern = Literal["rows", "spiral"]

@@ -7,9 +7,8 @@ from typing import Self
 import numpy as np
 from jaxtyping import Float
 
-from seacage.twin._irregular_block import Block
-from seacage.twin._irregular_expected import Expected
-from seacage.twin._irregular_robust import learned
+from seacage.twin._faults._residuals import Block
+from seacage.twin._faults._student_t import learned
 
 OFF, DRAG = 0.5, 0.1
 """What is thought before anything is seen: standard deviations of how far a sensor is off, in its
@@ -28,6 +27,22 @@ WILD = 9.0
 
 WARY = 2.0
 """Times that, because errors last from one block to the next; what the twin says is the least."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Expected:
+    """A shift of the sensors' readings [N] or [m], and its covariance."""
+
+    shift: Float[np.ndarray, " sensor"]
+    spread: Float[np.ndarray, "sensor sensor"]
+
+    def and_also(self, others: Iterable["Expected"]) -> "Expected":
+        """Add other shifts that have nothing to do with it."""
+        each = [self, *others]
+        return Expected(
+            shift=np.sum([one.shift for one in each], axis=0),
+            spread=np.sum([one.spread for one in each], axis=0),
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

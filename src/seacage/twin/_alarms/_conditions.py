@@ -1,35 +1,16 @@
 """The numbers that alarms are judged by: what is known now, and nothing where nothing is."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from datetime import datetime, timedelta
 
 from seacage.conventions import Flag
+from seacage.twin._alarms._alarm import Number
 from seacage.twin._events import Answered
 from seacage.twin._state import Stream, TwinState
 from seacage.twin._twin import Twin
 
 MEASURED_S = 60.0
 """A shackle's load is its mean over the last so long [s]: a wave's peak is not the line's load."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Number:
-    """What an alarm is judged by.
-
-    Parameters
-    ----------
-    alarm
-        Its name.
-    value
-        None where it is not known: it then neither raises nor clears.
-    detail
-        What there is to add, in a sentence.
-    """
-
-    alarm: str
-    value: float | None
-    detail: str = ""
 
 
 def numbers(

@@ -7,7 +7,7 @@ from seacage.conventions import Flag, InputError
 from seacage.records import Amendment, Sample
 from seacage.testing import stand_in_twin
 from seacage.twin import Answered, TwinState, adapted_at, adapted_at_us
-from seacage.twin._online import Tracked, adapted_by, counts
+from seacage.twin._interval_factors import Tracked, adapted_by, counts
 
 NOON = datetime(2020, 2, 1, 12, tzinfo=UTC)
 

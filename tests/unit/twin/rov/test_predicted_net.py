@@ -9,7 +9,7 @@ from seacage.conventions import InputError
 from seacage.ocean import SeaState
 from seacage.testing import stand_in_twin
 from seacage.twin import Answered, PredictedNet, StaleError
-from seacage.twin._clearance import sampled
+from seacage.twin._rov._clearance import sampled
 
 
 def near_net(net: PredictedNet, random: np.random.Generator, count: int) -> np.ndarray:

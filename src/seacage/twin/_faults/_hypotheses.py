@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.cage import Cage
-from seacage.twin._irregular_block import Block
+from seacage.twin._faults._residuals import Block
 
 SLIGHT, SLIGHT_SPREAD, WALK = 1.0, 0.5, 0.05
 """A sensor that begins to drift: how far off it is by then, how much that differs, and by how much

@@ -7,11 +7,10 @@ from typing import Self
 import numpy as np
 from jaxtyping import Float
 
-from seacage.twin._irregular_block import Block
-from seacage.twin._irregular_expected import Expected
-from seacage.twin._irregular_explained import Explanation
-from seacage.twin._irregular_robust import learned, log_density
-from seacage.twin._irregular_usual import Usual
+from seacage.twin._faults._baseline import Expected, Usual
+from seacage.twin._faults._hypotheses import Explanation
+from seacage.twin._faults._residuals import Block
+from seacage.twin._faults._student_t import learned, log_density
 
 TRUST = 0.6
 """What a block's odds count, for the next begins with what this one ended with."""

@@ -100,6 +100,25 @@ class Happened:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Number:
+    """What an alarm is judged by.
+
+    Parameters
+    ----------
+    alarm
+        Its name.
+    value
+        None where it is not known: it then neither raises nor clears.
+    detail
+        What there is to add, in a sentence.
+    """
+
+    alarm: str
+    value: float | None
+    detail: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Alarm:
     """The state of one alarm.
 

@@ -7,7 +7,7 @@ from typing import Any, Self, cast
 
 from seacage.cage import Cage
 from seacage.conventions import InputError
-from seacage.twin._alarm import Limit
+from seacage.twin._alarms._alarm import Limit
 from seacage.twin._state import Watch
 
 USUAL: Mapping[str, Limit] = {

@@ -6,13 +6,13 @@ from datetime import datetime
 from typing import Self
 
 from seacage.cage import Cage
-from seacage.twin._alarm_numbers import Number
+from seacage.twin._alarms import Number
 from seacage.twin._events import Answered
-from seacage.twin._irregular import STUCK_S, Sense, unheard
-from seacage.twin._irregular_block import Block, Open, closed
-from seacage.twin._irregular_explained import explanations
-from seacage.twin._irregular_usual import Usual
-from seacage.twin._irregular_weighed import Belief, Beliefs, told_already, weighed
+from seacage.twin._faults._baseline import Usual
+from seacage.twin._faults._evidence import Belief, Beliefs, told_already, weighed
+from seacage.twin._faults._hypotheses import explanations
+from seacage.twin._faults._residuals import Block, Open, closed
+from seacage.twin._faults._sensor import STUCK_S, Sense, unheard
 from seacage.twin._state import TwinState
 from seacage.twin._twin import Twin
 
