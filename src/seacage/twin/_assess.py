@@ -13,7 +13,7 @@ from seacage.twin._alarms import (
     Changed,
     Happened,
     Number,
-    judged,
+    evaluate,
     numbers,
 )
 from seacage.twin._events import Answered
@@ -74,7 +74,7 @@ def assess(
         lines += changed
     for name in unheard_of:  # shelves end and what nobody has seen is said again
         if alarms[name].active or alarms[name].shelved:
-            alarms[name], changed = judged(alarms[name], None, policy.limit(name), now)
+            alarms[name], changed = evaluate(alarms[name], None, policy.limit(name), now)
             lines += changed
     return replace(book, alarms=alarms, suspicion=suspicion), tuple(lines)
 
@@ -84,7 +84,7 @@ def _judged(
 ) -> Changed:
     alarm = alarms.get(number.alarm) or Alarm(name=number.alarm)
     before = alarm.active
-    alarm, changed = judged(alarm, number.value, policy.limit(alarm.name), now)
+    alarm, changed = evaluate(alarm, number.value, policy.limit(alarm.name), now)
     # What was said when it was raised stays: the cause, not the latest weather.
     if alarm.active and not before and number.detail != alarm.detail:
         alarm = replace(alarm, detail=number.detail)

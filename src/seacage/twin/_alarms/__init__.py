@@ -5,7 +5,7 @@ from seacage.twin._alarms._conditions import measured_loads, numbers
 from seacage.twin._alarms._kpi import AlarmKpi, alarm_kpi
 from seacage.twin._alarms._lifecycle import (
     acknowledge,
-    judged,
+    evaluate,
     put_in_service,
     remark,
     shelve,
@@ -29,7 +29,7 @@ __all__ = [
     "acknowledge",
     "alarm_kpi",
     "described",
-    "judged",
+    "evaluate",
     "measured_loads",
     "numbers",
     "put_in_service",

@@ -10,7 +10,7 @@ LONGEST_SHELF_S = 7 * 86400.0
 """Shelved for longer, an alarm is forgotten; take it out of service instead [s]."""
 
 
-def judged(alarm: Alarm, value: float | None, limit: Limit, now: datetime) -> Changed:
+def evaluate(alarm: Alarm, value: float | None, limit: Limit, now: datetime) -> Changed:
     """The alarm after one more number.
 
     Parameters

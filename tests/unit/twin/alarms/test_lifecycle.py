@@ -6,7 +6,7 @@ from seacage.conventions import InputError
 from seacage.twin._alarms._alarm import Action, Alarm, Limit
 from seacage.twin._alarms._lifecycle import (
     acknowledge,
-    judged,
+    evaluate,
     put_in_service,
     remark,
     shelve,
@@ -29,13 +29,13 @@ def run(
     """Feed numbers at a fixed pace; what happened, with its second."""
     told: list[tuple[float, Action]] = []
     for tick, value in enumerate(values):
-        alarm, events = judged(alarm, value, limit, at(tick * step_s))
+        alarm, events = evaluate(alarm, value, limit, at(tick * step_s))
         told += [(tick * step_s, event.action) for event in events]
     return alarm, told
 
 
 def raised(limit: Limit = LIMIT) -> Alarm:
-    return judged(Alarm(name="load/bridle-1"), 120.0, limit, START)[0]
+    return evaluate(Alarm(name="load/bridle-1"), 120.0, limit, START)[0]
 
 
 def test_an_alarm_is_raised_at_its_limit_and_clears_only_at_the_lower_one():
@@ -85,10 +85,10 @@ def test_what_nobody_has_seen_is_said_again_and_what_was_seen_is_not():
 def test_a_shelved_alarm_goes_on_being_judged_without_waking_anyone():
     alarm, (event,) = shelve(Alarm(name="a"), now=START, seconds=6.0, who="the watch", why="noise")
     assert event.action is Action.SHELVED
-    alarm, (event,) = judged(alarm, 120.0, LIMIT, at(2))
+    alarm, (event,) = evaluate(alarm, 120.0, LIMIT, at(2))
     assert event.quiet
     assert not alarm.waiting
-    alarm, (event,) = judged(alarm, 120.0, LIMIT, at(6))
+    alarm, (event,) = evaluate(alarm, 120.0, LIMIT, at(6))
     assert event.action is Action.UNSHELVED
     assert not event.quiet
     assert alarm.waiting
