@@ -1,25 +1,33 @@
 """Models that learn a simulator, and what a sensor adds to it."""
 
 from seacage.surrogates._arrays import Arrays, Settings
-from seacage.surrogates._conformal import AdaptiveConformal, conformal_factor, variance_components
+from seacage.surrogates._calibration import (
+    AdaptiveConformal,
+    FittedResidual,
+    ResidualModel,
+    conformal_factor,
+    variance_components,
+)
 from seacage.surrogates._design import spread_design, window_design
 from seacage.surrogates._domain import Domain
 from seacage.surrogates._features import current_features, metocean_features, wave_features
-from seacage.surrogates._gaussian_process import FittedGaussianProcess, GaussianProcess
 from seacage.surrogates._gcn import GCN, FittedGCN
-from seacage.surrogates._nargp import NARGP, FittedNARGP
-from seacage.surrogates._pca import FittedPcaGP, OverTime, PcaGP
+from seacage.surrogates._gp import FittedGaussianProcess, GaussianProcess
+from seacage.surrogates._multifidelity import AR1, NARGP, FittedNARGP, Together
 from seacage.surrogates._prediction import Prediction, Predicts
-from seacage.surrogates._recursive import AR1
-from seacage.surrogates._region import Box, Disc
-from seacage.surrogates._residual import FittedResidual, ResidualModel
 from seacage.surrogates._saving import Fitted, decode, encode
 from seacage.surrogates._scores import block_bootstrap, coverage, crps, mae, mnll, rmse, skill
-from seacage.surrogates._shape import FittedCoordinate, FittedShapeGP, ShapeGP
-from seacage.surrogates._symmetry import Symmetry
-from seacage.surrogates._symmetry_check import check_symmetry
-from seacage.surrogates._table import Table, Tabulable
-from seacage.surrogates._together import Together
+from seacage.surrogates._shape import (
+    FittedCoordinate,
+    FittedPcaGP,
+    FittedShapeGP,
+    OverTime,
+    PcaGP,
+    ShapeGP,
+    Symmetry,
+    check_symmetry,
+)
+from seacage.surrogates._tables import Box, Disc, Table, Tabulable
 
 __all__ = [
     "AR1",

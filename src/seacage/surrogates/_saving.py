@@ -6,13 +6,12 @@ import numpy as np
 
 from seacage.conventions import ModelError
 from seacage.surrogates._arrays import Arrays, Settings, setting
-from seacage.surrogates._gaussian_process import FittedGaussianProcess
 from seacage.surrogates._gcn import FittedGCN
-from seacage.surrogates._nargp import FittedNARGP
-from seacage.surrogates._pca import FittedPcaGP
+from seacage.surrogates._gp import FittedGaussianProcess
+from seacage.surrogates._multifidelity import FittedNARGP
 from seacage.surrogates._prediction import Predicts
-from seacage.surrogates._shape import FittedShapeGP
-from seacage.surrogates._table import Table
+from seacage.surrogates._shape import FittedPcaGP, FittedShapeGP
+from seacage.surrogates._tables import Table
 
 Fitted = FittedGaussianProcess | FittedGCN | FittedNARGP | FittedPcaGP | FittedShapeGP | Table
 

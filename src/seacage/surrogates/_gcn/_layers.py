@@ -1,0 +1,150 @@
+"""The two networks, written once for NumPy, which predicts, and JAX, which trains."""
+
+from collections.abc import Mapping
+from typing import Any, Literal
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.surrogates._gcn._graph import Propagate
+
+Kind = Literal["paper", "modal"]
+
+Numbers = Any
+"""An array of NumPy, or of JAX while it trains."""
+
+Parameters = dict[str, np.ndarray]
+"""What training changes, by name."""
+
+Shape = tuple[int, ...]
+
+
+TOKEN = 128
+"""Channels of the modal network's sea state."""
+
+
+def parameter_shapes(
+    kind: Kind, *, features: int, nodes: int, width: int, modes: int
+) -> dict[str, Shape]:
+    """Shape of every parameter of a network, weights as (from, to) and biases as (to,)."""
+    if kind == "paper":
+        return {
+            "place": (3, width),
+            "sea": (features, width),
+            "bias_1": (width,),
+            "weight_2": (width, width),
+            "bias_2": (width,),
+            "weight_3": (width, 3),
+            "bias_3": (3,),
+        }
+    return {
+        "token_1": (features, TOKEN),
+        "token_bias_1": (TOKEN,),
+        "token_2": (TOKEN, TOKEN),
+        "token_bias_2": (TOKEN,),
+        "token_3": (TOKEN, TOKEN),
+        "token_bias_3": (TOKEN,),
+        "score": (TOKEN, modes),
+        "score_bias": (modes,),
+        "mode": (modes, 3 * nodes),
+        "place": (3, width),
+        "node_bias": (nodes, width),
+        "weight_1": (width, width),
+        "bias_1": (width,),
+        "weight_2": (width, width),
+        "bias_2": (width,),
+        "move": (width, 3 * modes),
+    }
+
+
+def paper_network(
+    xp: Any,
+    parameters: Mapping[str, Numbers],
+    rest: Numbers,
+    x: Numbers,
+    propagate: Propagate,
+) -> Numbers:
+    """Three graph convolutions of (rest position, sea state), Swish between them.
+
+    All nodes hear the same sea state, so the first layer propagates its share once for all
+    cases; the numbers are those of the full node table.
+
+    Parameters
+    ----------
+    xp
+        NumPy or JAX's copy of it.
+    parameters
+        By the names of ``parameter_shapes``.
+    rest
+        Standardised rest position (node, 3).
+    x
+        Standardised features (row, feature).
+    propagate
+        Applies the normalised adjacency to (row, node, channel).
+
+    Returns
+    -------
+    position
+        Standardised (row, node, 3).
+    """
+    p = parameters
+    heard = propagate(xp.ones((1, len(rest), 1), rest.dtype))
+    told = propagate((rest @ p["place"])[None]) + heard * (x @ p["sea"])[:, None]
+    told = _swish(xp, told + p["bias_1"])
+    told = _swish(xp, propagate(told @ p["weight_2"]) + p["bias_2"])
+    return propagate(told @ p["weight_3"]) + p["bias_3"]
+
+
+def modal_network(
+    xp: Any,
+    parameters: Mapping[str, Numbers],
+    rest: Numbers,
+    x: Numbers,
+    propagate: Propagate,
+) -> Numbers:
+    """Modes of the whole net, made on its graph and driven by the sea state.
+
+    Two residual graph convolutions read the rest position and a learned mark of each node and
+    say how it moves in each mode, beside what its principal components say. They do not
+    depend on the sea state, so they cost nothing per case. The sea state becomes one token,
+    which says how much of each mode there is. Parameters and result as for
+    ``paper_network``, the result a displacement.
+    """
+    p = parameters
+    told = rest @ p["place"] + p["node_bias"]
+    for layer in ("1", "2"):
+        heard = propagate((told @ p[f"weight_{layer}"])[None])[0]
+        told = told + _swish(xp, heard + p[f"bias_{layer}"])
+    beyond = (told @ p["move"]).reshape(p["mode"].shape[::-1]).T
+    token = _swish(xp, x @ p["token_1"] + p["token_bias_1"])
+    token = token + _swish(xp, token @ p["token_2"] + p["token_bias_2"])
+    token = token + _swish(xp, token @ p["token_3"] + p["token_bias_3"])
+    score = token @ p["score"] + p["score_bias"]
+    return (score @ (p["mode"] + beyond)).reshape(len(x), len(rest), 3)
+
+
+NETWORKS: Mapping[Kind, Any] = {"paper": paper_network, "modal": modal_network}
+
+
+def first_parameters(
+    shapes: Mapping[str, Shape], *, modes: Float[np.ndarray, "mode coordinate"], seed: int
+) -> Parameters:
+    """Where training starts: weights drawn so that channels keep their size, biases at 0.
+
+    The modes start as principal components, and what the graph adds to them at 0.
+    """
+    random = np.random.default_rng(seed)
+    first = {
+        name: random.standard_normal(shape) / np.sqrt(shape[0]) * ("bias" not in name)
+        for name, shape in shapes.items()
+    }
+    if "mode" in first:
+        first["node_bias"] = 0.5 * random.standard_normal(shapes["node_bias"])
+        first["score"] *= 0.1
+        first |= {"mode": modes, "move": np.zeros(shapes["move"])}
+    return first
+
+
+def _swish(xp: Any, z: Numbers) -> Numbers:
+    # z / (1 + exp(-z)) without an overflow far below 0.
+    return z * (0.5 + 0.5 * xp.tanh(0.5 * z))

@@ -1,0 +1,126 @@
+"""A trained network, which answers in NumPy alone."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.conventions import InputError, ModelError
+from seacage.surrogates._arrays import Arrays, Settings, array, setting
+from seacage.surrogates._gcn._graph import Graph
+from seacage.surrogates._gcn._layers import NETWORKS, Kind, Parameters, parameter_shapes
+from seacage.surrogates._scaling import Scaling
+
+BLOCK = 64
+"""Rows answered at once, so that what the nodes say stays in the cache."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Network:
+    """A network with what brings its inputs and outputs to their units.
+
+    Parameters
+    ----------
+    kind
+        Which network.
+    graph
+        Of the net.
+    scaling
+        Of the features.
+    centre
+        What an answer of 0 means [m].
+    spread
+        What an answer of 1 adds [m].
+    parameters
+        By name.
+    """
+
+    kind: Kind
+    graph: Graph
+    scaling: Scaling
+    centre: Float[np.ndarray, "node 3"]
+    spread: float
+    parameters: Parameters
+
+    def answer(self, x: Float[np.ndarray, "row feature"]) -> Float[np.ndarray, "row node 3"]:
+        """Shapes at standardised features [m]."""
+        network, rest = NETWORKS[self.kind], standard_rest(self.graph)
+        shape = np.empty((len(x), *self.centre.shape))
+        for start in range(0, len(x), BLOCK):
+            rows = slice(start, start + BLOCK)
+            shape[rows] = network(np, self.parameters, rest, x[rows], self.graph.propagate)
+        return self.centre + self.spread * shape
+
+    def to_arrays(self) -> tuple[Settings, Arrays]:
+        """Everything that ``from_arrays`` needs, as plain values and float64 arrays."""
+        width = self.parameters["place"].shape[1]
+        modes = len(self.parameters["mode"]) if "mode" in self.parameters else 0
+        settings: Settings = {
+            "kind": self.kind,
+            "width": width,
+            "modes": modes,
+            "spread": self.spread,
+        }
+        return settings, {
+            "edges": self.graph.edges.astype(np.float64),
+            "rest_position": self.graph.rest_position,
+            "feature_centre": self.scaling.centre,
+            "feature_spread": self.scaling.spread,
+            "centre": self.centre,
+        } | {f"parameter.{name}": values for name, values in self.parameters.items()}
+
+    @classmethod
+    def from_arrays(cls, settings: Mapping[str, object], arrays: Mapping[str, np.ndarray]) -> Self:
+        """The network that ``to_arrays`` described.
+
+        Raises
+        ------
+        ModelError
+            A setting or an array is missing, of another kind or shape, or not finite.
+        """
+        kind = _saved_kind(settings)
+        rest = array(arrays, "rest_position", None, 3)
+        feature_centre = array(arrays, "feature_centre", None)
+        shapes = parameter_shapes(
+            kind,
+            features=len(feature_centre),
+            nodes=len(rest),
+            width=setting(settings, "width", int),
+            modes=setting(settings, "modes", int),
+        )
+        return cls(
+            kind=kind,
+            graph=_saved_graph(array(arrays, "edges", None, 2), rest),
+            scaling=Scaling(
+                centre=feature_centre,
+                spread=array(arrays, "feature_spread", len(feature_centre)),
+            ),
+            centre=array(arrays, "centre", len(rest), 3),
+            spread=setting(settings, "spread", float),
+            parameters={
+                name: array(arrays, f"parameter.{name}", *shape) for name, shape in shapes.items()
+            },
+        )
+
+
+def standard_rest(graph: Graph) -> Float[np.ndarray, "node 3"]:
+    """Rest position as a feature of the nodes."""
+    rest = graph.rest_position
+    return Scaling.of(rest).standardised(rest)
+
+
+def _saved_kind(settings: Mapping[str, object]) -> Kind:
+    kind = setting(settings, "kind", str)
+    for known in NETWORKS:
+        if kind == known:
+            return known
+    raise ModelError(f"The saved GCN is of kind {kind!r}, which this version does not know.")
+
+
+def _saved_graph(edges: Float[np.ndarray, "edge 2"], rest: Float[np.ndarray, "node 3"]) -> Graph:
+    try:
+        return Graph.of(np.rint(edges).astype(int), rest)
+    except InputError as error:
+        raise ModelError(f"The saved GCN is damaged: {error}") from error

@@ -1,0 +1,516 @@
+"""Gaussian process regression with one kernel for all outputs."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import ClassVar, Self
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.conventions import InputError
+from seacage.surrogates._arrays import Arrays, Settings, array, setting
+from seacage.surrogates._gp._ensemble import Ensemble, check_ensemble, drawn, is_drawn, widened
+from seacage.surrogates._gp._hyperparameters import Evidence, learned
+from seacage.surrogates._gp._kernels import AbstractKernel, KernelName, kernel_named, saved_kernel
+from seacage.surrogates._gp._noise import NoiseName, check_noise, noise_named, saved_noise
+from seacage.surrogates._gp._posterior import Posterior
+from seacage.surrogates._prediction import Moments, Prediction, checked_inputs, checked_outputs
+from seacage.surrogates._scaling import Scaling
+
+MANY_OUTPUTS = 16
+"""More outputs than this are condensed before they teach the kernel."""
+
+CONDENSED = 1e-6
+"""Share of the outputs' variance that condensing may leave out."""
+
+SHARED_POINTS = 5.0
+"""Weight of the shared variance against each output's own roughness, in points."""
+
+
+Answer = tuple[Float[np.ndarray, "_ _"], Float[np.ndarray, "_ _"]]
+"""Mean of each output, and variance, before the output's centre and amplitude."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GaussianProcess:
+    """Gaussian process regression, not yet fitted.
+
+    All outputs share one kernel and one factorisation; each keeps its own mean and amplitude.
+
+    Parameters
+    ----------
+    kernel
+        ``"squared-exponential"`` for very smooth answers, ``"matern-5/2"`` for those with kinks,
+        ``"matern-3/2"`` for rough ones.
+    noise
+        ``"white"``: Gaussian, the same share of every output's variance. ``"per-output"``: its
+        own share for each. ``"by-input"``: changing smoothly with the inputs, the same share
+        for all. ``"student-t"``: with outliers, four degrees of freedom; what is wrong in one
+        output of a case is doubted in all.
+    ensemble
+        ``"auto"``: where observations are few, the answer is that of 16 draws of the
+        hyperparameters from their posterior, as one choice of them would be too sure of itself.
+        ``"always"`` and ``"never"`` decide it.
+    restarts
+        Starts of the hyperparameter search beside the one at the prior's mean, for more than 40
+        cases; fewer get four times as many.
+
+    References
+    ----------
+    Rasmussen & Williams (2006), chapters 2 and 5.
+    """
+
+    kernel: KernelName = "squared-exponential"
+    noise: NoiseName = "white"
+    ensemble: Ensemble = "auto"
+    restarts: int = 3
+
+    def __post_init__(self) -> None:
+        kernel_named(self.kernel)
+        check_noise(self.noise)
+        check_ensemble(self.ensemble)
+        check_restarts(self.restarts)
+
+    def fit(
+        self, x: Float[np.ndarray, "n feature"], y: Float[np.ndarray, "n *output"], *, seed: int = 0
+    ) -> "FittedGaussianProcess":
+        """Learn from inputs and outputs.
+
+        Parameters
+        ----------
+        x
+            One row per case.
+        y
+            (n,) or (n, outputs).
+        seed
+            Of the subset of points and of the random starts.
+        """
+        what = "GaussianProcess.fit"
+        x = checked_inputs(x, what=what)
+        shape = "(rows,)" if np.ndim(y) == 1 else "(rows, outputs)"
+        y = checked_outputs(y, what=what, rows=len(x), shape=shape)
+        table = y.reshape(len(y), -1)
+        fitted = fitted_process(
+            kernel_named(self.kernel),
+            x,
+            table,
+            taught_by=teachers(table, unlike=self.noise == "per-output"),
+            noise=self.noise,
+            ensemble=self.ensemble,
+            restarts=self.restarts,
+            seed=seed,
+        )
+        return replace(fitted, single=y.ndim == 1)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class FittedGaussianProcess:
+    """Gaussian process conditioned on its training cases.
+
+    Parameters
+    ----------
+    members
+        Of the outputs less their centre, at standardised inputs; more than one for an ensemble
+        of hyperparameters, the most probable ones first.
+    share
+        Probability of each member.
+    inputs
+        Centre and spread of each feature.
+    centre, amplitude
+        Of each output: its mean, and the standard deviation that the kernel's is a share of.
+    single
+        Whether the answer is (row,) rather than (row, output).
+    line
+        What each output is expected to rise by with each standardised feature; the members are
+        of what is left.
+    """
+
+    MODEL: ClassVar[str] = "gaussian-process"
+
+    members: tuple[Posterior, ...]
+    share: Float[np.ndarray, " member"]
+    inputs: Scaling
+    centre: Float[np.ndarray, " output"]
+    amplitude: Float[np.ndarray, " output"]
+    single: bool
+    line: Float[np.ndarray, "feature output"]
+
+    @property
+    def posterior(self) -> Posterior:
+        """The member with the most probable hyperparameters."""
+        return self.members[0]
+
+    @property
+    def noise(self) -> Float[np.ndarray, " output"]:
+        """Variance of each output's noise, in its unit squared.
+
+        Where it changes with the inputs, its mean over the training cases.
+        """
+        return self._noise(self.posterior.x).mean(axis=0)
+
+    def noise_at(self, x: Float[np.ndarray, "row feature"]) -> Float[np.ndarray, "row *output"]:
+        """Variance of the noise of a new observation at each row, in its unit squared."""
+        return self._shaped(self._noise(self._standardised(x, what="noise_at")))
+
+    def predict(self, x: Float[np.ndarray, "row feature"], *, noisy: bool = False) -> Prediction:
+        """Answer at each row of features.
+
+        Parameters
+        ----------
+        x
+            One row per case, the features of the training.
+        noisy
+            Of a new observation rather than of what lies behind it: adds the noise.
+        """
+        x = self._standardised(x, what="predict")
+        mean, variance = self._mixed(x, [member.predict(x) for member in self.members])
+        if noisy:
+            variance = variance + self._noise(x)
+        return self._answer(mean, variance)
+
+    def mean(self, x: Float[np.ndarray, "row feature"]) -> Float[np.ndarray, "row *output"]:
+        """The mean of ``predict`` alone, at a fraction of its cost; all rows are held at once."""
+        x = self._standardised(x, what="mean")
+        means = [
+            member.kernel.covariance(member.log_parameters, x, member.x) @ member.weights
+            for member in self.members
+        ]
+        return self._shaped(self._average(means) + self._expected(x))
+
+    def jacobian(
+        self, x: Float[np.ndarray, "row feature"]
+    ) -> Float[np.ndarray, "row *output feature"]:
+        """Change of the mean per change of each feature, at each row."""
+        x = self._standardised(x, what="jacobian")
+        slope = self._average([member.mean_slope(x) for member in self.members]) + self.line.T
+        return self._shaped(slope / self.inputs.unit)
+
+    def moments(self, x: Float[np.ndarray, "row feature"]) -> Moments:
+        """Mean and variance of the one output with their gradients, for what builds on it."""
+        if not self.single:
+            raise InputError(
+                f"moments: this model has {len(self.centre)} outputs. Ask one, e.g. "
+                "`fitted.output(0)`."
+            )
+        x = self._standardised(x, what="moments")
+        answers = [member.predict(x) for member in self.members]
+        mean, variance = self._mixed(x, answers)
+        of_members = mean - self._expected(x)
+        slopes = [member.mean_slope(x)[:, 0] for member in self.members]
+        mean_slope = self._average(slopes)
+        square = self.amplitude[0] ** 2
+        # Of the law of total variance: of each member's, and of their means about the mean.
+        parts = [
+            square * member.variance_slope(x)
+            + 2.0 * (answer[0] - of_members) * (slope - mean_slope)
+            for member, answer, slope in zip(self.members, answers, slopes, strict=True)
+        ]
+        return Moments(
+            mean=mean[:, 0],
+            variance=variance[:, 0],
+            mean_slope=(mean_slope + self.line[:, 0]) / self.inputs.unit,
+            variance_slope=self._average(parts) / self.inputs.unit,
+        )
+
+    def updated(
+        self, x: Float[np.ndarray, "new feature"], y: Float[np.ndarray, "new *output"]
+    ) -> Self:
+        """Conditioned on more cases, with the hyperparameters learned before.
+
+        It answers as if conditioned on all cases at once, at O(n^2) per new case; with noise
+        per output, at O(n^3). Scales, amplitudes and shares stay those of the training.
+
+        Parameters
+        ----------
+        x
+            One row per new case.
+        y
+            (new,) or (new, outputs), as in the training.
+        """
+        what = "updated"
+        x = checked_inputs(x, what=what, width=len(self.inputs.centre))
+        shape = "(rows,)" if self.single else "(rows, outputs)"
+        y = checked_outputs(y, what=what, rows=len(x), shape=shape, least=1)
+        y = y.reshape(len(x), -1)
+        if y.shape[1] != len(self.centre):
+            raise InputError(
+                f"{what}: {y.shape[1]} outputs, but {len(self.centre)} were learned. "
+                "Give the outputs of the training, in the same order."
+            )
+        x = self.inputs.standardised(x)
+        y = y - self._expected(x)
+        members = [member.updated(x, y, amplitude=self.amplitude) for member in self.members]
+        return replace(self, members=tuple(members))
+
+    def cases(self) -> Float[np.ndarray, "n feature"]:
+        """Inputs that it is conditioned on, in their own units."""
+        return self.posterior.x * self.inputs.unit + self.inputs.centre
+
+    def moved(self, x: Float[np.ndarray, "n feature"]) -> Self:
+        """Conditioned on the same outputs at other inputs, one row for each case."""
+        x = self.inputs.standardised(x)
+        members = [
+            member.reconditioned(
+                x, member.observed() + (member.x - x) @ self.line, doubt=member.doubt
+            )
+            for member in self.members
+        ]
+        return replace(self, members=tuple(members))
+
+    def leave_one_out(self) -> Prediction:
+        """Answer at each training case from all the others, as a new observation.
+
+        In closed form; the hyperparameters stay those learned from all cases.
+
+        References
+        ----------
+        Rasmussen & Williams (2006), eqs. (5.10)-(5.12).
+        """
+        left_out = [member.leave_one_out() for member in self.members]
+        answers = [
+            (member.observed() - residual, variance)
+            for member, (residual, variance) in zip(self.members, left_out, strict=True)
+        ]
+        return self._answer(*self._mixed(self.posterior.x, answers))
+
+    def output(self, index: int) -> "FittedGaussianProcess":
+        """One output as a model that answers (row,); it shares the factor."""
+        outputs = len(self.centre)
+        if not 0 <= index < outputs:
+            raise InputError(f"output {index} does not exist; this model has {outputs}, from 0.")
+        return self.combined(np.eye(outputs)[index])
+
+    def combined(self, share: Float[np.ndarray, " output"]) -> "FittedGaussianProcess":
+        """The sum of the outputs times their share, as a model that answers (row,)."""
+        members = [member.combined(share, amplitude=self.amplitude) for member in self.members]
+        return replace(
+            self,
+            members=tuple(members),
+            centre=np.array([self.centre @ share]),
+            amplitude=np.array([np.linalg.norm(self.amplitude * share)]),
+            single=True,
+            line=self.line @ share[:, None],
+        )
+
+    def to_arrays(self) -> tuple[Settings, Arrays]:
+        """Everything that ``from_arrays`` needs, as plain values and float64 arrays."""
+        first = self.posterior
+        settings: Settings = {
+            "model": self.MODEL,
+            "kernel": first.kernel.name,
+            "noise": first.noise.name,
+            "single": self.single,
+            "about_line": bool(self.line.any()),
+        }
+        arrays = {
+            "share": self.share,
+            "log_parameters": np.stack([member.log_parameters for member in self.members]),
+            "log_noise": np.stack([member.log_noise for member in self.members]),
+            "weights": np.stack([member.weights for member in self.members]),
+            "inputs": first.x,
+            "doubt": first.doubt,
+            "input_centre": self.inputs.centre,
+            "input_spread": self.inputs.spread,
+            "output_centre": self.centre,
+            "output_amplitude": self.amplitude,
+        }
+        if self.line.any():
+            arrays["line"] = self.line
+        anchor = first.noise.anchor
+        return settings, arrays | ({"anchor": anchor} if anchor.size else {})
+
+    @classmethod
+    def from_arrays(cls, settings: Mapping[str, object], arrays: Mapping[str, np.ndarray]) -> Self:
+        """The model that ``to_arrays`` described; it factorises its covariance again.
+
+        Raises
+        ------
+        ModelError
+            A setting or an array is missing, of another kind or shape, or not finite.
+        """
+        kernel = saved_kernel(setting(settings, "kernel", str))
+        single = setting(settings, "single", bool)
+        x = array(arrays, "inputs", None, None)
+        rows, width = x.shape
+        share = array(arrays, "share", None)
+        weights = array(arrays, "weights", len(share), rows, 1 if single else None)
+        outputs = weights.shape[2]
+        noise = saved_noise(
+            setting(settings, "noise", str),
+            lambda: array(arrays, "anchor", None, width),
+            outputs=outputs,
+        )
+        parameters = array(arrays, "log_parameters", len(share), len(kernel.prior(width).mean))
+        log_noise = array(arrays, "log_noise", len(share), len(noise.prior().mean))
+        doubt = array(arrays, "doubt", rows)
+        members = [
+            Posterior.restored(kernel, *hyperparameters, x, weight, noise=noise, doubt=doubt)
+            for hyperparameters, weight in zip(
+                zip(parameters, log_noise, strict=True), weights, strict=True
+            )
+        ]
+        inputs = Scaling(
+            centre=array(arrays, "input_centre", width), spread=array(arrays, "input_spread", width)
+        )
+        return cls(
+            members=tuple(members),
+            share=share,
+            inputs=inputs,
+            centre=array(arrays, "output_centre", outputs),
+            amplitude=array(arrays, "output_amplitude", outputs),
+            single=single,
+            # Models saved before there was a line are without one.
+            line=array(arrays, "line", width, outputs)
+            if settings.get("about_line", False)
+            else np.zeros((width, outputs)),
+        )
+
+    def _standardised(
+        self, x: Float[np.ndarray, "row feature"], *, what: str
+    ) -> Float[np.ndarray, "row feature"]:
+        x = checked_inputs(x, what=what, width=len(self.inputs.centre))
+        return self.inputs.standardised(x)
+
+    def _noise(self, x: Float[np.ndarray, "row feature"]) -> Float[np.ndarray, "row output"]:
+        shares = self._average([member.noise_at(x) for member in self.members])
+        return shares * self.amplitude**2
+
+    def _average(self, parts: Sequence[Float[np.ndarray, "row *rest"]]) -> np.ndarray:
+        """Of the members, by their share."""
+        if len(parts) == 1:
+            return parts[0]
+        return np.tensordot(self.share, np.stack(parts), axes=1)
+
+    def _mixed(
+        self, x: Float[np.ndarray, "row feature"], answers: Sequence[Answer]
+    ) -> tuple[Float[np.ndarray, "row output"], Float[np.ndarray, "row output"]]:
+        """Mean and variance of the outputs, by the law of total variance over the members."""
+        means = [mean for mean, _ in answers]
+        mean = self._average(means)
+        variance = self._average([variance for _, variance in answers]) * self.amplitude**2
+        if len(answers) > 1:
+            variance = variance + self._average([(one - mean) ** 2 for one in means])
+        return mean + self._expected(x), variance
+
+    def _expected(self, x: Float[np.ndarray, "row feature"]) -> Float[np.ndarray, "row output"]:
+        """What the members are about, at standardised inputs."""
+        return self.centre + x @ self.line
+
+    def _answer(
+        self, mean: Float[np.ndarray, "row output"], variance: Float[np.ndarray, "row output"]
+    ) -> Prediction:
+        return Prediction(mean=self._shaped(mean), std=self._shaped(np.sqrt(variance)))
+
+    def _shaped(
+        self, values: Float[np.ndarray, "row output *rest"]
+    ) -> Float[np.ndarray, "row *answer"]:
+        return values[:, 0] if self.single else values
+
+
+def fitted_process(
+    kernel: AbstractKernel,
+    x: Float[np.ndarray, "n feature"],
+    y: Float[np.ndarray, "n output"],
+    *,
+    taught_by: Float[np.ndarray, "n teacher"],
+    noise: NoiseName = "white",
+    ensemble: Ensemble = "never",
+    slope: Float[np.ndarray, " feature"] | None = None,
+    restarts: int,
+    seed: int,
+) -> FittedGaussianProcess:
+    """Learn the kernel from its teachers, then condition on the outputs.
+
+    Parameters
+    ----------
+    kernel
+        That all outputs share.
+    x, y
+        Inputs and outputs in their own units.
+    taught_by
+        What the hyperparameters are learned from, of unit variance all in all.
+    noise, ensemble
+        As for ``GaussianProcess``.
+    slope
+        What each output is expected to rise by per unit of each feature; None for nothing. The
+        teachers are without it.
+    restarts, seed
+        Of the search.
+    """
+    inputs, outputs = Scaling.of(x), Scaling.of(y)
+    standardised = inputs.standardised(x)
+    line = np.zeros((x.shape[1], y.shape[1]))
+    if slope is not None:
+        line += (slope * inputs.unit)[:, None]
+    rest = y - outputs.centre - standardised @ line
+    scatter = noise_named(noise, standardised, outputs=taught_by.shape[1])
+    evidence = Evidence.of(kernel, scatter, standardised, taught_by)
+    mode = learned(evidence, restarts=restarts, seed=seed)
+    hyperparameters, wider = mode.log_parameters[None], 1.0
+    if is_drawn(ensemble, observations=taught_by.size):
+        hyperparameters, wider = drawn(mode, seed=seed), widened(len(y))
+    members = [
+        Posterior.conditioned(
+            kernel,
+            *evidence.split(log_parameters),
+            standardised,
+            rest,
+            noise=scatter,
+            doubt=mode.evidence.doubt,
+        )
+        for log_parameters in hyperparameters
+    ]
+    share = np.full(len(members), 1.0 / len(members))
+    # Each output's own variance, held to the shared one by a few points' worth of belief:
+    # the mean of the conjugate posterior, a scaled inverse chi-squared, so that the answer's
+    # variance is that of the Student's t which it leaves.
+    own = [np.einsum("no,no->o", rest, member.weights) for member in members]
+    variance = (SHARED_POINTS * outputs.spread**2 + share @ np.stack(own)) / (
+        SHARED_POINTS + len(y) - 2.0
+    )
+    return FittedGaussianProcess(
+        members=tuple(members),
+        share=share,
+        inputs=inputs,
+        centre=outputs.centre,
+        amplitude=wider * np.sqrt(variance),
+        single=y.shape[1] == 1,
+        line=line,
+    )
+
+
+def teachers(
+    y: Float[np.ndarray, "n output"], *, unlike: bool = False
+) -> Float[np.ndarray, "n teacher"]:
+    """Standardised outputs for the hyperparameters to be learned from, all alike important.
+
+    Parameters
+    ----------
+    y
+        All outputs.
+    unlike
+        Each output has noise of its own to learn, so that none can stand for others.
+    """
+    standardised = Scaling.of(y).standardised(y)
+    if unlike or y.shape[1] <= MANY_OUTPUTS:
+        return standardised
+    return condensed(standardised)
+
+
+def condensed(y: Float[np.ndarray, "n output"]) -> Float[np.ndarray, "n teacher"]:
+    """Fewer outputs that teach a kernel the same.
+
+    The likelihood summed over outputs knows them only by their products between cases, Y Y',
+    which the principal scores keep; an output counts as much as it varies.
+    """
+    left, size, _ = np.linalg.svd(y - y.mean(axis=0), full_matrices=False)
+    left_out = 1.0 - np.cumsum(size**2) / max(float(np.sum(size**2)), np.finfo(float).tiny)
+    kept = 1 + int(np.argmax(left_out < CONDENSED))
+    scores = left[:, :kept] * size[:kept]
+    return scores / (np.sqrt(np.mean(scores**2)) or 1.0)
+
+
+def check_restarts(restarts: int) -> None:
+    """Refuse a negative number of restarts."""
+    if restarts < 0:
+        raise InputError(f"restarts = {restarts} is negative. Give the number of extra starts.")

@@ -1,0 +1,265 @@
+"""Most probable hyperparameters: of the kernel and of the noise, from standardised points."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from seacage.surrogates._gp._factor import JITTERS, Cholesky, Spectrum, inverse
+from seacage.surrogates._gp._kernels import AbstractKernel, Prior
+from seacage.surrogates._gp._noise import (
+    NOISE_BOUNDS,
+    AbstractNoise,
+    NoisePerOutput,
+    StudentNoise,
+    doubt_of,
+)
+
+SUBSET = 250
+"""Points that the hyperparameters are first learned from."""
+
+POLISH = 12
+"""L-BFGS steps on all points from there; without them coverage falls far below nominal."""
+
+REACH = 4.0
+"""Sd of the prior either way that the kernel's hyperparameters may lie in."""
+
+NOISE_STARTS = (math.log(1e-3), math.log(0.1))
+"""Logarithms of the noise's share of the outputs' unit variance."""
+
+SHORT = -2.0
+"""Sd of the prior from its mean at which one start begins, the first variance aside.
+
+From lengths longer than the waves in the points the search often ends at taking them for noise.
+"""
+
+SMALL, MORE = 40, 4
+"""Up to so many points, whose loss has more modes and costs little, so many times the restarts."""
+
+DOUBTING, DOUBTING_ALL = 25, 6
+"""Rounds of doubt and learning with Student's t, on the subset and then on all points."""
+
+ROUND = 4
+"""L-BFGS steps in each of them."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Evidence:
+    """What points say of hyperparameters.
+
+    Parameters
+    ----------
+    kernel, noise
+        Whose logarithmic hyperparameters are wanted, the kernel's first.
+    x, y
+        Standardised inputs, and outputs of unit variance, which share the hyperparameters.
+    doubt
+        Factor on each point's noise.
+    """
+
+    kernel: AbstractKernel
+    noise: AbstractNoise
+    x: Float[np.ndarray, "n feature"]
+    y: Float[np.ndarray, "n output"]
+    doubt: Float[np.ndarray, " n"]
+
+    @classmethod
+    def of(
+        cls,
+        kernel: AbstractKernel,
+        noise: AbstractNoise,
+        x: Float[np.ndarray, "n feature"],
+        y: Float[np.ndarray, "n output"],
+    ) -> Self:
+        """Without a doubt."""
+        return cls(kernel=kernel, noise=noise, x=x, y=y, doubt=np.ones(len(x)))
+
+    def prior(self) -> Prior:
+        """Of all hyperparameters."""
+        kernel, noise = self.kernel.prior(self.x.shape[1]), self.noise.prior()
+        return Prior(mean=np.append(kernel.mean, noise.mean), sd=np.append(kernel.sd, noise.sd))
+
+    def bounds(self) -> Float[np.ndarray, "parameter 2"]:
+        """Least and largest of each; within them the covariance can be factorised."""
+        prior = self.prior()
+        bounds = np.stack([prior.mean - REACH * prior.sd, prior.mean + REACH * prior.sd], axis=1)
+        count = len(prior.mean) - len(self.noise.prior().mean)
+        bounds[count : count + self.noise.sizes] = NOISE_BOUNDS
+        return bounds
+
+    def split(
+        self, log_parameters: Float[np.ndarray, " parameter"]
+    ) -> tuple[Float[np.ndarray, " kernel"], Float[np.ndarray, " noise"]]:
+        """Those of the kernel, and those of the noise."""
+        count = len(log_parameters) - len(self.noise.prior().mean)
+        return log_parameters[:count], log_parameters[count:]
+
+    def rows(self, chosen: Int[np.ndarray, " row"]) -> Self:
+        """Of some of the points."""
+        return replace(self, x=self.x[chosen], y=self.y[chosen], doubt=self.doubt[chosen])
+
+    def loss(
+        self, log_parameters: Float[np.ndarray, " parameter"]
+    ) -> tuple[float, Float[np.ndarray, " parameter"]]:
+        """Negative log posterior of the hyperparameters, and its gradient.
+
+        The likelihood is summed over the outputs; constants are left out.
+
+        Raises
+        ------
+        LinAlgError
+            The covariance has no factor in float64.
+
+        References
+        ----------
+        Rasmussen & Williams (2006), eqs. (5.8) and (5.9).
+        """
+        misfit = self._misfit_per_output if self._unlike else self._misfit
+        value, gradient = misfit(*self.split(log_parameters))
+        prior = self.prior()
+        offset = (log_parameters - prior.mean) / prior.sd
+        return float(value + 0.5 * offset @ offset), gradient + offset / prior.sd
+
+    @property
+    def _unlike(self) -> bool:
+        return isinstance(self.noise, NoisePerOutput)
+
+    def _misfit(
+        self, kernel: Float[np.ndarray, " kernel"], noise: Float[np.ndarray, " noise"]
+    ) -> tuple[float, Float[np.ndarray, " parameter"]]:
+        outputs = self.y.shape[1]
+        covariance, pull_kernel = self.kernel.with_pullback(kernel, self.x)
+        scale, pull_noise = self.noise.with_pullback(noise, self.x)
+        lower = Cholesky.of(covariance, scale * self.doubt).lower
+        precision = inverse(lower)
+        weights = precision @ self.y
+        value = 0.5 * np.sum(self.y * weights) + outputs * np.sum(np.log(np.diag(lower)))
+
+        adjoint = 0.5 * (outputs * precision - weights @ weights.T)
+        of_noise = pull_noise(np.diag(adjoint) * self.doubt)
+        adjoint[np.diag_indices_from(adjoint)] *= 1.0 + JITTERS[0]
+        return float(value), np.append(pull_kernel(adjoint), of_noise)
+
+    def _misfit_per_output(
+        self, kernel: Float[np.ndarray, " kernel"], noise: Float[np.ndarray, " noise"]
+    ) -> tuple[float, Float[np.ndarray, " parameter"]]:
+        covariance, pull_kernel = self.kernel.with_pullback(kernel, self.x)
+        spectrum = Spectrum.of(covariance, np.exp(noise))
+        inverse_value = spectrum.inverse_value
+        turned = spectrum.basis.T @ self.y
+        value = 0.5 * np.sum(turned**2 * inverse_value - np.log(inverse_value))
+
+        turned_weights = turned * inverse_value
+        weights = spectrum.basis @ turned_weights
+        precision = (spectrum.basis * inverse_value.sum(axis=1)) @ spectrum.basis.T
+        adjoint = 0.5 * (precision - weights @ weights.T)
+        of_noise = 0.5 * np.exp(noise) * np.sum(inverse_value - turned_weights**2, axis=0)
+        return float(value), np.append(pull_kernel(adjoint), of_noise)
+
+    def doubted(self, log_parameters: Float[np.ndarray, " parameter"]) -> Self:
+        """With each point's doubt as these hyperparameters and the other points see it.
+
+        References
+        ----------
+        Tipping & Lawrence (2005), the update of the noise's precisions.
+        """
+        kernel, noise = self.split(log_parameters)
+        scale = float(np.exp(noise[0]))
+        covariance = self.kernel.covariance(kernel, self.x, self.x)
+        each = scale * self.doubt
+        factor = Cholesky.of(covariance, each)
+        residual = each[:, None] * factor.solve(self.y)
+        outputs = self.y.shape[1]
+        unsure = outputs * (each - each**2 * factor.precision()[:, 0])
+        square = np.sum(residual**2, axis=1) + unsure
+        return replace(self, doubt=doubt_of(square, scale=scale, outputs=outputs))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Mode:
+    """Hyperparameters that no small change makes more probable.
+
+    Parameters
+    ----------
+    log_parameters
+        Of the kernel, then of the noise.
+    loss
+        Negative log posterior there.
+    evidence
+        All points, with the doubt that was found.
+    """
+
+    log_parameters: Float[np.ndarray, " parameter"]
+    loss: float
+    evidence: Evidence
+
+
+def learned(evidence: Evidence, *, restarts: int, seed: int) -> Mode:
+    """Most probable log hyperparameters.
+
+    Each start is improved on a random subset, the best one then on all points.
+
+    Parameters
+    ----------
+    evidence
+        All points.
+    restarts
+        Starts beside the one at the prior's mean; few points get several times as many.
+    seed
+        Of the subset and of the starts.
+    """
+    random = np.random.default_rng(seed)
+    if len(evidence.x) <= SMALL:
+        restarts *= MORE
+    rows = np.sort(random.permutation(len(evidence.x))[:SUBSET])
+    few = len(rows) == len(evidence.x)
+    some = evidence if few else evidence.rows(rows)
+    ends = [improved(some, start, steps=200) for start in _starts(evidence, restarts, random)]
+    best = min(ends, key=lambda end: end.loss)
+    if isinstance(evidence.noise, StudentNoise):
+        best = _doubting(best, rounds=DOUBTING)
+        if not few:
+            best = replace(best, evidence=evidence.doubted(best.log_parameters))
+            best = _doubting(best, rounds=DOUBTING_ALL)
+    elif not few:
+        best = improved(evidence, best.log_parameters, steps=POLISH)
+    return best
+
+
+def improved(evidence: Evidence, start: Float[np.ndarray, " parameter"], *, steps: int) -> Mode:
+    """The nearest mode, or what so many steps come to."""
+    from scipy.optimize import minimize
+
+    bounds = evidence.bounds()
+    end = minimize(
+        evidence.loss,
+        np.clip(start, bounds[:, 0], bounds[:, 1]),
+        jac=True,
+        method="L-BFGS-B",
+        bounds=bounds,
+        options={"maxiter": steps},
+    )
+    return Mode(log_parameters=end.x, loss=float(end.fun), evidence=evidence)
+
+
+def _doubting(mode: Mode, *, rounds: int) -> Mode:
+    for _ in range(rounds):
+        evidence = mode.evidence.doubted(mode.log_parameters)
+        mode = improved(evidence, mode.log_parameters, steps=ROUND)
+    return mode
+
+
+def _starts(
+    evidence: Evidence, restarts: int, random: np.random.Generator
+) -> Iterator[Float[np.ndarray, " parameter"]]:
+    kernel, noise = evidence.kernel.prior(evidence.x.shape[1]), evidence.noise.prior()
+    for draw in range(1 + restarts):
+        scatter = random.standard_normal(len(kernel.mean)) if draw else np.zeros(len(kernel.mean))
+        if draw == 1:
+            scatter = np.append(0.0, np.full(len(kernel.mean) - 1, SHORT))
+        level = noise.mean.copy()
+        level[: evidence.noise.sizes] = NOISE_STARTS[draw % 2]
+        yield np.append(kernel.mean + kernel.sd * scatter, level)

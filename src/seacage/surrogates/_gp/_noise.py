@@ -1,0 +1,293 @@
+"""What a measurement scatters by: alike everywhere, by output, by input, or with outliers."""
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.conventions import InputError, ModelError
+from seacage.surrogates._gp._kernels import Prior, StationaryKernel
+
+NoiseName = Literal["white", "per-output", "by-input", "student-t"]
+
+NOISE_PRIOR = (math.log(1e-5), 2.5)
+NOISE_BOUNDS = (math.log(1e-6), math.log(10.0))
+"""Of the logarithm of the noise's share of the outputs' unit variance."""
+
+FREEDOM = 4.0
+"""Degrees of freedom of Student's t: outliers are common, and the variance exists."""
+
+SETTLING = 50
+"""Steps of the fixed point that a doubt is."""
+
+ANCHORS = 20
+"""Places that noise by input is learned at, at most."""
+
+SWING = 1.5
+"""Prior sd of the log variance of noise by input, about its mean."""
+
+PullDiagonal = Callable[[Float[np.ndarray, " n"]], Float[np.ndarray, " parameter"]]
+"""From the loss's gradient in each case's noise to its gradient in each log parameter."""
+
+
+class AbstractNoise(ABC):
+    """Variance of independent noise, as a share of the outputs' unit variance."""
+
+    @property
+    @abstractmethod
+    def name(self) -> NoiseName:
+        """Under which a user asks for it and a saved model finds it again."""
+
+    @abstractmethod
+    def prior(self) -> Prior:
+        """Of its log parameters."""
+
+    @abstractmethod
+    def variance(
+        self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "row feature"]
+    ) -> Float[np.ndarray, "row output"]:
+        """Of a new measurement at each row; one column stands for all outputs alike."""
+
+    @abstractmethod
+    def with_pullback(
+        self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "n feature"]
+    ) -> tuple[Float[np.ndarray, " n"], PullDiagonal]:
+        """Scale of each training case's noise, which its doubt multiplies, and the pullback."""
+
+    @property
+    def sizes(self) -> int:
+        """How many of its first log parameters are log variances."""
+        return 1
+
+    @property
+    def anchor(self) -> Float[np.ndarray, "anchor feature"]:
+        """Places that it is learned at; a noise without any has none."""
+        return np.empty((0, 0))
+
+
+@dataclass(frozen=True, slots=True)
+class WhiteNoise(AbstractNoise):
+    """The same everywhere, for all outputs alike."""
+
+    @property
+    def name(self) -> NoiseName:
+        return "white"
+
+    def prior(self) -> Prior:
+        return _prior(1)
+
+    def variance(
+        self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "row feature"]
+    ) -> Float[np.ndarray, "row output"]:
+        return np.full((len(x), 1), np.exp(log_parameters[0]))
+
+    def with_pullback(
+        self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "n feature"]
+    ) -> tuple[Float[np.ndarray, " n"], PullDiagonal]:
+        noise = np.full(len(x), np.exp(log_parameters[0]))
+        return noise, lambda adjoint: np.array([adjoint @ noise])
+
+
+@dataclass(frozen=True, slots=True)
+class StudentNoise(WhiteNoise):
+    """Student's t with four degrees of freedom, as Gaussian noise of doubted size.
+
+    Each case's own doubt multiplies its variance, found by variational inference while
+    learning: an outlier is doubted and hardly pulls. Outputs of one case share its doubt.
+
+    References
+    ----------
+    Tipping & Lawrence (2005), "Variational inference for Student-t models", Neurocomputing
+    69:123-141.
+    """
+
+    @property
+    def name(self) -> NoiseName:
+        return "student-t"
+
+    def variance(
+        self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "row feature"]
+    ) -> Float[np.ndarray, "row output"]:
+        return np.full((len(x), 1), np.exp(log_parameters[0]) * FREEDOM / (FREEDOM - 2.0))
+
+
+@dataclass(frozen=True, slots=True)
+class NoisePerOutput(AbstractNoise):
+    """The same everywhere, of another size for each output."""
+
+    outputs: int
+
+    @property
+    def name(self) -> NoiseName:
+        return "per-output"
+
+    @property
+    def sizes(self) -> int:
+        return self.outputs
+
+    def prior(self) -> Prior:
+        return _prior(self.outputs)
+
+    def variance(
+        self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "row feature"]
+    ) -> Float[np.ndarray, "row output"]:
+        return np.broadcast_to(np.exp(log_parameters), (len(x), len(log_parameters)))
+
+    def with_pullback(
+        self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "n feature"]
+    ) -> tuple[Float[np.ndarray, " n"], PullDiagonal]:
+        raise NotImplementedError("Noise per output has no diagonal that all outputs share.")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class NoiseByInput(AbstractNoise):
+    """Log variance a smooth function of the inputs, for all outputs alike.
+
+    A Gaussian process of unit length (times the root of the number of features) through a few
+    anchors spread over the training inputs, its weights learned with the kernel.
+
+    References
+    ----------
+    Goldberg, Williams & Bishop (1998), "Regression with input-dependent noise"; the process of
+    the noise held by a few inducing inputs, at its most probable value.
+    """
+
+    places: Float[np.ndarray, "anchor feature"]
+
+    @property
+    def name(self) -> NoiseName:
+        return "by-input"
+
+    @property
+    def anchor(self) -> Float[np.ndarray, "anchor feature"]:
+        return self.places
+
+    def prior(self) -> Prior:
+        whitened = np.zeros(len(self.places)), np.ones(len(self.places))
+        size = _prior(1)
+        return Prior(mean=np.append(size.mean, whitened[0]), sd=np.append(size.sd, whitened[1]))
+
+    def variance(
+        self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "row feature"]
+    ) -> Float[np.ndarray, "row output"]:
+        return np.exp(self._basis(x) @ log_parameters)[:, None]
+
+    def with_pullback(
+        self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "n feature"]
+    ) -> tuple[Float[np.ndarray, " n"], PullDiagonal]:
+        basis = self._basis(x)
+        noise = np.exp(basis @ log_parameters)
+        return noise, lambda adjoint: (adjoint * noise) @ basis
+
+    def _basis(self, x: Float[np.ndarray, "row feature"]) -> Float[np.ndarray, "row parameter"]:
+        from scipy.linalg import cholesky, solve_triangular
+
+        kernel = StationaryKernel("squared-exponential")
+        parameters = np.zeros(1 + x.shape[1])
+        parameters[0] = 2.0 * math.log(SWING)
+        parameters[1:] = 0.5 * math.log(x.shape[1])
+        within = kernel.covariance(parameters, self.places, self.places)
+        within[np.diag_indices_from(within)] *= 1.0 + 1e-8
+        lower = cholesky(within, lower=True, check_finite=False)
+        cross = kernel.covariance(parameters, self.places, x)
+        smooth = solve_triangular(lower, cross, lower=True, check_finite=False).T
+        return np.column_stack([np.ones(len(x)), smooth])
+
+
+def noise_named(name: str, x: Float[np.ndarray, "n feature"], *, outputs: int) -> AbstractNoise:
+    """Noise that a user asks for by name, for these standardised inputs."""
+    if name == "per-output" and outputs > 1:
+        return NoisePerOutput(outputs)
+    if name == "student-t":
+        return StudentNoise()
+    if name == "by-input":
+        return NoiseByInput(_spread_out(x))
+    return WhiteNoise()
+
+
+def saved_noise(
+    name: str, anchor: Callable[[], Float[np.ndarray, "anchor feature"]], *, outputs: int
+) -> AbstractNoise:
+    """Noise of a saved model, of so many outputs and with the anchors that were saved."""
+    match name:
+        case "white":
+            return WhiteNoise()
+        case "student-t":
+            return StudentNoise()
+        case "per-output":
+            return NoisePerOutput(outputs)
+        case "by-input":
+            return NoiseByInput(anchor())
+        case _:
+            raise ModelError(
+                f"The saved model has noise {name!r}, which this version does not know."
+            )
+
+
+def check_noise(name: str) -> None:
+    """Refuse a noise that is not known."""
+    if name not in get_args(NoiseName):
+        raise InputError(
+            f"noise = {name!r} is not known. Choose one of {', '.join(get_args(NoiseName))}."
+        )
+
+
+def doubt_of(
+    square: Float[np.ndarray, " row"], *, scale: float, outputs: int
+) -> Float[np.ndarray, " row"]:
+    """Factor on a case's noise that its squared residuals call for, under Student's t.
+
+    Parameters
+    ----------
+    square
+        Expected square of the residuals, summed over the outputs.
+    scale
+        Variance of the noise of a case that is not doubted.
+    outputs
+        How many.
+    """
+    return (FREEDOM + square / scale) / (FREEDOM + outputs)
+
+
+def settled_doubt(
+    square: Float[np.ndarray, " row"],
+    variance: Float[np.ndarray, " row"],
+    *,
+    scale: float,
+    outputs: int,
+) -> Float[np.ndarray, " row"]:
+    """Doubt of cases against a prediction of them, each by itself.
+
+    Parameters
+    ----------
+    square
+        Squared distance from the predicted mean, summed over the outputs.
+    variance
+        Of the prediction, without noise.
+    scale, outputs
+        As for ``doubt_of``.
+    """
+    doubt = np.ones(len(square))
+    for _ in range(SETTLING):
+        noise = scale * doubt
+        kept = noise / (variance + noise)
+        doubt = doubt_of(kept**2 * square + outputs * kept * variance, scale=scale, outputs=outputs)
+    return doubt
+
+
+def _prior(parameters: int) -> Prior:
+    return Prior(mean=np.full(parameters, NOISE_PRIOR[0]), sd=np.full(parameters, NOISE_PRIOR[1]))
+
+
+def _spread_out(x: Float[np.ndarray, "n feature"]) -> Float[np.ndarray, "anchor feature"]:
+    """A few inputs, each the farthest from those chosen before; no two alike."""
+    chosen = [int(np.argmin(np.sum(x**2, axis=1)))]
+    apart = np.sum((x - x[chosen[0]]) ** 2, axis=1)
+    while len(chosen) < ANCHORS and apart.max() > 1e-2:
+        chosen.append(int(np.argmax(apart)))
+        apart = np.minimum(apart, np.sum((x - x[chosen[-1]]) ** 2, axis=1))
+    return x[chosen]

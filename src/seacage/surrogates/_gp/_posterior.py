@@ -1,0 +1,309 @@
+"""The Gaussian process itself: condition on points, predict, differentiate, take in more."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.conventions import InputError, ModelError
+from seacage.surrogates._gp._factor import Cholesky, Factor, Spectrum
+from seacage.surrogates._gp._kernels import AbstractKernel
+from seacage.surrogates._gp._noise import (
+    AbstractNoise,
+    NoisePerOutput,
+    StudentNoise,
+    settled_doubt,
+)
+
+CHUNK = 2**22
+"""Covariances held at once while predicting: 32 MiB whatever the number of rows."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Posterior:
+    """A zero-mean Gaussian process conditioned on standardised points.
+
+    Parameters
+    ----------
+    kernel, log_parameters
+        The covariance.
+    noise, log_noise
+        What the outputs scatter by, as a share of their unit variance.
+    x
+        Standardised inputs.
+    doubt
+        Factor on the noise of each point; other than 1 for Student's t alone.
+    weights
+        Inverse covariance times outputs, so that the mean is one product.
+    factor
+        Of the covariance with noise.
+    """
+
+    kernel: AbstractKernel
+    log_parameters: Float[np.ndarray, " parameter"]
+    noise: AbstractNoise
+    log_noise: Float[np.ndarray, " noise"]
+    x: Float[np.ndarray, "n feature"]
+    doubt: Float[np.ndarray, " n"]
+    weights: Float[np.ndarray, "n output"]
+    factor: Factor
+
+    @classmethod
+    def conditioned(
+        cls,
+        kernel: AbstractKernel,
+        log_parameters: Float[np.ndarray, " parameter"],
+        log_noise: Float[np.ndarray, " noise"],
+        x: Float[np.ndarray, "n feature"],
+        y: Float[np.ndarray, "n output"],
+        *,
+        noise: AbstractNoise,
+        doubt: Float[np.ndarray, " n"] | None = None,
+    ) -> Self:
+        """Condition on outputs of zero mean.
+
+        Raises
+        ------
+        InputError
+            The covariance has no factor in float64.
+        """
+        from scipy.linalg import LinAlgError
+
+        doubt = np.ones(len(x)) if doubt is None else doubt
+        try:
+            factor = factorised(kernel, log_parameters, noise, log_noise, x, doubt)
+        except LinAlgError as error:
+            raise InputError(
+                f"{len(x)} cases give a covariance that is not positive definite. Look for "
+                "features or outputs that are too large by many orders of magnitude."
+            ) from error
+        return cls(
+            kernel=kernel,
+            log_parameters=log_parameters,
+            noise=noise,
+            log_noise=log_noise,
+            x=x,
+            doubt=doubt,
+            weights=factor.solve(y),
+            factor=factor,
+        )
+
+    @classmethod
+    def restored(
+        cls,
+        kernel: AbstractKernel,
+        log_parameters: Float[np.ndarray, " parameter"],
+        log_noise: Float[np.ndarray, " noise"],
+        x: Float[np.ndarray, "n feature"],
+        weights: Float[np.ndarray, "n output"],
+        *,
+        noise: AbstractNoise,
+        doubt: Float[np.ndarray, " n"],
+    ) -> Self:
+        """The same again from what was saved; the factor is cheaper to make than to store.
+
+        Raises
+        ------
+        ModelError
+            The covariance has no factor, so this was never a fitted model.
+        """
+        from scipy.linalg import LinAlgError
+
+        broken = "The saved model's covariance is not positive definite. Train the model again."
+        try:
+            with np.errstate(over="ignore", invalid="ignore"):
+                factor = factorised(kernel, log_parameters, noise, log_noise, x, doubt)
+                known = factor.explained(kernel.covariance(log_parameters, x[:1], x))
+        except (LinAlgError, ValueError) as error:
+            raise ModelError(broken) from error
+        if not np.isfinite(known).all():
+            raise ModelError(broken)
+        return cls(
+            kernel=kernel,
+            log_parameters=log_parameters,
+            noise=noise,
+            log_noise=log_noise,
+            x=x,
+            doubt=doubt,
+            weights=weights,
+            factor=factor,
+        )
+
+    def noise_at(self, x: Float[np.ndarray, "row feature"]) -> Float[np.ndarray, "row output"]:
+        """Variance of the noise of a new measurement; one column stands for all outputs."""
+        variance = self.noise.variance(self.log_noise, x)
+        if isinstance(self.factor, Spectrum) and self.factor.mixture is not None:
+            return variance @ self.factor.mixture[:, None]
+        return variance
+
+    def predict(
+        self, x: Float[np.ndarray, "row feature"]
+    ) -> tuple[Float[np.ndarray, "row output"], Float[np.ndarray, "row shared"]]:
+        """Mean of each output, and the variance without noise, in one column if all share it."""
+        if len(x) * len(self.x) <= CHUNK:
+            return self._predict(x)
+        parts = [self._predict(x[rows]) for rows in chunks(len(x), CHUNK // len(self.x))]
+        mean, variance = zip(*parts, strict=True)
+        return np.concatenate(mean), np.concatenate(variance)
+
+    def _predict(
+        self, x: Float[np.ndarray, "row feature"]
+    ) -> tuple[Float[np.ndarray, "row output"], Float[np.ndarray, "row shared"]]:
+        prior = self.kernel.variance(self.log_parameters, x)
+        cross = self.kernel.covariance(self.log_parameters, x, self.x)
+        # Rounding can explain a hair more than there is.
+        variance = np.maximum(prior[:, None] - self.factor.explained(cross), 0.0)
+        return cross @ self.weights, variance
+
+    def mean_slope(
+        self, x: Float[np.ndarray, "row feature"]
+    ) -> Float[np.ndarray, "row output feature"]:
+        """Jacobian of the mean."""
+        slopes = [
+            self.kernel.slope(self.log_parameters, x, self.x, weight[None])
+            for weight in self.weights.T
+        ]
+        return np.stack(slopes, axis=1)
+
+    def variance_slope(
+        self, x: Float[np.ndarray, "row feature"]
+    ) -> Float[np.ndarray, "row feature"]:
+        """Gradient of the variance without noise, where all outputs share it."""
+        cross = self.kernel.covariance(self.log_parameters, x, self.x)
+        share = self.factor.solve(cross.T).T
+        of_explained = self.kernel.slope(self.log_parameters, x, self.x, share)
+        return self.kernel.variance_slope(self.log_parameters, x) - 2.0 * of_explained
+
+    def leave_one_out(self) -> tuple[Float[np.ndarray, "n output"], Float[np.ndarray, "n shared"]]:
+        """Residual of each point against all the others, and its variance with noise.
+
+        References
+        ----------
+        Rasmussen & Williams (2006), eqs. (5.10)-(5.12).
+        """
+        precision = self.factor.precision()
+        return self.weights / precision, 1.0 / precision
+
+    def observed(self) -> Float[np.ndarray, "n output"]:
+        """The outputs that it was conditioned on."""
+        return self.factor.observed(self.weights)
+
+    def updated(
+        self,
+        x: Float[np.ndarray, "new feature"],
+        y: Float[np.ndarray, "new output"],
+        *,
+        amplitude: Float[np.ndarray, " output"],
+    ) -> Self:
+        """Conditioned on more points, with the same hyperparameters.
+
+        The Cholesky factor is extended, in O(n^2) per point; noise unlike between the outputs
+        needs the decomposition anew, in O(n^3).
+
+        Parameters
+        ----------
+        x, y
+            The new points.
+        amplitude
+            Standard deviation of each output that the kernel's is a share of.
+        """
+        doubt = np.append(self.doubt, self._doubts(x, y, amplitude))
+        all_x, all_y = np.concatenate([self.x, x]), np.concatenate([self.observed(), y])
+        factor = self._extended(x, doubt[len(self.x) :])
+        if factor is None:
+            return self.reconditioned(all_x, all_y, doubt=doubt)
+        return replace(self, x=all_x, doubt=doubt, weights=factor.solve(all_y), factor=factor)
+
+    def _extended(
+        self, x: Float[np.ndarray, "new feature"], doubt: Float[np.ndarray, " new"]
+    ) -> Cholesky | None:
+        from scipy.linalg import LinAlgError
+
+        if not isinstance(self.factor, Cholesky):
+            return None
+        try:
+            return self.factor.extended(
+                self.kernel.covariance(self.log_parameters, x, self.x),
+                self.kernel.covariance(self.log_parameters, x, x),
+                self.noise.with_pullback(self.log_noise, x)[0] * doubt,
+            )
+        except LinAlgError:
+            return None  # The whole can afford a larger jitter.
+
+    def reconditioned(
+        self,
+        x: Float[np.ndarray, "n feature"],
+        y: Float[np.ndarray, "n output"],
+        *,
+        doubt: Float[np.ndarray, " n"],
+    ) -> Self:
+        """Conditioned on other points, with the same hyperparameters."""
+        return self.conditioned(
+            self.kernel,
+            self.log_parameters,
+            self.log_noise,
+            x,
+            y,
+            noise=self.noise,
+            doubt=doubt,
+        )
+
+    def combined(
+        self, share: Float[np.ndarray, " output"], *, amplitude: Float[np.ndarray, " output"]
+    ) -> Self:
+        """With one output: the sum of the outputs times their share.
+
+        Parameters
+        ----------
+        share
+            Of each output.
+        amplitude
+            Standard deviation of each output that the kernel's is a share of.
+        """
+        weights = self.weights @ share[:, None]
+        if isinstance(self.factor, Cholesky):
+            return replace(self, weights=weights)
+        variance = (share * amplitude) ** 2
+        variance /= max(float(variance.sum()), np.finfo(float).tiny)
+        only = np.flatnonzero(share)
+        log_noise = self.log_noise[only] if len(only) == 1 else self.log_noise
+        factor = self.factor.mixed(np.where(share == 0.0, 0.0, variance))
+        return replace(self, weights=weights, factor=factor, log_noise=log_noise)
+
+    def _doubts(
+        self,
+        x: Float[np.ndarray, "new feature"],
+        y: Float[np.ndarray, "new output"],
+        amplitude: Float[np.ndarray, " output"],
+    ) -> Float[np.ndarray, " new"]:
+        """Doubt of new points, each judged by what the old ones made it expect."""
+        if not isinstance(self.noise, StudentNoise):
+            return np.ones(len(x))
+        mean, variance = self.predict(x)
+        known = amplitude > 0.0
+        square = np.sum(((y - mean)[:, known] / amplitude[known]) ** 2, axis=1)
+        scale, outputs = float(np.exp(self.log_noise[0])), int(np.sum(known))
+        return settled_doubt(square, variance[:, 0], scale=scale, outputs=outputs)
+
+
+def factorised(
+    kernel: AbstractKernel,
+    log_parameters: Float[np.ndarray, " parameter"],
+    noise: AbstractNoise,
+    log_noise: Float[np.ndarray, " noise"],
+    x: Float[np.ndarray, "n feature"],
+    doubt: Float[np.ndarray, " n"],
+) -> Factor:
+    """Of the covariance of points with noise."""
+    covariance = kernel.covariance(log_parameters, x, x)
+    if isinstance(noise, NoisePerOutput):
+        return Spectrum.of(covariance, np.exp(log_noise))
+    return Cholesky.of(covariance, noise.with_pullback(log_noise, x)[0] * doubt)
+
+
+def chunks(rows: int, size: int) -> Iterator[slice]:
+    """Consecutive slices of at most so many rows."""
+    step = max(size, 1)
+    return (slice(start, start + step) for start in range(0, rows, step))

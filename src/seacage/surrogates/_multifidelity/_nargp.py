@@ -1,0 +1,523 @@
+"""Nonlinear autoregressive Gaussian processes: each fidelity corrects the one below."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import ClassVar, Self
+
+import numpy as np
+from jaxtyping import Float
+from numpy.typing import ArrayLike
+
+from seacage.conventions import InputError, ModelError
+from seacage.surrogates._arrays import (
+    Arrays,
+    Settings,
+    joined,
+    setting,
+    sub_settings,
+    within,
+)
+from seacage.surrogates._gp import (
+    AbstractKernel,
+    Ensemble,
+    FittedGaussianProcess,
+    NoiseName,
+    check_ensemble,
+    check_noise,
+    check_restarts,
+    fitted_process,
+    kernel_named,
+)
+from seacage.surrogates._multifidelity._kernel import (
+    AutoregressiveKernel,
+    LinkKernel,
+    StraightKernel,
+)
+from seacage.surrogates._multifidelity._quadrature import carried, carried_slope
+from seacage.surrogates._prediction import (
+    Moments,
+    Prediction,
+    Predicts,
+    checked_inputs,
+    checked_outputs,
+)
+from seacage.surrogates._scaling import Scaling
+
+DIFFERENCE = 1e-4
+"""Step of central differences, in spreads of a feature; their error falls with its square."""
+
+ALIKE = 0.5
+"""Two levels are taken for the same quantity where their difference has less than this share of
+the upper one's spread."""
+
+Cases = tuple[Float[np.ndarray, "_ _"], Float[np.ndarray, " _"]]
+"""Inputs (n, features) and outputs (n,) of one fidelity."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AbstractMultifidelity(ABC):
+    """Levels of fidelity learned one after the other, each on the one below; not yet fitted."""
+
+    noise: NoiseName = "white"
+    ensemble: Ensemble = "auto"
+    restarts: int = 3
+
+    def __post_init__(self) -> None:
+        check_noise(self.noise)
+        check_ensemble(self.ensemble)
+        check_restarts(self.restarts)
+
+    @abstractmethod
+    def link(self, lengths: tuple[float, ...], *, alike: bool) -> LinkKernel:
+        """Covariance of a level over its inputs and the level below.
+
+        Parameters
+        ----------
+        lengths
+            Log lengths of the lowest level, in spreads of this level's inputs; empty where a
+            lent one does not tell.
+        alike
+            Whether the level below tells most of this one as it is.
+        """
+
+    def fit(
+        self,
+        levels: Sequence[Cases],
+        *,
+        seed: int = 0,
+        nested: bool = False,
+        lower: Predicts | None = None,
+    ) -> "FittedNARGP":
+        """Learn each level from its own cases.
+
+        Parameters
+        ----------
+        levels
+            Inputs (n, features) and outputs (n,) of each level, from low to high fidelity.
+        seed
+            Of the subsets of points and of the random starts.
+        nested
+            Demand that the inputs of each level are among those of the level below, and use the
+            outputs observed there instead of the posterior mean.
+        lower
+            A fitted model that serves as level 1; ``levels`` then begins at level 2. It has to
+            answer with one number per row.
+
+        Raises
+        ------
+        InputError
+            No level, tables that do not fit, or inputs that are not nested though they should be.
+        """
+        what = f"{type(self).__name__}.fit"
+        cases = _checked_cases(levels, first=1 if lower is None else 2, what=what)
+        if nested and lower is not None:
+            raise InputError(
+                f"{what}: nested=True needs the cases of level 1, but `lower` has none to give. "
+                "Pass `nested=False` to use its mean."
+            )
+        seeds = np.random.SeedSequence(seed).generate_state(len(cases)).tolist()
+        fitted = FittedNARGP(own=(), lent=lower, nested=nested)
+        for index, (x, y) in enumerate(cases):
+            kernel: AbstractKernel = kernel_named("squared-exponential")
+            inputs, slope = x, np.zeros(x.shape[1])
+            if fitted.levels:
+                if nested:
+                    below = _observed_below(x, cases[index - 1], level=index + 1, what=what)
+                else:
+                    below = _one_per_row(fitted.predict(x).mean, what=what)
+                alike = bool(np.std(y - below) < ALIKE * np.std(y))
+                kernel = self.link(_lengths_below(fitted, x), alike=alike)
+                inputs, slope = np.column_stack([x, below]), np.append(slope, kernel.ratio)
+            added = self._process(kernel, inputs, y[:, None], slope=slope, seed=seeds[index])
+            fitted = replace(fitted, own=(*fitted.own, added))
+        return fitted
+
+    def _process(
+        self,
+        kernel: AbstractKernel,
+        x: Float[np.ndarray, "n feature"],
+        y: Float[np.ndarray, "n 1"],
+        *,
+        slope: Float[np.ndarray, " feature"],
+        seed: int,
+    ) -> FittedGaussianProcess:
+        rest = y - x @ slope[:, None]
+        rest = rest - rest.mean(axis=0)
+        return fitted_process(
+            kernel,
+            x,
+            y,
+            # In spreads of the level itself, whatever is left of it, as the priors are.
+            taught_by=rest / Scaling.of(y).unit,
+            noise=self.noise,
+            ensemble=self.ensemble,
+            slope=slope,
+            restarts=self.restarts,
+            seed=seed,
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NARGP(AbstractMultifidelity):
+    """Nonlinear autoregressive multifidelity regression, not yet fitted; any number of levels.
+
+    Level 1 is a Gaussian process of the inputs. Each level above is one of the inputs and of
+    the level below, f_t(x) = g_t(x, f_{t-1}(x)), trained at the posterior mean of the level
+    below, so that its inputs need not be among those below.
+
+    Parameters
+    ----------
+    linear
+        Expect a line in the level below, the same everywhere, which carries a plain ratio of
+        the two to where nothing was observed, and about it a curve that is held to an offset at
+        the mean of the level below. Where the level below tells most of this one as it is, the
+        ratio is expected to be near 1. False is the kernel as published.
+    noise, ensemble
+        Of every level, as for ``GaussianProcess``; a level has one output.
+    restarts
+        Of each level, as for ``GaussianProcess``.
+
+    References
+    ----------
+    Perdikaris et al. (2017), "Nonlinear information fusion algorithms for data-efficient
+    multi-fidelity modelling", Proc. R. Soc. A 473:20160751.
+    """
+
+    linear: bool = True
+
+    def link(self, lengths: tuple[float, ...], *, alike: bool) -> LinkKernel:
+        return AutoregressiveKernel(linear=self.linear, lengths=lengths, alike=alike)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AR1(AbstractMultifidelity):
+    """Linear autoregressive multifidelity regression, not yet fitted; any number of levels.
+
+    f_t(x) = rho_t f_{t-1}(x) + delta_t(x), with a constant rho_t of its own for each level: a
+    baseline to compare ``NARGP`` with. Levels are learned one after the other at the mean of
+    the level below, and rho_t is integrated out. The fitted model is that of ``NARGP``.
+
+    Parameters
+    ----------
+    noise, ensemble, restarts
+        As for ``NARGP``.
+
+    References
+    ----------
+    Kennedy & O'Hagan (2000), "Predicting the output from a complex computer code when fast
+    approximations are available", Biometrika 87:1-13; Le Gratiet & Garnier (2014), Int. J.
+    Uncertainty Quantification 4:365-386, for the recursion.
+    """
+
+    def link(self, lengths: tuple[float, ...], *, alike: bool) -> LinkKernel:  # noqa: ARG002
+        return StraightKernel()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class FittedNARGP:
+    """Levels of fidelity, each answering from the one below.
+
+    Parameters
+    ----------
+    own
+        The levels learned here: from level 1, or from level 2 where level 1 is lent.
+    lent
+        Level 1 where another model serves as it; it is not saved with this one.
+    nested
+        Whether each level was taught at what the level below observed, not at its mean.
+    """
+
+    MODEL: ClassVar[str] = "nargp"
+
+    own: tuple[FittedGaussianProcess, ...]
+    lent: Predicts | None = None
+    nested: bool = False
+
+    @property
+    def levels(self) -> int:
+        """The number of fidelities."""
+        return len(self.own) + (self.lent is not None)
+
+    @property
+    def lower(self) -> Predicts:
+        """Level 1."""
+        return self.own[0] if self.lent is None else self.lent
+
+    @property
+    def upper(self) -> tuple[FittedGaussianProcess, ...]:
+        """Level 2 and above, each a process of the inputs and of the level below."""
+        return self.own[1:] if self.lent is None else self.own
+
+    def predict(
+        self,
+        x: Float[np.ndarray, "row feature"],
+        *,
+        level: int | None = None,
+        noisy: bool = False,
+    ) -> Prediction:
+        """Answer at each row of features.
+
+        Parameters
+        ----------
+        x
+            One row per case, the features of the training.
+        level
+            From 1, the lowest, to ``levels``, which None means.
+        noisy
+            Of a new observation at this level: adds its noise.
+        """
+        level = self._level(level, lowest=1, what="predict")
+        if level == 1:
+            return self._lowest(x, noisy=noisy)
+        upper = self.upper[: level - 1]
+        x = checked_inputs(x, what="predict", width=self._width)
+        below = self.lower.predict(x)
+        mean, variance = carried(self._steps(level), x, below.mean, below.std**2)
+        if noisy:
+            # Where the noise changes with the level below, it is that at its mean.
+            at = below.mean if level == 2 else self.predict(x, level=level - 1).mean
+            variance = variance + upper[-1].noise_at(np.column_stack([x, at]))
+        return Prediction(mean=mean, std=np.sqrt(variance))
+
+    def jacobian(
+        self, x: Float[np.ndarray, "row feature"], *, level: int | None = None
+    ) -> Float[np.ndarray, "row feature"]:
+        """Change of the mean per change of each feature, at each row, through all levels.
+
+        A lent level 1 that is no Gaussian process is differentiated by central differences.
+
+        Parameters
+        ----------
+        x
+            One row per case, the features of the training.
+        level
+            As for ``predict``.
+        """
+        level = self._level(level, lowest=1, what="jacobian")
+        x = checked_inputs(x, what="jacobian", width=self._width)
+        below = self._lowest_moments(x)
+        return carried_slope(self._steps(level), x, below) if level > 1 else below.mean_slope
+
+    def updated(
+        self,
+        x: Float[np.ndarray, "new feature"],
+        y: Float[np.ndarray, " new"],
+        *,
+        level: int | None = None,
+    ) -> Self:
+        """Conditioned on more cases of a level above the first, without learning anew.
+
+        Levels below stay the same objects. Levels above were taught at the mean of this one, so
+        they are conditioned again on their own cases at its new mean, unless taught nested.
+
+        Parameters
+        ----------
+        x, y
+            New cases; the level below is asked for its mean there.
+        level
+            From 2 to ``levels``, which None means.
+        """
+        level = self._level(level, lowest=2, what="updated")
+        x = checked_inputs(x, what="updated", width=self._width)
+        y = checked_outputs(y, what="updated", rows=len(x), shape="(rows,)", least=1)
+        below = self.predict(x, level=level - 1).mean
+        process = self.upper[level - 2].updated(np.column_stack([x, below]), y)
+        fitted = self._replaced(level, process)
+        if not self.nested:
+            for above in range(level + 1, self.levels + 1):
+                taught = fitted.upper[above - 2]
+                x = taught.cases()[:, :-1]
+                below = fitted.predict(x, level=above - 1).mean
+                fitted = fitted._replaced(above, taught.moved(np.column_stack([x, below])))  # noqa: SLF001
+        return fitted
+
+    def _replaced(self, level: int, process: FittedGaussianProcess) -> Self:
+        own = list(self.own)
+        own[level - 1 - (self.lent is not None)] = process
+        return replace(self, own=tuple(own))
+
+    @property
+    def _width(self) -> int | None:
+        """Features of a row, where a level tells."""
+        if self.upper:
+            return len(self.upper[0].inputs.centre) - 1
+        return len(self.own[0].inputs.centre) if self.own else None
+
+    def _level(self, level: int | None, *, lowest: int, what: str) -> int:
+        level = self.levels if level is None else level
+        if not lowest <= level <= self.levels:
+            raise InputError(
+                f"{what}: level = {level} does not exist; this model has levels {lowest} to "
+                f"{self.levels}."
+            )
+        return level
+
+    def _steps(self, level: int) -> "list[_Step]":
+        return [_Step(process) for process in self.upper[: level - 1]]
+
+    def _lowest_moments(self, x: Float[np.ndarray, "row feature"]) -> Moments:
+        if isinstance(self.lower, FittedGaussianProcess):
+            return self.lower.moments(x)
+        return _differenced(self.lower, x, step=DIFFERENCE * self.upper[0].inputs.unit[:-1])
+
+    def _lowest(self, x: Float[np.ndarray, "row feature"], *, noisy: bool) -> Prediction:
+        if self.lent is None:
+            return self.own[0].predict(x, noisy=noisy)
+        if noisy:
+            raise InputError(
+                "predict: level 1 is lent, and its noise is not known here. "
+                "Ask the model that lent it."
+            )
+        return self.lent.predict(x)
+
+    def to_arrays(self) -> tuple[Settings, Arrays]:
+        """Everything that ``from_arrays`` needs; a lent level 1 is left out."""
+        saved = [process.to_arrays() for process in self.own]
+        settings: Settings = {
+            "model": self.MODEL,
+            "lent": self.lent is not None,
+            "nested": self.nested,
+            "levels": [settings for settings, _ in saved],
+        }
+        return settings, joined([arrays for _, arrays in saved])
+
+    @classmethod
+    def from_arrays(
+        cls,
+        settings: Mapping[str, object],
+        arrays: Mapping[str, np.ndarray],
+        *,
+        lower: Predicts | None = None,
+    ) -> Self:
+        """The model that ``to_arrays`` described.
+
+        Parameters
+        ----------
+        settings, arrays
+            As ``to_arrays`` gave them.
+        lower
+            Level 1, where another model had lent it.
+
+        Raises
+        ------
+        ModelError
+            A part is missing or damaged, or ``lower`` is given or left out against the settings.
+        """
+        lent = setting(settings, "lent", bool)
+        if lent != (lower is not None):
+            need = "needs its level 1 given" if lent else "has its own level 1"
+            raise ModelError(f"The saved NARGP {need}. Check what is passed as `lower`.")
+        own = tuple(
+            FittedGaussianProcess.from_arrays(part, within(index, arrays))
+            for index, part in enumerate(sub_settings(settings, "levels"))
+        )
+        fitted = cls(own=own, lent=lower, nested=setting(settings, "nested", bool))
+        _check_chain(fitted)
+        return fitted
+
+
+@dataclass(frozen=True, slots=True)
+class _Step:
+    """An upper level, as the quadrature sees it."""
+
+    process: FittedGaussianProcess
+
+    @property
+    def bend(self) -> float:
+        kernel = self.process.posterior.kernel
+        assert isinstance(kernel, LinkKernel)
+        members = self.process.members
+        length = min(kernel.link_length(member.log_parameters) for member in members)
+        return length * float(self.process.inputs.unit[-1])
+
+    def moments(
+        self, x: Float[np.ndarray, "row feature"], below: Float[np.ndarray, " row"]
+    ) -> tuple[Float[np.ndarray, " row"], Float[np.ndarray, " row"]]:
+        answer = self.process.predict(np.column_stack([x, below]))
+        return answer.mean, answer.std**2
+
+    def sloped(
+        self, x: Float[np.ndarray, "row feature"], below: Float[np.ndarray, " row"]
+    ) -> Moments:
+        return self.process.moments(np.column_stack([x, below]))
+
+
+def _checked_cases(
+    levels: Sequence[tuple[ArrayLike, ArrayLike]], *, first: int, what: str
+) -> list[Cases]:
+    if len(levels) == 0:
+        raise InputError(f"{what}: there is no level to learn. Give (x, y) of each, low to high.")
+    cases: list[Cases] = []
+    for level, (x, y) in enumerate(levels, start=first):
+        who = f"{what}, level {level}"
+        rows = checked_inputs(x, what=who, width=cases[0][0].shape[1] if cases else None)
+        cases.append((rows, checked_outputs(y, what=who, rows=len(rows), shape="(rows,)")))
+    return cases
+
+
+def _observed_below(
+    x: Float[np.ndarray, "n feature"], below: Cases, *, level: int, what: str
+) -> Float[np.ndarray, " n"]:
+    """What the level below observed at the same inputs."""
+    found = {row.tobytes(): value for row, value in zip(*below, strict=True)}
+    values = [found.get(row.tobytes(), np.nan) for row in x]
+    missing = np.flatnonzero(np.isnan(values))
+    if len(missing):
+        raise InputError(
+            f"{what}: {len(missing)} inputs of level {level} are not in level {level - 1} "
+            f"(first: case {missing[0]}). Pass `nested=False` to use the level-{level - 1} mean "
+            "there."
+        )
+    return np.array(values)
+
+
+def _lengths_below(fitted: FittedNARGP, x: Float[np.ndarray, "n feature"]) -> tuple[float, ...]:
+    """Log lengths of the lowest level in spreads of these inputs, where it was learned here."""
+    if fitted.lent is not None:
+        return ()
+    lowest = fitted.own[0]
+    log_length = lowest.posterior.log_parameters[1:]
+    return tuple((log_length + np.log(lowest.inputs.unit / Scaling.of(x).unit)).tolist())
+
+
+def _one_per_row(mean: Float[np.ndarray, "n *rest"], *, what: str) -> Float[np.ndarray, " n"]:
+    if mean.ndim != 1:
+        raise InputError(
+            f"{what}: `lower` answers with shape {mean.shape}; expected one number per row. "
+            "Lend one output of it, e.g. `fitted.output(0)` or `fitted.coordinate(node, axis)`."
+        )
+    return mean
+
+
+def _differenced(
+    lower: Predicts, x: Float[np.ndarray, "row feature"], *, step: Float[np.ndarray, " feature"]
+) -> Moments:
+    """Mean and variance of a lent level, and their gradients by central differences."""
+    here = lower.predict(x)
+    mean_slope, variance_slope = np.empty_like(x), np.empty_like(x)
+    for feature, size in enumerate(step):
+        aside = np.zeros(x.shape[1])
+        aside[feature] = size
+        up, down = lower.predict(x + aside), lower.predict(x - aside)
+        mean_slope[:, feature] = (up.mean - down.mean) / (2.0 * size)
+        variance_slope[:, feature] = (up.std**2 - down.std**2) / (2.0 * size)
+    return Moments(
+        mean=here.mean,
+        variance=here.std**2,
+        mean_slope=mean_slope,
+        variance_slope=variance_slope,
+    )
+
+
+def _check_chain(fitted: FittedNARGP) -> None:
+    """Refuse a saved chain whose levels do not fit on one another."""
+    widths = {len(process.inputs.centre) - 1 for process in fitted.upper}
+    if fitted.lent is None and fitted.own:
+        widths.add(len(fitted.own[0].inputs.centre))
+    steps = all(
+        process.single and isinstance(process.posterior.kernel, LinkKernel)
+        for process in fitted.upper
+    )
+    if not fitted.own or len(widths) > 1 or not steps or not fitted.own[0].single:
+        raise ModelError("The saved NARGP's levels do not fit together. Train the model again.")

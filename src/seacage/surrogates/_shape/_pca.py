@@ -1,0 +1,414 @@
+"""Principal components of node positions: a shape as a few scores."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import ClassVar, Self
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.conventions import InputError
+from seacage.surrogates._arrays import (
+    Arrays,
+    Settings,
+    array,
+    joined,
+    setting,
+    sub_settings,
+    within,
+)
+from seacage.surrogates._gp import (
+    FittedGaussianProcess,
+    KernelName,
+    check_restarts,
+    fitted_process,
+    kernel_named,
+    teachers,
+)
+from seacage.surrogates._prediction import Prediction, checked_inputs, checked_outputs
+
+PAPER_VARIANCE = 0.93
+"""Share of the variance that the paper keeps, in three modes."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Modes:
+    """Orthonormal directions of a table of shapes.
+
+    Parameters
+    ----------
+    centre
+        The mean shape, or zero [m].
+    direction
+        One row per mode, most important first, of unit length over all coordinates.
+    truncation
+        Root mean square of what the modes leave out, per coordinate [m].
+    """
+
+    centre: Float[np.ndarray, " coordinate"]
+    direction: Float[np.ndarray, "mode coordinate"]
+    truncation: Float[np.ndarray, " coordinate"]
+
+    @property
+    def nodes(self) -> int:
+        """Of a shape."""
+        return len(self.centre) // 3
+
+    def encode(self, shape: Float[np.ndarray, "row coordinate"]) -> Float[np.ndarray, "row mode"]:
+        """Scores of each shape [m]."""
+        return (shape - self.centre) @ self.direction.T
+
+    def decode(self, score: Float[np.ndarray, "row mode"]) -> Float[np.ndarray, "row coordinate"]:
+        """Shape of each row of scores [m]."""
+        return self.centre + score @ self.direction
+
+    def std(self, score_std: Float[np.ndarray, "row mode"]) -> Float[np.ndarray, "row coordinate"]:
+        """Of each coordinate, from independent scores and what the modes leave out [m]."""
+        return np.sqrt(score_std**2 @ self.direction**2 + self.truncation**2)
+
+    def truncated(self, shape: Float[np.ndarray, "row coordinate"], modes: int) -> Self:
+        """The first modes, with what they leave out of these shapes."""
+        kept = replace(self, direction=self.direction[:modes])
+        missed = shape - kept.decode(kept.encode(shape))
+        return replace(kept, truncation=np.sqrt(np.mean(missed**2, axis=0)))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class OverTime:
+    """The shapes at all time steps of all cases, as far as principal modes know them.
+
+    Parameters
+    ----------
+    mean
+        Over all steps [m].
+    scatter
+        Mean product of two coordinates' distances from their means [m2].
+    """
+
+    mean: Float[np.ndarray, " coordinate"]
+    scatter: Float[np.ndarray, "coordinate coordinate"]
+
+    @classmethod
+    def of_snapshots(cls, node_position: Float[np.ndarray, "t node 3"]) -> Self:
+        """Of the shapes themselves, e.g. ``History.node_position`` of all cases [m]."""
+        node_position = checked_outputs(
+            node_position, what="OverTime", rows=len(node_position), shape="(steps, nodes, 3)"
+        )
+        rows = node_position.reshape(len(node_position), -1)
+        mean = rows.mean(axis=0)
+        return cls(mean=mean, scatter=(rows - mean).T @ (rows - mean) / len(rows))
+
+    @classmethod
+    def of_moment(
+        cls,
+        node_position: Float[np.ndarray, "case node 3"],
+        second_moment: Float[np.ndarray, "coordinate coordinate"],
+        *,
+        rest_position: Float[np.ndarray, "node 3"],
+    ) -> Self:
+        """Of what a campaign in time keeps in place of the shapes.
+
+        Parameters
+        ----------
+        node_position
+            Means over time of all cases that the moment is of: those that converged [m].
+        second_moment
+            Mean over time and cases of the products of displacements from the shape at rest
+            [m2].
+        rest_position
+            That shape: ``cage.design_position`` for a campaign of seacage [m].
+        """
+        mean = node_position.reshape(len(node_position), -1).mean(axis=0)
+        if second_moment.shape != (len(mean), len(mean)) or rest_position.size != len(mean):
+            raise InputError(
+                f"OverTime: a second moment of shape {second_moment.shape} and a shape at rest of "
+                f"{rest_position.size // 3} nodes do not belong to {len(mean) // 3} nodes."
+            )
+        moved = mean - rest_position.ravel()
+        return cls(mean=mean, scatter=second_moment - np.outer(moved, moved))
+
+
+def all_modes(
+    shape: Float[np.ndarray, "row coordinate"],
+    *,
+    about: Float[np.ndarray, " coordinate"] | None = None,
+) -> tuple[Modes, Float[np.ndarray, " mode"]]:
+    """Every mode of a table of shapes, and the share of the variance up to each.
+
+    Parameters
+    ----------
+    shape
+        One row per case [m].
+    about
+        Where the modes start, "variance" being the mean square from there; None for the mean.
+    """
+    centre = shape.mean(axis=0) if about is None else about
+    _, size, direction = np.linalg.svd(shape - centre, full_matrices=False)
+    return _sorted_modes(centre, direction, size**2)
+
+
+def modes_over_time(
+    over_time: OverTime, *, about: Float[np.ndarray, " coordinate"] | None = None
+) -> tuple[Modes, Float[np.ndarray, " mode"]]:
+    """Every mode of the shapes at all time steps, and the share of the variance up to each."""
+    centre = over_time.mean if about is None else about
+    moved = over_time.mean - centre
+    size, direction = np.linalg.eigh(over_time.scatter + np.outer(moved, moved))
+    # Rounding can leave a hair less than nothing.
+    return _sorted_modes(centre, direction.T[::-1], np.maximum(size[::-1], 0.0))
+
+
+def modes_within(shape: Float[np.ndarray, "row coordinate"], tolerance: float) -> Modes:
+    """The fewest modes that move no node by more than the tolerance [m], root mean square."""
+    modes, _ = all_modes(shape)
+    held = np.mean(modes.encode(shape) ** 2, axis=0)[:, None] * modes.direction**2
+    missed = np.mean((shape - modes.centre) ** 2, axis=0) - np.cumsum(held, axis=0)
+    worst = missed.reshape(len(missed), -1, 3).sum(axis=2).max(axis=1)
+    enough = np.flatnonzero(worst <= tolerance**2)
+    return modes.truncated(shape, int(enough[0]) + 1 if len(enough) else len(worst))
+
+
+def _sorted_modes(
+    centre: Float[np.ndarray, " coordinate"],
+    direction: Float[np.ndarray, "mode coordinate"],
+    size: Float[np.ndarray, " mode"],
+) -> tuple[Modes, Float[np.ndarray, " mode"]]:
+    share = np.cumsum(size) / max(float(np.sum(size)), np.finfo(float).tiny)
+    # In C order, as they come back from a file: the same rounding in every prediction.
+    direction = np.ascontiguousarray(direction)
+    modes = Modes(centre=centre, direction=direction, truncation=np.zeros_like(centre))
+    return modes, share
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PcaGP:
+    """A few principal scores of the shape, each its own Gaussian process; not yet fitted.
+
+    The paper's model. Its matrix M of all nodes at all time steps of all cases gives the modes
+    as eigenvectors of M M', the scores as phi' M (the paper prints M phi), their means over
+    each case teach the processes, and the shape is the sum over modes (the paper also sums over
+    the cases); ``centred=False`` reads M M' literally.
+
+    Parameters
+    ----------
+    modes
+        How many to keep; or
+    variance
+        keep the fewest that explain this share. Neither means the paper's 0.93.
+    centred
+        Whether the mean shape is taken out first. Otherwise M holds coordinates, or, where
+        ``fit`` is told the shape at rest, displacements from it: the paper says both.
+    kernel, restarts
+        As for ``GaussianProcess``.
+
+    References
+    ----------
+    Katsidoniotaki et al. (2025), Sci. Rep. 15:44281, Methods, "Net cage displacement data
+    dimension reduction using PCA".
+    """
+
+    modes: int | None = None
+    variance: float | None = None
+    centred: bool = True
+    kernel: KernelName = "squared-exponential"
+    restarts: int = 3
+
+    def __post_init__(self) -> None:
+        kernel_named(self.kernel)
+        check_restarts(self.restarts)
+        if self.modes is not None and self.variance is not None:
+            raise InputError("PcaGP: both modes and variance are given. Choose one of them.")
+        if self.modes is not None and self.modes < 1:
+            raise InputError(f"PcaGP: modes = {self.modes} keeps nothing. Give at least 1.")
+        if self.variance is not None and not 0.0 < self.variance <= 1.0:
+            raise InputError(
+                f"PcaGP: variance = {self.variance:g} is not a share in (0, 1]. Give 0.93 for 93 %."
+            )
+
+    def fit(
+        self,
+        x: Float[np.ndarray, "n feature"],
+        node_position: Float[np.ndarray, "n node 3"],
+        *,
+        over_time: OverTime | None = None,
+        rest_position: Float[np.ndarray, "node 3"] | None = None,
+        seed: int = 0,
+    ) -> "FittedPcaGP":
+        """Learn from features and shapes.
+
+        Parameters
+        ----------
+        x
+            One row per case.
+        node_position
+            The shape of each case, a mean over time [m].
+        over_time
+            The shapes at all time steps, for the modes to be of; without it they are of the
+            cases' means.
+        rest_position
+            The shape at rest, for ``centred=False`` to mean displacements from it [m].
+        seed
+            Of the subsets of points and of the random starts.
+        """
+        x = checked_inputs(x, what="PcaGP.fit")
+        node_position = checked_outputs(
+            node_position, what="PcaGP.fit", rows=len(x), shape="(rows, nodes, 3)"
+        )
+        shape = node_position.reshape(len(x), -1)
+        about = self._about(rest_position, coordinates=shape.shape[1])
+        if over_time is None:
+            modes, share = all_modes(shape, about=about)
+        elif len(over_time.mean) == shape.shape[1]:
+            modes, share = modes_over_time(over_time, about=about)
+        else:
+            raise InputError(
+                f"PcaGP.fit: the shapes over time have {len(over_time.mean) // 3} nodes, those of "
+                f"the cases {shape.shape[1] // 3}. Give both of the same net."
+            )
+        count = self._count(share)
+        modes = modes.truncated(shape, count)
+        scores = tuple(
+            fitted_process(
+                kernel_named(self.kernel),
+                x,
+                score[:, None],
+                taught_by=teachers(score[:, None]),
+                restarts=self.restarts,
+                seed=seed + mode,
+            )
+            for mode, score in enumerate(modes.encode(shape).T)
+        )
+        return FittedPcaGP(basis=modes, scores=scores, explained_variance=float(share[count - 1]))
+
+    def _about(
+        self, rest_position: Float[np.ndarray, "node 3"] | None, *, coordinates: int
+    ) -> Float[np.ndarray, " coordinate"] | None:
+        if self.centred:
+            return None
+        if rest_position is None:
+            return np.zeros(coordinates)
+        rest = checked_inputs(rest_position, what="PcaGP.fit: rest_position", width=3).ravel()
+        if len(rest) != coordinates:
+            raise InputError(
+                f"PcaGP.fit: the shape at rest has {len(rest) // 3} nodes, those of the cases "
+                f"{coordinates // 3}. Give both of the same net."
+            )
+        return rest
+
+    def _count(self, share: Float[np.ndarray, " mode"]) -> int:
+        if self.modes is None:
+            wanted = self.variance or PAPER_VARIANCE
+            return min(int(np.searchsorted(share, wanted)) + 1, len(share))
+        if self.modes > len(share):
+            raise InputError(
+                f"PcaGP.fit: modes = {self.modes}, but these cases have only {len(share)}."
+            )
+        return self.modes
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class FittedPcaGP:
+    """Principal modes of the shape and a process for each score.
+
+    Parameters
+    ----------
+    basis
+        The modes kept.
+    scores
+        One process per mode.
+    explained_variance
+        Share of the training variance that the modes hold.
+    """
+
+    MODEL: ClassVar[str] = "pca-gp"
+
+    basis: Modes
+    scores: tuple[FittedGaussianProcess, ...]
+    explained_variance: float
+
+    @property
+    def modes(self) -> int:
+        """How many are kept."""
+        return len(self.scores)
+
+    def encode(
+        self, node_position: Float[np.ndarray, "row node 3"]
+    ) -> Float[np.ndarray, "row mode"]:
+        """Scores of shapes [m]."""
+        rows = np.reshape(node_position, (len(node_position), -1))
+        return self.basis.encode(checked_inputs(rows, what="encode", width=len(self.basis.centre)))
+
+    def decode(self, score: Float[np.ndarray, "row mode"]) -> Float[np.ndarray, "row node 3"]:
+        """Shapes of scores [m]."""
+        return self.basis.decode(score).reshape(len(score), self.basis.nodes, 3)
+
+    def predict(self, x: Float[np.ndarray, "row feature"], *, noisy: bool = False) -> Prediction:
+        """Shape at each row of features [m].
+
+        Parameters
+        ----------
+        x
+            One row per case, the features of the training.
+        noisy
+            Of a new observation: adds the noise of the scores. What the modes leave out is in
+            the standard deviation either way.
+        """
+        answers = [score.predict(x, noisy=noisy) for score in self.scores]
+        mean = np.stack([answer.mean for answer in answers], axis=1)
+        std = self.basis.std(np.stack([answer.std for answer in answers], axis=1))
+        return Prediction(mean=self.decode(mean), std=std.reshape(len(std), self.basis.nodes, 3))
+
+    def to_arrays(self) -> tuple[Settings, Arrays]:
+        """Everything that ``from_arrays`` needs, as plain values and float64 arrays."""
+        saved = [score.to_arrays() for score in self.scores]
+        settings: Settings = {
+            "model": self.MODEL,
+            "explained_variance": self.explained_variance,
+            "scores": [settings for settings, _ in saved],
+        }
+        return settings, modes_to_arrays(self.basis) | joined([arrays for _, arrays in saved])
+
+    @classmethod
+    def from_arrays(cls, settings: Mapping[str, object], arrays: Mapping[str, np.ndarray]) -> Self:
+        """The model that ``to_arrays`` described.
+
+        Raises
+        ------
+        ModelError
+            A setting or an array is missing, of another kind or shape, or not finite.
+        """
+        scores = tuple(
+            FittedGaussianProcess.from_arrays(part, within(place, arrays))
+            for place, part in enumerate(sub_settings(settings, "scores"))
+        )
+        return cls(
+            basis=modes_from_arrays(arrays, modes=len(scores)),
+            scores=scores,
+            explained_variance=setting(settings, "explained_variance", float),
+        )
+
+
+def modes_to_arrays(modes: Modes) -> Arrays:
+    """Of a model that holds them."""
+    return {
+        "centre": modes.centre,
+        "direction": np.ascontiguousarray(modes.direction),
+        "truncation": modes.truncation,
+    }
+
+
+def modes_from_arrays(arrays: Mapping[str, np.ndarray], *, modes: int) -> Modes:
+    """The other way.
+
+    Raises
+    ------
+    ModelError
+        An array is missing, of another shape, or not finite.
+    """
+    direction = array(arrays, "direction", modes, None)
+    coordinates = direction.shape[1]
+    return Modes(
+        centre=array(arrays, "centre", coordinates),
+        direction=direction,
+        truncation=array(arrays, "truncation", coordinates),
+    )

@@ -1,0 +1,523 @@
+"""The whole shape of the net from one shared kernel."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import ClassVar, Literal, Self, get_args
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from seacage.conventions import InputError, ModelError
+from seacage.surrogates._arrays import (
+    Arrays,
+    Settings,
+    array,
+    joined,
+    setting,
+    sub_settings,
+    within,
+)
+from seacage.surrogates._features import check_turnable
+from seacage.surrogates._gp import (
+    FittedGaussianProcess,
+    KernelName,
+    check_restarts,
+    condensed,
+    fitted_process,
+    kernel_named,
+)
+from seacage.surrogates._prediction import Prediction, checked_inputs, checked_outputs
+from seacage.surrogates._shape._frame import (
+    moment_products,
+    parted,
+    seen_along,
+    whole,
+    whole_moments,
+)
+from seacage.surrogates._shape._pca import Modes, modes_from_arrays, modes_to_arrays, modes_within
+from seacage.surrogates._shape._symmetry import Symmetry
+from seacage.surrogates._shape._symmetry_check import check_symmetry
+
+Frame = Literal["earth", "current"]
+
+LEVEL, DEVIATIONS = 0.95, 1.959964
+"""Share of the cases that an interval of so many standard deviations is to cover."""
+
+Nodes = slice | Int[np.ndarray, " node"]
+"""Some nodes: a slice, or their numbers."""
+
+EVERY = slice(None)
+
+BLOCK = 4096
+"""Rows of one coordinate that are answered at a time."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ShapeGP:
+    """One Gaussian process for all node coordinates, not yet fitted.
+
+    All coordinates share one kernel and one factorisation, so principal components are no
+    model here but compression: as many are kept as the tolerance asks for.
+
+    Parameters
+    ----------
+    kernel
+        Matern-5/2 by default: lines going slack and ropes stiffening put kinks in the shape.
+    tolerance
+        Largest root mean square distance that compression may move any node by, over the
+        training cases [m].
+    restarts
+        Random starts of the hyperparameter search beside the deterministic one.
+    frame
+        "current" learns displacements and waves as seen along the current, near slack water as
+        seen from the earth. Needs ``metocean_features``.
+    symmetry
+        Of the cage: every case is learned by its image in one sector of the current's
+        directions, and answered from there. Needs ``metocean_features``.
+    asymmetry
+        Largest that ``check_symmetry`` may find in the training [m].
+    """
+
+    kernel: KernelName = "matern-5/2"
+    tolerance: float = 1e-3
+    restarts: int = 3
+    frame: Frame = "earth"
+    symmetry: Symmetry | None = None
+    asymmetry: float = 0.05
+
+    def __post_init__(self) -> None:
+        kernel_named(self.kernel)
+        check_restarts(self.restarts)
+        for name in ("tolerance", "asymmetry"):
+            if not getattr(self, name) > 0.0:
+                raise InputError(
+                    f"ShapeGP: {name} = {getattr(self, name):g} m is not above 0. "
+                    "Give the distance that a node may be off by, e.g. 0.001 m."
+                )
+        if self.frame not in get_args(Frame):
+            raise InputError(
+                f"ShapeGP: frame = {self.frame!r} is not known. Choose 'earth' or 'current'."
+            )
+
+    def fit(
+        self,
+        x: Float[np.ndarray, "n feature"],
+        node_position: Float[np.ndarray, "n node 3"],
+        *,
+        seed: int = 0,
+    ) -> "FittedShapeGP":
+        """Learn from features and shapes.
+
+        Parameters
+        ----------
+        x
+            One row per case, e.g. from ``metocean_features``.
+        node_position
+            The shape of each case [m].
+        seed
+            Of the subset of points and of the random starts.
+        """
+        x = checked_inputs(x, what="ShapeGP.fit")
+        node_position = checked_outputs(
+            node_position, what="ShapeGP.fit", rows=len(x), shape="(rows, nodes, 3)"
+        )
+        if self.frame == "current":
+            check_turnable(x, what="ShapeGP.fit")
+        if self.symmetry is not None:
+            check_symmetry(self.symmetry, x, node_position, tolerance=self.asymmetry, seed=seed)
+            x, node_position = _brought_home(self.symmetry, x, node_position)
+        return self._learned(x, node_position, seed)
+
+    def _learned(
+        self, x: Float[np.ndarray, "n feature"], shape: Float[np.ndarray, "n node 3"], seed: int
+    ) -> "FittedShapeGP":
+        centre = shape.mean(axis=0)
+        parts = _in_frame(self.frame, x, shape - centre).reshape(len(x), -1)
+        # A node's two parts may be off in the same direction.
+        modes = modes_within(parts, self.tolerance / np.sqrt(parts.shape[1] // centre.size))
+        scores = modes.encode(parts)
+        process = fitted_process(
+            kernel_named(self.kernel),
+            seen_along(x) if self.frame == "current" else x,
+            scores,
+            taught_by=condensed(scores),
+            restarts=self.restarts,
+            seed=seed,
+        )
+        fitted = FittedShapeGP(
+            basis=modes,
+            scores=process,
+            centre=centre,
+            left_out=np.zeros_like(centre),
+            scale=np.ones_like(centre),
+            features=x.shape[1],
+            frame=self.frame,
+            symmetry=self.symmetry,
+        )
+        missed = shape - fitted.rendered(x, scores)
+        fitted = replace(fitted, left_out=np.sqrt(np.mean(missed**2, axis=0)))
+        return replace(fitted, scale=_calibrated(fitted, x, shape))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class FittedShapeGP:
+    """The whole shape: compressed modes, and one process for all their scores.
+
+    With a symmetry all of this is of the sector in which it was learned.
+
+    Parameters
+    ----------
+    basis
+        The modes kept, of displacements from the mean shape; in the current's frame of their
+        earthly part and of their part along the current.
+    scores
+        One process with an output per mode.
+    centre
+        The mean shape [m].
+    left_out
+        Root mean square over the training cases of what the modes leave out [m].
+    scale
+        What the standard deviation of each coordinate is multiplied by: with it 95 % of the
+        training cases lie inside 1.96 of them, each predicted from all others.
+    features
+        How many the sea state has.
+    frame, symmetry
+        As in ``ShapeGP``.
+    products
+        Of the modes' coordinates at each node, which variances are sums of.
+    prior_moments
+        These sums where every score is as uncertain as before the training [m2].
+    """
+
+    MODEL: ClassVar[str] = "shape-gp"
+
+    basis: Modes
+    scores: FittedGaussianProcess
+    centre: Float[np.ndarray, "node 3"]
+    left_out: Float[np.ndarray, "node 3"]
+    scale: Float[np.ndarray, "node 3"]
+    features: int
+    frame: Frame
+    symmetry: Symmetry | None
+    products: Float[np.ndarray, "mode product node"] = field(init=False, repr=False)
+    prior_moments: Float[np.ndarray, "product node"] = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        # Formed once: it would cost more than all the rest of a prediction.
+        direction = self.basis.direction.reshape(self.modes, -1, len(self.centre), 3)
+        products = moment_products(direction)
+        object.__setattr__(self, "products", products)
+        prior = np.tensordot(self.scores.amplitude**2, products, axes=1)
+        object.__setattr__(self, "prior_moments", prior)
+
+    @property
+    def modes(self) -> int:
+        """How many the compression keeps."""
+        return len(self.basis.direction)
+
+    @property
+    def compression_error_m(self) -> float:
+        """Largest root mean square distance that compression moves a node by [m]."""
+        return float(np.sqrt(np.max(np.sum(self.left_out**2, axis=1))))
+
+    def predict(self, x: Float[np.ndarray, "row feature"], *, noisy: bool = False) -> Prediction:
+        """Shape at each row of features [m].
+
+        Parameters
+        ----------
+        x
+            One row per case, the features of the training.
+        noisy
+            Of a new observation: adds the noise. What compression leaves out is in the
+            standard deviation either way.
+        """
+        return self.predict_nodes(x, EVERY, noisy=noisy)
+
+    def predict_nodes(
+        self,
+        x: Float[np.ndarray, "row feature"],
+        nodes: Nodes,
+        *,
+        noisy: bool = False,
+    ) -> Prediction:
+        """These nodes alone at each row of features [m].
+
+        Parameters
+        ----------
+        x, noisy
+            As for ``predict``.
+        nodes
+            Which, from 0.
+        """
+        x = self._checked(x, what="predict")
+        if self.symmetry is None:
+            mean, variance = self._at_home(x, nodes, noisy=noisy)
+            return Prediction(mean=mean, std=np.sqrt(np.swapaxes(variance[:, :3], 1, 2)))
+        mean, std = np.zeros((2, len(x), len(self.centre[nodes]), 3))
+        for image, rows, share in _asked(self.symmetry, x):
+            own = self._by_image(self.symmetry, image, x[rows], nodes, noisy=noisy)
+            mean[rows] += share * own.mean
+            std[rows] += share * own.std
+        return Prediction(mean=mean, std=std)
+
+    def mean_of_nodes(
+        self, x: Float[np.ndarray, "row feature"], nodes: Nodes
+    ) -> Float[np.ndarray, "row node 3"]:
+        """The mean of ``predict_nodes`` alone [m], at a fraction of its cost without symmetry."""
+        if self.symmetry is not None:
+            return self.predict_nodes(x, nodes).mean
+        x = self._checked(x, what="mean_of_nodes")
+        return self._mean(x, self.scores.mean(self._seen(x)).reshape(len(x), self.modes), nodes)
+
+    def coordinate(self, node: int, axis: int) -> "FittedCoordinate":
+        """One coordinate of one node, answered without the rest of the shape.
+
+        Parameters
+        ----------
+        node
+            From 0.
+        axis
+            0 east, 1 north, 2 up.
+        """
+        nodes = len(self.centre)
+        if not (0 <= node < nodes and 0 <= axis < 3):
+            raise InputError(
+                f"coordinate: node {node}, axis {axis} does not exist; this shape has {nodes} "
+                "nodes, from 0, and the axes 0, 1 and 2."
+            )
+        return FittedCoordinate(shape=self, node=node, axis=axis)
+
+    def rendered(
+        self, x: Float[np.ndarray, "row feature"], score: Float[np.ndarray, "row mode"]
+    ) -> Float[np.ndarray, "row node 3"]:
+        """Shapes of scores [m], at home in the sector of the symmetry, if there is one."""
+        return self._mean(x, score, EVERY)
+
+    def variance(
+        self,
+        x: Float[np.ndarray, "row feature"],
+        score_std: Float[np.ndarray, "row mode"],
+        nodes: Nodes,
+    ) -> Float[np.ndarray, "row 4 node"]:
+        """Of x, y and z of each node, and the covariance of x with y, at home [m2]."""
+        moments = self._moments(score_std**2, nodes)
+        if self.frame == "current":
+            moments = whole_moments(x, moments)
+        scale = self.scale[nodes].T
+        moments[:, :3] += self.left_out[nodes].T ** 2
+        return moments * np.vstack([scale**2, scale[0] * scale[1]])
+
+    def to_arrays(self) -> tuple[Settings, Arrays]:
+        """Everything that ``from_arrays`` needs, as plain values and float64 arrays."""
+        settings, arrays = self.scores.to_arrays()
+        saved: Settings = {
+            "model": self.MODEL,
+            "frame": self.frame,
+            "features": self.features,
+            "symmetric": self.symmetry is not None,
+            "scores": [settings],
+        }
+        own = {"mean_shape": self.centre, "left_out": self.left_out, "scale": self.scale}
+        symmetry = {} if self.symmetry is None else self.symmetry.to_arrays()
+        return saved, modes_to_arrays(self.basis) | own | symmetry | joined([arrays])
+
+    @classmethod
+    def from_arrays(cls, settings: Mapping[str, object], arrays: Mapping[str, np.ndarray]) -> Self:
+        """The model that ``to_arrays`` described.
+
+        Raises
+        ------
+        ModelError
+            A setting or an array is missing, of another kind or shape, or not finite.
+        """
+        parts = sub_settings(settings, "scores")
+        if len(parts) != 1:
+            raise ModelError(f"The saved ShapeGP holds {len(parts)} processes; expected 1.")
+        scores = FittedGaussianProcess.from_arrays(parts[0], within(0, arrays))
+        frame = _saved_frame(setting(settings, "frame", str))
+        centre = array(arrays, "mean_shape", None, 3)
+        nodes = len(centre)
+        basis = modes_from_arrays(arrays, modes=len(scores.centre))
+        if len(basis.centre) != 3 * nodes * (2 if frame == "current" else 1):
+            raise ModelError(
+                f"The saved ShapeGP has modes of {len(basis.centre)} coordinates, which is not "
+                f"the {frame}'s frame of {nodes} nodes. Train the model again."
+            )
+        symmetric = setting(settings, "symmetric", bool)
+        return cls(
+            basis=basis,
+            scores=scores,
+            centre=centre,
+            left_out=array(arrays, "left_out", nodes, 3),
+            scale=array(arrays, "scale", nodes, 3),
+            features=setting(settings, "features", int),
+            frame=frame,
+            symmetry=Symmetry.from_arrays(arrays, nodes=nodes) if symmetric else None,
+        )
+
+    def _by_image(
+        self,
+        symmetry: Symmetry,
+        image: int,
+        x: Float[np.ndarray, "row feature"],
+        nodes: Nodes,
+        *,
+        noisy: bool,
+    ) -> Prediction:
+        """What an image of each sea state says, moved back."""
+        undo = symmetry.back(image)
+        source, turn = symmetry.source[undo][nodes], symmetry.turn[undo]
+        home = symmetry.turned(x, image)
+        if nodes is EVERY:
+            # Answering in order and then sorting the nodes spares a copy of all modes.
+            mean, moments = self._at_home(home, EVERY, noisy=noisy)
+            mean, moments = mean[:, source], moments[..., source]
+        else:
+            mean, moments = self._at_home(home, source, noisy=noisy)
+        mean[..., :2] = symmetry.centre + (mean[..., :2] - symmetry.centre) @ turn.T
+        return Prediction(mean=mean, std=np.sqrt(_turned(moments, turn)))
+
+    def _checked(
+        self, x: Float[np.ndarray, "row feature"], *, what: str
+    ) -> Float[np.ndarray, "_ _"]:
+        x = checked_inputs(x, what=what, width=self.features)
+        if self.symmetry is not None or self.frame == "current":
+            check_turnable(x, what=what)
+        return x
+
+    def _seen(self, x: Float[np.ndarray, "row feature"]) -> Float[np.ndarray, "row seen"]:
+        return seen_along(x) if self.frame == "current" else x
+
+    def _at_home(
+        self, x: Float[np.ndarray, "row feature"], nodes: Nodes, *, noisy: bool
+    ) -> tuple[Float[np.ndarray, "row node 3"], Float[np.ndarray, "row 4 node"]]:
+        score = self.scores.predict(self._seen(x), noisy=noisy)
+        rows = (len(x), self.modes)
+        mean = self._mean(x, score.mean.reshape(rows), nodes)
+        return mean, self.variance(x, score.std.reshape(rows), nodes)
+
+    def _mean(
+        self,
+        x: Float[np.ndarray, "row feature"],
+        score: Float[np.ndarray, "row mode"],
+        nodes: Nodes,
+    ) -> Float[np.ndarray, "row node 3"]:
+        direction = self._parts(self.basis.direction, nodes)
+        centre = self._parts(self.basis.centre[None], nodes)
+        parts = centre + np.tensordot(score, direction, axes=1)
+        moved = whole(x, parts) if self.frame == "current" else parts[:, 0]
+        return self.centre[nodes] + moved
+
+    def _moments(
+        self, power: Float[np.ndarray, "row mode"], nodes: Nodes
+    ) -> Float[np.ndarray, "row product node"]:
+        """Second moments of the nodes from those of the scores."""
+        prior = self.scores.amplitude**2
+        share = power.sum(axis=1) / max(float(prior.sum()), np.finfo(float).tiny)
+        # With one kernel and white noise all scores know the same share of what they varied by.
+        alike = share[:, None] * prior
+        if (np.abs(power - alike) <= 1e-9 * alike).all():
+            return share[:, None, None] * self.prior_moments[:, nodes]
+        return np.tensordot(power, self.products[..., nodes], axes=1)
+
+    def _parts(
+        self, rows: Float[np.ndarray, "row coordinate"], nodes: Nodes
+    ) -> Float[np.ndarray, "row part node 3"]:
+        return rows.reshape(len(rows), -1, len(self.centre), 3)[:, :, nodes]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class FittedCoordinate:
+    """One coordinate of one node; it shares the shape's factor and is not saved by itself.
+
+    Parameters
+    ----------
+    shape
+        What it is a coordinate of.
+    node, axis
+        Which.
+    """
+
+    shape: FittedShapeGP
+    node: int
+    axis: int
+
+    def predict(self, x: Float[np.ndarray, "row feature"], *, noisy: bool = False) -> Prediction:
+        """The coordinate at each row of features, as the whole shape would answer [m]."""
+        x = checked_inputs(x, what="predict", width=self.shape.features)
+        nodes = np.array([self.node])
+        blocks = [
+            self.shape.predict_nodes(x[first : first + BLOCK], nodes, noisy=noisy)
+            for first in range(0, max(len(x), 1), BLOCK)
+        ]
+        return Prediction(
+            mean=np.concatenate([block.mean[:, 0, self.axis] for block in blocks]),
+            std=np.concatenate([block.std[:, 0, self.axis] for block in blocks]),
+        )
+
+
+def _brought_home(
+    symmetry: Symmetry,
+    x: Float[np.ndarray, "n feature"],
+    node_position: Float[np.ndarray, "n node 3"],
+) -> tuple[Float[np.ndarray, "n feature"], Float[np.ndarray, "n node 3"]]:
+    """Each case as its image in the sector."""
+    home_x, home_position = np.empty_like(x), np.empty_like(node_position)
+    image_of = symmetry.home(x)
+    for image in range(len(symmetry)):
+        rows = image_of == image
+        home_x[rows] = symmetry.turned(x[rows], image)
+        home_position[rows] = symmetry.moved(node_position[rows], image)
+    return home_x, home_position
+
+
+def _asked(
+    symmetry: Symmetry, x: Float[np.ndarray, "row feature"]
+) -> Iterator[tuple[int, Int[np.ndarray, " asked"], Float[np.ndarray, "asked 1 1"]]]:
+    """Each image that has something to say, about which rows, and how much."""
+    shares = symmetry.shares(x)
+    for image in range(len(symmetry)):
+        rows = np.flatnonzero(shares[:, image])
+        if len(rows):
+            yield image, rows, shares[rows, image, None, None]
+
+
+def _in_frame(
+    frame: Frame, x: Float[np.ndarray, "row feature"], displacement: Float[np.ndarray, "row node 3"]
+) -> Float[np.ndarray, "row *part node 3"]:
+    return parted(x, displacement) if frame == "current" else displacement
+
+
+def _turned(
+    moments: Float[np.ndarray, "row 4 node"], turn: Float[np.ndarray, "2 2"]
+) -> Float[np.ndarray, "row node 3"]:
+    """Variances of x, y and z after a turn."""
+    x, y, z, both = np.moveaxis(moments, 1, 0)
+    horizontal = [a * a * x + 2.0 * a * b * both + b * b * y for a, b in turn]
+    # Rounding can leave a hair less than nothing.
+    return np.maximum(np.stack([*horizontal, z], axis=2), 0.0)
+
+
+def _calibrated(
+    fitted: FittedShapeGP, x: Float[np.ndarray, "n feature"], shape: Float[np.ndarray, "n node 3"]
+) -> Float[np.ndarray, "node 3"]:
+    """The scale that makes intervals of each coordinate cover what they should.
+
+    Each case is predicted from all others, as a new observation. The quantile is that of
+    split-conformal prediction: one rank higher than the share asks for.
+    """
+    left_out = fitted.scores.leave_one_out()
+    rows = (len(x), fitted.modes)
+    missed = np.abs(shape - fitted.rendered(x, left_out.mean.reshape(rows)))
+    moments = fitted.variance(x, left_out.std.reshape(rows), EVERY)
+    std = np.sqrt(np.swapaxes(moments[:, :3], 1, 2))
+    ratio = np.divide(missed, std, out=np.full_like(missed, DEVIATIONS), where=std > 0.0)
+    rank = min(int(np.ceil(LEVEL * (len(x) + 1))), len(x)) - 1
+    return np.partition(ratio, rank, axis=0)[rank] / DEVIATIONS
+
+
+def _saved_frame(name: str) -> Frame:
+    for frame in get_args(Frame):
+        if name == frame:
+            return frame
+    raise ModelError(f"The saved ShapeGP has frame {name!r}, which this version does not know.")

@@ -1,0 +1,128 @@
+"""Whether shapes have the symmetry that their net has."""
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.conventions import InputError
+from seacage.surrogates._features import check_turnable
+from seacage.surrogates._gp import condensed, fitted_process, kernel_named
+from seacage.surrogates._prediction import checked_inputs, checked_outputs
+from seacage.surrogates._shape._pca import modes_within
+from seacage.surrogates._shape._symmetry import Symmetry
+
+TEACH, JUDGE = 400, 100
+"""Cases that the trial model learns from, and cases that it is asked about, at most."""
+
+COMPRESSION = 0.01
+"""Of the trial model [m]."""
+
+FEW = 20
+"""Fewer cases than this cannot tell."""
+
+
+def check_symmetry(
+    symmetry: Symmetry,
+    x: Float[np.ndarray, "n feature"],
+    node_position: Float[np.ndarray, "n node 3"],
+    *,
+    tolerance: float = 0.05,
+    seed: int = 0,
+) -> float:
+    """Refuse a symmetry that the shapes do not have.
+
+    A trial model that knows of no symmetry learns four fifths of the cases. The others it is
+    asked about twice: as they are, and by their images, whose shapes are moved back. Only an
+    asymmetry of the cage, its mooring or the sea can make the images miss by more. The cases
+    must cover the images: currents and waves from all round.
+
+    Parameters
+    ----------
+    symmetry
+        Of the net.
+    x
+        From ``metocean_features``.
+    node_position
+        The shape of each case [m].
+    tolerance
+        Largest asymmetry: distance of a node from its image, root mean square over nodes, beyond
+        what the trial model misses anyway, in the median case [m].
+    seed
+        Of the choice of cases.
+
+    Returns
+    -------
+    asymmetry
+        [m]
+
+    Raises
+    ------
+    InputError
+        The asymmetry is above the tolerance, or the cases are too few, or too hard for the trial
+        model, to tell.
+    """
+    x = checked_inputs(x, what="check_symmetry")
+    check_turnable(x, what="check_symmetry")
+    node_position = checked_outputs(
+        node_position, what="check_symmetry", rows=len(x), shape="(rows, nodes, 3)"
+    )
+    _check_nodes(symmetry, node_position)
+    if len(x) < FEW:
+        raise InputError(
+            f"check_symmetry: {len(x)} cases cannot tell a symmetry; give at least {FEW}, or learn "
+            "without one."
+        )
+    rows = np.random.default_rng(seed).permutation(len(x))
+    judge, teach = np.split(rows[: TEACH + JUDGE], [min(JUDGE, len(x) // 5)])
+    missed = _missed(symmetry, x, node_position, teach=teach, judge=judge, seed=seed)
+    direct, by_image = np.median(missed[0]), np.median(np.sqrt(np.mean(missed[1:] ** 2, axis=0)))
+    asymmetry = float(np.sqrt(max(by_image**2 - direct**2, 0.0)))
+    if asymmetry > tolerance:
+        raise InputError(
+            f"check_symmetry: by their images the shapes are missed by {by_image:.3g} m, directly "
+            f"by {direct:.3g} m, so they are {asymmetry:.3g} m from symmetric, above the tolerance "
+            f"of {tolerance:g} m. The cage, its mooring or the campaign's directions are not "
+            "symmetric so: learn without a symmetry, or with a lesser one."
+        )
+    if direct > 4.0 * tolerance:
+        raise InputError(
+            f"check_symmetry: {len(teach)} cases teach the shapes to {direct:.3g} m only, too "
+            f"poorly to tell an asymmetry of {tolerance:g} m. Give more cases, a larger "
+            "tolerance, or no symmetry."
+        )
+    return asymmetry
+
+
+def _missed(
+    symmetry: Symmetry,
+    x: Float[np.ndarray, "n feature"],
+    node_position: Float[np.ndarray, "n node 3"],
+    *,
+    teach: np.ndarray,
+    judge: np.ndarray,
+    seed: int,
+) -> Float[np.ndarray, "image judged"]:
+    """Root mean square distance over the nodes of each judged case, by each image [m]."""
+    shape = node_position.reshape(len(x), -1)
+    modes = modes_within(shape[teach], COMPRESSION)
+    scores = modes.encode(shape[teach])
+    kernel = kernel_named("matern-5/2")
+    model = fitted_process(
+        kernel, x[teach], scores, taught_by=condensed(scores), restarts=0, seed=seed
+    )
+    missed = np.empty((len(symmetry), len(judge)))
+    for image in range(len(symmetry)):
+        score = model.predict(symmetry.turned(x[judge], image)).mean.reshape(len(judge), -1)
+        answer = modes.decode(score).reshape(len(judge), -1, 3)
+        moved_back = symmetry.moved(answer, symmetry.back(image))
+        distance = np.sum((moved_back - node_position[judge]) ** 2, axis=2)
+        missed[image] = np.sqrt(distance.mean(axis=1))
+    return missed
+
+
+def _check_nodes(symmetry: Symmetry, node_position: Float[np.ndarray, "n node 3"]) -> None:
+    nodes = symmetry.source.shape[1]
+    if node_position.shape[1] != nodes:
+        raise InputError(
+            f"check_symmetry: the shapes have {node_position.shape[1]} nodes, the symmetry is of "
+            f"{nodes}. Make it of the same net."
+        )
