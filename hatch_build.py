@@ -22,7 +22,7 @@ from types import ModuleType
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
-ROOM = Path("src", "seacage", "dynamics")
+KERNEL = Path("src", "seacage", "dynamics", "_kernel")
 PAGE = Path("src", "seacage", "service", "page")
 ZIGLANG = "ziglang>=0.13"
 # Kept out of -ffast-math: infinities, for they mark slack bars; and sums as they are written,
@@ -59,7 +59,7 @@ class Build(BuildHookInterface):
     def initialize(self, version: str, build_data: dict[str, object]) -> None:  # noqa: ARG002
         """Compile for every target, build the page, mark the wheel as made for this platform."""
         compiler = system_compiler() or [sys.executable, "-m", "ziglang", "cc"]
-        source = Path(self.root, ROOM, "_kernel.c")
+        source = Path(self.root, KERNEL, "_kernel.c")
         with ThreadPoolExecutor() as pool:
             libraries = list(pool.map(lambda target: build(compiler, source, target), TARGETS))
         build_data["pure_python"] = False

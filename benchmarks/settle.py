@@ -8,11 +8,11 @@ from _timing import ONCE, seconds, tell
 from seacage.cage import Cage
 from seacage.conventions import Result
 from seacage.dynamics import rest_shape, settle
-from seacage.dynamics._equilibria import _balance, _begun, _first_shapes
-from seacage.dynamics._flow import steady_flow
-from seacage.dynamics._kernel import kernel
-from seacage.dynamics._newton import nearer
-from seacage.dynamics._settle import assembled
+from seacage.dynamics._equilibrium._newton import nearer
+from seacage.dynamics._equilibrium._search import _balance, _begun, _first_shapes
+from seacage.dynamics._kernel._library import kernel
+from seacage.dynamics._moored._pretension import assembled
+from seacage.dynamics._physics._flow import steady_flow
 from seacage.ocean import SeaState
 
 SEED = 2

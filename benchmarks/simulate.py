@@ -11,12 +11,13 @@ from seacage.cage import Cage
 from seacage.campaigns import Plan
 from seacage.campaigns._hidden import Hidden
 from seacage.dynamics import MovingLaw, rest_shape, simulate, simulation_lanes
-from seacage.dynamics._assembly import Assembly
-from seacage.dynamics._cargo import Ocean
-from seacage.dynamics._detailed import detailed
-from seacage.dynamics._march import REFRESH, March, Steps
-from seacage.dynamics._motion import NetLaw, wake_share
-from seacage.dynamics._stability import steadied
+from seacage.dynamics._kernel._march import REFRESH, March, Steps
+from seacage.dynamics._kernel._march_inputs import Ocean
+from seacage.dynamics._moored._detailed import detailed
+from seacage.dynamics._moored._mass_scaling import steadied
+from seacage.dynamics._parts._assembly import Assembly
+from seacage.dynamics._physics._motion import NetLaw
+from seacage.dynamics._physics._wake import wake_share
 from seacage.ocean import sample_waves
 
 CAGE = Cage.named("ace")

@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from seacage.dynamics import _cargo as c
-from seacage.dynamics import _kernel as k
-from seacage.dynamics import _march as m
-from seacage.dynamics._newton import Balancing
-from seacage.dynamics._pattern import Pattern, _pattern
-from seacage.dynamics._struct import pointer
+from seacage.dynamics._kernel import _library as k
+from seacage.dynamics._kernel import _march as m
+from seacage.dynamics._kernel import _march_inputs as c
+from seacage.dynamics._kernel._balance import Balancing
+from seacage.dynamics._kernel._sparsity import Pattern, _pattern
+from seacage.dynamics._kernel._struct import pointer
 
 GRAPHS = 200
 """So many structures, each met with many numbers: to plan an elimination takes long."""

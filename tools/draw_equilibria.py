@@ -13,9 +13,9 @@ import numpy as np
 from seacage.cage import Cage
 from seacage.conventions import Origin
 from seacage.dynamics import rest_shape
-from seacage.dynamics._equilibria import _balance, _begun, _near, _seek
-from seacage.dynamics._flow import steady_flow
-from seacage.dynamics._settle import assembled
+from seacage.dynamics._equilibrium._search import _balance, _begun, _near, _seek
+from seacage.dynamics._moored._pretension import assembled
+from seacage.dynamics._physics._flow import steady_flow
 from seacage.figures._style import INK, LOW, MULTI, MUTED, blank_figure, head, style, write_figure
 
 CAGE = Cage.named("ace")

@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 
 ROOT = Path(__file__).resolve().parent.parent
-KERNEL = ROOT / "src" / "seacage" / "dynamics"
+KERNEL = ROOT / "src" / "seacage" / "dynamics" / "_kernel"
 TESTS = ("tests/properties/test_kernel.py", "tests/properties/test_march.py")
 FLAGS = (
     "-std=c99 -O1 -g -fno-omit-frame-pointer -fopenmp-simd -fPIC -shared "
@@ -101,10 +101,10 @@ def built(library: Path) -> tuple[Path, Path] | None:
 
 def loads(library: Path) -> None:
     """Let whoever asks for the kernel get this library."""
-    from seacage.dynamics import _kernel
+    from seacage.dynamics._kernel import _library
 
-    plain = _kernel.Kernel
-    _kernel.Kernel = lambda _path: plain(library)  # type: ignore[assignment,misc]
+    plain = _library.Kernel
+    _library.Kernel = lambda _path: plain(library)  # type: ignore[assignment,misc]
 
 
 class Plugin:
@@ -133,7 +133,7 @@ def run_inputs(library: Path, seeds: range, at: Path) -> int:
     loads(library)
     from _kernel_inputs import march, settle
 
-    from seacage.dynamics._kernel import kernel
+    from seacage.dynamics._kernel._library import kernel
 
     start = time.monotonic()
     with at.open("w") as file:

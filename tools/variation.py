@@ -42,7 +42,7 @@ def in_turn(all_of_them: Sequence[str], turn: int) -> str:
 
 def main(arguments: list[str]) -> None:
     """Print all, or the one of the turn that is given."""
-    from seacage.dynamics._kernel import available
+    from seacage.dynamics._kernel._library import available
 
     found = variations(*available())
     print(in_turn(found, int(arguments[0])) if arguments else "\n".join(found))

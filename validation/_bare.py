@@ -6,7 +6,9 @@ from dataclasses import replace
 import numpy as np
 from jaxtyping import Float
 
-from seacage.dynamics._assembly import (
+from seacage.dynamics._kernel._march import REFRESH, March, Steps
+from seacage.dynamics._kernel._march_inputs import Ocean
+from seacage.dynamics._parts._assembly import (
     Assembly,
     Bars,
     Bends,
@@ -16,9 +18,8 @@ from seacage.dynamics._assembly import (
     Panels,
     Springs,
 )
-from seacage.dynamics._cargo import Ocean
-from seacage.dynamics._march import REFRESH, March, Steps
-from seacage.dynamics._motion import MovingLaw, NetLaw
+from seacage.dynamics._physics._motion import NetLaw
+from seacage.dynamics._physics._screens import MovingLaw
 from seacage.ocean import Waves
 
 NONE = np.zeros(0)

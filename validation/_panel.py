@@ -9,8 +9,8 @@ import numpy as np
 
 from seacage.conventions import WATER_DENSITY, WATER_VISCOSITY, InputError
 from seacage.dynamics import MovingLaw, aarsnes, kristiansen_faltinsen, loland
-from seacage.dynamics._assembly import Panels
-from seacage.dynamics._motion import NetLaw, twine_load
+from seacage.dynamics._parts._assembly import Panels
+from seacage.dynamics._physics._motion import NetLaw, twine_load
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -9,9 +9,9 @@ from jaxtyping import Float, Int
 from seacage.cage import Cage
 from seacage.conventions import WATER_DENSITY
 from seacage.dynamics import Response, settle
-from seacage.dynamics._assembly import Assembly
-from seacage.dynamics._flow import steady_flow
-from seacage.dynamics._loads import cylinder_force
+from seacage.dynamics._parts._assembly import Assembly
+from seacage.dynamics._physics._flow import steady_flow
+from seacage.dynamics._physics._loads import cylinder_force
 from seacage.ocean import SeaState
 from validation._case import CASES, read_case
 from validation._row import Kind, Row, Section

@@ -10,10 +10,11 @@ import numpy as np
 from seacage.cage import Cage
 from seacage.conventions import Result
 from seacage.dynamics import LAWS, Law, settle
-from seacage.dynamics._assembly import Assembly
-from seacage.dynamics._flow import steady_flow
-from seacage.dynamics._loads import cylinder_force
-from seacage.dynamics._screens import Screen
+from seacage.dynamics._parts._assembly import Assembly
+from seacage.dynamics._physics._flow import steady_flow
+from seacage.dynamics._physics._loads import cylinder_force
+from seacage.dynamics._physics._screens import Screen
+from seacage.dynamics._physics._wake import wake_factor
 from seacage.ocean import SeaState
 from validation._row import Kind, Row, Section
 
@@ -146,7 +147,7 @@ def facing_drag(law: Law, solidity: float, speed: float) -> tuple[float, float]:
     screen = Screen(law=law, solidity=np.array([solidity]), twine_diameter=np.array([twine]))
     terms = screen.terms(np.array([[speed]]))
     drag = terms["constant"] + terms["slope"] + terms["third"]
-    return float(drag[0, 0]), float(screen.wake(np.array([[speed]]))[0, 0])
+    return float(drag[0, 0]), float(wake_factor(screen, np.array([[speed]]))[0, 0])
 
 
 def _inside() -> Iterator[Row]:

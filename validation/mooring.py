@@ -12,10 +12,10 @@ from scipy.optimize import root
 from seacage.cage import Cage
 from seacage.conventions import GRAVITY, WATER_DENSITY
 from seacage.dynamics import History, catenary, simulate
-from seacage.dynamics._anchor_line import STEEL_DENSITY, hung, resting_line, segments
-from seacage.dynamics._anchoring import anchored
-from seacage.dynamics._assembly import Assembly
-from seacage.dynamics._loads import bar_force, float_force
+from seacage.dynamics._moored._anchor_line import STEEL_DENSITY, hung, resting_line, segments
+from seacage.dynamics._moored._mooring import anchored
+from seacage.dynamics._parts._assembly import Assembly
+from seacage.dynamics._physics._loads import bar_force, float_force
 from seacage.ocean import SeaState
 from validation._row import Kind, Row, Section
 

@@ -9,8 +9,8 @@ from jaxtyping import Float
 from seacage.cage import Cage
 from seacage.conventions import GRAVITY, WATER_DENSITY
 from seacage.dynamics import settle
-from seacage.dynamics._assembly import Assembly, Bars, Bends
-from seacage.dynamics._loads import bar_force, bend_force, float_force
+from seacage.dynamics._parts._assembly import Assembly, Bars, Bends
+from seacage.dynamics._physics._loads import bar_force, bend_force, float_force
 from seacage.ocean import SeaState
 from validation._row import Kind, Row, Section
 

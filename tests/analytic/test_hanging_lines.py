@@ -7,7 +7,9 @@ import pytest
 
 from seacage.conventions import GRAVITY
 from seacage.dynamics import catenary
-from seacage.dynamics._assembly import (
+from seacage.dynamics._kernel._balance import Balance, Balancing
+from seacage.dynamics._kernel._library import Relaxation, Relaxing, kernel
+from seacage.dynamics._parts._assembly import (
     Assembly,
     Bars,
     Bends,
@@ -17,9 +19,7 @@ from seacage.dynamics._assembly import (
     Panels,
     Springs,
 )
-from seacage.dynamics._kernel import Relaxation, Relaxing, kernel
-from seacage.dynamics._loads import SteadyFlow, bar_tension, nodal_force
-from seacage.dynamics._newton import Balance, Balancing
+from seacage.dynamics._physics._loads import SteadyFlow, bar_tension, nodal_force
 
 NONE = np.zeros(0)
 NO_INDEX = np.zeros(0, dtype=np.int64)

@@ -5,8 +5,8 @@ import pytest
 
 from seacage.cage import Cage
 from seacage.conventions import GRAVITY, WATER_DENSITY
-from seacage.dynamics._assembly import Assembly
-from seacage.dynamics._loads import float_force
+from seacage.dynamics._parts._assembly import Assembly
+from seacage.dynamics._physics._loads import float_force
 
 PARTS = Assembly.of(Cage.named("ace"))
 CIRCUMFERENCE = 2.0 * np.pi * 25.0

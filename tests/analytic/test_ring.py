@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from seacage.dynamics._assembly import Bars, Bends
-from seacage.dynamics._loads import bar_force, bend_force
+from seacage.dynamics._parts._assembly import Bars, Bends
+from seacage.dynamics._physics._loads import bar_force, bend_force
 
 NODES, RADIUS, BENDING = 240, 25.0, 3.2e6
 ANGLE = 2.0 * np.pi * np.arange(NODES) / NODES

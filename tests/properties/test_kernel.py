@@ -6,11 +6,12 @@ from hypothesis import strategies as st
 
 from seacage.cage import Cage
 from seacage.dynamics import LAWS
-from seacage.dynamics._assembly import Assembly
-from seacage.dynamics._flow import steady_flow
-from seacage.dynamics._kernel import kernel
-from seacage.dynamics._loads import nodal_force
-from seacage.dynamics._newton import Balance, Balancing, nearer
+from seacage.dynamics._equilibrium._newton import nearer
+from seacage.dynamics._kernel._balance import Balance, Balancing
+from seacage.dynamics._kernel._library import kernel
+from seacage.dynamics._parts._assembly import Assembly
+from seacage.dynamics._physics._flow import steady_flow
+from seacage.dynamics._physics._loads import nodal_force
 
 ACE = Cage.named("ace")
 

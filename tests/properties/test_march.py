@@ -9,11 +9,12 @@ from hypothesis import strategies as st
 
 from seacage.cage import Cage
 from seacage.dynamics import MOVING_LAWS, simulation_lanes
-from seacage.dynamics._assembly import Assembly, Ground
-from seacage.dynamics._cargo import Ocean
-from seacage.dynamics._loads import DYNAMIC, _gathered, bend_force, spring_force
-from seacage.dynamics._march import March, Steps, kernel_force, kernel_water
-from seacage.dynamics._motion import (
+from seacage.dynamics._kernel._march import March, Steps, kernel_force, kernel_water
+from seacage.dynamics._kernel._march_inputs import Ocean
+from seacage.dynamics._moored._mass_scaling import steadied
+from seacage.dynamics._parts._assembly import Assembly, Ground
+from seacage.dynamics._physics._loads import DYNAMIC, _gathered, bend_force, spring_force
+from seacage.dynamics._physics._motion import (
     NetLaw,
     Water,
     _spring_damping,
@@ -25,8 +26,7 @@ from seacage.dynamics._motion import (
     moving_net_load,
     past_panels,
 )
-from seacage.dynamics._screens import Screen
-from seacage.dynamics._stability import steadied
+from seacage.dynamics._physics._screens import Screen
 from seacage.ocean import SeaState, Waves, sample_waves, surface_elevation, water_motion, wavenumber
 
 ACE = Cage.named("ace")

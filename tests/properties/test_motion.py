@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 
 from seacage.cage import Cage
 from seacage.dynamics import MOVING_LAWS
-from seacage.dynamics._assembly import Assembly, Ground
-from seacage.dynamics._motion import (
+from seacage.dynamics._parts._assembly import Assembly, Ground
+from seacage.dynamics._physics._motion import (
     NetLaw,
     Water,
     _ground_force,
@@ -19,8 +19,8 @@ from seacage.dynamics._motion import (
     moving_cylinder_force,
     moving_force,
     moving_net_load,
-    wake_share,
 )
+from seacage.dynamics._physics._wake import wake_share
 
 SMALL = Cage.named("ace").altered(
     mesh={

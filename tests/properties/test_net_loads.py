@@ -6,9 +6,9 @@ from hypothesis import strategies as st
 
 from seacage.cage import Cage
 from seacage.dynamics import LAWS, net_load
-from seacage.dynamics._assembly import Assembly
-from seacage.dynamics._flow import steady_flow
-from seacage.dynamics._loads import panel_load
+from seacage.dynamics._parts._assembly import Assembly
+from seacage.dynamics._physics._flow import steady_flow
+from seacage.dynamics._physics._loads import panel_load
 from seacage.ocean import SeaState
 
 ACE = Cage.named("ace").altered(mesh={"spokes": 8, "ring_depths_m": [0.0, 7.0, 15.0, 23.0]})

@@ -17,11 +17,11 @@ from seacage.campaigns._field import _settled
 from seacage.campaigns._responses import _DIRECTIONS, _GROWTHS, _SPEEDS, Responses
 from seacage.campaigns._timetable import reading_times
 from seacage.dynamics import Damage
-from seacage.dynamics._detailed import _tear
-from seacage.dynamics._equilibria import equilibria
-from seacage.dynamics._flow import steady_flow
-from seacage.dynamics._loads import bar_tension
-from seacage.dynamics._settle import _free_nodes, assembled
+from seacage.dynamics._equilibrium._search import equilibria
+from seacage.dynamics._moored._detailed import _tear
+from seacage.dynamics._moored._pretension import assembled, free_nodes
+from seacage.dynamics._physics._flow import steady_flow
+from seacage.dynamics._physics._loads import bar_tension
 from seacage.ocean import SeaState
 from seacage.records import FieldRecord
 
@@ -71,7 +71,7 @@ def settled_answers(damage: str, hidden: Hidden, growth: float, seas: Sequence[S
     velocity = np.array([sea.current_velocity for sea in seas])
     flow = steady_flow(assembly, velocity, law=hidden.law, wake=True, pipe_drag=True)
     flow = replace(flow, pressure=flow.pressure * whole)
-    free = _free_nodes(cage, assembly, hold_collar=False)
+    free = free_nodes(cage, assembly, hold_collar=False)
     found = equilibria(cage, assembly, flow, free=free)
     tension = bar_tension(assembly.bars, found.position)[:, assembly.bridles]
     nodes = [sensor.node for sensor in cage.depth_sensors]

@@ -1,16 +1,28 @@
 """Loads on the cage in the sea, and the shapes and tensions that answer them."""
 
-from seacage.dynamics._cargo import simulation_lanes
-from seacage.dynamics._catenary import catenary
-from seacage.dynamics._detailed import Damage
-from seacage.dynamics._follow import Followed, follow
-from seacage.dynamics._history import History, Statistics
-from seacage.dynamics._motion import MOVING_LAWS, MovingLaw
+from seacage.dynamics._kernel import simulation_lanes
+from seacage.dynamics._moored import Damage
+from seacage.dynamics._physics import (
+    LAWS,
+    MOVING_LAWS,
+    Law,
+    MovingLaw,
+    aarsnes,
+    catenary,
+    kristiansen_faltinsen,
+    loland,
+)
 from seacage.dynamics._revision import PHYSICS
-from seacage.dynamics._screens import LAWS, Law, aarsnes, kristiansen_faltinsen, loland
 from seacage.dynamics._settle import Response, net_load, rest_shape, settle
-from seacage.dynamics._simulate import Mooring, simulate
-from seacage.dynamics._weather import AbstractWeather
+from seacage.dynamics._time import (
+    AbstractWeather,
+    Followed,
+    History,
+    Mooring,
+    Statistics,
+    follow,
+    simulate,
+)
 
 __all__ = [
     "LAWS",

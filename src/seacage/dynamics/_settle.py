@@ -9,11 +9,10 @@ from jaxtyping import Bool, Float, Int
 
 from seacage.cage import Cage
 from seacage.conventions import InputError, Result
-from seacage.dynamics._assembly import Assembly
-from seacage.dynamics._equilibria import Equilibria, equilibria
-from seacage.dynamics._flow import steady_flow
-from seacage.dynamics._loads import SteadyFlow, bar_tension, total_net_force
-from seacage.dynamics._screens import Law
+from seacage.dynamics._equilibrium import Equilibria, equilibria
+from seacage.dynamics._moored import assembled, free_nodes
+from seacage.dynamics._parts import Assembly
+from seacage.dynamics._physics import Law, SteadyFlow, bar_tension, steady_flow, total_net_force
 from seacage.ocean import SeaState, wave_velocity_variance
 
 
@@ -123,7 +122,7 @@ def settle(
     flow = steady_flow(
         assembly, velocity, law=law, wake=wake, pipe_drag=collar_drag, wave_variance=variance
     )
-    free = _free_nodes(cage, assembly, hold_collar=hold_collar)
+    free = free_nodes(cage, assembly, hold_collar=hold_collar)
     found = equilibria(cage, assembly, flow, free=free, starts=starts, workers=workers)
     rest = rest_shape(cage, hold_collar=hold_collar)
     response = _response(cage, assembly, flow, found, rest)
@@ -155,7 +154,7 @@ def rest_shape(cage: Cage, *, hold_collar: bool = False) -> Float[np.ndarray, "n
     """
     assembly = assembled(cage)
     flow = steady_flow(assembly, np.zeros((1, 2)), law="loland")
-    free = _free_nodes(cage, assembly, hold_collar=hold_collar)
+    free = free_nodes(cage, assembly, hold_collar=hold_collar)
     found = equilibria(cage, assembly, flow, free=free)
     if found.result[0] != Result.CONVERGED:
         raise InputError(
@@ -165,22 +164,6 @@ def rest_shape(cage: Cage, *, hold_collar: bool = False) -> Float[np.ndarray, "n
     shape = found.position[0, : cage.node_count].copy()
     shape.setflags(write=False)
     return shape
-
-
-@lru_cache(maxsize=16)
-def assembled(cage: Cage) -> Assembly:
-    """The cage put together, its bridles cut so that each bears the pretension at rest.
-
-    The collar gives to the bridles' pull by some decimetres. Its shape under that pull is found
-    with bridles so soft that they pull equally wherever it comes to lie.
-    """
-    designed, pretension = Assembly.of(cage), cage.bridles.pretension
-    still = steady_flow(designed, np.zeros((1, 2)), law="loland")
-    shape, free = designed.position, _free_nodes(cage, designed, hold_collar=False)
-    for _ in range(2):
-        soft = designed.strung(shape, pretension, softness=30.0)
-        shape = equilibria(cage, soft, still, free=free).position[0]
-    return designed.strung(shape, pretension, offset=cage.bridles.length_offset)
 
 
 def _check(seas: list[SeaState], *, mean_waves: bool, starts: int) -> None:
@@ -204,13 +187,6 @@ def _wave_variance(
     depths, level = np.unique(assembly.panels.depth, return_inverse=True)
     along = [wave_velocity_variance(s, -depths, depth=cage.site.water_depth)[:, 0] for s in seas]
     return np.array(along)[:, level]
-
-
-def _free_nodes(cage: Cage, assembly: Assembly, *, hold_collar: bool) -> Bool[np.ndarray, " node"]:
-    free = ~assembly.fixed
-    if hold_collar:
-        free[cage.ring_nodes(0)] = False
-    return free
 
 
 def _response(

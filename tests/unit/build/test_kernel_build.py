@@ -98,7 +98,7 @@ def test_a_change_in_any_source_of_the_kernel_builds_it_again(
     reads = next(
         line for line in rules.stdout.splitlines() if line.startswith(".venv/.project: ")
     ).split()
-    room = root / "src" / "seacage" / "dynamics"
+    room = root / "src" / "seacage" / "dynamics" / "_kernel"
     sources = [p for p in room.iterdir() if p.suffix in {".c", ".h"}]
     assert len(sources) > 1
     assert {p.relative_to(root).as_posix() for p in sources} <= set(reads)

@@ -8,8 +8,9 @@ import pytest
 
 from seacage.cage import Cage
 from seacage.conventions import InputError, Result, compass
-from seacage.dynamics import Response, _equilibria, _relax, rest_shape, settle
-from seacage.dynamics._assembly import Assembly
+from seacage.dynamics import Response, rest_shape, settle
+from seacage.dynamics._equilibrium import _relax, _search
+from seacage.dynamics._parts._assembly import Assembly
 from seacage.ocean import SeaState
 
 ACE = Cage.named("ace")
@@ -277,8 +278,8 @@ def test_99_percent_of_300_random_currents_settle():
 
 def test_a_case_that_runs_out_of_steps_says_so_and_keeps_its_last_shape(monkeypatch):
     rest_shape(COARSE)
-    monkeypatch.setattr(_equilibria, "MOST_ITERATIONS", 0)
-    monkeypatch.setattr(_equilibria, "ATTEMPTS", 0)
+    monkeypatch.setattr(_search, "MOST_ITERATIONS", 0)
+    monkeypatch.setattr(_search, "ATTEMPTS", 0)
     response = settle(COARSE, current(0.5, 0.0))
     assert response.result == Result.NOT_CONVERGED
     assert response.residual > 1.0
@@ -287,7 +288,7 @@ def test_a_case_that_runs_out_of_steps_says_so_and_keeps_its_last_shape(monkeypa
 
 def test_a_case_that_blows_up_says_so_and_carries_no_number(monkeypatch):
     rest_shape(COARSE)
-    monkeypatch.setattr(_equilibria, "MOST_ITERATIONS", 0)
+    monkeypatch.setattr(_search, "MOST_ITERATIONS", 0)
     monkeypatch.setattr(_relax, "_fictitious_mass", too_light)
     response = settle(COARSE, current(0.5, 0.0))
     assert response.result == Result.DIVERGED

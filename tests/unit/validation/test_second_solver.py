@@ -4,7 +4,7 @@ import numpy as np
 
 from seacage.cage import Structure
 from seacage.conventions import GRAVITY
-from seacage.dynamics._rigged import rigged
+from seacage.dynamics._parts._structure import rigged
 from validation.second_solver import FILE, LINES
 
 CAGE = Structure.read(FILE)

@@ -1,0 +1,111 @@
+"""To rest by dynamic relaxation: slow and sure, for cases that Newton's method does not finish."""
+
+from concurrent.futures import Executor
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from seacage.cage import Cage
+from seacage.dynamics._kernel import Relaxation, Relaxing, kernel
+from seacage.dynamics._parts import Assembly
+from seacage.dynamics._physics import SteadyFlow, total_net_force
+
+STEPS, STRETCH, STRETCHES = 300, 10, 10
+"""Steps of a round of relaxation, rounds before the unfinished regroup, and regroupings."""
+
+SOFTNESS = 100.0
+"""Soft spring rate of a twine over the rate with which the hung weight straightens it [-]."""
+
+HOOP_SHARE = 0.25
+"""Soft spring rate of a pipe's hoop over its true one [-]."""
+
+LOST = 1e12
+"""No cage bears such a force: the case has left the finite numbers [N]."""
+
+
+def hung_on_a_spoke(cage: Cage) -> float:
+    """Share of a spoke in what the tube and the tip weigh [N]."""
+    hung = cage.sinker_tube.weight * 2.0 * np.pi * cage.collar.radius + cage.tip.weight
+    return max(float(hung) / cage.spokes, 1.0)
+
+
+def begun(assembly: Assembly, flow: SteadyFlow) -> Relaxing:
+    """Cases at rest in the design shape."""
+    damping = _damping(assembly, flow)
+    start = np.repeat(assembly.position[None], len(damping), axis=0)
+    return Relaxing.begun(start, len(assembly.bars.length), damping)
+
+
+def relax(
+    assembly: Assembly, flow: SteadyFlow, state: Relaxing, relaxation: Relaxation, pool: Executor
+) -> None:
+    """Relax the open cases. A done one leaves its lane to others; none sees who runs beside."""
+    lanes = kernel().lanes
+
+    def run(some: Int[np.ndarray, " some"]) -> None:
+        moved = kernel().relaxed(
+            assembly, flow.cases(some), state.cases(some), relaxation, rounds=STRETCH
+        )
+        state.take(some, moved)
+
+    for _ in range(STRETCHES):
+        left = (state.residual > relaxation.tolerance) & (state.residual < LOST)
+        cases = np.flatnonzero(left)
+        list(pool.map(run, (cases[i : i + lanes] for i in range(0, len(cases), lanes))))
+
+
+def relaxation_of(
+    cage: Cage, assembly: Assembly, *, free: Bool[np.ndarray, " node"], tolerance: float
+) -> Relaxation:
+    """How to bring a cage to rest."""
+    soft = _soft_rates(cage, assembly)
+    return Relaxation(
+        inverse_mass=np.where(free, 1.0 / _fictitious_mass(assembly, soft), 0.0),
+        soft_rate=soft,
+        tolerance=tolerance,
+        progress=0.9,
+        patience=6,
+        most_damping=0.15,
+        steps=STEPS,
+    )
+
+
+def _soft_rates(cage: Cage, assembly: Assembly) -> Float[np.ndarray, " bar"]:
+    """Spring rates to relax with: the net's no stiffer than the shape needs [N/m]."""
+    bars = assembly.bars
+    true = bars.stiffness / bars.length
+    straightening = hung_on_a_spoke(cage) / np.mean(bars.length[: len(cage.edges)])
+    soft = np.minimum(true, SOFTNESS * max(straightening, 1.0))
+    soft[bars.pushed] = HOOP_SHARE * true[bars.pushed]
+    soft[assembly.bridles] = true[assembly.bridles]
+    return soft
+
+
+def _fictitious_mass(
+    assembly: Assembly, rate: Float[np.ndarray, " bar"]
+) -> Float[np.ndarray, " node"]:
+    """Masses with which a step of 1 s is stable: 0.6 of the stiffness at the node [kg].
+
+    The highest frequency squared is at most twice the stiffness over the mass (Gershgorin),
+    and must stay below 4.
+    """
+    stiffness = np.zeros(len(assembly.position))
+    np.add.at(stiffness, assembly.bars.ends, rate[:, None])
+    bends = assembly.bends
+    span = np.linalg.norm(
+        assembly.position[bends.nodes[:, 1]] - assembly.position[bends.nodes[:, 0]], axis=1
+    )
+    np.add.at(stiffness, bends.nodes[:, 1], 16.0 * bends.stiffness / span**2)
+    stiffness[assembly.floats.nodes] += assembly.floats.stiffness
+    stiffness[assembly.springs.nodes] += assembly.springs.stiffness.max(axis=1)
+    return 0.6 * stiffness
+
+
+def _damping(assembly: Assembly, flow: SteadyFlow) -> Float[np.ndarray, " case"]:
+    """Share of velocity to lose in a step: more where the water outweighs the weights.
+
+    Tuned on the reference cage: the slowest swing is then near critical damping.
+    """
+    rigid = np.abs(total_net_force(assembly.panels, flow, assembly.position[None]))
+    load = np.linalg.norm(rigid, axis=1) / -np.sum(assembly.weight)
+    return np.minimum(0.01 + 0.05 * np.sqrt(load), 0.2)

@@ -1,0 +1,250 @@
+"""Equilibria of a cage in steady flow, sought from several first shapes."""
+
+from concurrent.futures import Executor, ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from seacage.cage import Cage
+from seacage.conventions import Result
+from seacage.dynamics._equilibrium._newton import hooke
+from seacage.dynamics._equilibrium._relax import LOST, begun, hung_on_a_spoke, relax, relaxation_of
+from seacage.dynamics._kernel import Balance, Balancing, kernel
+from seacage.dynamics._parts import Assembly
+from seacage.dynamics._physics import SteadyFlow, total_net_force
+
+TOLERANCE = 0.5
+"""Largest force left on any node of a settled cage [N]."""
+
+AIM = 1e-3
+"""Force left on a node at which Newton's method ends; it shrinks a hundredfold a step there [N]."""
+
+APART = 2e-3
+"""Shapes in which no node is farther apart are one equilibrium, over the collar's radius [-]."""
+
+STRETCH, MOST_ITERATIONS = 6, 240
+"""Newton iterations before the unfinished regroup, and in all."""
+
+ATTEMPTS = 4
+"""How often relaxation and Newton's method take turns on a case that the latter did not finish."""
+
+FLAT, ASIDE, GOLDEN = np.deg2rad([80.0, 45.0, 137.507764])
+"""Swings of first shapes: much faster water's, other water's, and how far on the next is [rad]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Equilibria:
+    """Of each case one equilibrium, and what is known of others.
+
+    ``Response`` says what ``result``, ``number``, ``spread`` and ``unstable`` mean.
+    """
+
+    position: Float[np.ndarray, "case node 3"]
+    residual: Float[np.ndarray, " case"]
+    result: Int[np.ndarray, " case"]
+    number: Int[np.ndarray, " case"]
+    spread: Float[np.ndarray, " case"]
+    unstable: Bool[np.ndarray, " case"]
+
+
+def equilibria(
+    cage: Cage,
+    assembly: Assembly,
+    flow: SteadyFlow,
+    *,
+    free: Bool[np.ndarray, " node"],
+    starts: int = 1,
+    workers: int = 1,
+) -> Equilibria:
+    """Seek an equilibrium of each case from each of so many first shapes.
+
+    The first found in the order of ``_first_shapes`` is taken, but one that is proved
+    unstable only for want of another. Cases without any are relaxed.
+    """
+    cases = len(flow.direction)
+    problem_of = np.repeat(np.arange(cases), starts)
+    state = _begun(cage, _first_shapes(assembly, flow, starts), assembly)
+    balance = _balance(cage, free)
+    with ThreadPoolExecutor(workers) as pool:
+        _seek(assembly, flow.cases(problem_of), state, balance, pool)
+        _relax_the_rest(cage, assembly, flow, state, balance, pool)
+    return _chosen(cage, state, starts)
+
+
+def _first_shapes(
+    assembly: Assembly, flow: SteadyFlow, starts: int
+) -> Float[np.ndarray, "problem node 3"]:
+    """The design shape with the net swung round the collar, case by case.
+
+    By the angle that the load asks for; not at all; nearly flat; and then aside, each the
+    golden angle on from the last.
+    """
+    rigid = total_net_force(assembly.panels, flow, assembly.position[None])
+    load = np.linalg.norm(rigid, axis=1) / -np.sum(assembly.weight)
+    still = np.all(flow.direction == 0.0, axis=1, keepdims=True)
+    along = np.where(still, np.array([1.0, 0.0, 0.0]), flow.direction)
+    shapes = []
+    for start in range(starts):
+        # 3: from the reference cage, whose gear hangs lower than its load attacks
+        angle = {0: np.arctan(3.0 * load), 1: 0.0 * load, 2: FLAT + 0.0 * load}
+        turn = max(start - 2, 0) * GOLDEN
+        c, s = np.cos(turn), np.sin(turn)
+        ahead = along @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+        shapes.append(_swung(assembly, angle.get(start, ASIDE + 0.0 * load), ahead))
+    return np.stack(shapes, axis=1).reshape(-1, *assembly.position.shape)
+
+
+def _swung(
+    assembly: Assembly,
+    angle: Float[np.ndarray, " case"],
+    ahead: Float[np.ndarray, "case 3"],
+) -> Float[np.ndarray, "case node 3"]:
+    """What hangs in the design shape swung by an angle, each node round the surface above it."""
+    hangs = np.zeros(len(assembly.position))
+    net = slice(0, assembly.cage_nodes)
+    hangs[net] = np.maximum(-assembly.position[net, 2], 0.0)
+    aside = np.sin(angle)[:, None] * hangs
+    shape = assembly.position + aside[..., None] * ahead[:, None]
+    shape[..., 2] += (1.0 - np.cos(angle))[:, None] * hangs
+    return shape
+
+
+def _begun(
+    cage: Cage, position: Float[np.ndarray, "problem node 3"], assembly: Assembly
+) -> Balancing:
+    """All bars of the net taken to bear some of what hangs on a spoke."""
+    borne = 0.3 * hung_on_a_spoke(cage)
+    tension = np.where(assembly.bars.pushed, 0.0, borne)
+    return Balancing.begun(
+        position,
+        np.repeat(tension[None], len(position), axis=0),
+        barrier=(0.1 * borne) ** 2,
+        shift=_shift(cage),
+    )
+
+
+def _shift(cage: Cage) -> float:
+    """Stiffness against swinging of a net that bears what hangs on it, for a start [N/m]."""
+    return 0.2 * hung_on_a_spoke(cage) / cage.collar.radius
+
+
+def _balance(cage: Cage, free: Bool[np.ndarray, " node"]) -> Balance:
+    return Balance(
+        free=free,
+        tolerance=AIM,
+        reach=0.06 * cage.collar.radius,
+        least_barrier=(0.3 * AIM) ** 2,
+        least_shift=3e-3 * _shift(cage),
+        most_shift=300.0 * _shift(cage),
+    )
+
+
+def _seek(
+    assembly: Assembly, flow: SteadyFlow, state: Balancing, balance: Balance, pool: Executor
+) -> None:
+    """Newton's method on all problems. A done one leaves its lane to others."""
+    lanes = kernel().lanes
+
+    def run(some: Int[np.ndarray, " some"]) -> None:
+        moved = kernel().balanced(
+            assembly, flow.cases(some), state.cases(some), balance, iterations=STRETCH
+        )
+        state.take(some, moved)
+
+    for _ in range(0, MOST_ITERATIONS, STRETCH):
+        cases = np.flatnonzero((state.residual > AIM) & (state.residual < LOST))
+        list(pool.map(run, (cases[i : i + lanes] for i in range(0, len(cases), lanes))))
+
+
+def _relax_the_rest(
+    cage: Cage,
+    assembly: Assembly,
+    flow: SteadyFlow,
+    state: Balancing,
+    balance: Balance,
+    pool: Executor,
+) -> None:
+    """Relaxation, and Newton's method from where it ends, for cases without an equilibrium.
+
+    What comes of it takes the place of the case's first problem.
+    """
+    cases = len(flow.direction)
+    starts = len(state.residual) // cases
+    settled = (state.residual <= TOLERANCE).reshape(cases, starts).any(axis=1)
+    rest = np.flatnonzero(~settled)
+    if len(rest) == 0:
+        return
+    water = flow.cases(rest)
+    relaxing = begun(assembly, water)
+    relaxation = relaxation_of(cage, assembly, free=balance.free, tolerance=TOLERANCE)
+    found = Balancing.begun(
+        relaxing.position, np.zeros_like(relaxing.carried), barrier=AIM, shift=balance.least_shift
+    )
+    for _ in range(ATTEMPTS):
+        relax(assembly, water, relaxing, relaxation, pool)
+        some = np.flatnonzero(~(found.residual <= TOLERANCE) & (relaxing.residual < LOST))
+        sharper = _near(assembly, relaxing.position[some], balance)
+        _seek(assembly, water.cases(some), sharper, balance, pool)
+        found.take(some, sharper)
+    worse = ~(found.residual <= np.minimum(relaxing.residual, TOLERANCE))
+    found.position[worse] = relaxing.position[worse]
+    found.residual[worse] = relaxing.residual[worse]
+    found.sign[worse] = 1.0
+    state.take(rest * starts, found)
+
+
+def _near(
+    assembly: Assembly, position: Float[np.ndarray, "case node 3"], balance: Balance
+) -> Balancing:
+    """Cases begun close to an equilibrium, with the tensions of their shapes."""
+    bars = assembly.bars
+    tension = [hooke(bars, shape)[1] for shape in position]
+    slack = np.zeros((0, len(bars.length))) if len(position) == 0 else np.array(tension)
+    borne = np.where(bars.pushed, slack, np.maximum(slack, 1.0))
+    return Balancing.begun(position.copy(), borne, barrier=1.0, shift=balance.least_shift)
+
+
+def _chosen(cage: Cage, state: Balancing, starts: int) -> Equilibria:
+    """Of each case's problems the one to answer with, and how many differ."""
+    shapes = state.position.reshape(-1, starts, *state.position.shape[1:])
+    residual = state.residual.reshape(-1, starts)
+    unstable = state.sign.reshape(-1, starts) < 0.0
+    found = residual <= TOLERANCE
+    taken = np.argmax(2 * (found & ~unstable) + found, axis=1)
+    each = np.arange(len(taken))
+    position, left = shapes[each, taken], residual[each, taken]
+    lost = ~(left < LOST) | ~np.isfinite(position).all(axis=(1, 2))
+    position[lost] = np.nan
+    result = np.where(left <= TOLERANCE, Result.CONVERGED, Result.NOT_CONVERGED)
+    number, spread = _distinct(cage, shapes[:, :, : cage.node_count], residual)
+    return Equilibria(
+        position=position,
+        residual=left,
+        result=np.where(lost, Result.DIVERGED, result).astype(np.int64),
+        number=np.maximum(number, found.any(axis=1)),
+        spread=spread,
+        unstable=unstable[each, taken] & found[each, taken],
+    )
+
+
+def _distinct(
+    cage: Cage,
+    shapes: Float[np.ndarray, "case start node 3"],
+    residual: Float[np.ndarray, "case start"],
+) -> tuple[Int[np.ndarray, " case"], Float[np.ndarray, " case"]]:
+    """How many of the sharp shapes differ, and by how much at most [m].
+
+    Where half a newton is left, slack netting may still lie decimetres from its place.
+    """
+    cases, starts = residual.shape
+    kept = residual <= AIM
+    shapes = np.where(kept[:, :, None, None], shapes, 0.0)
+    spread = np.zeros(cases)
+    for one in range(starts):
+        for other in range(one):
+            apart = np.linalg.norm(shapes[:, one] - shapes[:, other], axis=-1).max(axis=-1)
+            both = kept[:, one] & kept[:, other]
+            kept[:, one] &= ~(both & (apart <= APART * cage.collar.radius))
+            spread = np.maximum(spread, np.where(kept[:, one] & kept[:, other], apart, 0.0))
+    return kept.sum(axis=1), spread

@@ -1,0 +1,299 @@
+"""The compiled march through time, fed by ctypes: up to a vector of cases side by side."""
+
+import ctypes
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from seacage.conventions import InputError
+from seacage.dynamics._kernel._march_inputs import (
+    Ocean,
+    aligned,
+    body_of,
+    laned,
+    marching,
+    netting_of,
+    sea_tables,
+    simulation_lanes,
+    unlaned,
+)
+from seacage.dynamics._kernel._struct import DOUBLES, FLOATS, LONGS, Struct, pointer
+from seacage.dynamics._parts import Assembly, Bars
+from seacage.dynamics._physics import NetLaw, Water, damped_tension
+from seacage.ocean import Waves
+
+REFRESH = 0.1
+"""Between two looks at the water [s]."""
+
+
+class _Schedule(Struct):
+    _fields_ = (
+        *((n, ctypes.c_double) for n in ("time_step", "ramp")),
+        *((n, ctypes.c_int64) for n in ("first", "refreshes", "count_from", "sample_every")),
+        *((n, ctypes.c_int32) for n in ("steps", "hold")),
+    )
+
+
+class _State(Struct):
+    _fields_ = tuple(
+        (n, FLOATS)
+        for n in (
+            *("position", "rest", "velocity", "water", "slope", "current", "relative"),
+            *("force", "base", "held", "drag", "elevation", "rise", "panel_current"),
+            *("panel_drag", "panel_lift", "lost_at"),
+        )
+    )
+
+
+class _Record(Struct):
+    _fields_ = (
+        *((n, DOUBLES) for n in ("node_sum", "node_square")),
+        *((n, FLOATS) for n in ("node_least", "node_most")),
+        *((n, DOUBLES) for n in ("bridle_sum", "bridle_square")),
+        *((n, FLOATS) for n in ("bridle_least", "bridle_most")),
+        *((n, DOUBLES) for n in ("load_sum", "load_square")),
+        *((n, FLOATS) for n in ("load_least", "load_most")),
+        *((n, LONGS) for n in ("counted", "sampled")),
+        *((n, FLOATS) for n in ("positions", "tensions", "elevations", "loads")),
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Steps:
+    """How time is cut.
+
+    Attributes
+    ----------
+    time_step
+        [s].
+    each
+        Time steps between two looks at the water.
+    hold
+        Time steps through which the water's load is held, but for what drag changes.
+    ramp
+        Over which the waves rise [s].
+    spin_up, counted
+        Refreshes that do not count, and that do.
+    sample_every
+        Refreshes between samples; 0 for none.
+    """
+
+    time_step: float
+    each: int
+    hold: int
+    ramp: float
+    spin_up: int
+    counted: int
+    sample_every: int
+
+    @property
+    def samples(self) -> int:
+        """How many there will be."""
+        return -(-self.counted // self.sample_every) if self.sample_every else 0
+
+
+class March:
+    """Cases on their way through time; ``go`` moves them all.
+
+    Between two moves the water, the netting and the parts may change. The arrays of ``account``
+    and ``samples`` have the lanes last.
+    """
+
+    def __init__(
+        self,
+        assembly: Assembly,
+        law: NetLaw,
+        ocean: Ocean,
+        steps: Steps,
+        position: Float[np.ndarray, "case node 3"],
+    ) -> None:
+        self.steps, self.refreshed = steps, 0
+        self.cases, nodes = position.shape[:2]
+        self._assembly, self._ocean = assembly, ocean
+        self._body = body_of(assembly)
+        self._net = netting_of(assembly, law)
+        self._sea = sea_tables(ocean)
+        self._motion = _motion(assembly, laned(position))
+        lanes, bridles = simulation_lanes(), len(assembly.bridles)
+        sizes = {"node": (3 * nodes, lanes), "bridle": (bridles, lanes), "load": (3, lanes)}
+        self.account = {
+            f"{what}_{how}": np.full(size, start, kind)
+            for what, size in sizes.items()
+            for how, start, kind in (
+                ("sum", 0.0, np.float64),
+                ("square", 0.0, np.float64),
+                ("least", np.inf, np.float32),
+                ("most", -np.inf, np.float32),
+            )
+        } | {name: np.zeros(1, np.int64) for name in ("counted", "sampled")}
+        shapes = {
+            "positions": (nodes, 3),
+            "tensions": (bridles,),
+            "elevations": (),
+            "loads": (3,),
+        }
+        self.samples = {
+            name: np.empty((steps.samples, *shape, lanes), np.float32)
+            for name, shape in shapes.items()
+        }
+        self._record = _Record.filled(**self.account, **self.samples)
+
+    def go(self, refreshes: int) -> None:
+        """Move on by so many refreshes."""
+        steps = self.steps
+        room = steps.spin_up + steps.counted - self.refreshed
+        assert not steps.sample_every or refreshes <= room, "samples would go beyond their room"
+        schedule = _Schedule.filled(
+            time_step=steps.time_step,
+            ramp=steps.ramp,
+            first=self.refreshed,
+            refreshes=refreshes,
+            count_from=steps.spin_up,
+            sample_every=steps.sample_every,
+            steps=steps.each,
+            hold=steps.hold,
+        )
+        marching().seacage_march(
+            *map(
+                ctypes.byref,
+                (self._body, self._net, self._sea, schedule, self._motion, self._record),
+            )
+        )
+        self.refreshed += refreshes
+
+    @property
+    def now(self) -> float:
+        """Simulated so far [s]."""
+        return self.refreshed * self.steps.each * self.steps.time_step
+
+    def set_current(self, current: Float[np.ndarray, "case level 2"]) -> None:
+        """From now on at each level [m/s]."""
+        self._ocean = replace(self._ocean, current=current)
+        self._sea.arrays["current"][:] = laned(current)
+
+    def set_waves(self, waves: Sequence[Waves]) -> None:
+        """From now on, which is their time 0; the water takes a refresh to come round to them."""
+        self._ocean = replace(self._ocean, waves=waves)
+        self._sea = sea_tables(self._ocean, now=self.now)
+
+    def set_net(self, law: NetLaw) -> None:
+        """From now on: law, wake and growth."""
+        self._net = netting_of(self._assembly, law)
+
+    def rebuild(self, assembly: Assembly) -> None:
+        """Go on as another assembly, of the same nodes, panels, floats and number of bridles."""
+        before, after = _counts(self._assembly), _counts(assembly)
+        if before != after:
+            raise InputError(
+                f"March: an assembly of {after} cannot go on from one of {before}. Change their "
+                "stiffness or the netting's drag, and let their numbers be."
+            )
+        self._assembly, self._body = assembly, body_of(assembly)
+
+    @property
+    def position(self) -> Float[np.ndarray, "case node 3"]:
+        """Where the nodes are now [m]."""
+        return unlaned(self._motion.arrays["position"])[: self.cases].astype(np.float64)
+
+    @property
+    def velocity(self) -> Float[np.ndarray, "case node 3"]:
+        """How the nodes move now [m/s]."""
+        return unlaned(self._motion.arrays["velocity"])[: self.cases].astype(np.float64)
+
+    def position_of(self, nodes: Int[np.ndarray, " kept"]) -> Float[np.ndarray, "case kept 3"]:
+        """Where some nodes are now [m]."""
+        return self._of("position", nodes)
+
+    def node_sum(self, nodes: Int[np.ndarray, " kept"]) -> Float[np.ndarray, "case kept 3"]:
+        """Displacements from the assembly's positions, over all counted refreshes [m]."""
+        lanes = simulation_lanes()
+        return unlaned(self.account["node_sum"].reshape(-1, 3, lanes)[nodes])[: self.cases]
+
+    @property
+    def tension(self) -> Float[np.ndarray, "case bridle"]:
+        """Of the bridles now [N]."""
+        assembly = self._assembly
+        some = {n: getattr(assembly.bars, n)[assembly.bridles] for n in Bars.__slots__}
+        nodes, ends = np.unique(some["ends"], return_inverse=True)
+        bridles = Bars(**some | {"ends": ends.reshape(-1, 2)})
+        at, moving = self._of("position", nodes), self._of("velocity", nodes)
+        return damped_tension(bridles, assembly.mass[nodes], at, moving)
+
+    def _of(self, name: str, nodes: Int[np.ndarray, " kept"]) -> Float[np.ndarray, "case kept 3"]:
+        return unlaned(self._motion.arrays[name][nodes])[: self.cases].astype(np.float64)
+
+    @property
+    def lost_at(self) -> Float[np.ndarray, " case"]:
+        """Simulated time at which a case left the finite numbers, else NaN [s]."""
+        at = self._motion.arrays["lost_at"][: self.cases].astype(np.float64)
+        return np.where(at < 0.0, np.nan, at)
+
+
+def _counts(assembly: Assembly) -> str:
+    """Of what a march has numbers for."""
+    panels, floats = len(assembly.panels.area), len(assembly.floats.nodes)
+    nodes, bridles = len(assembly.position), len(assembly.bridles)
+    return f"{nodes} nodes, {panels} panels, {floats} floats and {bridles} bridles"
+
+
+def kernel_force(
+    assembly: Assembly,
+    law: NetLaw,
+    water: Water,
+    position: Float[np.ndarray, "case node 3"],
+    velocity: Float[np.ndarray, "case node 3"],
+) -> Float[np.ndarray, "case node 3"]:
+    """All forces as the kernel computes them, for at most a vector of cases [N]."""
+    cases = len(position)
+    motion = _motion(assembly, laned(position))
+    motion.arrays["velocity"][:] = laned(velocity)
+    motion.arrays["water"][:] = laned(water.velocity)
+    motion.arrays["current"][:] = laned(water.current)
+    motion.arrays["elevation"][:] = laned(water.elevation[:, assembly.floats.nodes])
+    inertia = assembly.water_mass[:, None] * water.acceleration
+    inertia[..., 2] += assembly.weight
+    motion.arrays["base"][:] = laned(inertia)
+    total = np.zeros((3, simulation_lanes()), np.float32)
+    marching().seacage_march_forces(
+        *map(ctypes.byref, (body_of(assembly), netting_of(assembly, law), motion)),
+        pointer(total),
+    )
+    return unlaned(motion.arrays["force"])[:cases].astype(np.float64)
+
+
+def kernel_water(
+    waves: Sequence[Waves], position: Float[np.ndarray, "case 3"], time: float
+) -> tuple[Float[np.ndarray, " case"], Float[np.ndarray, "case 3"]]:
+    """Surface [m] and wave velocity [m/s] at one place for each case, as the kernel has them."""
+    cases, lanes = len(waves), simulation_lanes()
+    ocean = Ocean(
+        waves=waves, current=np.zeros((cases, 1, 2)), level_z=np.zeros(1), depth=waves[0].depth
+    )
+    elevation, velocity = np.zeros(lanes, np.float32), np.zeros((3, lanes), np.float32)
+    marching().seacage_march_water(
+        ctypes.byref(sea_tables(ocean)),
+        pointer(laned(position)),
+        ctypes.c_double(time),
+        pointer(elevation),
+        pointer(velocity),
+    )
+    return elevation[:cases].astype(np.float64), velocity.T[:cases].astype(np.float64)
+
+
+def _motion(assembly: Assembly, position: Float[np.ndarray, "node 3 lane"]) -> _State:
+    lanes, nodes = simulation_lanes(), len(position)
+    panels, floats = len(assembly.panels.area), len(assembly.floats.nodes)
+    nodal = ("rest", "velocity", "water", "slope", "current", "relative", "force", "base", "held")
+    shapes: dict[str, tuple[int, ...]] = dict.fromkeys(nodal, (nodes, 3)) | {
+        "drag": (nodes,),
+        "elevation": (floats,),
+        "rise": (floats,),
+        "panel_current": (panels, 3),
+        "panel_drag": (panels,),
+        "panel_lift": (panels,),
+    }
+    arrays = {name: aligned((*shape, lanes)) for name, shape in shapes.items()}
+    lost_at = np.full(lanes, -1.0, np.float32)
+    return _State.filled(position=position, **arrays, lost_at=lost_at)

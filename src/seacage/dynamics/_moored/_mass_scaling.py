@@ -1,0 +1,71 @@
+"""Masses with which a time step is stable."""
+
+from dataclasses import replace
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.conventions import InputError
+from seacage.dynamics._parts import Assembly
+
+SAFETY = 0.9
+"""Share of the longest stable step that is used [-]."""
+
+MOST_ADDED = 4.0
+"""Mass lent to a node, over its own, beyond which a time step is refused [-]."""
+
+
+def steadied(assembly: Assembly, time_step: float) -> tuple[Assembly, Float[np.ndarray, " node"]]:
+    """A copy with enough mass at each node for a time step, and the mass lent [kg].
+
+    Light nodes on stiff bars ring faster than a time step can follow, at frequencies at which
+    nothing else happens. They are lent mass: equilibria and slow motion stay as they are, where
+    softer bars would shift both. A bar's frequency is bounded by that of the bars along it
+    at its two ends, each end with its own mass; on a straight chain this is exact.
+
+    Raises
+    ------
+    InputError
+        A node that would have to be lent more than ``MOST_ADDED`` times its mass.
+    """
+    bars = assembly.bars
+    limit = _fastest(bars.damping_ratio, time_step)
+    need = np.zeros(len(assembly.position))
+    # twice the stiffness at a node along a bar, over its mass, is at least the bar's frequency²
+    for end in (0, 1):
+        along = 2.0 * _stiffness_along(assembly, end) / limit**2
+        np.maximum.at(need, bars.ends[:, end], along)
+    lent = np.where(assembly.fixed, 0.0, np.maximum(need - assembly.mass, 0.0))
+    worst = int(np.argmax(lent / assembly.mass))
+    if lent[worst] > MOST_ADDED * assembly.mass[worst]:
+        longest = time_step * np.sqrt((1.0 + MOST_ADDED) * assembly.mass[worst] / need[worst])
+        raise InputError(
+            f"simulate: time_step = {time_step:g} s is too long for the stiffest line, at node "
+            f"{worst} ({assembly.mass[worst]:.3g} kg). Give at most {_below(longest):.2g} s."
+        )
+    return replace(assembly, mass=assembly.mass + lent), lent
+
+
+def _below(time: float) -> float:
+    """Two digits of a time, never more than it [s]."""
+    digit = 10.0 ** (np.floor(np.log10(time)) - 1.0)
+    return float(np.floor(time / digit) * digit)
+
+
+def _fastest(
+    damping_ratio: Float[np.ndarray, " bar"], time_step: float
+) -> Float[np.ndarray, " bar"]:
+    """Highest frequency a step can follow, with damping taken at the old velocity [rad/s]."""
+    ratio = np.sqrt(2.0) * damping_ratio
+    return SAFETY * 2.0 / time_step * (np.sqrt(1.0 + ratio**2) - ratio)
+
+
+def _stiffness_along(assembly: Assembly, end: int) -> Float[np.ndarray, " bar"]:
+    """Stiffness that a bar's end meets along the bar, from all bars that end there [N/m]."""
+    bars, position = assembly.bars, assembly.position
+    along = position[bars.ends[:, 1]] - position[bars.ends[:, 0]]
+    unit = along / np.linalg.norm(along, axis=1, keepdims=True)
+    rate = bars.stiffness / bars.length
+    matrix = np.zeros((len(position), 3, 3))
+    np.add.at(matrix, bars.ends, (rate[:, None, None] * unit[:, :, None] * unit[:, None])[:, None])
+    return np.einsum("bx,bxy,by->b", unit, matrix[bars.ends[:, end]], unit)

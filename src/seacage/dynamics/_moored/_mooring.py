@@ -1,0 +1,241 @@
+"""A cage moored as it is built: frame, corner buoys and anchor lines instead of springs."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from seacage.cage import Cage
+from seacage.conventions import GRAVITY, WATER_DENSITY, InputError
+from seacage.dynamics._moored._anchor_line import (
+    STEEL_DENSITY,
+    LineShape,
+    is_rope,
+    node_weight,
+    resting_line,
+    segments,
+)
+from seacage.dynamics._moored._pretension import assembled
+from seacage.dynamics._parts import (
+    SINKING,
+    Assembly,
+    Bars,
+    Cylinders,
+    Floats,
+    Ground,
+    joined_bars,
+    no_springs,
+)
+
+ROPE_DRAG = 1.2
+"""Cross-flow drag coefficient of a rope, a smooth cylinder's [-]."""
+
+
+@lru_cache(maxsize=16)
+def anchored(cage: Cage) -> Assembly:
+    """The cage with frame ropes, corner buoys and anchor lines in place of corner springs.
+
+    Nodes: the cage's, the four corners, then those of each anchor line from its corner to its
+    anchor, line by line, corner by corner. The corners are free. A buoy stands plumb over its
+    corner on a chain that stays taut, so its lift follows the surface there. Anchor lines run
+    on from the frame's sides, rope over chain, in lumped segments; the rope weighs nothing in
+    water, as it is filled with it. In still water the bridles bear their pretension, as on
+    springs, and the anchor lines theirs at the corners; what they leave, the frame ropes bear.
+    Left out: friction on the sea bed, the buoys' own sideways motion, drag on the bridles.
+
+    Raises
+    ------
+    InputError
+        A cage that cannot float, lines that do not reach the sea bed, and a buoy too small
+        for what hangs on it.
+    """
+    base = assembled(cage)
+    shape = resting_line(cage)
+    lines = _lines(cage, shape)
+    bridles = _bridle_pull(cage, base)
+    lift = _carried(cage, shape, bridles)
+    position = np.vstack([base.position, lines.position])
+    frame = _frame(cage, shape, bridles)
+    weight, mass, water_mass = _lumped(cage, base, frame, lines)
+    return Assembly(
+        cage_nodes=base.cage_nodes,
+        position=position,
+        weight=weight,
+        mass=mass,
+        water_mass=water_mass,
+        fixed=np.concatenate([base.fixed, lines.anchors]),
+        bars=joined_bars(base.bars, frame, lines.bars),
+        bridles=base.bridles,
+        bends=base.bends,
+        panels=base.panels,
+        cylinders=_cylinders(cage, base, frame, lines),
+        floats=_floats(cage, base, lift),
+        springs=no_springs(),
+        ground=_ground(cage, base, lines, mass),
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Lines:
+    """All anchor lines in their places."""
+
+    position: Float[np.ndarray, "node 3"]
+    anchors: Bool[np.ndarray, " node"]
+    bars: Bars
+    is_rope: Bool[np.ndarray, " bar"]
+
+
+def _lines(cage: Cage, shape: LineShape) -> _Lines:
+    length, stiffness = segments(cage.anchor_lines)
+    directions, corners = _directions(cage)
+    count, each = len(directions), len(length)
+    along = shape.position[1:, 0]
+    position = cage.corner_position[corners][:, None] + np.concatenate(
+        [
+            along[None, :, None] * directions[:, None],
+            np.broadcast_to(shape.position[1:, 1][None, :, None], (count, each, 1)),
+        ],
+        axis=-1,
+    )
+    own = cage.node_count + 4 + np.arange(count * each).reshape(count, each)
+    chain = np.column_stack([cage.node_count + corners, own])
+    bars = Bars(
+        ends=np.stack([chain[:, :-1], chain[:, 1:]], axis=-1).reshape(-1, 2),
+        length=np.tile(length, count),
+        stiffness=np.tile(stiffness, count),
+        pushed=np.zeros(count * each, dtype=bool),
+        damping_ratio=np.full(count * each, cage.netting.damping_ratio),
+    )
+    return _Lines(
+        position=position.reshape(-1, 3),
+        anchors=np.tile(np.arange(each) == each - 1, count),
+        bars=bars,
+        is_rope=np.tile(is_rope(cage.anchor_lines), count),
+    )
+
+
+def _directions(cage: Cage) -> tuple[Float[np.ndarray, "line 2"], Int[np.ndarray, " line"]]:
+    """Where the lines run to, on from the frame's sides, and the corners they hold."""
+    per_corner = cage.anchor_lines.per_corner
+    if per_corner < 1:
+        raise InputError(
+            f"Cage {cage.name}: per_corner = {per_corner}, but a frame needs anchor lines. Give "
+            "2, or moor the cage on springs."
+        )
+    spread = np.pi / 4.0 * (np.linspace(-1.0, 1.0, per_corner) if per_corner > 1 else np.zeros(1))
+    outward = np.arctan2(cage.corner_position[:, 1], cage.corner_position[:, 0])
+    angle = (outward[:, None] + spread).ravel()
+    return np.column_stack([np.cos(angle), np.sin(angle)]), np.repeat(np.arange(4), per_corner)
+
+
+def _bridle_pull(cage: Cage, base: Assembly) -> Float[np.ndarray, "corner 3"]:
+    """Of the bridles on the corners in still water [N]."""
+    ends = base.bars.ends[base.bridles]
+    along = base.position[ends[:, 1]] - base.position[ends[:, 0]]
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    pull = np.zeros((4, 3))
+    np.add.at(pull, cage.bridle_corner, cage.bridles.pretension * along)
+    return pull
+
+
+def _carried(
+    cage: Cage, shape: LineShape, bridles: Float[np.ndarray, "corner 3"]
+) -> Float[np.ndarray, " corner"]:
+    """What each buoy carries in still water [N]."""
+    steep = -(shape.position[1, 1] / np.linalg.norm(shape.position[1]))
+    down = cage.anchor_lines.per_corner * shape.tension[0] * steep
+    lift = down - bridles[:, 2]
+    if lift.max() >= cage.frame.buoy_buoyancy:
+        raise InputError(
+            f"Cage {cage.name}: a corner buoy of buoy_buoyancy_n = {cage.frame.buoy_buoyancy:g} "
+            f"cannot carry the {lift.max() / 1e3:.1f} kN that anchor lines and bridles hang on it."
+        )
+    return lift
+
+
+def _frame(cage: Cage, shape: LineShape, bridles: Float[np.ndarray, "corner 3"]) -> Bars:
+    """The four sides, as long as the balance of their corners asks for, and slack if cut so."""
+    corner = cage.corner_position[:, :2]
+    ends = np.column_stack([np.arange(4), np.roll(np.arange(4), -1)])
+    side = corner[ends[:, 1]] - corner[ends[:, 0]]
+    span = np.linalg.norm(side, axis=1)
+    unit = side / span[:, None]
+    directions, corners = _directions(cage)
+    outward = np.zeros((4, 2))
+    level = float(shape.position[1, 0] / np.linalg.norm(shape.position[1]))
+    np.add.at(outward, corners, shape.tension[0] * level * directions)
+    needed = outward + bridles[:, :2]  # the frame's ropes must hold this back
+    tension = np.sum((needed[ends[:, 1]] - needed[ends[:, 0]]) * unit, axis=1) / 2.0
+    stiffness = cage.frame.rope_axial_stiffness
+    if stiffness == 0.0:
+        raise InputError(
+            f"Cage {cage.name}: frame, rope_axial_stiffness_n = 0, but free corners need ropes "
+            "between them. Give a number above 0, or moor the cage on springs."
+        )
+    return Bars(
+        ends=cage.node_count + ends,
+        length=span / (1.0 + np.maximum(tension, 0.0) / stiffness) + cage.frame.rope_slack,
+        stiffness=np.full(4, stiffness),
+        pushed=np.zeros(4, dtype=bool),
+        damping_ratio=np.full(4, cage.netting.damping_ratio),
+    )
+
+
+def _lumped(
+    cage: Cage, base: Assembly, frame: Bars, lines: _Lines
+) -> tuple[Float[np.ndarray, " n"], Float[np.ndarray, " n"], Float[np.ndarray, " n"]]:
+    """Weight [N], mass with added mass, and the water's share of it [kg], of all nodes.
+
+    A rope weighs nothing in water: with what it holds between its strands, it is as heavy.
+    """
+    parts, more = cage.anchor_lines, np.zeros(len(lines.position))
+    weight = np.append(base.weight, np.tile(-node_weight(parts)[1:], lines.anchors.sum()))
+    mass, water = np.append(base.mass, more), np.append(base.water_mass, more)
+
+    def put(ends: np.ndarray, length: np.ndarray, own: float, displaced: float, added: float):
+        half = np.repeat(length / 2.0, 2)
+        np.add.at(mass, ends.ravel(), (own + added) * half)
+        np.add.at(water, ends.ravel(), (displaced + added) * half)
+
+    side = WATER_DENSITY * np.pi / 4.0 * cage.frame.rope_diameter**2
+    put(frame.ends, frame.length, side, side, side)
+    bars, rope = lines.bars, lines.is_rope
+    own = WATER_DENSITY * np.pi / 4.0 * parts.rope_diameter**2
+    put(bars.ends[rope], bars.length[rope], own, own, own)
+    displaced = parts.chain_mass * WATER_DENSITY / STEEL_DENSITY
+    put(bars.ends[~rope], bars.length[~rope], parts.chain_mass, displaced, displaced)
+    return weight, mass, water
+
+
+def _cylinders(cage: Cage, base: Assembly, frame: Bars, lines: _Lines) -> Cylinders:
+    """Drag on frame and lines too; the bottom chain is dragged like the rope above it."""
+    widths = (cage.frame.rope_diameter, cage.anchor_lines.rope_diameter)
+    counts = (len(frame.length), len(lines.bars.length))
+    added = ROPE_DRAG * np.repeat(widths, counts)
+    return Cylinders(
+        ends=np.concatenate([base.cylinders.ends, frame.ends, lines.bars.ends]),
+        drag_width=np.append(base.cylinders.drag_width, added),
+        skin_width=np.append(base.cylinders.skin_width, np.zeros(len(added))),
+    )
+
+
+def _floats(cage: Cage, base: Assembly, lift: Float[np.ndarray, " corner"]) -> Floats:
+    """The buoys, referred to their corners: as deep under water as bears what hangs on them."""
+    frame = cage.frame
+    stiffness = frame.corner_stiffness_vertical
+    draft = np.maximum(lift, 0.0) / stiffness
+    return Floats(
+        nodes=np.append(base.floats.nodes, cage.node_count + np.arange(4)),
+        stiffness=np.append(base.floats.stiffness, np.full(4, stiffness)),
+        draft=np.append(base.floats.draft, draft - frame.depth),
+        height=np.append(base.floats.height, np.full(4, frame.buoy_buoyancy / stiffness)),
+    )
+
+
+def _ground(cage: Cage, base: Assembly, lines: _Lines, mass: Float[np.ndarray, " node"]) -> Ground:
+    """The sea bed under the lines' nodes."""
+    nodes = len(base.position) + np.flatnonzero(~lines.anchors)
+    return Ground(
+        nodes=nodes, stiffness=mass[nodes] * GRAVITY / SINKING, level=-cage.site.water_depth
+    )

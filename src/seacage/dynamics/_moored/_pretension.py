@@ -1,0 +1,35 @@
+"""A cage put together with its bridles under pretension."""
+
+from functools import lru_cache
+
+import numpy as np
+from jaxtyping import Bool
+
+from seacage.cage import Cage
+from seacage.dynamics._equilibrium import equilibria
+from seacage.dynamics._parts import Assembly
+from seacage.dynamics._physics import steady_flow
+
+
+@lru_cache(maxsize=16)
+def assembled(cage: Cage) -> Assembly:
+    """The cage put together, its bridles cut so that each bears the pretension at rest.
+
+    The collar gives to the bridles' pull by some decimetres. Its shape under that pull is found
+    with bridles so soft that they pull equally wherever it comes to lie.
+    """
+    designed, pretension = Assembly.of(cage), cage.bridles.pretension
+    still = steady_flow(designed, np.zeros((1, 2)), law="loland")
+    shape, free = designed.position, free_nodes(cage, designed, hold_collar=False)
+    for _ in range(2):
+        soft = designed.strung(shape, pretension, softness=30.0)
+        shape = equilibria(cage, soft, still, free=free).position[0]
+    return designed.strung(shape, pretension, offset=cage.bridles.length_offset)
+
+
+def free_nodes(cage: Cage, assembly: Assembly, *, hold_collar: bool) -> Bool[np.ndarray, " node"]:
+    """Nodes that may move; the collar's only unless it is held."""
+    free = ~assembly.fixed
+    if hold_collar:
+        free[cage.ring_nodes(0)] = False
+    return free

@@ -1,0 +1,431 @@
+"""A structure of any topology as the solver sees it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from seacage.cage import Section, Structure
+from seacage.conventions import GRAVITY, WATER_DENSITY, InputError
+from seacage.dynamics._parts._assembly import (
+    Assembly,
+    Bars,
+    Bends,
+    Cylinders,
+    Floats,
+    Ground,
+    Panels,
+    Springs,
+    joined_bars,
+)
+
+SINKING = 0.01
+"""How far a line's node sinks into the sea bed under its own weight [m]."""
+
+MOST_STRAIN = 0.1
+"""Of a tie or a line as built: beyond, the start would be an explosion [-]."""
+
+MOST_SOLIDITY = 0.9
+"""Beyond it a net is a wall, and no screen law is right [-]."""
+
+
+def rigged(structure: Structure) -> Assembly:
+    """Put a structure together.
+
+    Pipes float as boxes of their width and volume, centred on their nodes, and follow the
+    surface; ropes count as always under water, and so do nets but a roof at the water line,
+    which counts as always dry. Ties and lines are lumped into their segments' ends. ``bridles``
+    are the first bars of the lines, in the order of ``structure.line_names``. Friction on the
+    sea bed is left out.
+
+    Raises
+    ------
+    InputError
+        A structure whose pipes and buoys cannot carry its rings, nets and ties, one that is
+        built with a tie or line far too short, and one with a node that weighs nothing.
+    """
+    _check_lengths(structure)
+    members = _members(structure)
+    position = structure.design_position
+    wet_nets = [index for index, net in enumerate(structure.net) if not structure.is_dry(net)]
+    panels = _joined_panels([_panels(structure, index) for index in wet_nets])
+    bars = joined_bars(*_net_bars(structure), *(_bars(member) for member in members))
+    lumps = _lumps(structure, members)
+    _check_floats(structure, members)
+    _check_masses(structure, lumps)
+    pieces = np.array([line.segments for line in structure.line], dtype=np.int64)
+    fixed = np.zeros(len(position), dtype=bool)
+    fixed[structure.anchor_nodes] = True
+    return Assembly(
+        cage_nodes=structure.node_count,
+        position=position,
+        weight=lumps.weight,
+        mass=lumps.mass + lumps.added,
+        water_mass=lumps.displaced + lumps.added,
+        fixed=fixed,
+        bars=bars,
+        bridles=len(bars.length) - np.cumsum(pieces[::-1])[::-1],
+        bends=_bends(structure),
+        panels=panels,
+        cylinders=_cylinders(position, members),
+        floats=lumps.floats(),
+        springs=no_springs(),
+        ground=_ground(structure, lumps.mass),
+    )
+
+
+def no_springs() -> Springs:
+    """Nothing held to the ground."""
+    none = np.zeros((0, 3))
+    return Springs(nodes=np.zeros(0, dtype=np.int64), stiffness=none, preload=none, damping=none)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Member:
+    """Bars of one section, and whether they bear a push where their section does not say."""
+
+    section: Section
+    ends: Int[np.ndarray, "bar 2"]
+    length: Float[np.ndarray, " bar"]
+    pushed: bool
+    weighs: bool = True  # a brace's diagonals stand for stiff joints, and weigh nothing
+    is_line: bool = False
+
+
+def _members(structure: Structure) -> list[_Member]:
+    """Rings, ties and lines, in this order."""
+    return [*_rings(structure), *_ties(structure), *_lines(structure)]
+
+
+def _rings(structure: Structure) -> list[_Member]:
+    members = []
+    for index, ring in enumerate(structure.ring):
+        if ring.section:
+            section, nodes = structure.section_of(ring), structure.ring_nodes(index)
+            ends = np.column_stack([nodes, np.roll(nodes, -1)])
+            length = _span(structure, ends)
+            pushed = section.is_pipe
+            members.append(_Member(section=section, ends=ends, length=length, pushed=pushed))
+    return members
+
+
+def _ties(structure: Structure) -> list[_Member]:
+    members = []
+    for index, tie in enumerate(structure.tie):
+        nodes, section = structure.tie_nodes(index), structure.section_of(tie)
+        ends = np.stack([nodes[:, :-1], nodes[:, 1:]], axis=-1).reshape(-1, 2)
+        given = np.full(len(ends), tie.length / tie.segments)
+        length = given if tie.length else _span(structure, ends)
+        pushed = section.is_pipe or tie.kind != "ropes"
+        members.append(_Member(section=section, ends=ends, length=length, pushed=pushed))
+        if tie.kind == "braces":
+            upper, lower = nodes[:, 0], nodes[:, -1]
+            aslant = np.vstack(
+                [
+                    np.column_stack([upper, np.roll(lower, -1)]),
+                    np.column_stack([upper, np.roll(lower, 1)]),
+                ]
+            )
+            span = _span(structure, aslant)
+            members.append(
+                _Member(section=section, ends=aslant, length=span, pushed=True, weighs=False)
+            )
+    return members
+
+
+def _lines(structure: Structure) -> list[_Member]:
+    members = []
+    for index, line in enumerate(structure.line):
+        nodes, section = structure.line_nodes(index), structure.section_of(line)
+        ends = np.column_stack([nodes[:-1], nodes[1:]])
+        given = np.full(len(ends), line.length / line.segments)
+        length = given if line.length else _span(structure, ends)
+        pushed = section.is_pipe
+        members.append(
+            _Member(section=section, ends=ends, length=length, pushed=pushed, is_line=True)
+        )
+    return members
+
+
+def _span(structure: Structure, ends: Int[np.ndarray, "bar 2"]) -> Float[np.ndarray, " bar"]:
+    position = structure.design_position
+    return np.linalg.norm(position[ends[:, 1]] - position[ends[:, 0]], axis=1)
+
+
+def _bars(member: _Member) -> Bars:
+    count = len(member.length)
+    return Bars(
+        ends=member.ends,
+        length=member.length,
+        stiffness=np.full(count, member.section.axial_stiffness),
+        pushed=np.full(count, member.pushed),
+        damping_ratio=np.full(count, member.section.damping_ratio),
+    )
+
+
+def _net_bars(structure: Structure) -> list[Bars]:
+    """Netting lumped into its edges: each stands for the knitted width of net beside it."""
+    several = []
+    for index, net in enumerate(structure.net):
+        twine, nodes = structure.twine_of(net), structure.net_nodes(index)
+        row, chord = structure.knitted(index)
+        down = np.stack([nodes[:-1], nodes[1:]], axis=-1)
+        around = np.stack([nodes, np.roll(nodes, -1, axis=1)], axis=-1)
+        rows, spokes = net.rows, structure.spokes
+        shares = np.full(rows + 1, row)
+        shares[[0, -1]] = row / 2.0
+        levels = slice(0, rows + 1 if net.lower else rows)  # the centre of a disc has no hoop
+        ends = np.concatenate([down.reshape(-1, 2), around[levels].reshape(-1, 2)])
+        width = np.concatenate([(chord[:-1] + chord[1:]) / 2.0, shares[levels]])
+        length = np.concatenate([np.full(rows, row), chord[levels]])
+        several.append(
+            Bars(
+                ends=ends,
+                length=np.repeat(length, spokes),
+                stiffness=twine.stiffness * np.repeat(width, spokes),
+                pushed=np.zeros(len(ends), dtype=bool),
+                damping_ratio=np.full(len(ends), twine.damping_ratio),
+            )
+        )
+    return several
+
+
+def _bends(structure: Structure) -> Bends:
+    nodes: list[np.ndarray] = [np.zeros((0, 3), dtype=np.int64)]
+    stiffness: list[np.ndarray] = [np.zeros(0)]
+    for index, ring in enumerate(structure.ring):
+        bending = structure.section_of(ring).bending_stiffness if ring.section else 0.0
+        if bending > 0.0:
+            around = structure.ring_nodes(index)
+            chord = 2.0 * ring.radius * np.sin(np.pi / structure.spokes)
+            nodes.append(np.column_stack([np.roll(around, 1), around, np.roll(around, -1)]))
+            stiffness.append(np.full(structure.spokes, bending / chord))
+    return Bends(nodes=np.concatenate(nodes), stiffness=np.concatenate(stiffness))
+
+
+# Netting
+
+
+def _panels(structure: Structure, index: int) -> Panels:
+    """A net's panels, with all the twine that was knitted.
+
+    A net knitted wider than its rings hangs in folds: its twines are all there and all meet
+    the water, along the panel's edges, however short these are. Screens see them as solidity.
+    """
+    net, position = structure.net[index], structure.design_position
+    twine, corners = structure.twine_of(net), structure.net_panels(index)
+    row, chord = structure.knitted(index)
+    area = np.repeat((chord[:-1] + chord[1:]) / 2.0 * row, structure.spokes)
+    folds = np.maximum(area / _outlines(corners, position), 1.0)
+    cover = twine.diameter / twine.half_mesh
+    solidity = np.minimum(1.0 - (1.0 - cover) * (1.0 - cover * folds), MOST_SOLIDITY)
+    triangle = corners[:, 2] == corners[:, 3]
+    share = np.where(triangle[:, None], [1 / 3, 1 / 3, 1 / 6, 1 / 6], [1 / 4, 1 / 4, 1 / 4, 1 / 4])
+    centre = np.einsum("pc,pcx->px", share, position[corners])
+    away = np.linalg.norm(centre[:, :2], axis=1, keepdims=True)
+    count = len(corners)
+    return Panels(
+        corners=corners,
+        share=share,
+        solidity=solidity,
+        twine_diameter=np.full(count, twine.diameter),
+        outward=centre[:, :2] / np.maximum(away, 1e-9),
+        half_width=np.full(count, np.pi / structure.spokes),
+        depth=-centre[:, 2],
+        area=area,
+        twine_spacing=np.full(count, twine.half_mesh),
+        diamond=np.full(count, net.twines == "diagonal"),
+    )
+
+
+def _joined_panels(several: list[Panels]) -> Panels:
+    names = Panels.__slots__
+    shapes = {"corners": (0, 4), "share": (0, 4), "outward": (0, 2)}
+    kinds = {"corners": np.int64, "diamond": np.bool_}
+    return Panels(
+        **{
+            name: np.concatenate(
+                [
+                    np.zeros(shapes.get(name, (0,)), dtype=kinds.get(name, np.float64)),
+                    *(getattr(panels, name) for panels in several),
+                ]
+            )
+            for name in names
+        }
+    )
+
+
+def _outlines(
+    corners: Int[np.ndarray, "panel 4"], position: Float[np.ndarray, "node 3"]
+) -> Float[np.ndarray, " panel"]:
+    a, b, c, d = np.moveaxis(position[corners], 1, 0)
+    return np.linalg.norm(np.cross(c - a, d - b), axis=1) / 2.0
+
+
+# Weights and water
+
+
+class _Lumps:
+    """What is lumped into the nodes, as it is added up."""
+
+    def __init__(self, position: Float[np.ndarray, "node 3"]) -> None:
+        self.height = position[:, 2]
+        self.weight, self.mass, self.displaced, self.added, self.volume, self.waterplane = (
+            np.zeros(len(position)) for _ in range(6)
+        )
+
+    def put(self, nodes: np.ndarray, mass: np.ndarray, displaced: np.ndarray, added: float) -> None:
+        """Something always under water: its mass and that of the water it displaces [kg]."""
+        np.add.at(self.mass, nodes, mass)
+        np.add.at(self.displaced, nodes, displaced)
+        np.add.at(self.added, nodes, added * displaced)
+        np.add.at(self.weight, nodes, GRAVITY * (displaced - mass))
+
+    def float(
+        self,
+        nodes: np.ndarray,
+        mass: np.ndarray,
+        displaced: np.ndarray,
+        added: float,
+        box_height: float,
+    ) -> None:
+        """Something that floats, a box centred on its node; the water moves its wet share."""
+        wet = wet_share(self.height[nodes], box_height) * displaced
+        np.add.at(self.mass, nodes, mass)
+        np.add.at(self.displaced, nodes, wet)
+        np.add.at(self.added, nodes, added * wet)
+        np.add.at(self.weight, nodes, -GRAVITY * mass)
+        np.add.at(self.volume, nodes, displaced / WATER_DENSITY)
+        np.add.at(self.waterplane, nodes, displaced / WATER_DENSITY / box_height)
+
+    def floats(self) -> Floats:
+        """One box for each node that anything floats at."""
+        nodes = np.flatnonzero(self.volume)
+        plane = self.waterplane[nodes]
+        height = self.volume[nodes] / plane
+        return Floats(
+            nodes=nodes,
+            stiffness=WATER_DENSITY * GRAVITY * plane,
+            draft=height / 2.0,
+            height=height,
+        )
+
+
+def wet_share(height: Float[np.ndarray, "*n"], box_height: float) -> Float[np.ndarray, "*n"]:
+    """Share of a box under still water, centred at a height [-]."""
+    return np.clip(0.5 - height / box_height, 0.0, 1.0)
+
+
+def _lumps(structure: Structure, members: list[_Member]) -> _Lumps:
+    lumps = _Lumps(structure.design_position)
+    for member in members:
+        section = member.section
+        half = np.repeat(member.length / 2.0, 2) * member.weighs
+        mass, displaced = section.mass * half, section.displaced_mass * half
+        nodes, added = member.ends.ravel(), section.added_mass_coefficient
+        if section.is_pipe and member.weighs:
+            lumps.float(nodes, mass, displaced, added, section.box_height)
+        else:
+            lumps.put(nodes, mass, displaced, added)
+    for index in range(len(structure.net)):
+        _put_net(structure, index, lumps)
+    for node, point in zip(structure.point_nodes, structure.point, strict=True):
+        mass, displaced = np.array([point.mass]), np.array([WATER_DENSITY * point.displaced])
+        if point.displaced > 0.0:
+            lumps.float(
+                np.array([node]), mass, displaced, point.added_mass_coefficient, point.height
+            )
+        else:
+            lumps.put(np.array([node]), mass, displaced, 0.0)
+    return lumps
+
+
+def _put_net(structure: Structure, index: int, lumps: _Lumps) -> None:
+    """A net weighs what was knitted, in folds or not."""
+    net, corners = structure.net[index], structure.net_panels(index)
+    twine = structure.twine_of(net)
+    row, chord = structure.knitted(index)
+    area = np.repeat((chord[:-1] + chord[1:]) / 2.0 * row, structure.spokes)
+    volume = (twine.volume * area)[:, None] / 4.0
+    triangle = corners[:, 2] == corners[:, 3]
+    share = np.where(triangle[:, None], [4 / 3, 4 / 3, 2 / 3, 2 / 3], [1.0, 1.0, 1.0, 1.0])
+    lumps.put(
+        corners.ravel(),
+        (twine.density * volume * share).ravel(),
+        (0.0 if structure.is_dry(net) else WATER_DENSITY) * (volume * share).ravel(),
+        twine.added_mass_coefficient,
+    )
+
+
+def _cylinders(position: Float[np.ndarray, "node 3"], members: list[_Member]) -> Cylinders:
+    """Pipes with the share of their diameter that is wet in still water, and ropes."""
+    ends, drag, skin = [np.zeros((0, 2), dtype=np.int64)], [np.zeros(0)], [np.zeros(0)]
+    for member in members:
+        section = member.section
+        wet = np.full(len(member.ends), float(member.weighs))
+        if section.is_pipe:
+            wet *= wet_share(position[member.ends, 2], section.box_height).mean(axis=1)
+        met = wet > 0.0
+        ends.append(member.ends[met])
+        drag.append(section.drag_coefficient * section.diameter * wet[met])
+        skin.append(section.skin_coefficient * section.diameter * wet[met])
+    return Cylinders(
+        ends=np.concatenate(ends), drag_width=np.concatenate(drag), skin_width=np.concatenate(skin)
+    )
+
+
+def _ground(structure: Structure, mass: Float[np.ndarray, " node"]) -> Ground:
+    """The sea bed under the points and the lines."""
+    inner = [structure.line_nodes(index)[1:-1] for index in range(len(structure.line))]
+    nodes = np.concatenate([structure.point_nodes, *inner])
+    return Ground(
+        nodes=nodes,
+        stiffness=mass[nodes] * GRAVITY / SINKING,
+        level=-structure.site.water_depth,
+    )
+
+
+def _check_lengths(structure: Structure) -> None:
+    """Refuse a tie or a line whose ends lie too far apart for it."""
+    ties = [(tie, structure.tie_nodes(i)) for i, tie in enumerate(structure.tie)]
+    lines = [(line, structure.line_nodes(i)[None]) for i, line in enumerate(structure.line)]
+    for part, nodes in (*ties, *lines):
+        span = float(_span(structure, nodes[:, [0, -1]]).max())
+        if part.length > 0.0 and span > (1.0 + MOST_STRAIN) * part.length:
+            raise InputError(
+                f"Structure {structure.name}: {part.name!r} spans {span:.3g} m as built, but its "
+                f"length_m = {part.length:g}. Move its ends together, or lengthen it."
+            )
+
+
+def _check_masses(structure: Structure, lumps: _Lumps) -> None:
+    """Refuse a node that nothing weighs on: it could not be moved."""
+    weightless = np.flatnonzero(lumps.mass + lumps.added <= 0.0)
+    if len(weightless):
+        place = structure.design_position[weightless[0]].round(3).tolist()
+        raise InputError(
+            f"Structure {structure.name}: node {weightless[0]} at {place} m has no mass. Give "
+            "the ring a pipe or a net, or the point a line."
+        )
+
+
+def _check_floats(structure: Structure, members: list[_Member]) -> None:
+    """Refuse a structure that goes down with all it carries but its mooring."""
+    weight = lift = 0.0
+    for member in members:
+        length = float(np.sum(member.length)) * member.weighs * (not member.is_line)
+        lift += member.section.displaced_mass * length * GRAVITY
+        weight += member.section.mass * length * GRAVITY
+    for index, net in enumerate(structure.net):
+        twine, (row, chord) = structure.twine_of(net), structure.knitted(index)
+        area = structure.spokes * row * float(np.sum(chord[:-1] + chord[1:])) / 2.0
+        weight += twine.density * twine.volume * area * GRAVITY
+        lift += WATER_DENSITY * twine.volume * area * GRAVITY
+    lift += sum(WATER_DENSITY * point.displaced * GRAVITY for point in structure.point)
+    weight += sum(point.mass * GRAVITY for point in structure.point)
+    if weight >= lift:
+        raise InputError(
+            f"Structure {structure.name}: it cannot float. Rings, nets, ties and points weigh "
+            f"{weight / 1e3:.3g} kN and displace at most {lift / 1e3:.3g} kN of water. Check the "
+            "masses and diameters of the sections."
+        )

@@ -1,0 +1,53 @@
+"""The physics, readable: loads, netting laws, wakes and the catenary."""
+
+from seacage.dynamics._physics._catenary import catenary
+from seacage.dynamics._physics._flow import steady_flow
+from seacage.dynamics._physics._loads import (
+    DYNAMIC,
+    SteadyFlow,
+    bar_force,
+    bar_tension,
+    nodal_force,
+    total_net_force,
+)
+from seacage.dynamics._physics._motion import NetLaw, Water, bar_damping, damped_tension
+from seacage.dynamics._physics._screens import (
+    CYLINDER,
+    LAWS,
+    MOVING_LAWS,
+    Law,
+    MovingLaw,
+    Screen,
+    aarsnes,
+    facing,
+    kristiansen_faltinsen,
+    loland,
+)
+from seacage.dynamics._physics._wake import wake_in_sight, wake_share
+
+__all__ = [
+    "CYLINDER",
+    "DYNAMIC",
+    "LAWS",
+    "MOVING_LAWS",
+    "Law",
+    "MovingLaw",
+    "NetLaw",
+    "Screen",
+    "SteadyFlow",
+    "Water",
+    "aarsnes",
+    "bar_damping",
+    "bar_force",
+    "bar_tension",
+    "catenary",
+    "damped_tension",
+    "facing",
+    "kristiansen_faltinsen",
+    "loland",
+    "nodal_force",
+    "steady_flow",
+    "total_net_force",
+    "wake_in_sight",
+    "wake_share",
+]

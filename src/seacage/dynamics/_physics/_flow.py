@@ -1,0 +1,58 @@
+"""From a sea state to the steady flow on each panel: wake, law and mean effect of waves."""
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.dynamics._parts import Assembly
+from seacage.dynamics._physics._loads import DYNAMIC, SteadyFlow
+from seacage.dynamics._physics._screens import Law, Screen
+from seacage.dynamics._physics._wake import downstream, wake_factor
+
+
+def steady_flow(
+    assembly: Assembly,
+    current_velocity: Float[np.ndarray, "case 2"],
+    *,
+    law: Law,
+    wake: bool = True,
+    pipe_drag: bool = True,
+    wave_variance: Float[np.ndarray, "case panel"] | None = None,
+) -> SteadyFlow:
+    """What a uniform current (and, if given, waves) does to each panel.
+
+    Parameters
+    ----------
+    current_velocity
+        East and north [m/s].
+    law
+        The screen law.
+    wake
+        Whether the down-stream half of the net meets slower water.
+    pipe_drag
+        Whether the current drags on collar and sinker tube.
+    wave_variance
+        Of the waves' horizontal velocity at each panel [m2/s2]. Their mean effect on a
+        net that stands still is taken as stochastic linearisation gives it, with
+        |u| raised to sqrt(|u|² + 8σ²/π). A net that follows the water feels less.
+
+    References
+    ----------
+    Borgman (1967) for the linearised drag of a Gaussian sea.
+    """
+    panels = assembly.panels
+    screen = Screen(law=law, solidity=panels.solidity, twine_diameter=panels.twine_diameter)
+    speed = np.linalg.norm(current_velocity, axis=1)
+    unit = current_velocity / np.where(speed > 0.0, speed, 1.0)[:, None]
+    direction = np.column_stack([unit, np.zeros(len(speed))])
+    panel_speed = np.tile(speed[:, None], (1, len(screen.solidity)))
+    if wake:
+        behind = downstream(panels, unit[:, None])
+        panel_speed *= 1.0 - (1.0 - wake_factor(screen, panel_speed)) * behind
+    variance = 0.0 if wave_variance is None else wave_variance
+    felt = np.sqrt(panel_speed**2 + 8.0 / np.pi * variance)
+    return SteadyFlow(
+        direction=direction,
+        pressure=DYNAMIC * felt * panel_speed,
+        pipe_pressure=DYNAMIC * speed**2 * float(pipe_drag),
+        **screen.terms(felt),
+    )

@@ -1,0 +1,199 @@
+"""The physics, readable: every force on every node, for any number of cases at once.
+
+This is the definition. The compiled kernel computes the same numbers, and a property
+test holds the two together.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from seacage.conventions import WATER_DENSITY
+from seacage.dynamics._parts import (
+    Assembly,
+    Bars,
+    Bends,
+    Cylinders,
+    Floats,
+    Panels,
+    Springs,
+)
+
+Nodal = Float[np.ndarray, "case node 3"]
+
+DYNAMIC = 0.5 * WATER_DENSITY
+"""½ρ [kg/m3]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SteadyFlow:
+    """What steady water does to each panel and pipe, ready for the loads.
+
+    A net at rest in a steady current meets each panel with one fixed speed, so the
+    law's dependence on speed is settled once for a case:
+    C_D = max(0, a + b c + h cos3θ) and C_L = l sin2θ (1 + e cos2θ), with c = cosθ.
+
+    Attributes
+    ----------
+    direction
+        Unit vector of the current; zero in still water [-].
+    pressure
+        ½ ρ s |u| on each panel: |u| its current behind the wake, s the same or, with
+        waves, the larger root-mean-square speed [Pa].
+    constant, slope, third
+        a, b and h of each panel's drag [-].
+    lift, lift_second
+        l and e of each panel's lift [-].
+    pipe_pressure
+        ½ ρ |U|² on the pipes; 0 leaves their drag out [Pa].
+    """
+
+    direction: Float[np.ndarray, "case 3"]
+    pressure: Float[np.ndarray, "case panel"]
+    constant: Float[np.ndarray, "case panel"]
+    slope: Float[np.ndarray, "case panel"]
+    third: Float[np.ndarray, "case panel"]
+    lift: Float[np.ndarray, "case panel"]
+    lift_second: Float[np.ndarray, "case panel"]
+    pipe_pressure: Float[np.ndarray, " case"]
+
+    def cases(self, some: Int[np.ndarray, " some"]) -> "SteadyFlow":
+        """The flow of some of the cases."""
+        return SteadyFlow(**{name: getattr(self, name)[some] for name in self.__slots__})
+
+
+def nodal_force(assembly: Assembly, flow: SteadyFlow, position: Nodal) -> Nodal:
+    """All forces on all nodes: zero everywhere is an equilibrium [N]."""
+    force = net_force(assembly.panels, flow, position)
+    force += bar_force(assembly.bars, position)
+    force += bend_force(assembly.bends, position)
+    force += cylinder_force(assembly.cylinders, flow, position)
+    force += float_force(assembly.floats, position)
+    force += spring_force(assembly.springs, assembly.position, position)
+    force[..., 2] += assembly.weight
+    return force
+
+
+def bar_tension(bars: Bars, position: Nodal) -> Float[np.ndarray, "case bar"]:
+    """Tension of linear elastic bars; ropes and twines go slack [N]."""
+    along = position[:, bars.ends[:, 1]] - position[:, bars.ends[:, 0]]
+    strain = np.linalg.norm(along, axis=-1) / bars.length - 1.0
+    tension = bars.stiffness * strain
+    return np.where(bars.pushed, tension, np.maximum(tension, 0.0))
+
+
+def bar_force(bars: Bars, position: Nodal) -> Nodal:
+    """Pull of the bars on their ends [N]."""
+    along = position[:, bars.ends[:, 1]] - position[:, bars.ends[:, 0]]
+    unit = along / np.linalg.norm(along, axis=-1, keepdims=True)
+    pull = bar_tension(bars, position)[..., None] * unit
+    return _gathered(position, bars.ends, np.stack([pull, -pull], axis=2))
+
+
+def bend_force(bends: Bends, position: Nodal) -> Nodal:
+    """Resistance of a pipe to bending, from the turn between its segments [N].
+
+    Energy 2 (EI/l)(1 − c)/(1 + c) with c the cosine of the turn: the squared curvature
+    vector of a discrete elastic rod that is straight when unloaded, free to twist. On a
+    ring it gives the classical in-plane (n²−1)² EI/R⁴ and out-of-plane n²(n²−1) EI/R⁴.
+
+    References
+    ----------
+    Bergou et al. (2008), discrete elastic rods; Love (1927), section 293.
+    """
+    before, middle, after = np.moveaxis(position[:, bends.nodes], 2, 0)
+    first, second = middle - before, after - middle
+    length_1 = np.linalg.norm(first, axis=-1, keepdims=True)
+    length_2 = np.linalg.norm(second, axis=-1, keepdims=True)
+    t1, t2 = first / length_1, second / length_2
+    c = np.sum(t1 * t2, axis=-1, keepdims=True)
+    slope = 4.0 * bends.stiffness[:, None] / (1.0 + c) ** 2  # −dE/dc
+    on_first = slope * (t2 - c * t1) / length_1  # −dE/d(first)
+    on_second = slope * (t1 - c * t2) / length_2
+    shares = np.stack([-on_first, on_first - on_second, on_second], axis=2)
+    return _gathered(position, bends.nodes, shares)
+
+
+def net_force(panels: Panels, flow: SteadyFlow, position: Nodal) -> Nodal:
+    """The water's load on the netting, shared among the corners of each panel [N]."""
+    load = panel_load(panels, flow, position)
+    return _gathered(position, panels.corners, load[:, :, None] * panels.share[..., None])
+
+
+def panel_load(
+    panels: Panels, flow: SteadyFlow, position: Float[np.ndarray, "#case node 3"]
+) -> Float[np.ndarray, "case panel 3"]:
+    """Drag and lift of each panel: ½ρ C_D A|u|u and ½ρ C_L A|u|² along (u×n)×u [N].
+
+    The normal is turned to the flow's side, so that it does not matter which face the
+    water meets.
+    """
+    return screen_load(panels, position, flow.direction[:, None], flow)
+
+
+def screen_load(
+    panels: Panels,
+    position: Float[np.ndarray, "#case node 3"],
+    u: Float[np.ndarray, "case #panel 3"],
+    flow: SteadyFlow,
+) -> Float[np.ndarray, "case panel 3"]:
+    """``panel_load`` with a direction of the flow for each panel."""
+    a, b, c, d = np.moveaxis(position[:, panels.corners], 2, 0)
+    area_vector = np.cross(c - a, d - b) / 2.0
+    area = np.linalg.norm(area_vector, axis=-1)
+    normal = area_vector / np.maximum(area, 1e-12)[..., None]
+    cosine = np.sum(normal * u, axis=-1)
+    normal = normal * np.where(cosine < 0.0, -1.0, 1.0)[..., None]
+    cosine = np.minimum(np.abs(cosine), 1.0)
+    third = cosine * (4.0 * cosine**2 - 3.0)
+    drag = np.maximum(flow.constant + flow.slope * cosine + flow.third * third, 0.0)
+    # (u×n)×u = n − u cosθ has length sinθ, so sin2θ needs no square root
+    lift = flow.lift * 2.0 * cosine * (1.0 + flow.lift_second * (2.0 * cosine**2 - 1.0))
+    across = normal - cosine[..., None] * u
+    return (flow.pressure * area)[..., None] * (drag[..., None] * u + lift[..., None] * across)
+
+
+def cylinder_force(cylinders: Cylinders, flow: SteadyFlow, position: Nodal) -> Nodal:
+    """Cross-flow drag on the pipes [N]; the cross-flow principle, Hoerner (1965)."""
+    along = position[:, cylinders.ends[:, 1]] - position[:, cylinders.ends[:, 0]]
+    length = np.linalg.norm(along, axis=-1, keepdims=True)
+    tangent = along / length
+    u = flow.direction[:, None]
+    across = u - np.sum(u * tangent, axis=-1, keepdims=True) * tangent
+    speed = np.linalg.norm(across, axis=-1, keepdims=True)
+    pressure = flow.pipe_pressure[:, None, None]
+    load = pressure * cylinders.drag_width[:, None] * length * speed * across
+    return _gathered(position, cylinders.ends, np.stack([load, load], axis=2) / 2.0)
+
+
+def float_force(floats: Floats, position: Nodal) -> Nodal:
+    """Buoyancy of the collar: none out of the water, no more than all when drowned [N]."""
+    draft = np.clip(floats.draft - position[:, floats.nodes, 2], 0.0, floats.height)
+    force = np.zeros_like(position)
+    force[:, floats.nodes, 2] = floats.stiffness * draft
+    return force
+
+
+def spring_force(springs: Springs, design: Float[np.ndarray, "node 3"], position: Nodal) -> Nodal:
+    """Pull of the frame corners' springs [N]."""
+    force = np.zeros_like(position)
+    moved = position[:, springs.nodes] - design[springs.nodes]
+    force[:, springs.nodes] = springs.preload - springs.stiffness * moved
+    return force
+
+
+def total_net_force(
+    panels: Panels, flow: SteadyFlow, position: Float[np.ndarray, "#case node 3"]
+) -> Float[np.ndarray, "case 3"]:
+    """The water's load on the whole netting [N]."""
+    return panel_load(panels, flow, position).sum(axis=1)
+
+
+def _gathered(
+    like: Nodal, nodes: Int[np.ndarray, "part end"], shares: Float[np.ndarray, "case part end 3"]
+) -> Nodal:
+    """Sum what each part puts on its nodes."""
+    force = np.zeros_like(like)
+    np.add.at(force, (slice(None), nodes), shares)  # pyright: ignore[reportArgumentType]
+    return force

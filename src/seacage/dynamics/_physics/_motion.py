@@ -1,0 +1,278 @@
+"""The physics of a cage that moves, readable: every force at a position and a velocity.
+
+It adds to ``_loads`` what only motion has: relative flow, damping, inertia, the surface. This
+is the definition; the compiled kernel computes the same numbers, and a property test holds the
+two together.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.conventions import WATER_VISCOSITY, InputError
+from seacage.dynamics._parts import Assembly, Bars, Cylinders, Ground, Panels, Springs
+from seacage.dynamics._physics._loads import (
+    DYNAMIC,
+    Nodal,
+    SteadyFlow,
+    _gathered,
+    bar_tension,
+    bend_force,
+    screen_load,
+    spring_force,
+)
+from seacage.dynamics._physics._screens import MOVING_LAWS, MovingLaw, Screen
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Water:
+    """The water at each node at one instant.
+
+    Attributes
+    ----------
+    velocity, acceleration
+        Of the waves [m/s, m/s2].
+    elevation
+        Of the surface above still water [m].
+    current
+        [m/s].
+    """
+
+    velocity: Nodal
+    acceleration: Nodal
+    elevation: Float[np.ndarray, "case node"]
+    current: Nodal
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NetLaw:
+    """How the netting is loaded.
+
+    Attributes
+    ----------
+    name
+        A screen law, or "morison" for twine by twine.
+    wake
+        Share of the current that each panel meets [-].
+    twine_drag
+        Drag coefficients of a twine across and along the flow [-]; None takes that of a smooth
+        cylinder at its Reynolds number, after Choo and Casarella, and no skin friction.
+    solidity
+        Of each case's netting [-]; None for the assembly's.
+    drag_factor
+        On drag and lift of each case's netting, which soft growth loads less than a net as
+        solid [-]; None for 1. 0 is a hole.
+    """
+
+    name: MovingLaw
+    wake: Float[np.ndarray, "case panel"]
+    twine_drag: tuple[float, float] | None = None
+    solidity: Float[np.ndarray, "case panel"] | None = None
+    drag_factor: Float[np.ndarray, "case panel"] | None = None
+
+    def __post_init__(self) -> None:
+        if self.name not in MOVING_LAWS:
+            known = ", ".join(MOVING_LAWS)
+            raise InputError(f"simulate: no law {self.name!r}; there are: {known}.")
+        drag = np.array(self.twine_drag or (0.0, 0.0))
+        if not (np.isfinite(drag).all() and np.all(drag >= 0.0)):
+            raise InputError(
+                f"simulate: twine_drag = {self.twine_drag} must be two finite numbers of at least "
+                "0, across and along the twine. Pass None for those of a smooth cylinder."
+            )
+        _check_range("solidity", self.solidity, 1.0)
+        _check_range("drag_factor", self.drag_factor, np.inf)
+
+    def netting(
+        self, panels: Panels
+    ) -> tuple[Float[np.ndarray, "*case panel"], Float[np.ndarray, "*case panel"]]:
+        """Solidity [-], and the twine's diameter [m] that alone gives it."""
+        if self.solidity is None:
+            return panels.solidity, panels.twine_diameter
+        # from Sn = 2d/l − (d/l)²
+        return self.solidity, panels.twine_spacing * (1.0 - np.sqrt(1.0 - self.solidity))
+
+    @property
+    def factor(self) -> Float[np.ndarray, "case panel"]:
+        """``drag_factor``, of clean netting too [-]."""
+        return np.ones_like(self.wake) if self.drag_factor is None else self.drag_factor
+
+
+def _check_range(name: str, values: Float[np.ndarray, "case panel"] | None, below: float) -> None:
+    if values is not None and not np.all((values >= 0.0) & (values < below)):
+        worst = values[~((values >= 0.0) & (values < below))][0]
+        raise InputError(
+            f"simulate: a panel's {name} = {worst:g} is outside [0, {below:g}). Give the share of "
+            "its area that twine covers, or what growth does to its drag."
+        )
+
+
+def moving_force(
+    assembly: Assembly, law: NetLaw, water: Water, position: Nodal, velocity: Nodal
+) -> Nodal:
+    """All forces on all nodes but the inertia of their own mass and added mass [N]."""
+    net = moving_net_load(assembly.panels, law, water, position, velocity)
+    force = _gathered(
+        position, assembly.panels.corners, net[:, :, None] * assembly.panels.share[..., None]
+    )
+    force += damped_bar_force(assembly.bars, assembly.mass, position, velocity)
+    force += bend_force(assembly.bends, position)
+    force += moving_cylinder_force(assembly.cylinders, water, position, velocity)
+    force += _surface_force(assembly, water, position)
+    force += spring_force(assembly.springs, assembly.position, position)
+    force += _spring_damping(assembly.springs, velocity)
+    force += _ground_force(assembly.ground, assembly.mass, position, velocity)
+    force += assembly.water_mass[:, None] * water.acceleration
+    force[..., 2] += assembly.weight
+    return force
+
+
+def past_panels(
+    panels: Panels, law: NetLaw, water: Water, velocity: Nodal
+) -> Float[np.ndarray, "case panel 3"]:
+    """The water's velocity past each panel: waves less the net's own, and the wake's current."""
+
+    def mean(nodal: Nodal) -> Float[np.ndarray, "case panel 3"]:
+        return np.einsum("npcx,pc->npx", nodal[:, panels.corners], panels.share)
+
+    return mean(water.velocity - velocity) + law.wake[..., None] * mean(water.current)
+
+
+def moving_net_load(
+    panels: Panels, law: NetLaw, water: Water, position: Nodal, velocity: Nodal
+) -> Float[np.ndarray, "case panel 3"]:
+    """The water's load on each panel [N]."""
+    past = past_panels(panels, law, water, velocity)
+    if law.name == "morison":
+        return twine_load(panels, law, position, past)
+    speed = np.linalg.norm(past, axis=-1)
+    solidity, diameter = law.netting(panels)
+    screen = Screen(law=law.name, solidity=solidity, twine_diameter=diameter)
+    unit = past / np.where(speed > 0.0, speed, 1.0)[..., None]
+    flow = SteadyFlow(
+        direction=unit[:, 0],
+        pressure=DYNAMIC * speed**2,
+        pipe_pressure=np.zeros(len(speed)),
+        **screen.terms(speed),
+    )
+    return law.factor[..., None] * screen_load(panels, position, unit, flow)
+
+
+def twine_load(
+    panels: Panels, law: NetLaw, position: Nodal, past: Float[np.ndarray, "case panel 3"]
+) -> Float[np.ndarray, "case panel 3"]:
+    """Cross-flow drag and skin friction of two families of twines in each panel [N].
+
+    The families run along the panel's edges, or along its diagonals where the mesh hangs as
+    diamonds; their length is that of the panel as it was cut. Twines do not shelter each
+    other, which overdoes the load of a panel along the flow.
+
+    References
+    ----------
+    Morison et al. (1950), drag term; Choo & Casarella (1971) for the coefficient, held below
+    Re = 30.
+    """
+    a, b, c, d = np.moveaxis(position[:, panels.corners], 2, 0)
+    first, second = c - a, d - b
+    along_edges = ~panels.diamond[:, None]
+    families = (first + along_edges * second, second - along_edges * first)
+    length = panels.area / panels.twine_spacing
+    _, diameter = law.netting(panels)
+    weight = law.factor * DYNAMIC * diameter * length
+    load = np.zeros_like(past)
+    for direction in families:
+        square = np.sum(direction**2, axis=-1, keepdims=True)
+        share = np.sum(past * direction, axis=-1, keepdims=True) / np.maximum(square, 1e-12)
+        across = past - share * direction
+        speed = np.linalg.norm(across, axis=-1, keepdims=True)
+        if law.twine_drag is None:
+            reynolds = diameter[..., None] * speed / WATER_VISCOSITY
+            normal = 1.1 + 4.0 / np.sqrt(np.maximum(reynolds, 30.0))
+        else:
+            normal = np.full_like(speed, law.twine_drag[0])
+        rough = 0.0 if law.twine_drag is None else law.twine_drag[1]
+        skin = rough * np.abs(share) * share * np.sqrt(square) * direction
+        load += weight[..., None] * (normal * speed * across + skin)
+    return load
+
+
+def bar_damping(bars: Bars, mass: Float[np.ndarray, " node"]) -> Float[np.ndarray, " bar"]:
+    """Of the rate of stretch: a share of what would be critical for the pair of ends [N s/m]."""
+    i, j = bars.ends.T
+    pair = mass[i] * mass[j] / (mass[i] + mass[j])
+    return 2.0 * bars.damping_ratio * np.sqrt(bars.stiffness / bars.length * pair)
+
+
+def damped_tension(
+    bars: Bars, mass: Float[np.ndarray, " node"], position: Nodal, velocity: Nodal
+) -> Float[np.ndarray, "case bar"]:
+    """Tension with structural damping; a slack bar has none [N]."""
+    i, j = bars.ends.T
+    along = position[:, j] - position[:, i]
+    unit = along / np.linalg.norm(along, axis=-1, keepdims=True)
+    apart = np.sum((velocity[:, j] - velocity[:, i]) * unit, axis=-1)
+    elastic = bar_tension(bars, position)
+    bears = elastic + bar_damping(bars, mass) * apart
+    return np.where(bars.pushed, bears, np.where(elastic > 0.0, np.maximum(bears, 0.0), 0.0))
+
+
+def damped_bar_force(
+    bars: Bars, mass: Float[np.ndarray, " node"], position: Nodal, velocity: Nodal
+) -> Nodal:
+    """Pull of the bars on their ends [N]."""
+    along = position[:, bars.ends[:, 1]] - position[:, bars.ends[:, 0]]
+    unit = along / np.linalg.norm(along, axis=-1, keepdims=True)
+    pull = damped_tension(bars, mass, position, velocity)[..., None] * unit
+    return _gathered(position, bars.ends, np.stack([pull, -pull], axis=2))
+
+
+def moving_cylinder_force(
+    cylinders: Cylinders, water: Water, position: Nodal, velocity: Nodal
+) -> Nodal:
+    """Cross-flow drag and skin friction of pipes and lines in relative flow [N]."""
+    ends = cylinders.ends
+    along = position[:, ends[:, 1]] - position[:, ends[:, 0]]
+    length = np.linalg.norm(along, axis=-1, keepdims=True)
+    tangent = along / length
+    past = (water.velocity + water.current - velocity)[:, ends].mean(axis=2)
+    slide = np.sum(past * tangent, axis=-1, keepdims=True)
+    across = past - slide * tangent
+    speed = np.linalg.norm(across, axis=-1, keepdims=True)
+    load = cylinders.drag_width[:, None] * speed * across
+    load += cylinders.skin_width[:, None] * np.abs(slide) * slide * tangent
+    load *= DYNAMIC * length
+    return _gathered(position, ends, np.stack([load, load], axis=2) / 2.0)
+
+
+def _surface_force(assembly: Assembly, water: Water, position: Nodal) -> Nodal:
+    """Buoyancy of floats by their draft below the moving surface [N]."""
+    floats = assembly.floats
+    height = position[:, floats.nodes, 2] - water.elevation[:, floats.nodes]
+    draft = np.clip(floats.draft - height, 0.0, floats.height)
+    force = np.zeros_like(position)
+    force[:, floats.nodes, 2] = floats.stiffness * draft
+    return force
+
+
+def _spring_damping(springs: Springs, velocity: Nodal) -> Nodal:
+    force = np.zeros_like(velocity)
+    force[:, springs.nodes] = -springs.damping * velocity[:, springs.nodes]
+    return force
+
+
+def _ground_force(
+    ground: Ground, mass: Float[np.ndarray, " node"], position: Nodal, velocity: Nodal
+) -> Nodal:
+    """The sea bed carries what sinks into it and holds it by a tenth of critical damping [N].
+
+    Left out: friction that holds a line at rest.
+    """
+    nodes, stiffness = ground.nodes, ground.stiffness
+    sunk = ground.level - position[:, nodes, 2]
+    damping = 0.2 * np.sqrt(stiffness * mass[nodes])
+    held = -damping[:, None] * velocity[:, nodes]
+    held[..., 2] += stiffness * sunk
+    force = np.zeros_like(position)
+    force[:, nodes] = np.where(sunk[..., None] > 0.0, held, 0.0)
+    return force

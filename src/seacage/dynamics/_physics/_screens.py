@@ -1,0 +1,165 @@
+"""Screen laws: drag and lift of a net panel from its solidity and its angle to the flow."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.conventions import WATER_VISCOSITY, InputError
+
+Law = Literal["aarsnes", "loland", "kristiansen-faltinsen"]
+LAWS: tuple[Law, ...] = ("aarsnes", "loland", "kristiansen-faltinsen")
+
+MovingLaw = Literal["aarsnes", "loland", "kristiansen-faltinsen", "morison"]
+MOVING_LAWS: tuple[MovingLaw, ...] = (*LAWS, "morison")
+"""Laws of a net that moves: "morison" loads it twine by twine."""
+
+CYLINDER = (-78.46675, 254.73873, -327.8864, 223.64577, -87.92234, 20.00769, -2.44894, 0.12479)
+"""Drag coefficient of a smooth cylinder: coefficients of powers of log10 Re, from 0 up.
+
+Goldstein (1965) as fitted by Kristiansen & Faltinsen (2012), for 10^1.5 <= Re <= 10^4.
+"""
+
+REYNOLDS_RANGE = (32.0, 1.0e4)
+
+Values = float | Float[np.ndarray, "*#n"]
+
+
+def aarsnes(solidity: Values, cos_theta: Values) -> tuple[Values, Values]:
+    """Drag and lift coefficients after Aarsnes.
+
+    Parameters
+    ----------
+    solidity
+        Projected twine area over panel area [-].
+    cos_theta
+        Cosine of the angle between the panel's normal and the flow, in [0, 1].
+
+    Returns
+    -------
+    cd, cl
+        On the panel's whole area [-]; lift is along (u × n) × u.
+
+    References
+    ----------
+    Aarsnes, Rudi & Løland (1990).
+    """
+    slope, lift = _aarsnes_terms(solidity)
+    return 0.04 + slope * cos_theta, lift * _sin_twice(cos_theta)
+
+
+def loland(solidity: Values, cos_theta: Values) -> tuple[Values, Values]:
+    """Drag and lift coefficients after Løland; arguments as in ``aarsnes``.
+
+    References
+    ----------
+    Løland (1991).
+    """
+    slope, lift = _loland_terms(solidity)
+    return 0.04 + slope * cos_theta, lift * _sin_twice(cos_theta)
+
+
+def kristiansen_faltinsen(
+    solidity: Values, cos_theta: Values, reynolds: Values
+) -> tuple[Values, Values]:
+    """Drag and lift coefficients after Kristiansen and Faltinsen.
+
+    Parameters
+    ----------
+    solidity, cos_theta
+        As in ``aarsnes``.
+    reynolds
+        Of a twine in the flow between the twines, d|u| / (nu (1 − Sn)); held in
+        ``REYNOLDS_RANGE``, where the cylinder's fit ends.
+
+    Returns
+    -------
+    cd, cl
+        On the panel's whole area [-]; cd is never negative.
+
+    References
+    ----------
+    Kristiansen & Faltinsen (2012), with the first two terms of their Fourier series.
+    """
+    cd0, cl0 = facing(solidity, cylinder_drag(reynolds))
+    c = cos_theta
+    # cos 3θ and sin 4θ without an arc cosine
+    cd = np.maximum(cd0 * (0.9 * c + 0.1 * (4.0 * c**3 - 3.0 * c)), 0.0)
+    cl = cl0 * _sin_twice(c) * (1.0 + 0.2 * (2.0 * c**2 - 1.0))
+    return cd, cl
+
+
+def cylinder_drag(reynolds: Values) -> Values:
+    """Drag coefficient of a smooth cylinder, Reynolds number held in its range [-]."""
+    logarithm = np.log10(np.clip(reynolds, *REYNOLDS_RANGE))
+    return np.polynomial.polynomial.polyval(logarithm, np.array(CYLINDER))
+
+
+def facing(solidity: Values, cylinder: Values) -> tuple[Values, Values]:
+    """Kristiansen and Faltinsen's C_D0 (facing the flow) and C_L0 for a twine's drag [-]."""
+    cd0 = cylinder * solidity * (2.0 - solidity) / (2.0 * (1.0 - solidity) ** 2)
+    cn45 = cylinder * solidity / (2.0 * (1.0 - solidity) ** 2)
+    return cd0, (0.5 * cd0 - np.pi * cn45 / (8.0 + cn45)) / np.sqrt(2.0)
+
+
+def _aarsnes_terms(solidity: Values) -> tuple[Values, Values]:
+    s = solidity
+    return (
+        -0.04 + s - 1.24 * s**2 + 13.7 * s**3,
+        0.57 * s - 3.54 * s**2 + 10.1 * s**3,
+    )
+
+
+def _loland_terms(solidity: Values) -> tuple[Values, Values]:
+    s = solidity
+    return (
+        -0.04 + 0.33 * s + 6.54 * s**2 - 4.88 * s**3,
+        -0.05 * s + 2.3 * s**2 - 1.76 * s**3,
+    )
+
+
+def _sin_twice(cos_theta: Values) -> Values:
+    return 2.0 * cos_theta * np.sqrt(np.maximum(1.0 - cos_theta**2, 0.0))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Screen:
+    """A screen law put to work on the panels of a net.
+
+    Every law has the form C_D = max(0, a + b cosθ + h cos3θ), C_L = l sin2θ (1 + e cos2θ).
+    The solidity fixes its numbers, and with Kristiansen and Faltinsen the speed too.
+
+    Attributes
+    ----------
+    law
+        Which of ``LAWS``.
+    solidity
+        Of each panel [-].
+    twine_diameter
+        Of each panel, grown [m].
+    """
+
+    law: Law
+    solidity: Float[np.ndarray, "*case panel"]
+    twine_diameter: Float[np.ndarray, "*case panel"]
+
+    def __post_init__(self) -> None:
+        if self.law not in LAWS:
+            raise InputError(f"settle: no law {self.law!r}; there are: {', '.join(LAWS)}.")
+
+    def terms(
+        self, speed: Float[np.ndarray, "case panel"]
+    ) -> dict[str, Float[np.ndarray, "case panel"]]:
+        """The law's a, b, h, l and e at known speeds [m/s], as ``SteadyFlow`` names them [-]."""
+        if self.law == "kristiansen-faltinsen":
+            twine_reynolds = self.twine_diameter / (WATER_VISCOSITY * (1.0 - self.solidity))
+            cd0, cl0 = facing(self.solidity, cylinder_drag(twine_reynolds * speed))
+            terms = (0.0, 0.9 * cd0, 0.1 * cd0, cl0, 0.2)
+        else:
+            fixed = _aarsnes_terms if self.law == "aarsnes" else _loland_terms
+            slope, lift = fixed(self.solidity)
+            terms = (0.04, slope, 0.0, lift, 0.0)
+        names = ("constant", "slope", "third", "lift", "lift_second")
+        like = np.ones_like(speed)
+        return {name: term * like for name, term in zip(names, terms, strict=True)}

@@ -1,0 +1,218 @@
+"""A cage followed through hours of changing weather, several stretches of time side by side."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from seacage.cage import Cage
+from seacage.conventions import InputError, Progress
+from seacage.dynamics._kernel import REFRESH, simulation_lanes
+from seacage.dynamics._moored import Damage
+from seacage.dynamics._physics import MovingLaw
+from seacage.dynamics._time._segments import Build, Course, Passage
+from seacage.dynamics._time._weather import AbstractWeather
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Followed:
+    """A cage along some stretches of time.
+
+    Attributes
+    ----------
+    time
+        Of the samples [s].
+    watched_position
+        Of the nodes that were watched [m].
+    bridle_tension
+        [N].
+    shape
+        Mean positions over each ``shape_every`` [m].
+    lost_at
+        When a stretch left the finite numbers, NaN where all is well [s].
+    """
+
+    time: Float[np.ndarray, "stretch sample"]
+    watched_position: Float[np.ndarray, "stretch sample watched 3"]
+    bridle_tension: Float[np.ndarray, "stretch sample bridle"]
+    shape: Float[np.ndarray, "stretch mean node 3"]
+    lost_at: Float[np.ndarray, " stretch"]
+
+
+def follow(
+    cage: Cage,
+    weathers: Sequence[AbstractWeather],
+    starts: Sequence[float],
+    *,
+    duration: float,
+    every: float = 2.0,
+    spin_up: float = 300.0,
+    time_step: float = 0.001,
+    law: MovingLaw = "loland",
+    stiffening: tuple[float, float] = (0.01, 0.5),
+    watched: Sequence[int] = (),
+    damaged: tuple[Damage, ...] = (),
+    breaking: tuple[Damage, ...] = (),
+    refined: int = 1,
+    shape_nodes: Sequence[int] | None = None,
+    shape_every: float = 600.0,
+    progress: Progress | None = None,
+) -> Followed:
+    """March a cage through changing weather.
+
+    As ``simulate``, with more of what a real cage has: current and growth that change as time
+    goes on, a wake that each panel casts on what lies behind it along the current where the net
+    now is, a sinker tube on ropes of its own, ropes that stiffen, frame, buoys and anchor lines.
+    It starts from an equilibrium near by; nothing counts before ``spin_up``. A stretch's
+    numbers do not depend on those beside it.
+
+    Parameters
+    ----------
+    weathers, starts
+        Of each stretch: what it meets, and from when it counts [s]; at most as many as
+        ``simulation_lanes()``.
+    duration
+        That counts, of all stretches [s].
+    every
+        Between samples; the current is taken for the middle of each such time [s].
+    spin_up
+        Simulated before, in the weather before [s].
+    time_step
+        At most [s]. Light nodes are lent mass where the step needs it.
+    law
+        Of the netting. Twine by twine ("morison"), the facing half meets what momentum leaves
+        of the current.
+    stiffening
+        As for ropes in ``detailed``: a strain, and the stiffness that comes then over the first.
+    watched
+        Nodes whose positions are sampled.
+    damaged, breaking
+        What is broken from the beginning, and what breaks when counting begins.
+    refined
+        Panels of this cage along the side of one that ``Damage`` counts in.
+    shape_nodes
+        Nodes whose means are kept; None for all.
+    progress
+        Called as ("follow", done, total), in simulated seconds of all stretches.
+
+    Raises
+    ------
+    InputError
+        Too many stretches or none, times that are no whole number of steps, damage to what
+        the cage has not.
+    """
+    course = _course(duration, every, spin_up, shape_every, time_step)
+    _check(weathers, starts)
+    build = Build(cage=cage, law=law, stiffening=stiffening, refined=refined)
+    passage = Passage(build, weathers, np.array(starts, dtype=np.float64), course, damaged)
+    seen = _Seen(passage, course, watched, shape_nodes)
+    for step in range(-course.spin_up, course.samples):
+        if step == 0 and breaking:
+            passage.breaks(damaged + breaking)
+        passage.meets(step)
+        if step >= 0:
+            seen.takes(step)
+        passage.goes()
+        if step >= 0:
+            seen.adds(step)
+        if progress is not None:
+            done = (step + 1 + course.spin_up) * every * len(starts)
+            progress("follow", round(done), round((spin_up + duration) * len(starts)))
+    return seen.followed()
+
+
+class _Seen:
+    """What has been seen of a passage so far."""
+
+    def __init__(
+        self,
+        passage: Passage,
+        course: Course,
+        watched: Sequence[int],
+        shape_nodes: Sequence[int] | None,
+    ) -> None:
+        cage, stretches = passage.cage, len(passage.starts)
+        self._passage, self._course = passage, course
+        self._watched = _nodes(cage, watched)
+        self._shaped = _nodes(cage, range(cage.node_count) if shape_nodes is None else shape_nodes)
+        self._place = np.empty((stretches, course.samples, len(self._watched), 3))
+        self._tension = np.empty((stretches, course.samples, cage.bridle_count))
+        self._shape: list[Float[np.ndarray, "stretch node 3"]] = []
+        self._sum = passage.displaced(self._shaped)
+
+    def takes(self, step: int) -> None:
+        """One sample."""
+        self._place[:, step] = self._passage.position(self._watched)
+        self._tension[:, step] = self._passage.bridle_tension
+
+    def adds(self, step: int) -> None:
+        """One mean, where its time is over."""
+        if (step + 1) % self._course.shape_samples:
+            return
+        now = self._passage.displaced(self._shaped)
+        count = self._course.shape_samples * self._course.refreshes
+        self._shape.append(self._passage.place[self._shaped] + (now - self._sum) / count)
+        self._sum = now
+
+    def followed(self) -> Followed:
+        """All of it."""
+        starts, course = self._passage.starts, self._course
+        return Followed(
+            time=starts[:, None] + course.every * np.arange(course.samples),
+            watched_position=self._place,
+            bridle_tension=self._tension,
+            shape=np.stack(self._shape, axis=1),
+            lost_at=starts - course.spin_up * course.every + self._passage.lost_at,
+        )
+
+
+def _nodes(cage: Cage, asked: Sequence[int]) -> Int[np.ndarray, " kept"]:
+    nodes = np.array(asked, dtype=np.int64)
+    if np.any((nodes < 0) | (nodes >= cage.node_count)):
+        raise InputError(
+            f"follow: a node of {asked} is none of cage {cage.name}, whose nodes are 0 … "
+            f"{cage.node_count - 1}."
+        )
+    return nodes
+
+
+def _check(weathers: Sequence[AbstractWeather], starts: Sequence[float]) -> None:
+    lanes = simulation_lanes()
+    if not (1 <= len(starts) == len(weathers) <= lanes):
+        raise InputError(
+            f"follow: {len(weathers)} weathers and {len(starts)} starts. Give one of each for "
+            f"every stretch, at least one and at most {lanes}."
+        )
+    if len({weather.level_depth for weather in weathers}) > 1:
+        raise InputError("follow: the weathers have currents at other depths. Give equal depths.")
+
+
+def _course(
+    duration: float, every: float, spin_up: float, shape_every: float, time_step: float
+) -> Course:
+    refreshes = _times(every, REFRESH, "every")
+    shape_samples = _times(shape_every, every, "shape_every")
+    samples = _times(duration, shape_every, "duration") * shape_samples
+    each = math.ceil(REFRESH / time_step - 1e-9) if time_step > 0.0 else 0
+    if each < 1:
+        raise InputError(f"follow: time_step = {time_step:g} s is no step. Give 0.001 s or less.")
+    return Course(
+        every=every,
+        refreshes=refreshes,
+        spin_up=_times(spin_up, every, "spin_up", least=0),
+        samples=samples,
+        shape_samples=shape_samples,
+        steps=each,
+    )
+
+
+def _times(whole: float, part: float, name: str, *, least: int = 1) -> int:
+    """How often one time fits in another, to the last bit of a step."""
+    count = round(whole / part) if math.isfinite(whole) else -1
+    if count < least or not math.isclose(count * part, whole, rel_tol=1e-9, abs_tol=1e-9):
+        raise InputError(
+            f"follow: {name} = {whole:g} s is no whole number of {part:g} s. Give a multiple."
+        )
+    return count

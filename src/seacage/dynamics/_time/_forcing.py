@@ -1,0 +1,103 @@
+"""What drives a simulation: the waves and currents of each case, checked."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.conventions import InputError
+from seacage.dynamics._kernel import Ocean
+from seacage.dynamics._parts import Assembly
+from seacage.dynamics._physics import MovingLaw, wake_share
+from seacage.ocean import CurrentProfile, SeaState, Waves, sample_waves
+
+MOST_COMPONENTS = 1000
+"""Of the waves of a case: the kernel keeps their phases on a thread's stack."""
+
+
+def drawn_waves(
+    seas: list[SeaState],
+    given: Waves | Sequence[Waves] | None,
+    seed: int | Sequence[int],
+    depth: float,
+) -> list[Waves]:
+    """One realisation for each case."""
+    if given is not None:
+        waves = [given] * len(seas) if isinstance(given, Waves) else list(given)
+        if len(waves) != len(seas):
+            raise InputError(
+                f"simulate: {len(waves)} waves for {len(seas)} seas. Give one for each, or one."
+            )
+        return _checked_waves(waves, depth)
+    if isinstance(seed, (int, np.integer)):
+        seeds = [int(seed) + i for i in range(len(seas))]
+    else:
+        seeds = list(seed)
+    if len(seeds) != len(seas):
+        raise InputError(
+            f"simulate: {len(seeds)} seeds for {len(seas)} seas. Give one for each, or one number."
+        )
+    if min(seeds) < 0:
+        raise InputError(f"simulate: seed = {min(seeds)} is negative. Give 0, 1, 2, …")
+    return [sample_waves(s, seed=own, depth=depth) for s, own in zip(seas, seeds, strict=True)]
+
+
+def _checked_waves(waves: list[Waves], depth: float) -> list[Waves]:
+    """Those that the kernel can march through."""
+    for case, one in enumerate(waves):
+        numbers = {name: getattr(one, name) for name in Waves.__slots__ if name != "depth"}
+        for name, values in numbers.items():
+            if not np.isfinite(values).all():
+                worst = values[~np.isfinite(values)][0]
+                raise InputError(
+                    f"simulate: the waves of case {case} have {name} = {worst:g}. Leave out "
+                    "components that are not finite."
+                )
+        if not math.isclose(one.depth, depth, rel_tol=1e-6):
+            raise InputError(
+                f"simulate: the waves of case {case} run in water of {one.depth:g} m, but the "
+                f"site is {depth:g} m deep. Draw them with depth={depth:g}."
+            )
+        if np.abs(one.amplitude).sum() >= depth:
+            raise InputError(
+                f"simulate: the waves of case {case} can add up to "
+                f"{np.abs(one.amplitude).sum():.3g} m, and their troughs would bare the bottom at "
+                f"{depth:g} m. Give amplitudes in m that are smaller."
+            )
+        if len(one.amplitude) > MOST_COMPONENTS:
+            raise InputError(
+                f"simulate: the waves of case {case} have {len(one.amplitude)} components, of "
+                f"which the kernel takes {MOST_COMPONENTS}. Draw fewer."
+            )
+    return waves
+
+
+def ocean_of(
+    seas: list[SeaState], waves: list[Waves], profile: CurrentProfile | None, depth: float
+) -> Ocean:
+    surface = np.array([sea.current_velocity for sea in seas])
+    if profile is None:
+        return Ocean(waves=waves, current=surface[:, None], level_z=np.zeros(1), depth=depth)
+    return Ocean(
+        waves=waves,
+        current=profile.velocity(surface),
+        level_z=-np.array(profile.depth),
+        depth=depth,
+    )
+
+
+def wakes(
+    assembly: Assembly, law: MovingLaw, ocean: Ocean, *, wake: bool
+) -> Float[np.ndarray, "case panel"]:
+    """By the current at each panel's depth in the design shape."""
+    depth = assembly.panels.depth
+    if not wake:
+        return np.ones((len(ocean.current), len(depth)))
+    at_panels = np.stack(
+        [
+            np.column_stack([np.interp(depth, -ocean.level_z, case[:, axis]) for axis in (0, 1)])
+            for case in ocean.current
+        ]
+    )
+    return wake_share(assembly, law, at_panels)

@@ -1,0 +1,231 @@
+"""Some stretches of time on their way, and what they meet."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from seacage.cage import Cage
+from seacage.conventions import compass
+from seacage.dynamics._kernel import REFRESH, March, Ocean, Steps
+from seacage.dynamics._moored import Damage, broken, detailed, steadied
+from seacage.dynamics._parts import Assembly
+from seacage.dynamics._physics import MovingLaw, NetLaw, wake_in_sight
+from seacage.dynamics._settle import rest_shape, settle
+from seacage.dynamics._time._weather import AbstractWeather
+from seacage.ocean import MAX_CURRENT_SPEED, SeaState
+
+HOLD = 8
+"""Time steps through which the water's load is held."""
+
+RAMP = 60.0
+"""Over which the waves rise when a stretch begins [s]."""
+
+WAVES_EVERY = 60.0
+"""Between two looks at how the sea state has changed [s]."""
+
+WAKE_EVERY = 30.0
+"""Between two looks at what shelters what, and at the growth [s]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Course:
+    """How a stretch is cut.
+
+    Attributes
+    ----------
+    every
+        Between samples [s].
+    refreshes
+        Looks at the water between samples.
+    spin_up, samples
+        Samples' times before counting, and counted.
+    shape_samples
+        Of a mean of the shape.
+    steps
+        Of time between two looks at the water.
+    """
+
+    every: float
+    refreshes: int
+    spin_up: int
+    samples: int
+    shape_samples: int
+    steps: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Build:
+    """The cage as it is followed: its law, how its ropes stiffen, how fine its mesh is."""
+
+    cage: Cage
+    law: MovingLaw
+    stiffening: tuple[float, float]
+    refined: int
+
+    def assembly(
+        self, damages: tuple[Damage, ...], time_step: float
+    ) -> tuple[Assembly, Bool[np.ndarray, " panel"]]:
+        """The cage after some damage, steady at a time step, and the panels still there."""
+        # steadied before anything breaks: masses must not change on the way
+        whole, _ = steadied(detailed(self.cage, stiffening=self.stiffening), time_step)
+        return broken(self.cage, whole, damages, refined=self.refined)
+
+
+class Passage:
+    """Stretches side by side, each in its own weather; ``goes`` moves them all by one sample."""
+
+    def __init__(
+        self,
+        build: Build,
+        weathers: Sequence[AbstractWeather],
+        starts: Float[np.ndarray, " stretch"],
+        course: Course,
+        damaged: tuple[Damage, ...],
+    ) -> None:
+        self.cage, self.starts = build.cage, starts
+        self._build, self._weathers, self._course = build, weathers, course
+        self._time_step = REFRESH / course.steps
+        assembly, self._panels = build.assembly(damaged, self._time_step)
+        self._assembly = assembly
+        begun = starts - course.spin_up * course.every
+        current = self._current(begun)
+        start = _start(build.cage, assembly, current.mean(axis=1))
+        self._solidity, self._drag_factor = self._netting(begun)
+        self._wake = self._in_sight(start[:, : build.cage.node_count], current.mean(axis=1))
+        self.march = March(
+            assembly,
+            self._law(),
+            Ocean(
+                waves=[w.waves(t) for w, t in zip(weathers, begun, strict=True)],
+                current=current,
+                level_z=-np.array(weathers[0].level_depth),
+                depth=build.cage.site.water_depth,
+            ),
+            _steps(course, self._time_step),
+            start,
+        )
+
+    def breaks(self, damages: tuple[Damage, ...]) -> None:
+        """From now on these damages are done."""
+        self._assembly, self._panels = self._build.assembly(damages, self._time_step)
+        self.march.rebuild(self._assembly)
+
+    def meets(self, step: int) -> None:
+        """The weather of a sample's time; what changes slowly is looked at now and then."""
+        now = self.starts + step * self._course.every
+        current = self._current(now + self._course.every / 2.0)
+        self.march.set_current(current)
+        since = (step + self._course.spin_up) * self._course.every
+        if _due(since, WAVES_EVERY, self._course.every):
+            self.march.set_waves([w.waves(t) for w, t in zip(self._weathers, now, strict=True)])
+        if _due(since, WAKE_EVERY, self._course.every):
+            self._solidity, self._drag_factor = self._netting(now)
+            self._relax_wake(current.mean(axis=1))
+            self.march.set_net(self._law())
+
+    def goes(self) -> None:
+        """To the next sample's time."""
+        self.march.go(self._course.refreshes)
+
+    def position(self, nodes: Int[np.ndarray, " n"]) -> Float[np.ndarray, "stretch n 3"]:
+        """Where some nodes are [m]."""
+        return self.march.position_of(nodes)
+
+    @property
+    def bridle_tension(self) -> Float[np.ndarray, "stretch bridle"]:
+        """Of each bridle, its two ropes together [N]."""
+        both = self.march.tension
+        return both.reshape(len(both), 2, -1).sum(axis=1)
+
+    @property
+    def place(self) -> Float[np.ndarray, "node 3"]:
+        """Design positions, from which ``displaced`` counts [m]."""
+        return self._assembly.position
+
+    def displaced(self, nodes: Int[np.ndarray, " n"]) -> Float[np.ndarray, "stretch n 3"]:
+        """Sum of displacements over all counted looks at the water [m]."""
+        return self.march.node_sum(nodes)
+
+    @property
+    def lost_at(self) -> Float[np.ndarray, " stretch"]:
+        """Since the beginning; NaN where all is well [s]."""
+        return self.march.lost_at
+
+    def _current(self, at: Float[np.ndarray, " stretch"]) -> Float[np.ndarray, "stretch level 2"]:
+        return np.array([w.current(t) for w, t in zip(self._weathers, at, strict=True)])
+
+    def _netting(
+        self, at: Float[np.ndarray, " stretch"]
+    ) -> tuple[Float[np.ndarray, "stretch panel"], Float[np.ndarray, "stretch panel"]]:
+        """Solidity, and drag factor: that of what grew there, and none where netting is gone."""
+        panels = self._assembly.panels
+        grown = [w.netting(t, panels.depth) for w, t in zip(self._weathers, at, strict=True)]
+        added, factor = (np.array(each) for each in zip(*grown, strict=True))
+        return panels.solidity + added, factor * self._panels
+
+    def _law(self) -> NetLaw:
+        return NetLaw(
+            name=self._build.law,
+            wake=self._wake,
+            solidity=self._solidity,
+            drag_factor=self._drag_factor,
+        )
+
+    def _in_sight(
+        self,
+        net: Float[np.ndarray, "stretch node 3"],
+        current: Float[np.ndarray, "stretch 2"],
+    ) -> Float[np.ndarray, "stretch panel"]:
+        return wake_in_sight(
+            self._assembly.panels,
+            net,
+            current,
+            solidity=self._solidity,
+            drag_factor=self._drag_factor,
+            own_too=self._build.law == "morison",
+        )
+
+    def _relax_wake(self, current: Float[np.ndarray, "stretch 2"]) -> None:
+        """A wake follows what casts it as fast as the water crosses the cage."""
+        net = self.march.position[:, : self.cage.node_count]
+        across = 2.0 * self.cage.collar.radius
+        share = np.minimum(WAKE_EVERY * np.linalg.norm(current, axis=1) / across, 1.0)
+        self._wake = self._wake + share[:, None] * (self._in_sight(net, current) - self._wake)
+
+
+def _due(since: float, every: float, step: float) -> bool:
+    """Whether a look that comes at regular times comes in this step."""
+    return since % every < step
+
+
+def _steps(course: Course, time_step: float) -> Steps:
+    return Steps(
+        time_step=time_step,
+        each=course.steps,
+        hold=HOLD,
+        ramp=RAMP,
+        spin_up=course.spin_up * course.refreshes,
+        counted=course.samples * course.refreshes,
+        sample_every=0,
+    )
+
+
+def _start(
+    cage: Cage, assembly: Assembly, current: Float[np.ndarray, "stretch 2"]
+) -> Float[np.ndarray, "stretch node 3"]:
+    """The bare cage's equilibria on springs, and the tube below its ring: near enough to begin."""
+    speed = np.minimum(np.linalg.norm(current, axis=1), MAX_CURRENT_SPEED)
+    seas = [
+        SeaState(current_speed=float(each), current_to=float(to))
+        for each, to in zip(speed, compass(current), strict=True)
+    ]
+    settled = settle(cage, seas, law="loland", starts=1).node_position
+    known = np.isfinite(settled).all(axis=(1, 2), keepdims=True)
+    net = np.where(known, settled, rest_shape(cage))
+    start = np.repeat(assembly.position[None], len(seas), axis=0)
+    start[:, : cage.node_count] = net
+    ring = cage.ring_nodes(cage.tube_ring)
+    start[:, -len(ring) :] = net[:, ring] - np.array([0.0, 0.0, cage.sinker_tube.hung_below])
+    return start

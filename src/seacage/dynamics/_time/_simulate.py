@@ -1,0 +1,323 @@
+"""A cage in waves and current, in time, many cases at once."""
+
+import math
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from threading import Lock
+from typing import Literal
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from seacage.cage import Cage, Structure
+from seacage.conventions import InputError, Progress
+from seacage.dynamics._kernel import REFRESH, March, Steps, simulation_lanes
+from seacage.dynamics._moored import anchored, assembled, steadied
+from seacage.dynamics._parts import Assembly, rigged
+from seacage.dynamics._physics import MOVING_LAWS, MovingLaw, NetLaw
+from seacage.dynamics._settle import rest_shape, settle
+from seacage.dynamics._time._forcing import drawn_waves, ocean_of, wakes
+from seacage.dynamics._time._history import History
+from seacage.dynamics._time._reduction import Reduction, stacked
+from seacage.ocean import CurrentProfile, SeaState, Waves
+
+Mooring = Literal["springs", "catenary"]
+
+HOLD = 4
+"""Time steps through which the water's load is held."""
+
+CHUNK = 100
+"""Refreshes between two reports of progress."""
+
+MOST_ROOM = 16.0
+"""For the samples of the cases that travel together [GB]."""
+
+STATISTICS_EVERY = 1.0
+"""Between samples for quantiles and moments where no series is asked for [s]."""
+
+
+def simulate(
+    cage: Cage | Structure,
+    sea: SeaState | Sequence[SeaState],
+    *,
+    duration: float,
+    seed: int | Sequence[int] = 0,
+    law: MovingLaw = "kristiansen-faltinsen",
+    twine_drag: tuple[float, float] | None = None,
+    mooring: Mooring = "springs",
+    current_profile: CurrentProfile | None = None,
+    waves: Waves | Sequence[Waves] | None = None,
+    wake: bool = True,
+    hold_collar: bool = False,
+    collar_drag: bool = True,
+    ramp: float = 60.0,
+    spin_up: float = 300.0,
+    time_step: float = 0.002,
+    sample_every: float | None = 0.5,
+    series_nodes: Sequence[int] | None = None,
+    quantile_levels: Sequence[float] = (0.05, 0.5, 0.95),
+    second_moment: bool = False,
+    workers: int = 1,
+    progress: Progress | None = None,
+) -> History:
+    """The moored cage in each sea, in time.
+
+    Net loads by a screen law in relative flow or twine by twine, with the wake of the current on
+    the down-stream half; linear irregular waves, stretched to the moving surface; inertia with
+    added mass; damped, tension-only netting; elastic collar afloat, sinker tube on the
+    cylinder's edge, bridles on elastic frame corners or on a frame with buoys and anchor lines.
+    It starts from the equilibrium in the current; the waves rise over ``ramp``, and nothing
+    counts before ``spin_up``. Left out: waves made by the collar, second-order waves, the
+    netting's shelter from waves, and that netting above the surface is dry: it meets the water
+    at the surface. A case's numbers do not depend on the cases beside it nor on ``workers``.
+
+    Parameters
+    ----------
+    cage
+        A ``Structure`` starts as it was designed, in still water: give it a longer spin-up.
+        Its "bridles" are its lines, its displacement is from the design.
+    sea
+        One sea state, or several: a leading case axis.
+    duration
+        That counts, after the spin-up [s].
+    seed
+        Of the waves: one for each case, or the first case's, from which the others count up.
+    law
+        "aarsnes", "loland", "kristiansen-faltinsen", or "morison": twine by twine.
+    twine_drag
+        With "morison": drag coefficients of a twine across and along the flow [-]. None takes
+        a smooth cylinder's by its Reynolds number, and no skin friction.
+    mooring
+        Of a ``Cage``, for a ``Structure`` has its own: "springs" under the frame corners, or
+        "catenary": frame, buoys and anchor lines.
+    current_profile
+        How the current changes with depth; uniform without.
+    waves
+        Instead of drawing them from the sea's spectrum: one for all cases or one for each.
+    wake
+        Whether the down-stream half of the net meets slower water.
+    hold_collar
+        Keep the collar in its place, as in a tank.
+    collar_drag
+        Whether collar and sinker tube meet drag.
+    ramp
+        Over which the waves rise [s].
+    spin_up
+        Simulated before anything counts, the ramp included [s].
+    time_step
+        At most; a whole number of steps makes 0.1 s, in which the water's motion runs straight
+        [s]. Light nodes are lent mass where the step needs it.
+    sample_every
+        Of the series, in whole tenths of a second [s]; None for no series.
+    series_nodes
+        Nodes whose series are kept; None for all.
+    quantile_levels
+        Of positions and tensions; estimated from the samples, or without a series from one
+        sample a second.
+    second_moment
+        Whether to form the second moment of all coordinates. Its last bits depend on the
+        number of threads that products of matrices run on.
+    workers
+        Threads to share the cases among.
+    progress
+        Called as ("simulate", done, total), in simulated seconds of all cases.
+
+    Raises
+    ------
+    InputError
+        No sea at all, times that make no sense, an unknown law or mooring, a time step too
+        long for the stiffest line, waves that are not finite, too high or of water of another
+        depth, drag of twines for a law without, or a cage that cannot float or is deeper than
+        its site.
+    """
+    seas = [sea] if isinstance(sea, SeaState) else list(sea)
+    _check(seas, law, twine_drag, workers)
+    steps = _steps(duration, ramp, spin_up, time_step, sample_every)
+    assembly = _prepared(cage, mooring, hold_collar=hold_collar, collar_drag=collar_drag)
+    assembly, _ = steadied(assembly, steps.time_step)
+    _check_room(steps, assembly)
+    depth = cage.site.water_depth
+    ocean = ocean_of(seas, drawn_waves(seas, waves, seed, depth), current_profile, depth)
+    lanes = simulation_lanes()
+    blocks = [slice(i, min(i + lanes, len(seas))) for i in range(0, len(seas), lanes)]
+    report = _Report(progress, (steps.spin_up + steps.counted) * len(seas))
+    reduction = Reduction(
+        cage=cage,
+        kept=_kept_nodes(cage, series_nodes),
+        series=sample_every is not None,
+        levels=_levels(quantile_levels),
+        second_moment=second_moment,
+        rest=_rest(cage, hold_collar=hold_collar),
+    )
+
+    def run(block: slice) -> list[History]:
+        some = replace(ocean, waves=ocean.waves[block], current=ocean.current[block])
+        net = NetLaw(name=law, wake=wakes(assembly, law, some, wake=wake), twine_drag=twine_drag)
+        start = _start(cage, assembly, seas[block], law, wake=wake, hold_collar=hold_collar)
+        march = March(assembly, net, some, steps, start)
+        whole = steps.spin_up + steps.counted
+        for first in range(0, whole, CHUNK):
+            taken = min(CHUNK, whole - first)
+            march.go(taken)
+            report(taken * march.cases)
+        return reduction.histories(assembly, march)
+
+    with ThreadPoolExecutor(workers) as pool:
+        cases = [case for block in pool.map(run, blocks) for case in block]
+    return cases[0] if isinstance(sea, SeaState) else stacked(cases)
+
+
+def _check(
+    seas: list[SeaState],
+    law: MovingLaw,
+    twine_drag: tuple[float, float] | None,
+    workers: int,
+) -> None:
+    if not seas:
+        raise InputError("simulate: no sea state given. Pass one or more.")
+    if workers < 1:
+        raise InputError(f"simulate: workers = {workers} threads do no work. Give 1 or more.")
+    if law not in MOVING_LAWS:
+        raise InputError(f"simulate: no law {law!r}; there are: {', '.join(MOVING_LAWS)}.")
+    if twine_drag is not None and law != "morison":
+        raise InputError(
+            f"simulate: twine_drag = {twine_drag}, but law {law!r} knows no twines. "
+            "Leave it out, or pass law='morison'."
+        )
+
+
+def _steps(
+    duration: float, ramp: float, spin_up: float, time_step: float, sample_every: float | None
+) -> Steps:
+    """Times in whole refreshes; the last part of one is simulated too."""
+    for name, value, least in (
+        ("duration", duration, REFRESH),
+        ("ramp", ramp, 0.0),
+        ("spin_up", spin_up, ramp),
+        ("time_step", time_step, 1e-5),
+    ):
+        if not (math.isfinite(value) and value >= least):
+            what = "at least ramp" if name == "spin_up" else f"at least {least:g} s"
+            raise InputError(f"simulate: {name} = {value:g} s must be a finite time of {what}.")
+    every = STATISTICS_EVERY if sample_every is None else sample_every
+    samples = round(every / REFRESH) if math.isfinite(every) else 0
+    if samples < 1 or not math.isclose(samples * REFRESH, every, rel_tol=1e-6):
+        raise InputError(
+            f"simulate: sample_every = {every:g} s is not a whole number of tenths of a second, "
+            "in which the water's motion is known. Give 0.1, 0.2, …"
+        )
+    each = math.ceil(REFRESH / time_step - 1e-9)
+    return Steps(
+        time_step=REFRESH / each,
+        each=each,
+        hold=HOLD,
+        ramp=ramp,
+        spin_up=math.ceil(spin_up / REFRESH - 1e-9),
+        counted=math.ceil(duration / REFRESH - 1e-9),
+        sample_every=samples,
+    )
+
+
+def _check_room(steps: Steps, assembly: Assembly) -> None:
+    """Positions, tensions, net force and surface are kept in single precision to the end."""
+    sampled = 3 * len(assembly.position) + len(assembly.bridles) + 4
+    room = 4e-9 * steps.samples * simulation_lanes() * sampled
+    if room > MOST_ROOM:
+        duration, every = steps.counted * REFRESH, steps.sample_every * REFRESH
+        raise InputError(
+            f"simulate: duration = {duration:g} s, sampled every {every:g} s, asks for {room:.3g} "
+            f"GB of memory, more than {MOST_ROOM:g}. Sample less often, or simulate several "
+            "shorter pieces with other seeds."
+        )
+
+
+def _levels(levels: Sequence[float]) -> Float[np.ndarray, " quantile"]:
+    wrong = [level for level in levels if not 0.0 <= level <= 1.0]
+    if wrong:
+        raise InputError(
+            f"simulate: quantile level {wrong[0]:g} is outside [0, 1]. Give shares, not per cent."
+        )
+    return np.array(levels, dtype=np.float64)
+
+
+def _kept_nodes(cage: Cage | Structure, asked: Sequence[int] | None) -> Int[np.ndarray, " kept"]:
+    nodes = np.arange(cage.node_count) if asked is None else np.array(asked, dtype=np.int64)
+    if np.any((nodes < 0) | (nodes >= cage.node_count)):
+        raise InputError(
+            f"simulate: series_nodes = {nodes.tolist()} has a node that the net has not. "
+            f"Give nodes from 0 … {cage.node_count - 1}."
+        )
+    return nodes
+
+
+def _prepared(
+    cage: Cage | Structure, mooring: Mooring, *, hold_collar: bool, collar_drag: bool
+) -> Assembly:
+    if mooring not in ("springs", "catenary"):
+        raise InputError(f"simulate: no mooring {mooring!r}; there are: springs, catenary.")
+    if isinstance(cage, Structure):
+        if mooring != "springs":
+            raise InputError(
+                f"simulate: mooring = {mooring!r}, but structure {cage.name} has lines and anchors "
+                "of its own. Leave it out."
+            )
+        assembly = rigged(cage)
+    else:
+        assembly = anchored(cage) if mooring == "catenary" else assembled(cage)
+    if hold_collar:
+        fixed = assembly.fixed.copy()
+        fixed[cage.ring_nodes(0)] = True
+        assembly = replace(assembly, fixed=fixed)
+    if not collar_drag:
+        nothing = np.zeros_like(assembly.cylinders.drag_width)
+        assembly = replace(assembly, cylinders=replace(assembly.cylinders, drag_width=nothing))
+    return assembly
+
+
+def _rest(cage: Cage | Structure, *, hold_collar: bool) -> Float[np.ndarray, "node 3"]:
+    if isinstance(cage, Structure):
+        return cage.design_position
+    return rest_shape(cage, hold_collar=hold_collar)
+
+
+def _start(
+    cage: Cage | Structure,
+    assembly: Assembly,
+    seas: list[SeaState],
+    law: MovingLaw,
+    *,
+    wake: bool,
+    hold_collar: bool,
+) -> Float[np.ndarray, "case node 3"]:
+    """Equilibria in the sea's surface current; it is only a start, so any will do."""
+    start = np.repeat(assembly.position[None], len(seas), axis=0)
+    if isinstance(cage, Structure):
+        return start
+    still = [SeaState(current_speed=s.current_speed, current_to=s.current_to) for s in seas]
+    settled = settle(
+        cage,
+        still,
+        law="loland" if law == "morison" else law,
+        wake=wake,
+        hold_collar=hold_collar,
+        starts=1,
+    ).node_position
+    known = np.isfinite(settled).all(axis=(1, 2), keepdims=True)
+    net = np.where(known, settled, rest_shape(cage, hold_collar=hold_collar))
+    start[:, : cage.node_count] = net
+    return start
+
+
+class _Report:
+    """Adds up what the threads have simulated, and tells it one at a time."""
+
+    def __init__(self, progress: Progress | None, whole: int) -> None:
+        self._progress, self._whole, self._done, self._lock = progress, whole, 0, Lock()
+
+    def __call__(self, refreshes: int) -> None:
+        with self._lock:
+            self._done += refreshes
+            if self._progress is not None:
+                seconds = (round(count * REFRESH) for count in (self._done, self._whole))
+                self._progress("simulate", *seconds)
