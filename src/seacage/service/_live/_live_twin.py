@@ -32,6 +32,7 @@ from seacage.twin import (
 
 _RESTED = timedelta(seconds=30)  # without late samples, before the intervals are adapted anew
 _AT_ONCE = 6  # blocks of intervals adapted anew in one step
+_MOST_STEPS = 100  # of a clock that are remembered
 _CHUNKS = 3  # of samples of a stream that one step withdraws: the others wait for the next
 _UNKEPT = timedelta(days=1)  # of readings that the intervals are adapted to at a first start
 _CAUGHT_UP = timedelta(minutes=2)  # more than the alarm book is ever behind
@@ -62,7 +63,7 @@ class LiveTwin:
         self._desk = desk
         self._period = timedelta(seconds=tick_s * clock.speed)
         self.clocks = ClockWatch(clock, streams=len(streams_of(twin)))
-        self._went_back: list[Step] = []
+        self._went_back: list[tuple[Step, float]] = []  # and how far from there it is now [s]
         self._withdrawing: list[tuple[Step, str]] = []
         self._reinstating: list[tuple[Step, str]] = []
         self.begin()
@@ -223,15 +224,15 @@ class LiveTwin:
         _log.error("the clock was set", cage=self._name, by_s=step.by_s, now=str(step.now))
         streams = streams_of(self._twin)
         self.begin()
-        if step.by_s < 0.0:
-            self._went_back.append(step)
-            self._withdrawing += [(step, stream) for stream in streams]
-            return
-        # Where a clock went back for a while only, what was withdrawn meanwhile was right.
-        undone = [one for one in self._went_back if one.expected <= step.now]
-        self._went_back = [one for one in self._went_back if one not in undone]
+        # What was withdrawn by a clock that has come back to where it had been was right.
+        off_s = [(one, by_s + step.by_s) for one, by_s in self._went_back]
+        undone = [one for one, by_s in off_s if abs(by_s) <= self._twin.watch.future_s]
+        self._went_back = [(one, by_s) for one, by_s in off_s if one not in undone]
         self._withdrawing = [one for one in self._withdrawing if one[0] not in undone]
         self._reinstating += [(one, stream) for one in undone for stream in streams]
+        if step.by_s < 0.0:
+            self._went_back = [*self._went_back[-_MOST_STEPS:], (step, step.by_s)]
+            self._withdrawing += [(step, stream) for stream in streams]
 
     def _settle_clock(self, now: datetime) -> None:
         """Withdraw samples that are ahead of a clock that went back, or take them back."""
