@@ -16,10 +16,10 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
+from _coverage import truth_coverage
 
 from seacage.cage import Cage
 from seacage.studies._chain import Chain, Recipe
-from seacage.studies._coverage import truth_coverage
 from seacage.studies._split import split
 from seacage.testing import stand_in_twin
 from seacage.twin import Training, Twin, train

@@ -10,7 +10,8 @@ from seacage.cage import Cage
 from seacage.conventions import InputError, Origin
 from seacage.records import FieldRecord
 from seacage.service._cli import app
-from seacage.studies import FidelityStudy, _fidelity, fidelity_study
+from seacage.studies import FidelityStudy, fidelity_study
+from seacage.studies._fidelity import _study
 from stand_in import StandIn
 
 COARSE = Cage.named("ace").altered(mesh={"ring_depths_m": [0.0, 7.0, 15.0, 23.0], "spokes": 16})
@@ -35,9 +36,9 @@ def stand_in():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("seacage.campaigns._cases.settle", StandIn().settle)
         patch.setattr(Cage, "named", lambda _: SMALL)
-        patch.setattr(_fidelity, "_DAYS", 10.0)
-        patch.setattr(_fidelity, "_POINTS", 60)
-        patch.setattr("seacage.studies._rescaling._CURRENTS", 60)
+        patch.setattr(_study, "_DAYS", 10.0)
+        patch.setattr(_study, "_POINTS", 60)
+        patch.setattr("seacage.studies._fidelity._rescaling._CURRENTS", 60)
         yield
 
 

@@ -18,7 +18,7 @@ from seacage.studies import (
     score_record,
 )
 from seacage.studies._chain import Chain, Recipe
-from seacage.studies._paper import study_chain
+from seacage.studies._paper._study import study_chain
 from seacage.twin import Twin
 from stand_in import StandIn
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from seacage.cage import Cage
 from seacage.conventions import compass
-from seacage.studies._fidelity_windows import Sensors, Windows
+from seacage.studies._fidelity._windows import Sensors, Windows
 from seacage.twin import Metocean
 
 CAGE = Cage.named("ace").altered(mesh={"ring_depths_m": [0.0, 7.0, 15.0, 23.0], "spokes": 16})

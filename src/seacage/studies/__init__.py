@@ -1,12 +1,17 @@
 """Whole experiments, from campaign to report."""
 
-from seacage.studies._benchmark import BenchmarkStudy, benchmark_study
+from seacage.studies._benchmarks import BenchmarkStudy, benchmark_study
 from seacage.studies._demonstration import Demonstration, prepare_demonstration
 from seacage.studies._fidelity import FidelityStudy, fidelity_study
 from seacage.studies._held_out import score_record
-from seacage.studies._level_one import LevelOneScore
-from seacage.studies._paper import PaperStudy, paper_study
-from seacage.studies._paper_claims import PaperClaim
+from seacage.studies._paper import (
+    LevelOneScore,
+    PaperClaim,
+    PaperStudy,
+    ShapeScore,
+    WayScore,
+    paper_study,
+)
 from seacage.studies._quality import quality_page
 from seacage.studies._sensor_scores import Errors, SensorScore
 from seacage.studies._shape_error import (
@@ -15,8 +20,6 @@ from seacage.studies._shape_error import (
     judged_points,
     learned_discrepancy,
 )
-from seacage.studies._shape_scores import ShapeScore
-from seacage.studies._ways import WayScore
 
 __all__ = [
     "BenchmarkStudy",

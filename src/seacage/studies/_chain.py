@@ -1,12 +1,13 @@
 """The chain from sea states to a trained twin, in stages that outlive a stop."""
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields, replace
 from datetime import UTC, datetime
 from functools import cached_property
 from pathlib import Path
 from typing import Literal
 
 import numpy as np
+from jaxtyping import Int
 
 from seacage.cage import Cage
 from seacage.campaigns import (
@@ -20,10 +21,12 @@ from seacage.campaigns import (
 )
 from seacage.conventions import InputError, Progress
 from seacage.records import CampaignRecord, FieldRecord, Record, read_campaign
-from seacage.studies._cases import chosen_cases
 from seacage.studies._split import split
 from seacage.studies._stages import Stages, code_sha256
 from seacage.twin import Training, Twin, train
+
+_OF_ALL = ("quantile", "second_moment")
+"""Arrays that have no axis of cases."""
 
 _SIMULATION = ("conventions", "ocean", "cage", "dynamics", "campaigns")
 _FIELD = (*_SIMULATION, "records")
@@ -304,3 +307,22 @@ class Chain:
         )
         made.record.write(begun / "field")
         made.truth.write(begun / "truth")
+
+
+def chosen_cases(campaign: CampaignRecord, rows: Int[np.ndarray, " row"]) -> CampaignRecord:
+    """A campaign's cases of these rows; the second moment stays that of all.
+
+    Parameters
+    ----------
+    campaign
+        The whole.
+    rows
+        From 0.
+    """
+    arrays = {
+        part.name: value[rows]
+        for part in fields(campaign)
+        if part.name not in _OF_ALL
+        and isinstance(value := getattr(campaign, part.name), np.ndarray)
+    }
+    return replace(campaign, seas=tuple(campaign.seas[row] for row in rows.tolist()), **arrays)

@@ -5,7 +5,7 @@ import pytest
 
 from seacage.cage import Cage
 from seacage.campaigns import Plan, run_campaign
-from seacage.studies._cases import chosen_cases
+from seacage.studies._chain import chosen_cases
 from stand_in import StandIn
 
 

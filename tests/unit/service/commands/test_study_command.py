@@ -11,7 +11,7 @@ from seacage.conventions import InputError
 from seacage.service._cli import app
 from seacage.service._commands._study import _seeds
 from seacage.studies import BenchmarkStudy
-from seacage.studies._benchmark_verdicts import Verdict
+from seacage.studies._benchmarks._verdicts import Verdict
 
 
 @pytest.fixture

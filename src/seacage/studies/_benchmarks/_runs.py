@@ -1,0 +1,179 @@
+"""Answers of methods to problems, each made once in a process of its own and kept in a file."""
+
+import hashlib
+import json
+import os
+import subprocess
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.studies._benchmarks._methods import Method, harness
+from seacage.studies._benchmarks._problems import Problem, Sample
+
+ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+"""So that the processor's time is what a single core would take."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Run:
+    """One method's answer to one problem and seed, or why there is none.
+
+    Parameters
+    ----------
+    problem, method, seed
+        Names, and the seed of the problem's sample.
+    mean, std
+        At the test points; None after an error.
+    fit_s, predict_s, tick_s
+        Of the processor: to fit, to answer all test points, and to answer one [s].
+    error
+        What the method said when it failed.
+    """
+
+    problem: str
+    method: str
+    seed: int
+    mean: Float[np.ndarray, " row"] | None = None
+    std: Float[np.ndarray, " row"] | None = None
+    fit_s: float = np.nan
+    predict_s: float = np.nan
+    tick_s: float = np.nan
+    error: str | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Runs:
+    """A folder of jobs, ``jobs/PROBLEM-SEED-KEY.npz``, and of answers in ``METHOD-KEY``.
+
+    The keys are hashes of what is given and of the code that answers, so a file that is there
+    is never out of date.
+    """
+
+    folder: Path
+
+    def made(
+        self,
+        problem: Problem,
+        method: Method,
+        seeds: Sequence[int],
+        *,
+        heard: Callable[[int], None],
+    ) -> list[Run]:
+        """The method's answers for some seeds; those that are there are not made again.
+
+        Parameters
+        ----------
+        problem, method, seeds
+            What is asked, of whom.
+        heard
+            Called with the number of seeds that are done.
+        """
+        out = self._answers(method)
+        out.mkdir(parents=True, exist_ok=True)
+        jobs = {seed: self._job(problem, seed) for seed in seeds}
+        missing = [job for job in jobs.values() if not _sign(out, job).is_file()]
+        heard(len(seeds) - len(missing))
+        if missing:
+            said = _answered(method, out, missing, lambda: heard(_there(out, jobs.values())))
+            for job in missing:
+                if not _sign(out, job).is_file():
+                    _sign(out, job).write_text(json.dumps({"error": said}), encoding="utf-8")
+        return [_read(problem, method, seed, out, job) for seed, job in jobs.items()]
+
+    def complete(self, problem: Problem, method: Method, seeds: Sequence[int]) -> bool:
+        """Whether all answers are there already."""
+        out = self._answers(method)
+        return all(_sign(out, self._job(problem, seed)).is_file() for seed in seeds)
+
+    def forget(self, problem: Problem, method: Method) -> None:
+        """Drop what a method answered to a problem, so that it is timed again."""
+        for path in self._answers(method).glob(f"{problem.name}-*"):
+            path.unlink()
+
+    def _answers(self, method: Method) -> Path:
+        return self.folder / f"{method.name}-{method.key()}"
+
+    def _job(self, problem: Problem, seed: int) -> Path:
+        """The file of what a method is given; the answers to the tests are not in it."""
+        given = _given(problem.sample(seed), noisy=problem.noise > 0.0, seed=seed)
+        digest = hashlib.sha256()
+        for name, values in given.items():
+            digest.update(name.encode() + np.ascontiguousarray(values).tobytes())
+        path = self.folder / "jobs" / f"{problem.name}-{seed}-{digest.hexdigest()[:10]}.npz"
+        if not path.is_file():
+            path.parent.mkdir(parents=True, exist_ok=True)
+            begun = path.with_suffix(".begun")
+            with begun.open("wb") as file:
+                np.savez(file, allow_pickle=False, **given)
+            begun.rename(path)
+        return path
+
+
+def _given(sample: Sample, *, noisy: bool, seed: int) -> dict[str, np.ndarray]:
+    tables = {f"x_{index}": x for index, (x, _) in enumerate(sample.levels)}
+    tables |= {f"y_{index}": y for index, (_, y) in enumerate(sample.levels)}
+    plain = {"levels": len(sample.levels), "noisy": noisy, "seed": seed}
+    named = {name: np.array(value) for name, value in plain.items()}
+    return {**tables, "x_test": sample.x_test, **named}
+
+
+def _answered(method: Method, out: Path, jobs: Sequence[Path], heard: Callable[[], None]) -> str:
+    """Let the method answer, and return the last that it said if it fell over."""
+    command = [method.python, harness(), method.script, method.name, out, *jobs]
+    complaints = out / "stderr.txt"
+    with (
+        complaints.open("w", encoding="utf-8") as error,
+        subprocess.Popen(  # noqa: S603 - our own scripts, by an interpreter the caller names
+            [str(part) for part in command],
+            stdout=subprocess.PIPE,
+            stderr=error,
+            env={**os.environ, **ONE_THREAD},
+            text=True,
+        ) as process,
+    ):
+        assert process.stdout is not None
+        try:
+            for line in process.stdout:
+                if line.startswith("done "):
+                    heard()
+        except BaseException:
+            process.kill()
+            raise
+    lines = complaints.read_text("utf-8", errors="replace").strip().splitlines()
+    last = lines[-1] if lines else "it said nothing"
+    return f"the process ended with code {process.returncode}: {last}"
+
+
+def _read(problem: Problem, method: Method, seed: int, out: Path, job: Path) -> Run:
+    said: Mapping[str, float | str] = json.loads(_sign(out, job).read_text("utf-8"))
+    if "error" in said:
+        return Run(
+            problem=problem.name, method=method.name, seed=seed, error=str(said["error"])[:300]
+        )
+    with np.load(out / job.name) as answer:
+        mean, std = answer["mean"], answer["std"]
+    if mean.shape != (problem.tests,) or not (np.isfinite(mean) & np.isfinite(std)).all():
+        error = "the answer is not a finite number for each test point"
+        return Run(problem=problem.name, method=method.name, seed=seed, error=error)
+    return Run(
+        problem=problem.name,
+        method=method.name,
+        seed=seed,
+        mean=mean,
+        std=std,
+        fit_s=float(said["fit_s"]),
+        predict_s=float(said["predict_s"]),
+        tick_s=float(said["tick_s"]),
+    )
+
+
+def _sign(out: Path, job: Path) -> Path:
+    return out / f"{job.stem}.json"
+
+
+def _there(out: Path, jobs: Iterable[Path]) -> int:
+    return sum(_sign(out, job).is_file() for job in jobs)

@@ -1,0 +1,134 @@
+"""How good the answers to benchmark problems are, by seed and over seeds."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.studies._benchmarks._runs import Run
+from seacage.surrogates import coverage, crps, mnll, rmse
+
+NARROWEST = 1e-6
+"""Share of the truth's standard deviation that a predicted one counts as at least.
+
+A likelihood does not exist at zero, which some peers answer at their training points.
+"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunScore:
+    """Scores of one run against the truth without noise.
+
+    Parameters
+    ----------
+    problem, method, seed
+        Of the run.
+    rmse, crps
+        In the unit of the truth.
+    mnll
+        Mean negative log likelihood [nat].
+    coverage
+        Of the 95 % intervals [-].
+    fit_s, predict_s, tick_s
+        Of the processor [s].
+    error
+        Why there is no score; then all are NaN.
+    """
+
+    problem: str
+    method: str
+    seed: int
+    rmse: float = np.nan
+    mnll: float = np.nan
+    crps: float = np.nan
+    coverage: float = np.nan
+    fit_s: float = np.nan
+    predict_s: float = np.nan
+    tick_s: float = np.nan
+    error: str | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Summary:
+    """A method's scores on a problem over its seeds.
+
+    Parameters
+    ----------
+    problem, method
+        Names.
+    seeds, failures
+        How many were scored, and how many failed.
+    rmse, rmse_median, mnll, mnll_median, crps, coverage
+        Means over seeds where nothing else is said.
+    fit_s, predict_s, tick_s
+        Medians over seeds, of the processor [s].
+    rmses
+        By seed, in their order; NaN where it failed.
+    error
+        The first failure's words.
+    """
+
+    problem: str
+    method: str
+    seeds: int
+    failures: int
+    rmse: float
+    rmse_median: float
+    mnll: float
+    mnll_median: float
+    crps: float
+    coverage: float
+    fit_s: float
+    predict_s: float
+    tick_s: float
+    rmses: tuple[float, ...]
+    error: str | None
+
+
+def scored(run: Run, truth: Float[np.ndarray, " row"]) -> RunScore:
+    """Score a run."""
+    if run.mean is None or run.std is None:
+        return RunScore(problem=run.problem, method=run.method, seed=run.seed, error=run.error)
+    std = np.maximum(run.std, NARROWEST * float(np.std(truth)))
+    return RunScore(
+        problem=run.problem,
+        method=run.method,
+        seed=run.seed,
+        rmse=rmse(truth, run.mean),
+        mnll=mnll(truth, run.mean, std),
+        crps=crps(truth, run.mean, std),
+        coverage=coverage(truth, run.mean, std),
+        fit_s=run.fit_s,
+        predict_s=run.predict_s,
+        tick_s=run.tick_s,
+    )
+
+
+def summary(scores: Sequence[RunScore]) -> Summary:
+    """One method's scores on one problem as one; a method that failed on a seed has no mean."""
+    failures = [one.error for one in scores if one.error is not None]
+
+    def mean(name: str) -> float:
+        return float(np.mean([getattr(one, name) for one in scores]))
+
+    def median(name: str) -> float:
+        return float(np.median([getattr(one, name) for one in scores]))
+
+    return Summary(
+        problem=scores[0].problem,
+        method=scores[0].method,
+        seeds=len(scores) - len(failures),
+        failures=len(failures),
+        rmse=mean("rmse"),
+        rmse_median=median("rmse"),
+        mnll=mean("mnll"),
+        mnll_median=median("mnll"),
+        crps=mean("crps"),
+        coverage=mean("coverage"),
+        fit_s=median("fit_s"),
+        predict_s=median("predict_s"),
+        tick_s=median("tick_s"),
+        rmses=tuple(one.rmse for one in scores),
+        error=failures[0] if failures else None,
+    )

@@ -1,0 +1,195 @@
+"""The benchmarks study: our learners against simple ones and against other people's."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from seacage.conventions import InputError, Progress, unheard
+from seacage.studies._benchmarks._methods import OURS, Method, own_methods, peer_methods
+from seacage.studies._benchmarks._problems import CAGE_SIZE, PROBLEMS, Problem
+from seacage.studies._benchmarks._report import BenchmarkReport
+from seacage.studies._benchmarks._runs import Runs
+from seacage.studies._benchmarks._scores import RunScore, Summary, scored, summary
+from seacage.studies._benchmarks._verdicts import Verdict, verdicts
+from seacage.studies._held_out import write_scores
+from seacage.studies._text import listed
+
+TUNING_SEEDS = range(5)
+"""Settings may be chosen by these, so they decide no verdict."""
+
+SEEDS = range(10)
+
+_NO_PEERS = (
+    "No other package was run: no environment of peers was named. `make bench-peers` makes one."
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class BenchmarkStudy:
+    """Where the study's report is, and what it found.
+
+    Parameters
+    ----------
+    report, scores
+        The HTML page and the same numbers as JSON.
+    verdicts
+        Each promise, judged.
+    summaries
+        Of the report seeds, one for each problem and method.
+    """
+
+    report: Path
+    scores: Path
+    verdicts: tuple[Verdict, ...]
+    summaries: tuple[Summary, ...]
+
+
+def benchmark_study(
+    out: str | Path,
+    *,
+    peers: str | Path | None = None,
+    seeds: Sequence[int] = SEEDS,
+    quick: bool = False,
+    fresh: bool = False,
+    kept: bool = False,
+    progress: Progress | None = None,
+) -> BenchmarkStudy:
+    """Compare learners on published multifidelity problems, into one HTML page.
+
+    Parameters
+    ----------
+    out
+        Folder of ``report.html``, ``scores.json`` and all answers; after a stop the work goes on
+        where it was, and what is there for the same code is not made again.
+    peers
+        The environment that ``make bench-peers`` made; None runs ours and the baselines alone.
+    seeds
+        Of the problems' samples; those below 5 are tuning seeds and decide nothing.
+    quick
+        Leave out the cage-size problem, and take at most two seeds of each kind.
+    fresh
+        Answer the cage-size problem again, so that all its times are of one run.
+    kept
+        Run nothing: write the page from the answers that are there. A method whose answers to a
+        problem are not all there is left out of it.
+    progress
+        Called as (problem, done, total), in runs.
+
+    Raises
+    ------
+    InputError
+        No report seed among the seeds, or no environment of peers where one is named.
+    """
+    out, heard = Path(out), progress or unheard
+    tuning, report = _parted(seeds, quick=quick)
+    problems = PROBLEMS if quick else (*PROBLEMS, CAGE_SIZE)
+    methods = (*own_methods(), *(peer_methods(peers) if peers is not None else ()))
+    runs = Runs(folder=out / "runs")
+    if fresh:
+        for method in methods:
+            runs.forget(CAGE_SIZE, method)
+    scores: list[RunScore] = []
+    for problem in problems:
+        each = _of(problem, tuning, report)
+        there = [one for one in methods if not kept or runs.complete(problem, one, each)]
+        scores += _scores(runs, problem, there, each, heard)
+    found, tuned = _summaries(scores, report), _summaries(scores, tuning)
+    lost = [problem.title for problem in problems if (problem.name, OURS) not in found]
+    if lost:
+        raise InputError(
+            f"study benchmarks: our own answers to {listed(lost)} are not there. Leave out "
+            "`kept`, and they are made."
+        )
+    judged = verdicts(found)
+    page = BenchmarkReport(
+        verdicts=judged,
+        problems=problems,
+        methods=methods,
+        report=found,
+        tuning=tuned,
+        seeds=report,
+        tuning_seeds=tuning,
+        missing=_NO_PEERS if peers is None else None,
+        provenance=_provenance(methods),
+    ).html()
+    study = BenchmarkStudy(
+        report=out / "report.html",
+        scores=out / "scores.json",
+        verdicts=judged,
+        summaries=tuple(found.values()),
+    )
+    study.report.write_text(page, encoding="utf-8")
+    write_scores(study.scores, {"verdicts": judged, "summaries": study.summaries, "runs": scores})
+    return study
+
+
+def _parted(seeds: Sequence[int], *, quick: bool) -> tuple[list[int], list[int]]:
+    """Tuning and report seeds, each once and in order."""
+    tuning = sorted({seed for seed in seeds if seed in TUNING_SEEDS})
+    report = sorted(set(seeds) - set(tuning))
+    if not report or min(seeds) < 0:
+        raise InputError(
+            f"study benchmarks: seeds {list(seeds)} hold no report seed, or one below 0. Seeds 0 "
+            "to 4 tune; add some from 5 on."
+        )
+    return (tuning[:2], report[:2]) if quick else (tuning, report)
+
+
+def _of(problem: Problem, tuning: Sequence[int], report: Sequence[int]) -> list[int]:
+    """The seeds that a problem is run on: nothing was tuned on the large one."""
+    return [*report] if problem is CAGE_SIZE else [*tuning, *report]
+
+
+def _scores(
+    runs: Runs,
+    problem: Problem,
+    methods: Sequence[Method],
+    seeds: Sequence[int],
+    heard: Progress,
+) -> list[RunScore]:
+    truths = {seed: problem.sample(seed).y_test for seed in seeds}
+    total = len(methods) * len(seeds)
+    found: list[RunScore] = []
+    for method in methods:
+        before = len(found)
+        made = runs.made(
+            problem,
+            method,
+            seeds,
+            heard=lambda done, before=before: heard(problem.title, before + done, total),
+        )
+        found += [scored(run, truths[run.seed]) for run in made]
+    return found
+
+
+def _summaries(scores: Sequence[RunScore], seeds: Sequence[int]) -> dict[tuple[str, str], Summary]:
+    grouped: dict[tuple[str, str], list[RunScore]] = {}
+    for one in scores:
+        if one.seed in seeds:
+            grouped.setdefault((one.problem, one.method), []).append(one)
+    return {name: summary(group) for name, group in grouped.items()}
+
+
+def _provenance(methods: Sequence[Method]) -> dict[str, str]:
+    import platform
+    from importlib.metadata import version
+
+    own = {name: version(name) for name in ("seacage", "numpy", "scipy")}
+    locks = {one.script.parent / "requirements.lock" for one in methods if not one.ours}
+    theirs = {
+        maker: found
+        for lock in locks
+        for maker, found in _locked(lock, {one.maker for one in methods} | {"gpy", "gpytorch"})
+    }
+    return {
+        "Versions": "\n".join(f"{name} {found}" for name, found in {**own, **theirs}.items()),
+        "Python": platform.python_version(),
+        "Machine": f"{platform.machine()}, {platform.system()}; one thread for each method",
+    }
+
+
+def _locked(lock: Path, packages: set[str]) -> list[tuple[str, str]]:
+    """Versions that a lock gives to some packages."""
+    lines = (line.split()[0] for line in lock.read_text("utf-8").splitlines() if "==" in line)
+    pins = (line.split("==") for line in lines)
+    return [(name, found) for name, found in pins if name in packages]

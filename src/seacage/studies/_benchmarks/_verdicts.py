@@ -1,0 +1,182 @@
+"""What was promised of the benchmarks, and whether the numbers hold it."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from seacage.studies._benchmarks._methods import EMUKIT, HIGH_ONLY, OURS, SMT
+from seacage.studies._benchmarks._problems import CAGE_SIZE, PROBLEMS, Problem, problem_named
+from seacage.studies._benchmarks._scores import Summary
+from seacage.studies._text import listed, number, percent
+
+RATIOS = {"pedagogical": 1.0, "branin-3": 0.7, "park": 0.5, "borehole": 0.3}
+"""Our mean RMSE over that of Emukit's NARGP, at most."""
+
+SLACK = 1.1
+"""Our mean RMSE over that of the best rival, at most."""
+
+COVERAGE = (0.85, 1.0)
+"""Of 95 % intervals, on every problem."""
+
+SPEEDS = {
+    "fit_s": ("A fit", 5.0),
+    "predict_s": ("The prediction of all test points", 15.0),
+    "tick_s": ("The prediction of one", 3.0),
+}
+"""On the cage-size problem, Emukit's time over ours, at least."""
+
+Summaries = Mapping[tuple[str, str], Summary]
+"""By problem and method."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Verdict:
+    """A promise that the numbers hold or miss.
+
+    Parameters
+    ----------
+    claim
+        The promise.
+    holds
+        Whether the numbers say so; None where what it needs was not run.
+    finding
+        The numbers.
+    """
+
+    claim: str
+    holds: bool | None
+    finding: str
+
+    @property
+    def word(self) -> str:
+        """In a word."""
+        return {True: "holds", False: "missed", None: "not judged"}[self.holds]
+
+
+def verdicts(found: Summaries) -> tuple[Verdict, ...]:
+    """Every promise, judged by the report seeds' summaries."""
+    return (
+        *(_ratio(found, name, most) for name, most in RATIOS.items()),
+        _no_worse(found),
+        _coverage(found),
+        *(_speed(found, name) for name in SPEEDS),
+        _cage_accuracy(found),
+    )
+
+
+def ratio(found: Summaries, problem: str, rival: str) -> float | None:
+    """Our mean RMSE over a rival's; None where either is missing or failed."""
+    ours, theirs = found.get((problem, OURS)), found.get((problem, rival))
+    if ours is None or theirs is None or ours.failures or theirs.failures:
+        return None
+    return ours.rmse / theirs.rmse
+
+
+def best_rival(found: Summaries, problem: str) -> Summary | None:
+    """The rival with the least mean RMSE of those that answered every seed."""
+    rivals = [found.get((problem, name)) for name in (EMUKIT, SMT, HIGH_ONLY)]
+    whole = [one for one in rivals if one is not None and not one.failures]
+    return min(whole, key=lambda one: one.rmse) if whole else None
+
+
+def _ratio(found: Summaries, name: str, most: float) -> Verdict:
+    title = problem_named(name).title
+    claim = f"{title}: mean RMSE at most {most:g} times that of Emukit's NARGP."
+    share = ratio(found, name, EMUKIT)
+    if share is None:
+        return _unjudged(claim, found, name, EMUKIT)
+    ours, theirs = found[name, OURS], found[name, EMUKIT]
+    return Verdict(
+        claim=claim,
+        holds=share <= most,
+        finding=f"It is {number(share)} times: {number(ours.rmse)} against {number(theirs.rmse)}; "
+        f"medians {number(ours.rmse_median)} against {number(theirs.rmse_median)}.",
+    )
+
+
+def _no_worse(found: Summaries) -> Verdict:
+    claim = (
+        "On no problem more than 10 % worse than the best of Emukit's NARGP, SMT's MFK and high "
+        "fidelity only."
+    )
+    # High fidelity only is always there, and no rival by itself.
+    if not any(rival in {EMUKIT, SMT} for _, rival in found):
+        return Verdict(claim=claim, holds=None, finding="Neither peer was run.")
+    judged = [problem for problem in (*PROBLEMS, CAGE_SIZE) if (problem.name, OURS) in found]
+    worse = [line for problem in judged if (line := _where_worse(found, problem))]
+    finding = " ".join(worse) or f"It holds on each of {len(judged)} problems."
+    return Verdict(claim=claim, holds=not worse, finding=finding)
+
+
+def _where_worse(found: Summaries, problem: Problem) -> str:
+    """Where and by how much ours is worse than the best rival, or nothing."""
+    ours, rival = found[problem.name, OURS], best_rival(found, problem.name)
+    if rival is None or ours.rmse <= SLACK * rival.rmse:
+        return ""
+    better = sum(a < b for a, b in zip(ours.rmses, rival.rmses, strict=True))
+    few = (
+        f" With {problem.sizes[-1]} cases of the highest fidelity, which cases they are decides: "
+        f"over seeds our RMSE goes from {number(min(ours.rmses))} to {number(max(ours.rmses))}."
+        if problem.sizes[-1] <= 20
+        else ""
+    )
+    return (
+        f"{problem.title}: {percent(ours.rmse / rival.rmse - 1.0)} worse than {rival.method}, "
+        f"better on {better} of {ours.seeds} seeds.{few}"
+    )
+
+
+def _coverage(found: Summaries) -> Verdict:
+    low, high = COVERAGE
+    shares = {
+        problem.title: found[problem.name, OURS].coverage
+        for problem in (*PROBLEMS, CAGE_SIZE)
+        if (problem.name, OURS) in found
+    }
+    outside = [name for name, share in shares.items() if not low <= share <= high]
+    each = listed([f"{name} {percent(share)}" for name, share in shares.items()] or ["nothing"])
+    return Verdict(
+        claim=f"Our 95 % intervals hold {percent(low)} to {percent(high)} on every problem.",
+        holds=not outside if shares else None,
+        finding=f"{each}." + (f" Outside: {listed(outside)}." if outside else ""),
+    )
+
+
+def _speed(found: Summaries, name: str) -> Verdict:
+    what, least = SPEEDS[name]
+    claim = f"{CAGE_SIZE.title}: {what.lower()} at least {least:g} times faster than Emukit's."
+    if ratio(found, CAGE_SIZE.name, EMUKIT) is None:
+        return _unjudged(claim, found, CAGE_SIZE.name, EMUKIT)
+    ours, theirs = (getattr(found[CAGE_SIZE.name, one], name) for one in (OURS, EMUKIT))
+    return Verdict(
+        claim=claim,
+        holds=theirs >= least * ours,
+        finding=f"{what} is {number(theirs / ours)} times faster: {_time(ours)} against "
+        f"{_time(theirs)} of one core's time, medians over seeds.",
+    )
+
+
+def _cage_accuracy(found: Summaries) -> Verdict:
+    claim = f"{CAGE_SIZE.title}: at no worse RMSE than Emukit's."
+    share = ratio(found, CAGE_SIZE.name, EMUKIT)
+    if share is None:
+        return _unjudged(claim, found, CAGE_SIZE.name, EMUKIT)
+    ours, theirs = found[CAGE_SIZE.name, OURS], found[CAGE_SIZE.name, EMUKIT]
+    return Verdict(
+        claim=claim,
+        holds=share <= 1.0,
+        finding=f"{number(ours.rmse)} kN against {number(theirs.rmse)} kN over "
+        f"{ours.seeds} seeds, {number(share)} times.",
+    )
+
+
+def _unjudged(claim: str, found: Summaries, problem: str, rival: str) -> Verdict:
+    missing: Sequence[str] = [one for one in (OURS, rival) if (problem, one) not in found]
+    if missing:
+        return Verdict(claim=claim, holds=None, finding=f"Not run: {listed(missing)}.")
+    failed = [found[problem, one] for one in (OURS, rival) if found[problem, one].failures]
+    words = [f"{one.method} failed on {one.failures} seeds: {one.error}" for one in failed]
+    return Verdict(claim=claim, holds=None, finding=f"{listed(words)}.")
+
+
+def _time(seconds: float) -> str:
+    return f"{number(1e3 * seconds)} ms" if seconds < 1.0 else f"{number(seconds)} s"

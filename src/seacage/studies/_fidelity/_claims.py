@@ -1,0 +1,167 @@
+"""What the fidelity study claims, and whether its own numbers hold it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from seacage.studies._fidelity._fouling import FoulingGap
+from seacage.studies._fidelity._gap import SensorGap
+from seacage.studies._fidelity._null_case import NullCase
+from seacage.studies._fidelity._rescaling import LEAST_LEFT, Rescaling
+from seacage.studies._interval import Interval
+from seacage.studies._text import listed, number, percent
+
+THOUSANDTH = {"m": "mm", "kN": "N"}
+"""Units that a null case's errors are read in."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Claim:
+    """A sentence that the numbers hold or miss.
+
+    Parameters
+    ----------
+    claim
+        The sentence.
+    holds
+        Whether the numbers say so.
+    finding
+        The numbers.
+    """
+
+    claim: str
+    holds: bool
+    finding: str
+
+    @property
+    def verdict(self) -> str:
+        """In a word."""
+        return "holds" if self.holds else "missed"
+
+
+def claims(
+    gaps: Sequence[SensorGap],
+    rescalings: Sequence[Rescaling],
+    null: NullCase,
+    fouling: FoulingGap,
+) -> tuple[Claim, ...]:
+    """The rules against an inverse crime, and what growth does."""
+    return (
+        _underestimated(gaps),
+        _left(rescalings),
+        _nothing_gained(null),
+        _zero_covered(null),
+        _widening(fouling),
+    )
+
+
+def ends(interval: Interval) -> str:
+    """The interval's ends, as tables and sentences print them."""
+    return f"{number(interval.low)} … {number(interval.high)}"
+
+
+def _underestimated(gaps: Sequence[SensorGap]) -> Claim:
+    depth = [gap for gap in gaps if gap.unit == "m"]
+    found = [
+        f"{gap.sensor} rises {number(gap.truth)} m in truth and {number(gap.low)} m in the low "
+        f"fidelity, {number(gap.bias.mean)} m [{ends(gap.bias)}]"
+        for gap in depth
+    ]
+    return Claim(
+        claim=f"The low fidelity underestimates the displacement of {_all(len(depth))} on average.",
+        holds=bool(depth) and all(gap.underestimates for gap in depth),
+        finding=f"On average {listed(found or ['no depth sensor was there'])}.",
+    )
+
+
+def _all(count: int) -> str:
+    return "all three depth sensors" if count == 3 else f"each of {count} depth sensors"
+
+
+def _left(rescalings: Sequence[Rescaling]) -> Claim:
+    ranked = sorted(rescalings, key=lambda one: one.left)
+    short = [one.sensor for one in ranked if not one.enough]
+    least, most = ranked[0], ranked[-1]
+    finding = (
+        f"On days not fitted to, {percent(least.left)} ({least.sensor}) to {percent(most.left)} "
+        f"({most.sensor}) of the mean absolute error are left."
+    )
+    if short:
+        finding += f" Less than {percent(LEAST_LEFT)} are left at {listed(short)}."
+    return Claim(
+        claim="The best rescaling and rotation of the low fidelity leaves at least "
+        f"{percent(LEAST_LEFT)} of its error at every sensor.",
+        holds=not short,
+        finding=finding,
+    )
+
+
+def _nothing_gained(null: NullCase) -> Claim:
+    above = [one.sensor for one in null.null.sensors if one.gain.low > 0.0]
+    together = null.null.together
+    finding = (
+        "For all sensors together the gain there is "
+        f"{_shares(together)} of the low fidelity's error; in the field it is "
+        f"{_shares(null.real.together)}."
+    )
+    if above:
+        finding += f" It gains at {listed(above)}, where there is nothing to gain."
+    if null.unjudged:
+        finding += f" {listed(null.unjudged)} had too few readings to be judged."
+    return Claim(
+        claim="Where the truth is the low fidelity itself, multifidelity gains nothing: no "
+        "interval of its gain lies above zero.",
+        holds=bool(null.null.sensors) and together.low <= 0.0 and not above,
+        finding=finding,
+    )
+
+
+def _zero_covered(null: NullCase) -> Claim:
+    sensors, together = null.null.sensors, null.null.together
+    off = [one for one in sensors if not one.gain.covers_zero]
+    covered = len(sensors) - len(off)
+    finding = f"{covered} of {len(sensors)} sensors' intervals cover zero"
+    finding += ", and that of all together." if together.covers_zero else "."
+    below = [one for one in off if one.gain.high < 0.0]
+    if below:
+        worst = min(below, key=lambda one: one.share.mean)
+        unit = THOUSANDTH[worst.unit]
+        real = {one.sensor: one.gain.mean for one in null.real.sensors}[worst.sensor]
+        finding += (
+            f" Below zero: {listed([one.sensor for one in below])}. There level 2 learned from "
+            f"noise, which costs: most at {worst.sensor}, {number(-1e3 * worst.gain.mean)} {unit}, "
+            f"where the field's gain is {number(1e3 * real)} {unit}."
+        )
+    if together.high < 0.0:
+        finding += " All together lie below zero: a loss beside an exact low fidelity, no gain."
+    return Claim(
+        claim="There the interval covers zero, at each sensor and in all.",
+        holds=bool(sensors) and together.covers_zero and not off,
+        finding=finding,
+    )
+
+
+def _shares(interval: Interval) -> str:
+    mean, low, high = (
+        percent(end, digits=1).replace("-", "\N{MINUS SIGN}")
+        for end in (interval.mean, interval.low, interval.high)
+    )
+    return f"{mean} [{low} … {high}]"
+
+
+def _widening(fouling: FoulingGap) -> Claim:
+    depth = [column for column, unit in enumerate(fouling.units) if unit == "m"]
+    wider = fouling.widening[:, depth]
+    middle = len(fouling.speed) // 2
+    found = [
+        f"{fouling.sensors[column]} from {number(fouling.gap[0, middle, column])} m to "
+        f"{number(fouling.gap[-1, middle, column])} m"
+        for column in depth
+    ]
+    return Claim(
+        claim="The gap at the depth sensors widens as the net grows, at every settled current.",
+        holds=bool(np.all(wider > 0.0)),
+        finding=f"At {fouling.speed[middle]:g} m/s, from a net just cleaned to one grown out: "
+        f"{listed(found or ['no depth sensor'])}.",
+    )

@@ -1,0 +1,138 @@
+"""How the gap between low fidelity and truth changes while the net grows."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.cage import Cage
+from seacage.campaigns import Hidden, Plan
+from seacage.conventions import Progress, unheard
+from seacage.dynamics import Law
+from seacage.studies._fidelity._windows import Windows, kept_campaign
+from seacage.studies._stages import Stages
+
+SPEEDS = (0.3, 0.5, 0.7)
+"""Of the currents that the gap is settled in [m/s]."""
+
+GROWTHS = (0.0, 0.25, 0.5, 0.75, 1.0)
+"""Shares of the whole growth [-]."""
+
+_DAY = np.timedelta64(1, "D")
+_BINS = 5
+_LEAST = 8
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class MetGap:
+    """What the record has while the net is about as grown.
+
+    Parameters
+    ----------
+    growth
+        Mean share of the whole growth [-].
+    windows
+        How many.
+    gap
+        Truth less low fidelity, in the mean over whatever the currents were [m] or [kN].
+    """
+
+    growth: float
+    windows: int
+    gap: Float[np.ndarray, " sensor"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class FoulingGap:
+    """Truth less low fidelity, by how grown the net is: [m] of rise, [kN] of tension.
+
+    Parameters
+    ----------
+    sensors, units
+        Their names, and the units of their responses.
+    current_to
+        Where the settled currents go [deg].
+    growth, speed
+        At which the true cage was settled [-] and [m/s].
+    gap
+        Between settled cages in the same current.
+    met
+        Of the record, by growth.
+    """
+
+    sensors: tuple[str, ...]
+    units: tuple[str, ...]
+    current_to: float
+    growth: Float[np.ndarray, " growth"]
+    speed: Float[np.ndarray, " speed"]
+    gap: Float[np.ndarray, "growth speed sensor"]
+    met: tuple[MetGap, ...]
+
+    @property
+    def widening(self) -> Float[np.ndarray, "speed sensor"]:
+        """Gap of the whole growth less that of a net just cleaned."""
+        return self.gap[-1] - self.gap[0]
+
+
+def fouling_gap(
+    windows: Windows,
+    hidden: Hidden,
+    stages: Stages,
+    *,
+    begin: np.datetime64,
+    workers: int | None,
+    progress: Progress,
+) -> FoulingGap:
+    """Settle both cages in the same currents at several growths, and sort the record by growth.
+
+    Parameters
+    ----------
+    windows
+        With the low fidelity's answers.
+    hidden
+        How the truth differs; the field was made with it.
+    begin
+        Of the record, from which growth is counted.
+    """
+    sensors = windows.sensors
+    to = sensors.cage.site.current_to
+    plan = Plan.grid(current_speed=SPEEDS, current_to=(to,), name="fouling")
+
+    def settled(cage: Cage, law: Law) -> Float[np.ndarray, "speed sensor"]:
+        record = kept_campaign(
+            "fouling", cage, plan, stages, law=law, workers=workers, progress=unheard
+        )
+        return sensors.computed(record.node_position, record.bridle_tension)
+
+    low = settled(sensors.cage, "kristiansen-faltinsen")
+    gaps: list[Float[np.ndarray, "speed sensor"]] = []
+    for growth in GROWTHS:
+        progress("fouling", len(gaps), len(GROWTHS))
+        gaps.append(settled(hidden.true_cage(sensors.cage, growth), hidden.law) - low)
+    progress("fouling", len(gaps), len(gaps))
+    growth = hidden.fouling.grown((windows.end - begin) / _DAY)
+    return FoulingGap(
+        sensors=sensors.names,
+        units=sensors.units,
+        current_to=to,
+        growth=np.array(GROWTHS),
+        speed=np.array(SPEEDS),
+        gap=np.stack(gaps),
+        met=_met(windows, growth),
+    )
+
+
+def _met(windows: Windows, growth: Float[np.ndarray, " window"]) -> tuple[MetGap, ...]:
+    """Equal shares of the growth that the record has, each with enough windows."""
+    edges = np.linspace(growth.min(), growth.max(), _BINS + 1)
+    share = np.clip(np.searchsorted(edges, growth, side="right") - 1, 0, _BINS - 1)
+    gap = windows.truth - windows.low
+    return tuple(
+        MetGap(
+            growth=float(growth[here].mean()),
+            windows=int(np.sum(here)),
+            gap=gap[here].mean(axis=0),
+        )
+        for here in (share == number for number in range(_BINS))
+        if np.sum(here) >= _LEAST
+    )

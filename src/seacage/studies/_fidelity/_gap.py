@@ -1,0 +1,119 @@
+"""How far the low fidelity is from the truth: per sensor, direction of the current and growth."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from seacage.conventions import compass
+from seacage.studies._fidelity._windows import Windows
+from seacage.studies._interval import Interval, by_day
+
+SECTORS = ("N", "NE", "E", "SE", "S", "SW", "W", "NW")
+"""Eighths of the compass, each centred on its name."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SectorGap:
+    """Low fidelity against the truth while the current goes one way.
+
+    Parameters
+    ----------
+    sector
+        Where the current goes.
+    windows
+        How many.
+    truth, low
+        Mean responses [m] or [kN].
+    mae
+        Mean absolute error of the low fidelity [m] or [kN].
+    """
+
+    sector: str
+    windows: int
+    truth: float
+    low: float
+    mae: float
+
+    @property
+    def bias(self) -> float:
+        """Low fidelity less truth: negative where it underestimates [m] or [kN]."""
+        return self.low - self.truth
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SensorGap:
+    """Low fidelity against the truth at one sensor, on 10-minute means.
+
+    Parameters
+    ----------
+    sensor, unit
+        Its name, and the unit of its response: rise in m, tension in kN.
+    windows
+        How many.
+    truth, low
+        Mean responses.
+    bias
+        Low fidelity less truth: negative where it underestimates.
+    mae
+        Mean absolute error of the low fidelity.
+    sectors
+        The same by direction of the current, of those that it had.
+    """
+
+    sensor: str
+    unit: str
+    windows: int
+    truth: float
+    low: float
+    bias: Interval
+    mae: float
+    sectors: tuple[SectorGap, ...]
+
+    @property
+    def underestimates(self) -> bool:
+        """The low fidelity answers less than the truth on average."""
+        return self.bias.mean < 0.0
+
+
+def sensor_gaps(windows: Windows, *, seed: int) -> tuple[SensorGap, ...]:
+    """Compare the low fidelity with the truth at every sensor."""
+    sector = sectors(windows)
+    return tuple(_gap(windows, column, sector, seed) for column in range(windows.low.shape[1]))
+
+
+def sectors(windows: Windows) -> Int[np.ndarray, " window"]:
+    """Which eighth of the compass the current goes to, as the twin hears it."""
+    eighth = 360.0 / len(SECTORS)
+    turned = compass(windows.water.current_velocity) + eighth / 2.0
+    return (turned // eighth).astype(int) % len(SECTORS)
+
+
+def _gap(windows: Windows, column: int, sector: Int[np.ndarray, " window"], seed: int) -> SensorGap:
+    truth, low = windows.truth[:, column], windows.low[:, column]
+    return SensorGap(
+        sensor=windows.sensors.names[column],
+        unit=windows.sensors.units[column],
+        windows=len(windows),
+        truth=float(truth.mean()),
+        low=float(low.mean()),
+        bias=by_day(low - truth, windows.day, seed=seed),
+        mae=float(np.abs(low - truth).mean()),
+        sectors=tuple(
+            _sector(name, truth[sector == number], low[sector == number])
+            for number, name in enumerate(SECTORS)
+            if np.any(sector == number)
+        ),
+    )
+
+
+def _sector(
+    name: str, truth: Float[np.ndarray, " here"], low: Float[np.ndarray, " here"]
+) -> SectorGap:
+    return SectorGap(
+        sector=name,
+        windows=len(truth),
+        truth=float(truth.mean()),
+        low=float(low.mean()),
+        mae=float(np.abs(low - truth).mean()),
+    )

@@ -1,0 +1,281 @@
+"""What multifidelity gains, and that it gains nothing where there is nothing to gain."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float, Int, Shaped
+
+from seacage.conventions import Progress
+from seacage.records import FieldRecord
+from seacage.studies._fidelity._windows import MEAN_S, Windows, window_means
+from seacage.studies._interval import Interval, by_day
+from seacage.surrogates import Prediction
+from seacage.twin import Correction, Pairs, Said, spread_out
+
+LEAST = 20
+"""Fewer readings neither teach nor judge."""
+
+_SHORT_S = 60.0
+"""Means of this length where a sensor lives too shortly for 10-minute means [s]."""
+
+_MOST = 6.0
+"""Errors beyond so many times the usual one are faults and no noise [-]."""
+
+_RESTARTS = 3
+"""Of each search for hyperparameters, as a twin makes them."""
+
+Series = Float[np.ndarray, " reading"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Trial:
+    """One sensor's readings beside what the low fidelity says, some to teach, some to judge.
+
+    Parameters
+    ----------
+    sensor, unit
+        Its name, and the unit of its responses, m or kN.
+    mean_s
+        Length of the means that count as readings [s].
+    window
+        The window that each reading is of; the low fidelity's answer is the window's.
+    time
+        UTC, ascending.
+    reading, truth, low
+        Responses: of the sensor, without its error, of the low fidelity.
+    teach
+        Readings before the midnight that parts the days; the others judge.
+    """
+
+    sensor: str
+    unit: str
+    mean_s: float
+    window: Int[np.ndarray, " reading"]
+    time: Shaped[np.ndarray, " reading"]
+    reading: Series
+    truth: Series
+    low: Series
+    teach: Bool[np.ndarray, " reading"]
+
+    @property
+    def enough(self) -> bool:
+        """There is something to learn from and something to judge by."""
+        return bool(min(np.sum(self.teach), np.sum(~self.teach)) >= LEAST)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Gain:
+    """What multifidelity gains on low fidelity at one sensor.
+
+    Parameters
+    ----------
+    sensor, unit
+        Its name, and the unit of its responses.
+    teaching, judging
+        How many readings.
+    low_mae, multi_mae
+        Mean absolute errors against the readings that judge.
+    gain
+        Low-fidelity less multifidelity absolute error, paired, by blocks of a day.
+    """
+
+    sensor: str
+    unit: str
+    teaching: int
+    judging: int
+    low_mae: float
+    multi_mae: float
+    gain: Interval
+
+    @property
+    def share(self) -> Interval:
+        """The gain over the low fidelity's error [-]."""
+        return Interval(
+            mean=self.gain.mean / self.low_mae,
+            low=self.gain.low / self.low_mae,
+            high=self.gain.high / self.low_mae,
+        )
+
+
+Judged = tuple[Gain, Float[np.ndarray, " _"], Trial]
+"""A sensor's gain in the mean and reading by reading, and what it was judged on."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Gains:
+    """Of all sensors that could be judged.
+
+    Parameters
+    ----------
+    sensors
+        One each.
+    together
+        Mean over the sensors of the gain as a share of the low fidelity's error [-].
+    """
+
+    sensors: tuple[Gain, ...]
+    together: Interval
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NullCase:
+    """Multifidelity on the field as it is, and where the truth is the low fidelity itself.
+
+    Parameters
+    ----------
+    null, real
+        Gains where there is nothing to gain, and where there is.
+    unjudged
+        Sensors with too few readings.
+    mean_s
+        By sensor, the length of the means that count as readings [s].
+    """
+
+    null: Gains
+    real: Gains
+    unjudged: tuple[str, ...]
+    mean_s: dict[str, float]
+
+
+def null_case(
+    windows: Windows, field: FieldRecord, *, points: int, seed: int, progress: Progress
+) -> NullCase:
+    """Teach and judge twice alike: with the sensors' readings, and with a truth that is null.
+
+    In the null case a sensor reads the low fidelity's own answer in the water heard, and its
+    own noise: what it really read less the truth, less what lasts for days in that.
+    Level 1 is the low fidelity itself, not a model of it, in both.
+
+    Parameters
+    ----------
+    windows
+        With the low fidelity's answers.
+    field
+        Whose sensors teach.
+    points
+        Readings that each sensor teaches with, at most.
+    seed
+        Of the choice of readings, the searches and the draws.
+    """
+    trials = [_trial(windows, field, column) for column in range(len(windows.sensors.names))]
+    judged = [trial for trial in trials if trial.enough]
+    real: list[Judged] = []
+    null: list[Judged] = []
+    for done, trial in enumerate(judged):
+        progress("null case", done, len(judged))
+        real.append(_gained(trial, trial.reading, windows, points, seed))
+        null.append(_gained(trial, trial.low + noise(trial), windows, points, seed))
+    progress("null case", len(judged), len(judged))
+    return NullCase(
+        null=_together(null, windows, seed),
+        real=_together(real, windows, seed),
+        unjudged=tuple(trial.sensor for trial in trials if not trial.enough),
+        mean_s={trial.sensor: trial.mean_s for trial in judged},
+    )
+
+
+def noise(trial: Trial) -> Series:
+    """What a sensor read beside the truth, without what lasts: its mean is 0 on each day.
+
+    Offset, drift and the weather's air pressure last for days, and a gain forever; a lesson
+    cannot tell them from a difference of the cage. A spike, or a sensor that stood still, is
+    no noise: what no check found of them is cut.
+    """
+    error = trial.reading - trial.truth
+    error = error - np.median(error)
+    most = _MOST * float(np.median(np.abs(error)))
+    _, day = np.unique(trial.time.astype("datetime64[D]"), return_inverse=True)
+    lasting = np.column_stack([np.eye(day.max() + 1)[day], trial.truth])
+    sound = np.abs(error) <= most
+    left = error - lasting @ np.linalg.lstsq(lasting[sound], error[sound])[0]
+    return np.where(sound, left, 0.0)
+
+
+def _trial(windows: Windows, field: FieldRecord, column: int) -> Trial:
+    """Ten-minute means of a sensor, or shorter ones where there are too few."""
+    trial = _read(windows, field, column, MEAN_S)
+    return trial if trial.enough else _read(windows, field, column, _SHORT_S)
+
+
+def _read(windows: Windows, field: FieldRecord, column: int, mean_s: float) -> Trial:
+    sensors = windows.sensors
+    name, unit = sensors.names[column], sensors.units[column]
+    read = field.sensors.get(name)
+    if read is None:
+        time, mean = windows.end[:0], np.empty(0)
+    else:
+        time, mean = window_means(read, field, length=mean_s)
+    window = np.minimum(np.searchsorted(windows.end, time), len(windows) - 1)
+    before = (windows.end[window] - time) / np.timedelta64(1, "s")
+    known = np.isfinite(mean) & (before >= 0.0) & (before < MEAN_S)
+    time, window = time[known], window[known]
+    days = np.unique(windows.day)
+    return Trial(
+        sensor=name,
+        unit=unit,
+        mean_s=mean_s,
+        window=window,
+        time=time,
+        reading=sensors.response(column, mean[known]),
+        truth=windows.truth[window, column],
+        low=windows.low[window, column],
+        teach=windows.day[window] < days[len(days) // 2],
+    )
+
+
+def _gained(trial: Trial, reading: Series, windows: Windows, points: int, seed: int) -> Judged:
+    """Teach level 2 of one sensor as a twin does, and judge it; the gain of each reading too."""
+    multi = _predicted(trial, reading, windows, points, seed)
+    judge = ~trial.teach
+    low = np.abs(trial.low - reading)[judge]
+    gain = low - np.abs(multi - reading[judge])
+    day = windows.day[trial.window[judge]]
+    score = Gain(
+        sensor=trial.sensor,
+        unit=trial.unit,
+        teaching=min(points, int(np.sum(trial.teach))),
+        judging=len(gain),
+        low_mae=float(low.mean()),
+        multi_mae=float(low.mean() - gain.mean()),
+        gain=by_day(gain, day, seed=seed),
+    )
+    return score, gain, trial
+
+
+def _predicted(
+    trial: Trial, reading: Series, windows: Windows, points: int, seed: int
+) -> Float[np.ndarray, " judged"]:
+    inputs = ("current", "waves") if windows.waves else ("current",)
+    water = windows.water.rows(trial.window)
+    lessons = Pairs(time=trial.time, metocean=water, value=reading).rows(trial.teach)
+    chosen = spread_out(lessons, points, seed=seed)
+    rows = np.searchsorted(trial.time, chosen.time)
+    model = Correction.learned(
+        chosen,
+        chosen.metocean.features(inputs),
+        Said(prediction=_exactly(trial.low[rows])),
+        restarts=_RESTARTS,
+        seed=seed,
+    )
+    if not model.proven(chosen, trial.low[rows]):  # a twin would stay at level 1
+        return trial.low[~trial.teach]
+    asked = water.rows(~trial.teach).features(inputs)
+    return model.behind(asked, _exactly(trial.low[~trial.teach])).mean
+
+
+def _exactly(answers: Series) -> Prediction:
+    return Prediction(mean=answers, std=np.zeros(len(answers)))
+
+
+def _together(parts: list[Judged], windows: Windows, seed: int) -> Gains:
+    """All sensors at once: in each window the mean of those that have readings there."""
+    total, count = np.zeros(len(windows)), np.zeros(len(windows))
+    for score, gain, trial in parts:
+        window = trial.window[~trial.teach]
+        readings = np.bincount(window, minlength=len(windows))
+        share = np.bincount(window, gain / score.low_mae, minlength=len(windows))
+        total += share / np.maximum(readings, 1)
+        count += readings > 0
+    judged = count > 0
+    together = by_day(total[judged] / count[judged], windows.day[judged], seed=seed)
+    return Gains(sensors=tuple(score for score, _, _ in parts), together=together)

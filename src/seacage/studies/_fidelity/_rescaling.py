@@ -1,0 +1,261 @@
+"""What is left of the low fidelity's error after its best rescaling and rotation."""
+
+from dataclasses import dataclass
+from itertools import product
+from typing import TYPE_CHECKING
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from seacage.campaigns import Plan
+from seacage.conventions import Progress, Result
+from seacage.studies._fidelity._windows import Sensors, Windows, kept_campaign
+from seacage.studies._interval import Interval, by_day
+from seacage.studies._stages import Stages
+from seacage.surrogates import FittedGaussianProcess, GaussianProcess, current_features
+
+if TYPE_CHECKING:
+    from scipy.interpolate import RectBivariateSpline
+
+LEAST_LEFT = 0.10
+"""Share of the low fidelity's error that no rescaling may remove."""
+
+_FACTORS = np.arange(0.2, 2.01, 0.1)
+_TURNS = np.arange(-90.0, 91.0, 10.0)
+"""Factors of the current's speed [-] and turns, clockwise [deg], that are tried first."""
+
+_FINER = 5
+"""Around the best, so many times finer steps are tried."""
+
+_CURRENTS = 400
+_FASTEST = 1.8
+"""Settled currents that the change of an answer is learned from, up to this speed [m/s]."""
+
+_TABLE = np.linspace(-_FASTEST, _FASTEST, 73)
+"""East and north components at which what was learned is tabled, to be asked often [m/s]."""
+
+_REWEIGHINGS = 30
+
+Columns = Float[np.ndarray, "window sensor"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Rescaling:
+    """The best that rescaling and rotating the low fidelity does for one sensor.
+
+    Parameters
+    ----------
+    sensor, unit
+        Its name, and the unit of its response.
+    factor, turn
+        Of the current's speed [-] and direction, clockwise [deg].
+    gain, offset
+        Of the answer [-] and [m] or [kN].
+    teaching, judging
+        How many windows.
+    low_mae, left_mae
+        Mean absolute errors on the days that judge, before and after [m] or [kN].
+    above_least
+        What is left less a tenth of what there was: above 0 where more than a tenth is left.
+    """
+
+    sensor: str
+    unit: str
+    factor: float
+    turn: float
+    gain: float
+    offset: float
+    teaching: int
+    judging: int
+    low_mae: float
+    left_mae: float
+    above_least: Interval
+
+    @property
+    def left(self) -> float:
+        """Share of the low fidelity's error that is left [-]."""
+        return self.left_mae / self.low_mae
+
+    @property
+    def enough(self) -> bool:
+        """At least a tenth is left."""
+        return self.left >= LEAST_LEFT
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Rescalings:
+    """Of all sensors.
+
+    Parameters
+    ----------
+    sensors
+        One each.
+    emulation_mae
+        Error of the interpolation between settled currents, each left out in turn, by sensor
+        [m] or [kN].
+    """
+
+    sensors: tuple[Rescaling, ...]
+    emulation_mae: dict[str, float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Moving:
+    """How the low fidelity's answers move when the current of each window is changed.
+
+    Parameters
+    ----------
+    windows
+        With the answers as they are; what waves add to them stays.
+    settled
+        Of each sensor, in (east, north): smooth, without a seam at any direction.
+    """
+
+    windows: Windows
+    settled: "tuple[RectBivariateSpline, ...]"
+
+    def moved(self, factor: float, turn: float) -> Columns:
+        """Answers to faster and turned currents, the turn clockwise [deg]."""
+        velocity = self.windows.water.current_velocity
+        angle = np.deg2rad(turn)
+        rotation = np.array(
+            [[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]
+        )  # of rows (east, north)
+        change = self._settled(factor * velocity @ rotation) - self._settled(velocity)
+        return self.windows.low + change
+
+    def _settled(self, velocity: Float[np.ndarray, "window 2"]) -> Columns:
+        speed = np.linalg.norm(velocity, axis=1, keepdims=True)
+        limited = velocity * np.minimum(1.0, _FASTEST / np.maximum(speed, _FASTEST))
+        return np.column_stack([one.ev(*limited.T) for one in self.settled])
+
+
+def teaching_days(windows: Windows) -> Bool[np.ndarray, " window"]:
+    """Every other day, from the first on: growth and weather teach and judge alike."""
+    days, index = np.unique(windows.day, return_inverse=True)
+    return index % 2 == 0 if len(days) > 1 else np.arange(len(windows)) < len(windows) // 2
+
+
+def rescalings(
+    windows: Windows, stages: Stages, *, seed: int, workers: int | None, progress: Progress
+) -> Rescalings:
+    """Find the best rescaling of each sensor on days that teach; judge it on the others.
+
+    The current's speed is multiplied, its direction turned, and the answer multiplied and
+    shifted, with the least mean absolute error. The truth itself teaches, without any sensor's
+    noise, so that a rescaling has every advantage. How an answer changes with the current comes
+    from settled currents; what waves add stays as simulated.
+    """
+    process, errors = _learned(windows.sensors, stages, seed, workers, progress)
+    settled, teach = _tabled(process), teaching_days(windows)
+    lesson, exam = (Moving(windows=windows.rows(days), settled=settled) for days in (teach, ~teach))
+    coarse = list(product(_FACTORS.tolist(), _TURNS.tolist()))
+    first = np.stack([lesson.moved(*change) for change in coarse])
+    names = windows.sensors.names
+    found: list[Rescaling] = []
+    for column in range(len(names)):
+        progress("rescaling", column, len(names))
+        change = coarse[_least(first[..., column], lesson.windows.truth[:, column])]
+        found.append(_judged(lesson, exam, column, _refined(lesson, column, change), seed))
+    progress("rescaling", len(names), len(names))
+    return Rescalings(
+        sensors=tuple(found), emulation_mae=dict(zip(names, errors.tolist(), strict=True))
+    )
+
+
+def _learned(
+    sensors: Sensors, stages: Stages, seed: int, workers: int | None, progress: Progress
+) -> tuple[FittedGaussianProcess, Float[np.ndarray, " sensor"]]:
+    """Answers to currents alone, and how far they are off at a current left out."""
+    plan = Plan.sample(
+        seed, _CURRENTS, current_speed=(0.0, _FASTEST), hs=(0.0, 0.0), name="currents"
+    )
+    record = kept_campaign(
+        "currents", sensors.cage, plan, stages, workers=workers, progress=progress
+    )
+    known = record.result != Result.DIVERGED
+    velocity = np.array([sea.current_velocity for sea in record.seas])[known]
+    answers = sensors.computed(record.node_position[known], record.bridle_tension[known])
+    settled = GaussianProcess(kernel="matern-5/2").fit(
+        current_features(velocity), answers, seed=seed
+    )
+    return settled, np.abs(settled.leave_one_out().mean - answers).mean(axis=0)
+
+
+def _tabled(process: FittedGaussianProcess) -> "tuple[RectBivariateSpline, ...]":
+    from scipy.interpolate import RectBivariateSpline
+
+    east, north = np.meshgrid(_TABLE, _TABLE, indexing="ij")
+    velocity = np.column_stack([east.ravel(), north.ravel()])
+    answers = process.predict(current_features(velocity)).mean
+    return tuple(
+        RectBivariateSpline(_TABLE, _TABLE, column.reshape(east.shape)) for column in answers.T
+    )
+
+
+def _refined(lesson: Moving, column: int, change: tuple[float, float]) -> tuple[float, float]:
+    """The best change within a coarse step of a first one."""
+    steps = np.linspace(-1.0, 1.0, 2 * _FINER + 1)
+    factors = np.maximum(change[0] + (_FACTORS[1] - _FACTORS[0]) * steps, 0.0)
+    turns = change[1] + (_TURNS[1] - _TURNS[0]) * steps
+    tried = list(product(factors.tolist(), turns.tolist()))
+    answers = np.stack([lesson.moved(*one)[:, column] for one in tried])
+    return tried[_least(answers, lesson.windows.truth[:, column])]
+
+
+def _least(answers: Float[np.ndarray, "change window"], truth: Float[np.ndarray, " window"]) -> int:
+    """Which change leaves the least error, its best gain and offset given."""
+    gain, offset = _fitted(answers, truth).T
+    error = np.abs(gain[:, None] * answers + offset[:, None] - truth).mean(axis=1)
+    return int(np.argmin(error))
+
+
+def _fitted(
+    answers: Float[np.ndarray, "change window"], truth: Float[np.ndarray, " window"]
+) -> Float[np.ndarray, "change 2"]:
+    """Gain and offset of least mean absolute error, for each row of answers.
+
+    References
+    ----------
+    Iteratively reweighted least squares: Schlossmacher (1973).
+    """
+    weight = np.ones_like(answers)
+    smallest = 1e-4 * max(float(np.std(truth)), 1e-9)
+    gain = offset = np.zeros(len(answers))
+    for _ in range(_REWEIGHINGS):
+        total = weight.sum(axis=1)
+        centre = (weight * answers).sum(axis=1) / total
+        level = (weight * truth).sum(axis=1) / total
+        away = answers - centre[:, None]
+        spread = (weight * away**2).sum(axis=1)
+        gain = (weight * away * truth).sum(axis=1) / np.maximum(spread, 1e-12)
+        offset = level - gain * centre
+        left = np.abs(gain[:, None] * answers + offset[:, None] - truth)
+        weight = 1.0 / np.maximum(left, smallest)
+    return np.column_stack([gain, offset])
+
+
+def _judged(
+    lesson: Moving, exam: Moving, column: int, change: tuple[float, float], seed: int
+) -> Rescaling:
+    """Gain and offset from the days that teach; errors on the others."""
+    taught, windows = lesson.windows, exam.windows
+    answers = lesson.moved(*change)[:, column]
+    gain, offset = _fitted(answers[None], taught.truth[:, column])[0].tolist()
+    truth = windows.truth[:, column]
+    low = np.abs(windows.low[:, column] - truth)
+    left = np.abs(gain * exam.moved(*change)[:, column] + offset - truth)
+    factor, turn = change
+    return Rescaling(
+        sensor=windows.sensors.names[column],
+        unit=windows.sensors.units[column],
+        factor=factor,
+        turn=turn,
+        gain=gain,
+        offset=offset,
+        teaching=len(taught),
+        judging=len(windows),
+        low_mae=float(low.mean()),
+        left_mae=float(left.mean()),
+        above_least=by_day(left - LEAST_LEFT * low, windows.day, seed=seed),
+    )

@@ -1,0 +1,230 @@
+"""The fidelity study: a virtual field held against the rules that keep it honest."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from seacage.cage import Cage
+from seacage.campaigns import Hidden
+from seacage.conventions import InputError, Origin, Progress, unheard
+from seacage.records import FieldRecord
+from seacage.studies._chain import Chain, Recipe
+from seacage.studies._fidelity._claims import Claim, claims
+from seacage.studies._fidelity._fouling import FoulingGap, fouling_gap
+from seacage.studies._fidelity._gap import SensorGap, sensor_gaps
+from seacage.studies._fidelity._null_case import NullCase, null_case
+from seacage.studies._fidelity._report import FidelityReport
+from seacage.studies._fidelity._rescaling import Rescaling, rescalings
+from seacage.studies._fidelity._windows import Sensors, Windows, answered, chosen_windows
+from seacage.studies._held_out import write_scores
+from seacage.studies._stages import Stages
+
+_DAYS = 48.0
+"""Of the field that is made where none is given."""
+
+_POINTS = 300
+"""Readings that each sensor teaches with at most, as a twin's do."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class FidelityStudy:
+    """Where the study's report is, and what it found.
+
+    Parameters
+    ----------
+    report, scores
+        The HTML page and the same numbers as JSON.
+    claims
+        Each with its verdict.
+    gaps
+        Low fidelity against the truth, by sensor.
+    rescalings
+        What the best rescaling leaves, by sensor.
+    null
+        The null case beside the real one.
+    fouling
+        The gap by growth.
+    """
+
+    report: Path
+    scores: Path
+    claims: tuple[Claim, ...]
+    gaps: tuple[SensorGap, ...]
+    rescalings: tuple[Rescaling, ...]
+    null: NullCase
+    fouling: FoulingGap
+
+
+def fidelity_study(
+    out: str | Path,
+    *,
+    field: str | Path | None = None,
+    cage: Cage | None = None,
+    hidden: Hidden | None = None,
+    windows: int = 600,
+    seed: int = 0,
+    workers: int | None = None,
+    progress: Progress | None = None,
+) -> FidelityStudy:
+    """Show how far low fidelity and virtual field are apart, into one HTML page.
+
+    Low fidelity against the truth per sensor and direction of the current; what its best
+    rescaling and rotation leaves; that multifidelity gains nothing where the truth is the low
+    fidelity itself; and how the gap changes with the net's growth.
+
+    Parameters
+    ----------
+    out
+        Folder of ``report.html``, ``scores.json`` and the stages they were made from; after a
+        stop the work goes on where it was.
+    field
+        Folder of a virtual field with its truth beside it in ``truth``; None makes one of 48
+        days, settled and without waves.
+    cage
+        That the field is of; None takes the shipped cage of the field's name.
+    hidden
+        That the field was made with; None for those shipped.
+    windows
+        10-minute windows that survey the days, about; those in which a shackle lives come
+        on top. With waves a window costs half a second of a core.
+    seed
+        Of the choice of windows, the low fidelity's waves, the searches and the draws.
+    workers
+        Processes for simulations; None for one per core.
+    progress
+        Called as (stage, done, total).
+
+    Raises
+    ------
+    InputError
+        The field is not virtual, was made with other hidden parameters, or is too short.
+    """
+    out, report = Path(out), progress or unheard
+    stages = Stages(folder=out / "stages")
+    hidden = Hidden.read() if hidden is None else hidden
+    record, truth, cage = _field(out, field, cage, seed, workers, report)
+    _check(record, hidden, windows)
+    sensors = Sensors.of(cage)
+    chosen = chosen_windows(sensors, record, truth, count=windows, seed=seed)
+    whole = answered(chosen, stages, seed=seed, workers=workers, progress=report)
+    survey = whole.rows(whole.surveyed)
+    gaps = sensor_gaps(survey, seed=seed)
+    scaled = rescalings(survey, stages, seed=seed, workers=workers, progress=report)
+    null = null_case(whole, record, points=_POINTS, seed=seed, progress=report)
+    fouling = fouling_gap(
+        survey, hidden, stages, begin=record.buoy.time[0], workers=workers, progress=report
+    )
+    found = claims(gaps, scaled.sensors, null, fouling)
+    recipe = _recipe(record, whole, lost=len(chosen) - len(whole))
+    provenance = _provenance(record, cage, seed)
+    page = FidelityReport(
+        claims=found,
+        gaps=gaps,
+        rescalings=scaled,
+        null=null,
+        fouling=fouling,
+        recipe=recipe,
+        provenance=provenance,
+    ).html()
+    study = FidelityStudy(
+        report=out / "report.html",
+        scores=out / "scores.json",
+        claims=found,
+        gaps=gaps,
+        rescalings=scaled.sensors,
+        null=null,
+        fouling=fouling,
+    )
+    _write(study, page, {"recipe": recipe, "provenance": provenance})
+    return study
+
+
+def _field(
+    out: Path,
+    field: str | Path | None,
+    cage: Cage | None,
+    seed: int,
+    workers: int | None,
+    progress: Progress,
+) -> tuple[FieldRecord, FieldRecord, Cage]:
+    """The record, its truth, and the cage as drawn; made where none is given."""
+    if field is not None:
+        record = FieldRecord.read(field)
+        truth = FieldRecord.read(Path(field) / "truth")
+        return record, truth, Cage.named(record.cage) if cage is None else cage
+    chain = Chain(
+        folder=out / "stages",
+        cage=Cage.named("ace") if cage is None else cage,
+        recipe=Recipe(seed=seed, days=_DAYS),
+        workers=workers,
+        progress=progress,
+    )
+    return chain.field, chain.truth, chain.cage
+
+
+def _check(record: FieldRecord, hidden: Hidden, windows: int) -> None:
+    if record.origin is not Origin.VIRTUAL_FIELD:
+        raise InputError(
+            f"study fidelity: the record's sensors are {record.origin}, and no truth is known of "
+            "them. Give a folder that `seacage field virtual` made."
+        )
+    if record.hidden_sha256 != hidden.sha256:
+        raise InputError(
+            f"study fidelity: the field was made with hidden parameters {record.hidden_sha256}, "
+            f"and these are {hidden.sha256}. Give the file that made it."
+        )
+    if windows < 1:
+        raise InputError(f"study fidelity: windows = {windows} surveys nothing. Give e.g. 600.")
+
+
+def _recipe(record: FieldRecord, windows: Windows, *, lost: int) -> dict[str, str]:
+    days = len(np.unique(windows.day))
+    surveyed = int(np.sum(windows.surveyed))
+    how = (
+        "simulated in time for 600 s after 300 s, in long-crested waves of the height, period and "
+        "direction heard, 16 side by side"
+        if windows.waves
+        else "settled, as the buoy reports no waves"
+    )
+    return {
+        "Truth (virtual field)": f"{len(record.sensors)} sensors, "
+        f"{_date(record.buoy.time[0])} to {_date(record.buoy.time[-1])}",
+        "Windows": f"{surveyed} of 10 minutes spread over {days} days, each from its own share "
+        f"of the day, and {len(windows) - surveyed} more in which a shackle lives",
+        "Low fidelity (computed)": f"Kristiansen–Faltinsen screens on a clean net, uniform "
+        f"current, corners on springs; {how}; {lost} lost",
+        "Days": "for the rescaling every other day teaches; for the null case the first half "
+        "teaches, the second judges",
+    }
+
+
+def _date(time: np.datetime64) -> str:
+    return str(np.datetime_as_string(time, unit="m")).replace("T", " ")
+
+
+def _provenance(record: FieldRecord, cage: Cage, seed: int) -> dict[str, str]:
+    from importlib.metadata import version
+
+    return {
+        "seacage": version("seacage"),
+        "Seed": str(seed),
+        "Cage": f"{cage.name}, sha256 {cage.sha256}",
+        "Hidden parameters": f"sha256 {record.hidden_sha256}",
+        "Notes": "\n".join(record.notes),
+    }
+
+
+def _write(study: FidelityStudy, page: str, about: Mapping[str, object]) -> None:
+    study.report.parent.mkdir(parents=True, exist_ok=True)
+    scores = {
+        **about,
+        "claims": study.claims,
+        "sensors": study.gaps,
+        "rescalings": study.rescalings,
+        "null_case": study.null,
+        "fouling": study.fouling,
+    }
+    write_scores(study.scores, scores)
+    study.report.write_text(page, encoding="utf-8")

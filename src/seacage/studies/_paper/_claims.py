@@ -1,0 +1,334 @@
+"""What the paper says, and whether this study's own numbers say it too."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.studies._paper._shape_models import GCN_DEGREES, GCN_PAPER, PCA_DEGREES, PCA_PAPER
+from seacage.studies._paper._shape_scores import ShapeScore
+from seacage.studies._paper._shape_study import ShapeStudy
+from seacage.studies._paper._ways import IN_A_ROW, Judged
+from seacage.studies._sensor_scores import SensorScore
+from seacage.studies._text import listed, number, percent
+
+ROV_M = 1.0
+"""The distance that the paper would have an ROV keep from the net [m]."""
+
+PAPER_VARIANCE = 0.93
+"""What the paper's three modes hold at least."""
+
+UNJUDGED = (
+    (
+        "Its error figures. They stand in its plots, not in its text, and its field and "
+        "simulator are closed; a kilonewton here is of another cage in another sea."
+    ),
+    (
+        "Its simulator. FhSim cannot be had; its part is played by seacage's own low fidelity, "
+        "which has the cage's published dimensions and another code."
+    ),
+    (
+        "Its field. Measured data of the cage are not public; every reading here is of a "
+        "virtual field, whose truth is a simulation with other physics and hidden parameters."
+    ),
+    (
+        "Its times. Ten minutes on 56 cores for half an hour simulated, and answers within "
+        "seconds, are of other programs on other machines."
+    ),
+    ("Figures for more than one winter, which the paper asks for itself."),
+)
+"""What could not be judged, and why."""
+
+INCONSISTENT = (
+    (
+        "The harsh case is test index 31 in the text and 301 in the figure's caption; the mild "
+        "one is 801 in both. All three end in 1, as they would if every tenth of 1,000 cases "
+        "were a test, so both may be meant; neither sea is given. Here the harsh and the mild "
+        "net are the test cases at the 95th and the 20th percentile of the current's speed."
+    ),
+    (
+        "The network predicts coordinates where its output matrix is defined and displacements "
+        "where its loss is. The two differ by a constant, so do not differ in error. "
+        "Coordinates are drawn here. For the modes it matters: not centred, they are taken of "
+        "displacements here."
+    ),
+    (
+        "The matrix of modes multiplies from the wrong side: B = M φ does not fit M's shape, "
+        "φᵀM does, and gives the three rows that the text describes."
+    ),
+    (
+        "The reconstruction sums over modes and over scenarios; summed over scenarios it would "
+        "be one shape. Here, as in a later sentence of the paper, over modes alone."
+    ),
+    (
+        "Level 2 is said to need training inputs that level 1 has too. It is trained at "
+        "measured currents on level 1's mean there, so it does not."
+    ),
+    (
+        "A kernel of two inputs is said to have 2d + 3 hyperparameters; with one variance for "
+        "each of three factors and d + 1 + d weights it has 2d + 4, or 2d + 3 where the "
+        "product's variances are counted once."
+    ),
+    (
+        "The simulations have waves of up to 3 m, the models hear the current alone. So the "
+        "waves are noise to them, and bound what any model of the current can reach."
+    ),
+)
+"""Where the paper says two things, and what was chosen here."""
+
+Verdict = Literal["reproduced", "partly", "not reproduced", "not judged"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PaperClaim:
+    """A statement of the paper, held against the study's numbers.
+
+    Parameters
+    ----------
+    claim
+        The statement.
+    verdict
+        What the numbers say of it.
+    finding
+        The numbers.
+    """
+
+    claim: str
+    verdict: Verdict
+    finding: str
+
+
+def paper_claims(judged: Judged, shapes: ShapeStudy) -> tuple[PaperClaim, ...]:
+    """Each statement of the paper's results that this study can hold numbers against."""
+    sensors = judged.sensors
+    loads = [one for one in sensors if one.unit == "kN"]
+    depths = [one for one in sensors if one.unit == "m"]
+    return (
+        *(
+            _gained(some, what)
+            for some, what in ((loads, "mooring loads"), (depths, "depths"))
+            if some
+        ),
+        _slopes(sensors),
+        _underestimated(depths),
+        _oscillation(loads),
+        _few_minutes(judged),
+        _three_modes(shapes),
+        _within_a_metre(shapes),
+        _harder_when_faster(shapes),
+        _network_wins(shapes),
+        _network_steadier(shapes),
+    )
+
+
+def _share(sensors: Sequence[SensorScore], true: Sequence[str]) -> Verdict:
+    """All of them, some or none."""
+    if len(true) == len(sensors):
+        return "reproduced"
+    return "partly" if true else "not reproduced"
+
+
+def _gained(sensors: Sequence[SensorScore], what: str) -> PaperClaim:
+    better = [one.sensor for one in sensors if one.means.better]
+    pairs = [
+        f"{one.sensor} {number(one.means.low_mae)} → {number(one.means.multi_mae)} {one.unit}"
+        for one in sensors
+    ]
+    proven = f"Proven at {listed(better)}." if better else "Proven at no sensor."
+    return PaperClaim(
+        claim=f"Multifidelity predicts the {what} much better than low fidelity.",
+        verdict=_share(sensors, better),
+        finding=f"Mean absolute errors of 10-minute means: {', '.join(pairs)}. {proven}",
+    )
+
+
+def _slopes(sensors: Sequence[SensorScore]) -> PaperClaim:
+    nearer = [
+        one.sensor for one in sensors if abs(one.multi_line[0] - 1.0) < abs(one.low_line[0] - 1.0)
+    ]
+    slopes = [
+        f"{one.sensor} {number(one.low_line[0])} → {number(one.multi_line[0])}" for one in sensors
+    ]
+    return PaperClaim(
+        claim="The best fit of prediction on reading comes closer to the diagonal.",
+        verdict=_share(sensors, nearer),
+        finding=f"Slopes: {', '.join(slopes)}.",
+    )
+
+
+def _underestimated(depths: Sequence[SensorScore]) -> PaperClaim:
+    # A depth that is too large is a displacement that is too small.
+    under = [one.sensor for one in depths if one.raw.low_bias > 0.0]
+    return PaperClaim(
+        claim="The simulations underestimate the net's deformation.",
+        verdict=_share(depths, under) if depths else "not judged",
+        finding="; ".join(
+            f"{one.sensor} is predicted {number(abs(one.raw.low_bias))} m too "
+            f"{'deep' if one.raw.low_bias > 0.0 else 'high'} on average"
+            for one in depths
+        )
+        + ".",
+    )
+
+
+def _oscillation(loads: Sequence[SensorScore]) -> PaperClaim:
+    """What single readings scatter beyond their ten-minute means."""
+    more = [one for one in loads if one.raw.multi_mae > 1.1 * one.means.multi_mae]
+    pairs = [
+        f"{one.sensor} {number(one.raw.multi_mae)} and {number(one.means.multi_mae)}"
+        for one in loads
+    ]
+    return PaperClaim(
+        claim="Readings oscillate about the multifidelity trend, which does not follow.",
+        verdict=_share(loads, [one.sensor for one in more]) if loads else "not judged",
+        finding="Errors of single readings and of 10-minute means, counted as true where the "
+        f"first is a tenth larger: {', '.join(pairs)} kN.",
+    )
+
+
+def _few_minutes(judged: Judged) -> PaperClaim:
+    claim = "A few minutes of a sensor's data suffice to teach it."
+    row = [way for way in judged.ways if way.name == IN_A_ROW]
+    if not row:
+        return PaperClaim(
+            claim=claim,
+            verdict="not judged",
+            finding="Readings a minute apart hold no few minutes; the full study judges it.",
+        )
+    sensors = [one for one in row[0].sensors if one.sensor in row[0].taught]
+    better = [one.sensor for one in sensors if one.means.better]
+    worse = [one.sensor for one in sensors if one.means.worse]
+    spread = {one.sensor: one for one in judged.sensors}
+    beaten = [
+        one.sensor
+        for one in row[0].sensors
+        if one.means.multi_mae > spread[one.sensor].means.multi_mae
+    ]
+    covered = [one.minutes.coverage for one in sensors]
+    held = (
+        f"Intervals cover {percent(min(covered))} to {percent(max(covered))}. " if covered else ""
+    )
+    return PaperClaim(
+        claim=claim,
+        verdict=_share(row[0].sensors, better),
+        finding="Read as minutes in a row, which the paper does not say: better than low fidelity "
+        f"at {listed(better or ['no sensor'])}, worse at {listed(worse or ['none'])}. "
+        f"{held}Readings spread over the teaching days do better at "
+        f"{listed(beaten or ['no sensor'])}.",
+    )
+
+
+def _three_modes(shapes: ShapeStudy) -> PaperClaim:
+    centred = {name: share for name, share in shapes.variance.items() if "not" not in name}
+    paper = shapes.scores[PCA_PAPER]
+    return PaperClaim(
+        claim="Three principal components hold 93 % of the variance, so three are enough.",
+        verdict="reproduced"
+        if min(centred.values()) >= PAPER_VARIANCE and paper.worst < ROV_M
+        else "partly"
+        if min(centred.values()) >= PAPER_VARIANCE
+        else "not reproduced",
+        finding="Held: "
+        + "; ".join(
+            f"{percent(share, digits=1)} ({name})" for name, share in shapes.variance.items()
+        )
+        + f". Enough is another matter: with three modes the worst node is {number(paper.worst)} m "
+        f"off and one in a hundred more than {number(paper.p99)} m.",
+    )
+
+
+def _within_a_metre(shapes: ShapeStudy) -> PaperClaim:
+    some = _papers(shapes)
+    share = {one.model: float(np.mean(one.case_axis_mae < ROV_M)) for one in some}
+    nodes = {one.model: float(np.mean(one.case_worst < ROV_M)) for one in some}
+    return PaperClaim(
+        claim="For most test cases the mean absolute error lies below 1 m, which is accurate "
+        "enough for an ROV.",
+        verdict="partly" if min(share.values()) > 0.5 else "not reproduced",
+        finding="Below 1 m: "
+        + "; ".join(f"{name} {percent(one)} of cases and axes" for name, one in share.items())
+        + ". A mean over 321 nodes keeps no ROV off a net; the worst node of a case is within 1 m "
+        + "in "
+        + "; ".join(f"{percent(one)} ({name})" for name, one in nodes.items())
+        + f" of cases, and for {shapes.best.model} in "
+        f"{percent(float(np.mean(shapes.best.case_worst < ROV_M)))}.",
+    )
+
+
+def _harder_when_faster(shapes: ShapeStudy) -> PaperClaim:
+    rank = {
+        one.model: _rank_correlation(shapes.current_speed, one.case_axis_mae.mean(axis=1))
+        for one in _papers(shapes)
+    }
+    return PaperClaim(
+        claim="Errors are larger where the current is faster.",
+        verdict="reproduced"
+        if min(rank.values()) > 0.3
+        else "partly"
+        if max(rank.values()) > 0.3
+        else "not reproduced",
+        finding="Rank correlation of a case's error with its speed, counted as true above 0.3: "
+        + "; ".join(f"{name} {number(value)}" for name, value in rank.items())
+        + ".",
+    )
+
+
+def _rank_correlation(one: Float[np.ndarray, " case"], other: Float[np.ndarray, " case"]) -> float:
+    """Spearman's; ties in measured numbers are not expected."""
+    first, second = (np.argsort(np.argsort(values)) for values in (one, other))
+    return float(np.corrcoef(first, second)[0, 1])
+
+
+def _network_wins(shapes: ShapeStudy) -> PaperClaim:
+    claim = "The graph network predicts the shape better than PCA with Gaussian processes."
+    pairs = [
+        (shapes.scores[network], shapes.scores[modes])
+        for network, modes in ((GCN_PAPER, PCA_PAPER), (GCN_DEGREES, PCA_DEGREES))
+        if network in shapes.scores
+    ]
+    if not pairs:
+        return PaperClaim(claim=claim, verdict="not judged", finding=" ".join(shapes.left_out))
+    wins = [network.mae < modes.mae for network, modes in pairs]
+    told = [
+        f"hearing the {network.inputs} "
+        + ", ".join(
+            f"{axis} {number(ours)} against {number(theirs)} m"
+            for axis, ours, theirs in zip("xyz", network.axis_mae, modes.axis_mae, strict=True)
+        )
+        for network, modes in pairs
+    ]
+    return PaperClaim(
+        claim=claim,
+        verdict="reproduced" if all(wins) else "partly" if any(wins) else "not reproduced",
+        finding=f"Mean absolute errors, network against PCA-GP: {'; '.join(told)}. The paper gives "
+        "neither width, learning rate nor epochs, so another network may do better; this is no "
+        "refutation.",
+    )
+
+
+def _network_steadier(shapes: ShapeStudy) -> PaperClaim:
+    claim = "The errors of PCA-GP vary more from case to case along x and z than the network's."
+    network = shapes.scores.get(GCN_PAPER)
+    if network is None:
+        return PaperClaim(claim=claim, verdict="not judged", finding=" ".join(shapes.left_out))
+    theirs, ours = (_spread(one) for one in (shapes.scores[PCA_PAPER], network))
+    wider = [axis for axis in "xz" if theirs[axis] > ours[axis]]
+    return PaperClaim(
+        claim=claim,
+        verdict="reproduced" if len(wider) == 2 else "partly" if wider else "not reproduced",
+        finding="Standard deviation over cases, PCA-GP against the network: "
+        + ", ".join(
+            f"{axis} {number(theirs[axis])} against {number(ours[axis])} m" for axis in "xyz"
+        )
+        + ".",
+    )
+
+
+def _spread(score: ShapeScore) -> Mapping[str, float]:
+    return dict(zip("xyz", score.case_axis_mae.std(axis=0).tolist(), strict=True))
+
+
+def _papers(shapes: ShapeStudy) -> list[ShapeScore]:
+    return [shapes.scores[name] for name in (PCA_PAPER, GCN_PAPER) if name in shapes.scores]

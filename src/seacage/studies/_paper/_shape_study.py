@@ -1,0 +1,315 @@
+"""Models of the whole shape, trained and asked on the same simulations, each a stage."""
+
+import json
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.cage import Cage
+from seacage.conventions import InputError, Progress
+from seacage.ocean import SeaState
+from seacage.records import CampaignRecord
+from seacage.studies._paper._shape_models import (
+    CURRENT,
+    DEGREES,
+    SHAPE,
+    SHAPE_FOLDED,
+    WORDS,
+    Input,
+    ShapeModel,
+)
+from seacage.studies._paper._shape_scores import ShapeScore, shape_score
+from seacage.studies._stages import Stages
+from seacage.surrogates import OverTime, Prediction, metocean_features
+
+_ROOMS = ("conventions", "surrogates")
+"""Whose code makes a model's answers, its features included."""
+
+_HARSH, _MILD = 0.95, 0.2
+"""Quantiles of the test cases' current speeds that the two nets drawn are taken at."""
+
+_TIMED = 20
+"""Shapes asked for one by one to say what one takes."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Trial:
+    """What models of the shape learn from and are judged on.
+
+    Parameters
+    ----------
+    cage
+        That was simulated.
+    campaign, held_out
+        Those that teach and those that judge, of which the converged cases count.
+    seed
+        Of the trainings.
+    """
+
+    cage: Cage
+    campaign: CampaignRecord
+    held_out: CampaignRecord
+    seed: int
+
+    @property
+    def computed(self) -> Float[np.ndarray, "case node 3"]:
+        """Shapes that judge [m]."""
+        return self.held_out.node_position[self.held_out.converged]
+
+    @property
+    def seas(self) -> list[SeaState]:
+        """That they were computed in."""
+        return _converged_seas(self.held_out)
+
+    @property
+    def over_time(self) -> OverTime | None:
+        """Shapes at all time steps, judging cases included, as in the paper; None without them."""
+        moment = self.campaign.second_moment
+        if moment is None:
+            return None
+        taught = self.campaign.node_position[self.campaign.converged]
+        every = np.concatenate([taught, self.computed])
+        return OverTime.of_moment(every, moment, rest_position=self.cage.design_position)
+
+    def taught(self, inputs: tuple[Input, ...]) -> Float[np.ndarray, "case feature"]:
+        """Features of the cases that teach."""
+        return _features(_converged_seas(self.campaign), inputs)
+
+    def asked(self, inputs: tuple[Input, ...]) -> Float[np.ndarray, "case feature"]:
+        """Features of the cases that judge."""
+        return _features(self.seas, inputs)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ShapeCase:
+    """One of the nets that are drawn.
+
+    Parameters
+    ----------
+    called
+        "Harsh" or "Mild".
+    row
+        Of the test cases, from 0.
+    sea
+        Its sea state.
+    computed
+        [m].
+    predicted
+        By name of the model [m].
+    """
+
+    called: str
+    row: int
+    sea: SeaState
+    computed: Float[np.ndarray, "node 3"]
+    predicted: Mapping[str, Float[np.ndarray, "node 3"]]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ShapeStudy:
+    """What became of the models.
+
+    Parameters
+    ----------
+    taught, judged
+        Simulations that taught, and that judge.
+    current_speed
+        Of the test cases [m/s].
+    scores
+        By model, in the order of the tables.
+    cases
+        The nets to draw.
+    variance
+        Share of the variance in the first three modes, by how it is counted [-].
+    left_out
+        Why some models are missing, a sentence each.
+    """
+
+    taught: int
+    judged: int
+    current_speed: Float[np.ndarray, " case"]
+    scores: Mapping[str, ShapeScore]
+    cases: tuple[ShapeCase, ...]
+    variance: Mapping[str, float]
+    left_out: tuple[str, ...]
+
+    @property
+    def best(self) -> ShapeScore:
+        """The process with a shared kernel that hears all there is, folded where it can be."""
+        return self.scores.get(SHAPE_FOLDED, self.scores[SHAPE])
+
+
+def shape_study(
+    models: Sequence[ShapeModel],
+    trial: Trial,
+    stages: Stages,
+    *,
+    left_out: tuple[str, ...] = (),
+    progress: Progress,
+) -> ShapeStudy:
+    """Train each model on one campaign and score it on another; what is trained is kept.
+
+    Parameters
+    ----------
+    models
+        To compare.
+    trial
+        Their simulations.
+    stages
+        Where answers are kept.
+    left_out
+        Passed on.
+    progress
+        Called as ("shape", done, total) in models when one is trained, and by the networks
+        as they like.
+    """
+    answers: dict[str, Prediction] = {}
+    scores: dict[str, ShapeScore] = {}
+    for number, model in enumerate(models):
+
+        def make(begun: Path, model: ShapeModel = model, number: int = number) -> None:
+            progress("shape", number, len(models))
+            _make(begun, model, trial, progress)
+            progress("shape", number + 1, len(models))
+
+        try:
+            folder = stages.made("shape", _settings(model, trial), make, rooms=_ROOMS)
+        except InputError as error:
+            if model.name != SHAPE_FOLDED:
+                raise
+            left_out = (*left_out, f"{model.name} is missing: {error}")  # not every cage can be
+            continue
+        answers[model.name], cost = _kept(folder)
+        scores[model.name] = shape_score(
+            model.name, answers[model.name], trial.computed, inputs=WORDS[model.inputs], **cost
+        )
+    return ShapeStudy(
+        taught=int(np.sum(trial.campaign.converged)),
+        judged=len(trial.seas),
+        current_speed=np.array([sea.current_speed for sea in trial.seas]),
+        scores=scores,
+        cases=_drawn(trial, answers),
+        variance=_variance(trial),
+        left_out=left_out,
+    )
+
+
+def _settings(model: ShapeModel, trial: Trial) -> dict[str, object]:
+    return {
+        "model": model.name,
+        "inputs": list(model.inputs),
+        "needs": list(model.needs),
+        **model.settings,
+        "taught_by": trial.campaign.sha256,
+        "asked": trial.held_out.sha256,
+        "seed": trial.seed,
+    }
+
+
+def _make(begun: Path, model: ShapeModel, trial: Trial, progress: Progress) -> None:
+    """Train a model, ask it, and keep its shapes and what they took."""
+    x, asked = trial.taught(model.inputs), trial.asked(model.inputs)
+    shape = trial.campaign.node_position[trial.campaign.converged]
+    known = {
+        "over_time": trial.over_time,
+        "rest_position": trial.cage.design_position,
+        "progress": progress,
+    }
+    began = time.process_time()
+    fitted = model.fit(x, shape, seed=trial.seed, **{name: known[name] for name in model.needs})
+    took = time.process_time() - began
+    answer = fitted.predict(asked, noisy=True)  # a half-hour's mean has noise of its own
+    cost = {
+        "modes": getattr(fitted, "modes", None),
+        "fit_cpu_s": took,
+        "predict_ms": _one_shape_ms(fitted, asked),
+    }
+    np.savez(
+        begun / "shapes.npz",
+        mean=answer.mean.astype(np.float32),
+        std=answer.std.astype(np.float32),
+    )
+    (begun / "cost.json").write_text(json.dumps(cost), encoding="utf-8")
+
+
+def _kept(folder: Path) -> tuple[Prediction, dict[str, Any]]:
+    with np.load(folder / "shapes.npz", allow_pickle=False) as kept:
+        answer = Prediction(mean=kept["mean"].astype(float), std=kept["std"].astype(float))
+    return answer, json.loads((folder / "cost.json").read_text("utf-8"))
+
+
+def _one_shape_ms(fitted: Any, asked: Float[np.ndarray, "case feature"]) -> float:
+    took: list[float] = []
+    for row in range(min(_TIMED, len(asked))):
+        began = time.process_time()
+        fitted.predict(asked[row : row + 1])
+        took.append(time.process_time() - began)
+    return 1000.0 * float(np.median(took))
+
+
+def _features(
+    seas: Sequence[SeaState], inputs: tuple[Input, ...]
+) -> Float[np.ndarray, "case feature"]:
+    if inputs == DEGREES:
+        return np.array([[sea.current_speed, sea.current_to] for sea in seas])
+    velocity = np.array([sea.current_velocity for sea in seas])
+    if inputs == CURRENT:
+        return metocean_features(velocity)
+    return metocean_features(
+        velocity,
+        hs=np.array([sea.hs for sea in seas]),
+        wave_direction=np.array([sea.wave_direction for sea in seas]),
+        tp=np.array([sea.peak_period for sea in seas]),
+    )
+
+
+def _converged_seas(record: CampaignRecord) -> list[SeaState]:
+    return [sea for sea, good in zip(record.seas, record.converged, strict=True) if good]
+
+
+def _drawn(trial: Trial, answers: Mapping[str, Prediction]) -> tuple[ShapeCase, ...]:
+    seas, computed = trial.seas, trial.computed
+    speed = np.array([sea.current_speed for sea in seas])
+    order = np.argsort(speed, kind="stable")
+    rows = {
+        called: int(order[round(share * (len(order) - 1))])
+        for called, share in (("Harsh", _HARSH), ("Mild", _MILD))
+    }
+    return tuple(
+        ShapeCase(
+            called=called,
+            row=row,
+            sea=seas[row],
+            computed=computed[row],
+            predicted={name: answer.mean[row] for name, answer in answers.items()},
+        )
+        for called, row in rows.items()
+    )
+
+
+def _variance(trial: Trial) -> dict[str, float]:
+    """What three modes hold, of the cases' means and, where it was kept, of all time steps."""
+    rest = trial.cage.design_position.ravel()
+    shapes = {
+        "means of the cases": OverTime.of_snapshots(
+            trial.campaign.node_position[trial.campaign.converged]
+        ),
+        "all time steps": trial.over_time,
+    }
+    shares: dict[str, float] = {}
+    for name, known in shapes.items():
+        if known is not None:
+            moved = known.mean - rest
+            shares[f"{name}, centred"] = _three(known.scatter)
+            shares[f"{name}, not centred"] = _three(known.scatter + np.outer(moved, moved))
+    return shares
+
+
+def _three(moment: Float[np.ndarray, "coordinate coordinate"]) -> float:
+    size = np.linalg.eigvalsh(moment)[::-1]
+    return min(float(np.sum(size[:3]) / np.sum(size)), 1.0)  # no more than all, by rounding

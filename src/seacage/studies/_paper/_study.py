@@ -1,0 +1,262 @@
+"""The paper's study: simulations, sensors and the twin between them, scored and told."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from seacage.cage import Cage
+from seacage.conventions import InputError, Origin, Progress
+from seacage.ocean import SeaState
+from seacage.records import FieldRecord, read_campaign
+from seacage.studies._chain import Chain, Recipe
+from seacage.studies._held_out import write_scores
+from seacage.studies._paper._claims import PaperClaim
+from seacage.studies._paper._level_one import LevelOneScore, score_level_one
+from seacage.studies._paper._report import PaperReport
+from seacage.studies._paper._shape_models import shape_models
+from seacage.studies._paper._shape_scores import ShapeScore
+from seacage.studies._paper._shape_study import ShapeStudy, Trial, shape_study
+from seacage.studies._paper._ways import Judged, WayScore, has_waves, judge, ways_of
+from seacage.studies._sensor_scores import SensorScore
+from seacage.studies._text import listed
+from seacage.twin import Lesson
+
+_SHOWN_SPEED = 0.6
+"""Of the current that the report draws the net in [m/s]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PaperStudy:
+    """Where the study's report is, and what it found.
+
+    Parameters
+    ----------
+    report, scores
+        The HTML page and the same numbers as JSON.
+    sensors
+        The score of each sensor on days that it did not teach.
+    level_one
+        The score of level 1 on simulations that it has not seen.
+    ways
+        The scores of each way of teaching, that of ``sensors`` first.
+    shapes
+        The score of each model of the whole shape.
+    claims
+        Of the paper, and what the numbers say of them.
+    """
+
+    report: Path
+    scores: Path
+    sensors: tuple[SensorScore, ...]
+    level_one: LevelOneScore
+    ways: tuple[WayScore, ...]
+    shapes: tuple[ShapeScore, ...]
+    claims: tuple[PaperClaim, ...]
+
+
+def paper_study(
+    out: str | Path,
+    *,
+    cage: Cage | None = None,
+    quick: bool = True,
+    campaign: str | Path | None = None,
+    field: str | Path | None = None,
+    days: float = 48.0,
+    one_in: int = 1,
+    networks: bool | None = None,
+    seed: int = 0,
+    workers: int | None = None,
+    progress: Progress | None = None,
+) -> PaperStudy:
+    """Repeat the paper's study with a virtual field, into one HTML page.
+
+    The paper's figures of loads, depths and shapes on days and simulations not trained on, with
+    their errors; beside them what else may teach and be heard, other models of the shape, and
+    which of the paper's statements these numbers repeat.
+
+    Parameters
+    ----------
+    out
+        Folder of ``report.html``, ``scores.json`` and the stages they were made from; after a
+        stop the work goes on where it was.
+    cage
+        The cage; None for that of the campaign given, or ``ace``.
+    quick
+        400 equilibria without waves and a settled field, in minutes. Otherwise, and where a
+        campaign or a field is given, the paper's 1,000 half-hours, the last 100 of which judge,
+        and a field simulated in time.
+    campaign
+        A finished campaign to take in place of one made here; its last 100 cases judge.
+    field
+        Folder of a virtual field with its truth in ``truth``, in place of one made here. The
+        first half of its days teaches.
+    days, one_in
+        Of a field made in full size: its length, and to simulate one hour in so many and those
+        of the shackles.
+    networks
+        Whether to train graph networks, which takes minutes and JAX; None for not when quick.
+    seed
+        Of everything that is drawn.
+    workers
+        Processes for simulations; None for one per core.
+    progress
+        Called as (stage, done, total).
+
+    Raises
+    ------
+    InputError
+        The field is not virtual, or has too little on one side of the cut.
+    """
+    quick = quick and campaign is None and field is None
+    chain = Chain(
+        folder=Path(out) / "stages",
+        cage=_cage(cage, campaign),
+        recipe=Recipe(seed=seed) if quick else _full(field, days, one_in, seed),
+        given_campaign=None if campaign is None else Path(campaign),
+        given_field=None if field is None else Path(field),
+        workers=workers,
+        progress=progress,
+    )
+    return study_chain(chain, Path(out), networks=not quick if networks is None else networks)
+
+
+def study_chain(chain: Chain, out: Path, *, networks: bool = False) -> PaperStudy:
+    """Score a chain and tell it, making what it still lacks."""
+    _check(chain)
+    waves = has_waves(chain)
+    judged = judge(chain, ways_of(chain.recipe, waves=waves))
+    level_one = score_level_one(judged.twin, chain.held_out)
+    shapes = _shapes(chain, networks=networks)
+    sea = SeaState(current_speed=_SHOWN_SPEED, current_to=chain.cage.site.current_to)
+    page = PaperReport(
+        cage=chain.cage,
+        sea=sea,
+        answer=judged.twin.predict(sea),
+        judged=judged,
+        level_one=level_one,
+        shapes=shapes,
+        recipe=_recipe(chain, judged, shapes),
+        provenance=_provenance(chain, judged),
+        in_time=chain.recipe.in_time,
+        progress=chain.report,
+    )
+    study = PaperStudy(
+        report=out / "report.html",
+        scores=out / "scores.json",
+        sensors=judged.sensors,
+        level_one=level_one,
+        ways=judged.ways,
+        shapes=tuple(shapes.scores.values()),
+        claims=page.claims,
+    )
+    study.report.write_text(page.html(), encoding="utf-8")
+    scores = {
+        "recipe": page.recipe,
+        "provenance": page.provenance,
+        "origin": Origin.VIRTUAL_FIELD,
+        "sensors": study.sensors,
+        "level_one": level_one,
+        "ways": study.ways,
+        "shapes": study.shapes,
+        "variance_of_three_modes": shapes.variance,
+        "claims": study.claims,
+    }
+    write_scores(study.scores, scores)
+    return study
+
+
+def _cage(cage: Cage | None, campaign: str | Path | None) -> Cage:
+    if cage is not None:
+        return cage
+    if campaign is None:
+        return Cage.named("ace")
+    return Cage.from_toml(read_campaign(campaign).cage_toml, source=str(campaign))
+
+
+def _full(field: str | Path | None, days: float, one_in: int, seed: int) -> Recipe:
+    return Recipe(
+        cases=900,
+        held_out_cases=100,
+        method="simulate",
+        days=days,
+        teaching_days=round(days / 2.0) if field is None else _first_half(field),
+        one_in=one_in,
+        seed=seed,
+    )
+
+
+def _first_half(field: str | Path) -> int:
+    """Days up to the midnight that is nearest to the middle of a field record."""
+    time = FieldRecord.read(field).buoy.time
+    middle = time[0] + (time[-1] - time[0]) / 2
+    return max(1, round((middle - time[0].astype("datetime64[D]")) / np.timedelta64(1, "D")))
+
+
+def _check(chain: Chain) -> None:
+    if chain.field.origin is not Origin.VIRTUAL_FIELD:
+        raise InputError(
+            f"study paper: the record's sensors are {chain.field.origin}, and no truth is known "
+            "of them. Give a folder that `seacage field virtual` made, or score a twin on this "
+            "record by `seacage score`."
+        )
+
+
+def _shapes(chain: Chain, *, networks: bool) -> ShapeStudy:
+    waves = chain.in_waves
+    models, left_out = shape_models(chain.cage, waves=waves, networks=networks)
+    return shape_study(
+        models,
+        Trial(
+            cage=chain.cage,
+            campaign=chain.campaign,
+            held_out=chain.held_out,
+            seed=chain.recipe.seed,
+        ),
+        chain.stages,
+        left_out=left_out,
+        progress=chain.report,
+    )
+
+
+def _recipe(chain: Chain, judged: Judged, shapes: ShapeStudy) -> dict[str, str]:
+    recipe, campaign, field = chain.recipe, chain.campaign, chain.field
+    waves = chain.in_waves
+    what = "half-hours in waves and currents" if waves else "currents settled"
+    told = sum(len(sensor) for sensor in field.sensors.values())
+    begin, end = (str(time)[:10] for time in field.buoy.time[[0, -1]])
+    return {
+        "Simulations (computed)": f"{np.sum(campaign.converged)} of {len(campaign)} {what}, "
+        f"0 to 1 m/s from all sides, law {campaign.law}",
+        "Held-out simulations (computed)": f"{shapes.judged}, none of which taught",
+        "Buoy record and sensors (virtual field)": f"{begin} to {end}, {told:,} readings of "
+        f"{len(field.sensors)} sensors",
+        "Days": f"the first {recipe.teaching_days} teach, the later ones judge",
+        **_lessons(judged.twin.provenance.lessons),
+    }
+
+
+def _lessons(lessons: Mapping[str, Lesson]) -> dict[str, str]:
+    """Who taught what, sensors that taught alike in one line."""
+    alike: dict[Lesson, list[str]] = {}
+    for name, lesson in lessons.items():
+        alike.setdefault(lesson, []).append(name)
+    return {
+        f"{listed(names)} (virtual field)": f"taught with {lesson.points} readings each, "
+        f"{lesson.start:%d %b %H:%M} to {lesson.end:%d %b %H:%M} UTC"
+        for lesson, names in alike.items()
+    }
+
+
+def _provenance(chain: Chain, judged: Judged) -> dict[str, str]:
+    provenance = judged.twin.provenance
+    return {
+        "seacage": provenance.version,
+        "Seed": str(chain.recipe.seed),
+        "Cage": f"{chain.cage.name}, sha256 {chain.cage.sha256}",
+        "Campaign": f"seed {provenance.campaign_seed}, sha256 {provenance.campaign_sha256}",
+        "Hidden parameters": f"sha256 {provenance.hidden_sha256}",
+        "Sensors": str(provenance.origin),
+        "Notes": "\n".join(chain.field.notes),
+    }

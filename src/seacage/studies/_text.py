@@ -1,0 +1,21 @@
+"""Numbers, shares and lists of names as a report writes them."""
+
+from collections.abc import Sequence
+
+
+def number(value: float) -> str:
+    """Three digits that matter, with a true minus."""
+    written = f"{value:,.0f}" if abs(value) >= 1000.0 else f"{value:#.3g}".rstrip(".")
+    return written.replace("-", "\N{MINUS SIGN}")
+
+
+def percent(share: float, *, digits: int = 0) -> str:
+    """A share in percent, which stays with its sign on one line."""
+    written = f"{100.0 * share:.{digits}f}\N{NARROW NO-BREAK SPACE}%"
+    return written.replace("-", "\N{MINUS SIGN}")
+
+
+def listed(names: Sequence[str]) -> str:
+    """Names as a sentence lists them."""
+    *others, last = names
+    return f"{', '.join(others)} and {last}" if others else last
