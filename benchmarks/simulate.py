@@ -9,7 +9,7 @@ from _timing import ONCE
 
 from seacage.cage import Cage
 from seacage.campaigns import Plan
-from seacage.campaigns._hidden import Hidden
+from seacage.campaigns._virtual_field._truth_parameters import Hidden
 from seacage.dynamics import MovingLaw, rest_shape, simulate, simulation_lanes
 from seacage.dynamics._kernel._march import REFRESH, March, Steps
 from seacage.dynamics._kernel._march_inputs import Ocean

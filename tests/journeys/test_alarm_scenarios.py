@@ -74,7 +74,9 @@ def _field(damage: str, hidden: Hidden) -> FieldRecord:
 
 def _always_alive(path: Path) -> Path:
     """The hidden parameters with shackles that live on, and nothing that happens by itself."""
-    own = (resources.files("seacage.campaigns") / "hidden_ace.toml").read_text("utf-8")
+    own = (resources.files("seacage.campaigns._virtual_field") / "hidden_ace.toml").read_text(
+        "utf-8"
+    )
     lines = own.splitlines()
     for number, line in enumerate(lines):
         key = line.partition("=")[0].strip()

@@ -26,6 +26,7 @@ from seacage.campaigns import (
     run_share,
     virtual_field,
 )
+from seacage.campaigns._virtual_field import _responses
 from seacage.conventions import SeacageError
 from seacage.dynamics import rest_shape, simulate
 from seacage.ocean import SeaState
@@ -264,8 +265,8 @@ def test_the_low_fidelity_underestimates_what_the_virtual_field_shows(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # A coarser grid of responses than the field's own: 128 equilibria instead of 512.
-    monkeypatch.setattr("seacage.campaigns._responses._SPEEDS", (0.25, 0.5, 0.8, 1.2))
-    monkeypatch.setattr("seacage.campaigns._responses._DIRECTIONS", tuple(range(0, 360, 45)))
+    monkeypatch.setattr(_responses, "_SPEEDS", (0.25, 0.5, 0.8, 1.2))
+    monkeypatch.setattr(_responses, "_DIRECTIONS", tuple(range(0, 360, 45)))
     buoy = generated_current(3, start=datetime(2020, 1, 18, tzinfo=UTC), days=8.0)
     field = virtual_field(
         SIXTEEN, buoy, hidden=Hidden.read(), seed=1, method="settle", every_s=720.0

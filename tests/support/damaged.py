@@ -13,9 +13,9 @@ import numpy as np
 
 from seacage.cage import Cage
 from seacage.campaigns import Hidden, generated_current
-from seacage.campaigns._field import _settled
-from seacage.campaigns._responses import _DIRECTIONS, _GROWTHS, _SPEEDS, Responses
-from seacage.campaigns._timetable import reading_times
+from seacage.campaigns._virtual_field._field import _settled
+from seacage.campaigns._virtual_field._responses import _DIRECTIONS, _GROWTHS, _SPEEDS, Responses
+from seacage.campaigns._virtual_field._timetable import reading_times
 from seacage.dynamics import Damage
 from seacage.dynamics._equilibrium._search import equilibria
 from seacage.dynamics._moored._detailed import _tear

@@ -2,14 +2,20 @@
 
 from seacage.campaigns._cases import Simulator
 from seacage.campaigns._current import generated_current
-from seacage.campaigns._events import Event, read_events
-from seacage.campaigns._field import VirtualField, virtual_field, virtual_field_share
-from seacage.campaigns._hidden import Hidden
 from seacage.campaigns._plan import Plan
 from seacage.campaigns._run import run_campaign, run_share
 from seacage.campaigns._status import CampaignStatus, campaign_status
-from seacage.campaigns._timetable import Timetable
-from seacage.campaigns._true_shapes import TrueShapes, true_shapes
+from seacage.campaigns._virtual_field import (
+    Event,
+    Hidden,
+    Timetable,
+    TrueShapes,
+    VirtualField,
+    read_events,
+    true_shapes,
+    virtual_field,
+    virtual_field_share,
+)
 from seacage.campaigns._waves import generated_waves, waves_at_site
 
 __all__ = [

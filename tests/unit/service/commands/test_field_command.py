@@ -23,7 +23,7 @@ def own_logs(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture
 def follower(monkeypatch: pytest.MonkeyPatch) -> Follower:
     fake = Follower()
-    monkeypatch.setattr("seacage.campaigns._stretches.follow", fake.follow)
+    monkeypatch.setattr("seacage.campaigns._virtual_field._stretches.follow", fake.follow)
     return fake
 
 

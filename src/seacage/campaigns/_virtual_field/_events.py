@@ -11,8 +11,8 @@ from typing import Any, Self, cast
 import numpy as np
 
 from seacage.cage import Cage
-from seacage.campaigns._hidden import Hidden
-from seacage.campaigns._spells import Spells
+from seacage.campaigns._virtual_field._spells import Spells
+from seacage.campaigns._virtual_field._truth_parameters import Hidden
 from seacage.conventions import InputError, parse_toml, read_text
 from seacage.dynamics import Damage
 from seacage.records import Record, instant

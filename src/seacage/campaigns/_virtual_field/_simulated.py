@@ -11,13 +11,13 @@ import numpy as np
 from jaxtyping import Bool, Float, Int, Shaped
 
 from seacage.cage import Cage
-from seacage.campaigns._events import Event, check_events
-from seacage.campaigns._hidden import Hidden
-from seacage.campaigns._spells import Spells
-from seacage.campaigns._stretches import Kept, TrueCage, simulate_stretches
-from seacage.campaigns._timetable import Stretch, Timetable, cut, reading_times
+from seacage.campaigns._virtual_field._events import Event, check_events
+from seacage.campaigns._virtual_field._spells import Spells
+from seacage.campaigns._virtual_field._stretches import Kept, TrueCage, simulate_stretches
+from seacage.campaigns._virtual_field._timetable import Stretch, Timetable, cut, reading_times
+from seacage.campaigns._virtual_field._truth_parameters import Hidden
+from seacage.campaigns._virtual_field._weather import Weather, true_weather
 from seacage.campaigns._waves import usable_waves
-from seacage.campaigns._weather import Weather, true_weather
 from seacage.conventions import InputError, Progress, SeacageError
 from seacage.records import Record, TrueMeans, check_record, instant
 

@@ -9,7 +9,7 @@ import pytest
 
 from seacage.cage import Cage
 from seacage.campaigns import Hidden
-from seacage.campaigns._events import Event, check_events, read_events
+from seacage.campaigns._virtual_field._events import Event, check_events, read_events
 from seacage.conventions import InputError, Origin
 from seacage.dynamics import Damage
 from seacage.records import Record, instant

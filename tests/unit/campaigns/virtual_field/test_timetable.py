@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from seacage.campaigns import Timetable, generated_current
-from seacage.campaigns._timetable import Stretch, cut, reading_times, side_by_side
+from seacage.campaigns._virtual_field._timetable import Stretch, cut, reading_times, side_by_side
 from seacage.conventions import InputError
 from seacage.dynamics import Damage
 

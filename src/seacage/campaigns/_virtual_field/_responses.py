@@ -8,9 +8,9 @@ from jaxtyping import Float
 
 from seacage.cage import Cage
 from seacage.campaigns._cases import Simulator
-from seacage.campaigns._hidden import Hidden
 from seacage.campaigns._plan import Plan
 from seacage.campaigns._run import campaign_key, run_campaign
+from seacage.campaigns._virtual_field._truth_parameters import Hidden
 from seacage.conventions import Progress, Result, SeacageError
 from seacage.ocean import SeaState
 from seacage.records import CampaignRecord

@@ -7,8 +7,13 @@ import numpy as np
 import pytest
 
 from seacage.campaigns import Hidden
-from seacage.campaigns._events import Event
-from seacage.campaigns._sensors import air_pressure, buoy_heard, radio_silence, sensed
+from seacage.campaigns._virtual_field._events import Event
+from seacage.campaigns._virtual_field._sensors import (
+    air_pressure,
+    buoy_heard,
+    radio_silence,
+    sensed,
+)
 from seacage.conventions import Flag, Origin
 from seacage.records import Record
 

@@ -182,7 +182,7 @@ class Hidden:
         InputError
             No TOML, or a key that is unknown, missing or no finite number.
         """
-        own = resources.files("seacage.campaigns") / "hidden_ace.toml"
+        own = resources.files("seacage.campaigns._virtual_field") / "hidden_ace.toml"
         text = own.read_text("utf-8") if path is None else read_text(path)
         table = parse_toml(text, f"{path or own}")
         sha256 = hashlib.sha256(text.encode()).hexdigest()

@@ -10,9 +10,9 @@ import pytest
 from follower import Follower
 from seacage.cage import Cage
 from seacage.campaigns import Hidden, Timetable, generated_current
-from seacage.campaigns._stretches import Kept, TrueCage, simulate_stretches
-from seacage.campaigns._timetable import Stretch, cut
-from seacage.campaigns._weather import Weather, true_weather
+from seacage.campaigns._virtual_field._stretches import Kept, TrueCage, simulate_stretches
+from seacage.campaigns._virtual_field._timetable import Stretch, cut
+from seacage.campaigns._virtual_field._weather import Weather, true_weather
 from seacage.conventions import InputError, RecordError
 from seacage.dynamics import Damage, simulation_lanes
 
@@ -33,7 +33,7 @@ def weather() -> Weather:
 @pytest.fixture
 def follower(monkeypatch: pytest.MonkeyPatch) -> Follower:
     fake = Follower()
-    monkeypatch.setattr("seacage.campaigns._stretches.follow", fake.follow)
+    monkeypatch.setattr("seacage.campaigns._virtual_field._stretches.follow", fake.follow)
     return fake
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from seacage.cage import Cage
 from seacage.campaigns import Hidden
-from seacage.campaigns._responses import Responses, true_responses
+from seacage.campaigns._virtual_field._responses import Responses, true_responses
 from seacage.conventions import SeacageError, towards
 from stand_in import StandIn
 

@@ -14,7 +14,7 @@ from seacage.cage import Cage
 from seacage.campaigns import Hidden
 from seacage.conventions import InputError
 
-TEXT = (resources.files("seacage.campaigns") / "hidden_ace.toml").read_text("utf-8")
+TEXT = (resources.files("seacage.campaigns._virtual_field") / "hidden_ace.toml").read_text("utf-8")
 
 
 def test_the_file_that_comes_with_seacage_is_read_with_its_hash() -> None:
@@ -48,7 +48,7 @@ def test_a_wrong_file_is_refused(tmp_path: Path, text: str, says: str) -> None:
 
 def test_no_room_that_learns_names_the_hidden_parameters() -> None:
     package = Path(seacage.__file__).parent
-    learning = [*package.glob("surrogates/*.py"), *package.glob("twin/*.py")]
+    learning = [*package.glob("surrogates/**/*.py"), *package.glob("twin/**/*.py")]
     assert learning
     for source in learning:
         text = source.read_text("utf-8")

@@ -11,9 +11,9 @@ from jaxtyping import Float
 from seacage.cage import Cage
 from seacage.campaigns._cases import Block, Simulator, answered, made_by
 from seacage.campaigns._current import generated_current
-from seacage.campaigns._hidden import Hidden
 from seacage.campaigns._pool import available_cores, mapped
-from seacage.campaigns._weather import current_at_cage
+from seacage.campaigns._virtual_field._truth_parameters import Hidden
+from seacage.campaigns._virtual_field._weather import current_at_cage
 from seacage.conventions import InputError, Progress, Result, compass, towards, unheard
 from seacage.ocean import SeaState
 from seacage.records import Record

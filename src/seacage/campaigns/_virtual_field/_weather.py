@@ -7,9 +7,14 @@ from typing import Self
 import numpy as np
 from jaxtyping import Float
 
-from seacage.campaigns._even import Even
-from seacage.campaigns._hidden import Hidden, HiddenCurrent, HiddenFouling, HiddenProfile
 from seacage.campaigns._noise import wandering
+from seacage.campaigns._virtual_field._interpolation import Even
+from seacage.campaigns._virtual_field._truth_parameters import (
+    Hidden,
+    HiddenCurrent,
+    HiddenFouling,
+    HiddenProfile,
+)
 from seacage.campaigns._waves import shortest_period, usable_waves
 from seacage.conventions import InputError, compass, towards
 from seacage.dynamics import AbstractWeather

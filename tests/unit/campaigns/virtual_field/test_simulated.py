@@ -22,6 +22,7 @@ from seacage.campaigns import (
     virtual_field,
     virtual_field_share,
 )
+from seacage.campaigns._virtual_field import _stretches
 from seacage.conventions import InputError, Origin, SeacageError
 from seacage.records import FieldRecord, Record, TrueMeans
 
@@ -49,7 +50,7 @@ class Maker:
         usual = {"seed": 1, "hidden": HIDDEN, "every_s": STEP, "workers": 1}
         asked = {**usual, "timetable": Timetable(), **asked}  # cut into hours
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr("seacage.campaigns._stretches.follow", self.follower.follow)
+            patch.setattr(_stretches, "follow", self.follower.follow)
             return virtual_field(self.cage, buoy, **asked)
 
 
@@ -240,7 +241,7 @@ def test_shares_leave_nothing_to_do(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("seacage.campaigns._stretches.follow", made.follower.follow)
+    monkeypatch.setattr(_stretches, "follow", made.follower.follow)
     asked: dict[str, Any] = {"hidden": HIDDEN, "seed": 1, "every_s": STEP, "kept": tmp_path}
     asked |= {"timetable": Timetable()}
     for which in (2, 0, 1):
@@ -316,7 +317,9 @@ def test_nothing_that_is_hidden_is_in_what_is_written(field: VirtualField, tmp_p
     field.write(tmp_path)
     described = json.loads((tmp_path / "field.json").read_text("utf-8"))
     assert described["hidden_sha256"] == HIDDEN.sha256
-    names = (resources.files("seacage.campaigns") / "hidden_ace.toml").read_text("utf-8")
+    names = (resources.files("seacage.campaigns._virtual_field") / "hidden_ace.toml").read_text(
+        "utf-8"
+    )
     keys = {line.split("=")[0].strip() for line in names.splitlines() if "=" in line}
     text = json.dumps(described)
     assert not [key for key in keys - {"law", "seed", "components"} if key in text]

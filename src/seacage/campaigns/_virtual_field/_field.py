@@ -11,13 +11,18 @@ import numpy as np
 from jaxtyping import Float, Shaped
 
 from seacage.cage import Cage
-from seacage.campaigns._events import Event
-from seacage.campaigns._hidden import Hidden
-from seacage.campaigns._responses import Responses, true_responses
-from seacage.campaigns._sensors import air_pressure, buoy_heard, radio_silence, sensed
-from seacage.campaigns._simulated import Asked, Truth, gathered, simulate_share
-from seacage.campaigns._timetable import Timetable, reading_times
-from seacage.campaigns._weather import current_at_cage
+from seacage.campaigns._virtual_field._events import Event
+from seacage.campaigns._virtual_field._responses import Responses, true_responses
+from seacage.campaigns._virtual_field._sensors import (
+    air_pressure,
+    buoy_heard,
+    radio_silence,
+    sensed,
+)
+from seacage.campaigns._virtual_field._simulated import Asked, Truth, gathered, simulate_share
+from seacage.campaigns._virtual_field._timetable import Timetable, reading_times
+from seacage.campaigns._virtual_field._truth_parameters import Hidden
+from seacage.campaigns._virtual_field._weather import current_at_cage
 from seacage.conventions import InputError, Origin, Progress
 from seacage.records import FieldRecord, Record, TrueMeans
 

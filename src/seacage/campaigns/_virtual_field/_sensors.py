@@ -6,10 +6,15 @@ from dataclasses import replace
 import numpy as np
 from jaxtyping import Float, Int, Shaped
 
-from seacage.campaigns._events import Event
-from seacage.campaigns._hidden import Hidden, HiddenDepth, HiddenOutages, HiddenShackle
 from seacage.campaigns._noise import wandering
-from seacage.campaigns._spells import Spells
+from seacage.campaigns._virtual_field._events import Event
+from seacage.campaigns._virtual_field._spells import Spells
+from seacage.campaigns._virtual_field._truth_parameters import (
+    Hidden,
+    HiddenDepth,
+    HiddenOutages,
+    HiddenShackle,
+)
 from seacage.records import Record, check_record
 
 _WEEK = 604800.0

@@ -12,10 +12,10 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.cage import Cage
-from seacage.campaigns._hidden import Hidden
 from seacage.campaigns._pool import available_cores, mapped, one_thread, tell
-from seacage.campaigns._timetable import Stretch, Timetable, side_by_side
-from seacage.campaigns._weather import Weather
+from seacage.campaigns._virtual_field._timetable import Stretch, Timetable, side_by_side
+from seacage.campaigns._virtual_field._truth_parameters import Hidden
+from seacage.campaigns._virtual_field._weather import Weather
 from seacage.conventions import InputError, RecordError
 from seacage.dynamics import PHYSICS, Followed, MovingLaw, follow, simulation_lanes
 
