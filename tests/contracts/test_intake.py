@@ -19,9 +19,9 @@ OUR_OWN = {
     # What comes with the package.
     "cage/_cage.py": {".read_text"},
     "campaigns/_virtual_field/_truth_parameters.py": {".read_text"},
-    "records/_shipped.py": {".read_text"},
+    "records/_readers/_shipped.py": {".read_text"},
     # A file just written, to be sealed.
-    "records/_netcdf.py": {".read_bytes"},
+    "records/_readers/_netcdf.py": {".read_bytes"},
     # Messages of a bounded length, an answer to our own request, a file just written.
     "service/_calls/_stream.py": {"json.loads"},
     "service/_rov/_clearance_client.py": {"json.loads"},

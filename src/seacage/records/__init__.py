@@ -11,22 +11,6 @@ from seacage.records._campaign_store import (
     finish_campaign,
     write_cases,
 )
-from seacage.records._cf import NetcdfMap
-from seacage.records._check import (
-    AHEAD,
-    Amendment,
-    QualityState,
-    Verdict,
-    alike,
-    amended,
-    check_record,
-    check_sample,
-    is_evaluated,
-    is_withdrawn,
-    verdicts_on,
-    withdrawn,
-)
-from seacage.records._columns import Column, ColumnMap
 from seacage.records._field import FieldRecord
 from seacage.records._history_file import (
     STATISTICS,
@@ -34,24 +18,44 @@ from seacage.records._history_file import (
     read_history,
     write_history,
 )
-from seacage.records._inspect import Inspection, inspect_file
 from seacage.records._keys import KEYS, Key
-from seacage.records._limits import (
+from seacage.records._quality import (
+    AHEAD,
     DEFAULT_LIMITS,
     GROUPS,
+    Amendment,
     Limits,
+    QualityState,
     Range,
     Season,
     Steadiness,
+    Verdict,
+    alike,
+    amended,
+    check_record,
+    check_sample,
+    is_evaluated,
+    is_withdrawn,
+    read_limits,
+    verdicts_on,
+    withdrawn,
 )
-from seacage.records._limits_file import read_limits
-from seacage.records._maps import read_map
-from seacage.records._netcdf import write_record
-from seacage.records._reader import known_map, read_record
+from seacage.records._readers import (
+    Column,
+    ColumnMap,
+    Inspection,
+    NetcdfMap,
+    check_rows,
+    inspect_file,
+    known_map,
+    read_map,
+    read_record,
+    read_rows,
+    shipped_maps,
+    write_record,
+)
 from seacage.records._record import Record
-from seacage.records._rows import check_rows, read_rows
 from seacage.records._sample import Sample, check_stream
-from seacage.records._shipped import shipped_maps
 from seacage.records._times import instant, moment
 from seacage.records._truth_file import TrueMeans
 

@@ -16,7 +16,7 @@ from seacage.conventions import Origin, RecordError, Result
 from seacage.ocean import SeaState
 from seacage.records._brief import brief
 from seacage.records._campaign_store import MEAN, NOT_RUN, SEA, campaign_unsummed, not_a_campaign
-from seacage.records._declared import check_netcdf
+from seacage.records._netcdf_check import check_netcdf
 
 if TYPE_CHECKING:
     import xarray

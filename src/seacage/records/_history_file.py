@@ -15,7 +15,7 @@ from jaxtyping import Float, Int
 from seacage.conventions import Origin, RecordError, Result, parse_json
 from seacage.ocean import SeaState
 from seacage.records._brief import brief
-from seacage.records._declared import check_netcdf
+from seacage.records._netcdf_check import check_netcdf
 
 if TYPE_CHECKING:
     import xarray

@@ -12,8 +12,7 @@ from jaxtyping import Float, Shaped
 
 from seacage.conventions import Origin, RecordError
 from seacage.records._brief import brief
-from seacage.records._declared import check_netcdf
-from seacage.records._netcdf import NETCDF_TROUBLE
+from seacage.records._netcdf_check import NETCDF_TROUBLE, check_netcdf
 
 if TYPE_CHECKING:
     import xarray

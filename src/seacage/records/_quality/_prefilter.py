@@ -11,8 +11,8 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from seacage.conventions import GRAVITY, Flag, towards
-from seacage.records._limits import GROUPS, Limits, Range, Steadiness
-from seacage.records._quality_tests import (
+from seacage.records._quality._limits import GROUPS, Limits, Range, Steadiness
+from seacage.records._quality._tests import (
     BUCKETS,
     FLAT_FAIL_COUNT,
     FLAT_SUSPECT_COUNT,

@@ -13,7 +13,7 @@ import pytest
 
 from seacage.conventions import Origin, RecordError
 from seacage.records import NetcdfMap, inspect_file, read_history, read_record
-from seacage.records._declared import check_netcdf
+from seacage.records._netcdf_check import check_netcdf
 
 FOREIGN = NetcdfMap(origin=Origin.MEASURED)
 

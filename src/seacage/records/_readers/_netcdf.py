@@ -10,26 +10,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from seacage.conventions import Flag, Origin, RecordError, read_bytes
-from seacage.records._declared import check_netcdf
 from seacage.records._keys import KEYS
+from seacage.records._netcdf_check import NETCDF_TROUBLE, check_netcdf
 from seacage.records._record import Record
 
 if TYPE_CHECKING:
     import xarray
-
-NETCDF_TROUBLE = (
-    OSError,
-    KeyError,
-    ValueError,
-    TypeError,
-    RuntimeError,
-    AttributeError,
-    IndexError,
-    OverflowError,
-    MemoryError,
-    NotImplementedError,
-)
-"""What the libraries raise at a damaged file."""
 
 _SCHEMA = "seacage stream 1"
 _FLAG = "_flag"

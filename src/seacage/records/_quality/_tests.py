@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from seacage.conventions import GRAVITY, Flag
 from seacage.ocean import steepness_limit
-from seacage.records._limits import GROUPS, Limits, Range, Steadiness
+from seacage.records._quality._limits import GROUPS, Limits, Range, Steadiness
 
 SECOND = 1_000_000
 FLAT_SUSPECT_COUNT, FLAT_FAIL_COUNT = 3, 5

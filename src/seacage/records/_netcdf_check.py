@@ -7,6 +7,20 @@ from typing import Any
 
 from seacage.conventions import check_file
 
+NETCDF_TROUBLE = (
+    OSError,
+    KeyError,
+    ValueError,
+    TypeError,
+    RuntimeError,
+    AttributeError,
+    IndexError,
+    OverflowError,
+    MemoryError,
+    NotImplementedError,
+)
+"""What the libraries raise at a damaged file."""
+
 _FILE_BYTES = 4 << 30
 _DECLARED_BYTES = 2 << 30
 _INFLATION = 1100

@@ -14,7 +14,8 @@ import numpy as np
 from jaxtyping import Float, Shaped
 
 from seacage.conventions import Origin, RecordError, parse_toml
-from seacage.records._columns import (
+from seacage.records._netcdf_check import NETCDF_TROUBLE, check_netcdf
+from seacage.records._readers._columns import (
     Column,
     check_components,
     parsed_column,
@@ -22,9 +23,7 @@ from seacage.records._columns import (
     parsed_zone,
     vectors_joined,
 )
-from seacage.records._csv import in_order
-from seacage.records._declared import check_netcdf
-from seacage.records._netcdf import NETCDF_TROUBLE
+from seacage.records._readers._csv import in_order
 from seacage.records._record import Record
 from seacage.records._toml import Table, check_filled, check_names, number_of, table_of, text_of
 

@@ -3,10 +3,10 @@
 from pathlib import Path
 
 from seacage.conventions import RecordError
-from seacage.records._columns import ColumnMap
-from seacage.records._csv import check_header, recognised, record_in
+from seacage.records._readers._columns import ColumnMap
+from seacage.records._readers._csv import check_header, recognised, record_in
+from seacage.records._readers._table import text_table
 from seacage.records._record import Record
-from seacage.records._table import text_table
 
 
 def read_rows(

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from seacage.conventions import Origin, RecordError
-from seacage.records._columns import Column, ColumnMap
-from seacage.records._table import Table, checked_table
+from seacage.records._readers._columns import Column, ColumnMap
+from seacage.records._readers._table import Table, checked_table
 
 _TIME = ("YY", "MM", "DD", "hh", "mm")
 _DOCUMENTED = re.compile(

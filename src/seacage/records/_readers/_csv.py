@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 
 from seacage.conventions import Flag, Origin, RecordError
-from seacage.records._columns import Column, ColumnMap, vectors_joined
 from seacage.records._keys import KEYS
-from seacage.records._ndbc import is_ndbc, ndbc_table
+from seacage.records._readers._columns import Column, ColumnMap, vectors_joined
+from seacage.records._readers._ndbc import is_ndbc, ndbc_table
+from seacage.records._readers._shipped import shipped_maps
+from seacage.records._readers._table import Table, read_table, read_text
 from seacage.records._record import Record
-from seacage.records._shipped import shipped_maps
-from seacage.records._table import Table, read_table, read_text
 from seacage.records._times import microseconds
 
 _YEARS = range(1900, 2200)

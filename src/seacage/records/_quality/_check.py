@@ -8,11 +8,11 @@ import numpy as np
 from jaxtyping import Int
 
 from seacage.conventions import Flag
-from seacage.records._limits import DEFAULT_LIMITS, GROUPS, Limits
-from seacage.records._quality_tests import ATTENUATED, Anchor, Finding, judged
+from seacage.records._quality._limits import DEFAULT_LIMITS, GROUPS, Limits
+from seacage.records._quality._prefilter import Columns, doubtful
+from seacage.records._quality._tests import ATTENUATED, Anchor, Finding, judged
 from seacage.records._record import Record
 from seacage.records._sample import Sample
-from seacage.records._screen import Columns, doubtful
 from seacage.records._times import microseconds
 
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)

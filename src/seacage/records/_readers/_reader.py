@@ -6,12 +6,11 @@ from pathlib import Path
 import numpy as np
 
 from seacage.conventions import Flag, RecordError
-from seacage.records._cf import NetcdfMap, is_netcdf, read_cf
-from seacage.records._check import check_record
-from seacage.records._columns import ColumnMap
-from seacage.records._csv import read_csv, understood
-from seacage.records._limits import DEFAULT_LIMITS, Limits
-from seacage.records._netcdf import read_netcdf
+from seacage.records._quality import DEFAULT_LIMITS, Limits, check_record
+from seacage.records._readers._cf import NetcdfMap, is_netcdf, read_cf
+from seacage.records._readers._columns import ColumnMap
+from seacage.records._readers._csv import read_csv, understood
+from seacage.records._readers._netcdf import read_netcdf
 from seacage.records._record import Record
 
 

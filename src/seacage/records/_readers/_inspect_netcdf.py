@@ -10,15 +10,14 @@ from typing import TYPE_CHECKING, TypedDict
 import numpy as np
 
 from seacage.conventions import RecordError
-from seacage.records._cf import (
+from seacage.records._netcdf_check import NETCDF_TROUBLE, check_netcdf
+from seacage.records._readers._cf import (
     STANDARD_NAMES,
     engine_of,
     is_compass,
     vertical_of,
     zone_doubt,
 )
-from seacage.records._declared import check_netcdf
-from seacage.records._netcdf import NETCDF_TROUBLE
 
 if TYPE_CHECKING:
     import xarray

@@ -12,11 +12,11 @@ from typing import NamedTuple
 import numpy as np
 
 from seacage.conventions import RecordError
-from seacage.records._cf import is_netcdf
-from seacage.records._csv import number_in, recognised
-from seacage.records._inspect_netcdf import inspect_netcdf
-from seacage.records._ndbc import is_ndbc
-from seacage.records._table import WHITESPACE, Table, read_table, read_text, text_table
+from seacage.records._readers._cf import is_netcdf
+from seacage.records._readers._csv import number_in, recognised
+from seacage.records._readers._inspect_netcdf import inspect_netcdf
+from seacage.records._readers._ndbc import is_ndbc
+from seacage.records._readers._table import WHITESPACE, Table, read_table, read_text, text_table
 from seacage.records._times import microseconds
 
 _ROWS = 20_000

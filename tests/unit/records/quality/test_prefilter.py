@@ -17,7 +17,7 @@ from seacage.records import (
     instant,
     verdicts_on,
 )
-from seacage.records._screen import Doubt, doubtful
+from seacage.records._quality._prefilter import Doubt, doubtful
 
 NOON = datetime(2018, 1, 26, 12, tzinfo=UTC)
 KEYS = {
@@ -93,7 +93,7 @@ def test_verdicts_are_those_of_judging_every_row(
     def everything(_: str, time: np.ndarray, *__: object) -> Doubt:
         return Doubt([slice(0, len(time))], np.ones(len(time), dtype=bool))
 
-    monkeypatch.setattr("seacage.records._check.doubtful", everything)
+    monkeypatch.setattr("seacage.records._quality._check.doubtful", everything)
     assert skipping == said(record, limits)
     tests = {test for _, test, *_ in skipping}
     assert {"missing value", "gap", "flat line", "attenuated signal"} <= tests

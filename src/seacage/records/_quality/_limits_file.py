@@ -5,7 +5,7 @@ from dataclasses import fields, replace
 from pathlib import Path
 
 from seacage.conventions import RecordError, parse_toml, read_text
-from seacage.records._limits import DEFAULT_LIMITS, Limits, Range, Season, Steadiness
+from seacage.records._quality._limits import DEFAULT_LIMITS, Limits, Range, Season, Steadiness
 from seacage.records._toml import (
     Table,
     check_names,
