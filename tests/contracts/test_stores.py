@@ -21,7 +21,7 @@ from seacage.service._store._kept_aggregates import renew_rested
 from seacage.service._store._rows import DAY_US, microseconds
 from seacage.service._store._store import StoreError, open_store
 from seacage.service._store._verify import verify
-from seacage.twin import Action, Happened
+from seacage.twin import Action, AlarmEvent
 from stores import NOON, put, sample, schema
 
 BOTH = ["sqlite", pytest.param("postgres", marks=pytest.mark.postgres)]
@@ -560,8 +560,8 @@ def test_a_sample_amended_while_its_day_leaves_stays_until_the_next_time(store):
 
 # --- alarms ---
 
-RAISED = Happened(alarm="load.bridle-3", action=Action.RAISED, t=NOON, value=0.9)
-SEEN = Happened(
+RAISED = AlarmEvent(alarm="load.bridle-3", action=Action.RAISED, t=NOON, value=0.9)
+SEEN = AlarmEvent(
     alarm="load.bridle-3",
     action=Action.ACKNOWLEDGED,
     t=NOON + timedelta(minutes=2),
@@ -633,7 +633,7 @@ def test_the_journal_comes_back_in_order_within_its_bounds(store):
 
 def test_lines_of_one_moment_stay_in_their_order(store):
     lines = [
-        Happened(alarm="volume.net", action=action, t=NOON)
+        AlarmEvent(alarm="volume.net", action=action, t=NOON)
         for action in (Action.RAISED, Action.CLEARED, Action.COMMENTED)
     ]
     store.keep_alarms("ace", book="{}", journal=lines).result(timeout=20)
@@ -727,7 +727,7 @@ def looked_through(store):
         pass
 
 
-RAISED = Happened(alarm="volume.net", action=Action.RAISED, t=NOON)
+RAISED = AlarmEvent(alarm="volume.net", action=Action.RAISED, t=NOON)
 
 
 def test_a_sample_that_the_disk_has_changed_is_left_out_and_counted_and_the_rest_is_served(store):

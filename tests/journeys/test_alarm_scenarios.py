@@ -21,7 +21,7 @@ from damaged import ACE, DAMAGES, damaged_field, kept_answers, settled_answers
 from seacage.campaigns import Event, Hidden, Plan, run_campaign
 from seacage.ocean import SeaState
 from seacage.records import CampaignRecord, FieldRecord, Record, Sample
-from seacage.twin import Action, Happened, Training, described, train
+from seacage.twin import Action, AlarmEvent, Training, alarm_text, train
 
 pytestmark = pytest.mark.timeout(600)
 
@@ -128,7 +128,7 @@ def _delay(watch: Assessed, alarm: str) -> timedelta:
     return raised.t - _at(KNOWN)
 
 
-def _new(line: Happened) -> bool:
+def _new(line: AlarmEvent) -> bool:
     return line.action is Action.RAISED
 
 
@@ -175,7 +175,7 @@ def test_a_sensor_that_fails_raises_its_alarm_and_no_other(
     watch = _gone_on(sea.known, _with(sea.whole, words), days)
     assert _told(watch) == [alarm]
     assert watch.book.alarms[alarm].active
-    assert described(watch.book.alarms[alarm], watch.policy).title
+    assert alarm_text(watch.book.alarms[alarm], watch.policy).title
 
 
 @pytest.mark.slow

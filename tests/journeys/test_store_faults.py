@@ -14,7 +14,7 @@ from disks import FILLER, filled, log_not_written, small_disk
 from seacage.service._store._alarms import journal_between
 from seacage.service._store._reserve import SIZE
 from seacage.service._store._store import StoreError, look_into, open_store
-from seacage.twin import Action, Happened
+from seacage.twin import Action, AlarmEvent
 from serviced import Running, depth, eventually, running
 from stores import NOON, put, sample
 
@@ -111,7 +111,7 @@ def test_a_service_that_is_killed_on_a_full_disk_comes_back_and_goes_on_keeping_
             assert "free the disk" in store.fault
             with pytest.raises(StoreError, match="free the disk"):
                 put(store, sample(999))
-            line = Happened(alarm=ALARM, action=Action.COMMENTED, t=NOON)
+            line = AlarmEvent(alarm=ALARM, action=Action.COMMENTED, t=NOON)
             store.keep_alarms("ace", book="{}", journal=[line]).result(timeout=20)
             assert journal(place) == [Action.RAISED, Action.COMMENTED]
             (folder / FILLER).unlink()
@@ -124,7 +124,7 @@ import os, sys
 from pathlib import Path
 from disks import filled
 from seacage.service._store._store import StoreError, open_store
-from seacage.twin import Action, Happened
+from seacage.twin import Action, AlarmEvent
 from stores import NOON, put, sample
 
 place = Path(sys.argv[1])
@@ -137,7 +137,7 @@ with filled(place.parent):
             put(store, sample(k))
     except StoreError:
         print("refused", end=", ")
-    line = Happened(alarm="history.store", action=Action.RAISED, t=NOON)
+    line = AlarmEvent(alarm="history.store", action=Action.RAISED, t=NOON)
     store.keep_alarms("ace", book="{}", journal=[line]).result(timeout=20)
     print("kept", end="", flush=True)
     os._exit(9)

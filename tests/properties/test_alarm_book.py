@@ -8,11 +8,11 @@ from hypothesis import strategies as st
 
 from seacage.conventions import InputError
 from seacage.twin import Alarm, AlarmBook
-from seacage.twin._faults._baseline import Usual
-from seacage.twin._faults._detector import Suspicion
-from seacage.twin._faults._evidence import Belief
-from seacage.twin._faults._residuals import Open
-from seacage.twin._faults._sensor import Sense
+from seacage.twin._faults._baseline import Baseline
+from seacage.twin._faults._detector import FaultDetector
+from seacage.twin._faults._evidence import Evidence
+from seacage.twin._faults._residuals import BlockSums
+from seacage.twin._faults._sensor import SensorMonitor
 
 EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 NUMBERS = st.floats(allow_nan=False, allow_infinity=False)
@@ -32,7 +32,7 @@ ALARMS = _keywords(
     acknowledged=st.booleans(),
     since=st.none() | TIMES,
     crossed=st.none() | TIMES,
-    said=st.none() | TIMES,
+    notified=st.none() | TIMES,
     value=st.none() | NUMBERS,
     worst=st.none() | NUMBERS,
     shelved_until=st.none() | TIMES,
@@ -41,8 +41,8 @@ ALARMS = _keywords(
     comment=st.text(),
     detail=st.text(),
 )
-SENSES = _keywords(
-    heard=st.none() | TIMES,
+MONITORS = _keywords(
+    latest=st.none() | TIMES,
     values=st.lists(NUMBERS, max_size=5).map(tuple),
     since=st.none() | TIMES,
     repeats=COUNTS,
@@ -51,12 +51,12 @@ SENSES = _keywords(
 )
 SIZES = st.lists(NUMBERS, max_size=3).map(tuple)
 TABLES = st.lists(SIZES, max_size=3).map(tuple)
-BELIEFS = _keywords(evidence=NUMBERS, size=SIZES, covariance=TABLES)
-USUALS = _keywords(
+EVIDENCE = _keywords(cusum=NUMBERS, size=SIZES, covariance=TABLES)
+BASELINES = _keywords(
     sensors=st.lists(NAMES, max_size=3).map(tuple),
     size=SIZES,
     covariance=TABLES,
-    restless=SIZES,
+    mean_square=SIZES,
 )
 
 
@@ -64,25 +64,25 @@ USUALS = _keywords(
 @given(
     alarms=st.lists(ALARMS, max_size=3),
     t=st.none() | TIMES,
-    senses=st.dictionaries(NAMES, SENSES, max_size=3),
-    beliefs=st.dictionaries(NAMES, BELIEFS, max_size=3),
-    opened=_keywords(number=st.none() | COUNTS, ticks=COUNTS, east=NUMBERS, north=NUMBERS),
-    usual=USUALS,
-    told=st.lists(NAMES, max_size=3).map(tuple),
+    monitors=st.dictionaries(NAMES, MONITORS, max_size=3),
+    evidence=st.dictionaries(NAMES, EVIDENCE, max_size=3),
+    sums=_keywords(number=st.none() | COUNTS, ticks=COUNTS, east=NUMBERS, north=NUMBERS),
+    baseline=BASELINES,
+    active=st.lists(NAMES, max_size=3).map(tuple),
     waited=COUNTS,
 )
 def test_a_book_comes_back_as_it_was_written(
-    alarms, t, senses, beliefs, opened, usual, told, waited
+    alarms, t, monitors, evidence, sums, baseline, active, waited
 ):
     book = AlarmBook(
         alarms={one["name"]: Alarm(**one) for one in alarms},
         t=t,
-        suspicion=Suspicion(
-            senses={name: Sense(**one) for name, one in senses.items()},
-            beliefs={name: Belief(**one) for name, one in beliefs.items()},
-            opened=Open(**opened),
-            usual=Usual(**usual),
-            told=told,
+        detector=FaultDetector(
+            monitors={name: SensorMonitor(**one) for name, one in monitors.items()},
+            evidence={name: Evidence(**one) for name, one in evidence.items()},
+            sums=BlockSums(**sums),
+            baseline=Baseline(**baseline),
+            active=active,
             waited=waited,
         ),
     )

@@ -5,7 +5,16 @@ from dataclasses import dataclass, field
 from datetime import datetime
 
 from seacage.records import Sample
-from seacage.twin import Action, AlarmBook, AlarmPolicy, Answered, Happened, Twin, TwinState, assess
+from seacage.twin import (
+    Action,
+    AlarmBook,
+    AlarmEvent,
+    AlarmPolicy,
+    Answered,
+    Twin,
+    TwinState,
+    assess,
+)
 
 
 @dataclass
@@ -16,7 +25,7 @@ class Assessed:
     policy: AlarmPolicy | None = None
     book: AlarmBook = field(default_factory=AlarmBook.new)
     state: TwinState = field(default_factory=TwinState)
-    journal: list[Happened] = field(default_factory=list)
+    journal: list[AlarmEvent] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         if self.policy is None:
@@ -28,7 +37,7 @@ class Assessed:
             now = sample.t if self.state.clock is None else max(sample.t, self.state.clock)
             self.state, _ = self.twin.step(self.state, sample, now)
 
-    def tick(self, now: datetime, *, trouble: Mapping[str, str] | None = None) -> list[Happened]:
+    def tick(self, now: datetime, *, trouble: Mapping[str, str] | None = None) -> list[AlarmEvent]:
         """Look at the clock; what happened."""
         self.state, events = self.twin.step(self.state, None, now)
         (answered,) = (event for event in events if isinstance(event, Answered))

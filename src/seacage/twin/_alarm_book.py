@@ -1,4 +1,4 @@
-"""All alarms of a cage, and what their tests remember: kept through a restart to the bit."""
+"""All alarms of a cage and the state of its fault detector, saved exactly through a restart."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Self
 
 from seacage.conventions import InputError
 from seacage.twin._alarms import Alarm, Changed
-from seacage.twin._faults import Suspicion
+from seacage.twin._faults import FaultDetector
+from seacage.twin._saved_keys import saved_keys
 
 if TYPE_CHECKING:
     from pydantic import TypeAdapter
@@ -23,19 +24,21 @@ class AlarmBook:
     Parameters
     ----------
     alarms
-        By name, those that have been judged at least once.
+        By name, those that have been assessed at least once.
     t
         The twin's clock at the last assessment; None before the first.
-    suspicion
-        What the tests for irregularity remember.
+    detector
+        State of the fault detector.
     format
-        What ``from_json`` knows it by.
+        Of the JSON, checked by ``from_json``.
     """
 
     alarms: Mapping[str, Alarm] = field(default_factory=dict[str, Alarm])
     t: datetime | None = None
-    suspicion: Suspicion = field(default_factory=Suspicion)
+    detector: FaultDetector = field(default_factory=FaultDetector)
     format: str = FORMAT
+
+    __pydantic_config__ = saved_keys(detector="suspicion")
 
     @classmethod
     def new(cls) -> Self:
@@ -70,29 +73,29 @@ class AlarmBook:
 
     def to_json(self) -> str:
         """Write everything; ``from_json`` gives an equal book back."""
-        return _adapter().dump_json(self).decode()
+        return _adapter().dump_json(self, by_alias=True).decode()
 
     def with_alarm(self, alarm: Alarm) -> Self:
-        """Return a copy in which one alarm has changed, as by what somebody did with it."""
+        """Return a copy in which one alarm has changed."""
         return replace(self, alarms={**self.alarms, alarm.name: alarm})
 
     def changed(self, changed: Changed) -> Self:
-        """Return a copy with what a person's action made of an alarm."""
+        """Return a copy with an alarm as a person's action left it."""
         return self.with_alarm(changed[0])
 
     def at(self, now: datetime, *, jump_s: float) -> Self:
-        """Return the book for a look at this time.
+        """Return the book for an assessment at this time.
 
-        Where the clock has jumped, nothing is known of the time between: what waits on a delay,
-        and what the tests were averaging, begins anew. What is raised stays raised.
+        Where the clock has jumped, nothing is known of the time between: delays and the fault
+        detector's block start again. Raised alarms stay raised.
         """
         if self.t is None or timedelta(seconds=-60.0) < now - self.t < timedelta(seconds=jump_s):
             return replace(self, t=now)
         alarms = {
-            name: replace(alarm, crossed=None, said=None if alarm.said is None else now)
+            name: replace(alarm, crossed=None, notified=None if alarm.notified is None else now)
             for name, alarm in self.alarms.items()
         }
-        return replace(self, t=now, alarms=alarms, suspicion=self.suspicion.interrupted())
+        return replace(self, t=now, alarms=alarms, detector=self.detector.interrupted())
 
 
 @cache

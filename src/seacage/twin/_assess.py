@@ -1,4 +1,4 @@
-"""What is wrong with a cage now: every alarm judged once, with no clock but the twin's."""
+"""Assessment of a cage: every alarm evaluated once, with no clock but the twin's."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
@@ -7,17 +7,17 @@ from types import MappingProxyType
 
 from seacage.twin._alarm_book import AlarmBook
 from seacage.twin._alarms import (
-    USUAL,
+    DEFAULT_LIMITS,
     Alarm,
+    AlarmEvent,
+    AlarmInput,
     AlarmPolicy,
     Changed,
-    Happened,
-    Number,
+    alarm_inputs,
     evaluate,
-    numbers,
 )
 from seacage.twin._events import Answered
-from seacage.twin._faults import distrusted_in
+from seacage.twin._faults import faulty_streams
 from seacage.twin._state import TwinState
 from seacage.twin._twin import Twin
 
@@ -32,11 +32,11 @@ def assess(
     answered: Answered,
     policy: AlarmPolicy,
     trouble: Mapping[str, str] = _NO_TROUBLE,
-) -> tuple[AlarmBook, tuple[Happened, ...]]:
-    """Judge every alarm after a step of the twin.
+) -> tuple[AlarmBook, tuple[AlarmEvent, ...]]:
+    """Evaluate every alarm after a step of the twin.
 
     Nothing is read but the arguments. A number that is not known neither raises nor clears,
-    and where the clock has jumped all delays begin anew.
+    and where the clock has jumped all delays start again.
 
     Parameters
     ----------
@@ -52,53 +52,53 @@ def assess(
 
     Returns
     -------
-    book, happened
+    book, events
         The journal's lines in order.
     """
     now = answered.t
     book = book.at(now, jump_s=policy.jump_s)
     active = frozenset(name for name, alarm in book.alarms.items() if alarm.active)
-    suspicion = book.suspicion.followed(twin, state, answered, active=active)
-    ended = suspicion.opened.number != book.suspicion.opened.number
-    distrusted = distrusted_in(suspicion.senses, active)
-    alarms, lines = dict(book.alarms), list[Happened]()
-    unheard_of = set(alarms)
-    for number in (
-        *numbers(twin, state, answered, distrusted=distrusted),
-        *(suspicion.numbers(twin.cage) if ended else suspicion.stuck()),
+    detector = book.detector.stepped(twin, state, answered, active=active)
+    ended = detector.sums.number != book.detector.sums.number
+    distrusted = faulty_streams(detector.monitors, active)
+    alarms, lines = dict(book.alarms), list[AlarmEvent]()
+    without_input = set(alarms)
+    for one in (
+        *alarm_inputs(twin, state, answered, distrusted=distrusted),
+        *(detector.inputs(twin.cage) if ended else detector.stuck_inputs()),
         *_faults(book, trouble),
     ):
-        alarm, changed = _judged(alarms, number, policy, now)
+        alarm, changed = _evaluate(alarms, one, policy, now)
         alarms[alarm.name] = alarm
-        unheard_of.discard(alarm.name)
+        without_input.discard(alarm.name)
         lines += changed
-    for name in unheard_of:  # shelves end and what nobody has seen is said again
+    for name in without_input:  # shelving ends, and an alarm that nobody has acknowledged repeats
         if alarms[name].active or alarms[name].shelved:
             alarms[name], changed = evaluate(alarms[name], None, policy.limit(name), now)
             lines += changed
-    return replace(book, alarms=alarms, suspicion=suspicion), tuple(lines)
+    return replace(book, alarms=alarms, detector=detector), tuple(lines)
 
 
-def _judged(
-    alarms: Mapping[str, Alarm], number: Number, policy: AlarmPolicy, now: datetime
+def _evaluate(
+    alarms: Mapping[str, Alarm], given: AlarmInput, policy: AlarmPolicy, now: datetime
 ) -> Changed:
-    alarm = alarms.get(number.alarm) or Alarm(name=number.alarm)
+    alarm = alarms.get(given.alarm) or Alarm(name=given.alarm)
     before = alarm.active
-    alarm, changed = evaluate(alarm, number.value, policy.limit(alarm.name), now)
-    # What was said when it was raised stays: the cause, not the latest weather.
-    if alarm.active and not before and number.detail != alarm.detail:
-        alarm = replace(alarm, detail=number.detail)
+    alarm, changed = evaluate(alarm, given.value, policy.limit(alarm.name), now)
+    # The detail of the time when it was raised stays: the cause, not the latest weather.
+    if alarm.active and not before and given.detail != alarm.detail:
+        alarm = replace(alarm, detail=given.detail)
     return alarm, changed
 
 
-def _faults(book: AlarmBook, trouble: Mapping[str, str]) -> Iterator[Number]:
+def _faults(book: AlarmBook, trouble: Mapping[str, str]) -> Iterator[AlarmInput]:
     for name, sentence in trouble.items():
-        yield Number(alarm=name, value=1.0, detail=sentence)
+        yield AlarmInput(alarm=name, value=1.0, detail=sentence)
     for name, alarm in book.alarms.items():
         if name not in trouble and _is_fault(alarm):
-            yield Number(alarm=name, value=0.0)
+            yield AlarmInput(alarm=name, value=0.0)
 
 
 def _is_fault(alarm: Alarm) -> bool:
-    """Whether an alarm is the service's, as all are that the twin does not judge."""
-    return alarm.kind in {"history", "clock"} or alarm.kind not in USUAL
+    """Whether an alarm is the service's: the twin has no condition for it."""
+    return alarm.kind in {"history", "clock"} or alarm.kind not in DEFAULT_LIMITS

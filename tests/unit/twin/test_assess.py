@@ -6,7 +6,7 @@ import pytest
 from assessed import Assessed
 from seacage.records import Sample
 from seacage.testing import stand_in_twin
-from seacage.twin import Action, Alarm, AlarmPolicy, Limit, described
+from seacage.twin import Action, Alarm, AlarmPolicy, Limit, alarm_text
 
 NOON = datetime(2020, 2, 1, 12, tzinfo=UTC)
 AT_ONCE = Limit(raise_at=1.0, clear_at=0.0)
@@ -89,7 +89,7 @@ def test_without_valid_input_a_load_neither_raises_nor_clears():
     assert before > 0
     watch.hear(buoy(12, speed=-3.0))
     assert told(watch.tick(at(12))) == [("input.buoy-1", Action.RAISED)]
-    assert "flagged" in described(watch.book.alarms["input.buoy-1"], watch.policy).message
+    assert "flagged" in alarm_text(watch.book.alarms["input.buoy-1"], watch.policy).message
 
 
 def test_a_silent_stream_is_named_and_its_return_clears_it():
@@ -118,14 +118,14 @@ def test_water_beyond_what_was_learned_is_told_when_it_lasts_and_labels_the_load
     assert "domain.input" in watch.raised
     loads = [alarm for alarm in watch.book.alarms.values() if alarm.kind == "load" and alarm.active]
     assert loads
-    assert all("Extrapolating" in described(alarm, watch.policy).message for alarm in loads)
+    assert all("Extrapolating" in alarm_text(alarm, watch.policy).message for alarm in loads)
 
 
 def test_a_fault_of_the_service_lasts_as_long_as_it_is_named():
     watch = assessed()
     trouble = {"history.store": "The database was moved aside; its history is lost."}
     assert told(watch.tick(at(0), trouble=trouble)) == [("history.store", Action.RAISED)]
-    assert "moved aside" in described(watch.book.alarms["history.store"], watch.policy).message
+    assert "moved aside" in alarm_text(watch.book.alarms["history.store"], watch.policy).message
     assert told(watch.tick(at(1))) == [("history.store", Action.CLEARED)]
 
 
@@ -152,7 +152,7 @@ def test_every_alarm_of_a_cage_is_described_in_words_active_or_not():
     policy = AlarmPolicy.default(stand_in_twin().cage)
     for name in policy.names:
         for active in (False, True):
-            said = described(Alarm(name=name, active=active, value=0.9, worst=0.95), policy)
+            said = alarm_text(Alarm(name=name, active=active, value=0.9, worst=0.95), policy)
             assert said.title
             assert said.advice.endswith(".")
             assert "{" not in said.title + said.message
@@ -161,9 +161,9 @@ def test_every_alarm_of_a_cage_is_described_in_words_active_or_not():
 def test_a_cause_is_told_while_it_lasts_and_names_stand_as_the_sentence_needs_them():
     policy = AlarmPolicy.default()
     raised = Alarm(name="domain.input", active=True, value=1.0, detail="Extrapolating: …")
-    assert "Extrapolating" in described(raised, policy).message
-    assert "Extrapolating" not in described(replace(raised, active=False), policy).message
+    assert "Extrapolating" in alarm_text(raised, policy).message
+    assert "Extrapolating" not in alarm_text(replace(raised, active=False), policy).message
     load = Alarm(name="load.bridle-7", active=True, value=0.85, worst=0.9)
-    said = described(load, policy)
+    said = alarm_text(load, policy)
     assert said.title == "High load on bridle-7"
     assert said.message.startswith("Bridle-7 bears 85 % of what it may bear, 90 % at worst")

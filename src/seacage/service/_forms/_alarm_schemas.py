@@ -5,7 +5,7 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from seacage.twin import Alarm, AlarmKpi, AlarmPolicy, Happened, described
+from seacage.twin import Alarm, AlarmEvent, AlarmKpi, AlarmPolicy, alarm_text
 
 LONGEST_WORDS = 500
 """Of a reason or a comment [characters]."""
@@ -112,7 +112,7 @@ class Kpi(BaseModel):
 
 def alarm_state(alarm: Alarm, policy: AlarmPolicy) -> AlarmState:
     """Say how an alarm stands."""
-    limit, text = policy.limit(alarm.name), described(alarm, policy)
+    limit, text = policy.limit(alarm.name), alarm_text(alarm, policy)
     return AlarmState(
         id=alarm.name,
         kind=alarm.kind,
@@ -136,7 +136,7 @@ def alarm_state(alarm: Alarm, policy: AlarmPolicy) -> AlarmState:
     )
 
 
-def journal_line(happened: Happened) -> JournalLine:
+def journal_line(happened: AlarmEvent) -> JournalLine:
     """Say what happened."""
     return JournalLine(
         alarm=happened.alarm,

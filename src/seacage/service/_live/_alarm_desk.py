@@ -18,16 +18,16 @@ from seacage.twin import (
     Action,
     Alarm,
     AlarmBook,
+    AlarmEvent,
     AlarmPolicy,
     AlarmText,
     Answered,
     Changed,
-    Happened,
     Twin,
     TwinState,
     acknowledge,
+    alarm_text,
     assess,
-    described,
     put_in_service,
     remark,
     shelve,
@@ -62,7 +62,7 @@ class Announcement:
     """What happened to an alarm of a cage, in the words for those who are told."""
 
     cage: str
-    happened: Happened
+    happened: AlarmEvent
     alarm: Alarm
     text: AlarmText
     severity: int
@@ -89,7 +89,7 @@ class AlarmDesk:
         self._lost = ""
         self._book = self._opened()
         self._kept_at: datetime | None = None
-        self._unkept: deque[Happened] = deque(maxlen=_WAITING)
+        self._unkept: deque[AlarmEvent] = deque(maxlen=_WAITING)
         self._failing = False
         self._listeners: list[Callable[[Announcement], None]] = []
 
@@ -111,7 +111,7 @@ class AlarmDesk:
         """Those that are active and heard, and that nobody has acknowledged, as when raised."""
         return [
             self._said(
-                one, Happened(alarm=one.name, action=Action.RAISED, t=one.since, value=one.worst)
+                one, AlarmEvent(alarm=one.name, action=Action.RAISED, t=one.since, value=one.worst)
             )
             for one in self.alarms.values()
             if one.active and not one.acknowledged and not one.quiet and one.since
@@ -137,7 +137,7 @@ class AlarmDesk:
         answered: Answered,
         *,
         faults: Mapping[str, str] = MappingProxyType({}),
-    ) -> tuple[Happened, ...]:
+    ) -> tuple[AlarmEvent, ...]:
         """Assess every alarm once more, by the answer of a tick.
 
         Parameters
@@ -207,8 +207,8 @@ class AlarmDesk:
         said = self._store.fault or self._store.lost or self._lost
         return {"history.store": said} if said else {}
 
-    def _keep(self, happened: Sequence[Happened]) -> Future[None]:
-        lines = list[Happened]()
+    def _keep(self, happened: Sequence[AlarmEvent]) -> Future[None]:
+        lines = list[AlarmEvent]()
         while self._unkept:
             lines.append(self._unkept.popleft())
         lines += happened
@@ -216,7 +216,7 @@ class AlarmDesk:
         kept.add_done_callback(partial(self._settle, lines))
         return kept
 
-    def _settle(self, lines: Sequence[Happened], kept: Future[None]) -> None:
+    def _settle(self, lines: Sequence[AlarmEvent], kept: Future[None]) -> None:
         # Called in the thread that writes; a deque takes this without a lock.
         error = kept.exception()
         if isinstance(error, StoreError):
@@ -225,23 +225,23 @@ class AlarmDesk:
                 _log.error("alarms not kept yet", cage=self._cage, reason=str(error))
         self._failing = error is not None
 
-    def _announce(self, happened: Sequence[Happened]) -> None:
+    def _announce(self, happened: Sequence[AlarmEvent]) -> None:
         for one in happened:
             told = self._said(self.alarms[one.alarm], one)
             for listener in self._listeners:
                 listener(told)
 
-    def _said(self, alarm: Alarm, happened: Happened) -> Announcement:
+    def _said(self, alarm: Alarm, happened: AlarmEvent) -> Announcement:
         return Announcement(
             cage=self._cage,
             happened=happened,
             alarm=alarm,
-            text=described(alarm, self.policy),
+            text=alarm_text(alarm, self.policy),
             severity=self.policy.limit(alarm.name).severity,
         )
 
     def _brief(self, alarm: Alarm) -> AlarmBrief:
-        text = described(alarm, self.policy)
+        text = alarm_text(alarm, self.policy)
         return AlarmBrief(
             id=alarm.name,
             severity=self.policy.limit(alarm.name).severity,

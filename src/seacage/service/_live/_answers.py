@@ -38,7 +38,7 @@ from seacage.twin import (
     Twin,
     TwinState,
     interval_reason,
-    measured_loads,
+    shackle_loads,
 )
 
 _UNUSABLE = (Flag.FAIL, Flag.MISSING)
@@ -72,7 +72,7 @@ def state_of(name: str, twin: Twin, answered: Answered, memory: TwinState) -> St
         reason=answer.reason[0],
         origin=str(twin.origin),
         water=_water(answered.metocean, _period(memory, twin.buoy, answered.t)),
-        bridles=_bridles(twin.cage, answer, measured_loads(twin, memory, answered.t)),
+        bridles=_bridles(twin.cage, answer, shackle_loads(twin, memory, answered.t)),
         sensors=_sensors(answer, memory, answered.t, twin.watch.sensor_silent_after_s),
         shape_level=answer.shape_level,
         shape=_shape_state(answer),

@@ -8,7 +8,7 @@ from seacage.service._store._checksum import with_checksum
 from seacage.service._store._rows import DAY_US, microseconds, moment_of
 from seacage.service._store._session import AbstractSession
 from seacage.service._store._tally import recount
-from seacage.twin import Action, Happened
+from seacage.twin import Action, AlarmEvent
 
 _KEEP_BOOK = """
 INSERT INTO alarm_book VALUES (?, ?, ?)
@@ -20,7 +20,7 @@ _ORDERS = {True: "t DESC, number DESC LIMIT ?", False: "t, number LIMIT ?"}
 
 
 def keep_alarms(
-    session: AbstractSession, cage: str, book: str, journal: Sequence[Happened]
+    session: AbstractSession, cage: str, book: str, journal: Sequence[AlarmEvent]
 ) -> None:
     """Replace the book of a cage and add lines to its journal."""
     session.rows(_KEEP_BOOK, with_checksum("alarm_book", cage, book))
@@ -47,7 +47,7 @@ def journal_between(
     end: datetime | None,
     limit: int,
     newest: bool,
-) -> list[Happened]:
+) -> list[AlarmEvent]:
     """Read lines in time order, as ``Store.journal`` says."""
     first = -(2**62) if start is None else microseconds(start)
     last = 2**62 if end is None else microseconds(end)
@@ -56,7 +56,7 @@ def journal_between(
     return [_happened(t, line) for t, line in (reversed(rows) if newest else rows)]
 
 
-def _line(one: Happened) -> str:
+def _line(one: AlarmEvent) -> str:
     return json.dumps(
         {
             "alarm": one.alarm,
@@ -69,7 +69,7 @@ def _line(one: Happened) -> str:
     )
 
 
-def _happened(t: int, line: str) -> Happened:
+def _happened(t: int, line: str) -> AlarmEvent:
     parts = json.loads(line)
     parts["action"] = Action(parts["action"])
-    return Happened(t=moment_of(t), **parts)
+    return AlarmEvent(t=moment_of(t), **parts)

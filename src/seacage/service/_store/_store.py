@@ -40,7 +40,7 @@ from seacage.service._store._retired import retired
 from seacage.service._store._rows import check_seq, microseconds
 from seacage.service._store._session import AbstractSession, DamageError, StoreError
 from seacage.service._store._writer import Writer
-from seacage.twin import Happened
+from seacage.twin import AlarmEvent
 
 __all__ = ["Store", "StoreError", "look_into", "open_store"]
 
@@ -331,7 +331,7 @@ class Store:
             ),
         )
 
-    def keep_alarms(self, cage: str, *, book: str, journal: Sequence[Happened]) -> "Future[None]":
+    def keep_alarms(self, cage: str, *, book: str, journal: Sequence[AlarmEvent]) -> "Future[None]":
         """Keep the book of alarms and what happened to them, both or neither.
 
         Where the disk is full this goes on, in room that was held for it.
@@ -401,7 +401,7 @@ class Store:
         end: datetime | None = None,
         limit: int,
         newest: bool = False,
-    ) -> list[Happened]:
+    ) -> list[AlarmEvent]:
         """Read what happened to alarms, in time order, start <= t < end.
 
         Parameters

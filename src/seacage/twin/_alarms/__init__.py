@@ -1,7 +1,7 @@
 """Alarms as OPC UA Part 9 and ISA-18.2 have them: limits, life, texts and key figures."""
 
-from seacage.twin._alarms._alarm import Action, Alarm, Changed, Happened, Limit, Number
-from seacage.twin._alarms._conditions import measured_loads, numbers
+from seacage.twin._alarms._alarm import Action, Alarm, AlarmEvent, AlarmInput, Changed, Limit
+from seacage.twin._alarms._conditions import alarm_inputs, shackle_loads
 from seacage.twin._alarms._kpi import AlarmKpi, alarm_kpi
 from seacage.twin._alarms._lifecycle import (
     acknowledge,
@@ -12,28 +12,28 @@ from seacage.twin._alarms._lifecycle import (
     take_out_of_service,
     unshelve,
 )
-from seacage.twin._alarms._policy import USUAL, AlarmPolicy
-from seacage.twin._alarms._text import AlarmText, described
+from seacage.twin._alarms._policy import DEFAULT_LIMITS, AlarmPolicy
+from seacage.twin._alarms._text import AlarmText, alarm_text
 
 __all__ = [
-    "USUAL",
+    "DEFAULT_LIMITS",
     "Action",
     "Alarm",
+    "AlarmEvent",
+    "AlarmInput",
     "AlarmKpi",
     "AlarmPolicy",
     "AlarmText",
     "Changed",
-    "Happened",
     "Limit",
-    "Number",
     "acknowledge",
+    "alarm_inputs",
     "alarm_kpi",
-    "described",
+    "alarm_text",
     "evaluate",
-    "measured_loads",
-    "numbers",
     "put_in_service",
     "remark",
+    "shackle_loads",
     "shelve",
     "take_out_of_service",
     "unshelve",

@@ -1,4 +1,4 @@
-"""The state of an alarm, the limit that it is judged by, and the journal's lines."""
+"""The state of an alarm, its limit, its input and the events of its journal."""
 
 import math
 from dataclasses import dataclass
@@ -6,10 +6,11 @@ from datetime import datetime
 from enum import StrEnum
 
 from seacage.conventions import InputError
+from seacage.twin._saved_keys import saved_keys
 
 
 class Action(StrEnum):
-    """What happened to an alarm."""
+    """Change of an alarm's state."""
 
     RAISED = "raised"
     REPEATED = "repeated"
@@ -24,18 +25,18 @@ class Action(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limit:
-    """When a number that is worse the larger it is raises an alarm, and when it clears it.
+    """Limits at which a number raises an alarm and clears it; the larger, the worse.
 
     Parameters
     ----------
     raise_at, clear_at
         Raised at or above the one, cleared at or below the other, in the number's unit;
-        ``clear_at`` is the smaller, so that a number near its limit does not chatter.
+        ``clear_at`` is the smaller: the deadband keeps a number near its limit from chattering.
     on_delay_s, off_delay_s
-        The number has to stay there for so long [s].
+        Time for which the number has to stay there [s].
     repeat_after_s
-        While raised and not acknowledged, it is said again after so long [s]; None says it
-        once.
+        Time after which an alarm is notified again while it is raised and not acknowledged [s];
+        None notifies once.
     severity
         1 to 1000, the larger the worse.
 
@@ -75,19 +76,19 @@ class Limit:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Happened:
-    """One line of the journal.
+class AlarmEvent:
+    """One line of the alarm journal.
 
     Parameters
     ----------
     alarm, action, t
-        Which, what, and when by the twin's clock.
+        The alarm's name, the change of its state, and the twin's clock.
     value
         The number at that time; None where there was none.
     who, why
         The person and the reason; empty where no person acted.
     quiet
-        Nobody is to be woken: it is shelved or out of service.
+        Suppressed, so that nobody is notified: the alarm is shelved or out of service.
     """
 
     alarm: str
@@ -100,17 +101,17 @@ class Happened:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Number:
-    """What an alarm is judged by.
+class AlarmInput:
+    """The number that raises and clears an alarm.
 
     Parameters
     ----------
     alarm
-        Its name.
+        The alarm's name.
     value
         None where it is not known: it then neither raises nor clears.
     detail
-        What there is to add, in a sentence.
+        An addition to the alarm's message, in a sentence.
     """
 
     alarm: str
@@ -122,31 +123,31 @@ class Number:
 class Alarm:
     """The state of one alarm.
 
-    Active and acknowledged are independent: one that has cleared still waits for somebody to
-    say that it was seen. A number that is not known neither raises nor clears.
+    Active and acknowledged are independent: an alarm that has cleared still waits to be
+    acknowledged. A number that is not known neither raises nor clears.
 
     Parameters
     ----------
     name
         Its kind and its source, e.g. ``load.bridle-3``.
     active, acknowledged
-        Whether its cause is there, and whether somebody has seen it.
+        Whether its cause lasts, and whether somebody has acknowledged it.
     since
         Of the last change of ``active``; None if it never was.
     crossed
         Since when the number has been beyond the limit that would change ``active``.
-    said
-        When somebody was last told.
+    notified
+        Time of the last notification.
     value, worst
         The last known number, and the largest since it was raised.
     shelved_until, shelved_once
-        Quiet until that time, or until it clears.
+        Shelved until that time, or until it clears.
     in_service
-        Whether it is judged for anyone to hear.
+        Whether it is notified at all.
     comment
-        The last that somebody wrote.
+        The last comment of a person.
     detail
-        What the assessment adds to the number, in a sentence; empty for nothing.
+        Of the input that raised it; empty for none.
 
     References
     ----------
@@ -158,7 +159,7 @@ class Alarm:
     acknowledged: bool = True
     since: datetime | None = None
     crossed: datetime | None = None
-    said: datetime | None = None
+    notified: datetime | None = None
     value: float | None = None
     worst: float | None = None
     shelved_until: datetime | None = None
@@ -167,34 +168,36 @@ class Alarm:
     comment: str = ""
     detail: str = ""
 
+    __pydantic_config__ = saved_keys(notified="said")
+
     @property
     def kind(self) -> str:
-        """What is judged, e.g. ``load``."""
+        """Kind of the alarm, e.g. ``load``."""
         return self.name.partition(".")[0]
 
     @property
     def source(self) -> str:
-        """Of what it is judged, e.g. ``bridle-3``."""
+        """Source of its number, e.g. ``bridle-3``."""
         return self.name.partition(".")[2]
 
     @property
     def shelved(self) -> bool:
-        """Whether somebody asked it to be quiet for a while."""
+        """Whether somebody has shelved it."""
         return self.shelved_until is not None or self.shelved_once
 
     @property
     def quiet(self) -> bool:
-        """Whether nobody is to be woken."""
+        """Whether its notifications are suppressed."""
         return self.shelved or not self.in_service
 
     @property
     def waiting(self) -> bool:
-        """Whether somebody should look at it: its cause is there, or was and nobody saw."""
+        """Whether somebody should look at it: it is active or not acknowledged."""
         return (self.active or not self.acknowledged) and not self.quiet
 
-    def line(self, action: Action, now: datetime, *, who: str = "", why: str = "") -> Happened:
-        """What happened to it now, for the journal."""
-        return Happened(
+    def line(self, action: Action, now: datetime, *, who: str = "", why: str = "") -> AlarmEvent:
+        """Return the journal's line of a change now."""
+        return AlarmEvent(
             alarm=self.name,
             action=action,
             t=now,
@@ -205,5 +208,5 @@ class Alarm:
         )
 
 
-Changed = tuple[Alarm, tuple[Happened, ...]]
-"""An alarm as it now is, and what happened to it on the way."""
+Changed = tuple[Alarm, tuple[AlarmEvent, ...]]
+"""An alarm after a change, and the journal's lines of it."""

@@ -1,29 +1,29 @@
-"""The numbers that alarms are judged by: what is known now, and nothing where nothing is."""
+"""Conditions of the alarms: the number of each now, or None where it is not known."""
 
 from collections.abc import Iterator
 from datetime import datetime, timedelta
 
 from seacage.conventions import Flag
-from seacage.twin._alarms._alarm import Number
+from seacage.twin._alarms._alarm import AlarmInput
 from seacage.twin._events import Answered
 from seacage.twin._state import Stream, TwinState
 from seacage.twin._twin import Twin
 
 MEASURED_S = 60.0
-"""A shackle's load is its mean over the last so long [s]: a wave's peak is not the line's load."""
+"""Time over which a shackle's readings are averaged [s]: the load is no wave's peak."""
 
 
-def numbers(
+def alarm_inputs(
     twin: Twin, state: TwinState, answered: Answered, *, distrusted: frozenset[str]
-) -> Iterator[Number]:
-    """Say what is judged now, but for what the tests for irregularity say.
+) -> Iterator[AlarmInput]:
+    """Return the inputs of all alarms but those of the fault detector.
 
     Parameters
     ----------
     twin, state, answered
-        The twin, what it remembers, and what it said last.
+        The twin, its state, and its last answer.
     distrusted
-        Streams whose readings are not to be believed.
+        Streams whose readings are not to be used.
     """
     yield from _loads(twin, state, answered, distrusted)
     yield _volume(answered)
@@ -34,21 +34,21 @@ def numbers(
 
 def _loads(
     twin: Twin, state: TwinState, answered: Answered, distrusted: frozenset[str]
-) -> Iterator[Number]:
+) -> Iterator[AlarmInput]:
     answer = answered.answer
     valid = bool(answer.valid[0])
     detail = answer.reason[0] if valid and not answer.in_domain[0] else ""
     mean = answer.bridle_tension.mean[0]
     capacity = twin.cage.bridle_capacity
-    measured = measured_loads(twin, state, answered.t, distrusted=distrusted)
+    measured = shackle_loads(twin, state, answered.t, distrusted=distrusted)
     for bridle, name in enumerate(twin.bridle_names):
         known = [float(mean[bridle])] if valid else []
         known += [measured[bridle]] if bridle in measured else []
         value = max(known) / float(capacity[bridle]) if known else None
-        yield Number(alarm=f"load.{name}", value=value, detail=detail)
+        yield AlarmInput(alarm=f"load.{name}", value=value, detail=detail)
 
 
-def measured_loads(
+def shackle_loads(
     twin: Twin, state: TwinState, now: datetime, *, distrusted: frozenset[str] = frozenset()
 ) -> dict[int, float]:
     """Load of each bridle whose shackle has given a good reading within its timeout [N]."""
@@ -74,33 +74,37 @@ def _recent_load(stream: Stream, now: datetime, timeout_s: float) -> float | Non
     return 1000.0 * sum(good) / len(good) if good else None
 
 
-def _volume(answered: Answered) -> Number:
+def _volume(answered: Answered) -> AlarmInput:
     answer = answered.answer
     if not answer.valid[0]:
-        return Number(alarm="volume.net", value=None)
+        return AlarmInput(alarm="volume.net", value=None)
     detail = "" if answer.in_domain[0] else answer.reason[0]
-    return Number(alarm="volume.net", value=1.0 - float(answer.volume_fraction[0]), detail=detail)
+    return AlarmInput(
+        alarm="volume.net", value=1.0 - float(answer.volume_fraction[0]), detail=detail
+    )
 
 
-def _silences(state: TwinState, now: datetime) -> Iterator[Number]:
+def _silences(state: TwinState, now: datetime) -> Iterator[AlarmInput]:
     for name in state.streams:
         latest = state.latest(name, now)
         age_s = (now - latest.t).total_seconds() if latest else 0.0
-        yield Number(alarm=f"silent.{name}", value=age_s)
+        yield AlarmInput(alarm=f"silent.{name}", value=age_s)
 
 
-def _input(twin: Twin, state: TwinState, answered: Answered, distrusted: frozenset[str]) -> Number:
-    """Whether there is no input; where the buoy is silent or stuck, that is said already."""
+def _input(
+    twin: Twin, state: TwinState, answered: Answered, distrusted: frozenset[str]
+) -> AlarmInput:
+    """Whether there is no input; unknown where the buoy is silent or stuck, which has an alarm."""
     name, answer = f"input.{twin.buoy}", answered.answer
     if answer.valid[0]:
-        return Number(alarm=name, value=0.0)
+        return AlarmInput(alarm=name, value=0.0)
     value = None if twin.buoy in state.silent | distrusted else 1.0
-    return Number(alarm=name, value=value, detail=answer.reason[0])
+    return AlarmInput(alarm=name, value=value, detail=answer.reason[0])
 
 
-def _domain(answered: Answered) -> Number:
+def _domain(answered: Answered) -> AlarmInput:
     answer = answered.answer
     if not answer.valid[0]:
-        return Number(alarm="domain.input", value=None)
+        return AlarmInput(alarm="domain.input", value=None)
     inside = bool(answer.in_domain[0])
-    return Number(alarm="domain.input", value=0.0 if inside else 1.0, detail=answer.reason[0])
+    return AlarmInput(alarm="domain.input", value=0.0 if inside else 1.0, detail=answer.reason[0])

@@ -1,4 +1,4 @@
-"""How well the alarms serve their watch, counted from the journal."""
+"""Key figures of the alarms over a span of time, counted from the journal."""
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
@@ -7,7 +7,7 @@ from datetime import datetime, timedelta
 from statistics import median
 
 from seacage.conventions import InputError
-from seacage.twin._alarms._alarm import Action, Happened
+from seacage.twin._alarms._alarm import Action, AlarmEvent
 
 CHATTERING = 3
 """An alarm that is raised so often within an hour chatters."""
@@ -18,21 +18,20 @@ _DAY = timedelta(days=1)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AlarmKpi:
-    """Figures of a journal over a span of time.
+    """Key figures of a journal over a span of time.
 
-    Quiet lines, of alarms that were shelved or out of service, count among ``raised`` by name
-    alone: they woke nobody.
+    Suppressed alarms, which were shelved or out of service, count in ``raised`` alone.
 
     Parameters
     ----------
     start, end
         The span.
     raised
-        How often each alarm was raised, quiet or not; the most frequent first.
+        How often each alarm was raised, suppressed or not; the most frequent first.
     per_day
-        Alarms raised that were to be heard, over the days of the span [1/day].
+        Alarms raised and notified, over the days of the span [1/day].
     most_in_an_hour
-        The most that were to be heard within any hour.
+        The most that were notified within any hour.
     standing
         Alarms that were raised at the end, the longest first, and since when; a raise before
         the span counts where its line is among those given.
@@ -43,7 +42,7 @@ class AlarmKpi:
     to_acknowledge_s
         Median time from raise to acknowledgement [s]; None where nothing was acknowledged.
     unacknowledged
-        Raises that were to be heard and were not acknowledged within the span.
+        Alarms that were notified and not acknowledged within the span.
     """
 
     start: datetime
@@ -58,14 +57,14 @@ class AlarmKpi:
     unacknowledged: int
 
 
-def alarm_kpi(journal: Iterable[Happened], *, start: datetime, end: datetime) -> AlarmKpi:
-    """Count what a journal says about a span of time.
+def alarm_kpi(journal: Iterable[AlarmEvent], *, start: datetime, end: datetime) -> AlarmKpi:
+    """Count the key figures of a journal over a span of time.
 
     Parameters
     ----------
     journal
-        Lines in any order; those after the span are left out, those before it say what was
-        standing when it began.
+        Lines in any order; those after the span are left out, those before it give the alarms
+        that stood when it began.
     start, end
         Of the span, with their zones.
 
@@ -81,17 +80,17 @@ def alarm_kpi(journal: Iterable[Happened], *, start: datetime, end: datetime) ->
         )
     lines = sorted((line for line in journal if line.t < end), key=lambda line: line.t)
     raises = [line for line in lines if line.action is Action.RAISED and line.t >= start]
-    heard = [line for line in raises if not line.quiet]
+    notified = [line for line in raises if not line.quiet]
     stood = _stood(lines, end)
     within = [(name, max(since, start), until) for name, since, until in stood if until > start]
-    waited = [_acknowledged(line, lines) for line in heard]
+    waited = [_time_to_acknowledge(line, lines) for line in notified]
     seen = [one for one in waited if one is not None]
     return AlarmKpi(
         start=start,
         end=end,
         raised=dict(Counter(line.alarm for line in raises).most_common()),
-        per_day=len(heard) / ((end - start) / _DAY),
-        most_in_an_hour=_most_in_an_hour([line.t for line in heard]),
+        per_day=len(notified) / ((end - start) / _DAY),
+        most_in_an_hour=_most_in_an_hour([line.t for line in notified]),
         standing=dict(
             sorted(
                 ((name, since) for name, since, until in stood if until == end),
@@ -105,8 +104,8 @@ def alarm_kpi(journal: Iterable[Happened], *, start: datetime, end: datetime) ->
     )
 
 
-def _stood(lines: Sequence[Happened], end: datetime) -> list[tuple[str, datetime, datetime]]:
-    """Name each alarm's spells, from raise to clearing or to the end."""
+def _stood(lines: Sequence[AlarmEvent], end: datetime) -> list[tuple[str, datetime, datetime]]:
+    """List the spells of each alarm, from raise to clearing or to the end."""
     since, spells = dict[str, datetime](), list[tuple[str, datetime, datetime]]()
     for line in lines:
         if line.action is Action.RAISED:
@@ -123,8 +122,8 @@ def _longest(spells: Sequence[tuple[str, datetime, datetime]]) -> dict[str, floa
     return dict(sorted(longest.items(), key=lambda one: -one[1]))
 
 
-def _acknowledged(raised: Happened, lines: Sequence[Happened]) -> float | None:
-    """How long a raise waited to be seen [s]; the next raise of the same alarm ends the wait."""
+def _time_to_acknowledge(raised: AlarmEvent, lines: Sequence[AlarmEvent]) -> float | None:
+    """Time from a raise to its acknowledgement [s]; the next raise of the alarm ends the wait."""
     for line in lines:
         if line.alarm != raised.alarm or line.t < raised.t or line is raised:
             continue
@@ -139,7 +138,7 @@ def _most_in_an_hour(times: Sequence[datetime]) -> int:
     return max((sum(t <= one < t + _HOUR for one in times) for t in times), default=0)
 
 
-def _chattering(raises: Sequence[Happened]) -> tuple[str, ...]:
+def _chattering(raises: Sequence[AlarmEvent]) -> tuple[str, ...]:
     names = dict.fromkeys(line.alarm for line in raises)
     return tuple(
         name

@@ -7,46 +7,46 @@ from seacage.conventions import InputError
 from seacage.twin._alarms._alarm import Action, Alarm, Changed, Limit
 
 LONGEST_SHELF_S = 7 * 86400.0
-"""Shelved for longer, an alarm is forgotten; take it out of service instead [s]."""
+"""Longest time to shelve an alarm for [s]; take it out of service for longer."""
 
 
 def evaluate(alarm: Alarm, value: float | None, limit: Limit, now: datetime) -> Changed:
-    """The alarm after one more number.
+    """Evaluate an alarm with one more number.
 
     Parameters
     ----------
     alarm
-        As it was.
+        Before.
     value
-        None where there is no valid one: it neither raises nor clears.
+        None where it is not known: it neither raises nor clears.
     limit
         In the number's unit.
     now
         The twin's clock.
     """
-    alarm, ended = _shelf_over(alarm, now)
+    alarm, ended = _end_shelf(alarm, now)
     if value is not None:
-        alarm = _heard(alarm, value, limit, now)
+        alarm = _with_value(alarm, value, limit, now)
         if _has_stayed(alarm, limit, now):
-            alarm, changed = _turned(alarm, now)
+            alarm, changed = _switch(alarm, now)
             return alarm, (*ended, *changed)
-    alarm, repeated = _repeated(alarm, limit, now)
+    alarm, repeated = _repeat(alarm, limit, now)
     return alarm, (*ended, *repeated)
 
 
-def unshelved(alarm: Alarm, now: datetime, *, who: str = "", why: str = "") -> Changed:
-    """Heard again; what is still unseen is said anew from now on."""
-    alarm = replace(alarm, shelved_until=None, shelved_once=False, said=now)
+def end_shelving(alarm: Alarm, now: datetime, *, who: str = "", why: str = "") -> Changed:
+    """End the shelving; an alarm that is not acknowledged is repeated from now on."""
+    alarm = replace(alarm, shelved_until=None, shelved_once=False, notified=now)
     return alarm, (alarm.line(Action.UNSHELVED, now, who=who, why=why),)
 
 
 def acknowledge(alarm: Alarm, *, who: str, now: datetime, why: str = "") -> Changed:
-    """Somebody has seen it.
+    """Acknowledge an alarm.
 
     Raises
     ------
     InputError
-        There is nothing to be seen.
+        There is nothing to acknowledge.
     """
     if alarm.acknowledged:
         raise InputError(f"{alarm.name}: there is nothing to acknowledge.")
@@ -55,12 +55,12 @@ def acknowledge(alarm: Alarm, *, who: str, now: datetime, why: str = "") -> Chan
 
 
 def remark(alarm: Alarm, *, who: str, now: datetime, why: str) -> Changed:
-    """Somebody writes to it.
+    """Comment on an alarm.
 
     Raises
     ------
     InputError
-        There are no words.
+        The comment is empty.
     """
     _demand(alarm, why, "a comment without words says nothing")
     alarm = replace(alarm, comment=why)
@@ -70,7 +70,7 @@ def remark(alarm: Alarm, *, who: str, now: datetime, why: str) -> Changed:
 def shelve(
     alarm: Alarm, *, who: str, now: datetime, why: str, seconds: float | None = None
 ) -> Changed:
-    """Quiet for so long [s], or, with None, until it has cleared once.
+    """Shelve an alarm for some seconds, or, with None, until it has cleared once.
 
     Raises
     ------
@@ -93,7 +93,7 @@ def shelve(
 
 
 def unshelve(alarm: Alarm, *, who: str, now: datetime, why: str = "") -> Changed:
-    """Somebody wants to hear it again.
+    """End the shelving of an alarm.
 
     Raises
     ------
@@ -102,11 +102,11 @@ def unshelve(alarm: Alarm, *, who: str, now: datetime, why: str = "") -> Changed
     """
     if not alarm.shelved:
         raise InputError(f"{alarm.name}: it is not shelved.")
-    return unshelved(alarm, now, who=who, why=why)
+    return end_shelving(alarm, now, who=who, why=why)
 
 
 def take_out_of_service(alarm: Alarm, *, who: str, now: datetime, why: str) -> Changed:
-    """Quiet until it is put back.
+    """Take an alarm out of service until it is put back.
 
     Raises
     ------
@@ -119,7 +119,7 @@ def take_out_of_service(alarm: Alarm, *, who: str, now: datetime, why: str) -> C
 
 
 def put_in_service(alarm: Alarm, *, who: str, now: datetime, why: str) -> Changed:
-    """Heard again.
+    """Put an alarm back in service.
 
     Raises
     ------
@@ -131,7 +131,7 @@ def put_in_service(alarm: Alarm, *, who: str, now: datetime, why: str) -> Change
     return alarm, (alarm.line(Action.IN_SERVICE, now, who=who, why=why),)
 
 
-def _heard(alarm: Alarm, value: float, limit: Limit, now: datetime) -> Alarm:
+def _with_value(alarm: Alarm, value: float, limit: Limit, now: datetime) -> Alarm:
     worst = alarm.worst
     if alarm.active:
         worst = value if worst is None else max(worst, value)
@@ -145,32 +145,32 @@ def _has_stayed(alarm: Alarm, limit: Limit, now: datetime) -> bool:
     return alarm.crossed is not None and (now - alarm.crossed).total_seconds() >= delay_s
 
 
-def _turned(alarm: Alarm, now: datetime) -> Changed:
+def _switch(alarm: Alarm, now: datetime) -> Changed:
     alarm = replace(alarm, active=not alarm.active, since=now, crossed=None)
     if alarm.active:
-        alarm = replace(alarm, acknowledged=False, said=now, worst=alarm.value)
+        alarm = replace(alarm, acknowledged=False, notified=now, worst=alarm.value)
         return alarm, (alarm.line(Action.RAISED, now),)
     line = alarm.line(Action.CLEARED, now)
     if not alarm.shelved_once:
         return alarm, (line,)
-    alarm, heard = unshelved(alarm, now)
-    return alarm, (line, *heard)
+    alarm, lines = end_shelving(alarm, now)
+    return alarm, (line, *lines)
 
 
-def _repeated(alarm: Alarm, limit: Limit, now: datetime) -> Changed:
+def _repeat(alarm: Alarm, limit: Limit, now: datetime) -> Changed:
     after_s = limit.repeat_after_s
-    unseen = alarm.active and not alarm.acknowledged and not alarm.quiet
-    if not unseen or after_s is None or alarm.said is None:
+    unacknowledged = alarm.active and not alarm.acknowledged and not alarm.quiet
+    if not unacknowledged or after_s is None or alarm.notified is None:
         return alarm, ()
-    if (now - alarm.said).total_seconds() < after_s:
+    if (now - alarm.notified).total_seconds() < after_s:
         return alarm, ()
-    return replace(alarm, said=now), (alarm.line(Action.REPEATED, now),)
+    return replace(alarm, notified=now), (alarm.line(Action.REPEATED, now),)
 
 
-def _shelf_over(alarm: Alarm, now: datetime) -> Changed:
+def _end_shelf(alarm: Alarm, now: datetime) -> Changed:
     if alarm.shelved_until is None or now < alarm.shelved_until:
         return alarm, ()
-    return unshelved(alarm, now)
+    return end_shelving(alarm, now)
 
 
 def _demand(alarm: Alarm, why: str, otherwise: str) -> None:

@@ -1,4 +1,4 @@
-"""By which limits a cage's alarms are judged."""
+"""Limits of a cage's alarms: the defaults, and those of the settings."""
 
 import math
 from collections.abc import Mapping
@@ -10,7 +10,7 @@ from seacage.conventions import InputError
 from seacage.twin._alarms._alarm import Limit
 from seacage.twin._state import Watch
 
-USUAL: Mapping[str, Limit] = {
+DEFAULT_LIMITS: Mapping[str, Limit] = {
     # Of the capacity, which the material factor has divided already: reached, the line has used
     # up what its designer allowed. A fifth below it there is time to act.
     "load": Limit(
@@ -31,16 +31,16 @@ USUAL: Mapping[str, Limit] = {
         repeat_after_s=7200.0,
         severity=600,
     ),
-    # Since a stream last spoke [s]; how long it may be quiet is the twin's to say.
+    # Age of a stream's last sample [s]; the limits are set by the twin's timeouts.
     "silent": Limit(raise_at=900.0, clear_at=600.0, on_delay_s=60.0, severity=500),
-    # One bad reading of a buoy that speaks every quarter of an hour is not worth a call.
+    # One bad sample of a buoy that sends every quarter of an hour is not worth a call.
     "input": Limit(
         raise_at=1.0, clear_at=0.0, on_delay_s=1800.0, repeat_after_s=7200.0, severity=600
     ),
     "domain": Limit(raise_at=1.0, clear_at=0.0, on_delay_s=600.0, off_delay_s=1800.0, severity=400),
-    # Of the test's own limit; the averaging that delays belong to is in the test.
+    # Over the fault detector's own limit; the detector averages, so there is no delay.
     "irregular": Limit(raise_at=1.0, clear_at=0.5, severity=500),
-    # No bridle mends itself: a whole tide has to say so.
+    # No bridle mends itself: it clears after a whole tide.
     "bridle": Limit(
         raise_at=1.0, clear_at=0.5, off_delay_s=43200.0, repeat_after_s=600.0, severity=900
     ),
@@ -48,10 +48,10 @@ USUAL: Mapping[str, Limit] = {
     "history": Limit(raise_at=1.0, clear_at=0.0, repeat_after_s=3600.0, severity=800),
     "clock": Limit(raise_at=1.0, clear_at=0.0, repeat_after_s=7200.0, severity=600),
 }
-"""By kind of alarm."""
+"""Default limit of each kind of alarm."""
 
 FAULT = "history"
-"""The kind whose limit serves for faults of the service that have none of their own."""
+"""Kind whose limit serves for faults of the service that have none of their own."""
 
 _WHOLE = ("severity",)
 _KEYS = tuple(one.name for one in fields(Limit))
@@ -68,10 +68,10 @@ class AlarmPolicy:
         the bridle's capacity, volumes are losses as shares of the volume in still water,
         silences are seconds; the others are 0 or 1, or shares of a test's limit.
     names
-        What alarms there can be of the cage; empty where no cage was given.
+        The alarms of the cage; empty where no cage was given.
     jump_s
-        A clock that goes further between two looks has jumped, and what waits on a delay begins
-        to wait anew [s].
+        Largest step of the clock between two assessments [s]; after a larger one, all delays
+        start again.
     """
 
     limits: Mapping[str, Limit]
@@ -82,7 +82,7 @@ class AlarmPolicy:
     def default(
         cls, cage: Cage | None = None, *, buoy: str = "buoy-1", watch: Watch | None = None
     ) -> Self:
-        """Return the usual limits.
+        """Return the default limits.
 
         Parameters
         ----------
@@ -91,10 +91,10 @@ class AlarmPolicy:
         buoy
             The stream that the inputs come from.
         watch
-            How long streams may be quiet; None for the usual.
+            Timeouts of the streams; None for the defaults.
         """
         watch = Watch() if watch is None else watch
-        limits = dict(USUAL)
+        limits = dict(DEFAULT_LIMITS)
         limits["silent"] = _silence(limits["silent"], watch.sensor_silent_after_s)
         limits[f"silent.{buoy}"] = _silence(
             replace(limits["silent"], severity=600), watch.stale_after_s
@@ -110,7 +110,7 @@ class AlarmPolicy:
         buoy: str = "buoy-1",
         watch: Watch | None = None,
     ) -> Self:
-        """Return the usual limits, but for what a table says.
+        """Return the default limits, changed by a table.
 
         ``{"load": {"raise_at": 0.7, "clear_at": 0.6}, "load.bridle-3": {"raise_at": 0.6}}``;
         what a table leaves out stays as it is for the kind.
@@ -125,13 +125,13 @@ class AlarmPolicy:
         limits = dict(policy.limits)
         for name in sorted(table, key=lambda one: "." in one):  # a name starts from its kind
             _check_name(name, policy.names)
-            limits[name] = _altered(
+            limits[name] = _with_table(
                 limits.get(name, limits[name.partition(".")[0]]), table[name], name
             )
         return replace(policy, limits=limits)
 
     def limit(self, name: str) -> Limit:
-        """By which an alarm is judged."""
+        """Return the limit of an alarm."""
         limits = self.limits
         if name in limits:
             return limits[name]
@@ -139,7 +139,7 @@ class AlarmPolicy:
 
 
 def alarm_names(cage: Cage, buoy: str) -> frozenset[str]:
-    """Name the alarms that there can be of a cage."""
+    """Return the names of all alarms of a cage."""
     by_kind = {
         "load": cage.bridle_names,
         "bridle": cage.bridle_names,
@@ -159,7 +159,7 @@ def _silence(limit: Limit, after_s: float) -> Limit:
     return replace(limit, raise_at=after_s, clear_at=after_s / 1.5)
 
 
-def _altered(limit: Limit, entry: object, name: str) -> Limit:
+def _with_table(limit: Limit, entry: object, name: str) -> Limit:
     if not isinstance(entry, Mapping):
         raise InputError(
             f"alarms: {name} = {entry!r} is no table of limits. "
@@ -186,9 +186,9 @@ def _altered(limit: Limit, entry: object, name: str) -> Limit:
 
 def _check_name(name: str, names: frozenset[str]) -> None:
     kind, dot, _ = name.partition(".")
-    if kind not in USUAL:
+    if kind not in DEFAULT_LIMITS:
         raise InputError(
-            f"alarms: there is no kind of alarm {kind!r}. There are: {', '.join(USUAL)}."
+            f"alarms: there is no kind of alarm {kind!r}. There are: {', '.join(DEFAULT_LIMITS)}."
         )
     if dot and names and name not in names:
         others = sorted(one for one in names if one.startswith(f"{kind}."))

@@ -1,4 +1,4 @@
-"""Alarms in plain words."""
+"""Title, message and advice of each alarm."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -9,16 +9,16 @@ from seacage.twin._alarms._policy import AlarmPolicy
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AlarmText:
-    """What an operator reads.
+    """Texts of an alarm for its operator.
 
     Parameters
     ----------
     title
         A few words.
     message
-        What is known, in a sentence or two.
+        The alarm's state, in a sentence or two.
     advice
-        What to do.
+        The action to take.
     unit
         Of the alarm's number and limits; "1" where it has none.
     """
@@ -29,15 +29,15 @@ class AlarmText:
     unit: str
 
 
-def described(alarm: Alarm, policy: AlarmPolicy) -> AlarmText:
-    """Say what an alarm means and what to do about it."""
+def alarm_text(alarm: Alarm, policy: AlarmPolicy) -> AlarmText:
+    """Return the texts of an alarm as it is now."""
     words = _WORDS.get(alarm.kind, _FAULT)
     limit = policy.limit(alarm.name)
     message = words.message(alarm, limit)
     if alarm.active and alarm.detail and alarm.detail not in message:
         message = f"{message} {alarm.detail}".strip()
     return AlarmText(
-        title=words.title.format(source=alarm.source, Source=_said(alarm.source)),
+        title=words.title.format(source=alarm.source, Source=_capital(alarm.source)),
         message=message,
         advice=words.advice,
         unit=words.unit,
@@ -57,7 +57,7 @@ def _load(alarm: Alarm, limit: Limit) -> str:
         return "Its load is not known."
     worst = f", {_share(alarm.worst)} at worst" if alarm.worst is not None and alarm.active else ""
     return (
-        f"{_said(alarm.source)} bears {_share(alarm.value)} of what it may bear{worst}; the "
+        f"{_capital(alarm.source)} bears {_share(alarm.value)} of what it may bear{worst}; the "
         f"alarm is raised at {_share(limit.raise_at)} and clears at {_share(limit.clear_at)}."
     )
 
@@ -73,21 +73,21 @@ def _volume(alarm: Alarm, limit: Limit) -> str:
 
 def _silent(alarm: Alarm, limit: Limit) -> str:
     if alarm.value is None:
-        return f"{_said(alarm.source)} has never spoken."
+        return f"{_capital(alarm.source)} has never spoken."
     if not alarm.active:
-        return f"{_said(alarm.source)} speaks; it last did {_time(alarm.value)} ago."
+        return f"{_capital(alarm.source)} speaks; it last did {_time(alarm.value)} ago."
     return (
-        f"{_said(alarm.source)} has said nothing for {_time(alarm.value)}; "
+        f"{_capital(alarm.source)} has said nothing for {_time(alarm.value)}; "
         f"{_time(limit.raise_at)} is the limit."
     )
 
 
 def _either(*, active: str, calm: str) -> Callable[[Alarm, Limit], str]:
-    """Words for an alarm whose number says no more than whether it is there."""
+    """Message of an alarm whose number only says whether it is active."""
 
     def message(alarm: Alarm, _: Limit) -> str:
         words = active if alarm.active else calm
-        return words.format(source=_said(alarm.source))
+        return words.format(source=_capital(alarm.source))
 
     return message
 
@@ -178,7 +178,7 @@ _FAULT = _Words(
 )
 
 
-def _said(source: str) -> str:
+def _capital(source: str) -> str:
     """Begin a sentence with a source's name."""
     return source[:1].upper() + source[1:]
 

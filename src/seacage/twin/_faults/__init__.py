@@ -1,5 +1,5 @@
 """Fault detection: which sensor drifts, whether a bridle has parted or the net is torn."""
 
-from seacage.twin._faults._detector import Suspicion, distrusted_in
+from seacage.twin._faults._detector import FaultDetector, faulty_streams
 
-__all__ = ["Suspicion", "distrusted_in"]
+__all__ = ["FaultDetector", "faulty_streams"]

@@ -1,4 +1,4 @@
-"""What the sensors usually read more than the twin says, though nothing is wrong."""
+"""Baseline of the residuals: the offset, drag and noise of each sensor without any fault."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -7,129 +7,140 @@ from typing import Self
 import numpy as np
 from jaxtyping import Float
 
-from seacage.twin._faults._residuals import Block
-from seacage.twin._faults._student_t import learned
+from seacage.twin._faults._residuals import ResidualBlock
+from seacage.twin._faults._student_t import kalman_update
+from seacage.twin._saved_keys import saved_keys
 
-OFF, DRAG = 0.5, 0.1
-"""What is thought before anything is seen: standard deviations of how far a sensor is off, in its
-own ones, and of how far the drag that it feels is [-]. Lessons are short and nets grow."""
+OFFSET_SD, DRAG_SD = 0.5, 0.1
+"""Prior standard deviations of a sensor's offset, in its own ones, and of the relative change of
+the drag that it responds to [-]. Training windows are short and nets get fouled."""
 
-MEMORY = 5376
-"""Blocks in which what was learned is forgotten: sixteen weeks. What comes within days is no
-habit."""
+BASELINE_MEMORY = 5376
+"""Blocks after which the baseline forgets: sixteen weeks. A change within days is none of it."""
 
-RESTLESS, RESTLESS_MEMORY = 0.5, 168
-"""Mean square of a sensor's errors that is thought of first, in its own standard deviations; and
-the blocks in which it is learned: half a week."""
+MEAN_SQUARE, MEAN_SQUARE_MEMORY = 0.5, 168
+"""Prior mean square of a sensor's own residuals, in its own variances; and the blocks over which
+it is estimated: half a week."""
 
-WILD = 9.0
-"""What one block teaches of that at most."""
+MOST_SQUARE = 9.0
+"""Largest square of a residual that one block adds to that."""
 
-WARY = 2.0
-"""Times that, because errors last from one block to the next; what the twin says is the least."""
+INFLATION = 2.0
+"""Factor on that mean square, because residuals last from one block to the next; the twin's own
+variance is the least."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Expected:
+class Shift:
     """A shift of the sensors' readings [N] or [m], and its covariance."""
 
-    shift: Float[np.ndarray, " sensor"]
-    spread: Float[np.ndarray, "sensor sensor"]
+    mean: Float[np.ndarray, " sensor"]
+    covariance: Float[np.ndarray, "sensor sensor"]
 
-    def and_also(self, others: Iterable["Expected"]) -> "Expected":
-        """Add other shifts that have nothing to do with it."""
+    def plus(self, others: Iterable["Shift"]) -> "Shift":
+        """Add other shifts that are independent of it."""
         each = [self, *others]
-        return Expected(
-            shift=np.sum([one.shift for one in each], axis=0),
-            spread=np.sum([one.spread for one in each], axis=0),
+        return Shift(
+            mean=np.sum([one.mean for one in each], axis=0),
+            covariance=np.sum([one.covariance for one in each], axis=0),
         )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Usual:
-    """What is known of the sensors' habits.
+class Baseline:
+    """Estimate of the residuals without any fault.
 
     Parameters
     ----------
     sensors
         Their names; none before the first block.
     size, covariance
-        How far each is off, in standard deviations, then how much more drag each feels [-].
-    restless
-        Mean square of what is left of each one's errors, in standard deviations.
+        The offset of each, in standard deviations, then the relative drag of each [-].
+    mean_square
+        Of each one's own residuals, in variances.
     """
 
     sensors: tuple[str, ...] = ()
     size: tuple[float, ...] = ()
     covariance: tuple[tuple[float, ...], ...] = ()
-    restless: tuple[float, ...] = ()
+    mean_square: tuple[float, ...] = ()
+
+    __pydantic_config__ = saved_keys(mean_square="restless")
 
     def of(self, sensors: tuple[str, ...]) -> Self:
-        """Return the same, or what is known of these where it was learned of others."""
+        """Return the same, or the prior of these sensors where it was estimated of others."""
         if sensors == self.sensors:
             return self
-        size, restless = (0.0,) * (2 * len(sensors)), (RESTLESS,) * len(sensors)
-        return replace(self, sensors=sensors, size=size, restless=restless).doubted()
+        size, mean_square = (0.0,) * (2 * len(sensors)), (MEAN_SQUARE,) * len(sensors)
+        return replace(self, sensors=sensors, size=size, mean_square=mean_square).widened()
 
-    def doubted(self) -> Self:
-        """Return the same with habits to be learned anew, as the cage has changed."""
-        return replace(self, covariance=_listed(self._first()))
+    def widened(self) -> Self:
+        """Return a copy with the prior covariance, as the cage has changed."""
+        return replace(self, covariance=_as_tuples(self._prior()))
 
-    def expected(self, block: Block) -> Expected:
-        """Say what the sensors would read more in a block, with the errors of it."""
-        felt = self._felt(block)
-        habits = felt @ np.array(self.covariance) @ felt.T
-        own = block.own**2 * self._wary()
-        return Expected(
-            shift=felt @ np.array(self.size), spread=habits + np.diag(own) + block.water
+    def shift(self, block: ResidualBlock) -> Shift:
+        """Return the shift of the readings in a block, with the covariance of its residuals."""
+        response = self._response(block)
+        covariance = response @ np.array(self.covariance) @ response.T
+        own = block.own_sd**2 * self._inflation()
+        return Shift(
+            mean=response @ np.array(self.size), covariance=covariance + np.diag(own) + block.water
         )
 
-    def learned(self, block: Block, known: Iterable[Expected]) -> Self:
-        """Learn from a block, but for what is known to have happened.
+    def updated(self, block: ResidualBlock, faults: Iterable[Shift]) -> Self:
+        """Return a copy updated by a block, less the shifts of active faults.
 
         Parameters
         ----------
         block
             Of sensors of the same names.
-        known
-            What that would make them read more.
+        faults
+            The shifts of active faults.
         """
-        heard = block.heard
-        beside = self.expected(block).and_also(known)
-        missed, noise = (block.error - beside.shift)[heard], beside.spread[np.ix_(heard, heard)]
+        received = block.received
+        shift = self.shift(block).plus(faults)
+        residual = (block.residual - shift.mean)[received]
+        spread = shift.covariance[np.ix_(received, received)]
         size, covariance = np.array(self.size), np.array(self.covariance)
-        felt = self._felt(block)[heard]
-        noise = noise - felt @ covariance @ felt.T
-        covariance = covariance + (self._first() - covariance) / MEMORY
-        size, covariance = learned(size, covariance, felt=felt, missed=missed, noise=noise)
+        response = self._response(block)[received]
+        noise = spread - response @ covariance @ response.T
+        covariance = covariance + (self._prior() - covariance) / BASELINE_MEMORY
+        size, covariance = kalman_update(
+            size, covariance, response=response, residual=residual, noise=noise
+        )
         return replace(
             self,
             size=tuple(size.tolist()),
-            covariance=_listed(covariance),
-            restless=self._restless(block, missed, beside.spread[np.ix_(heard, heard)]),
+            covariance=_as_tuples(covariance),
+            mean_square=self._next_mean_square(block, residual, spread),
         )
 
-    def _restless(
-        self, block: Block, missed: Float[np.ndarray, " row"], spread: Float[np.ndarray, "row row"]
+    def _next_mean_square(
+        self,
+        block: ResidualBlock,
+        residual: Float[np.ndarray, " row"],
+        spread: Float[np.ndarray, "row row"],
     ) -> tuple[float, ...]:
-        """Learn how large each sensor's own errors are: what the others do not explain of them."""
-        after, heard = np.array(self.restless), block.heard
+        """Estimate the square of each sensor's residual given those of the others."""
+        after, received = np.array(self.mean_square), block.received
         known = np.linalg.inv(spread)
-        alone = np.minimum((known @ missed) ** 2 / np.diag(known), WILD)
-        after[heard] += (alone * self._wary()[heard] - after[heard]) / RESTLESS_MEMORY
+        alone = np.minimum((known @ residual) ** 2 / np.diag(known), MOST_SQUARE)
+        after[received] += (
+            alone * self._inflation()[received] - after[received]
+        ) / MEAN_SQUARE_MEMORY
         return tuple(after.tolist())
 
-    def _wary(self) -> Float[np.ndarray, " sensor"]:
-        """By how much more than the twin says each sensor's own variance is reckoned [-]."""
-        return np.maximum(1.0, WARY * np.array(self.restless))
+    def _inflation(self) -> Float[np.ndarray, " sensor"]:
+        """Factor on the twin's variance of each sensor [-]."""
+        return np.maximum(1.0, INFLATION * np.array(self.mean_square))
 
-    def _first(self) -> Float[np.ndarray, "habit habit"]:
-        return np.diag(np.repeat([OFF, DRAG], len(self.sensors)) ** 2)
+    def _prior(self) -> Float[np.ndarray, "size size"]:
+        return np.diag(np.repeat([OFFSET_SD, DRAG_SD], len(self.sensors)) ** 2)
 
     @staticmethod
-    def _felt(block: Block) -> Float[np.ndarray, "sensor habit"]:
-        return np.hstack([np.diag(block.own), np.diag(block.drag)])
+    def _response(block: ResidualBlock) -> Float[np.ndarray, "sensor size"]:
+        return np.hstack([np.diag(block.own_sd), np.diag(block.drag)])
 
 
-def _listed(matrix: Float[np.ndarray, "habit habit"]) -> tuple[tuple[float, ...], ...]:
+def _as_tuples(matrix: Float[np.ndarray, "size size"]) -> tuple[tuple[float, ...], ...]:
     return tuple(tuple(row) for row in matrix.tolist())

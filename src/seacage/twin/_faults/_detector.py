@@ -1,4 +1,4 @@
-"""Of all that may explain what the sensors read, what is told: the best, if it leads."""
+"""Fault detector: raises the alarm of the best hypothesis, once it leads all others."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
@@ -6,236 +6,249 @@ from datetime import datetime
 from typing import Self
 
 from seacage.cage import Cage
-from seacage.twin._alarms import Number
+from seacage.twin._alarms import AlarmInput
 from seacage.twin._events import Answered
-from seacage.twin._faults._baseline import Usual
-from seacage.twin._faults._evidence import Belief, Beliefs, told_already, weighed
-from seacage.twin._faults._hypotheses import explanations
-from seacage.twin._faults._residuals import Block, Open, closed
-from seacage.twin._faults._sensor import STUCK_S, Sense, unheard
+from seacage.twin._faults._baseline import Baseline
+from seacage.twin._faults._evidence import (
+    Evidence,
+    EvidenceByName,
+    shifts_of_active,
+    update_evidence,
+)
+from seacage.twin._faults._hypotheses import hypotheses
+from seacage.twin._faults._residuals import BlockSums, ResidualBlock, close_block
+from seacage.twin._faults._sensor import STUCK_S, SensorMonitor, new_samples
+from seacage.twin._saved_keys import saved_keys
 from seacage.twin._state import TwinState
 from seacage.twin._twin import Twin
 
 LIMIT = 20.0
-"""Logarithm of the odds at which an explanation is told."""
+"""Log-likelihood ratio (CUSUM) at which the alarm of a hypothesis is raised."""
 
 LEAD = 10.0
-"""And by how much it has to be ahead of the next alarm's, or it is not yet told."""
+"""Least difference to the CUSUM of the next alarm; with less, none is raised yet."""
 
-PATIENCE = 48
-"""Blocks after which the best is told though it does not lead, with a word of the next: a day."""
+LEAD_BLOCKS = 48
+"""Blocks after which the best is raised without that lead, its detail naming the next: a day."""
 
-CLEARLY = 2.0
-"""Evidence is held at so many limits, so that what was mended is believed soon."""
+MOST_LIMITS = 2.0
+"""Largest CUSUM over the limit, so that an alarm clears soon after the repair."""
 
 CALM = 0.25
-"""Share of the limit below which nothing is suspected, and habits are learned."""
+"""Share of the limit below which the baseline is updated."""
 
-_JUDGED = ("irregular", "bridle", "net")
+_KINDS = ("irregular", "bridle", "net")
 _LOSS = "A large hole does that, and so does a cleaning."
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Suspicion:
-    """What the tests for irregularity remember.
+class FaultDetector:
+    """State of the fault detector.
 
     Parameters
     ----------
-    senses
+    monitors
         By stream, the buoy's too.
-    opened
-        The block that is being averaged.
-    usual
-        The sensors' habits.
-    beliefs
-        By explanation: "irregular.depth-1 more" is one of the alarm "irregular.depth-1".
-    told
-        The raised alarms that the last block was judged beside.
+    sums
+        Of the running block.
+    baseline
+        Of the residuals.
+    evidence
+        By hypothesis: "irregular.depth-1 more" is one of the alarm "irregular.depth-1".
+    active
+        The alarms that were raised at the last block.
     waited
-        For how many blocks something has been beyond the limit without being told.
+        Blocks for which some evidence has been beyond the limit without an alarm.
     """
 
-    senses: Mapping[str, Sense] = field(default_factory=dict[str, Sense])
-    opened: Open = field(default_factory=Open)
-    usual: Usual = field(default_factory=Usual)
-    beliefs: Beliefs = field(default_factory=dict[str, Belief])
-    told: tuple[str, ...] = ()
+    monitors: Mapping[str, SensorMonitor] = field(default_factory=dict[str, SensorMonitor])
+    sums: BlockSums = field(default_factory=BlockSums)
+    baseline: Baseline = field(default_factory=Baseline)
+    evidence: EvidenceByName = field(default_factory=dict[str, Evidence])
+    active: tuple[str, ...] = ()
     waited: int = 0
 
-    def interrupted(self) -> Self:
-        """Return the same without the block that was being averaged."""
-        senses = {name: sense.interrupted() for name, sense in self.senses.items()}
-        return replace(self, senses=senses, opened=Open())
+    __pydantic_config__ = saved_keys(
+        monitors="senses", sums="opened", baseline="usual", evidence="beliefs", active="told"
+    )
 
-    def followed(
+    def interrupted(self) -> Self:
+        """Return a copy without the running block."""
+        monitors = {name: monitor.interrupted() for name, monitor in self.monitors.items()}
+        return replace(self, monitors=monitors, sums=BlockSums())
+
+    def stepped(
         self, twin: Twin, state: TwinState, answered: Answered, *, active: frozenset[str]
     ) -> Self:
-        """Take in what was heard since the last look, and judge a block that has ended.
+        """Return a copy with the samples since the last step, and with a block that has ended.
 
         Parameters
         ----------
         twin, state, answered
-            The twin, its state, and its word now.
+            The twin, its state, and its answer now.
         active
-            The alarms that are raised: what they explain is not suspicious once more.
+            The alarms that are raised: residuals that they explain count for no other.
         """
-        opened = self.opened.ticked(answered)
-        over = self.opened.number is not None and opened.number != self.opened.number
-        after = self._ended(twin, answered, active) if over else self
-        return replace(after, senses=_heard(after.senses, state, answered.t), opened=opened)
+        sums = self.sums.extended(answered)
+        over = self.sums.number is not None and sums.number != self.sums.number
+        after = self._closed(twin, answered, active) if over else self
+        monitors = _next_monitors(after.monitors, state, answered.t)
+        return replace(after, monitors=monitors, sums=sums)
 
-    def _ended(self, twin: Twin, answered: Answered, active: frozenset[str]) -> Self:
-        block = closed(self.opened, self.senses, twin, answered)
-        senses = {name: sense.begun_anew() for name, sense in self.senses.items()}
-        begun = replace(self, senses=senses)
-        buoy = self.senses.get(twin.buoy)
+    def _closed(self, twin: Twin, answered: Answered, active: frozenset[str]) -> Self:
+        block = close_block(self.sums, self.monitors, twin, answered)
+        monitors = {name: monitor.restarted() for name, monitor in self.monitors.items()}
+        restarted = replace(self, monitors=monitors)
+        buoy = self.monitors.get(twin.buoy)
         if block is None or (buoy is not None and buoy.stuck):
-            return begun
-        return begun.judged(block, twin.cage, active=active)
+            return restarted
+        return restarted.updated(block, twin.cage, active=active)
 
-    def judged(self, block: Block, cage: Cage, *, active: frozenset[str]) -> Self:
-        """Weigh all explanations by one more block.
+    def updated(self, block: ResidualBlock, cage: Cage, *, active: frozenset[str]) -> Self:
+        """Return a copy with the evidence of one more block for all hypotheses.
 
         Parameters
         ----------
         block, cage
-            What was read, and where.
+            The residuals, and the cage they are of.
         active
             The alarms that are raised.
         """
-        told = tuple(sorted(name for name in active if name.partition(".")[0] in _JUDGED))
-        before = self._beside(told, block)
-        among = list(explanations(block, cage))
-        beliefs = weighed(before.beliefs, block, before.usual, among, told)
-        after = replace(before, beliefs=_held(beliefs, told))
-        best = max((value for _, value in after.suspects()), default=0.0)
+        ours = tuple(sorted(name for name in active if name.partition(".")[0] in _KINDS))
+        before = self._beside(ours, block)
+        among = list(hypotheses(block, cage))
+        evidence = update_evidence(before.evidence, block, before.baseline, among, ours)
+        after = replace(before, evidence=_limit(evidence, ours))
+        best = max((value for _, value in after.ranking()), default=0.0)
         if best < CALM * LIMIT:
-            known = told_already(beliefs, among, told)
-            after = replace(after, usual=before.usual.learned(block, known.values()))
+            shifts = shifts_of_active(evidence, among, ours)
+            after = replace(after, baseline=before.baseline.updated(block, shifts.values()))
         return replace(after, waited=before.waited + 1 if best >= LIMIT else 0)
 
-    def _beside(self, told: tuple[str, ...], block: Block) -> Self:
-        """Begin anew, but for what is told, where that has changed; all of it for other sensors."""
-        usual = self.usual.of(block.sensors)
-        if usual is not self.usual:
-            return replace(self, usual=usual, beliefs={}, told=told, waited=0)
-        if told == self.told:
-            return replace(self, usual=usual)
-        if any(not name.startswith("irregular") for name in {*told} ^ {*self.told}):
-            usual = usual.doubted()
-        beliefs = {name: one for name, one in self.beliefs.items() if _alarm(name) in told}
-        return replace(self, usual=usual, beliefs=beliefs, told=told, waited=0)
+    def _beside(self, active: tuple[str, ...], block: ResidualBlock) -> Self:
+        """Drop the evidence of what is not active where that, or the sensors, have changed."""
+        baseline = self.baseline.of(block.sensors)
+        if baseline is not self.baseline:
+            return replace(self, baseline=baseline, evidence={}, active=active, waited=0)
+        if active == self.active:
+            return replace(self, baseline=baseline)
+        if any(not name.startswith("irregular") for name in {*active} ^ {*self.active}):
+            baseline = baseline.widened()
+        evidence = {name: one for name, one in self.evidence.items() if _alarm_of(name) in active}
+        return replace(self, baseline=baseline, evidence=evidence, active=active, waited=0)
 
-    def evidence(self) -> dict[str, float]:
-        """Return for each alarm the evidence of its best explanation."""
+    def cusums(self) -> dict[str, float]:
+        """Return for each alarm the CUSUM of its best hypothesis."""
         most = dict[str, float]()
-        for name, belief in self.beliefs.items():
-            most[_alarm(name)] = max(most.get(_alarm(name), 0.0), belief.evidence)
+        for name, one in self.evidence.items():
+            most[_alarm_of(name)] = max(most.get(_alarm_of(name), 0.0), one.cusum)
         return most
 
-    def suspects(self) -> list[tuple[str, float]]:
-        """Return alarms that are not raised and their evidence, the most first."""
-        found = ((name, value) for name, value in self.evidence().items() if name not in self.told)
+    def ranking(self) -> list[tuple[str, float]]:
+        """Return the alarms that are not raised and their CUSUM, the largest first."""
+        found = ((name, value) for name, value in self.cusums().items() if name not in self.active)
         return sorted(found, key=lambda one: -one[1])
 
-    def numbers(self, cage: Cage) -> Iterator[Number]:
-        """Say at the end of a block what is to be raised: one cause, if one is clear.
+    def inputs(self, cage: Cage) -> Iterator[AlarmInput]:
+        """Return the inputs of all its alarms at the end of a block.
 
         Parameters
         ----------
         cage
-            Says which bridles and sensors there are.
+            Has the bridles and sensors.
         """
         for name in (
             *(f"bridle.{bridle}" for bridle in cage.bridle_names),
             "net.net",
-            *(f"irregular.{stream}" for stream in self.senses),
+            *(f"irregular.{stream}" for stream in self.monitors),
         ):
-            yield self._stuck(name) or self._number(name)
+            yield self._stuck_input(name) or self._input(name)
 
-    def stuck(self) -> Iterator[Number]:
-        """Say at any time which streams repeat themselves."""
-        for stream in self.senses:
-            if (number := self._stuck(f"irregular.{stream}")) is not None:
-                yield number
+    def stuck_inputs(self) -> Iterator[AlarmInput]:
+        """Return the inputs of stuck sensors' alarms, at any time."""
+        for stream in self.monitors:
+            if (one := self._stuck_input(f"irregular.{stream}")) is not None:
+                yield one
 
-    def _number(self, name: str) -> Number:
-        value = self.evidence().get(name, 0.0)
+    def _input(self, name: str) -> AlarmInput:
+        value = self.cusums().get(name, 0.0)
         detail = self._detail(name)
-        if name in self.told:
-            return Number(alarm=name, value=value / LIMIT, detail=detail)
-        others = [(other, least) for other, least in self.suspects() if other != name]
+        if name in self.active:
+            return AlarmInput(alarm=name, value=value / LIMIT, detail=detail)
+        others = [(other, least) for other, least in self.ranking() if other != name]
         second, next_best = others[0] if others else ("", 0.0)
         lead = (value - next_best) / LEAD
-        if lead < 1.0 and value >= max(LIMIT, next_best) and self.waited >= PATIENCE:
-            return Number(
-                alarm=name, value=value / LIMIT, detail=f"{detail} {_instead(second)}".strip()
+        if lead < 1.0 and value >= max(LIMIT, next_best) and self.waited >= LEAD_BLOCKS:
+            return AlarmInput(
+                alarm=name, value=value / LIMIT, detail=f"{detail} {_alternative(second)}".strip()
             )
-        return Number(alarm=name, value=max(0.0, min(value / LIMIT, lead)), detail=detail)
+        return AlarmInput(alarm=name, value=max(0.0, min(value / LIMIT, lead)), detail=detail)
 
     def _detail(self, name: str) -> str:
         kind = name.partition(".")[0]
         if kind == "irregular":
-            return self._wandered(name)
+            return self._direction(name)
         return _LOSS if kind == "net" else ""
 
-    def _wandered(self, alarm: str) -> str:
-        here = [one for name, one in self.beliefs.items() if _alarm(name) == alarm]
+    def _direction(self, alarm: str) -> str:
+        here = [one for name, one in self.evidence.items() if _alarm_of(name) == alarm]
         if not here:
             return ""
-        (size, *_) = max(here, key=lambda one: one.evidence).size
+        (size, *_) = max(here, key=lambda one: one.cusum).size
         way = "more" if size > 0.0 else "less"
         return f"It reads {way} than the twin and the other sensors let expect."
 
-    def _stuck(self, name: str) -> Number | None:
+    def _stuck_input(self, name: str) -> AlarmInput | None:
         kind, _, stream = name.partition(".")
-        sense = self.senses.get(stream)
-        if kind != "irregular" or sense is None or not sense.stuck:
+        monitor = self.monitors.get(stream)
+        if kind != "irregular" or monitor is None or not monitor.stuck:
             return None
-        detail = f"It has repeated the same reading for {sense.still_s / 60.0:.0f} min."
-        return Number(alarm=name, value=sense.still_s / STUCK_S, detail=detail)
+        detail = f"It has repeated the same reading for {monitor.constant_s / 60.0:.0f} min."
+        return AlarmInput(alarm=name, value=monitor.constant_s / STUCK_S, detail=detail)
 
 
-def distrusted_in(senses: Mapping[str, Sense], active: frozenset[str]) -> frozenset[str]:
-    """Name the streams whose readings are not to be believed."""
-    stuck = {name for name, sense in senses.items() if sense.stuck}
+def faulty_streams(monitors: Mapping[str, SensorMonitor], active: frozenset[str]) -> frozenset[str]:
+    """Name the streams that are stuck or read irregularly."""
+    stuck = {name for name, monitor in monitors.items() if monitor.stuck}
     wrong = {name.partition(".")[2] for name in active if name.startswith("irregular.")}
     return frozenset(stuck | wrong)
 
 
-def _heard(senses: Mapping[str, Sense], state: TwinState, now: datetime) -> dict[str, Sense]:
-    after = dict(senses)
+def _next_monitors(
+    monitors: Mapping[str, SensorMonitor], state: TwinState, now: datetime
+) -> dict[str, SensorMonitor]:
+    after = dict(monitors)
     for name, stream in state.streams.items():
-        sense = after.get(name, Sense())
-        # As trained: the intervals that follow the readings would follow a drift too.
+        monitor = after.get(name, SensorMonitor())
+        # As trained: intervals that adapt to the readings would adapt to a drift too.
         tracked = state.tracked.get(name)
-        said = tracked.expected[0] if tracked and tracked.expected else None
-        for sample in unheard(stream, sense.heard, now):
-            sense = sense.taken(sample, said)
-        after[name] = sense
+        predicted = tracked.expected[0] if tracked and tracked.expected else None
+        for sample in new_samples(stream, monitor.latest, now):
+            monitor = monitor.extended(sample, predicted)
+        after[name] = monitor
     return after
 
 
-def _held(beliefs: Beliefs, told: tuple[str, ...]) -> dict[str, Belief]:
-    """Take from all that is not told as much as the best of it has too much, so that leads stay."""
-    most = CLEARLY * LIMIT
-    others = (one.evidence for name, one in beliefs.items() if _alarm(name) not in told)
+def _limit(evidence: EvidenceByName, active: tuple[str, ...]) -> dict[str, Evidence]:
+    """Limit the CUSUM of active alarms, and reduce all others by one excess, so that leads stay."""
+    most = MOST_LIMITS * LIMIT
+    others = (one.cusum for name, one in evidence.items() if _alarm_of(name) not in active)
     best = max(others, default=0.0)
-    after = dict[str, Belief]()
-    for name, one in beliefs.items():
-        ahead = one.evidence if _alarm(name) in told else best
-        held = one.less(max(0.0, ahead - most))
-        if held.evidence > 0.0:
-            after[name] = held
+    after = dict[str, Evidence]()
+    for name, one in evidence.items():
+        ahead = one.cusum if _alarm_of(name) in active else best
+        reduced = one.reduced(max(0.0, ahead - most))
+        if reduced.cusum > 0.0:
+            after[name] = reduced
     return after
 
 
-def _alarm(explanation: str) -> str:
-    return explanation.partition(" ")[0]
+def _alarm_of(hypothesis: str) -> str:
+    return hypothesis.partition(" ")[0]
 
 
-def _instead(alarm: str) -> str:
-    """Name what else may be the cause."""
+def _alternative(alarm: str) -> str:
+    """Name the other cause that is possible."""
     kind, _, source = alarm.partition(".")
     if kind == "bridle":
         return f"Or {source} has parted: the sensors do not tell which."

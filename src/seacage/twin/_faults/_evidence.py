@@ -1,4 +1,4 @@
-"""How much better than nothing each explanation accounts for what the sensors read."""
+"""Evidence for each hypothesis: the CUSUM of its log-likelihood ratio against no fault."""
 
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
@@ -7,145 +7,149 @@ from typing import Self
 import numpy as np
 from jaxtyping import Float
 
-from seacage.twin._faults._baseline import Expected, Usual
-from seacage.twin._faults._hypotheses import Explanation
-from seacage.twin._faults._residuals import Block
-from seacage.twin._faults._student_t import learned, log_density
+from seacage.twin._faults._baseline import Baseline, Shift
+from seacage.twin._faults._hypotheses import Hypothesis
+from seacage.twin._faults._residuals import ResidualBlock
+from seacage.twin._faults._student_t import kalman_update, log_density
+from seacage.twin._saved_keys import saved_keys
 
-TRUST = 0.6
-"""What a block's odds count, for the next begins with what this one ended with."""
+BLOCK_WEIGHT = 0.6
+"""Weight of a block's log-likelihood ratio, as residuals of neighbouring blocks are correlated."""
 
-MEMORY = 144
-"""Blocks in which evidence is forgotten: three days. What is wrong goes on showing."""
+EVIDENCE_MEMORY = 144
+"""Blocks after which evidence is forgotten: three days. A fault goes on showing."""
 
-BESIDE = 3.0
-"""By how much less sure than it was first thought is what a raised alarm does to the sensors [-]:
-nothing else is to be told of what it may explain."""
+ACTIVE_WIDENING = 3.0
+"""Factor on the prior standard deviation of an active alarm's shift [-], so that no other alarm is
+raised for residuals that it may explain."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Belief:
-    """What is known of an explanation since the time it most likely began.
+class Evidence:
+    """Evidence for a hypothesis since the time at which the fault most likely began.
 
     Parameters
     ----------
-    evidence
-        Logarithm of its odds against none, since they were last even; above zero.
+    cusum
+        Sum of the log-likelihood ratios against no fault since it was last zero; above zero.
     size, covariance
-        Of what it does to the sensors it concerns [-].
+        Of the sensors that respond [-].
     """
 
-    evidence: float
+    cusum: float
     size: tuple[float, ...]
     covariance: tuple[tuple[float, ...], ...]
 
-    def less(self, evidence: float) -> Self:
-        """Return the same with less evidence."""
-        return replace(self, evidence=self.evidence - evidence)
+    __pydantic_config__ = saved_keys(cusum="evidence")
+
+    def reduced(self, by: float) -> Self:
+        """Return a copy with a smaller sum."""
+        return replace(self, cusum=self.cusum - by)
 
 
-Beliefs = Mapping[str, Belief]
-"""By explanation; those not worth a belief are left out."""
+EvidenceByName = Mapping[str, Evidence]
+"""By the hypothesis' name; those with a sum of zero are left out."""
 
 
-def weighed(
-    beliefs: Beliefs,
-    block: Block,
-    usual: Usual,
-    among: Iterable[Explanation],
-    told: Collection[str],
-) -> dict[str, Belief]:
-    """Add a block's evidence for each explanation.
+def update_evidence(
+    evidence: EvidenceByName,
+    block: ResidualBlock,
+    baseline: Baseline,
+    among: Iterable[Hypothesis],
+    active: Collection[str],
+) -> dict[str, Evidence]:
+    """Add a block's log-likelihood ratio of each hypothesis.
 
-    This is Page's test for each: the odds count from where they are best, so that a cause that
-    begins late is not held against itself. All are weighed against the same: the sensors' habits
-    and what is told already.
+    This is Page's CUSUM test for each: the sum starts where it is least, so that the time before
+    a fault does not count against it. All hypotheses are compared with the same: the baseline and
+    the shifts of the active alarms.
 
     Parameters
     ----------
-    beliefs, usual
-        What is known.
+    evidence, baseline
+        So far.
     block, among
-        What was read, and what may explain it.
-    told
-        Alarms that are raised; an explanation of one of them is weighed beside the others.
+        The residuals, and the hypotheses.
+    active
+        Alarms that are raised; a hypothesis of one of them is compared with the others.
 
     References
     ----------
     Page (1954), Continuous inspection schemes; Lorden (1971), Procedures for reacting to a
     change in distribution, for sizes that are not known.
     """
-    among, heard = list(among), block.heard
-    habits = usual.expected(block)
-    believed = told_already(beliefs, among, told)
-    usually = habits.and_also(believed.values())
+    among, received = list(among), block.received
+    normal = baseline.shift(block)
+    shifts = shifts_of_active(evidence, among, active)
+    usual = normal.plus(shifts.values())
     beside = {
-        alarm: habits.and_also(one for other, one in believed.items() if other != alarm)
-        for alarm in believed
+        alarm: normal.plus(one for other, one in shifts.items() if other != alarm)
+        for alarm in shifts
     }
-    against = [beside.get(one.alarm, usually) for one in among]
-    known = [_known(beliefs.get(one.name), one) for one in among]
+    against = [beside.get(one.alarm, usual) for one in among]
+    prior = [_prior(evidence.get(one.name), one) for one in among]
     scale = np.array([one.scale for one in among])
-    felt = scale[:, :, None] * np.array([spread for _, spread in known]) * scale[:, None, :]
-    without = block.error - np.array([one.shift for one in against])
-    missed = without - scale * np.array([size for size, _ in known])
-    noise = np.array([one.spread for one in against])
-    both = np.ix_(np.arange(len(among)), heard, heard)
-    odds = log_density(missed[:, heard], (noise + felt)[both])
-    odds -= log_density(without[:, heard], noise[both])
-    after = dict[str, Belief]()
+    added = scale[:, :, None] * np.array([covariance for _, covariance in prior])
+    added = added * scale[:, None, :]
+    without = block.residual - np.array([one.mean for one in against])
+    residual = without - scale * np.array([size for size, _ in prior])
+    noise = np.array([one.covariance for one in against])
+    both = np.ix_(np.arange(len(among)), received, received)
+    ratio = log_density(residual[:, received], (noise + added)[both])
+    ratio -= log_density(without[:, received], noise[both])
+    after = dict[str, Evidence]()
     for row, one in enumerate(among):
-        before = beliefs[one.name].evidence if one.name in beliefs else 0.0
-        evidence = (1.0 - 1.0 / MEMORY) * before + TRUST * float(odds[row])
-        if evidence > 0.0:
-            size, covariance = learned(
-                *known[row],
-                felt=np.diag(one.scale)[heard],
-                missed=missed[row][heard],
-                noise=noise[row][np.ix_(heard, heard)],
+        before = evidence[one.name].cusum if one.name in evidence else 0.0
+        cusum = (1.0 - 1.0 / EVIDENCE_MEMORY) * before + BLOCK_WEIGHT * float(ratio[row])
+        if cusum > 0.0:
+            size, covariance = kalman_update(
+                *prior[row],
+                response=np.diag(one.scale)[received],
+                residual=residual[row][received],
+                noise=noise[row][np.ix_(received, received)],
             )
-            after[one.name] = _believed(one, evidence, size, covariance)
+            after[one.name] = _evidence(one, cusum, size, covariance)
     return after
 
 
-def told_already(
-    beliefs: Beliefs, among: Iterable[Explanation], told: Collection[str]
-) -> dict[str, Expected]:
-    """Say what the raised alarms account for, by alarm, by the widest explanation of each.
+def shifts_of_active(
+    evidence: EvidenceByName, among: Iterable[Hypothesis], active: Collection[str]
+) -> dict[str, Shift]:
+    """Return the shift by each active alarm, of its hypothesis with the widest prior.
 
-    How large it is, is believed; how sure that is, is not: a sensor that reads irregularly has
-    no say, nor have those beside a parted bridle.
+    Its mean is as estimated and its covariance is the prior's, widened: a sensor that reads
+    irregularly has no weight, nor have those beside a parted bridle.
     """
-    found = dict[str, Expected]()
+    found = dict[str, Shift]()
     for one in among:
-        if one.alarm in told and one.alarm not in found:
-            size, _ = _known(beliefs.get(one.name), one)
-            spread = np.diag((BESIDE * one.scale * one.spread) ** 2)
-            found[one.alarm] = Expected(shift=one.scale * size, spread=spread)
+        if one.alarm in active and one.alarm not in found:
+            size, _ = _prior(evidence.get(one.name), one)
+            covariance = np.diag((ACTIVE_WIDENING * one.scale * one.sd) ** 2)
+            found[one.alarm] = Shift(mean=one.scale * size, covariance=covariance)
     return found
 
 
-def _known(
-    belief: Belief | None, one: Explanation
+def _prior(
+    evidence: Evidence | None, one: Hypothesis
 ) -> tuple[Float[np.ndarray, " sensor"], Float[np.ndarray, "sensor sensor"]]:
-    """Return the sizes of an explanation and their covariance, before a block is seen."""
-    size, covariance, concerned = one.size.copy(), np.diag(one.spread**2), one.spread > 0.0
-    if belief is not None and one.lasts:
-        size[concerned] = belief.size
-        covariance[np.ix_(concerned, concerned)] = belief.covariance
-    return size, covariance + np.diag(concerned * one.walk**2)
+    """Return the sizes of a hypothesis and their covariance, before a block."""
+    size, covariance, responds = one.size.copy(), np.diag(one.sd**2), one.sd > 0.0
+    if evidence is not None and one.lasts:
+        size[responds] = evidence.size
+        covariance[np.ix_(responds, responds)] = evidence.covariance
+    return size, covariance + np.diag(responds * one.walk**2)
 
 
-def _believed(
-    one: Explanation,
-    evidence: float,
+def _evidence(
+    one: Hypothesis,
+    cusum: float,
     size: Float[np.ndarray, " sensor"],
     covariance: Float[np.ndarray, "sensor sensor"],
-) -> Belief:
-    """Keep what concerns the sensors that feel it."""
-    concerned = one.spread > 0.0
-    return Belief(
-        evidence=evidence,
-        size=tuple(size[concerned].tolist()),
-        covariance=tuple(map(tuple, covariance[np.ix_(concerned, concerned)].tolist())),
+) -> Evidence:
+    """Keep the sizes of the sensors that respond."""
+    responds = one.sd > 0.0
+    return Evidence(
+        cusum=cusum,
+        size=tuple(size[responds].tolist()),
+        covariance=tuple(map(tuple, covariance[np.ix_(responds, responds)].tolist())),
     )

@@ -1,4 +1,4 @@
-"""What the tests for irregularity remember of one sensor, and what a reading adds to it."""
+"""Monitor of one sensor: a stuck reading, and the mean residual of the running block."""
 
 import math
 from dataclasses import dataclass, replace
@@ -8,88 +8,91 @@ from typing import Self
 
 from seacage.conventions import Flag
 from seacage.records import Sample
+from seacage.twin._pairs import SI
+from seacage.twin._saved_keys import saved_keys
 from seacage.twin._state import Stream, latest_in
 
 STUCK_S = 1800.0
-"""A live sensor's noise does not let it repeat a number for so long [s]."""
+"""Time after which a repeated value is a stuck sensor [s]: a live one is too noisy for it."""
 
 STUCK_READINGS = 6
-"""And not so often; a sensor that speaks seldom needs longer than ``STUCK_S``."""
+"""Least repetitions of a stuck sensor; one with a slow rate needs longer than ``STUCK_S``."""
 
 _COUNTED = (Flag.GOOD, Flag.NOT_EVALUATED)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Sense:
-    """What is remembered of one sensor.
+class SensorMonitor:
+    """State of the checks of one sensor.
 
     Parameters
     ----------
-    heard
-        Time of the newest reading taken in.
+    latest
+        Observation time of the newest reading taken in.
     values, since, repeats
-        That reading by its door keys, None for what is no number; since when it has been the very
-        same, and how often it was said again.
+        The values of that reading by its door keys, None for what is no number; the time since
+        which they have been exactly the same, and the number of repetitions.
     count, error
-        Of the block of time that is being averaged: good readings, and the sum of their
-        distances from what the twin said [N] or [m].
+        Good readings in the running block, and the sum of their residuals [N] or [m].
     """
 
-    heard: datetime | None = None
+    latest: datetime | None = None
     values: tuple[float | None, ...] = ()
     since: datetime | None = None
     repeats: int = 0
     count: int = 0
     error: float = 0.0
 
-    def interrupted(self) -> Self:
-        """Return the same with nothing heard lately."""
-        return replace(self.begun_anew(), heard=None, values=(), since=None, repeats=0)
+    __pydantic_config__ = saved_keys(latest="heard")
 
-    def begun_anew(self) -> Self:
-        """Return the same with the next block begun."""
+    def interrupted(self) -> Self:
+        """Return a copy without a newest reading."""
+        return replace(self.restarted(), latest=None, values=(), since=None, repeats=0)
+
+    def restarted(self) -> Self:
+        """Return a copy in which the next block begins."""
         return replace(self, count=0, error=0.0)
 
-    def taken(self, sample: Sample, said: float | None) -> Self:
-        """Take a reading in.
+    def extended(self, sample: Sample, predicted: float | None) -> Self:
+        """Return a copy with one more reading.
 
         Parameters
         ----------
         sample
-            With its flags; one that did not pass its checks is heard, and is not averaged.
-        said
-            What the twin expects [N] or [m]; None where it expects nothing.
+            With its flags; one that did not pass its checks is not averaged.
+        predicted
+            The reading that the twin predicts [N] or [m]; None where it predicts nothing.
         """
         values = tuple(one if math.isfinite(one) else None for one in sample.values.values())
         same = values == self.values and None not in values
-        sense = replace(
+        monitor = replace(
             self,
-            heard=sample.t,
+            latest=sample.t,
             values=values,
             since=self.since if same else sample.t,
             repeats=self.repeats + 1 if same else 0,
         )
         ((key, value),) = sample.values.items() if len(values) == 1 else (("", 0.0),)
-        if said is None or not key or sample.flags[key] not in _COUNTED:
-            return sense
-        reading = value * (1000.0 if key == "tension_kn" else 1.0)
-        return replace(sense, count=self.count + 1, error=self.error + reading - said)
+        if predicted is None or not key or sample.flags[key] not in _COUNTED:
+            return monitor
+        reading = value * SI[key]
+        return replace(monitor, count=self.count + 1, error=self.error + reading - predicted)
 
     @property
-    def still_s(self) -> float:
-        """For how long it has repeated itself [s]; 0 where it was not often enough to say."""
-        if self.heard is None or self.since is None or self.repeats < STUCK_READINGS:
+    def constant_s(self) -> float:
+        """Time for which the value has not changed [s]; 0 where it was not repeated enough."""
+        if self.latest is None or self.since is None or self.repeats < STUCK_READINGS:
             return 0.0
-        return (self.heard - self.since).total_seconds()
+        return (self.latest - self.since).total_seconds()
 
     @property
     def stuck(self) -> bool:
-        """Whether it has repeated itself for too long."""
-        return self.still_s >= STUCK_S
+        """Whether the value has not changed for too long."""
+        return self.constant_s >= STUCK_S
 
 
-def unheard(stream: Stream, since: datetime | None, now: datetime) -> list[Sample]:
-    """Return what a stream sent after a time, oldest first, as far as the twin remembers."""
+def new_samples(stream: Stream, since: datetime | None, now: datetime) -> list[Sample]:
+    """Return the samples of a stream after a time, oldest first, as far as the twin keeps them."""
     if since is None:
         latest = latest_in(stream, now)
         return [latest.sample] if latest else []

@@ -11,7 +11,7 @@ from seacage.service._store import _care
 from seacage.service._store._adapted import Adaptation
 from seacage.service._store._kept_aggregates import renew_rested
 from seacage.service._store._store import StoreError
-from seacage.twin import Action, Happened
+from seacage.twin import Action, AlarmEvent
 from serviced import depth, eventually, running
 from sized import sized
 from stores import NOON, opened, put, sample
@@ -45,7 +45,7 @@ def fill(path, *, count=500, lines=200):
         while store._writer.ask(lambda one: renew_rested(one, now_us=2**61)).result(timeout=20):
             pass
         journal = [
-            Happened(alarm="volume.net", action=Action.RAISED, t=NOON + timedelta(minutes=k))
+            AlarmEvent(alarm="volume.net", action=Action.RAISED, t=NOON + timedelta(minutes=k))
             for k in range(lines)
         ]
         store.keep_alarms("ace", book=BOOK, journal=journal).result(timeout=20)

@@ -165,14 +165,14 @@ import sys
 from datetime import timedelta
 from pathlib import Path
 from seacage.service._store._store import open_store
-from seacage.twin import Action, Happened
+from seacage.twin import Action, AlarmEvent
 from stores import NOON, sample
 
 store = open_store(Path(sys.argv[1]))
 first = len(store.samples("ace", limit=10**7)) // 10
 for k in range(first, 10**7):
     batch = [sample((10 * k + j) / 60) for j in range(10)]
-    line = Happened(alarm="volume.net", action=Action.RAISED, t=NOON + timedelta(seconds=k))
+    line = AlarmEvent(alarm="volume.net", action=Action.RAISED, t=NOON + timedelta(seconds=k))
     kept = store.append("ace", batch, ingested=NOON)
     told = store.keep_alarms("ace", book=str(k), journal=[line])
     kept.result(), told.result()

@@ -16,7 +16,7 @@ from seacage.conventions import InputError
 from seacage.service._live._alarm_desk import Announcement
 from seacage.service._wires import _notify
 from seacage.service._wires._notify import Herald, Webhook
-from seacage.twin import Action, Alarm, AlarmText, Happened
+from seacage.twin import Action, Alarm, AlarmEvent, AlarmText
 
 NOON = datetime(2020, 2, 1, 12, tzinfo=UTC)
 
@@ -38,7 +38,7 @@ def said(action=Action.RAISED, severity=700, **how):
     alarm = Alarm(name="load.bridle-3", active=True, acknowledged=False, since=NOON)
     return Announcement(
         cage="ace",
-        happened=Happened(alarm=alarm.name, action=action, t=NOON, **how),
+        happened=AlarmEvent(alarm=alarm.name, action=action, t=NOON, **how),
         alarm=alarm,
         text=AlarmText(title="Bridle 3 is loaded", message="…", advice="…", unit="1"),
         severity=severity,

@@ -3,7 +3,7 @@ from datetime import UTC, datetime, timedelta
 import pytest
 
 from seacage.conventions import InputError
-from seacage.twin import Action, Happened, alarm_kpi
+from seacage.twin import Action, AlarmEvent, alarm_kpi
 
 START = datetime(2020, 1, 18, tzinfo=UTC)
 
@@ -12,8 +12,8 @@ def at(hours: float) -> datetime:
     return START + timedelta(hours=hours)
 
 
-def line(hours: float, action: Action, alarm: str = "load.bridle-1", **rest: object) -> Happened:
-    return Happened(alarm=alarm, action=action, t=at(hours), **rest)
+def line(hours: float, action: Action, alarm: str = "load.bridle-1", **rest: object) -> AlarmEvent:
+    return AlarmEvent(alarm=alarm, action=action, t=at(hours), **rest)
 
 
 JOURNAL = [

@@ -1,4 +1,4 @@
-"""The tests for irregularity, on half-hours made up from a known cause."""
+"""The fault detector, on half-hours made up from a known cause."""
 
 from collections.abc import Iterable
 from copy import copy
@@ -13,11 +13,11 @@ from seacage.cage import Cage
 from seacage.conventions import Flag
 from seacage.records import Sample
 from seacage.twin import AlarmBook
-from seacage.twin._faults._detector import LEAD, LIMIT, PATIENCE, Suspicion
-from seacage.twin._faults._evidence import Belief
-from seacage.twin._faults._hypotheses import explanations, taken_over
-from seacage.twin._faults._residuals import Block
-from seacage.twin._faults._sensor import Sense
+from seacage.twin._faults._detector import LEAD, LEAD_BLOCKS, LIMIT, FaultDetector
+from seacage.twin._faults._evidence import Evidence
+from seacage.twin._faults._hypotheses import hypotheses, load_shares
+from seacage.twin._faults._residuals import ResidualBlock
+from seacage.twin._faults._sensor import SensorMonitor
 
 ACE = Cage.named("ace")
 NAMES = ACE.sensor_names
@@ -34,14 +34,14 @@ NOON = datetime(2020, 2, 1, 12, tzinfo=UTC)
 DAY = 48
 
 
-def block(error, names: Iterable[str] = NAMES, *, tide: float = 1.0) -> Block:
-    """A half-hour in a current to the north, in which these sensors were heard."""
-    heard = np.isin(NAMES, list(names))
-    return Block(
+def block(error, names: Iterable[str] = NAMES, *, tide: float = 1.0) -> ResidualBlock:
+    """A half-hour in a current to the north, with readings of these sensors."""
+    received = np.isin(NAMES, list(names))
+    return ResidualBlock(
         sensors=NAMES,
-        heard=heard,
-        error=np.where(heard, error, 0.0),
-        own=OWN,
+        received=received,
+        residual=np.where(received, error, 0.0),
+        own_sd=OWN,
         gradient=SLOPE,
         current=tide * NORTH,
         tension=TENSION,
@@ -49,7 +49,7 @@ def block(error, names: Iterable[str] = NAMES, *, tide: float = 1.0) -> Block:
 
 
 def noise(seed: int, count: int, *, memory: float = 0.4, size: float = 0.6) -> np.ndarray:
-    """What is each sensor's own, remembered from block to block as on the virtual field."""
+    """Independent noise of each sensor, correlated from block to block as on the virtual field."""
     random = np.random.default_rng(seed)
     own, now = [], np.zeros(len(NAMES))
     for _ in range(count):
@@ -59,7 +59,7 @@ def noise(seed: int, count: int, *, memory: float = 0.4, size: float = 0.6) -> n
 
 
 def eddies(seed: int, count: int, sd: float = 0.06) -> np.ndarray:
-    """What all sensors feel of the water."""
+    """Residuals that all sensors share, by the current."""
     return np.random.default_rng(seed).normal(scale=sd, size=(count, 2)) @ SLOPE.T
 
 
@@ -73,19 +73,19 @@ def only(name: str, size: float) -> np.ndarray:
 
 
 def cut(bridle: int) -> np.ndarray:
-    """What shackles read beyond the twin's word when a bridle has parted, a little off."""
-    shift = 0.9 * taken_over(ACE, bridle) * TENSION[bridle]
+    """Shift of the shackles' readings when a bridle has parted, a little off."""
+    shift = 0.9 * load_shares(ACE, bridle) * TENSION[bridle]
     return np.array([0.0] * 3 + [shift[one.bridle] for one in ACE.shackles])
 
 
 class Watched:
-    """Judged block by block, with an operator who changes nothing."""
+    """A detector fed block by block, with an operator who changes nothing."""
 
     def __init__(self) -> None:
-        self.suspicion = Suspicion(senses={name: Sense() for name in NAMES})
+        self.detector = FaultDetector(monitors={name: SensorMonitor() for name in NAMES})
         self.active = frozenset[str]()
         self.raised: list[str] = []
-        self.said: dict[str, str] = {}
+        self.detail: dict[str, str] = {}
         self.blocks = 0
 
     def through(
@@ -95,16 +95,16 @@ class Watched:
         for error in errors:
             self.blocks += 1
             seen = block(error, names, tide=0.6 + 0.4 * np.sin(2.0 * np.pi * self.blocks / 12.4))
-            seen = replace(seen, error=seen.error - lost * seen.drag * seen.heard)
-            self.suspicion = self.suspicion.judged(seen, ACE, active=self.active)
-            for number in self.suspicion.numbers(ACE):
-                assert number.value is not None
-                if number.alarm in self.active and number.value <= 0.5:
-                    self.active -= {number.alarm}
-                elif number.alarm not in self.active and number.value >= 1.0:
-                    self.active |= {number.alarm}
-                    self.raised.append(number.alarm)
-                    self.said[number.alarm] = number.detail
+            seen = replace(seen, residual=seen.residual - lost * seen.drag * seen.received)
+            self.detector = self.detector.updated(seen, ACE, active=self.active)
+            for one in self.detector.inputs(ACE):
+                assert one.value is not None
+                if one.alarm in self.active and one.value <= 0.5:
+                    self.active -= {one.alarm}
+                elif one.alarm not in self.active and one.value >= 1.0:
+                    self.active |= {one.alarm}
+                    self.raised.append(one.alarm)
+                    self.detail[one.alarm] = one.detail
         return self
 
 
@@ -116,21 +116,21 @@ def _learned() -> Watched:
 def learned() -> Watched:
     """After two quiet days."""
     watch = copy(_learned())
-    watch.raised, watch.said = [], {}
+    watch.raised, watch.detail = [], {}
     return watch
 
 
-def test_a_current_that_the_buoy_did_not_tell_speaks_for_nothing():
+def test_a_current_that_the_buoy_did_not_measure_is_no_evidence():
     watch = learned().through([SLOPE @ np.array([0.08, -0.1])] * 4)
-    assert max(watch.suspicion.evidence().values(), default=0.0) < 0.5 * LIMIT
+    assert max(watch.detector.cusums().values(), default=0.0) < 0.5 * LIMIT
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_a_sensor_that_is_far_off_is_told_within_hours_and_no_other(name):
+def test_a_sensor_that_is_far_off_is_named_within_hours_and_no_other(name):
     off = only(name, 8.0 * OWN[NAMES.index(name)])
     watch = learned().through(quiet(3, 0.5) + off)
     assert watch.raised == [f"irregular.{name}"]
-    assert "more" in watch.said[f"irregular.{name}"]
+    assert "more" in watch.detail[f"irregular.{name}"]
 
 
 @pytest.mark.slow
@@ -145,7 +145,7 @@ def test_a_drift_raises_its_sensor_alone_and_within_days(way):
     drift = np.linspace(0.0, way * 0.1 * days, days * DAY)[:, None] * only("depth-1", 1.0)
     watch = learned().through(quiet(7, days) + drift)
     assert watch.raised == ["irregular.depth-1"]
-    assert ("more" if way > 0.0 else "less") in watch.said["irregular.depth-1"]
+    assert ("more" if way > 0.0 else "less") in watch.detail["irregular.depth-1"]
 
 
 def test_a_sensor_that_is_usually_off_by_as_much_is_not_raised():
@@ -153,7 +153,7 @@ def test_a_sensor_that_is_usually_off_by_as_much_is_not_raised():
 
 
 @pytest.mark.slow
-def test_a_sensor_that_was_mended_is_believed_within_two_days():
+def test_the_alarm_of_a_repaired_sensor_clears_within_two_days():
     watch = learned().through(quiet(11, 1.0) + only("depth-1", 10.0 * OWN[0]))
     assert watch.active == {"irregular.depth-1"}
     watch.through(quiet(13, 2.0))
@@ -161,7 +161,7 @@ def test_a_sensor_that_was_mended_is_believed_within_two_days():
     assert watch.raised == ["irregular.depth-1"]
 
 
-def test_sensors_that_fail_one_after_the_other_are_told_so():
+def test_sensors_that_fail_one_after_the_other_each_raise_an_alarm():
     first, then = only("depth-1", 8.0 * OWN[0]), only("shackle-4", 8.0 * OWN[6])
     watch = learned().through(quiet(15, 0.5) + first).through(quiet(16, 0.5) + first - then)
     assert watch.raised == ["irregular.depth-1", "irregular.shackle-4"]
@@ -169,16 +169,16 @@ def test_sensors_that_fail_one_after_the_other_are_told_so():
 
 def test_the_other_bridles_of_a_corner_take_over_what_one_bore():
     for bridle in range(ACE.bridle_count):
-        shares = taken_over(ACE, bridle)
+        shares = load_shares(ACE, bridle)
         assert shares[bridle] == -1.0
         assert (shares[ACE.bridle_corner != ACE.bridle_corner[bridle]] == 0.0).all()
     # Near settled cages with that bridle cut, whose neighbours take 0.49 each, or 1.2 and -0.26.
-    assert taken_over(ACE, 7)[[6, 8]] == pytest.approx([0.49, 0.49], abs=0.05)
-    assert taken_over(ACE, 8)[[7, 6]] == pytest.approx([1.2, -0.26], abs=0.3)
+    assert load_shares(ACE, 7)[[6, 8]] == pytest.approx([0.49, 0.49], abs=0.05)
+    assert load_shares(ACE, 8)[[7, 6]] == pytest.approx([1.2, -0.26], abs=0.3)
 
 
 @pytest.mark.parametrize("bridle", [6, 7, 8, 9, 10])
-def test_a_parted_bridle_is_told_by_its_own_shackle_and_its_neighbours(bridle):
+def test_a_parted_bridle_is_found_by_its_own_shackle_and_its_neighbours(bridle):
     watch = learned().through(quiet(17, 1.0) + cut(bridle))
     assert watch.raised == [f"bridle.{ACE.bridle_names[bridle]}"]
 
@@ -188,7 +188,7 @@ def test_a_shackle_that_reads_nothing_while_its_neighbours_are_as_usual_is_no_pa
     assert watch.raised == ["irregular.shackle-2"]
 
 
-def test_a_mended_bridle_is_believed_within_two_days():
+def test_the_alarm_of_a_repaired_bridle_clears_within_two_days():
     watch = learned().through(quiet(21, 1.0) + cut(7)).through(quiet(23, 2.0))
     assert watch.raised == ["bridle.bridle-8"]
     assert watch.active == set()
@@ -196,7 +196,7 @@ def test_a_mended_bridle_is_believed_within_two_days():
 
 def test_one_shackle_at_a_corner_says_nothing_about_its_bridles():
     alone = replace(block(np.zeros(8)), sensors=(*NAMES[:4], *"abcd"))
-    named = {one.alarm for one in explanations(alone, ACE)}
+    named = {one.alarm for one in hypotheses(alone, ACE)}
     assert not any(name.startswith("bridle") for name in named)
     assert "net.net" in named
 
@@ -218,52 +218,55 @@ def test_three_sensors_are_enough_to_say_which_of_them_is_wrong():
     assert watch.raised == ["irregular.depth-1"]
 
 
-def believed(**evidence: float) -> Suspicion:
-    """After so much evidence for sensors and bridles, by names with underscores."""
-    beliefs = {
-        name.replace("__", ".").replace("_", "-"): Belief(
-            evidence=value, size=(1.0,), covariance=((1.0,),)
+def detector(**cusums: float) -> FaultDetector:
+    """A detector with evidence for sensors and bridles, by names with underscores."""
+    evidence = {
+        name.replace("__", ".").replace("_", "-"): Evidence(
+            cusum=value, size=(1.0,), covariance=((1.0,),)
         )
-        for name, value in evidence.items()
+        for name, value in cusums.items()
     }
-    return Suspicion(senses={name: Sense() for name in NAMES}, beliefs=beliefs)
+    monitors = {name: SensorMonitor() for name in NAMES}
+    return FaultDetector(monitors=monitors, evidence=evidence)
 
 
-def told(suspicion: Suspicion) -> dict[str, str]:
-    found = ((one.alarm, one.value, one.detail) for one in suspicion.numbers(ACE))
+def raised(state: FaultDetector) -> dict[str, str]:
+    found = ((one.alarm, one.value, one.detail) for one in state.inputs(ACE))
     return {alarm: detail for alarm, value, detail in found if value is not None and value >= 1.0}
 
 
-def test_what_leads_is_told_at_the_limit_and_what_does_not_lead_is_awaited():
-    lead = believed(bridle__bridle_8=LIMIT + LEAD, irregular__shackle_2=LIMIT)
-    assert [*told(lead)] == ["bridle.bridle-8"]
-    near = believed(bridle__bridle_8=LIMIT + LEAD, irregular__shackle_2=LIMIT + 1.0)
-    assert told(near) == {}
-    assert told(believed(bridle__bridle_8=LIMIT - 0.1)) == {}
+def test_a_hypothesis_that_leads_is_raised_at_the_limit_and_one_that_does_not_waits():
+    lead = detector(bridle__bridle_8=LIMIT + LEAD, irregular__shackle_2=LIMIT)
+    assert [*raised(lead)] == ["bridle.bridle-8"]
+    near = detector(bridle__bridle_8=LIMIT + LEAD, irregular__shackle_2=LIMIT + 1.0)
+    assert raised(near) == {}
+    assert raised(detector(bridle__bridle_8=LIMIT - 0.1)) == {}
 
 
-def test_what_cannot_be_told_apart_is_told_once_and_names_both():
-    near = believed(bridle__bridle_12=LIMIT + 3.0, irregular__shackle_5=LIMIT + 1.0)
-    assert told(replace(near, waited=PATIENCE - 1)) == {}
-    said = told(replace(near, waited=PATIENCE))
-    assert [*said] == ["bridle.bridle-12"]
-    assert "shackle-5" in said["bridle.bridle-12"]
+def test_hypotheses_that_stay_close_raise_one_alarm_that_names_both():
+    near = detector(bridle__bridle_12=LIMIT + 3.0, irregular__shackle_5=LIMIT + 1.0)
+    assert raised(replace(near, waited=LEAD_BLOCKS - 1)) == {}
+    details = raised(replace(near, waited=LEAD_BLOCKS))
+    assert [*details] == ["bridle.bridle-12"]
+    assert "shackle-5" in details["bridle.bridle-12"]
 
 
-def test_a_twin_that_other_sensors_have_taught_is_watched_anew():
-    before = learned().through(quiet(33, 0.2) - only("depth-1", 1.5)).suspicion
+def test_evidence_starts_again_where_other_sensors_have_level_2():
+    before = learned().through(quiet(33, 0.2) - only("depth-1", 1.5)).detector
     seen = block(np.zeros(8))
-    four = {name: getattr(seen, name)[:4] for name in ("heard", "error", "own", "gradient")}
+    four = {
+        name: getattr(seen, name)[:4] for name in ("received", "residual", "own_sd", "gradient")
+    }
     fewer = replace(seen, sensors=NAMES[:4], **four)
-    after = before.judged(fewer, ACE, active=frozenset({"irregular.depth-1"}))
-    assert before.evidence()["irregular.depth-1"] > LIMIT
-    assert after.evidence().get("irregular.depth-1", 0.0) == 0.0
-    assert after.usual.sensors == NAMES[:4]
+    after = before.updated(fewer, ACE, active=frozenset({"irregular.depth-1"}))
+    assert before.cusums()["irregular.depth-1"] > LIMIT
+    assert after.cusums().get("irregular.depth-1", 0.0) == 0.0
+    assert after.baseline.sensors == NAMES[:4]
 
 
 def test_the_memory_of_a_quiet_week_and_of_a_parted_bridle_survive_a_restart():
-    suspicion = learned().through(quiet(33, 0.5) + cut(7)).suspicion
-    book = replace(AlarmBook.new(), suspicion=suspicion)
+    state = learned().through(quiet(33, 0.5) + cut(7)).detector
+    book = replace(AlarmBook.new(), detector=state)
     assert AlarmBook.from_json(book.to_json()) == book
 
 
@@ -277,18 +280,18 @@ def reading(minutes: float, metres: float, flag: Flag = Flag.GOOD) -> Sample:
 
 
 def test_a_sensor_that_repeats_itself_is_stuck_and_one_that_does_not_is_not():
-    still = moving = seldom = Sense()
+    still = moving = seldom = SensorMonitor()
     for minutes in range(0, 40, 2):
-        still = still.taken(reading(minutes, 14.0), 14.0)
-        moving = moving.taken(reading(minutes, 14.0 + 0.01 * (minutes % 3)), 14.0)
+        still = still.extended(reading(minutes, 14.0), 14.0)
+        moving = moving.extended(reading(minutes, 14.0 + 0.01 * (minutes % 3)), 14.0)
     for minutes in (0, 20, 40):
-        seldom = seldom.taken(reading(minutes, 14.0), 14.0)
+        seldom = seldom.extended(reading(minutes, 14.0), 14.0)
     assert still.stuck
     assert not moving.stuck
     assert not seldom.stuck
 
 
-def test_a_reading_that_failed_its_checks_is_heard_and_not_averaged():
-    sense = Sense().taken(reading(0, 90.0, Flag.FAIL), 14.0)
-    assert sense.heard == NOON
-    assert sense.count == 0
+def test_a_reading_that_failed_its_checks_is_the_latest_and_not_averaged():
+    monitor = SensorMonitor().extended(reading(0, 90.0, Flag.FAIL), 14.0)
+    assert monitor.latest == NOON
+    assert monitor.count == 0

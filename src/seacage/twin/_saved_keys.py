@@ -1,0 +1,16 @@
+"""Keys of saved JSON that differ from the names of the fields."""
+
+
+def saved_keys(**keys: str) -> dict[str, object]:
+    """Return the ``__pydantic_config__`` of a dataclass whose fields are saved under other keys.
+
+    Parameters
+    ----------
+    keys
+        The key by the field's name; all other fields keep their names.
+    """
+
+    def key(field: str) -> str:
+        return keys.get(field, field)
+
+    return {"alias_generator": key}
