@@ -23,13 +23,13 @@ from _timing import ONCE
 
 from seacage.cage import Cage
 from seacage.records import Sample
-from seacage.service._access._tokens import Tokens
-from seacage.service._calls._api import Service, create_app
+from seacage.service._auth._tokens import Tokens
+from seacage.service._http._api import Service, create_app
 from seacage.service._live._cage import LiveCage
 from seacage.service._live._clock import WallClock
 from seacage.service._live._metrics import Metrics
+from seacage.service._mqtt._messages import observed_text, read_observed
 from seacage.service._store._store import Store
-from seacage.service._wires._mqtt_messages import observed_text, read_observed
 from seacage.testing import stand_in_campaign, stand_in_field, stand_in_seas
 from seacage.twin import Training, Twin, train
 

@@ -24,7 +24,7 @@ import httpx
 import numpy as np
 from _timing import ONCE
 
-from seacage.service._access._tokens import Tokens
+from seacage.service._auth._tokens import Tokens
 from seacage.testing import stand_in_twin
 from seacage.twin import Twin
 

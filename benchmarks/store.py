@@ -14,12 +14,13 @@ from pathlib import Path
 from _timing import ONCE, seconds, tell
 
 from seacage.records import Sample
-from seacage.service._store import _kept_samples, _postgres, _sqlite
-from seacage.service._store._checksum import with_checksum
-from seacage.service._store._place import database_at
-from seacage.service._store._rows import Row, row_of
-from seacage.service._store._session import AbstractDatabase
-from seacage.service._store._sqlite import sqlite_look
+from seacage.service._store import _samples
+from seacage.service._store._database import _postgres, _sqlite
+from seacage.service._store._database._checksum import with_checksum
+from seacage.service._store._database._open import database_at
+from seacage.service._store._database._rows import Row, row_of
+from seacage.service._store._database._session import AbstractDatabase
+from seacage.service._store._database._sqlite import sqlite_look
 from seacage.service._store._store import Store, open_store
 
 NOON = datetime(2020, 2, 1, 12, tzinfo=UTC)
@@ -76,13 +77,13 @@ def checked(place: str) -> None:
 @contextmanager
 def without_checks() -> Generator[None]:
     """Rows get the same number for a checksum and no day is counted."""
-    known = _sqlite.checksum, _postgres.checksum, _kept_samples.count_new
+    known = _sqlite.checksum, _postgres.checksum, _samples.count_new
     _sqlite.checksum = _postgres.checksum = lambda *_: 0
-    _kept_samples.count_new = lambda *_: None
+    _samples.count_new = lambda *_: None
     try:
         yield
     finally:
-        _sqlite.checksum, _postgres.checksum, _kept_samples.count_new = known
+        _sqlite.checksum, _postgres.checksum, _samples.count_new = known
 
 
 def offer(store: Store, samples: list[Sample], size: int) -> None:

@@ -26,8 +26,8 @@ from PIL import Image
 from playwright.sync_api import Page, sync_playwright
 
 from seacage.records import Sample
-from seacage.service._access._tokens import Tokens
-from seacage.service._calls._api import Service, create_app
+from seacage.service._auth._tokens import Tokens
+from seacage.service._http._api import Service, create_app
 from seacage.service._live._cage import LiveCage
 from seacage.service._live._metrics import Metrics
 from seacage.service._live._replay import Replay, replay_of

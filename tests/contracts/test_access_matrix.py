@@ -11,8 +11,8 @@ from fastapi import APIRouter
 from websockets.exceptions import ConnectionClosedError
 from websockets.sync.client import connect
 
-from seacage.service._access._limits import Limits
-from seacage.service._calls import _api
+from seacage.service._auth._limits import Limits
+from seacage.service._http import _api
 from serviced import buoy, eventually, running
 
 MINE, OTHER = "quebec", "zulu"

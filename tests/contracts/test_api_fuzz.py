@@ -5,7 +5,7 @@ import hypothesis
 import jsonschema
 import pytest
 
-from seacage.service._access._limits import Limits
+from seacage.service._auth._limits import Limits
 from serviced import buoy, depth, running
 from sized import sized
 

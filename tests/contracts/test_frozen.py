@@ -19,15 +19,15 @@ from seacage.campaigns import Plan, run_campaign
 from seacage.conventions import InputError
 from seacage.ocean import SeaState
 from seacage.records import FieldRecord, Sample, read_campaign
-from seacage.service._access._sessions import Sessions
-from seacage.service._access._tokens import Tokens
+from seacage.service._auth._sessions import Sessions
+from seacage.service._auth._tokens import Tokens
 from seacage.service._live._answers import sample_of, state_of
 from seacage.service._live._cage import LiveCage
 from seacage.service._live._metrics import Metrics
 from seacage.service._live._past import state_at
+from seacage.service._publish._spool import Spool
 from seacage.service._settings import read_settings
 from seacage.service._store._store import open_store
-from seacage.service._wires._spool import Spool
 from seacage.twin import AlarmBook, Twin
 from serviced import HandClock
 

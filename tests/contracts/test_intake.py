@@ -9,10 +9,11 @@ ROOT = Path(seacage.__file__).parent
 OUR_OWN = {
     # Rows, entries and lines that this service itself wrote into a folder of its own.
     "service/_store": {"json.loads", ".read_bytes", ".read_text", "parquet.read_table"},
-    "service/_access": {"json.loads", ".read_bytes", ".read_text"},
+    "service/_auth": {"json.loads", ".read_bytes", ".read_text"},
     "service/_small_files.py": {".read_bytes"},
-    "service/_wires/_spool.py": {"json.loads", ".read_bytes", ".read_text"},
-    "service/_wires/_tail.py": {"json.loads", ".read_text"},  # the place in a table
+    "service/_publish/_spool.py": {"json.loads", ".read_bytes", ".read_text"},
+    "service/_tail.py": {"json.loads"},  # the place in a table
+    "service/_ingest/_file_feed.py": {".read_text"},
     "twin/_interval_factors.py": {"json.loads"},  # a column of the store
     "campaigns/_virtual_field/_stretches.py": {"json.loads", ".read_bytes", ".read_text"},
     "studies": {"json.loads", ".read_bytes", ".read_text", "np.load"},
@@ -23,8 +24,8 @@ OUR_OWN = {
     # A file just written, to be sealed.
     "records/_readers/_netcdf.py": {".read_bytes"},
     # Messages of a bounded length, an answer to our own request, a file just written.
-    "service/_calls/_stream.py": {"json.loads"},
-    "service/_rov/_clearance_client.py": {"json.loads"},
+    "service/_http/_websocket.py": {"json.loads"},
+    "service/_rov/_client.py": {"json.loads"},
     "service/_rov/_ros_messages.py": {".read_bytes"},
     "testing": {"json.loads"},
     # The one reader.

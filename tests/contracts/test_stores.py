@@ -13,14 +13,14 @@ from hypothesis import strategies as st
 
 from seacage.conventions import Flag, InputError, Origin
 from seacage.records import DEFAULT_LIMITS, Record, Sample, check_record, instant
-from seacage.service._store import _kept_samples, _quality
-from seacage.service._store._adapted import Adaptation, Refold
-from seacage.service._store._checksum import with_checksum
-from seacage.service._store._days import delete, rows_of_day
-from seacage.service._store._kept_aggregates import renew_rested
-from seacage.service._store._rows import DAY_US, microseconds
+from seacage.service._store import _quality, _samples
+from seacage.service._store._adaptations import Adaptation, Refold
+from seacage.service._store._aggregates import renew_rested
+from seacage.service._store._database._checksum import with_checksum
+from seacage.service._store._database._rows import DAY_US, microseconds
+from seacage.service._store._integrity._verify import verify
+from seacage.service._store._retention import delete, rows_of_day
 from seacage.service._store._store import StoreError, open_store
-from seacage.service._store._verify import verify
 from seacage.twin import Action, AlarmEvent
 from stores import NOON, put, sample, schema
 
@@ -136,7 +136,7 @@ def test_what_a_transaction_lost_is_not_compared_with_when_it_comes_again(store,
         raise StoreError("The disk is full.")
 
     with monkeypatch.context() as failing:
-        failing.setattr(_kept_samples, "mark", fail)
+        failing.setattr(_samples, "mark", fail)
         with pytest.raises(StoreError):
             put(store, sample(2, 24.0), limits=DEFAULT_LIMITS)
     asked = store.append("ace", [sample(3, 24.0)], ingested=NOON, limits=DEFAULT_LIMITS)

@@ -33,15 +33,15 @@ from seacage.campaigns import (
 )
 from seacage.ocean import SeaState
 from seacage.records import Sample
-from seacage.service._access._sessions import Sessions
-from seacage.service._access._tokens import Tokens
+from seacage.service._auth._sessions import Sessions
+from seacage.service._auth._tokens import Tokens
 from seacage.service._live._answers import sample_of, state_of
 from seacage.service._live._cage import LiveCage
 from seacage.service._live._metrics import Metrics
 from seacage.service._live._past import state_at
+from seacage.service._mqtt._messages import Settled
+from seacage.service._publish._spool import Spool
 from seacage.service._store._store import Store, open_store
-from seacage.service._wires._mqtt_messages import Settled
-from seacage.service._wires._spool import Spool
 from seacage.testing import stand_in_field, stand_in_twin
 from seacage.twin import Twin
 

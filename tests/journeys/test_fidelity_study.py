@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 from seacage.cage import Cage
 from seacage.conventions import InputError, Origin
 from seacage.records import FieldRecord
-from seacage.service._cli import app
+from seacage.service._cli._app import app
 from seacage.studies import FidelityStudy, fidelity_study
 from seacage.studies._fidelity import _study
 from stand_in import StandIn

@@ -13,8 +13,8 @@ import pytest
 
 from brokered import broker, talking
 from killable import served
-from seacage.service._store._checksum import with_checksum
-from seacage.service._store._place import database_at
+from seacage.service._store._database._checksum import with_checksum
+from seacage.service._store._database._open import database_at
 from seacage.service._store._store import open_store
 from seacage.testing import stand_in_twin
 from sized import sized

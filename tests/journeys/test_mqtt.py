@@ -13,8 +13,8 @@ import pytest
 
 import outside
 from brokered import broker, talking
+from seacage.service._ingest._shards import cages_of
 from seacage.service._store._store import open_store
-from seacage.service._wires._shards import cages_of
 from seacage.testing import stand_in_field, stand_in_twin
 from stores import schema
 

@@ -16,7 +16,7 @@ from brokered import broker
 from killable import SEACAGE, served
 from outside import wait_for
 from seacage.cage import Cage
-from seacage.service._store._rows import microseconds
+from seacage.service._store._database._rows import microseconds
 from seacage.service._store._store import look_into
 from seacage.testing import stand_in_campaign, stand_in_field, stand_in_seas, stand_in_twin
 from seacage.twin import Training, train

@@ -5,8 +5,8 @@ import asyncio
 import pytest
 
 from brokered import broker
-from seacage.service._wires._mqtt_broker import Broker
-from seacage.service._wires._mqtt_link import Link
+from seacage.service._mqtt._broker import Broker
+from seacage.service._mqtt._link import Link
 
 pytestmark = pytest.mark.mosquitto
 

@@ -13,7 +13,7 @@ import pytest
 from typer.testing import CliRunner
 
 from outside import wait_for
-from seacage.service._cli import app
+from seacage.service._cli._app import app
 from seacage.testing import stand_in_field, stand_in_twin
 
 SEACAGE = [sys.executable, "-c", "from seacage.service import main; main()"]

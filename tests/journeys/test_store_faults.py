@@ -12,7 +12,7 @@ import pytest
 
 from disks import FILLER, filled, log_not_written, small_disk
 from seacage.service._store._alarms import journal_between
-from seacage.service._store._reserve import SIZE
+from seacage.service._store._database._reserve import SIZE
 from seacage.service._store._store import StoreError, look_into, open_store
 from seacage.twin import Action, AlarmEvent
 from serviced import Running, depth, eventually, running

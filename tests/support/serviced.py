@@ -12,9 +12,9 @@ from pathlib import Path
 
 import httpx
 
-from seacage.service._access._tokens import Tokens
 from seacage.service._assembly import server
-from seacage.service._calls._api import Service
+from seacage.service._auth._tokens import Tokens
+from seacage.service._http._api import Service
 from seacage.service._live._cage import LiveCage
 from seacage.service._live._metrics import Metrics
 from seacage.service._settings import Settings

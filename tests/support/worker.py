@@ -8,13 +8,13 @@ import asyncio
 import sys
 from pathlib import Path
 
+from seacage.service._ingest._mqtt_feed import MqttFeed
 from seacage.service._live._cage import LiveCage
 from seacage.service._live._clock import WallClock
 from seacage.service._live._metrics import Metrics
 from seacage.service._logs import begin_logs
+from seacage.service._quarantine import Quarantine
 from seacage.service._store._store import open_store
-from seacage.service._wires._mqtt_feed import MqttFeed
-from seacage.service._wires._quarantine import Quarantine
 from seacage.twin import Twin
 
 

@@ -8,21 +8,21 @@ from typing import TYPE_CHECKING
 import structlog
 
 from seacage.conventions import InputError, ModelError
-from seacage.service._access._audit import Audit
-from seacage.service._access._tokens import Tokens
-from seacage.service._calls._api import Service, create_app
+from seacage.service._auth._audit import Audit
+from seacage.service._auth._tokens import Tokens
+from seacage.service._http._api import Service, create_app
+from seacage.service._ingest._file_feed import FileTail
+from seacage.service._ingest._mqtt_feed import MqttFeed
+from seacage.service._ingest._shards import cages_of
 from seacage.service._live._cage import LiveCage
 from seacage.service._live._clock import Clock, FollowingClock, ReplayClock, WallClock
 from seacage.service._live._metrics import Metrics
 from seacage.service._live._replay import Replay
 from seacage.service._live._retention import Retention
+from seacage.service._publish._webhooks import Herald, Webhook
+from seacage.service._quarantine import Quarantine
 from seacage.service._settings import CageSection, Settings
 from seacage.service._store._store import Store, open_store
-from seacage.service._wires._mqtt_feed import MqttFeed
-from seacage.service._wires._notify import Herald, Webhook
-from seacage.service._wires._quarantine import Quarantine
-from seacage.service._wires._shards import cages_of
-from seacage.service._wires._tail import FileTail
 from seacage.twin import AlarmPolicy, Twin, read_key
 
 _log = structlog.get_logger(__name__)
@@ -173,7 +173,7 @@ def server(service: Service, settings: Settings) -> "uvicorn.Server":
     """Put a service behind HTTP, with a time and a bound for whoever connects."""
     import uvicorn
 
-    from seacage.service._access._protocols import LimitedHttp, LimitedSocket
+    from seacage.service._auth._protocols import LimitedHttp, LimitedSocket
 
     config = uvicorn.Config(
         create_app(service),

@@ -14,7 +14,7 @@ from pydantic_settings import (
 )
 
 from seacage.conventions import InputError, parse_toml, read_text
-from seacage.service._access._limits import Limits
+from seacage.service._auth._limits import Limits
 
 _LOOPBACK = ("127.0.0.1", "::1", "localhost")
 

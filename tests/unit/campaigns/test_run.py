@@ -13,7 +13,7 @@ from seacage.campaigns._cases import answered
 from seacage.conventions import InputError, RecordError, Result, SeacageError
 from seacage.dynamics import PHYSICS, simulate
 from seacage.records import read_campaign
-from seacage.service._commands._campaign import run as run_command
+from seacage.service._cli._campaign import run as run_command
 from stand_in import StandIn
 
 PLAN = Plan.sample(1, 100)

@@ -5,10 +5,10 @@ from contextlib import closing
 
 import pytest
 
+from seacage.service._publish._spool import Spool
+from seacage.service._quarantine import Quarantine
 from seacage.service._small_files import append_line, keep_private, write_small
 from seacage.service._store._store import Store
-from seacage.service._wires._quarantine import Quarantine
-from seacage.service._wires._spool import Spool
 from serviced import NOON
 
 

@@ -12,7 +12,7 @@ from seacage.cage import Cage
 from seacage.conventions import Flag, compass
 from seacage.ocean import SeaState
 from seacage.records import Amendment, Record, Sample
-from seacage.service._forms._schemas import (
+from seacage.service._schemas._cages import (
     Amended,
     BridleState,
     CageSummary,

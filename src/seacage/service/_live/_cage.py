@@ -16,8 +16,6 @@ import structlog
 from jaxtyping import Float
 
 from seacage.records import DEFAULT_LIMITS, Sample
-from seacage.service._forms._samples import BUOY_KEYS
-from seacage.service._forms._schemas import AlarmBrief, State, Topology
 from seacage.service._live._alarm_desk import AlarmDesk
 from seacage.service._live._answers import state_of, topology_of
 from seacage.service._live._clock import Clock, FollowingClock, latest_allowed
@@ -27,7 +25,9 @@ from seacage.service._live._live_twin import LiveTwin
 from seacage.service._live._mailbox import Mailbox
 from seacage.service._live._metrics import Metrics
 from seacage.service._live._past import streams_of
-from seacage.service._store._kept_samples import Stored
+from seacage.service._schemas._cages import AlarmBrief, State, Topology
+from seacage.service._schemas._samples import BUOY_KEYS
+from seacage.service._store._samples import Stored
 from seacage.service._store._store import Store
 from seacage.twin import (
     Alarm,

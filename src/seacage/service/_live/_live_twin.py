@@ -17,9 +17,9 @@ from seacage.service._live._past import (
     state_at,
     streams_of,
 )
-from seacage.service._store._adapted import Adaptation, Refold
-from seacage.service._store._kept_samples import Stored
-from seacage.service._store._session import StoreError
+from seacage.service._store._adaptations import Adaptation, Refold
+from seacage.service._store._database._session import StoreError
+from seacage.service._store._samples import Stored
 from seacage.service._store._store import Store
 from seacage.twin import (
     ADAPTATION_BLOCK,

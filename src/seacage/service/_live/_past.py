@@ -10,8 +10,8 @@ import structlog
 
 from seacage.conventions import Flag, InputError, Origin
 from seacage.records import Amendment, Record, Sample, instant
-from seacage.service._forms._samples import BUOY_KEYS
-from seacage.service._store._adapted import Adaptation
+from seacage.service._schemas._samples import BUOY_KEYS
+from seacage.service._store._adaptations import Adaptation
 from seacage.service._store._store import Store
 from seacage.twin import (
     ADAPTATION_BLOCK,

@@ -8,7 +8,7 @@ import structlog
 
 from seacage.conventions import InputError
 from seacage.service._live._clock import Clock
-from seacage.service._store._session import StoreError
+from seacage.service._store._database._session import StoreError
 from seacage.service._store._store import Store
 
 _log = structlog.get_logger(__name__)

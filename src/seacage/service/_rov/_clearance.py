@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
-from seacage.service._forms._clearance_schemas import (
+from seacage.service._rov._frames import Points, in_frame, local_points, places_of
+from seacage.service._schemas._clearance import (
     ClearanceAnswer,
     ClearanceAsked,
     FrameName,
@@ -15,7 +16,6 @@ from seacage.service._forms._clearance_schemas import (
     PointClearance,
     Waypoint,
 )
-from seacage.service._rov._clearance_frames import Points, in_frame, local_points, places_of
 from seacage.twin import Clearance, InspectionPath, PredictedNet, inspection_path
 
 _STATED = 1.0  # the distance that every answer is about [m]

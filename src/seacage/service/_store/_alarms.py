@@ -4,10 +4,10 @@ import json
 from collections.abc import Sequence
 from datetime import datetime
 
-from seacage.service._store._checksum import with_checksum
-from seacage.service._store._rows import DAY_US, microseconds, moment_of
-from seacage.service._store._session import AbstractSession
-from seacage.service._store._tally import recount
+from seacage.service._store._database._checksum import with_checksum
+from seacage.service._store._database._rows import DAY_US, microseconds, moment_of
+from seacage.service._store._database._session import AbstractSession
+from seacage.service._store._integrity._tally import recount
 from seacage.twin import Action, AlarmEvent
 
 _KEEP_BOOK = """

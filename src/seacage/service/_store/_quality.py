@@ -28,8 +28,8 @@ from seacage.records import (
     is_withdrawn,
     withdrawn,
 )
-from seacage.service._store._checksum import checksum, with_checksum
-from seacage.service._store._rows import (
+from seacage.service._store._database._checksum import checksum, with_checksum
+from seacage.service._store._database._rows import (
     DAY_US,
     Own,
     SampleRow,
@@ -39,7 +39,7 @@ from seacage.service._store._rows import (
     readings_text,
     remarks_text,
 )
-from seacage.service._store._session import AbstractSession, DamageError
+from seacage.service._store._database._session import AbstractSession, DamageError
 
 if TYPE_CHECKING:
     from pydantic import TypeAdapter

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from seacage.records import Amendment, Limits, Sample
-from seacage.service._store._adapted import (
+from seacage.service._store._adaptations import (
     Adaptation,
     Refold,
     adaptation_at,
@@ -17,14 +17,23 @@ from seacage.service._store._adapted import (
     keep_adaptations,
     refold_of,
 )
-from seacage.service._store._aggregates import Aggregate, check_aggregate
+from seacage.service._store._aggregates import (
+    Aggregate,
+    aggregates_between,
+    check_aggregate,
+    renew_rested,
+)
 from seacage.service._store._alarms import alarm_book, journal_between, keep_alarms
 from seacage.service._store._archive import Archive
-from seacage.service._store._archive_found import completed, latest_of
-from seacage.service._store._care import Caretaker
-from seacage.service._store._checksum import Damage
-from seacage.service._store._kept_aggregates import aggregates_between, renew_rested
-from seacage.service._store._kept_samples import (
+from seacage.service._store._archive_reads import completed, latest_of
+from seacage.service._store._caretaker import Caretaker
+from seacage.service._store._database._checksum import Damage
+from seacage.service._store._database._open import database_at, look_into
+from seacage.service._store._database._rows import check_seq, microseconds
+from seacage.service._store._database._session import AbstractSession, DamageError, StoreError
+from seacage.service._store._quality import newest_keys
+from seacage.service._store._retention import retired
+from seacage.service._store._samples import (
     Append,
     Stored,
     amendments_since,
@@ -34,11 +43,6 @@ from seacage.service._store._kept_samples import (
     samples_between,
     withdraw_samples,
 )
-from seacage.service._store._place import database_at, look_into
-from seacage.service._store._quality import newest_keys
-from seacage.service._store._retired import retired
-from seacage.service._store._rows import check_seq, microseconds
-from seacage.service._store._session import AbstractSession, DamageError, StoreError
 from seacage.service._store._writer import Writer
 from seacage.twin import AlarmEvent
 

@@ -11,15 +11,15 @@ from typing import Any, TypeVar
 
 import structlog
 
-from seacage.service._store._kept_samples import Append, Stored, append_all
-from seacage.service._store._quality import QualityControl
-from seacage.service._store._session import (
+from seacage.service._store._database._session import (
     AbstractDatabase,
     AbstractSession,
     DamageError,
     FullError,
     StoreError,
 )
+from seacage.service._store._quality import QualityControl
+from seacage.service._store._samples import Append, Stored, append_all
 
 T = TypeVar("T")
 Work = Append | Callable[[AbstractSession], Any]

@@ -4,7 +4,7 @@ import pytest
 
 from lived import Lived
 from seacage.records import Sample
-from seacage.service._store._checksum import with_checksum
+from seacage.service._store._database._checksum import with_checksum
 from serviced import NOON, buoy, eventually, running
 
 

@@ -13,9 +13,8 @@ from typer.testing import CliRunner
 
 from seacage.conventions import Flag
 from seacage.records import KEYS, Sample
-from seacage.service._cli import app
-from seacage.service._store._archive import Archive, key_of
-from seacage.service._store._archive_table import ArchiveError, packed, unpacked
+from seacage.service._cli._app import app
+from seacage.service._store._archive import Archive, ArchiveError, key_of, packed, unpacked
 from seacage.service._store._store import StoreError, open_store
 from stores import NOON, put, sample
 

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from seacage.records import DEFAULT_LIMITS
-from seacage.service._store import _care
-from seacage.service._store._adapted import Adaptation
-from seacage.service._store._kept_aggregates import renew_rested
+from seacage.service._store import _caretaker
+from seacage.service._store._adaptations import Adaptation
+from seacage.service._store._aggregates import renew_rested
 from seacage.service._store._store import StoreError
 from seacage.twin import Action, AlarmEvent
 from serviced import depth, eventually, running
@@ -29,8 +29,8 @@ def path(tmp_path):
 
 @pytest.fixture(autouse=True)
 def unpaced(monkeypatch):
-    monkeypatch.setattr(_care, "_ROWS_S", 1e9)
-    monkeypatch.setattr(_care, "_AGAIN_S", 0.01)
+    monkeypatch.setattr(_caretaker, "_ROWS_S", 1e9)
+    monkeypatch.setattr(_caretaker, "_AGAIN_S", 0.01)
 
 
 def fill(path, *, count=500, lines=200):
@@ -170,7 +170,7 @@ def test_a_salvage_that_was_cut_off_goes_on_at_the_next_start_and_overwrites_not
     fill(path)
     path.write_bytes(b"\0" * 100 + path.read_bytes()[100:])
     with monkeypatch.context() as stopped:
-        stopped.setattr(_care.Caretaker, "begin", lambda *_: None)
+        stopped.setattr(_caretaker.Caretaker, "begin", lambda *_: None)
         with opened(path) as store:
             put(store, sample(0, 77.0, seq=0))
             store.keep_alarms("ace", book="{}", journal=[]).result(timeout=20)

@@ -1,0 +1,83 @@
+"""Open connections: how many one asker may hold, and which gives way where there are too many."""
+
+import resource
+from collections import Counter
+from typing import Any
+
+import structlog
+from starlette.requests import HTTPConnection
+
+from seacage.service._auth._limits import Limits
+from seacage.service._live._metrics import Metrics
+
+_OTHER_FILES = 256  # that a process has open beside its connections, and those about to be counted
+_log = structlog.get_logger(__name__)
+
+
+class Connections:
+    """The connections of a service, those of strangers apart from those of known tokens.
+
+    A connection is a stranger's until a token or a session came over it. Strangers hold half of
+    all at most, and the oldest gives way to the newest: half a request, sent a thousand times,
+    keeps nobody out who sends a whole one.
+
+    Parameters
+    ----------
+    limits
+        How many in all, of an address and of a token.
+    metrics
+        Where it is counted what was dropped.
+    """
+
+    def __init__(self, limits: Limits, metrics: Metrics) -> None:
+        self._limits, self._dropped = limits, metrics.dropped
+        self._most = min(limits.connections, _descriptors())
+        self._strangers, self._known = dict[Any, str](), dict[Any, str]()
+
+    def came(self, one: Any, address: str) -> None:
+        """Count uvicorn's protocol as an address's; an empty one is a proxy's, for many others."""
+        self.left(one)
+        self._strangers[one] = address
+        if address:
+            self._bound(self._strangers, address, self._limits.connections_per_address)
+        if 2 * len(self._strangers) > self._most:
+            self.drop(next(iter(self._strangers)), "too many strangers")
+        elif len(self._strangers) + len(self._known) > self._most:
+            ((token, count),) = Counter(self._known.values()).most_common(1)
+            self._bound(self._known, token, count - 1)
+
+    def asks(self, connection: HTTPConnection, source: str) -> None:
+        """Count a connection that a proxy has brought as of the address that it names."""
+        one = connection.scope.get("state", {}).get("connection")
+        open_still = one in self._strangers or one in self._known
+        if open_still and one.client and one.client[0] != source:
+            self.came(one, source)
+
+    def knows(self, connection: HTTPConnection, token: str) -> None:
+        """Count a connection as of the token that came over it, by its id."""
+        one = connection.scope.get("state", {}).get("connection")
+        if self._strangers.pop(one, None) is not None:
+            self._known[one] = token
+            self._bound(self._known, token, self._limits.connections_per_token)
+
+    def left(self, one: Any) -> None:
+        """Forget a connection that has ended."""
+        self._strangers.pop(one, None)
+        self._known.pop(one, None)
+
+    def drop(self, one: Any, why: str) -> None:
+        """End a connection at once."""
+        self.left(one)
+        self._dropped.labels(why).inc()
+        _log.warning("connection dropped", why=why, address=one.client and one.client[0])
+        one.transport.abort()
+
+    def _bound(self, held: dict[Any, str], asker: str, most: int) -> None:
+        own = [one for one, of in held.items() if of == asker]
+        for one in own[: max(0, len(own) - most)]:
+            self.drop(one, "too many of one asker")
+
+
+def _descriptors() -> int:
+    limit, _ = resource.getrlimit(resource.RLIMIT_NOFILE)
+    return 1 << 20 if limit == resource.RLIM_INFINITY else max(16, limit - _OTHER_FILES)

@@ -1,1 +1,0 @@
-"""Every call of the API, from the request to the answer."""

@@ -1,0 +1,134 @@
+"""``seacage archive``: whole days of samples as Parquet files."""
+
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from seacage.service._cli._console import Exit, Json, guarded, progress_bar, stopped, tell
+
+group = typer.Typer(help="Whole days of samples as Parquet files: write, read and check them.")
+
+Folder = Annotated[Path, typer.Argument(file_okay=False, help="Folder of the archive.")]
+Day = Annotated[
+    datetime | None, typer.Option(formats=["%Y-%m-%d"], help="UTC. [default: no bound]")
+]
+
+
+@group.command()
+@guarded
+def write(
+    folder: Folder,
+    *,
+    store: Annotated[
+        str, typer.Option(help="postgresql://user@host/name, or a file of SQLite.")
+    ] = "var/samples.sqlite",
+    cage: Annotated[str | None, typer.Option(help="Only its samples.")] = None,
+    before: Annotated[
+        datetime | None,
+        typer.Option(formats=["%Y-%m-%d"], help="Only days before it, UTC. [default: today]"),
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Write every whole day of a store; the store keeps its samples.
+
+    A service may be running. A day that is there already is completed, so doing it again adds
+    what came late.
+
+    Example: archive all that was measured until yesterday.
+        seacage archive write archive --store var/samples.sqlite
+    """
+    from seacage.service._store._archive import Archive
+    from seacage.service._store._database._rows import microseconds, moment_of, readable
+    from seacage.service._store._retention import cages, days_before, rows_of_day
+    from seacage.service._store._store import look_into
+
+    until = microseconds((before or datetime.now(UTC)).replace(tzinfo=UTC))
+    archive, count = Archive(folder), 0
+    with look_into(store) as session, progress_bar() as progress:
+        days = [
+            (name, stream, day)
+            for name in ([cage] if cage else cages(session))
+            for stream, day in days_before(session, name, until)
+        ]
+        for done, (name, stream, day) in enumerate(days, start=1):
+            samples = [one for _, one in readable(rows_of_day(session, name, stream, day))]
+            archive.write(name, stream, moment_of(day).date(), samples)
+            count += len(samples)
+            progress("archive", done, len(days))
+    tell(
+        {"folder": str(folder), "files": len(days), "samples": count},
+        as_json=as_json,
+        rows=[("Archive", str(folder)), ("Files", str(len(days))), ("Samples", str(count))],
+    )
+
+
+@group.command()
+@guarded
+def read(
+    folder: Folder,
+    *,
+    cage: Annotated[str, typer.Option(help="Whose samples.")],
+    stream: Annotated[str | None, typer.Option(help="Only this stream's.")] = None,
+    start: Day = None,
+    end: Day = None,
+    as_json: Json = False,
+) -> None:
+    """Print archived samples in time order, one JSON object a line.
+
+    Example: a day of a buoy.
+        seacage archive read archive --cage ace --stream buoy-1 --start 2020-02-01 --end 2020-02-02
+    """
+    import json
+
+    from seacage.conventions import InputError
+    from seacage.service._cli._console import without_nan
+    from seacage.service._store._archive import Archive
+    from seacage.service._store._archive_reads import archived_between
+
+    archive = Archive(folder)
+    if cage not in archive.cages():
+        there = ", ".join(archive.cages()) or "none"
+        raise InputError(f"{folder} has no samples of cage {cage!r}. It has: {there}.")
+    bounds = {"start": start and start.replace(tzinfo=UTC), "end": end and end.replace(tzinfo=UTC)}
+    said = (
+        {
+            "stream": one.stream,
+            "t": one.t.isoformat(),
+            "seq": one.seq,
+            "values": without_nan(one.values),
+            "flags": {key: int(flag) for key, flag in one.flags.items()},
+            "remarks": list(one.remarks),
+        }
+        for one in archived_between(archive, cage, stream=stream, **bounds)
+    )
+    if as_json:
+        tell({"samples": list(said)}, as_json=True)
+        return
+    for line in said:
+        typer.echo(json.dumps(line))
+
+
+@group.command()
+@guarded
+def check(folder: Folder, *, as_json: Json = False) -> None:
+    """Read every file and compare it with what was written; ends with 3 at any fault.
+
+    Example:
+        seacage archive check archive
+    """
+    from seacage.conventions import InputError
+    from seacage.service._store._archive import Archive
+
+    if not folder.is_dir():
+        raise InputError(f"{folder} is no folder. Name the folder of the archive.")
+    looked = list(Archive(folder).faults())
+    faults = [fault for _, fault in looked if fault]
+    tell(
+        {"folder": str(folder), "files": len(looked), "faults": faults},
+        as_json=as_json,
+        rows=[("Files", str(len(looked))), *(("Fault", fault) for fault in faults)],
+    )
+    if faults:
+        raise stopped(f"{len(faults)} of {len(looked)} files are at fault.", Exit.FAILED)

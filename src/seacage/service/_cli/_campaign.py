@@ -1,0 +1,301 @@
+"""``seacage campaign``: many simulations."""
+
+import math
+import shlex
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import typer
+
+from seacage.service._cli import _plans as plans
+from seacage.service._cli._console import Exit, Json, guarded, progress_bar, stopped, tell
+from seacage.service._cli._settle import CageName, read_cage
+
+if TYPE_CHECKING:
+    from seacage.campaigns import CampaignStatus
+
+group = typer.Typer(
+    help="Many simulations: run them here or on a cluster, see how far they are, export them."
+)
+
+Store = Annotated[Path, typer.Argument(help="The campaign's folder, a Zarr store.")]
+
+_FAILURES_SHOWN = 20
+
+_SCRIPT = """\
+#!/bin/bash
+# {cases} sea states in {tasks} tasks, by `seacage campaign slurm`. Hand it to sbatch where the
+# paths below are right and `seacage` is on the PATH; add time and partition as your cluster
+# wants them. Handed in again it goes on where it stopped. The last task to end sums up; should
+# it be lost there: seacage campaign finish {store}
+#SBATCH --job-name=seacage
+#SBATCH --array=0-{last}
+#SBATCH --ntasks=1
+#SBATCH --cpus-per-task={workers}
+#SBATCH --mem-per-cpu=1G
+set -euo pipefail
+export OMP_NUM_THREADS=1
+exec {command} --share "$SLURM_ARRAY_TASK_ID/{tasks}"
+"""
+
+
+@group.command()
+@guarded
+def run(
+    store: Store,
+    *,
+    plan: plans.PlanName = "default",
+    ranges: plans.Ranges = None,
+    grid: plans.Grid = None,
+    listed: plans.Listed = None,
+    cases: plans.Cases = None,
+    duration: plans.Duration = None,
+    seed: plans.Seed = None,
+    cage: CageName = "ace",
+    method: Annotated[
+        Literal["simulate", "settle"],
+        typer.Option(help="simulate: in time; settle: equilibria, waves by their mean loads."),
+    ] = "simulate",
+    law: Annotated[
+        Literal["kristiansen-faltinsen", "loland", "aarsnes", "morison"],
+        typer.Option(help="How the water loads the netting."),
+    ] = "kristiansen-faltinsen",
+    mooring: Annotated[
+        Literal["springs", "catenary"],
+        typer.Option(help="What holds the frame: springs, or buoys and anchor lines."),
+    ] = "springs",
+    ramp: Annotated[float, typer.Option(help="Over which the waves rise, s.")] = 60.0,
+    spin_up: Annotated[
+        float, typer.Option(help="Simulated first and thrown away, s; the waves rise in it.")
+    ] = 300.0,
+    time_step: Annotated[float, typer.Option(help="s")] = 0.002,
+    second_moment: Annotated[
+        bool, typer.Option(help="Keep the second moment of all node coordinates.")
+    ] = True,
+    workers: Annotated[
+        int | None, typer.Option(min=1, help="Processes. [default: one per core]")
+    ] = None,
+    cluster: Annotated[
+        str | None,
+        typer.Option(metavar="ADDRESS", help="Of a Dask scheduler you trust: tcp://host:8786."),
+    ] = None,
+    share: Annotated[
+        str | None,
+        typer.Option(metavar="I/N", help="Only the I-th of N shares, from 0; others run the rest."),
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Simulate a cage in many sea states.
+
+    Finished cases are on disk at once: stopped at any moment, the same command goes on where
+    it was, and the numbers do not depend on --workers, --cluster or --share.
+
+    Example:
+        seacage campaign run ace.zarr --plan paper --cases 400 --seed 1
+    """
+    from seacage.campaigns import Simulator, run_share
+
+    asked = plans.asked_plan(
+        plan=plan,
+        ranges=ranges,
+        grid=grid,
+        listed=listed,
+        cases=cases,
+        duration=duration,
+        seed=seed,
+    )
+    by = Simulator(
+        method=method,
+        law=law,
+        mooring=mooring,
+        ramp=ramp,
+        spin_up=spin_up,
+        time_step=time_step,
+        second_moment=second_moment,
+    )
+    with progress_bar() as progress:
+        run_share(
+            read_cage(cage),
+            asked,
+            store,
+            by=by,
+            share=read_share(share),
+            workers=workers,
+            cluster=cluster,
+            progress=progress,
+        )
+    _tell_end(store, as_json=as_json)
+
+
+@group.command()
+@guarded
+def status(store: Store, *, as_json: Json = False) -> None:
+    """Say how far a campaign is, what failed in it and why, and how quick it is.
+
+    While it runs, or after it was stopped.
+
+    Example:
+        seacage campaign status ace.zarr
+    """
+    from seacage.campaigns import campaign_status
+
+    _tell(store, campaign_status(store), as_json=as_json)
+
+
+@group.command()
+@guarded
+def finish(store: Store, *, as_json: Json = False) -> None:
+    """Sum up a campaign whose cases have all been run, in shares perhaps.
+
+    Whoever runs the last share does it; only if that was stopped just there it is left to do.
+
+    Example:
+        seacage campaign finish ace.zarr
+    """
+    from seacage.campaigns import campaign_status
+    from seacage.records import finish_campaign
+
+    finish_campaign(store)
+    reached = campaign_status(store)
+    if not reached.finished:
+        raise stopped(
+            f"campaign finish: {reached.total - reached.done} of {reached.total} cases have not "
+            "been run. Run them first.",
+            Exit.REFUSED,
+        )
+    _tell(store, reached, as_json=as_json)
+
+
+@group.command()
+@guarded
+def export(
+    store: Store,
+    out: Annotated[Path, typer.Argument(dir_okay=False, help="The CF-NetCDF file to write.")],
+    *,
+    as_json: Json = False,
+) -> None:
+    """Write a campaign as one CF-NetCDF file.
+
+    Example:
+        seacage campaign export ace.zarr ace.nc
+    """
+    from seacage.records import export_campaign
+
+    export_campaign(store, out)
+    tell({"written": str(out)}, as_json=as_json, rows=[("Written", str(out))])
+
+
+@group.command(context_settings={"ignore_unknown_options": True})
+@guarded
+def slurm(
+    words: Annotated[
+        list[str], typer.Argument(metavar="STORE [OPTIONS]", help="As of `campaign run`.")
+    ],
+    *,
+    tasks: Annotated[int, typer.Option(min=1, help="Of the job array: one share each.")],
+    as_json: Json = False,
+) -> None:
+    """Print a SLURM job array that runs a campaign in shares.
+
+    Beside --tasks it takes what `seacage campaign run` takes, and checks it now.
+
+    Example:
+        seacage campaign slurm --tasks 50 ace.zarr --plan paper > job.sh
+    """
+    from seacage.campaigns import Simulator
+
+    given = _understood(words)
+    if given["share"] or given["cluster"]:
+        raise stopped(
+            "campaign slurm: it makes the shares. Leave --share and --cluster out.", Exit.USAGE
+        )
+    names = ("plan", "ranges", "grid", "listed", "cases", "duration", "seed")
+    asked = plans.asked_plan(**{name: given[name] for name in names})
+    read_cage(given["cage"])
+    blocks = -(-len(asked) // Simulator(method=given["method"]).block)
+    alone = [] if given["workers"] else ["--workers", "1"]
+    script = _SCRIPT.format(
+        cases=len(asked),
+        tasks=min(tasks, blocks),
+        last=min(tasks, blocks) - 1,
+        workers=given["workers"] or 1,
+        store=shlex.quote(str(given["store"])),
+        command=shlex.join(["seacage", "campaign", "run", *words, *alone]),
+    )
+    if as_json:
+        tell({"script": script}, as_json=True)
+    else:
+        typer.echo(script, nl=False)
+
+
+def _understood(words: list[str]) -> dict[str, Any]:
+    """The options that `campaign run` would get of the words meant for it."""
+    command: Any = typer.main.get_command(group)
+    with command.commands["run"].make_context("seacage campaign run", [*words]) as asked:
+        return dict(asked.params)
+
+
+def read_share(text: str | None) -> tuple[int, int]:
+    """Which share of how many, from I/N."""
+    from seacage.conventions import InputError
+
+    which, slash, shares = (text or "0/1").partition("/")
+    if not (slash and which.isdigit() and shares.isdigit()):
+        raise InputError(f"--share {text}: expected I/N, as 0/8 for the first of 8 shares.")
+    return int(which), int(shares)
+
+
+def _tell_end(store: Path, *, as_json: bool) -> None:
+    from seacage.campaigns import campaign_status
+
+    reached = campaign_status(store)
+    _tell(store, reached, as_json=as_json)
+    if reached.finished and not reached.converged:
+        raise stopped("campaign run: no case converged. Check the cage's file.", Exit.FAILED)
+
+
+def _tell(store: Path, reached: "CampaignStatus", *, as_json: bool) -> None:
+    counts = {
+        "converged": reached.converged,
+        "not_converged": reached.not_converged,
+        "diverged": reached.diverged,
+    }
+    tell(
+        {"store": str(store), "plan": reached.plan, "method": reached.method, "law": reached.law}
+        | {"origin": "computed", "total": reached.total, "done": reached.done, **counts}
+        | {"finished": reached.finished, "failures": _failures(reached)}
+        | {"simulated_s": reached.simulated_s, "core_seconds": round(reached.core_seconds, 2)}
+        | {"simulated_s_per_core_second": round(reached.pace, 1)},
+        as_json=as_json,
+        rows=[
+            ("Campaign", f"{store}: plan {reached.plan}, {reached.method}, {reached.law}"),
+            ("Done", f"{reached.done} of {reached.total}{_unsummed(reached)}"),
+            *((name.replace("_", " "), str(count)) for name, count in counts.items()),
+            *_pace(reached),
+            *_failure_rows(reached),
+        ],
+    )
+
+
+def _unsummed(reached: "CampaignStatus") -> str:
+    waiting = reached.done == reached.total and not reached.finished
+    return ", not summed: say `seacage campaign finish`" if waiting else ""
+
+
+def _pace(reached: "CampaignStatus") -> list[tuple[str, str]]:
+    if math.isnan(reached.core_seconds):
+        return []
+    cost = f"{reached.core_seconds:.0f} core-seconds"
+    if math.isnan(reached.pace):
+        return [("Cost", cost)]
+    return [("Cost", f"{cost}, {reached.pace:.0f} simulated seconds in each")]
+
+
+def _failures(reached: "CampaignStatus") -> list[dict[str, object]]:
+    return [{"case": case, "reason": reason} for case, reason in reached.failures.items()]
+
+
+def _failure_rows(reached: "CampaignStatus") -> list[tuple[str, str]]:
+    rows = [(f"case {case}", reason) for case, reason in reached.failures.items()]
+    more = len(rows) - _FAILURES_SHOWN
+    return [*rows[:_FAILURES_SHOWN], *([("…", f"and {more} more: say --json")] if more > 0 else [])]

@@ -1,0 +1,194 @@
+"""``seacage config``: what a service would be told, and whether it can be so."""
+
+import importlib.util
+import ssl
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, cast
+
+import typer
+
+from seacage.service._cli._console import Exit, Finding, Json, guarded, tell, tell_findings
+
+if TYPE_CHECKING:
+    from seacage.service._settings import Settings
+
+group = typer.Typer(help="Settings of the service.")
+
+Config = Annotated[
+    Path | None, typer.Option(exists=True, dir_okay=False, help="The file of settings, TOML.")
+]
+
+
+@group.command()
+@guarded
+def check(
+    *,
+    config: Config = None,
+    reach: Annotated[
+        bool, typer.Option("--reach", help="Also open the store and knock at the broker.")
+    ] = False,
+    as_json: Json = False,
+) -> None:
+    """Check settings before a service starts with them: all that can be known now.
+
+    Every setting is known and in range; certificates, twins and folders are there and whole;
+    limits of alarms name alarms that there can be. Anything wrong ends with code 1.
+
+    Example:
+        seacage config check --config seacage.toml
+    """
+    from seacage.service._settings import read_settings
+
+    findings = list(_findings(read_settings(config), reach=reach))
+    tell_findings("config", findings, code=Exit.REFUSED, as_json=as_json)
+
+
+@group.command()
+@guarded
+def show(*, config: Config = None, as_json: Json = False) -> None:
+    """Show all settings as a service would take them: file, environment and defaults together.
+
+    Secrets, and addresses that may hold one, are not shown.
+
+    Example:
+        seacage config show --config seacage.toml
+    """
+    from seacage.service._settings import read_settings
+
+    settled = dict(_flat("", read_settings(config).model_dump(mode="json")))
+    tell(settled, as_json=as_json, rows=[(name, str(value)) for name, value in settled.items()])
+
+
+def _flat(prefix: str, value: object) -> Iterator[tuple[str, object]]:
+    parts: list[tuple[str, object]] | None = None
+    if isinstance(value, dict):
+        parts = list(cast("dict[str, object]", value).items())
+    elif isinstance(value, list) and value and isinstance(value[0], dict):
+        parts = [(str(index), item) for index, item in enumerate(cast("list[object]", value))]
+    if parts is None:
+        yield prefix, _hidden(prefix, cast("object", value))
+        return
+    for key, item in parts:
+        yield from _flat(f"{prefix}.{key}" if prefix else key, item)
+
+
+def _hidden(name: str, value: object) -> object:
+    from seacage.service._settings import without_password
+
+    if name.endswith("secret") and value:
+        return "…"
+    return without_password(value) if isinstance(value, str) and "url" in name else value
+
+
+def _findings(settings: "Settings", *, reach: bool) -> Iterator[Finding]:
+    yield _tried("address", lambda: _listens(settings))
+    if settings.certificate and settings.key:
+        yield _tried("certificate", lambda: _certified(settings))
+    yield _tried("data", lambda: _writable(settings.data))
+    for section in settings.cages:
+        yield _tried(
+            f"cage {section.name or section.twin}",
+            lambda one=section: _caged(settings, one.twin, one.name),
+        )
+    if not settings.cages:
+        yield Finding(what="cages", state="absent", said="none: the demonstration is served")
+    yield _tried("store", lambda: _stored(settings, reach=reach))
+    if settings.mqtt:
+        yield _tried("mqtt", lambda: _brokered(settings, reach=reach))
+    for hook in settings.webhooks:
+        yield _tried("webhook", lambda one=hook: _hooked(settings, one.cages))
+
+
+def _tried(what: str, attempt: Callable[[], str]) -> Finding:
+    from seacage.conventions import SeacageError
+
+    try:
+        return Finding(what=what, state="ok", said=attempt())
+    except (SeacageError, OSError) as error:
+        return Finding(what=what, state="wrong", said=str(error))
+
+
+def _listens(settings: "Settings") -> str:
+    settings.check_host()
+    return f"{settings.host}:{settings.port}, {'HTTPS' if settings.certificate else 'HTTP'}"
+
+
+def _certified(settings: "Settings") -> str:
+    from seacage.conventions import InputError
+
+    assert settings.certificate
+    try:
+        ssl.create_default_context(ssl.Purpose.CLIENT_AUTH).load_cert_chain(
+            settings.certificate, settings.key
+        )
+    except (ssl.SSLError, OSError) as error:
+        raise InputError(
+            f"{settings.certificate} and {settings.key} are no PEM certificate and its key "
+            f"({error})."
+        ) from error
+    return f"{settings.certificate} and its key"
+
+
+def _writable(folder: Path) -> str:
+    import os
+
+    from seacage.conventions import InputError
+
+    there = next(one for one in (folder, *folder.absolute().parents) if one.exists())
+    if not there.is_dir() or not os.access(there, os.W_OK | os.X_OK):
+        raise InputError(f"{there} takes no files. Mend its rights, or name another as data.")
+    return f"{folder} can be written"
+
+
+def _caged(settings: "Settings", folder: Path, name: str | None) -> str:
+    from seacage.service._assembly import policy_of
+    from seacage.twin import Twin, read_key
+
+    key = read_key(settings.twin_key) if settings.twin_key else None
+    twin = Twin.read(folder, key=key)
+    policy_of(settings, name or twin.cage.name, twin)
+    return f"{folder} is whole: {twin.cage.node_count} nodes, {len(twin.sensor_names)} sensors"
+
+
+def _stored(settings: "Settings", *, reach: bool) -> str:
+    from seacage.conventions import InputError
+    from seacage.service._assembly import store_place
+    from seacage.service._settings import without_password
+    from seacage.service._store._store import open_store
+
+    place = store_place(settings)
+    for extra, package, wanted in (
+        ("postgres", "psycopg", isinstance(place, str)),
+        ("archive", "pyarrow", settings.store.archive is not None),
+    ):
+        if wanted and importlib.util.find_spec(package) is None:
+            raise InputError(f"{package} is not installed. Install seacage[{extra}].")
+    if reach:
+        open_store(place).close()
+    return f"{without_password(str(place))}{' opens' if reach else ''}"
+
+
+def _brokered(settings: "Settings", *, reach: bool) -> str:
+    import socket
+
+    from seacage.service._mqtt._broker import Broker
+    from seacage.service._mqtt._topics import Topics
+
+    assert settings.mqtt
+    Topics(settings.site)
+    broker = Broker.parse(settings.mqtt.url, ca=settings.mqtt.ca)
+    broker.client("seacage-config-check")  # reads the CA file
+    if reach:
+        socket.create_connection((broker.host, broker.port), timeout=5.0).close()
+    return f"{broker}{' answers' if reach else ''}"
+
+
+def _hooked(settings: "Settings", cages: tuple[str, ...]) -> str:
+    from seacage.conventions import InputError
+
+    served = {cage.name for cage in settings.cages}
+    unknown = [cage for cage in cages if None not in served and cage not in served]
+    if unknown:
+        raise InputError(f"No cage is called {unknown[0]!r}, whose alarms it would be told.")
+    return "alarms of " + (", ".join(cages) or "all cages")

@@ -1,0 +1,152 @@
+"""``seacage doctor``: what is installed, what is reachable, what is wrong."""
+
+import importlib.util
+import platform
+import shutil
+import socket
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from seacage.service._cli._console import Exit, Finding, Json, guarded, tell_findings
+
+_LOOK_S = 20.0
+_EXTRAS = {
+    "sim": ("xarray", "zarr", "h5netcdf", "dask", "matplotlib"),
+    "gcn": ("jax", "optax"),
+    "postgres": ("psycopg",),
+    "archive": ("pyarrow",),
+    "ros": ("rosbags",),
+}
+
+
+@guarded
+def doctor(
+    *,
+    data: Annotated[Path, typer.Option(file_okay=False, help="The service's data folder.")] = Path(
+        "var"
+    ),
+    store: Annotated[
+        str | None,
+        typer.Option(help="postgresql://user@host/name, or a file. [default: that in --data]"),
+    ] = None,
+    port: Annotated[int, typer.Option(min=1, max=65535, help="The service's port.")] = 8000,
+    as_json: Json = False,
+) -> None:
+    """Say what is installed and what is wrong.
+
+    An extra that is not installed is no fault. Anything wrong ends the command with code 3.
+
+    Example:
+        seacage doctor
+    """
+    checks: tuple[Callable[[], Finding], ...] = (
+        _python,
+        _physics,
+        _store,
+        lambda: _rows(store or str(data / "samples.sqlite")),
+        lambda: _disk(data),
+        lambda: _tokens(data),
+        lambda: _port(port),
+        lambda: _demonstration(data),
+    )
+    findings = [check() for check in checks] + [_extra(name) for name in _EXTRAS]
+    tell_findings("doctor", findings, code=Exit.FAILED, as_json=as_json)
+
+
+def _python() -> Finding:
+    fine = sys.version_info >= (3, 11)
+    said = f"{platform.python_version()} on {platform.system()} {platform.machine()}"
+    return Finding(what="Python", state="ok" if fine else "wrong", said=said)
+
+
+def _physics() -> Finding:
+    """Settle a small cage: the kernel loads, runs and converges."""
+    from seacage.cage import Cage
+    from seacage.conventions import SeacageError
+    from seacage.dynamics import settle
+    from seacage.ocean import SeaState
+
+    cage = Cage.named("ace").altered(mesh={"spokes": 8})
+    try:
+        response = settle(cage, SeaState(current_speed=0.5, current_to=0.0))
+    except (SeacageError, OSError) as error:
+        return Finding(what="Physics kernel", state="wrong", said=f"{error} Install seacage anew.")
+    fine = int(response.result) == 0
+    said = f"a small cage settles to {float(response.residual):.2g} N"
+    return Finding(what="Physics kernel", state="ok" if fine else "wrong", said=said)
+
+
+def _store() -> Finding:
+    import sqlite3
+
+    fine = sqlite3.sqlite_version_info >= (3, 37)
+    said = f"SQLite {sqlite3.sqlite_version}" + ("" if fine else "; 3.37 or later is needed")
+    return Finding(what="Store", state="ok" if fine else "wrong", said=said)
+
+
+def _rows(place: str) -> Finding:
+    """Verify the stored rows, as many as can be in some seconds."""
+    from seacage.service._store._integrity._verify import verified
+    from seacage.service._store._store import StoreError, look_into
+
+    if "://" not in place and not Path(place).exists():
+        return Finding(what="Stored rows", state="absent", said=f"no store in {place}")
+    try:
+        with look_into(place) as session:
+            said, wrong = verified(session, seconds=_LOOK_S), session.damage.said
+            if session.checksums is not None:
+                said += f"; data_checksums of the server are {session.checksums}"
+    except StoreError as error:
+        return Finding(what="Stored rows", state="wrong", said=str(error))
+    return Finding(what="Stored rows", state="wrong" if wrong else "ok", said=wrong or said)
+
+
+def _disk(data: Path) -> Finding:
+    place = next(one for one in (data, *data.resolve().parents) if one.exists())
+    free = shutil.disk_usage(place).free / 1e9
+    said = f"{free:.0f} GB free for {data}" + ("; free some" if free < 1.0 else "")
+    return Finding(what="Disk", state="wrong" if free < 1.0 else "ok", said=said)
+
+
+def _tokens(data: Path) -> Finding:
+    from seacage.service._auth._tokens import Tokens
+
+    tokens = Tokens(data)
+    count = len(tokens.all())
+    said = tokens.damage or f"{count} in {data}"
+    return Finding(what="Tokens", state="wrong" if tokens.damage else "ok", said=said)
+
+
+def _port(port: int) -> Finding:
+    with socket.socket() as probe:
+        taken = probe.connect_ex(("127.0.0.1", port)) == 0
+    said = "something listens there: a service, or choose another with --port" if taken else "free"
+    return Finding(what=f"Port {port}", state="ok", said=said)
+
+
+def _demonstration(data: Path) -> Finding:
+    there = (data / "demonstration").is_dir()
+    said = f"in {data}" if there else f"none in {data}; `seacage serve --demo` makes one"
+    return Finding(what="Demonstration", state="ok" if there else "absent", said=said)
+
+
+def _extra(name: str) -> Finding:
+    missing = [one for one in _EXTRAS[name] if importlib.util.find_spec(one) is None]
+    if missing:
+        said = f"without {', '.join(missing)}: pip install 'seacage[{name}]'"
+        return Finding(what=f"Extra {name}", state="absent", said=said)
+    said = ", ".join(f"{one} {_version(one)}" for one in _EXTRAS[name])
+    return Finding(what=f"Extra {name}", state="ok", said=said)
+
+
+def _version(package: str) -> str:
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return "?"

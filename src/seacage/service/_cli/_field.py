@@ -1,0 +1,393 @@
+"""``seacage field``: records of buoys and sensors."""
+
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import typer
+
+from seacage.service._cli._campaign import read_share
+from seacage.service._cli._console import Json, guarded, progress_bar, tell
+from seacage.service._cli._settle import CageName, read_cage
+
+if TYPE_CHECKING:
+    from seacage.campaigns import Event, Hidden
+    from seacage.records import ColumnMap, FieldRecord, Limits, NetcdfMap, Record
+
+group = typer.Typer(help="Records of buoys and sensors: make, read and check them.")
+
+_FLAG_WORDS = {1: "good", 2: "not evaluated", 3: "suspect", 4: "fail", 9: "missing"}
+
+
+LimitsFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--limits", exists=True, dir_okay=False, help="The site's limits (TOML); else defaults."
+    ),
+]
+
+
+@group.command()
+@guarded
+def virtual(
+    out: Annotated[Path, typer.Argument(file_okay=False, help="Folder of the field record.")],
+    *,
+    method: Annotated[
+        Literal["simulate", "settle"],
+        typer.Option(help="In time, in waves: hours. Or equilibria in the current: minutes."),
+    ] = "simulate",
+    record: Annotated[
+        Path | None,
+        typer.Option(exists=True, dir_okay=False, help="A buoy's record; else one is generated."),
+    ] = None,
+    days: Annotated[
+        float | None,
+        typer.Option(
+            min=0.01, max=400.0, help="Its first days. [default: 48 generated, or the whole record]"
+        ),
+    ] = None,
+    start: Annotated[
+        datetime, typer.Option(formats=["%Y-%m-%d"], help="Of a generated current, UTC.")
+    ] = datetime(2020, 1, 18),  # noqa: DTZ001
+    waves: Annotated[
+        Path | None,
+        typer.Option(
+            exists=True,
+            dir_okay=False,
+            help="A record of waves, brought to the same days of the year and to a sheltered "
+            "site; else the buoy's own, else they are generated.",
+        ),
+    ] = None,
+    calm: Annotated[bool, typer.Option("--calm", help="No waves at all.")] = False,
+    one_in: Annotated[
+        int,
+        typer.Option(min=1, help="Simulate one hour in so many, and those of the shackles."),
+    ] = 1,
+    event: Annotated[
+        list[str] | None,
+        typer.Option(help='What goes wrong, as "bridle-cut bridle-8 2020-02-01T12:00Z".'),
+    ] = None,
+    events: Annotated[
+        Path | None, typer.Option(exists=True, dir_okay=False, help="A TOML file of events.")
+    ] = None,
+    seed: Annotated[int, typer.Option(min=0, help="Of weather, noise and outages.")] = 0,
+    hidden: Annotated[
+        Path | None,
+        typer.Option(exists=True, dir_okay=False, help="Hidden parameters; else those shipped."),
+    ] = None,
+    cage: CageName = "ace",
+    workers: Annotated[
+        int | None, typer.Option(min=1, help="Processes. [default: one per core]")
+    ] = None,
+    share: Annotated[
+        str | None,
+        typer.Option(
+            metavar="I/N",
+            help="Only simulate the I-th of N shares of the hours, from 0; others do the rest.",
+        ),
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Make a virtual field: sensors on a cage that differs from its drawing.
+
+    What they say is marked "virtual field" wherever it goes. OUT gets the record, OUT/truth
+    what was true. Finished hours are on disk at once: stopped at any moment, the same command
+    goes on where it was, and the numbers do not depend on --workers or --share.
+
+    Example:
+        seacage field virtual field --days 1.5 --seed 1
+        seacage field virtual field --record buoy.csv --waves nora10.csv --one-in 8
+        seacage field virtual field --event "net-hole ring-3/spoke-24 2020-02-01T12:00Z"
+    """
+    from seacage.campaigns import Hidden, Timetable, virtual_field, virtual_field_share
+
+    truth = Hidden.read(hidden)
+    buoy = _buoy(record, days=days, start=start, seed=seed, calm=calm)
+    asked: dict[str, Any] = {"hidden": truth, "seed": seed, "workers": workers}
+    if method == "simulate":
+        asked |= {
+            "kept": out / "stretches",
+            "waves": None if calm else _waves(waves, buoy, truth, seed=seed),
+            "timetable": Timetable.over(buoy, one_in=one_in),
+        }
+    else:
+        asked |= {"method": method, "kept": out / "responses"}
+        _check_settled(waves=waves, calm=calm, one_in=one_in, share=share)
+    asked |= {"events": _events(event, events)}
+    with progress_bar() as progress:
+        if share is not None:
+            virtual_field_share(
+                read_cage(cage), buoy, share=read_share(share), progress=progress, **asked
+            )
+            tell({"share": share}, as_json=as_json, rows=[("Simulated", f"share {share}")])
+            return
+        made = virtual_field(read_cage(cage), buoy, progress=progress, **asked)
+    made.write(out)
+    _tell_field(made.record, out, as_json=as_json)
+
+
+def _buoy(
+    path: Path | None, *, days: float | None, start: datetime, seed: int, calm: bool
+) -> "Record":
+    """The buoy's record: read or generated, its first days, and without waves for a calm sea."""
+    from dataclasses import replace
+
+    from seacage.campaigns import generated_current
+    from seacage.records import moment, read_record
+
+    if path is None:
+        return generated_current(seed, start=start.replace(tzinfo=UTC), days=days or 48.0)
+    record = read_record(path)
+    if days is not None and len(record):
+        first = moment(record.time[0])
+        record = record.between(first, first + timedelta(days=days))
+    if not calm:
+        return record
+    current = {key: column for key, column in record.values.items() if key.startswith("current")}
+    return replace(record, values=current)
+
+
+def _waves(path: Path | None, buoy: "Record", hidden: "Hidden", *, seed: int) -> "Record | None":
+    """Waves from a file, brought to the site; None for the buoy's own; else generated."""
+    from seacage.campaigns import generated_waves, waves_at_site
+    from seacage.records import moment, read_record
+
+    if path is not None:
+        factor, most = hidden.waves.sheltered, hidden.waves.hs_most_m
+        return waves_at_site(read_record(path), buoy.time, factor=factor, most=most)
+    if "hs_m" in buoy.values or not len(buoy):
+        return None
+    first, last = moment(buoy.time[0]), moment(buoy.time[-1])
+    days = (last - first) / timedelta(days=1) + 1.0  # to the last reading, and an hour on
+    return generated_waves(seed, start=first, days=days)
+
+
+def _events(words: list[str] | None, path: Path | None) -> "list[Event]":
+    from seacage.campaigns import Event, read_events
+
+    listed = read_events(path) if path else ()
+    return sorted([*listed, *map(Event.parse, words or ())], key=lambda event: event.at)
+
+
+def _check_settled(*, waves: Path | None, calm: bool, one_in: int, share: str | None) -> None:
+    from seacage.conventions import InputError
+
+    if waves is not None or calm or one_in > 1 or share is not None:
+        raise InputError(
+            "--waves, --calm, --one-in and --share are for --method simulate. Leave them out."
+        )
+
+
+def _tell_field(record: "FieldRecord", out: Path, *, as_json: bool) -> None:
+    streams = [record.buoy, *record.sensors.values()]
+    tell(
+        {
+            "written": str(out),
+            "origin": str(record.origin),
+            "streams": {one.stream: len(one) for one in streams},
+            "notes": record.notes,
+        },
+        as_json=as_json,
+        rows=[
+            ("Written", f"{out} ({record.origin})"),
+            *((one.stream, f"{len(one)} readings") for one in streams),
+            *(("note", note) for note in record.notes),
+        ],
+    )
+
+
+@group.command("import")
+@guarded
+def import_(
+    path: Annotated[
+        Path,
+        typer.Argument(
+            exists=True, dir_okay=False, help="A table (text, Parquet, CO-OPS, NDBC) or NetCDF."
+        ),
+    ],
+    out: Annotated[
+        Path, typer.Argument(dir_okay=False, help="To write: CF-NetCDF, or with --inspect a map.")
+    ],
+    *,
+    inspect: Annotated[
+        bool, typer.Option("--inspect", help="Say what the file seems to be; begin its map.")
+    ] = False,
+    columns: Annotated[
+        str | None,
+        typer.Option(help="Map of the file: a TOML file or a shipped name; else by the header."),
+    ] = None,
+    origin: Annotated[
+        str | None, typer.Option(help="Of a foreign NetCDF file: measured or computed.")
+    ] = None,
+    zone: Annotated[
+        str | None, typer.Option(help="Of a foreign NetCDF file's times, where it is in doubt.")
+    ] = None,
+    depth_m: Annotated[float | None, typer.Option(help="Which depth of a profile.")] = None,
+    range_m: Annotated[
+        float | None, typer.Option(help="Which bin of a profile, from the instrument.")
+    ] = None,
+    limits: LimitsFile = None,
+    stream: Annotated[str, typer.Option(help="What to call the stream.")] = "buoy-1",
+    as_json: Json = False,
+) -> None:
+    """Read a file in house units, check every value, and keep it as CF-NetCDF.
+
+    Units and a direction's sense are what the file or its map says, never guessed. A bad value
+    is flagged in its row and kept as it came. For a file that nobody knows yet, --inspect
+    writes a map to fill in.
+
+    Example:
+        seacage field import logger.csv map.toml --inspect
+        seacage field import logger.csv buoy-1.nc --columns map.toml
+    """
+    from seacage.records import read_record, write_record
+
+    if inspect:
+        _inspect(path, out, as_json=as_json)
+        return
+    choice = _choice(path, columns, origin=origin, zone=zone, depth_m=depth_m, range_m=range_m)
+    record = read_record(path, columns=choice, stream=stream, limits=_limits(limits))
+    write_record(record, out)
+    _tell([record], as_json=as_json, written=out)
+
+
+def _inspect(path: Path, out: Path, *, as_json: bool) -> None:
+    from seacage.conventions import InputError
+    from seacage.records import inspect_file
+
+    if out.exists():
+        raise InputError(f"{out}: the file is there already, and may hold your answers. Move it.")
+    found = inspect_file(path)
+    if found.map_text:
+        out.write_text(found.map_text, encoding="utf-8")
+    written = str(out) if found.map_text else None
+    tell(
+        {"findings": found.findings, "written": written, "to_fill_in": found.open_questions},
+        as_json=as_json,
+        rows=[
+            *(("", finding) for finding in found.findings),
+            ("", f'{out}: fill in {found.open_questions} "?"' if written else "No map is needed."),
+        ],
+    )
+
+
+def _choice(
+    path: Path,
+    columns: str | None,
+    *,
+    origin: str | None,
+    zone: str | None,
+    depth_m: float | None,
+    range_m: float | None,
+) -> "ColumnMap | NetcdfMap | None":
+    """The map that was named, with what the command line adds to it."""
+    from dataclasses import replace
+
+    from seacage.conventions import InputError, Origin
+    from seacage.records import NetcdfMap, known_map, read_map
+
+    said: dict[str, Any] = {"time_zone": zone, "depth_m": depth_m, "range_m": range_m}
+    given = {name: value for name, value in said.items() if value is not None}
+    if origin is not None:
+        if origin not in {str(Origin.MEASURED), str(Origin.COMPUTED)}:
+            raise InputError(f"--origin {origin!r} is unknown. Say measured or computed.")
+        given |= {"origin": Origin(origin)}
+    chosen = read_map(columns) if columns else known_map(path) if given else None
+    if isinstance(chosen, NetcdfMap) or (chosen is None and given):
+        return replace(chosen or NetcdfMap(title=path.name), **given)
+    if chosen is not None and depth_m is not None and len(given) == 1:
+        return chosen.taken_at(depth_m)
+    if given:
+        raise InputError("--origin, --zone and --range-m are for NetCDF; a table's map says them.")
+    return chosen
+
+
+def _limits(path: Path | None) -> "Limits":
+    from seacage.records import DEFAULT_LIMITS, read_limits
+
+    return read_limits(path) if path else DEFAULT_LIMITS
+
+
+@group.command()
+@guarded
+def check(
+    path: Annotated[
+        Path, typer.Argument(exists=True, help="A record's file, or a field record's folder.")
+    ],
+    *,
+    report: Annotated[
+        Path | None,
+        typer.Option(dir_okay=False, help="An HTML page to write: what, when, why, with figures."),
+    ] = None,
+    limits: LimitsFile = None,
+    as_json: Json = False,
+) -> None:
+    """Count what the quality checks say of a record, with the first of each kind.
+
+    Flags are those of QARTOD. Bad values do not fail the command; a file that cannot be
+    trusted at all does. With --limits a record is checked again by them.
+
+    Example:
+        seacage field check buoy.csv --report quality.html
+    """
+    from seacage.records import FieldRecord, check_record, read_record
+
+    used = _limits(limits)
+    if path.is_dir():
+        field = FieldRecord.read(path)
+        records = [field.buoy, *field.sensors.values()]
+    else:
+        records = [read_record(path, limits=used)]
+    if limits is not None:
+        records = [check_record(one, used) for one in records]
+    if report is not None:
+        from seacage.studies import quality_page
+
+        report.write_text(quality_page(records, used), encoding="utf-8")
+    _tell(records, as_json=as_json, written=report)
+
+
+def _tell(records: "list[Record]", *, as_json: bool, written: Path | None = None) -> None:
+    rows: list[tuple[str, str]] = [("Written", str(written))] if written else []
+    for record in records:
+        rows.append((record.stream, _span(record)))
+        rows += [(f"  {key}", _counted(flags)) for key, flags in _flags(record).items()]
+        rows += [("  note", note) for note in record.notes]
+    tell(
+        {
+            "written": None if written is None else str(written),
+            "streams": {
+                one.stream: {
+                    "origin": str(one.origin),
+                    "rows": len(one),
+                    "flags": _flags(one),
+                    "notes": one.notes,
+                }
+                for one in records
+            },
+        },
+        as_json=as_json,
+        rows=rows,
+    )
+
+
+def _span(record: "Record") -> str:
+    if not len(record):
+        return f"no rows ({record.origin})"
+    first, last = (str(t)[:16].replace("T", " ") for t in record.time[[0, -1]])
+    return f"{len(record)} rows, {first} to {last} UTC ({record.origin})"
+
+
+def _flags(record: "Record") -> dict[str, dict[str, int]]:
+    return {
+        key: {
+            word: count
+            for flag, word in _FLAG_WORDS.items()
+            if (count := int((record.flags[key] == flag).sum()))
+        }
+        for key in record.values
+    }
+
+
+def _counted(flags: dict[str, int]) -> str:
+    return ", ".join(f"{count} {word}" for word, count in flags.items())

@@ -1,0 +1,238 @@
+"""``seacage publish``: samples from the edge to a service, through a spool."""
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from datetime import timedelta
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import typer
+
+from seacage.service._cli._console import Exit, Json, guarded, progress_bar, stopped, tell
+
+if TYPE_CHECKING:
+    from collections.abc import Generator
+
+    from seacage.service._publish._courier import Courier
+    from seacage.service._publish._publisher import Batch, Published
+    from seacage.service._publish._spool import Spool
+
+
+@guarded
+def publish(
+    source: Annotated[
+        str,
+        typer.Argument(
+            help="A buoy's record, a field record's folder, or - for lines of JSON on stdin."
+        ),
+    ],
+    *,
+    to: Annotated[
+        str,
+        typer.Option(
+            help="mqtt://host:1883, mqtts://user:password@host:8883, or http://host:8000."
+        ),
+    ],
+    cage: Annotated[str, typer.Option(help="The cage's name there.")] = "ace",
+    site: Annotated[str, typer.Option(help="By MQTT: the site's name in the topics.")] = "site",
+    stream: Annotated[str, typer.Option(help="What to call the stream of a file.")] = "buoy-1",
+    columns: Annotated[
+        str | None,
+        typer.Option(help="Map of the file: a TOML file or a shipped name; else by the header."),
+    ] = None,
+    follow: Annotated[
+        bool, typer.Option("--follow", help="Go on with the rows that a logger appends.")
+    ] = False,
+    speed: Annotated[
+        float | None,
+        typer.Option(min=0.1, help="Of a record, against real time. [default: as fast as it goes]"),
+    ] = None,
+    spool: Annotated[
+        Path, typer.Option(dir_okay=False, help="File of what is not yet acknowledged.")
+    ] = Path("publish.spool"),
+    spool_most: Annotated[int, typer.Option(min=1, help="Samples that it holds.")] = 1_000_000,
+    when_full: Annotated[
+        Literal["wait", "drop-oldest"],
+        typer.Option(help="Then the source waits, or the oldest samples are given up."),
+    ] = "wait",
+    keep_ahead_days: Annotated[
+        float,
+        typer.Option(min=0.0, help="Try samples ahead of the service's clock for so long [d]."),
+    ] = 7.0,
+    patience_s: Annotated[
+        float | None,
+        typer.Option(min=1.0, help="Give up when nothing is acknowledged for so long [s]."),
+    ] = None,
+    token: Annotated[
+        str, typer.Option(envvar="SEACAGE_TOKEN", help="By HTTP: with the scope ingest.")
+    ] = "",
+    ca: Annotated[
+        Path | None,
+        typer.Option(exists=True, dir_okay=False, help="By MQTT: whom the certificate is from."),
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Send samples to a service, and again until it has them on disk.
+
+    What is read lies in the spool, on disk, until the service itself acknowledges it; neither
+    a kill of this command nor one of the broker or of the service loses a sample. Run again
+    with the same spool it goes on where it was. While the service is away the spool fills;
+    afterwards new samples go first, and the others follow. To send a record a second time,
+    name a new spool.
+
+    Samples that the service refuses as ahead of its clock stay in the spool and are tried again
+    every minute (with --speed: of the record's time), also by the next run; after
+    --keep-ahead-days they are set aside, with the reason, in a file beside the spool.
+
+    Example: a logger's file, for ever.
+        seacage publish logger.csv --follow --columns map.toml --to mqtt://127.0.0.1:1883
+    Example: lines like {"stream": "depth-2", "t": "2026-01-02T03:04:05Z", "values": {…}}.
+        read-sensors | seacage publish - --to http://127.0.0.1:8000 --token TOKEN
+    """
+    from seacage.conventions import InputError
+    from seacage.service._logs import begin_logs
+    from seacage.service._publish._publisher import Publisher
+
+    if follow and (source == "-" or Path(source).is_dir() or speed is not None):
+        raise InputError("publish: --follow is for a growing file, at the speed at which it grows.")
+    begin_logs("lines")
+    refused, pace = _Refused(), speed or 1.0
+    with (
+        _courier(to, cage, site, token, ca) as courier,  # first: it refuses a wrong address
+        _spool(spool, to, cage, site, spool_most, when_full) as kept,
+        progress_bar() as progress,
+    ):
+        batches = _batches(source, kept, refused, stream, columns, follow=follow, speed=speed)
+        done = Publisher(
+            kept,
+            courier,
+            retry_s=max(1.0, 60.0 / pace),
+            keep_ahead=timedelta(days=keep_ahead_days / pace),
+            patience_s=patience_s,
+            progress=progress,
+        ).run(batches)
+    _tell(done, refused, as_json=as_json)
+    if refused.count or done.rejected or done.quarantined:
+        count = refused.count + done.rejected + done.quarantined
+        raise stopped(f"{count} samples were refused; see the summary.", Exit.REFUSED)
+    if done.ahead:
+        raise stopped(
+            f"{done.ahead} samples are ahead of the service's clock and wait in {spool}. Check "
+            "the clocks of source and service, and run this again with the same spool.",
+            Exit.FAILED,
+        )
+
+
+@dataclass
+class _Refused:
+    """What of the source could not be read."""
+
+    count: int = 0
+    reasons: list[str] = field(default_factory=list[str])
+
+    def __call__(self, where: str, _: bytes, reason: str) -> None:
+        self.count += 1
+        if len(self.reasons) < 20:
+            self.reasons.append(f"{where}: {reason}")
+
+
+def _batches(
+    source: str,
+    spool: "Spool",
+    refused: _Refused,
+    stream: str,
+    columns: str | None,
+    *,
+    follow: bool,
+    speed: float | None,
+) -> "Iterator[Batch]":
+    from seacage.conventions import InputError
+    from seacage.records import ColumnMap, FieldRecord, read_map, read_record
+    from seacage.service._publish._sources import (
+        arriving,
+        line_batches,
+        record_batches,
+        tail_batches,
+    )
+    from seacage.service._tail import Place, Tail
+
+    if source == "-":
+        return line_batches(arriving(sys.stdin.fileno()), refuse=refused)
+    path = Path(source)
+    if not path.exists() and not follow:
+        raise InputError(f"{path}: there is no such record. Name a file, a folder, or - for stdin.")
+    choice = read_map(columns) if columns else None
+    name = f"{path.resolve()} {stream}"
+    place = spool.place(name)
+    if follow:
+        if choice is not None and not isinstance(choice, ColumnMap):
+            raise InputError("publish: only tables can be followed, and this map is of NetCDF.")
+        at = Place() if place is None else Place.parse(place)
+        tail = Tail(path=path, columns=choice, stream=stream, refuse=refused, place=at)
+        return tail_batches(tail, source=name)
+    if path.is_dir():
+        field_record = FieldRecord.read(path)
+        records = [field_record.buoy, *field_record.sensors.values()]
+    else:
+        records = [read_record(path, columns=choice, stream=stream)]
+    return record_batches(records, source=name, place=place, speed=speed)
+
+
+@contextmanager
+def _spool(
+    path: Path, to: str, cage: str, site: str, most: int, when_full: str
+) -> "Generator[Spool]":
+    from seacage.service._publish._spool import Spool
+
+    place = to.rpartition("://")[2].rpartition("@")[2]  # a password may change
+    destination = f"{place}, site {site}, cage {cage}"
+    opened = Spool(path, to=destination, most=most, drop_oldest=when_full == "drop-oldest")
+    try:
+        yield opened
+    finally:
+        opened.close()
+
+
+@contextmanager
+def _courier(to: str, cage: str, site: str, token: str, ca: Path | None) -> "Generator[Courier]":
+    from seacage.service._mqtt._broker import Broker
+    from seacage.service._publish._courier import HttpCourier, MqttCourier
+    from seacage.service._publish._sender import Sender
+
+    if to.startswith(("http://", "https://")):
+        made = HttpCourier(Sender(address=to, cage=cage, token=token, patience_s=()))
+    else:
+        made = MqttCourier(Broker.parse(to, ca=ca), site=site, cage=cage)
+    try:
+        yield made
+    finally:
+        made.close()
+
+
+def _tell(done: "Published", refused: _Refused, *, as_json: bool) -> None:
+    reasons = [*refused.reasons, *done.reasons]
+    tell(
+        {
+            "read": done.read,
+            "acknowledged": done.acknowledged,
+            "rejected": done.rejected,
+            "refused": refused.count,
+            "reasons": reasons,
+            "dropped": done.dropped,
+            "spooled": done.waiting,
+            "ahead": done.ahead,
+            "quarantined": done.quarantined,
+        },
+        as_json=as_json,
+        rows=[
+            ("Read", f"{done.read} samples"),
+            ("Acknowledged", str(done.acknowledged)),
+            ("Refused", f"{done.rejected} by the service, {refused.count} before"),
+            *(("", reason) for reason in reasons[:5]),
+            ("Spooled", f"{done.waiting} wait, {done.dropped} were given up"),
+            ("Ahead", f"{done.ahead} of these wait for the service's clock"),
+            ("Set aside", str(done.quarantined)),
+        ],
+    )

@@ -1,0 +1,175 @@
+"""``seacage clearance``: how far points or a path are from the net."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from seacage.service._cli._console import Exit, Json, guarded, stopped, tell
+from seacage.service._cli._rov._options import (
+    AllowStale,
+    Below,
+    CageThere,
+    Hs,
+    MaxAge,
+    Speed,
+    To,
+    Token,
+    Towards,
+    TwinFolder,
+    WaveFrom,
+    about_rows,
+    asker_of,
+    net_of,
+)
+
+if TYPE_CHECKING:
+    from seacage.service._rov._table import Row
+    from seacage.service._schemas._clearance import (
+        ClearanceAnswer,
+        FrameName,
+        PathAnswer,
+        PointClearance,
+    )
+
+
+@guarded
+def clearance(
+    points: Annotated[
+        Path | None,
+        typer.Argument(
+            exists=True,
+            dir_okay=False,
+            help="CSV with east_m,north_m,up_m or north_m,east_m,down_m or "
+            "latitude_deg,longitude_deg,depth_m.",
+        ),
+    ] = None,
+    *,
+    point: Annotated[
+        list[str] | None, typer.Option(help='One point, "EAST,NORTH,UP" in m; may be repeated.')
+    ] = None,
+    path: Annotated[
+        bool, typer.Option("--path", help="Look at the straight lines between the points, too.")
+    ] = False,
+    below: Below = 1.0,
+    most: Annotated[
+        float | None,
+        typer.Option(min=0.0, max=1.0, help="End with 4 where the probability is higher."),
+    ] = None,
+    twin: TwinFolder = None,
+    current_speed: Speed = None,
+    current_to: Towards = None,
+    hs: Hs = 0.0,
+    wave_from: WaveFrom = 0.0,
+    to: To = None,
+    cage: CageThere = "ace",
+    token: Token = "",
+    allow_stale: AllowStale = False,
+    max_age: MaxAge = None,
+    out: Annotated[
+        Path | None, typer.Option(dir_okay=False, help="Write one line per point as CSV.")
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Say how far points or a path are from the net, and how surely.
+
+    Asks a running service about its net now, or a twin's folder about a current. Distances
+    are to the predicted net; the probability that the true one is nearer than --below takes in
+    what the twin knows of its own error. Ends with 4 where it exceeds --most: for --path that
+    of the whole path, else that of any point.
+
+    Example:
+        seacage clearance way.csv --path --most 0.05 --to http://127.0.0.1:8000 --token TOKEN
+        seacage clearance --point 20,0,-8 --twin twin --current-speed 0.4 --current-to 90
+    """
+    from seacage.conventions import InputError
+    from seacage.service._rov._clearance import clearance_answer
+    from seacage.service._rov._table import asked_of, write_clearances
+
+    frame, rows = _points(points, point or [])
+    asked = asked_of(
+        frame,
+        rows,
+        as_path=path,
+        below_m=below,
+        allow_stale=allow_stale,
+        max_age_s=max_age,
+    )
+    net = net_of(twin, to, current_speed, current_to, hs, wave_from)
+    answer = (
+        asker_of(to, cage, token).clearance(asked) if net is None else clearance_answer(net, asked)
+    )
+    if out is not None:
+        write_clearances(out, rows, answer)
+    known = [one.p_below for one in answer.points if one.p_below is not None]
+    p = answer.path.p_below if answer.path else max(known, default=None)
+    tell(answer.model_dump(mode="json"), as_json=as_json, rows=_clearance_rows(answer, out))
+    if most is not None and p is None:
+        raise InputError(
+            f"clearance: whether the net is nearer than {below:g} m cannot be held against --most "
+            f"{most:g}, for this twin's shape error is not known. Leave --most out and go by the "
+            "distance."
+        )
+    if most is not None and p is not None and p > most:
+        raise stopped(
+            f"clearance: the net is nearer than {below:g} m with probability {p:.3f}, which is "
+            f"more than {most:g}.",
+            Exit.EXCEEDED,
+        )
+
+
+def _points(path: Path | None, given: list[str]) -> "tuple[FrameName, list[Row]]":
+    from seacage.conventions import InputError
+    from seacage.service._rov._table import read_points
+
+    if (path is None) == (not given):
+        raise InputError("clearance: give a CSV file of points, or some with --point; one of them.")
+    if path is not None:
+        return read_points(path)
+    rows = list["Row"]()
+    for one in given:
+        try:
+            east, north, up = (float(part) for part in one.split(","))
+        except ValueError as error:
+            raise InputError(
+                f'clearance: --point {one!r} is not three numbers. Give "EAST,NORTH,UP" in m.'
+            ) from error
+        rows.append((east, north, up))
+    return "enu", rows
+
+
+def _clearance_rows(answer: "ClearanceAnswer", out: Path | None) -> list[tuple[str, str]]:
+    rows = [
+        (
+            f"Point {number}",
+            _point_row(one, answer.below_m),
+        )
+        for number, one in enumerate(answer.points[:20], start=1)
+    ]
+    if len(answer.points) > len(rows):
+        rows.append(("…", f"{len(answer.points) - len(rows)} more; see them all with --json"))
+    if answer.path:
+        rows.append(("Path", _path_row(answer.path, answer.below_m)))
+    return rows + about_rows(answer, out)
+
+
+def _point_row(point: "PointClearance", below_m: float) -> str:
+    said = f"{point.distance_m:.2f} m {'inside' if point.inside else 'outside'}"
+    if point.p_below is None:
+        return said
+    return (
+        f"{said}; expected {point.expected_m:.2f} m ± {point.sigma_m:.2f} m; nearer than "
+        f"{below_m:g} m with probability {point.p_below:.3f}"
+    )
+
+
+def _path_row(path: "PathAnswer", below_m: float) -> str:
+    said = (
+        f"{path.length_m:.1f} m; closest {path.closest.distance_m:.2f} m after {path.along_m:.1f} m"
+    )
+    if path.p_below is None:
+        return said
+    return (
+        f"{said}; nearer than {below_m:g} m somewhere with probability "
+        f"{path.p_below:.3f} ({path.p_least:.3f} to {path.p_most:.3f})"
+    )

@@ -1,0 +1,68 @@
+"""``seacage score``: a twin against a record that did not teach it."""
+
+from collections.abc import Iterable
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from seacage.service._cli._console import Json, guarded, tell
+
+if TYPE_CHECKING:
+    from seacage.studies import SensorScore
+
+
+@guarded
+def score(
+    *,
+    twin: Annotated[Path, typer.Option(exists=True, file_okay=False, help="Folder of the twin.")],
+    field: Annotated[
+        Path, typer.Option(exists=True, file_okay=False, help="Folder of a field record.")
+    ],
+    out: Annotated[
+        Path | None, typer.Option(file_okay=False, help="Folder for tables and figures.")
+    ] = None,
+    seed: Annotated[int, typer.Option(min=0, help="Of the bootstrap.")] = 0,
+    as_json: Json = False,
+) -> None:
+    """Score a twin on readings that did not teach it.
+
+    Mean absolute errors of simulation alone and of the twin, the gain with its 95 % interval
+    (paired block bootstrap), and how many readings the twin's own interval holds.
+
+    Example:
+        seacage score --twin twin --field field --out scores
+    """
+    from seacage.records import FieldRecord
+    from seacage.studies import score_record
+    from seacage.twin import Twin
+
+    scores = score_record(Twin.read(twin), FieldRecord.read(field), out=out, seed=seed)
+    rows = error_rows(scores)
+    tell(
+        {"sensors": error_table(scores), "written": None if out is None else str(out)},
+        as_json=as_json,
+        rows=rows if out is None else [*rows, ("Written", str(out))],
+    )
+
+
+def error_table(scores: "Iterable[SensorScore]") -> list[dict[str, object]]:
+    """One entry per sensor; the unit of its errors is in ``unit``."""
+    return [asdict(score) for score in scores]
+
+
+def error_rows(scores: "Iterable[SensorScore]") -> list[tuple[str, str]]:
+    """One line per sensor, on single readings."""
+    return [
+        (
+            score.sensor,
+            (
+                f"MAE {score.raw.low_mae:.3g} {score.unit} simulated, {score.raw.multi_mae:.3g} "
+                f"{score.unit} twin; gain {score.raw.gain:.3g} "
+                f"({score.raw.gain_low:.3g} to {score.raw.gain_high:.3g}); "
+                f"{score.raw.coverage:.0%} inside the interval ({score.origin})"
+            ),
+        )
+        for score in scores
+    ]

@@ -1,0 +1,117 @@
+"""``seacage settle``: one sea state."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import typer
+
+from seacage.service._cli._console import Exit, Json, guarded, stopped, tell
+
+if TYPE_CHECKING:
+    from seacage.cage import Cage
+    from seacage.dynamics import Response
+
+CageName = Annotated[
+    str, typer.Option("--cage", help="A cage that comes with seacage, or the path of a TOML file.")
+]
+Law = Annotated[
+    Literal["kristiansen-faltinsen", "loland", "aarsnes"],
+    typer.Option(help="How the water loads the netting."),
+]
+
+
+def read_cage(name: str) -> "Cage":
+    """A shipped cage by its name, else a file; what the cage warns of goes to stderr."""
+    from seacage.cage import Cage
+
+    cage = Cage.read(name) if name.endswith(".toml") else Cage.named(name)
+    for warning in cage.warnings:
+        typer.echo(f"seacage: warning: {warning}", err=True)
+    return cage
+
+
+@guarded
+def settle(
+    *,
+    current_speed: Annotated[float, typer.Option(help="m/s")],
+    current_to: Annotated[
+        float, typer.Option(help="Where the current goes, degrees clockwise from north.")
+    ],
+    hs: Annotated[float, typer.Option(help="Significant wave height, m.")] = 0.0,
+    tp: Annotated[float | None, typer.Option(help="Peak period, s. [default: 5 √hs]")] = None,
+    wave_from: Annotated[
+        float, typer.Option(help="Where the waves come from, degrees clockwise from north.")
+    ] = 0.0,
+    mean_waves: Annotated[
+        bool, typer.Option("--mean-waves", help="Take the waves in by their mean drag.")
+    ] = False,
+    cage: CageName = "ace",
+    law: Law = "kristiansen-faltinsen",
+    out: Annotated[
+        Path | None, typer.Option(dir_okay=False, help="Write the response as CF-NetCDF.")
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Settle one sea state: shape and loads.
+
+    The cage comes to rest in a current. An equilibrium knows no waves: with --hs say
+    --mean-waves, which takes in their mean drag.
+
+    Example: half a metre per second towards east.
+        seacage settle --current-speed 0.5 --current-to 90
+    """
+    from seacage.conventions import RESULTS, Result
+    from seacage.dynamics import settle as settled
+    from seacage.ocean import SeaState
+
+    sea = SeaState(
+        current_speed=current_speed, current_to=current_to, hs=hs, tp=tp, wave_from=wave_from
+    )
+    subject = read_cage(cage)
+    response = settled(subject, sea, law=law, mean_waves=mean_waves)
+    answer = _answer(subject, response)
+    if out is not None:
+        from seacage.service._export import write_response
+
+        write_response(out, subject, sea, law, response)
+        answer["written"] = str(out)
+    tell(answer, as_json=as_json, rows=_rows(subject, response))
+    result = Result(int(response.result))
+    if result is not Result.CONVERGED:
+        raise stopped(f"settle: {result.name.lower()}: {RESULTS[result]}.", Exit.FAILED)
+
+
+def _answer(cage: "Cage", response: "Response") -> dict[str, object]:
+    tension, force = response.bridle_tension / 1e3, response.net_force / 1e3
+    depth = -response.node_position[:, 2]
+    return {
+        "cage": cage.name,
+        "origin": "computed",
+        "warnings": list(cage.warnings),
+        "result": int(response.result),
+        "residual_n": float(response.residual),
+        "net_force_kn": force.round(3).tolist(),
+        "volume_m3": round(float(response.volume), 1),
+        "volume_fraction": round(float(response.volume_fraction), 4),
+        "bridle_tension_kn": dict(zip(cage.bridle_names, tension.round(3).tolist(), strict=True)),
+        "depth_m": {one.name: round(float(depth[one.node]), 3) for one in cage.depth_sensors},
+        "bottom_displacement_m": response.node_displacement[cage.bottom_node].round(3).tolist(),
+    }
+
+
+def _rows(cage: "Cage", response: "Response") -> list[tuple[str, str]]:
+    east, north, up = response.net_force / 1e3
+    bottom = -response.node_position[cage.bottom_node, 2]
+    lift = response.node_displacement[cage.bottom_node, 2]
+    rows = [
+        ("Load on the net", f"{east:.1f} kN east, {north:.1f} kN north, {up:.1f} kN up"),
+        ("Volume", f"{response.volume:.0f} m3, {response.volume_fraction:.1%} of still water"),
+        ("Bottom", f"{bottom:.2f} m deep, {lift:+.2f} m against still water"),
+        ("Residual", f"{response.residual:.2f} N at the worst node"),
+    ]
+    tensions = zip(cage.bridle_names, response.bridle_tension, cage.bridle_capacity, strict=True)
+    rows += [
+        (n, f"{load / 1e3:6.1f} kN, {load / most:.0%} of capacity") for n, load, most in tensions
+    ]
+    depth = -response.node_position[:, 2]
+    return rows + [(one.name, f"{depth[one.node]:6.2f} m") for one in cage.depth_sensors]

@@ -1,0 +1,265 @@
+"""``seacage simulate``: one sea state in time."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import typer
+
+from seacage.service._cli._console import Exit, Json, guarded, progress_bar, stopped, tell
+from seacage.service._cli._settle import CageName, read_cage
+
+if TYPE_CHECKING:
+    from seacage.cage import Cage
+    from seacage.dynamics import History, Statistics
+    from seacage.figures import Motion
+    from seacage.ocean import SeaState, Waves
+
+MovingLaw = Annotated[
+    Literal["kristiansen-faltinsen", "loland", "aarsnes", "morison"],
+    typer.Option(help="How the water loads the netting."),
+]
+
+_SMOOTH = 0.5
+"""Between samples that an animation can follow waves by [s]."""
+
+
+@guarded
+def simulate(
+    *,
+    current_speed: Annotated[float, typer.Option(help="m/s")],
+    current_to: Annotated[
+        float, typer.Option(help="Where the current goes, degrees clockwise from north.")
+    ],
+    hs: Annotated[float, typer.Option(help="Significant wave height, m.")] = 0.0,
+    tp: Annotated[float | None, typer.Option(help="Peak period, s. [default: 5 √hs]")] = None,
+    wave_from: Annotated[
+        float, typer.Option(help="Where the waves come from, degrees clockwise from north.")
+    ] = 0.0,
+    duration: Annotated[float, typer.Option(help="That counts, s.")] = 1800.0,
+    spin_up: Annotated[
+        float, typer.Option(help="Simulated first and thrown away, s; the waves rise in it.")
+    ] = 300.0,
+    seed: Annotated[int, typer.Option(min=0, help="Of the waves.")] = 0,
+    cage: CageName = "ace",
+    law: MovingLaw = "kristiansen-faltinsen",
+    mooring: Annotated[
+        Literal["springs", "catenary"],
+        typer.Option(help="What holds the frame: springs, or buoys and anchor lines."),
+    ] = "springs",
+    sample_every: Annotated[
+        float, typer.Option(help="Between samples of the series, s: whole tenths.")
+    ] = 0.5,
+    out: Annotated[
+        Path | None,
+        typer.Option(dir_okay=False, help="Write series and statistics as CF-NetCDF."),
+    ] = None,
+    animation: Annotated[
+        Path | None, typer.Option(dir_okay=False, help="Write the first minute as a GIF.")
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Simulate one sea state in time: shape and loads in waves.
+
+    The cage starts at rest in the current and the waves rise; after the spin-up everything
+    counts. The same seed gives the same waves.
+
+    Example: half an hour in a current towards east, with waves from west.
+        seacage simulate --current-speed 0.5 --current-to 90 --hs 2 --wave-from 270 --out sea.nc
+    """
+    from seacage.conventions import InputError
+    from seacage.dynamics import simulate as simulated
+    from seacage.ocean import SeaState, sample_waves
+
+    for path, ending in ((out, ".nc"), (animation, ".gif")):
+        _check_file(path, ending)
+    if animation is not None and sample_every > _SMOOTH:
+        raise InputError(
+            f"simulate: a sample every {sample_every:g} s is too seldom for an animation. "
+            f"Give --sample-every {_SMOOTH:g} or less."
+        )
+    subject = read_cage(cage)
+    sea = SeaState(
+        current_speed=current_speed, current_to=current_to, hs=hs, tp=tp, wave_from=wave_from
+    )
+    waves = sample_waves(sea, seed=seed, depth=subject.site.water_depth)
+    with progress_bar() as progress:
+        history = simulated(
+            subject,
+            sea,
+            duration=duration,
+            spin_up=spin_up,
+            ramp=min(60.0, spin_up),
+            law=law,
+            mooring=mooring,
+            waves=waves,
+            sample_every=sample_every,
+            progress=progress,
+        )
+    settings = {
+        "law": law,
+        "mooring": mooring,
+        "seed": seed,
+        "duration_s": duration,
+        "spin_up_s": spin_up,
+        "sample_every_s": sample_every,
+    }
+    answer = _answer(subject, history, settings)
+    if out is not None:
+        _write(out, subject, sea, history, settings)
+        answer["written"] = str(out)
+    _refuse_failure(history)
+    if animation is not None:
+        from seacage.figures import write_animation
+
+        motion = _motion(subject, sea, waves, history, spin_up)
+        with progress_bar() as progress:
+            write_animation(animation, subject, motion, progress=progress)
+        answer["animation"] = str(animation)
+    tell(answer, as_json=as_json, rows=_rows(subject, history))
+
+
+def _check_file(path: Path | None, ending: str) -> None:
+    """Refuse a file that could not be written before an hour is simulated for it."""
+    from seacage.conventions import InputError
+
+    if path is None:
+        return
+    if path.suffix != ending:
+        raise InputError(f"{path}: this file ends in {ending}. Name it {path.stem}{ending}.")
+    if not path.absolute().parent.is_dir():
+        raise InputError(f"{path}: there is no folder {path.parent}. Make it first.")
+
+
+def _refuse_failure(history: "History") -> None:
+    from seacage.conventions import RESULTS, Result
+
+    result = Result(int(history.result))
+    if result is Result.DIVERGED:
+        raise stopped(
+            f"simulate: {result.name.lower()} after {float(history.diverged_at):.1f} s: "
+            f"{RESULTS[result]}. Look at the cage's file and the sea state.",
+            Exit.FAILED,
+        )
+
+
+def _answer(
+    cage: "Cage", history: "History", settings: dict[str, str | int | float]
+) -> dict[str, object]:
+    return {
+        "cage": cage.name,
+        "origin": "computed",
+        "warnings": list(cage.warnings),
+        "result": int(history.result),
+        **settings,
+        "net_force_kn": _said(history.net_force, 1e-3),
+        "volume_m3": _said(history.volume, 1.0),
+        "volume_fraction": round(float(history.volume_fraction), 4),
+        "bridle_tension_kn": {
+            name: _said(history.bridle, 1e-3, index) for index, name in enumerate(cage.bridle_names)
+        },
+        "depth_m": {
+            one.name: _said(history.node, -1.0, (one.node, 2)) for one in cage.depth_sensors
+        },
+    }
+
+
+def _said(
+    statistics: "Statistics", scale: float, place: int | tuple[int, ...] = ()
+) -> dict[str, object]:
+    """Mean, standard deviation and range of one quantity; a negative scale swaps the ends."""
+    import numpy as np
+
+    ends = scale * np.stack([statistics.minimum[place], statistics.maximum[place]])
+    return {
+        "mean": (scale * np.asarray(statistics.mean[place])).round(3).tolist(),
+        "std": (abs(scale) * np.asarray(statistics.std[place])).round(3).tolist(),
+        "minimum": ends.min(axis=0).round(3).tolist(),
+        "maximum": ends.max(axis=0).round(3).tolist(),
+    }
+
+
+def _rows(cage: "Cage", history: "History") -> list[tuple[str, str]]:
+    east, north, up = history.net_force.mean / 1e3
+    volume, tension = history.volume, history.bridle
+    kept = f"{volume.mean:.0f} m3, {history.volume_fraction:.1%} of still water"
+    rows = [
+        ("Mean load", f"{east:.1f} kN east, {north:.1f} kN north, {up:.1f} kN up on the net"),
+        ("Volume", f"{kept}, {volume.minimum:.0f} to {volume.maximum:.0f} m3"),
+        ("", "  mean     std     least    most"),
+    ]
+    share = tension.maximum / cage.bridle_capacity
+    rows += [
+        (name, f"{_line(tension, 1e-3, index)} kN, {share[index]:.0%} of capacity at most")
+        for index, name in enumerate(cage.bridle_names)
+    ]
+    sensors = ((one.name, (one.node, 2)) for one in cage.depth_sensors)
+    return rows + [(name, f"{_line(history.node, -1.0, place)} m") for name, place in sensors]
+
+
+def _line(statistics: "Statistics", scale: float, place: int | tuple[int, ...]) -> str:
+    said = _said(statistics, scale, place)
+    least_to_most = f"{said['minimum']:7.1f} {said['maximum']:7.1f}"
+    return f"{said['mean']:6.1f} ± {said['std']:5.2f}  {least_to_most}"
+
+
+def _write(
+    path: Path,
+    cage: "Cage",
+    sea: "SeaState",
+    history: "History",
+    settings: dict[str, str | int | float],
+) -> None:
+    from importlib.metadata import version
+
+    import numpy as np
+
+    from seacage.records import STATISTICS, HistoryRecord, write_history
+
+    quantities = {
+        "node_position": history.node,
+        "bridle_tension": history.bridle,
+        "net_force": history.net_force,
+        "volume": history.volume,
+    }
+    record = HistoryRecord(
+        cage_name=cage.name,
+        cage_toml=cage.to_toml(),
+        bridle_names=cage.bridle_names,
+        sea=sea,
+        time=history.time,
+        kept_node=history.nodes,
+        node_position=history.node_position,
+        bridle_tension=history.bridle_tension,
+        surface_elevation=history.surface_elevation,
+        statistics={
+            f"{name}_{kind}": np.asarray(getattr(quantity, kind))
+            for name, quantity in quantities.items()
+            for kind in STATISTICS
+        },
+        quantile_level=history.quantile_levels,
+        node_displacement=history.node_displacement,
+        volume_fraction=float(history.volume_fraction),
+        result=int(history.result),
+        diverged_at=float(history.diverged_at),
+        settings=settings | ({"comment": " ".join(cage.warnings)} if cage.warnings else {}),
+        version=version("seacage"),
+    )
+    write_history(record, path)
+
+
+def _motion(
+    cage: "Cage", sea: "SeaState", waves: "Waves", history: "History", spin_up: float
+) -> "Motion":
+    """The first minute that counts."""
+    from seacage.dynamics import rest_shape
+    from seacage.figures import Motion
+
+    first = history.time < 60.0
+    return Motion(
+        time=spin_up + history.time[first],
+        node_position=history.node_position[first],
+        bridle_tension=history.bridle_tension[first],
+        rest_position=rest_shape(cage),
+        sea=sea,
+        waves=waves,
+    )

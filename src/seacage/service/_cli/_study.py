@@ -1,0 +1,275 @@
+"""``seacage study``: whole experiments."""
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from seacage.service._cli._console import Json, guarded, progress_bar, tell
+from seacage.service._cli._score import error_rows, error_table
+
+if TYPE_CHECKING:
+    from seacage.studies import ShapeScore
+
+group = typer.Typer(help="Whole experiments, from simulations to one HTML report.")
+
+
+@group.command()
+@guarded
+def paper(
+    *,
+    out: Annotated[Path, typer.Option(file_okay=False, help="Folder of the report.")] = Path(
+        "study"
+    ),
+    quick: Annotated[
+        bool,
+        typer.Option(
+            "--quick/--full",
+            help="400 equilibria without waves, or the paper's 1,000 half-hours and a field in "
+            "time.",
+        ),
+    ] = True,
+    campaign: Annotated[
+        Path | None,
+        typer.Option(exists=True, help="A finished campaign to take; its last 100 cases judge."),
+    ] = None,
+    field: Annotated[
+        Path | None,
+        typer.Option(
+            exists=True,
+            file_okay=False,
+            help="A folder of `seacage field virtual` to take, truth included.",
+        ),
+    ] = None,
+    days: Annotated[
+        float, typer.Option(min=4.0, max=400.0, help="Of a field made with --full.")
+    ] = 48.0,
+    one_in: Annotated[
+        int,
+        typer.Option(
+            min=1, help="With --full: simulate one hour in so many, and those of the shackles."
+        ),
+    ] = 1,
+    networks: Annotated[
+        bool | None,
+        typer.Option(help="Train graph networks too (JAX). [default: with --full]"),
+    ] = None,
+    seed: Annotated[int, typer.Option(min=0, help="Of everything that is drawn.")] = 0,
+    workers: Annotated[
+        int | None, typer.Option(min=1, help="Processes. [default: one per core]")
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Repeat the paper's study with a virtual field.
+
+    It ends in one HTML report: the paper's figures of loads, depths and shapes on days and
+    simulations that did not teach, what else may teach and be heard, and which of the paper's
+    statements these numbers repeat. Stopped, the same command goes on where it was.
+
+    Example:
+        seacage study paper --quick --out study
+        seacage study paper --full --campaign campaign.zarr --field field --out study
+    """
+    from seacage.studies import paper_study
+
+    with progress_bar() as progress:
+        study = paper_study(
+            out,
+            quick=quick,
+            campaign=campaign,
+            field=field,
+            days=days,
+            one_in=one_in,
+            networks=networks,
+            seed=seed,
+            workers=workers,
+            progress=progress,
+        )
+    tell(
+        {
+            "report": str(study.report),
+            "scores": str(study.scores),
+            "origin": "virtual field",
+            "sensors": error_table(study.sensors),
+            "shapes": [_shape_entry(one) for one in study.shapes],
+            "claims": [asdict(claim) for claim in study.claims],
+        },
+        as_json=as_json,
+        rows=[
+            *error_rows(study.sensors),
+            *((one.model, _shape_line(one)) for one in study.shapes),
+            *((claim.verdict, claim.claim) for claim in study.claims),
+            ("Report", f"{study.report} (virtual field)"),
+        ],
+    )
+
+
+def _shape_entry(score: "ShapeScore") -> dict[str, object]:
+    return {
+        "model": score.model,
+        "inputs": score.inputs,
+        "mae_m": score.axis_mae,
+        "p99_m": score.p99,
+        "worst_node_m": score.worst,
+        "coverage": score.coverage,
+        "crps_m": score.crps,
+        "fit_cpu_s": score.fit_cpu_s,
+        "predict_ms": score.predict_ms,
+    }
+
+
+def _shape_line(score: "ShapeScore") -> str:
+    return (
+        f"MAE {score.mae:.3g} m, 99 % of nodes within {score.p99:.3g} m, worst "
+        f"{score.worst:.3g} m; hears {score.inputs} (computed)"
+    )
+
+
+@group.command()
+@guarded
+def fidelity(
+    *,
+    out: Annotated[Path, typer.Option(file_okay=False, help="Folder of the report.")] = Path(
+        "fidelity"
+    ),
+    field: Annotated[
+        Path | None,
+        typer.Option(
+            exists=True,
+            file_okay=False,
+            help="A folder of `seacage field virtual`, truth included; else one is made.",
+        ),
+    ] = None,
+    hidden: Annotated[
+        Path | None,
+        typer.Option(
+            exists=True, dir_okay=False, help="What the field was made with; else as shipped."
+        ),
+    ] = None,
+    cage: Annotated[
+        str | None, typer.Option(help="The cage drawn; else the shipped one of the field's name.")
+    ] = None,
+    windows: Annotated[
+        int, typer.Option(min=1, help="10-minute windows that survey the days, about.")
+    ] = 600,
+    seed: Annotated[int, typer.Option(min=0, help="Of everything that is drawn.")] = 0,
+    workers: Annotated[
+        int | None, typer.Option(min=1, help="Processes. [default: one per core]")
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Hold a virtual field against the rules that keep it honest.
+
+    It ends in one HTML report: low fidelity against the truth per sensor and direction, what its
+    best rescaling leaves, that multifidelity gains nothing where there is nothing to gain, and
+    the gap as the net grows. Each claim says whether it holds. Stopped, the same command goes on
+    where it was.
+
+    Example:
+        seacage study fidelity --field field --out fidelity
+    """
+    from seacage.campaigns import Hidden
+    from seacage.service._cli._settle import read_cage
+    from seacage.studies import fidelity_study
+
+    with progress_bar() as progress:
+        study = fidelity_study(
+            out,
+            field=field,
+            cage=None if cage is None else read_cage(cage),
+            hidden=Hidden.read(hidden),
+            windows=windows,
+            seed=seed,
+            workers=workers,
+            progress=progress,
+        )
+    tell(
+        {
+            "report": str(study.report),
+            "scores": str(study.scores),
+            "origin": "virtual field",
+            "claims": [asdict(claim) for claim in study.claims],
+        },
+        as_json=as_json,
+        rows=[
+            *((claim.verdict, f"{claim.claim} {claim.finding}") for claim in study.claims),
+            ("Report", f"{study.report} (virtual field)"),
+        ],
+    )
+
+
+@group.command()
+@guarded
+def benchmarks(
+    *,
+    out: Annotated[Path, typer.Option(file_okay=False, help="Folder of the report.")] = Path(
+        "benchmarks-report"
+    ),
+    peers: Annotated[
+        Path | None,
+        typer.Option(
+            exists=True,
+            file_okay=False,
+            help="The environment of `make bench-peers`; else ours alone.",
+        ),
+    ] = None,
+    seeds: Annotated[
+        str, typer.Option(help="First and last seed; those below 5 tune and decide nothing.")
+    ] = "0-9",
+    quick: Annotated[
+        bool, typer.Option("--quick/--full", help="Two seeds of each kind, no cage-size problem.")
+    ] = False,
+    fresh: Annotated[
+        bool, typer.Option("--fresh", help="Time the cage-size problem again, all in one run.")
+    ] = False,
+    kept: Annotated[
+        bool, typer.Option("--kept", help="Run nothing; write the page from what is there.")
+    ] = False,
+    as_json: Json = False,
+) -> None:
+    """Compare our learners with other people's on published problems.
+
+    It ends in one HTML report: errors, spreads and cost of each method on each problem, and for
+    each promise whether it holds. Stopped, the same command goes on where it was.
+
+    Example:
+        seacage study benchmarks --peers .venv-peers --out benchmarks-report
+    """
+    from dataclasses import asdict
+
+    from seacage.studies import benchmark_study
+
+    with progress_bar() as progress:
+        study = benchmark_study(
+            out,
+            peers=peers,
+            seeds=_seeds(seeds),
+            quick=quick,
+            fresh=fresh,
+            kept=kept,
+            progress=progress,
+        )
+    tell(
+        {
+            "report": str(study.report),
+            "scores": str(study.scores),
+            "origin": "computed",
+            "verdicts": [asdict(one) for one in study.verdicts],
+        },
+        as_json=as_json,
+        rows=[
+            *((one.word, f"{one.claim} {one.finding}") for one in study.verdicts),
+            ("Report", str(study.report)),
+        ],
+    )
+
+
+def _seeds(written: str) -> range:
+    """The seeds of ``5``, or of ``0-9``."""
+    first, dash, last = written.partition("-")
+    if not first.isdecimal() or (dash and not last.isdecimal()):
+        from seacage.conventions import InputError
+
+        raise InputError(f"--seeds {written} is not a range of seeds. Write 0-9, or a single one.")
+    return range(int(first), int(last or first) + 1)

@@ -1,1 +1,0 @@
-"""The commands of the shell, one group per file."""

@@ -1,0 +1,1 @@
+"""The HTTP interface: every call, from the request to the answer."""

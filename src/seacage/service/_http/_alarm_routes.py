@@ -1,0 +1,84 @@
+"""The calls about alarms: how they stand, what people do with them, and what happened."""
+
+from datetime import timedelta
+from typing import Annotated, Literal
+
+from fastapi import APIRouter, HTTPException, Path
+
+from seacage.service._auth._guard import Who
+from seacage.service._http._dependencies import (
+    READ,
+    WRITE,
+    From,
+    Limit,
+    Live,
+    To,
+    may_acknowledge,
+    may_read,
+)
+from seacage.service._schemas._alarms import (
+    Alarms,
+    AlarmState,
+    Handling,
+    Journal,
+    Kpi,
+    alarm_state,
+    journal_line,
+    kpi_of,
+)
+from seacage.twin import alarm_kpi
+
+_WATCH = timedelta(days=7)
+_LINES = 10_000  # of the journal, counted back from the end of the span
+
+alarms = APIRouter(prefix="/api/v1/cages/{cage}", tags=["alarms"])
+
+How = Literal["acknowledge", "comment", "shelve", "unshelve", "out-of-service", "in-service"]
+
+Id = Annotated[
+    str,
+    Path(
+        max_length=130,
+        pattern=r"^[a-z]+\.[A-Za-z0-9][A-Za-z0-9_.\-]*$",
+        description="Kind and source.",
+        examples=["load.bridle-3"],
+    ),
+]
+
+
+@alarms.get("/alarms", dependencies=may_read, responses=READ)
+def get_alarms(live: Live) -> Alarms:
+    """Say how every alarm stands, those that wait for somebody first, the worst of them on top."""
+    desk = live.desk
+    states = [alarm_state(alarm, desk.policy) for alarm in desk.alarms.values()]
+    states.sort(key=lambda one: (one.acknowledged and not one.active, -one.severity, one.id))
+    return Alarms(alarms=states)
+
+
+@alarms.post("/alarms/{id}/{how}", dependencies=may_acknowledge, responses=WRITE)
+async def handle_alarm(live: Live, id: Id, how: How, body: Handling, who: Who) -> AlarmState:  # noqa: A002
+    """Acknowledge, comment, shelve, or take out of service; the journal says who, when and why.
+
+    The answer comes when it is on disk. Shelving and service need a reason; what makes no sense
+    as the alarm stands is refused with 422.
+    """
+    if id not in live.desk.alarms:
+        raise HTTPException(404, f"No alarm is called {id!r} here, or it was never judged.")
+    alarm = await live.handle(id, how, who=who, why=body.why, seconds=body.seconds)
+    return alarm_state(alarm, live.desk.policy)
+
+
+@alarms.get("/journal", dependencies=may_read, responses=READ)
+def get_journal(live: Live, start: From = None, end: To = None, limit: Limit = 1000) -> Journal:
+    """Give the last lines of a span, in time order: what happened to which alarm, and who did."""
+    lines = live.store.journal(live.name, start=start, end=end, limit=limit, newest=True)
+    return Journal(lines=[journal_line(line) for line in lines])
+
+
+@alarms.get("/kpi", dependencies=may_read, responses=READ)
+def get_kpi(live: Live, start: From = None, end: To = None) -> Kpi:
+    """Count how well the alarms serve their watch, over the last week if no span is given."""
+    until = end or live.clock.now() + timedelta(microseconds=1)  # what happens now counts
+    since = start or until - _WATCH
+    lines = live.store.journal(live.name, end=until, limit=_LINES, newest=True)
+    return kpi_of(alarm_kpi(lines, start=since, end=until))

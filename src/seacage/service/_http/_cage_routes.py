@@ -1,0 +1,236 @@
+"""The calls of the HTTP interface: the service itself, its cages, their samples and answers."""
+
+from collections.abc import Iterator, Sequence
+
+from fastapi import APIRouter, Depends, Request, Response
+from fastapi.responses import JSONResponse, StreamingResponse
+
+from seacage.records import Sample
+from seacage.service._auth._guard import Permit
+from seacage.service._http._dependencies import (
+    READ,
+    REFUSED,
+    WRITE,
+    At,
+    From,
+    Key,
+    Limit,
+    Live,
+    OneStream,
+    Responses,
+    Stream,
+    To,
+    Width,
+    cages_of,
+    may_ingest,
+    may_read,
+    may_read_rows,
+)
+from seacage.service._http._history import history_between
+from seacage.service._live._answers import sample_of, shape_of, summary_of
+from seacage.service._live._frame import MEDIA_TYPE, Flags, frame_of
+from seacage.service._live._past import state_at
+from seacage.service._schemas._cages import (
+    AggregateOut,
+    AggregatesOut,
+    Cages,
+    Health,
+    History,
+    Receipt,
+    SamplesIn,
+    SamplesOut,
+    Shape,
+    State,
+    Topology,
+)
+from seacage.service._schemas._samples import read_samples, time_of
+
+_TOGETHER = 500  # samples that are written at once
+_HEALTH = {**REFUSED, 503: {"model": Health, "description": "The service cannot do its work."}}
+FRAME: Responses = {
+    200: {
+        "content": {MEDIA_TYPE: {"schema": {"type": "string", "format": "binary"}}},
+        "description": "The page's binary message.",
+    }
+}
+"""How a call documents a frame."""
+
+around = APIRouter(dependencies=[Depends(Permit("read", open_to_loopback=True))], tags=["service"])
+cages = APIRouter(prefix="/api/v1/cages", tags=["cages"])
+
+
+@around.get("/healthz", responses=REFUSED)
+async def healthz() -> Health:
+    """Say that the service lives."""
+    return Health(status="alive")
+
+
+@around.get("/readyz", response_model=Health, responses=_HEALTH)
+async def readyz(request: Request) -> Response:
+    """Say whether samples are taken and every cage is being stepped."""
+    service = request.app.state.service
+    trouble = service.trouble()
+    if trouble and len(cages_of(request)) < len(service.cages):
+        trouble = "not ready"  # why, may be another cage's affair
+    health = Health(status=trouble or "ready")
+    return JSONResponse(health.model_dump(), status_code=503 if trouble else 200)
+
+
+@around.get(
+    "/metrics",
+    response_class=Response,
+    responses={**REFUSED, 200: {"content": {"text/plain": {}}, "description": "For Prometheus."}},
+)
+async def metrics(request: Request) -> Response:
+    """Tell Prometheus what happened."""
+    service, cages = request.app.state.service, cages_of(request)
+    text = service.metrics.text(None if len(cages) == len(service.cages) else cages)
+    return Response(text, media_type="text/plain; version=0.0.4; charset=utf-8")
+
+
+@around.get("/openapi.json", include_in_schema=False)
+async def openapi(request: Request) -> JSONResponse:
+    """Describe the interface."""
+    return JSONResponse(request.app.openapi())
+
+
+@cages.get("", dependencies=may_read, responses=REFUSED)
+async def list_cages(request: Request) -> Cages:
+    """List the cages: whether each answers, its worst load and its worst alarm."""
+    live = cages_of(request)
+    return Cages(cages=[summary_of(name, one.snapshot.state) for name, one in live.items()])
+
+
+@cages.post("/{cage}/samples", status_code=201, dependencies=may_ingest, responses=WRITE)
+async def post_samples(request: Request, body: SamplesIn, live: Live) -> Receipt:
+    """Take samples in any order; 201 says that those accepted are on disk.
+
+    A sample is known by (stream, t, seq): sent again it counts as a duplicate and changes
+    nothing. Of those rejected, the ones with ``retry`` are ahead of the service's clock: send
+    them again once their time has come.
+    """
+    samples, rejected = read_samples(body.samples, live.streams, until=live.latest_allowed)
+    for ahead in (body.samples[one.index] for one in rejected if one.retry):
+        live.refuse_ahead(ahead.stream, time_of(ahead))
+    new = await live.take(samples)
+    receipt = Receipt(accepted=sum(new), duplicates=len(new) - sum(new), rejected=rejected)
+    _counted(request, live.name, receipt)
+    return receipt
+
+
+@cages.get("/{cage}/samples", dependencies=may_read_rows, responses=READ, response_model=SamplesOut)
+def get_samples(
+    live: Live, stream: Stream = None, start: From = None, end: To = None, limit: Limit = 1000
+) -> StreamingResponse:
+    """Give back stored samples in time order, the first ones of the span."""
+    samples = live.store.samples(live.name, stream=stream, start=start, end=end, limit=limit)
+    return StreamingResponse(_samples_text(samples), media_type="application/json")
+
+
+@cages.get("/{cage}/latest", dependencies=may_read, responses=READ)
+def get_latest(live: Live, at: At = None) -> SamplesOut:
+    """Give back the newest sample of every stream, in one call."""
+    latest = live.store.latest(live.name, at=at)
+    return SamplesOut(samples=[sample_of(latest[stream]) for stream in sorted(latest)])
+
+
+@cages.get("/{cage}/aggregates", dependencies=may_read, responses=READ)
+def get_aggregates(
+    live: Live,
+    stream: OneStream,
+    key: Key,
+    width_s: Width = 600,
+    start: From = None,
+    end: To = None,
+    limit: Limit = 1000,
+) -> AggregatesOut:
+    """Say what the usable readings of each minute, or of ten, were: count, mean, least and most.
+
+    A direction has no mean; ask for ``current_east_m_s`` and ``current_north_m_s`` instead.
+    """
+    found = live.store.aggregates(
+        live.name, stream=stream, key=key, width_s=width_s, start=start, end=end, limit=limit
+    )
+    return AggregatesOut(
+        stream=stream,
+        key=key,
+        width_s=width_s,
+        aggregates=[
+            AggregateOut(t=one.t, count=one.count, mean=one.mean, least=one.least, most=one.most)
+            for one in found
+        ],
+    )
+
+
+@cages.get("/{cage}/state", dependencies=may_read, responses=READ)
+def get_state(live: Live, at: At = None) -> State:
+    """Say what the cage does: loads, sensors, volume, each with its level and 95 % interval."""
+    if at is None:
+        return live.snapshot.state
+    memory, answered = state_at(live.twin, live.store, live.name, at)
+    return live.state_of(answered, memory)
+
+
+@cages.get("/{cage}/shape", dependencies=may_read, responses=READ)
+def get_shape(live: Live, at: At = None) -> Shape:
+    """Say where the net is, node by node, and how surely."""
+    if at is None:
+        return shape_of(live.snapshot.answered)
+    return shape_of(state_at(live.twin, live.store, live.name, at)[1])
+
+
+@cages.get(
+    "/{cage}/frame", dependencies=may_read, response_class=Response, responses={**READ, **FRAME}
+)
+def get_frame(live: Live, at: At = None) -> Response:
+    """Give the page's binary message of now or of the past; ``docs/service.md`` has its layout."""
+    if at is None:
+        return Response(live.snapshot.frame, media_type=MEDIA_TYPE)
+    memory, answered = state_at(live.twin, live.store, live.name, at)
+    state = live.state_of(answered, memory)
+    frame = frame_of(state, answered, live.rest_position, about=Flags.PAST)
+    return Response(frame, media_type=MEDIA_TYPE)
+
+
+@cages.get("/{cage}/topology", dependencies=may_read, responses=READ)
+def get_topology(live: Live) -> Topology:
+    """Say what of the cage does not change."""
+    return live.topology
+
+
+@cages.get("/{cage}/history", dependencies=may_read_rows, responses=READ, response_model=History)
+def get_history(
+    live: Live, start: From = None, end: To = None, limit: Limit = 1000
+) -> StreamingResponse:
+    """Answer to the buoy's readings in a span, and show what the sensors read.
+
+    Where the buoy read more often than ``limit``, ``thinned`` is true, and the answers are spread
+    over the span: its first and last, and the calmest and fastest water of equal parts between.
+    A sensor that read more often is told by means of one or ten minutes. Intervals are as
+    trained.
+    """
+    history = history_between(live.twin, live.store, live.name, start=start, end=end, limit=limit)
+    return StreamingResponse(_history_text(history), media_type="application/json")
+
+
+def _samples_text(samples: Sequence[Sample]) -> Iterator[str]:
+    """Write samples as JSON, some hundred at a time."""
+    yield '{"samples":['
+    for first in range(0, len(samples), _TOGETHER):
+        some = samples[first : first + _TOGETHER]
+        yield "," * (first > 0) + ",".join(sample_of(one).model_dump_json() for one in some)
+    yield "]}"
+
+
+def _history_text(history: History) -> Iterator[str]:
+    """Write a history as JSON, one of its parts at a time."""
+    for count, name in enumerate(History.model_fields):
+        yield "{,"[count > 0] + history.model_dump_json(include={name})[1:-1]
+    yield "}"
+
+
+def _counted(request: Request, cage: str, receipt: Receipt) -> None:
+    samples = request.app.state.service.metrics.samples
+    samples.labels(cage, "accepted").inc(receipt.accepted)
+    samples.labels(cage, "duplicate").inc(receipt.duplicates)
+    samples.labels(cage, "rejected").inc(len(receipt.rejected))

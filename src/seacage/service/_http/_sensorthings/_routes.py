@@ -1,0 +1,362 @@
+"""What was measured, as OGC SensorThings: read only, and without what it does not do."""
+
+from collections.abc import Callable
+from datetime import datetime
+from typing import Annotated, Any
+from urllib.parse import quote, urlencode
+
+from fastapi import APIRouter, Depends, Path, Query, Request
+from pydantic import BaseModel, Field
+
+from seacage.conventions import InputError
+from seacage.records import Sample
+from seacage.service._http._dependencies import READ, REFUSED, cages_of, may_read
+from seacage.service._http._sensorthings._entities import (
+    OBSERVATIONS,
+    OBSERVED,
+    RELATIONS,
+    ROOT,
+    SETS,
+    Catalogue,
+    Entity,
+    observed,
+)
+from seacage.service._http._sensorthings._query import (
+    FARTHEST,
+    MOST,
+    Asked,
+    Span,
+    asked,
+    from_or_until,
+    written,
+)
+
+_AT_ONCE = 30_000
+"""Entities told and samples looked at, in one answer: expansions multiply."""
+
+_TIMES = ("phenomenonTime", "resultTime")
+_CONFORMS = "http://www.opengis.net/spec/iot_sensing/1.1/req/"
+_KEPT = ("datamodel", *(f"request-data/{one}" for one in ("select", "expand", "top", "skip")))
+
+_PLAIN = ":/'()@"  # of a path: what it may hold as it is
+
+things = APIRouter(prefix=ROOT, tags=["SensorThings"], dependencies=may_read)
+
+Top = Annotated[int, Query(alias="$top", ge=1, le=MOST, description="At most so many.")]
+Skip = Annotated[int, Query(alias="$skip", ge=0, le=FARTHEST, description="Leave out the first.")]
+Count = Annotated[bool, Query(alias="$count", description="Say how many there are in all.")]
+Select = Annotated[
+    str | None,
+    Query(alias="$select", max_length=300, description="Only these.", examples=["name,id"]),
+]
+Expand = Annotated[
+    str | None,
+    Query(
+        alias="$expand",
+        max_length=500,
+        description="Tell relations in full, each with options of its own in brackets.",
+        examples=["Datastreams($expand=Observations($top=1;$orderby=phenomenonTime desc))"],
+    ),
+]
+Order = Annotated[
+    str | None,
+    Query(
+        alias="$orderby",
+        max_length=60,
+        description="One property, asc or desc; of Observations their time.",
+        examples=["name desc"],
+    ),
+]
+Filter = Annotated[
+    str | None,
+    Query(
+        alias="$filter",
+        max_length=300,
+        description="Of Observations alone: by phenomenonTime or resultTime, terms joined by and.",
+        examples=["resultTime ge 2018-01-26T00:00:00Z and resultTime lt 2018-01-27T00:00:00Z"],
+    ),
+]
+Id = Annotated[str, Path(max_length=200, examples=["ace:buoy-1:current_speed_m_s"])]
+
+
+class Entities(BaseModel):
+    """A set of entities, as SensorThings says it; the links and the count where they belong."""
+
+    value: list[Entity]
+    count: int = Field(default=0, alias="@iot.count")
+    next_link: str = Field(default="", alias="@iot.nextLink")
+
+
+class Root(BaseModel):
+    """The sets there are, and what of the standard is kept."""
+
+    value: list[dict[str, str]]
+    serverSettings: dict[str, Any]  # noqa: N815 (the standard's word)
+
+
+def _all_options(
+    request: Request,
+    top: Top = 100,
+    skip: Skip = 0,
+    count: Count = False,  # noqa: FBT002
+    select: Select = None,
+    expand: Expand = None,
+    order: Order = None,
+    within: Filter = None,
+) -> Asked:
+    texts = {"$top": str(top), "$skip": str(skip), "$count": str(count).lower()}
+    return _asked(request, texts, select=select, expand=expand, orderby=order, filter=within)
+
+
+def _options_of_one(request: Request, select: Select = None, expand: Expand = None) -> Asked:
+    return _asked(request, {}, select=select, expand=expand)
+
+
+def _asked(request: Request, texts: dict[str, str], **others: str | None) -> Asked:
+    texts |= {f"${name}": text for name, text in others.items() if text is not None}
+    foreign = [name for name in request.query_params if name.startswith("$") and name not in texts]
+    if foreign:
+        raise InputError(f"{foreign[0]} is not offered here.")
+    return asked(texts)
+
+
+Listing = Annotated[Asked, Depends(_all_options)]
+Telling = Annotated[Asked, Depends(_options_of_one)]
+
+
+class _Answer:
+    """Tells entities as they were asked for.
+
+    Parameters
+    ----------
+    catalogue
+        That they are of.
+    """
+
+    def __init__(self, catalogue: Catalogue) -> None:
+        self._catalogue = catalogue
+        self._left = _AT_ONCE
+
+    def page(self, of: str, found: list[Entity], asked: Asked, address: str) -> Entity:
+        """Tell some of the entities that were found, and where the rest is."""
+        if asked.within is not None:
+            raise InputError("$filter: only Observations can be filtered, by their time.")
+        ordered = _ordered(of, found, asked)
+        rest = asked.skip + asked.top
+        said: Entity = {"value": [self.one(of, one, asked) for one in ordered[asked.skip : rest]]}
+        if asked.count:
+            said["@iot.count"] = len(found)
+        if rest < len(found):
+            said["@iot.nextLink"] = _address(address, {**asked.texts, "$skip": str(rest)})
+        return said
+
+    def one(self, of: str, entity: Entity, asked: Asked) -> Entity:
+        """Tell an entity with what is selected of it and what it is expanded by."""
+        self._spend(1)
+        said = _selected(of, entity, asked)
+        for name, inner in asked.expand.items():
+            told = self._expanded(of, entity, name, inner)
+            said.pop(f"{name}@iot.navigationLink", None)
+            said |= told
+        return said
+
+    def observations(self, datastream: str, asked: Asked, address: str) -> Entity:
+        """Tell readings of a Datastream's quantity in the order of their times."""
+        if asked.expand:
+            raise InputError("$expand: Observations lead to nothing more.")
+        _selected(OBSERVATIONS, dict.fromkeys(OBSERVED), asked)  # refused where there are none too
+        newest = _newest_first(asked)
+        span, reach = asked.within or (None, None), asked.skip + asked.top
+        read = self._samples(datastream, span, limit=reach + 1, newest=newest)
+        told = self._observed(datastream, read[asked.skip : reach])
+        said: Entity = {"value": [_selected(OBSERVATIONS, one, asked) for one in told]}
+        if asked.count:
+            said["@iot.count"] = self._count(datastream, span)
+        if len(read) > reach:
+            said["@iot.nextLink"] = _address(address, _onward(asked, read[:reach], newest=newest))
+        return said
+
+    def _expanded(self, of: str, entity: Entity, name: str, asked: Asked) -> Entity:
+        id, address = entity["@iot.id"], f"{entity['@iot.selfLink']}/{name}"  # noqa: A001
+        if (of, name) == ("Datastreams", OBSERVATIONS):
+            page = self.observations(id, asked, address)
+        elif name not in RELATIONS[of]:
+            raise InputError(f"$expand: {of} lead to no {name!r}. {_there(of)}")
+        else:
+            relation = RELATIONS[of][name]
+            found = self._catalogue.related(of, id, name)
+            if not relation.many:
+                return {name: self.one(relation.to, found[0], asked)}
+            page = self.page(relation.to, found, asked, address)
+        value = page.pop("value")
+        return {name: value} | {f"{name}{key}": one for key, one in page.items()}
+
+    def _count(self, datastream: str, span: Span) -> int:
+        read = self._samples(datastream, span, limit=FARTHEST + 1, newest=False)
+        if len(read) > FARTHEST:
+            raise InputError(
+                f"$count: there are more than {FARTHEST} samples. Name a shorter time by $filter."
+            )
+        return len(self._observed(datastream, read))
+
+    def _samples(self, datastream: str, span: Span, *, limit: int, newest: bool) -> list[Sample]:
+        """Read a stream's samples in the order that is asked for."""
+        cage, stream, _ = datastream.split(":")
+        read = self._catalogue.cages[cage].store.samples(
+            cage, stream=stream, start=span[0], end=span[1], limit=limit, newest=newest
+        )
+        self._spend(len(read))
+        return read[::-1] if newest else read
+
+    def _spend(self, parts: int) -> None:
+        self._left -= parts
+        if self._left < 0:
+            raise InputError(
+                f"One question may look at {_AT_ONCE} entities and samples. Give a smaller $top "
+                "or $skip, or expand less."
+            )
+
+    def _observed(self, datastream: str, samples: list[Sample]) -> list[Entity]:
+        key = datastream.rpartition(":")[2]
+        return [observed(datastream, one) for one in samples if key in one.values]
+
+
+@things.get("", responses=REFUSED)
+async def get_root() -> Root:
+    """Name the sets, and what of the standard is kept: its data, to be read.
+
+    Observations are found by their Datastream alone, are filtered and ordered by their time, and
+    have no FeatureOfInterest. There is no writing.
+    """
+    return Root(
+        value=[{"name": name, "url": f"{ROOT}/{name}"} for name in SETS],
+        serverSettings={"conformance": [f"{_CONFORMS}{one}" for one in _KEPT]},
+    )
+
+
+def _listed(name: str) -> Callable[..., Entity]:
+    def listed(request: Request, options: Listing) -> Entity:
+        catalogue = _catalogue(request)
+        address = f"{catalogue.address}{ROOT}/{name}"
+        return _Answer(catalogue).page(name, catalogue.all(name), options, address)
+
+    listed.__doc__ = f"List the {name} of all cages that the token may read."
+    return listed
+
+
+def _single(name: str) -> Callable[..., Entity]:
+    def single(request: Request, id: Id, options: Telling) -> Entity:  # noqa: A002
+        catalogue = _catalogue(request)
+        return _Answer(catalogue).one(name, catalogue.one(name, id), options)
+
+    single.__doc__ = f"Say one of the {name}."
+    return single
+
+
+def _leading(name: str, relation: str) -> Callable[..., Entity]:
+    to = RELATIONS[name][relation]
+
+    def many(request: Request, id: Id, options: Listing) -> Entity:  # noqa: A002
+        catalogue = _catalogue(request)
+        address = f"{catalogue.one(name, id)['@iot.selfLink']}/{relation}"
+        found = catalogue.related(name, id, relation)
+        return _Answer(catalogue).page(to.to, found, options, address)
+
+    def single(request: Request, id: Id, options: Telling) -> Entity:  # noqa: A002
+        catalogue = _catalogue(request)
+        catalogue.one(name, id)
+        found = catalogue.related(name, id, relation)
+        return _Answer(catalogue).one(to.to, found[0], options)
+
+    leading = many if to.many else single
+    leading.__doc__ = f"Say what one of the {name} leads to as its {relation}."
+    return leading
+
+
+_PAGED: dict[str, Any] = {"response_model": Entities, "response_model_exclude_unset": True}
+
+for _name in SETS:
+    things.get(f"/{_name}", responses=REFUSED, operation_id=f"sta_{_name}", **_PAGED)(
+        _listed(_name)
+    )
+    things.get(f"/{_name}('{{id}}')", responses=READ, operation_id=f"sta_one_of_{_name}")(
+        _single(_name)
+    )
+    for _relation, _to in RELATIONS[_name].items():
+        things.get(
+            f"/{_name}('{{id}}')/{_relation}",
+            responses=READ,
+            operation_id=f"sta_{_relation}_of_{_name}",
+            **(_PAGED if _to.many else {}),
+        )(_leading(_name, _relation))
+
+
+@things.get("/Datastreams('{id}')/Observations", responses=READ, **_PAGED)
+def get_observations(request: Request, id: Id, options: Listing) -> Entity:  # noqa: A002
+    """Give stored readings of one quantity, raw, with their flags; null where there was none.
+
+    ``$skip`` and ``$top`` count the stream's samples, of which some may lack the quantity.
+    """
+    catalogue = _catalogue(request)
+    address = f"{catalogue.one('Datastreams', id)['@iot.selfLink']}/{OBSERVATIONS}"
+    return _Answer(catalogue).observations(id, options, address)
+
+
+def _catalogue(request: Request) -> Catalogue:
+    """What the token may read; the guard knew it a moment ago."""
+    return Catalogue(cages=cages_of(request), address=str(request.base_url).rstrip("/"))
+
+
+def _ordered(of: str, found: list[Entity], asked: Asked) -> list[Entity]:
+    if asked.order is None:
+        return found
+    name, descending = asked.order
+    key = _property(name)
+    if any(not isinstance(one.get(key), str) for one in found):
+        raise InputError(f"$orderby: {of} are ordered by a property that is text, not {name!r}.")
+    return sorted(found, key=lambda one: one[key], reverse=descending)
+
+
+def _newest_first(asked: Asked) -> bool:
+    name, descending = asked.order or (_TIMES[0], False)
+    if name not in _TIMES:
+        raise InputError(f"$orderby: Observations are ordered by {' or '.join(_TIMES)}.")
+    return descending
+
+
+def _selected(of: str, entity: Entity, asked: Asked) -> Entity:
+    if not asked.select:
+        return dict(entity)
+    wanted = {_property(name) for name in asked.select}
+    names = wanted | {f"{name}@iot.navigationLink" for name in wanted}
+    said = {name: one for name, one in entity.items() if name in names}
+    strange = wanted - said.keys() - {name.partition("@")[0] for name in said}
+    if strange:
+        raise InputError(f"$select: {of} have no {min(strange)!r}.")
+    return said
+
+
+def _property(name: str) -> str:
+    return f"@iot.{name}" if name in {"id", "selfLink"} else name
+
+
+def _there(of: str) -> str:
+    names = [*RELATIONS[of], *([OBSERVATIONS] if of == "Datastreams" else [])]
+    return f"There are {', '.join(names)}."
+
+
+def _onward(asked: Asked, read: list[Sample], *, newest: bool) -> dict[str, str]:
+    """Ask on from the time of the last that was read: so a page far on costs no more than another.
+
+    Of several samples of that time those that were read are left out.
+    """
+    last: datetime = read[-1].t
+    span = from_or_until(asked.within or (None, None), last, newest=newest)
+    known = sum(one.t == last for one in read)
+    return {**asked.texts, "$filter": written(span), "$skip": str(known)}
+
+
+def _address(path: str, texts: dict[str, str]) -> str:
+    usual = {"$skip": "0", "$count": "false"}
+    kept = {name: text for name, text in texts.items() if usual.get(name) != text}
+    return f"{quote(path, safe=_PLAIN)}?{urlencode(kept, safe='$(),=;:/', quote_via=quote)}"

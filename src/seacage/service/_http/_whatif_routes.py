@@ -1,0 +1,78 @@
+"""What a cage would do in other water: the twin asked beside the live loop."""
+
+from fastapi import APIRouter, Response
+
+from seacage.ocean import SeaState
+from seacage.service._http._cage_routes import FRAME
+from seacage.service._http._dependencies import READ, WRITE, Live, may_read
+from seacage.service._live._answers import state_of
+from seacage.service._live._frame import MEDIA_TYPE, Flags, frame_of
+from seacage.service._schemas._cages import Learned, LearnedInput, Water, WhatIf
+from seacage.twin import Answered, Metocean, Twin
+
+_KEYS = {
+    "current": ("current_speed_m_s", "current_to_deg"),
+    "waves": ("hs_m", "wave_from_deg"),
+}
+"""Strength and direction of each kind of input, in the order of the twin's edges."""
+
+what_if = APIRouter(prefix="/api/v1/cages", tags=["cages"])
+
+
+@what_if.get("/{cage}/whatif", dependencies=may_read, responses=READ)
+async def get_what_can_be_asked(live: Live) -> Learned:
+    """Say what a what-if can ask: the inputs that the twin was taught with, and how far."""
+    return learned_of(live.twin)
+
+
+@what_if.post(
+    "/{cage}/whatif",
+    dependencies=may_read,
+    response_class=Response,
+    responses={**WRITE, **FRAME},
+)
+def ask_what_if(live: Live, body: WhatIf) -> Response:
+    """Answer to water that is only imagined, as a frame with the flag 8; nothing is kept.
+
+    The period only has to suit the height: a twin learns from seas whose period follows it. The
+    answer's ``water`` says what of the question counted: null is what the twin knows nothing of.
+    """
+    sea = SeaState(
+        current_speed=body.current_speed_m_s,
+        current_to=body.current_to_deg,
+        hs=body.hs_m,
+        tp=body.tp_s,
+        wave_from=body.wave_from_deg,
+    )
+    water, twin = Metocean.of(sea), live.twin
+    answered = Answered(
+        t=live.clock.now(), answer=twin.predict(water), metocean=water, input_age_s=0.0
+    )
+    state = state_of(live.name, twin, answered, twin.start())
+    if state.water:
+        state = state.model_copy(update={"water": counted(state.water, sea, twin)})
+    frame = frame_of(state, answered, live.rest_position, about=Flags.WHAT_IF)
+    return Response(frame, media_type=MEDIA_TYPE)
+
+
+def learned_of(twin: Twin) -> Learned:
+    """Say which inputs a twin was taught with, and up to where."""
+    edges = dict(zip(_KEYS, twin.models.edge, strict=True))
+    taught = list[LearnedInput]()
+    for name in twin.models.inputs:
+        strength, direction = _KEYS[name]
+        taught += [
+            LearnedInput(key=strength, most=edges[name]),
+            LearnedInput(key=direction, most=None),
+        ]
+    known = {one.key for one in taught}
+    return Learned(inputs=taught, unknown=sorted(WhatIf.model_fields.keys() - known))
+
+
+def counted(water: Water, sea: SeaState, twin: Twin) -> Water:
+    """Leave of imagined water what the answer rests on; the period is that of the height."""
+    if "waves" not in twin.models.inputs:
+        return water.model_copy(update={"hs_m": None, "tp_s": None, "wave_from_deg": None})
+    if sea.hs > 0.0:
+        return water.model_copy(update={"tp_s": round(sea.peak_period, 2)})
+    return water

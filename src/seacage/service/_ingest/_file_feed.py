@@ -1,0 +1,98 @@
+"""Samples from a file that a logger appends to: read, stored, and the place kept."""
+
+import asyncio
+from pathlib import Path
+
+import structlog
+
+from seacage.conventions import RecordError
+from seacage.records import ColumnMap
+from seacage.service._live._cage import LiveCage
+from seacage.service._quarantine import Quarantine
+from seacage.service._small_files import write_small
+from seacage.service._store._store import StoreError
+from seacage.service._tail import Place, Tail
+
+_log = structlog.get_logger(__name__)
+
+
+class FileTail:
+    """Feeds a cage from a file that a logger appends to.
+
+    After a restart it reads on where it stopped: the place is written once the samples are on
+    disk, so some may be read twice, and are known again by stream and time.
+
+    Parameters
+    ----------
+    path, columns, stream
+        See ``Tail``.
+    cage
+        Whose samples they are.
+    quarantine
+        Where rows that cannot be read are set aside.
+    kept
+        File of the place; None reads from the beginning after each restart.
+    every_s
+        How often to look [s].
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        cage: LiveCage,
+        *,
+        quarantine: Quarantine,
+        columns: ColumnMap | None = None,
+        stream: str = "buoy-1",
+        kept: Path | None = None,
+        every_s: float = 1.0,
+    ) -> None:
+        self._cage, self._quarantine, self._kept, self._every_s = cage, quarantine, kept, every_s
+        said = kept.read_text("utf-8", "replace") if kept and kept.exists() else str(Place())
+        place = Place.parse(said)
+        if str(place) != said:
+            _log.warning("place cannot be read, so the file is read anew", path=str(kept))
+        self._tail = Tail(
+            path=path, columns=columns, stream=stream, refuse=self._refuse, place=place
+        )
+        self._fault: str | None = None
+
+    @property
+    def fault(self) -> str | None:
+        """Why the file cannot be read; None while it can."""
+        return self._fault
+
+    async def run(self) -> None:
+        """Look for rows for ever."""
+        try:
+            while True:
+                before = self._tail.place
+                if not await self._looked() or self._tail.place == before:
+                    await asyncio.sleep(self._every_s)
+        finally:
+            self._tail.close()
+
+    async def _looked(self) -> bool:
+        """Read and store what is new; False where that failed."""
+        before = self._tail.place
+        try:
+            samples = await asyncio.to_thread(self._tail.poll)
+            if samples:
+                await self._cage.take(samples)
+            if self._tail.place != before:
+                await asyncio.to_thread(self._keep)
+        except (OSError, RecordError, StoreError) as error:
+            if self._fault is None:
+                _log.error("file waits", path=str(self._tail.path), reason=str(error))
+            self._fault = str(error)
+            self._tail.place = before  # whatever was not stored is read again
+            return False
+        self._fault = None
+        return True
+
+    def _keep(self) -> None:
+        if self._kept is not None:
+            write_small(self._kept, str(self._tail.place))
+
+    def _refuse(self, where: str, row: bytes, reason: str) -> None:
+        self._quarantine.put(where, row, reason, now=self._cage.clock.now())

@@ -1,0 +1,1 @@
+"""MQTT: brokers, topics, messages, and connections that are made again."""

@@ -1,0 +1,316 @@
+"""A connection to a broker, made again whenever it breaks."""
+
+import asyncio
+import random
+import time
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import Any, Protocol, runtime_checkable
+
+import structlog
+from paho.mqtt.client import Client, MQTTMessage
+from paho.mqtt.enums import MQTTErrorCode
+from paho.mqtt.properties import Properties
+from paho.mqtt.reasoncodes import ReasonCode
+from paho.mqtt.subscribeoptions import SubscribeOptions
+
+from seacage.service._mqtt._broker import KEEPALIVE_S, Broker, connecting
+
+_PATIENCE_S = (0.2, 0.5, 1.0, 2.0, 4.0)
+_ANSWER_S = 10.0  # a broker that takes longer to greet is as good as away
+_MISC_S = 1.0
+_LASTED_S = 5.0
+_log = structlog.get_logger(__name__)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Heard:
+    """A message that came.
+
+    Parameters
+    ----------
+    topic, payload
+        What was said, and where; the topic is empty where its bytes are no text.
+    acknowledge
+        Tells the broker that it need not send the message again. After the connection that
+        brought it has ended this does nothing, for the message will come again.
+    sure
+        Whether the broker waits for that; without it, it sends as much as it likes.
+    """
+
+    topic: str
+    payload: bytes
+    acknowledge: Callable[[], object]
+    sure: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Will:
+    """What a client says when it comes, and the broker for it when it is lost; both retained."""
+
+    topic: str
+    here: bytes
+    gone: bytes
+
+
+class _Ended(Exception):  # noqa: N818
+    """A connection has ended, and why."""
+
+
+@runtime_checkable
+class Listener(Protocol):
+    """Who hears what comes."""
+
+    def hear(self, heard: Heard) -> None:
+        """Take a message; must not take long."""
+        ...
+
+    async def settled(self) -> None:
+        """Wait until all that was heard is dealt with."""
+        ...
+
+
+class Link:
+    """One client of a broker, in the event loop's own thread.
+
+    Every connection has a new client of paho, so that an acknowledgement can never reach
+    another connection, where the same number may stand for another message. A new connection
+    is made once all that the last one brought is dealt with; what the broker has sent ahead is
+    then never more than the receive maximum.
+
+    Parameters
+    ----------
+    broker
+        Where to connect.
+    client_id
+        Under which the broker keeps what comes while the client is away.
+    filters
+        What to listen to.
+    listener
+        Who hears it.
+    receive_maximum, session_s
+        See ``connecting``.
+    will
+        What the broker says when this client is lost.
+    qos
+        0 to hear only what is said from now on, of which the broker keeps nothing.
+    """
+
+    def __init__(
+        self,
+        broker: Broker,
+        *,
+        client_id: str,
+        filters: Sequence[str],
+        listener: Listener,
+        receive_maximum: int,
+        session_s: int,
+        will: Will | None = None,
+        qos: int = 1,
+    ) -> None:
+        self._broker, self._client_id, self._filters = broker, client_id, tuple(filters)
+        self._listener, self._will, self._qos = listener, will, qos
+        self._connection: _Connection | None = None
+        self._properties = connecting(receive_maximum=receive_maximum, session_s=session_s)
+        self._client: Client | None = None
+        self._fault: str | None = f"{broker} has not answered yet."
+
+    @property
+    def fault(self) -> str | None:
+        """Why there is no connection; None while there is one."""
+        return self._fault
+
+    def publish(self, topic: str, payload: bytes, *, qos: int = 1, retain: bool = False) -> bool:
+        """Send a message; False without a connection, and then it is not kept."""
+        if self._client is None or self._fault is not None:
+            return False
+        sent = self._client.publish(topic, payload, qos, retain)
+        return sent.rc == MQTTErrorCode.MQTT_ERR_SUCCESS
+
+    def pause(self, *, paused: bool) -> None:
+        """Read nothing of what the broker sends, so that it has to keep it, or read on."""
+        if self._connection is not None:
+            self._connection.pause(paused=paused)
+
+    async def run(self) -> None:
+        """Connect, again and again."""
+        failures = 0
+        while True:
+            began = time.monotonic()
+            try:
+                await self._connected()
+            except (OSError, ValueError, _Ended) as error:
+                # A broker that greets and at once hangs up is no better than one away.
+                lasted = self._fault is None and time.monotonic() - began > _LASTED_S
+                failures = 0 if lasted else failures + 1
+                if failures <= 1:  # then it is known, until it is well again
+                    _log.warning("broker lost", broker=str(self._broker), reason=str(error))
+                self._fault = f"{self._broker} is away ({error})."
+            await self._listener.settled()
+            wait_s = _PATIENCE_S[min(failures, len(_PATIENCE_S) - 1)]
+            # Not all at once, where a farm's clients lost the broker together.
+            await asyncio.sleep(wait_s * random.uniform(0.7, 1.3))
+
+    async def _connected(self) -> None:
+        """Be connected until it ends, and raise why."""
+        connection = _Connection(self._broker.client(self._client_id, manual_ack=True))
+        self._connection = connection
+        client = connection.client
+        client.on_message = self._on_message
+        if self._will is not None:
+            client.will_set(self._will.topic, self._will.gone, qos=1, retain=True)
+        try:
+            await connection.open(self._broker, self._properties)
+            async with asyncio.timeout(_ANSWER_S):
+                await connection.greeted.wait()
+            if connection.ended.is_set():
+                raise _Ended(connection.reason)
+            client.subscribe([(one, SubscribeOptions(qos=self._qos)) for one in self._filters])
+            self._client, self._fault = client, None
+            _log.info("broker found", broker=str(self._broker), client=self._client_id)
+            if self._will is not None:
+                self.publish(self._will.topic, self._will.here, retain=True)
+            await connection.ended.wait()
+            raise _Ended(connection.reason)
+        finally:
+            if self._will is not None:
+                self.publish(self._will.topic, self._will.gone, retain=True)
+            self._client = self._connection = None
+            connection.close()
+
+    def _on_message(self, client: Client, _: object, message: MQTTMessage) -> None:
+        try:
+            topic = message.topic
+        except UnicodeDecodeError:
+            topic = ""
+        mid, sure = message.mid, message.qos == 1
+        self._listener.hear(
+            Heard(
+                topic=topic,
+                payload=bytes(message.payload),
+                acknowledge=lambda: client.ack(mid, 1) if sure else None,
+                sure=sure,
+            )
+        )
+
+
+class _Connection:
+    """One connection of a client of paho, read and written by the event loop."""
+
+    def __init__(self, client: Client) -> None:
+        self.client = client
+        self.greeted, self.ended = asyncio.Event(), asyncio.Event()
+        self.reason = "it closed the connection"
+        self._paused = False
+        self._loop = asyncio.get_running_loop()
+        self._misc: asyncio.TimerHandle | None = None
+        self._watched: Any = None
+        client.on_connect = self._on_connect
+        client.on_disconnect = self._on_disconnect
+        client.on_subscribe = self._on_subscribe
+        client.on_socket_register_write = self._on_register_write
+        client.on_socket_unregister_write = self._on_unregister_write
+        client.on_socket_close = self._on_socket_close
+
+    async def open(self, broker: Broker, properties: Properties) -> None:
+        """Reach the broker; its greeting comes later."""
+        # Looking up a name and greeting in TLS block; what was queued meanwhile is written below.
+        opening = asyncio.ensure_future(
+            asyncio.to_thread(
+                self.client.connect,
+                broker.host,
+                broker.port,
+                KEEPALIVE_S,
+                clean_start=False,
+                properties=properties,
+            )
+        )
+        try:
+            await asyncio.shield(opening)
+        except asyncio.CancelledError:
+            with suppress(OSError, ValueError):
+                await opening  # a thread cannot be stopped, and what it opens has to be closed
+            raise
+        self._watched = self.client.socket()
+        self._loop.add_reader(self._watched, self._read)
+        self._on_register_write(self.client, None, self._watched)
+        self._keep()
+
+    def pause(self, *, paused: bool) -> None:
+        """Stop reading, or go on."""
+        if self._watched is None or paused == self._paused:
+            return
+        self._paused = paused
+        if paused:
+            self._loop.remove_reader(self._watched)
+        else:
+            self._loop.add_reader(self._watched, self._read)
+            self._loop.call_soon(self._read)  # what TLS has unpacked makes no socket readable
+
+    def close(self) -> None:
+        """Say goodbye, and leave the event loop."""
+        if self._misc is not None:
+            self._misc.cancel()
+        self._forget()
+        socket = self.client.socket()
+        if socket is not None:
+            self.client.disconnect()
+            self.client.loop_write()
+            socket.close()  # also where it took no more bytes
+
+    def _end(self, reason: str) -> None:
+        if not self.ended.is_set():  # what comes after the first reason follows from it
+            self.reason = reason
+        self.greeted.set()
+        self.ended.set()
+
+    def _read(self) -> None:
+        try:
+            while self._watched is not None and not self._paused:
+                self.client.loop_read()
+                # What TLS has already unpacked makes no socket readable.
+                if self._watched is None or not getattr(self._watched, "pending", int)():
+                    break
+        except Exception as error:  # noqa: BLE001  # whatever paho makes of broken bytes
+            self._forget()
+            self._end(f"its bytes cannot be read: {error}")
+
+    def _keep(self) -> None:
+        self._misc = self._loop.call_later(_MISC_S, self._keep)
+        if not self._paused:  # paho would miss the broker's answers to its pings
+            self.client.loop_misc()
+
+    def _forget(self) -> None:
+        if self._watched is not None:
+            self._loop.remove_reader(self._watched)
+            self._loop.remove_writer(self._watched)
+            self._watched = None
+
+    def _on_connect(self, _: Client, __: object, ___: object, code: ReasonCode, *____: Any) -> None:
+        if code.is_failure:
+            self._end(f"it refuses the client: {code}")
+        self.greeted.set()
+
+    def _on_subscribe(
+        self, _: Client, __: object, ___: int, codes: Sequence[ReasonCode], *____: Any
+    ) -> None:
+        refused = [str(code) for code in codes if code.is_failure]
+        if refused:
+            self._end(f"it refuses a subscription: {refused[0]}")
+
+    def _on_disconnect(
+        self, _: Client, __: object, ___: object, code: ReasonCode, *____: Any
+    ) -> None:
+        self._end(str(code))
+
+    def _on_register_write(self, _: Client, __: object, ___: object) -> None:
+        if self._watched is not None:  # else still connecting, in a thread of its own
+            self._loop.add_writer(self._watched, self.client.loop_write)
+
+    def _on_unregister_write(self, _: Client, __: object, ___: object) -> None:
+        if self._watched is not None:
+            self._loop.remove_writer(self._watched)
+
+    def _on_socket_close(self, _: Client, __: object, ___: object) -> None:
+        self._forget()

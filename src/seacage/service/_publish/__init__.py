@@ -1,0 +1,1 @@
+"""How samples are sent to a service, and its alarms to webhooks."""

@@ -1,0 +1,70 @@
+"""Samples sent to a running service over HTTP, until it has them on disk."""
+
+import json
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from seacage.conventions import InputError, SeacageError
+from seacage.records import Sample
+from seacage.service._mqtt._messages import said
+from seacage.service._publish._post import POST_FAILED, AbstractCaller
+from seacage.service._schemas._cages import BATCH_LIMIT, Receipt
+
+_LATER = (429, 503)
+
+
+class SendError(SeacageError):
+    """A service does not take samples."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sender(AbstractCaller):
+    """Sends samples to one cage of one service.
+
+    Parameters
+    ----------
+    address, cage, token
+        Where to; the token has the scope ingest.
+    patience_s
+        Pauses between tries while the service is away or has too much to do [s].
+    """
+
+    patience_s: tuple[float, ...] = (0.5, 1.0, 2.0, 4.0, 8.0)
+
+    def send(self, samples: Sequence[Sample]) -> Receipt:
+        """Send samples, again where the service is away for a moment; once each is kept.
+
+        Raises
+        ------
+        InputError
+            The address is none, or the service refused the request.
+        SendError
+            Nobody answers.
+        """
+        parts = [
+            self._sent(samples[first : first + BATCH_LIMIT])
+            for first in range(0, len(samples), BATCH_LIMIT)
+        ]
+        return Receipt(
+            accepted=sum(part.accepted for part in parts),
+            duplicates=sum(part.duplicates for part in parts),
+            rejected=[one for part in parts for one in part.rejected],
+        )
+
+    def _sent(self, samples: Sequence[Sample]) -> Receipt:
+        body = json.dumps({"samples": [{"stream": one.stream} | said(one) for one in samples]})
+        answer = ""
+        for patience_s in (*self.patience_s, None):
+            try:
+                status, raw = self.post("samples", body, timeout_s=30.0)
+                answer = raw.decode("utf-8", "replace")
+            except POST_FAILED as error:
+                status, answer = 503, str(error)
+            if status == 201:
+                return Receipt.model_validate_json(answer)
+            if status not in _LATER:
+                raise InputError(f"{self.address} refused the samples ({status}): {answer[:300]}")
+            if patience_s is not None:
+                time.sleep(patience_s)
+        raise SendError(f"{self.address} takes no samples ({answer[:300]}). Is it running?")

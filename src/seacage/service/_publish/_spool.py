@@ -1,0 +1,316 @@
+"""An edge publisher's memory: samples on disk until the service has them."""
+
+import json
+import os
+import sqlite3
+import threading
+from collections.abc import Callable, Generator, Sequence
+from contextlib import contextmanager
+from datetime import UTC, datetime, timedelta
+from math import nan
+from pathlib import Path
+from typing import Any
+
+from seacage.conventions import InputError, SeacageError
+from seacage.records import Sample
+from seacage.service._mqtt._messages import Settled, said
+from seacage.service._quarantine import Quarantine
+from seacage.service._small_files import keep_private
+
+_EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
+_NO_SEQ = -1
+_TOGETHER = 1000  # samples that are set aside in one transaction
+
+_SCHEMA = """
+CREATE TABLE IF NOT EXISTS sample (
+    id INTEGER PRIMARY KEY AUTOINCREMENT,  -- in the order in which they were read
+    stream TEXT NOT NULL,
+    t INTEGER NOT NULL,                    -- microseconds since 1970 UTC
+    seq INTEGER NOT NULL,                  -- -1 where it does not count
+    said TEXT NOT NULL,
+    UNIQUE (stream, t, seq)
+) STRICT;
+CREATE TABLE IF NOT EXISTS ahead (         -- refused, as their time has not come
+    t INTEGER NOT NULL,
+    stream TEXT NOT NULL,
+    seq INTEGER NOT NULL,
+    said TEXT NOT NULL,
+    since INTEGER NOT NULL,                -- when first refused
+    reason TEXT NOT NULL,
+    PRIMARY KEY (t, stream, seq)
+) STRICT, WITHOUT ROWID;
+CREATE INDEX IF NOT EXISTS ahead_since ON ahead (since);
+CREATE TABLE IF NOT EXISTS place (source TEXT PRIMARY KEY, place TEXT NOT NULL) STRICT;
+"""
+
+_INSERT = """
+INSERT INTO sample (stream, t, seq, said) SELECT ?1, ?2, ?3, ?4
+WHERE NOT EXISTS (SELECT 1 FROM ahead WHERE stream = ?1 AND t = ?2 AND seq = ?3)
+ON CONFLICT DO NOTHING
+"""
+_HOLD = """
+INSERT INTO ahead SELECT t, stream, seq, said, ?4, ?5 FROM sample
+WHERE stream = ?1 AND t = ?2 AND seq = ?3 ON CONFLICT DO NOTHING
+"""
+_SETTLE = "DELETE FROM sample WHERE stream = ? AND t = ? AND seq = ?"
+_SETTLE_AHEAD = "DELETE FROM ahead WHERE stream = ? AND t = ? AND seq = ?"
+_EXPIRED = "SELECT stream, t, seq, said, reason FROM ahead WHERE since <= ? ORDER BY since LIMIT ?"
+_OLDEST = "DELETE FROM sample WHERE id IN (SELECT id FROM sample ORDER BY id LIMIT ?)"
+_PLACE = "INSERT INTO place VALUES (?, ?) ON CONFLICT DO UPDATE SET place = excluded.place"
+
+
+class SpoolError(SeacageError):
+    """The spool cannot be read or written."""
+
+
+class Spool:
+    """Samples between their source and a service, in a file of SQLite.
+
+    What ``put`` has returned for is on disk, and stays there until it is settled. How far a
+    source was read is written in the same transaction as its samples, so after a kill it is
+    read on from just there. One process at a time may use a spool, and only its owner read it.
+
+    Samples that the service refuses as ahead of its clock wait apart, as many as the spool
+    holds of others, so that they take no room from these. What cannot be sent is set aside in a
+    file beside the spool: it is named like it and ends with ``.quarantine.jsonl``.
+
+    Parameters
+    ----------
+    path
+        Of the file; made where there is none.
+    to
+        Where its samples go; a spool serves one destination.
+    most
+        Samples it holds.
+    drop_oldest
+        What happens where it is full: with it the oldest samples make room, and ``dropped``
+        counts them; without it ``put`` says so, and the source has to wait.
+    now
+        Tells the time by which samples wait.
+
+    Raises
+    ------
+    InputError
+        The spool is of another destination.
+    SpoolError
+        It cannot be opened.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        *,
+        to: str,
+        most: int = 1_000_000,
+        drop_oldest: bool = False,
+        now: Callable[[], datetime] = lambda: datetime.now(UTC),
+    ) -> None:
+        self._path, self._most, self._drop_oldest, self._now = path, most, drop_oldest, now
+        self._lock = threading.RLock()
+        self._quarantine = Quarantine(path.with_name(f"{path.name}.quarantine.jsonl"), most=1 << 30)
+        self.dropped = 0
+        try:
+            keep_private(path)
+            self._connection = _opened(path)
+            self._count: int = self._all("SELECT count(*) FROM sample")[0][0]
+            self._ahead: int = self._all("SELECT count(*) FROM ahead")[0][0]
+        except (sqlite3.Error, OSError) as error:
+            raise SpoolError(
+                f"{path} does not open as a spool ({error}). Another publisher may be using it; "
+                "else name a new file."
+            ) from error
+        if (known := self.place("to")) not in {None, to}:
+            self.close()
+            raise InputError(
+                f"{path} holds samples for {known}, not for {to}. Name another file with --spool."
+            )
+        self.put((), source="to", place=to)
+
+    def __len__(self) -> int:
+        """How many samples wait."""
+        return self._count + self._ahead
+
+    @property
+    def ahead(self) -> int:
+        """How many of them are ahead of the service's clock."""
+        return self._ahead
+
+    @property
+    def quarantined(self) -> int:
+        """How many were set aside since the spool was opened."""
+        return self._quarantine.count
+
+    @property
+    def newest(self) -> int:
+        """Number of the sample that was put in last; 0 where there was none."""
+        with self._lock:
+            return self._all("SELECT coalesce(max(id), 0) FROM sample")[0][0]
+
+    def put(self, samples: Sequence[Sample], *, source: str, place: str) -> bool:
+        """Keep samples; True once they are on disk, False where the spool is full.
+
+        Parameters
+        ----------
+        samples
+            Those that wait already are kept once.
+        source, place
+            Whose, and how far it is read with them.
+        """
+        with self._lock, self._transaction():
+            if self._count + len(samples) > self._most and self._count and not self._drop_oldest:
+                return False
+            self._count += self._changed(_INSERT, [_row(sample) for sample in samples])
+            self._changed(_PLACE, [(source, place)])
+            if self._drop_oldest and self._count > self._most:
+                gone = self._changed(_OLDEST, [(self._count - self._most,)])
+                self._count -= gone
+                self.dropped += gone
+            return True
+
+    def place(self, source: str) -> str | None:
+        """How far a source was read; None where it is new."""
+        with self._lock:
+            return self._all("SELECT max(place) FROM place WHERE source = ?", source)[0][0]
+
+    def next(self, limit: int, *, live_after: int) -> list[Sample]:
+        """The samples to send: those put in after one number first, then the others.
+
+        Parameters
+        ----------
+        limit
+            At most so many.
+        live_after
+            Samples after this number are live; older ones fill what is left, oldest first.
+        """
+        query = "SELECT stream, t, seq, said FROM sample WHERE id {} ? ORDER BY id LIMIT ?"
+        with self._lock:
+            rows = self._all(query.format(">"), live_after, limit)
+            rows += self._all(query.format("<="), live_after, limit - len(rows))
+            return self._read(rows)
+
+    def next_ahead(self, limit: int) -> list[Sample]:
+        """The samples ahead of the service's clock whose time comes first, at most so many."""
+        query = "SELECT stream, t, seq, said FROM ahead ORDER BY t LIMIT ?"
+        with self._lock:
+            return self._read(self._all(query, limit))
+
+    def hold(self, settled: Sequence[Settled]) -> None:
+        """Keep samples apart that the service refused as ahead of its clock."""
+        since, keys = _microseconds(self._now()), [_key(one) for one in settled]
+        rows = [(*_key(one), since, one.rejected or "") for one in settled]
+        with self._lock, self._transaction():
+            self._ahead += self._changed(_HOLD, rows)
+            self._count -= self._changed(_SETTLE, keys)
+
+    def expire(self, age: timedelta) -> None:
+        """Set samples aside that have been held for so long, or that there is no room for."""
+        with self._lock:
+            rows = self._all(_EXPIRED, _microseconds(self._now() - age), _TOGETHER)
+            if (over := min(self._ahead - self._most, _TOGETHER)) > len(rows):
+                rows = self._all(_EXPIRED, _microseconds(self._now()), over)
+            self._set_aside(rows)
+
+    def settle(self, settled: Sequence[Settled]) -> int:
+        """Forget samples that the service has or has refused; how many of them waited."""
+        return self._forget([_key(one) for one in settled])
+
+    def _forget(self, keys: Sequence[tuple[object, ...]]) -> int:
+        with self._lock, self._transaction():
+            gone, ahead = self._changed(_SETTLE, keys), self._changed(_SETTLE_AHEAD, keys)
+            self._count -= gone
+            self._ahead -= ahead
+            return gone + ahead
+
+    def _read(self, rows: Sequence[Any]) -> list[Sample]:
+        """Read samples; those that a fault of the disk has changed are set aside."""
+        samples, torn = list[Sample](), list[tuple[object, ...]]()
+        for *key, text in rows:
+            try:
+                samples.append(_sample(key[0], text))
+            except (ValueError, KeyError, TypeError, AttributeError):
+                torn.append((*key, text, "It cannot be read any more."))
+        self._set_aside(torn)
+        return samples
+
+    def _set_aside(self, rows: Sequence[Any]) -> None:
+        kept = list[tuple[object, ...]]()
+        for number, (stream, t, seq, text, reason) in enumerate(rows, start=1):
+            line = f'{{"stream": {json.dumps(stream)}, {text[1:]}'.encode()  # as publish reads it
+            sync = number == len(rows)  # which writes those before it too
+            if self._quarantine.put(str(self._path), line, reason, now=self._now(), sync=sync):
+                kept.append((stream, t, seq))
+        if kept:
+            self._forget(kept)
+
+    def close(self) -> None:
+        """Close the file."""
+        with self._lock:
+            self._connection.close()
+
+    @contextmanager
+    def _transaction(self) -> Generator[None]:
+        connection, counts = self._connection, (self._count, self._ahead)
+        try:
+            connection.execute("BEGIN IMMEDIATE")
+            yield
+            connection.execute("COMMIT")
+        except sqlite3.Error as error:
+            if connection.in_transaction:
+                connection.execute("ROLLBACK")
+            self._count, self._ahead = counts
+            raise SpoolError(f"{self._path} takes nothing ({error}). Free the disk.") from error
+
+    def _changed(self, statement: str, rows: Sequence[tuple[object, ...]]) -> int:
+        return max(0, self._connection.executemany(statement, rows).rowcount)
+
+    def _all(self, query: str, *values: object) -> list[Any]:
+        try:
+            return self._connection.execute(query, values).fetchall()
+        except sqlite3.Error as error:
+            raise SpoolError(f"{self._path} cannot be read ({error}).") from error
+
+
+def _opened(path: Path) -> sqlite3.Connection:
+    log = path.with_name(f"{path.name}-wal")
+    os.close(os.open(path, os.O_RDWR | os.O_CREAT, 0o600))
+    for one in (path, log):  # those of 0.1.0 could be read by all
+        if one.exists():
+            one.chmod(0o600)
+    connection = sqlite3.connect(path, isolation_level=None, check_same_thread=False, timeout=1.0)
+    try:
+        connection.text_factory = _text
+        connection.execute("PRAGMA locking_mode = EXCLUSIVE")
+        connection.execute("PRAGMA journal_mode = WAL")
+        connection.execute("PRAGMA synchronous = FULL")
+        connection.executescript(_SCHEMA)
+    except sqlite3.Error:
+        connection.close()
+        raise
+    return connection
+
+
+def _text(content: bytes) -> str:
+    return content.decode("utf-8", "replace")
+
+
+def _row(sample: Sample) -> tuple[object, ...]:
+    key = (sample.stream, _microseconds(sample.t), _NO_SEQ if sample.seq is None else sample.seq)
+    return (*key, json.dumps(said(sample)))
+
+
+def _key(one: Settled) -> tuple[object, ...]:
+    return (one.stream, _microseconds(one.t), _NO_SEQ if one.seq is None else one.seq)
+
+
+def _sample(stream: str, text: str) -> Sample:
+    read = json.loads(text)
+    return Sample(
+        stream=stream,
+        t=datetime.fromisoformat(read["t"]),
+        seq=read.get("seq"),
+        values={key: nan if value is None else value for key, value in read["values"].items()},
+    )
+
+
+def _microseconds(t: datetime) -> int:
+    return (t - _EPOCH) // timedelta(microseconds=1)

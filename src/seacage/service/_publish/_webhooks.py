@@ -1,0 +1,170 @@
+"""Alarms told to other systems by webhook, at once or when nobody has acknowledged them."""
+
+import asyncio
+import hashlib
+import hmac
+from collections import deque
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from typing import Protocol, runtime_checkable
+from urllib.parse import urlsplit
+
+import structlog
+
+from seacage.conventions import InputError
+from seacage.service._live._alarm_desk import AlarmDesk, Announcement, announced_json
+from seacage.service._live._clock import Clock
+from seacage.service._publish._post import POST_FAILED, post
+from seacage.twin import Action
+
+_TOLD = {Action.RAISED, Action.REPEATED, Action.CLEARED, Action.ACKNOWLEDGED}
+_PATIENCE_S = (1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 60.0, 60.0, 60.0)
+_LOOK_S = 0.5
+_WAITING = 1000  # messages to one hook; the oldest is dropped, for the newest say how it stands
+_TIMEOUT_S = 10.0
+
+_log = structlog.get_logger(__name__)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Webhook:
+    """An address that alarms are posted to as JSON.
+
+    Parameters
+    ----------
+    url
+        http or https.
+    severity
+        The least that is told, 1 to 1000.
+    after_s
+        0 tells at once whatever is raised, repeated, cleared or acknowledged. More tells only
+        of an alarm that is still active and not acknowledged so long after it was raised [s],
+        which is how one escalates to the next on duty.
+    secret
+        Signs each body: ``X-Seacage-Signature`` is its HMAC-SHA256, in hexadecimal.
+    cages
+        Whose alarms; all where empty.
+
+    Raises
+    ------
+    InputError
+        The address is none, or the severity or the time is out of range.
+    """
+
+    url: str
+    severity: int = 500
+    after_s: float = 0.0
+    secret: str = ""
+    cages: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        place = urlsplit(self.url)
+        if place.scheme not in {"http", "https"} or place.hostname is None:
+            raise InputError(f"webhook: {self.url!r} is no address. Give one as https://….")
+        if not 1 <= self.severity <= 1000:
+            raise InputError(f"webhook: severity = {self.severity} is not within 1 to 1000.")
+        if not 0.0 <= self.after_s <= 86400.0:
+            raise InputError(f"webhook: after_s = {self.after_s:g} s is not within 0 to 86400 s.")
+
+    def wants(self, cage: str, severity: int) -> bool:
+        """Whether an alarm of this severity is told here."""
+        return severity >= self.severity and (not self.cages or cage in self.cages)
+
+
+@runtime_checkable
+class Alarmed(Protocol):
+    """Whose alarms are told: a live cage."""
+
+    @property
+    def desk(self) -> AlarmDesk:
+        """Where its alarms are judged."""
+        ...
+
+    @property
+    def clock(self) -> Clock:
+        """What time it is there."""
+        ...
+
+
+class Herald:
+    """Tells webhooks what happens to the alarms of all cages.
+
+    Each hook has its own queue, so that one that does not answer holds nobody up; a message is
+    tried again for some minutes, in order, and then dropped with a line in the log.
+
+    Parameters
+    ----------
+    hooks, cages
+        Who is told, and of whose alarms.
+    """
+
+    def __init__(self, hooks: Sequence[Webhook], cages: Mapping[str, Alarmed]) -> None:
+        self._cages = cages
+        self._queues = {hook: deque[str](maxlen=_WAITING) for hook in hooks}
+        # Since when each alarm stood that was escalated last: as many as there are alarms.
+        self._escalated: dict[tuple[Webhook, str, str], datetime] = {}
+        for cage in cages.values():
+            cage.desk.tell(self._heard)
+
+    async def run(self) -> None:
+        """Tell for ever."""
+        async with asyncio.TaskGroup() as tasks:
+            tasks.create_task(self._escalate())
+            for hook in self._queues:
+                tasks.create_task(self._deliver(hook))
+
+    def _heard(self, told: Announcement) -> None:
+        # Called in the thread that stepped the twin; a deque takes this without a lock.
+        if told.happened.quiet or told.happened.action not in _TOLD:
+            return
+        for hook, queue in self._queues.items():
+            if hook.after_s == 0.0 and hook.wants(told.cage, told.severity):
+                queue.append(announced_json(told))
+
+    async def _escalate(self) -> None:
+        while True:
+            await asyncio.sleep(_LOOK_S)
+            for hook in self._queues:
+                if hook.after_s > 0.0:
+                    self._overdue(hook)
+
+    def _overdue(self, hook: Webhook) -> None:
+        for name, cage in self._cages.items():
+            due = cage.clock.now() - timedelta(seconds=hook.after_s)
+            for told in cage.desk.standing():
+                key, since = (hook, name, told.alarm.name), told.alarm.since
+                if since is None or since > due or self._escalated.get(key) == since:
+                    continue
+                if hook.wants(name, told.severity):
+                    self._escalated[key] = since
+                    self._queues[hook].append(announced_json(told, action="escalated"))
+
+    async def _deliver(self, hook: Webhook) -> None:
+        queue = self._queues[hook]
+        while True:
+            if not queue:
+                await asyncio.sleep(_LOOK_S)
+                continue
+            body = queue.popleft()
+            for patience_s in (*_PATIENCE_S, None):
+                problem = await asyncio.to_thread(_posted, hook, body)
+                if problem is None:
+                    break
+                if patience_s is None:
+                    _log.error("webhook gives up", url=hook.url, reason=problem, body=body)
+                else:
+                    await asyncio.sleep(patience_s)
+
+
+def _posted(hook: Webhook, body: str) -> str | None:
+    """Post once; why it failed, or None."""
+    headers = dict[str, str]()
+    if hook.secret:
+        signature = hmac.new(hook.secret.encode(), body.encode(), hashlib.sha256)
+        headers["X-Seacage-Signature"] = signature.hexdigest()
+    try:
+        status, _ = post(hook.url, body, headers=headers, timeout_s=_TIMEOUT_S)
+    except POST_FAILED as error:
+        return str(error) or type(error).__name__
+    return None if 200 <= status < 300 else f"it answered {status}"

@@ -1,0 +1,1 @@
+"""A database of the store: its tables and rows, in SQLite or PostgreSQL."""

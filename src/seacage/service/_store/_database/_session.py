@@ -1,0 +1,159 @@
+"""What the store's statements need of a database, whichever it is."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Sequence
+from contextlib import AbstractContextManager
+from pathlib import Path
+from typing import Any
+
+from seacage.conventions import SeacageError
+from seacage.service._store._database._checksum import UNVERIFIED, Damage, checksum
+from seacage.service._store._database._rows import Row
+
+Answer = list[tuple[Any, ...]]
+
+
+class StoreError(SeacageError):
+    """The disk does not take samples, or the database cannot be read."""
+
+
+class DamageError(StoreError):
+    """What is on disk is not what was written."""
+
+
+class FullError(StoreError):
+    """The disk has no room, or takes no bytes at all."""
+
+
+class AbstractSession(ABC):
+    """One transaction: statements with ``?`` for each value.
+
+    ``damage`` is where rows are counted that are not as they were written.
+    """
+
+    damage: Damage
+
+    locking: str = ""
+    """What a SELECT ends with, so that no other process changes its rows until the commit."""
+
+    passing: str = ""
+    """The same, but rows that another process holds are left to it."""
+
+    lateral: bool = False
+    """Whether a subquery of FROM may look at its neighbours."""
+
+    ordered: bool = False
+    """Whether names are ordered as Python does."""
+
+    @property
+    def checksums(self) -> str | None:
+        """Whether the server keeps checksums of its pages, on or off; None without a server."""
+        return None
+
+    @abstractmethod
+    def rows(self, sql: str, values: Sequence[object] = ()) -> Answer:
+        """Run one statement; the rows that it answers."""
+
+    def intact(
+        self,
+        table: str,
+        sql: str,
+        values: Sequence[object] = (),
+        head: Sequence[object] = (),
+        *,
+        limit: int | None = None,
+    ) -> Answer:
+        """Run a SELECT and leave out the rows that are not as they were written.
+
+        Parameters
+        ----------
+        table
+            From which it selects.
+        sql, values
+            It answers whole rows but for ``head``, the checksum last.
+        head
+            The first columns.
+        limit
+            The last value, where the statement has one: so many intact rows are wanted.
+
+        Returns
+        -------
+        rows
+            Without the checksum.
+        """
+        spare = 0
+        while True:
+            bound = () if limit is None else (limit + spare,)
+            rows = self.rows(sql, (*values, *bound))
+            good = self.whole(table, rows, head)
+            if limit is None or len(good) >= limit or len(rows) < limit + spare:
+                return good[:limit]
+            spare = 2 * (len(rows) - len(good))
+
+    def whole(self, table: str, rows: Answer, head: Sequence[object] = ()) -> Answer:
+        """Leave out the rows that are not as they were written, and the checksum of the others."""
+        good: Answer = []
+        for row in rows:
+            if row[-1] in {UNVERIFIED, checksum(table, (*head, *row[:-1]))}:
+                good.append(row[:-1])
+            else:
+                self.damage.note(table, (*head, *row))
+        return good
+
+    @abstractmethod
+    def each(self, sql: str, rows: Iterable[Sequence[object]]) -> None:
+        """Run one statement for each row of values."""
+
+    @abstractmethod
+    def insert(self, rows: Sequence[Row]) -> tuple[bool, ...]:
+        """Insert samples that are not known; for each whether it was not."""
+
+
+class AbstractDatabase(ABC):
+    """A database, open: one writer at a time, and readers beside it.
+
+    Its sessions raise ``StoreError``: ``DamageError`` where the file itself is at fault, and
+    ``FullError`` where it cannot grow.
+    """
+
+    lost: str | None = None
+    """Why history was moved aside; None where nothing was."""
+
+    damage: Damage
+
+    damaged: list[Path]
+    """Files that were moved aside and are still to be salvaged."""
+
+    shared: bool = False
+    """Whether other processes may serve other cages from it."""
+
+    round: int = 0
+    """How often it was begun anew."""
+
+    @abstractmethod
+    def writing(self) -> AbstractContextManager[AbstractSession]:
+        """A transaction that is on disk when the block has ended, or was not made."""
+
+    @abstractmethod
+    def reading(self) -> AbstractContextManager[AbstractSession]:
+        """A transaction that sees one moment and changes nothing; from any thread."""
+
+    @abstractmethod
+    def renew(self, error: DamageError) -> bool:
+        """Move a damaged database aside and begin a new one; False where that cannot be."""
+
+    @abstractmethod
+    def claim(self, session: AbstractSession, cage: str) -> bool:
+        """Be the one process that serves a cage, until ``close``; False where another is."""
+
+    def hold_reserve(self) -> None:
+        """Hold room for what must be written when there is no other; ``FullError`` without it."""
+        return  # a server sees to its own disk
+
+    def give_up_reserve(self) -> None:
+        """Leave that room to what is written next."""
+        return
+
+    @abstractmethod
+    def close(self) -> None:
+        """Close every connection."""

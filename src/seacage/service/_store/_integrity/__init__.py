@@ -1,0 +1,1 @@
+"""What shows that rows are missing or damaged, and what is still intact."""

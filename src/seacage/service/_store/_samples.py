@@ -1,0 +1,369 @@
+"""Samples of the store: appended, amended, read."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+
+from seacage.conventions import SeacageError
+from seacage.records import AHEAD, Amendment, Limits, Sample
+from seacage.service._store._adaptations import Refold, ask_refold
+from seacage.service._store._aggregates import WIDEST_US
+from seacage.service._store._database._checksum import checksum, with_checksum
+from seacage.service._store._database._rows import (
+    DAY_US,
+    Row,
+    SampleRow,
+    amendments_of_row,
+    key_of,
+    microseconds,
+    moment_of,
+    row_of,
+    sample_of_row,
+)
+from seacage.service._store._database._session import AbstractSession
+from seacage.service._store._integrity._tally import count_new
+from seacage.service._store._quality import (
+    Checked,
+    Key,
+    Of,
+    QualityControl,
+    withdrawn_samples,
+)
+from seacage.twin import adapted_at_us
+
+# A bucket of a sealed day is left as it is: of its samples only the late ones are still here.
+_MARK = """
+INSERT INTO mark SELECT ?, ?, ?, ?, ? WHERE NOT EXISTS (
+    SELECT 1 FROM sealed WHERE cage = ? AND stream = ? AND t = ?
+) ON CONFLICT (cage, stream, t) DO UPDATE SET touched = excluded.touched, crc = excluded.crc"""
+
+_REPLACE = """
+UPDATE sample SET readings = ?, remarks = ?, t_ingest = ?, crc = ?
+WHERE cage = ? AND stream = ? AND t = ? AND seq = ?"""
+
+_ONE = """
+SELECT stream, t, seq, readings, remarks, t_ingest, crc FROM sample
+WHERE cage = ? AND stream = ? AND t = ? AND seq = ?"""
+
+_REMARKED = """
+SELECT stream, t, seq, readings, remarks, t_ingest, crc FROM sample
+WHERE cage = ? AND stream = ? AND t > ? AND t <= ? AND remarks <> '[]' ORDER BY t, seq"""
+
+# Down the index from stream to stream, and in each to its newest: no scan of the samples. In
+# SQLite's words, and in those that PostgreSQL plans well.
+_LATEST = """
+WITH RECURSIVE named(stream) AS (
+    SELECT min(stream) FROM sample WHERE cage = ?
+    UNION ALL
+    SELECT (SELECT min(stream) FROM sample WHERE cage = ? AND stream > named.stream)
+    FROM named WHERE named.stream IS NOT NULL
+)
+SELECT s.stream, s.t, s.seq, s.readings, s.remarks, s.t_ingest, s.crc FROM named {newest}"""
+_NEWEST = {
+    False: """JOIN sample s ON s.cage = ? AND s.stream = named.stream AND (s.t, s.seq) = (
+    SELECT t, seq FROM sample
+    WHERE cage = s.cage AND stream = named.stream AND t <= ? AND remarks NOT LIKE ?
+    ORDER BY t DESC, seq DESC LIMIT 1
+)""",
+    True: """CROSS JOIN LATERAL (
+    SELECT * FROM sample
+    WHERE cage = ? AND stream = named.stream AND t <= ? AND remarks NOT LIKE ?
+    ORDER BY t DESC, seq DESC LIMIT 1
+) s""",
+}
+
+_FOREVER = 2**62
+
+
+@dataclass(frozen=True, slots=True)
+class Append:
+    """Samples to store, and what to check them with; None stores their flags as they are."""
+
+    cage: str
+    samples: tuple[Sample, ...]
+    ingested: datetime
+    limits: Limits | None
+
+
+@dataclass(frozen=True, slots=True)
+class Stored:
+    """What has become of samples that were to be stored.
+
+    Parameters
+    ----------
+    new
+        For each sample whether it was not known before.
+    samples
+        The same samples, those that are new with their flags.
+    amendments
+        Flags of samples before them, of the same streams, that have changed; those who stored in
+        one transaction have them in common.
+    late
+        Whether any came too late for what the intervals were adapted to.
+    again
+        Whether samples before them were checked again.
+    """
+
+    new: tuple[bool, ...]
+    samples: tuple[Sample, ...]
+    amendments: tuple[Amendment, ...]
+    late: bool = False
+    again: bool = False
+
+    @property
+    def fresh(self) -> list[Sample]:
+        """Those that were not known before."""
+        return [sample for sample, new in zip(self.samples, self.new, strict=True) if new]
+
+
+def append_all(
+    session: AbstractSession, works: Sequence[Append], control: QualityControl, *, touched: int
+) -> list[Stored]:
+    """Store the samples of many who asked at once."""
+    streams = _by_stream(works)
+    checked = {of: _checked(session, control, of, one) for of, one in sorted(streams.items())}
+    rows = list[Row]()
+    for of, result in checked.items():
+        ingested = streams[of].ingested
+        fresh = {
+            key: row_of(of[0], sample, ingested[key], result.amended.get(key, {}))
+            for key, sample in result.fresh.items()
+        }
+        rows += [row for key, row in fresh.items() if key not in result.again]
+        again = [fresh[key] for key in result.again if key in fresh]
+        _replace(session, again)
+    inserted = dict(zip((row[:4] for row in rows), session.insert(rows), strict=True))
+    count_new(session, (row[:3] for row in rows if inserted[row[:4]]))
+    # What the disk has changed is not known any more: the sample takes its place.
+    spoilt = [row for row in rows if not inserted[row[:4]] and not _one(session, row[:4])]
+    _replace(session, spoilt)
+    inserted |= dict.fromkeys((row[:4] for row in spoilt), True)
+    for of, result in checked.items():
+        for key in [key for key in result.fresh if not inserted.get((*of, *key), True)]:
+            del result.fresh[key]
+    mark(session, _changed(checked), touched)
+    late = _mark_refold(session, streams, checked)
+    return [_stored(work, checked, late=work.cage in late) for work in works]
+
+
+@dataclass(slots=True)
+class _Incoming:
+    """Samples of one stream that came together, of equal ones the first."""
+
+    limits: Limits | None
+    samples: dict[Key, Sample]
+    ingested: dict[Key, datetime]
+
+
+def _by_stream(works: Sequence[Append]) -> dict[Of, _Incoming]:
+    streams = dict[Of, _Incoming]()
+    for work in works:
+        for sample in work.samples:
+            of = streams.setdefault((work.cage, sample.stream), _Incoming(work.limits, {}, {}))
+            key = key_of(sample)
+            of.samples.setdefault(key, sample)
+            of.ingested.setdefault(key, work.ingested)
+    return streams
+
+
+def _checked(
+    session: AbstractSession, control: QualityControl, of: Of, incoming: _Incoming
+) -> Checked:
+    if incoming.limits is not None:
+        return control.check(session, of, incoming.samples, incoming.limits)
+    control.forget(of)
+    return Checked(fresh=dict(incoming.samples))
+
+
+def _changed(checked: Mapping[Of, Checked]) -> set[tuple[str, str, int]]:
+    return {
+        (*of, t)
+        for of, one in checked.items()
+        for t in (*(t for t, _ in one.fresh), *(microseconds(a.t) for a in one.amendments))
+    }
+
+
+def _stored(work: Append, checked: Mapping[Of, Checked], *, late: bool) -> Stored:
+    new, samples, streams = list[bool](), list[Sample](), dict[tuple[str, str], None]()
+    for sample in work.samples:
+        of = work.cage, sample.stream
+        streams[of] = None
+        # Of two that ask for the same sample the first gets it, as it is taken out here.
+        fresh = checked[of].fresh.pop(key_of(sample), None)
+        new.append(fresh is not None)
+        samples.append(sample if fresh is None else fresh)
+    amendments = tuple(one for of in streams for one in checked[of].amendments)
+    return Stored(
+        new=tuple(new),
+        samples=tuple(samples),
+        amendments=amendments,
+        late=late,
+        again=bool(amendments) or any(checked[of].walked for of in streams),
+    )
+
+
+def _mark_refold(
+    session: AbstractSession,
+    streams: Mapping[Of, _Incoming],
+    checked: Mapping[Of, Checked],
+) -> set[str]:
+    """Mark from when on intervals were adapted without samples that came too late for it."""
+    late = dict[str, tuple[int, int]]()
+    for of, incoming in streams.items():
+        for key in checked[of].fresh:
+            due, now = adapted_at_us(key[0]), microseconds(incoming.ingested[key])
+            if incoming.limits is not None and due <= now:
+                first, last = late.get(of[0], (due, now))
+                late[of[0]] = min(first, due), max(last, now)
+    for cage, (t, touched) in sorted(late.items()):
+        ask_refold(session, cage, Refold(t=moment_of(t), touched=moment_of(touched)))
+    return set(late)
+
+
+def withdraw_samples(
+    session: AbstractSession,
+    control: QualityControl,
+    of: Of,
+    *,
+    clock: datetime,
+    after: datetime,
+    limits: Limits,
+) -> int:
+    """Withdraw samples of a stream after a time, as ``Store.withdraw`` says; how many."""
+    checked = control.withdraw(session, of, clock=clock, after=microseconds(after), limits=limits)
+    changed = _changed({of: checked})
+    mark(session, changed, microseconds(clock))
+    return len(changed)
+
+
+def reinstate_samples(
+    session: AbstractSession,
+    control: QualityControl,
+    of: Of,
+    *,
+    clock: datetime,
+    until: datetime,
+    limits: Limits,
+) -> int:
+    """Take back that samples of a stream were withdrawn, as ``Store.reinstate`` says; how many."""
+    samples = withdrawn_samples(session, of, clock=clock, until=microseconds(until))
+    checked = {of: control.check(session, of, samples, limits)}
+    rows = [
+        row_of(of[0], sample, until, checked[of].amended.get(key, {}))
+        for key, sample in checked[of].fresh.items()
+    ]
+    _replace(session, rows)
+    mark(session, _changed(checked), microseconds(until))
+    incoming = _Incoming(limits, samples, dict.fromkeys(samples, until))
+    _mark_refold(session, {of: incoming}, checked)
+    return len(rows)
+
+
+def samples_at(
+    session: AbstractSession, cage: str, stream: str, keys: Iterable[Key], *, known_at: datetime
+) -> list[Sample]:
+    """Read some samples of a stream in time order, with the flags known at a time."""
+    found = list[Sample]()
+    for key in sorted(keys):
+        found += _read(session, cage, _one(session, (cage, stream, *key)), known_at)
+    return found
+
+
+def samples_between(
+    session: AbstractSession,
+    cage: str,
+    *,
+    stream: str | None,
+    start: datetime | None,
+    end: datetime | None,
+    limit: int,
+    newest: bool,
+    withdrawn: bool = True,
+    known_at: datetime | None = None,
+) -> list[Sample]:
+    """Read samples in time order, as ``Store.samples`` says."""
+    where, values = ["cage = ?"], [cage]
+    bounds = (
+        ("stream = ?", stream),
+        ("t >= ?", start and microseconds(start)),
+        ("t < ?", end and microseconds(end)),
+        ("remarks NOT LIKE ?", None if withdrawn else f"%{AHEAD}%"),
+    )
+    for clause, value in bounds:
+        if value is not None:
+            where.append(clause)
+            values.append(value)  # pyright: ignore[reportArgumentType]
+    order = "DESC" if newest else "ASC"
+    rows = session.intact(
+        "sample",
+        "SELECT stream, t, seq, readings, remarks, t_ingest, crc FROM sample "  # noqa: S608
+        f"WHERE {' AND '.join(where)} ORDER BY t {order}, stream {order}, seq {order} LIMIT ?",
+        values,
+        (cage,),
+        limit=limit,
+    )
+    return _read(session, cage, reversed(rows) if newest else rows, known_at)
+
+
+def amendments_since(
+    session: AbstractSession, of: Of, start: datetime, *, known_at: datetime
+) -> tuple[Amendment, ...]:
+    """Read what later samples, until a time, have made worse, as ``Store.amendments`` says."""
+    first, last = microseconds(start), microseconds(known_at)
+    rows = session.intact("sample", _REMARKED, (*of, first, last), of[:1])
+    return tuple(one for row in rows for one in amendments_of_row(row, until=last))
+
+
+def latest_samples(
+    session: AbstractSession, cage: str, *, at: datetime | None
+) -> dict[str, Sample]:
+    """Read the newest sample of each stream until a time, it included; none that is withdrawn."""
+    until = _FOREVER if at is None else microseconds(at)
+    query = _LATEST.format(newest=_NEWEST[session.lateral])
+    found = session.rows(query, (cage, cage, cage, until, f"%{AHEAD}%"))
+    samples = list[Sample]()
+    for row in found:
+        samples += _read(session, cage, session.whole("sample", [row], (cage,))) or samples_between(
+            session,
+            cage,
+            stream=row[0],
+            start=None,
+            end=moment_of(until + 1) if at else None,
+            limit=1,
+            newest=True,
+            withdrawn=False,
+        )
+    return {one.stream: one for one in samples}
+
+
+def _read(
+    session: AbstractSession, cage: str, rows: Iterable[SampleRow], known_at: datetime | None = None
+) -> list[Sample]:
+    found = list[Sample]()
+    for row in rows:
+        try:
+            found.append(sample_of_row(row, at=known_at and microseconds(known_at)))
+        except (ValueError, TypeError, OverflowError, AttributeError, SeacageError):
+            session.damage.note("sample", (cage, *row))
+    return found
+
+
+def _one(session: AbstractSession, key: tuple[object, ...]) -> list[SampleRow]:
+    return session.intact("sample", _ONE, key, key[:1])
+
+
+def _replace(session: AbstractSession, rows: Iterable[Row]) -> None:
+    session.each(_REPLACE, [(*row[4:], checksum("sample", row), *row[:4]) for row in rows])
+
+
+def mark(session: AbstractSession, changed: set[tuple[str, str, int]], touched: int) -> None:
+    """Mark the ten minutes of samples that have changed, by cage, stream and time [us]."""
+    # In order, so that two processes never wait for each other.
+    spans = sorted({(cage, stream, t - t % WIDEST_US) for cage, stream, t in changed})
+    session.each(
+        _MARK,
+        [
+            (*with_checksum("mark", *span, touched), *span[:2], span[2] - span[2] % DAY_US)
+            for span in spans
+        ],
+    )

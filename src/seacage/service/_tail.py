@@ -1,0 +1,221 @@
+"""A table that a logger appends to, followed row by row."""
+
+import hashlib
+import json
+import os
+import sys
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import BinaryIO, Self
+
+import structlog
+
+from seacage.conventions import RecordError, check_file
+from seacage.records import ColumnMap, Sample, check_rows, read_rows
+
+_HEAD = 1024  # bytes at the beginning that tell one file from another
+_MOST = 1 << 20  # bytes that are read at a time
+_log = structlog.get_logger(__name__)
+
+Refuse = Callable[[str, bytes, str], None]
+"""Is told where a row stands, the row, and why it cannot be read."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Place:
+    """How far a file was read.
+
+    Parameters
+    ----------
+    offset, line
+        Up to the end of which row: bytes and lines.
+    head
+        Hash of what the file began with, as far as ``offset`` or a kilobyte.
+    """
+
+    offset: int = 0
+    line: int = 0
+    head: str = ""
+
+    @classmethod
+    def parse(cls, text: str) -> Self:
+        """Read what ``str`` wrote; the beginning where it is nothing of the kind."""
+        with suppress(ValueError, TypeError):
+            return cls(**json.loads(text))
+        return cls()
+
+    def __str__(self) -> str:
+        """As JSON, to be kept."""
+        return json.dumps(asdict(self))
+
+
+@dataclass(slots=True, kw_only=True)
+class Tail:
+    """Reads what was appended to a table since the last look.
+
+    A row counts once its line has ended. The logger may begin the file anew, in its place or
+    as another file of its name: the rest of the old one is read first. A row that cannot be
+    read is refused and the others are not.
+
+    Parameters
+    ----------
+    path
+        Of the file; it may come later.
+    columns
+        What its columns mean; by its header where None.
+    stream
+        What to call the stream.
+    refuse
+        Is told of rows that cannot be read.
+    place
+        Where to read on, after a restart.
+    """
+
+    path: Path
+    columns: ColumnMap | None = None
+    stream: str = "buoy-1"
+    refuse: Refuse
+    place: Place = field(default_factory=Place)
+    _file: BinaryIO | None = None
+    _header: str = ""
+
+    def poll(self) -> tuple[Sample, ...]:
+        """Read the rows that are new; afterwards ``place`` is behind them.
+
+        Raises
+        ------
+        OSError
+            The file is there and cannot be read.
+        RecordError
+            Its header is not that of its map, so no row can be read.
+        """
+        if self._file is None and not self._opened():
+            return ()
+        file = self._file
+        assert file is not None
+        if self._rewritten(file):
+            self._begin(file)
+        samples = self._rows(file)
+        if not samples and self._replaced(file):
+            self._leave(file)
+            return self.poll()
+        return samples
+
+    def close(self) -> None:
+        """Close the file."""
+        if self._file is not None:
+            self._file.close()
+            self._file = None
+
+    def _opened(self) -> bool:
+        if self.path.exists():  # a pipe would hold the opening for ever
+            check_file(self.path, most=sys.maxsize, refusal=RecordError)
+        try:
+            self._file = self.path.open("rb")
+        except FileNotFoundError:
+            return False
+        if not self._header and self.place.line:
+            self._read_header(self._file)
+        return True
+
+    def _read_header(self, file: BinaryIO) -> None:
+        """Read the header again, to go on below it."""
+        file.seek(0)
+        lines = [file.readline() for _ in range(self._skipped + 1)]
+        self._header = self._text(lines[-1])
+
+    def _rewritten(self, file: BinaryIO) -> bool:
+        if os.fstat(file.fileno()).st_size < self.place.offset:
+            return True
+        return self.place.head != self._hashed(file, self.place.offset)
+
+    def _begin(self, file: BinaryIO) -> None:
+        _log.info("file begins anew", path=str(self.path))
+        self.place, self._header = Place(), ""
+        file.seek(0)
+
+    def _replaced(self, file: BinaryIO) -> bool:
+        mine = os.fstat(file.fileno())
+        try:
+            its = self.path.stat()
+        except FileNotFoundError:
+            return False
+        return (mine.st_dev, mine.st_ino) != (its.st_dev, its.st_ino)
+
+    def _leave(self, file: BinaryIO) -> None:
+        """Be done with a file that another has replaced."""
+        file.seek(self.place.offset)
+        if rest := file.read(_MOST):
+            where = f"{self.path}, line {self.place.line + 1}"
+            self.refuse(where, rest, "The file ended inside this row, so a number may be cut.")
+        self.close()
+        self.place, self._header = Place(), ""
+
+    def _rows(self, file: BinaryIO) -> tuple[Sample, ...]:
+        file.seek(self.place.offset)
+        content = file.read(_MOST)
+        whole = content[: content.rfind(b"\n") + 1]
+        if not whole:
+            if len(content) == _MOST:
+                raise RecordError(f"{self.path}: a line is longer than {_MOST} bytes. Is it text?")
+            return ()
+        first = self.place.line
+        # At line feeds alone: a carriage return before one belongs to its line.
+        lines = [line + b"\n" for line in whole.split(b"\n")[:-1]]
+        offset = self.place.offset + len(whole)
+        after = Place(offset=offset, line=first + len(lines), head=self._hashed(file, offset))
+        above = max(0, self._skipped + 1 - first)  # lines up to the header's
+        if 0 < above <= len(lines):
+            self._header = self._text(lines[above - 1])
+            check_rows(self.path, self._header, columns=self.columns)
+        samples = self._read(lines[above:], first + above + 1)
+        self.place = after
+        return samples
+
+    def _read(self, lines: list[bytes], first: int) -> tuple[Sample, ...]:
+        """Read rows together, or one by one where one of them is bad."""
+        if not any(line.strip() for line in lines):
+            return ()
+        try:
+            return self._samples(b"".join(lines), first_line=2)
+        except RecordError:
+            samples = list[Sample]()
+            for number, line in enumerate(lines, start=first):
+                try:
+                    samples += self._samples(line, first_line=number) if line.strip() else ()
+                except RecordError as error:
+                    self.refuse(f"{self.path}, line {number}", line, str(error))
+            return tuple(samples)
+
+    def _samples(self, rows: bytes, *, first_line: int) -> tuple[Sample, ...]:
+        record = read_rows(
+            self.path,
+            self._header,
+            self._text(rows),
+            columns=self.columns,
+            first_line=first_line,
+            stream=self.stream,
+        )
+        return tuple(record.samples())
+
+    @property
+    def _skipped(self) -> int:
+        return 0 if self.columns is None else self.columns.skip_lines
+
+    def _text(self, content: bytes) -> str:
+        encoding = "utf-8" if self.columns is None else self.columns.encoding
+        try:
+            text = content.decode("utf-8-sig" if encoding == "utf-8" else encoding)
+        except UnicodeDecodeError as error:
+            raise RecordError(f"{self.path}: it is not {encoding.upper()} text.") from error
+        if "\0" in text:
+            raise RecordError(f"{self.path}: there is a NUL character, so this is no text.")
+        return text
+
+    def _hashed(self, file: BinaryIO, offset: int) -> str:
+        if not offset:
+            return ""
+        file.seek(0)
+        return hashlib.blake2b(file.read(min(offset, _HEAD)), digest_size=8).hexdigest()

@@ -1,1 +1,0 @@
-"""How samples come in and alarms go out: MQTT, HTTP, files, and what a buoy's own end does."""

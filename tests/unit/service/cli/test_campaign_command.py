@@ -1,0 +1,152 @@
+"""Which campaign the words of a shell ask for, and how it is told."""
+
+import json
+import subprocess
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from seacage.campaigns import CampaignStatus, Plan
+from seacage.service._cli._app import app
+from seacage.service._cli._plans import asked_plan
+
+NOTHING = dict.fromkeys(("ranges", "grid", "listed", "cases", "duration", "seed"))
+
+
+def asked(**given):
+    return asked_plan(**{"plan": "default", **NOTHING, **given})
+
+
+def run(*words):
+    return CliRunner().invoke(app, [str(word) for word in words], catch_exceptions=False)
+
+
+def refusal(*words):
+    result = run("campaign", "run", "never.zarr", *words)
+    assert result.exit_code == 1
+    assert result.stderr.count("\n") == 1
+    return result.stderr
+
+
+@pytest.mark.parametrize("name", ["paper", "default", "current"])
+def test_a_plan_by_name_draws_a_thousand_half_hours(name):
+    assert asked(plan=name) == Plan.named(name, 0, 1000)
+
+
+def test_ranges_replace_the_plans_own():
+    plan = asked(ranges=["hs_m=0.5,1", "current_speed_m_s=0.2,0.4"], cases=8, seed=3, duration=60.0)
+    ranges = {"hs": (0.5, 1.0), "current_speed": (0.2, 0.4)}
+    assert plan == Plan.named("default", 3, 8, duration=60.0, ranges=ranges)
+    assert plan.name == "default, other hs and current_speed"
+
+
+def test_a_grid_is_spanned_by_numbers_or_by_their_count():
+    grid = ["current_speed_m_s=0:1:3", "current_to_deg=10,20", "hs_m=1", "period_ratio=1.5"]
+    plan = asked(grid=grid)
+    assert [(sea.current_speed, sea.current_to) for sea in plan.seas] == [
+        (0.0, 10.0), (0.0, 20.0), (0.5, 10.0), (0.5, 20.0), (1.0, 10.0), (1.0, 20.0)
+    ]  # fmt: skip
+    assert {(sea.hs, sea.tp) for sea in plan.seas} == {(1.0, 7.5)}
+
+
+def test_a_table_of_seas_is_a_plan(tmp_path: Path):
+    (tmp_path / "winter.csv").write_text("current_speed_m_s,current_to_deg\n0.3,90\n")
+    plan = asked(listed=tmp_path / "winter.csv", seed=2, duration=60.0)
+    assert (plan.name, len(plan), plan.seed, plan.duration) == ("winter", 1, 2, 60.0)
+
+
+def test_a_written_plan_is_taken_as_it_is_but_for_what_is_said(tmp_path: Path):
+    plan = Plan.sample(7, 5, duration=600.0)
+    plan.write(tmp_path / "plan.json")
+    assert asked(plan=str(tmp_path / "plan.json")) == plan
+    longer = asked(plan=str(tmp_path / "plan.json"), duration=900.0, seed=0)
+    assert (longer.seas, longer.duration, longer.seed) == (plan.seas, 900.0, 0)
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (("--plan", "papper"), "no plan 'papper'; there are: paper, default, current"),
+        (("--plan", "none.json"), "none.json: the file cannot be read"),
+        (("--range", "hs=0,2"), "Keys: current_speed_m_s, current_to_deg, hs_m"),
+        (("--range", "hs_m=2"), "expected two numbers"),
+        (("--range", "hs_m=2,x"), "could not convert"),
+        (("--range", "hs_m=0,1", "--range", "hs_m=0,2"), "each key once"),
+        (("--range", "current_speed_m_s=0,30"), "3 at most"),
+        (("--range", "period_ratio=0.1,0.2"), "steepness"),
+        (("--grid", "hs_m=1"), "at least current_speed_m_s and current_to_deg"),
+        (("--grid", "hs_m=0:1:1"), "the count 2 or more"),
+        (("--grid", "hs_m=1", "--cases", 5), "exclude each other"),
+        (("--share", "3"), "expected I/N"),
+        (("--share", "2/2"), "Shares count from 0"),
+        (("--share", "1/2", "--cases", 5), "5 cases make 1 blocks of 16"),
+        (("--method", "settle", "--law", "morison"), "an equilibrium knows no law"),
+    ],
+)
+def test_what_cannot_be_asked_is_refused_in_one_sentence(words, says, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert says in refusal(*words)
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_status_tells_the_first_failures_and_json_all(tmp_path, monkeypatch):
+    failures = {case: f"current {case} m/s: lost" for case in range(30)}
+    reached = CampaignStatus(
+        plan="paper",
+        law="loland",
+        method="simulate",
+        total=100,
+        converged=70,
+        not_converged=0,
+        diverged=30,
+        failures=failures,
+        simulated_s=2100.0,
+        core_seconds=2.0,
+        finished=False,
+    )
+    monkeypatch.setattr("seacage.campaigns.campaign_status", lambda _: reached)
+    said = run("campaign", "status", tmp_path).stdout
+    assert "100 of 100, not summed: say `seacage campaign finish`" in said
+    assert "2 core-seconds, 1050 simulated seconds in each" in said
+    assert "current 19 m/s: lost" in said
+    assert "current 20 m/s: lost" not in said
+    assert "and 10 more" in said
+    whole = json.loads(run("campaign", "status", tmp_path, "--json").stdout)
+    assert whole["failures"][29] == {"case": 29, "reason": "current 29 m/s: lost"}
+    assert whole["simulated_s_per_core_second"] == 1050.0
+
+
+def test_a_job_array_is_valid_bash_that_repeats_what_was_asked():
+    words = ("my campaign.zarr", "--plan", "paper", "--cases", 100, "--range", "hs_m=0,2")
+    script = run("campaign", "slurm", "--tasks", 50, *words).stdout
+    assert subprocess.run(["bash", "-n"], input=script, text=True, check=False).returncode == 0
+    assert "#SBATCH --array=0-6\n" in script  # 100 cases are 7 blocks
+    assert (
+        "exec seacage campaign run 'my campaign.zarr' --plan paper --cases 100 --range hs_m=0,2 "
+        '--workers 1 --share "$SLURM_ARRAY_TASK_ID/7"\n'
+    ) in script
+    assert json.loads(run("campaign", "slurm", "--tasks", 50, *words, "--json").stdout) == {
+        "script": script
+    }
+
+
+def test_a_job_array_takes_as_many_cores_as_workers_were_asked_for():
+    script = run("campaign", "slurm", "--tasks", 1, "a.zarr", "--workers", 4).stdout
+    assert "#SBATCH --cpus-per-task=4\n" in script
+    assert script.count("--workers") == 1
+
+
+@pytest.mark.parametrize(
+    ("words", "code"),
+    [
+        (("--colour", 3), 2),
+        (("--plan", "papper"), 1),
+        (("--share", "0/2"), 2),
+        (("--cage", "x"), 1),
+    ],
+)
+def test_a_job_array_that_could_not_run_is_refused_now(words, code):
+    result = run("campaign", "slurm", "--tasks", 2, "a.zarr", *words)
+    assert result.exit_code == code
+    assert "#!/bin/bash" not in result.stdout
