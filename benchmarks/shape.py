@@ -132,7 +132,6 @@ def _ours(race: Race, campaign: CampaignRecord, good: np.ndarray) -> None:
     ask = {"restarts": restarts, "asymmetry": 1.0 if ONCE else 0.05}
     race.run("ShapeGP, current", ShapeGP(**ask).fit, 3)
     race.run("ShapeGP, current and waves", ShapeGP(**ask).fit, 7)
-    race.run("  in the current's frame", ShapeGP(frame="current", **ask).fit, 7)
     folded = ShapeGP(symmetry=symmetry, **ask)
     race.run("  folded by symmetry", folded.fit, 7)
     coarse = ShapeGP(symmetry=symmetry, tolerance=0.02, **ask)

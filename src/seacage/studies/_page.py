@@ -12,6 +12,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+_LOOKS = {"holds": "better", "reproduced": "better", "missed": "worse", "not reproduced": "worse"}
+
+
 class Html(str):
     """Text that is HTML already."""
 
@@ -46,6 +49,16 @@ def facts(entries: Mapping[str, str]) -> Html:
         for name, value in entries.items()
     )
     return tag("dl", *map(Html, pairs), look="facts")
+
+
+def claims(entries: Iterable[tuple[str, str, str]]) -> Html:
+    """Verdict, claim and finding of each claim, with the look of its verdict."""
+    parts = (
+        tag("dt", verdict, look=_LOOKS.get(verdict, "unproven"))
+        + tag("dd", tag("strong", claim), " ", finding)
+        for verdict, claim, finding in entries
+    )
+    return tag("dl", *map(Html, parts), look="claims")
 
 
 def picture(figure: "Figure", *, caption: str, alternative: str, look: str = "") -> Html:

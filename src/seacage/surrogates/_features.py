@@ -73,7 +73,7 @@ def metocean_features(
 ) -> Float[np.ndarray, "row feature"]:
     """All that a buoy measures as features: ``current_features``, then ``wave_features``.
 
-    ``ShapeGP`` can turn these, so it may learn in the current's frame or fold by a symmetry.
+    ``ShapeGP`` can turn these, so it may fold by a symmetry.
 
     Parameters
     ----------
@@ -104,8 +104,8 @@ def check_turnable(x: Float[np.ndarray, "row feature"], *, what: str) -> None:
     """Refuse features that cannot be turned, for their vectors are not where they should be."""
     if x.shape[1] not in (3, 6, 7):
         raise InputError(
-            f"{what}: x has {x.shape[1]} features per row; a current's frame and a symmetry "
-            "turn the 3, 6 or 7 of metocean_features. Build x with it."
+            f"{what}: x has {x.shape[1]} features per row; a symmetry turns the 3, 6 or "
+            "7 of metocean_features. Build x with it."
         )
     for at in vector_columns(x.shape[1]):
         length, vector = x[:, at.start - 1], x[:, at]

@@ -259,7 +259,7 @@ def benchmarks(
         },
         as_json=as_json,
         rows=[
-            *((one.word, f"{one.claim} {one.finding}") for one in study.verdicts),
+            *((one.verdict, f"{one.claim} {one.finding}") for one in study.verdicts),
             ("Report", str(study.report)),
         ],
     )

@@ -9,11 +9,10 @@ from seacage.figures import Contest, cost_figure, coverage_figure, error_figure
 from seacage.studies._benchmarks._methods import OURS, Method
 from seacage.studies._benchmarks._problems import CAGE_SIZE, Problem
 from seacage.studies._benchmarks._scores import Summary
-from seacage.studies._benchmarks._verdicts import COVERAGE, Summaries, Verdict
-from seacage.studies._page import Html, facts, page, picture, table, tag
+from seacage.studies._benchmarks._verdicts import COVERAGE, Summaries
+from seacage.studies._claim import Claim
+from seacage.studies._page import Html, claims, facts, page, picture, table, tag
 from seacage.studies._text import listed, number, percent
-
-LOOKS = {True: "better", False: "worse", None: "unproven"}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -37,7 +36,7 @@ class BenchmarkReport:
         With what it was done, as name and value.
     """
 
-    verdicts: Sequence[Verdict]
+    verdicts: Sequence[Claim]
     problems: Sequence[Problem]
     methods: Sequence[Method]
     report: Summaries
@@ -61,13 +60,8 @@ class BenchmarkReport:
         )
 
     def _header(self) -> Html:
-        judged = [one for one in self.verdicts if one.holds is not None]
-        held = sum(bool(one.holds) for one in judged)
-        entries = (
-            tag("dt", one.word, look=LOOKS[one.holds])
-            + tag("dd", tag("strong", one.claim), " ", one.finding)
-            for one in self.verdicts
-        )
+        evaluated = [one for one in self.verdicts if one.holds is not None]
+        held = sum(bool(one.holds) for one in evaluated)
         gone = [] if self.missing is None else [tag("p", self.missing, look="lead")]
         return tag(
             "header",
@@ -79,11 +73,11 @@ class BenchmarkReport:
                 "seacage's NARGP, by simple baselines and by other people's packages. Each method "
                 "gets the same training cases and answers the same test points; an own process "
                 "fits and times it by the same lines. "
-                f"{held} of {len(judged)} promises that could be judged hold.",
+                f"{held} of {len(evaluated)} promises that could be evaluated hold.",
                 look="lead",
             ),
             *gone,
-            tag("dl", *map(Html, entries), look="claims"),
+            claims((one.verdict, one.claim, one.finding) for one in self.verdicts),
         )
 
     def _contests(self) -> list[Contest]:

@@ -10,7 +10,8 @@ from seacage.studies._benchmarks._problems import CAGE_SIZE, PROBLEMS, Problem
 from seacage.studies._benchmarks._report import BenchmarkReport
 from seacage.studies._benchmarks._runs import Runs
 from seacage.studies._benchmarks._scores import RunScore, Summary, scored, summary
-from seacage.studies._benchmarks._verdicts import Verdict, verdicts
+from seacage.studies._benchmarks._verdicts import verdicts
+from seacage.studies._claim import Claim
 from seacage.studies._held_out import write_scores
 from seacage.studies._text import listed
 
@@ -40,7 +41,7 @@ class BenchmarkStudy:
 
     report: Path
     scores: Path
-    verdicts: tuple[Verdict, ...]
+    verdicts: tuple[Claim, ...]
     summaries: tuple[Summary, ...]
 
 

@@ -1,11 +1,11 @@
 """What was promised of the benchmarks, and whether the numbers hold it."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 from seacage.studies._benchmarks._methods import EMUKIT, HIGH_ONLY, OURS, SMT
 from seacage.studies._benchmarks._problems import CAGE_SIZE, PROBLEMS, Problem, problem_named
 from seacage.studies._benchmarks._scores import Summary
+from seacage.studies._claim import Claim
 from seacage.studies._text import listed, number, percent
 
 RATIOS = {"pedagogical": 1.0, "branin-3": 0.7, "park": 0.5, "borehole": 0.3}
@@ -28,31 +28,7 @@ Summaries = Mapping[tuple[str, str], Summary]
 """By problem and method."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Verdict:
-    """A promise that the numbers hold or miss.
-
-    Parameters
-    ----------
-    claim
-        The promise.
-    holds
-        Whether the numbers say so; None where what it needs was not run.
-    finding
-        The numbers.
-    """
-
-    claim: str
-    holds: bool | None
-    finding: str
-
-    @property
-    def word(self) -> str:
-        """In a word."""
-        return {True: "holds", False: "missed", None: "not judged"}[self.holds]
-
-
-def verdicts(found: Summaries) -> tuple[Verdict, ...]:
+def verdicts(found: Summaries) -> tuple[Claim, ...]:
     """Every promise, judged by the report seeds' summaries."""
     return (
         *(_ratio(found, name, most) for name, most in RATIOS.items()),
@@ -78,14 +54,14 @@ def best_rival(found: Summaries, problem: str) -> Summary | None:
     return min(whole, key=lambda one: one.rmse) if whole else None
 
 
-def _ratio(found: Summaries, name: str, most: float) -> Verdict:
+def _ratio(found: Summaries, name: str, most: float) -> Claim:
     title = problem_named(name).title
     claim = f"{title}: mean RMSE at most {most:g} times that of Emukit's NARGP."
     share = ratio(found, name, EMUKIT)
     if share is None:
         return _unjudged(claim, found, name, EMUKIT)
     ours, theirs = found[name, OURS], found[name, EMUKIT]
-    return Verdict(
+    return Claim(
         claim=claim,
         holds=share <= most,
         finding=f"It is {number(share)} times: {number(ours.rmse)} against {number(theirs.rmse)}; "
@@ -93,18 +69,18 @@ def _ratio(found: Summaries, name: str, most: float) -> Verdict:
     )
 
 
-def _no_worse(found: Summaries) -> Verdict:
+def _no_worse(found: Summaries) -> Claim:
     claim = (
         "On no problem more than 10 % worse than the best of Emukit's NARGP, SMT's MFK and high "
         "fidelity only."
     )
     # High fidelity only is always there, and no rival by itself.
     if not any(rival in {EMUKIT, SMT} for _, rival in found):
-        return Verdict(claim=claim, holds=None, finding="Neither peer was run.")
+        return Claim(claim=claim, holds=None, finding="Neither peer was run.")
     judged = [problem for problem in (*PROBLEMS, CAGE_SIZE) if (problem.name, OURS) in found]
     worse = [line for problem in judged if (line := _where_worse(found, problem))]
     finding = " ".join(worse) or f"It holds on each of {len(judged)} problems."
-    return Verdict(claim=claim, holds=not worse, finding=finding)
+    return Claim(claim=claim, holds=not worse, finding=finding)
 
 
 def _where_worse(found: Summaries, problem: Problem) -> str:
@@ -125,7 +101,7 @@ def _where_worse(found: Summaries, problem: Problem) -> str:
     )
 
 
-def _coverage(found: Summaries) -> Verdict:
+def _coverage(found: Summaries) -> Claim:
     low, high = COVERAGE
     shares = {
         problem.title: found[problem.name, OURS].coverage
@@ -134,20 +110,20 @@ def _coverage(found: Summaries) -> Verdict:
     }
     outside = [name for name, share in shares.items() if not low <= share <= high]
     each = listed([f"{name} {percent(share)}" for name, share in shares.items()] or ["nothing"])
-    return Verdict(
+    return Claim(
         claim=f"Our 95 % intervals hold {percent(low)} to {percent(high)} on every problem.",
         holds=not outside if shares else None,
         finding=f"{each}." + (f" Outside: {listed(outside)}." if outside else ""),
     )
 
 
-def _speed(found: Summaries, name: str) -> Verdict:
+def _speed(found: Summaries, name: str) -> Claim:
     what, least = SPEEDS[name]
     claim = f"{CAGE_SIZE.title}: {what.lower()} at least {least:g} times faster than Emukit's."
     if ratio(found, CAGE_SIZE.name, EMUKIT) is None:
         return _unjudged(claim, found, CAGE_SIZE.name, EMUKIT)
     ours, theirs = (getattr(found[CAGE_SIZE.name, one], name) for one in (OURS, EMUKIT))
-    return Verdict(
+    return Claim(
         claim=claim,
         holds=theirs >= least * ours,
         finding=f"{what} is {number(theirs / ours)} times faster: {_time(ours)} against "
@@ -155,13 +131,13 @@ def _speed(found: Summaries, name: str) -> Verdict:
     )
 
 
-def _cage_accuracy(found: Summaries) -> Verdict:
+def _cage_accuracy(found: Summaries) -> Claim:
     claim = f"{CAGE_SIZE.title}: at no worse RMSE than Emukit's."
     share = ratio(found, CAGE_SIZE.name, EMUKIT)
     if share is None:
         return _unjudged(claim, found, CAGE_SIZE.name, EMUKIT)
     ours, theirs = found[CAGE_SIZE.name, OURS], found[CAGE_SIZE.name, EMUKIT]
-    return Verdict(
+    return Claim(
         claim=claim,
         holds=share <= 1.0,
         finding=f"{number(ours.rmse)} kN against {number(theirs.rmse)} kN over "
@@ -169,13 +145,13 @@ def _cage_accuracy(found: Summaries) -> Verdict:
     )
 
 
-def _unjudged(claim: str, found: Summaries, problem: str, rival: str) -> Verdict:
+def _unjudged(claim: str, found: Summaries, problem: str, rival: str) -> Claim:
     missing: Sequence[str] = [one for one in (OURS, rival) if (problem, one) not in found]
     if missing:
-        return Verdict(claim=claim, holds=None, finding=f"Not run: {listed(missing)}.")
+        return Claim(claim=claim, holds=None, finding=f"Not run: {listed(missing)}.")
     failed = [found[problem, one] for one in (OURS, rival) if found[problem, one].failures]
     words = [f"{one.method} failed on {one.failures} seeds: {one.error}" for one in failed]
-    return Verdict(claim=claim, holds=None, finding=f"{listed(words)}.")
+    return Claim(claim=claim, holds=None, finding=f"{listed(words)}.")
 
 
 def _time(seconds: float) -> str:

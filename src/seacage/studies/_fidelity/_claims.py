@@ -1,10 +1,10 @@
 """What the fidelity study claims, and whether its own numbers hold it."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
+from seacage.studies._claim import Claim
 from seacage.studies._fidelity._fouling import FoulingGap
 from seacage.studies._fidelity._gap import SensorGap
 from seacage.studies._fidelity._null_case import NullCase
@@ -14,30 +14,6 @@ from seacage.studies._text import listed, number, percent
 
 THOUSANDTH = {"m": "mm", "kN": "N"}
 """Units that a null case's errors are read in."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Claim:
-    """A sentence that the numbers hold or miss.
-
-    Parameters
-    ----------
-    claim
-        The sentence.
-    holds
-        Whether the numbers say so.
-    finding
-        The numbers.
-    """
-
-    claim: str
-    holds: bool
-    finding: str
-
-    @property
-    def verdict(self) -> str:
-        """In a word."""
-        return "holds" if self.holds else "missed"
 
 
 def claims(

@@ -14,13 +14,14 @@ from seacage.figures import (
     left_figure,
     sector_figure,
 )
-from seacage.studies._fidelity._claims import THOUSANDTH, Claim, ends
+from seacage.studies._claim import Claim
+from seacage.studies._fidelity._claims import THOUSANDTH, ends
 from seacage.studies._fidelity._fouling import FoulingGap
 from seacage.studies._fidelity._gap import SECTORS, SensorGap
 from seacage.studies._fidelity._null_case import Gain, Gains, NullCase
 from seacage.studies._fidelity._rescaling import LEAST_LEFT, Rescaling, Rescalings
 from seacage.studies._interval import Interval
-from seacage.studies._page import Html, bar, facts, page, picture, table, tag
+from seacage.studies._page import Html, bar, claims, facts, page, picture, table, tag
 from seacage.studies._text import number, percent
 
 ORIGIN = Origin.VIRTUAL_FIELD
@@ -62,12 +63,7 @@ class FidelityReport:
         )
 
     def _header(self) -> Html:
-        held = sum(claim.holds for claim in self.claims)
-        verdicts = (
-            tag("dt", claim.verdict, look="better" if claim.holds else "worse")
-            + tag("dd", tag("strong", claim.claim), " ", claim.finding)
-            for claim in self.claims
-        )
+        held = sum(bool(claim.holds) for claim in self.claims)
         return tag(
             "header",
             tag("span", "Virtual field", look="badge"),
@@ -81,7 +77,7 @@ class FidelityReport:
                 f"{held} of {len(self.claims)} claims hold.",
                 look="lead",
             ),
-            tag("dl", *map(Html, verdicts), look="claims"),
+            claims((one.verdict, one.claim, one.finding) for one in self.claims),
         )
 
     def _gaps(self) -> list[Html]:

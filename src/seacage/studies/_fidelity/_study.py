@@ -11,7 +11,8 @@ from seacage.campaigns import Hidden
 from seacage.conventions import InputError, Origin, Progress, unheard
 from seacage.records import FieldRecord
 from seacage.studies._chain import Chain, Recipe
-from seacage.studies._fidelity._claims import Claim, claims
+from seacage.studies._claim import Claim
+from seacage.studies._fidelity._claims import claims
 from seacage.studies._fidelity._fouling import FoulingGap, fouling_gap
 from seacage.studies._fidelity._gap import SensorGap, sensor_gaps
 from seacage.studies._fidelity._null_case import NullCase, null_case

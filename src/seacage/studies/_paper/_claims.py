@@ -78,7 +78,7 @@ INCONSISTENT = (
 )
 """Where the paper says two things, and what was chosen here."""
 
-Verdict = Literal["reproduced", "partly", "not reproduced", "not judged"]
+Verdict = Literal["reproduced", "partly", "not reproduced", "not evaluated"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -163,7 +163,7 @@ def _underestimated(depths: Sequence[SensorScore]) -> PaperClaim:
     under = [one.sensor for one in depths if one.raw.low_bias > 0.0]
     return PaperClaim(
         claim="The simulations underestimate the net's deformation.",
-        verdict=_share(depths, under) if depths else "not judged",
+        verdict=_share(depths, under) if depths else "not evaluated",
         finding="; ".join(
             f"{one.sensor} is predicted {number(abs(one.raw.low_bias))} m too "
             f"{'deep' if one.raw.low_bias > 0.0 else 'high'} on average"
@@ -182,7 +182,7 @@ def _oscillation(loads: Sequence[SensorScore]) -> PaperClaim:
     ]
     return PaperClaim(
         claim="Readings oscillate about the multifidelity trend, which does not follow.",
-        verdict=_share(loads, [one.sensor for one in more]) if loads else "not judged",
+        verdict=_share(loads, [one.sensor for one in more]) if loads else "not evaluated",
         finding="Errors of single readings and of 10-minute means, counted as true where the "
         f"first is a tenth larger: {', '.join(pairs)} kN.",
     )
@@ -194,7 +194,7 @@ def _few_minutes(judged: Judged) -> PaperClaim:
     if not row:
         return PaperClaim(
             claim=claim,
-            verdict="not judged",
+            verdict="not evaluated",
             finding="Readings a minute apart hold no few minutes; the full study judges it.",
         )
     sensors = [one for one in row[0].sensors if one.sensor in row[0].taught]
@@ -289,7 +289,7 @@ def _network_wins(shapes: ShapeStudy) -> PaperClaim:
         if network in shapes.scores
     ]
     if not pairs:
-        return PaperClaim(claim=claim, verdict="not judged", finding=" ".join(shapes.left_out))
+        return PaperClaim(claim=claim, verdict="not evaluated", finding=" ".join(shapes.left_out))
     wins = [network.mae < modes.mae for network, modes in pairs]
     told = [
         f"hearing the {network.inputs} "
@@ -312,7 +312,7 @@ def _network_steadier(shapes: ShapeStudy) -> PaperClaim:
     claim = "The errors of PCA-GP vary more from case to case along x and z than the network's."
     network = shapes.scores.get(GCN_PAPER)
     if network is None:
-        return PaperClaim(claim=claim, verdict="not judged", finding=" ".join(shapes.left_out))
+        return PaperClaim(claim=claim, verdict="not evaluated", finding=" ".join(shapes.left_out))
     theirs, ours = (_spread(one) for one in (shapes.scores[PCA_PAPER], network))
     wider = [axis for axis in "xz" if theirs[axis] > ours[axis]]
     return PaperClaim(

@@ -19,7 +19,7 @@ from seacage.figures import (
 )
 from seacage.ocean import SeaState
 from seacage.studies._held_out import comparison, shown
-from seacage.studies._page import Html, bar, facts, page, picture, table, tag
+from seacage.studies._page import Html, bar, claims, facts, page, picture, table, tag
 from seacage.studies._paper._claims import INCONSISTENT, UNJUDGED, PaperClaim, paper_claims
 from seacage.studies._paper._discussion import NOMINAL, findings
 from seacage.studies._paper._level_one import LevelOneScore
@@ -41,7 +41,6 @@ _SHOWN_LOADS = ("shackle-1", "shackle-2", "shackle-5")
 
 _DRAWN_MODELS = (PCA_PAPER, GCN_PAPER, GCN_OURS, SHAPE_CURRENT)
 _NETS = (PCA_PAPER, GCN_PAPER)
-_LOOKS = {"reproduced": "better", "not reproduced": "worse"}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -395,15 +394,10 @@ class PaperReport:
             f"fouling, stiffness, line lengths, current and sensors. {both} What is shown here is "
             "that the method can learn such differences, not how large they are at a real cage."
         )
-        verdicts = (
-            tag("dt", claim.verdict, look=_LOOKS.get(claim.verdict, "unproven"))
-            + tag("dd", tag("strong", claim.claim), " ", claim.finding)
-            for claim in self.claims
-        )
         return [
             tag("h2", "Discussion"),
             tag("h3", "The paper's statements, held against these numbers"),
-            tag("dl", *map(Html, verdicts), look="claims"),
+            claims((one.verdict, one.claim, one.finding) for one in self.claims),
             tag("h3", "What was found"),
             *(tag("p", finding) for finding in told),
             tag("p", limits),

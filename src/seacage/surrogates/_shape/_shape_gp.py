@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from typing import ClassVar, Literal, Self, get_args
+from typing import ClassVar, Self
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -27,18 +27,9 @@ from seacage.surrogates._gp import (
     kernel_named,
 )
 from seacage.surrogates._prediction import Prediction, checked_inputs, checked_outputs
-from seacage.surrogates._shape._frame import (
-    moment_products,
-    parted,
-    seen_along,
-    whole,
-    whole_moments,
-)
 from seacage.surrogates._shape._pca import Modes, modes_from_arrays, modes_to_arrays, modes_within
 from seacage.surrogates._shape._symmetry import Symmetry
 from seacage.surrogates._shape._symmetry_check import check_symmetry
-
-Frame = Literal["earth", "current"]
 
 LEVEL, DEVIATIONS = 0.95, 1.959964
 """Share of the cases that an interval of so many standard deviations is to cover."""
@@ -68,9 +59,6 @@ class ShapeGP:
         training cases [m].
     restarts
         Random starts of the hyperparameter search beside the deterministic one.
-    frame
-        "current" learns displacements and waves as seen along the current, near slack water as
-        seen from the earth. Needs ``metocean_features``.
     symmetry
         Of the cage: every case is learned by its image in one sector of the current's
         directions, and answered from there. Needs ``metocean_features``.
@@ -81,7 +69,6 @@ class ShapeGP:
     kernel: KernelName = "matern-5/2"
     tolerance: float = 1e-3
     restarts: int = 3
-    frame: Frame = "earth"
     symmetry: Symmetry | None = None
     asymmetry: float = 0.05
 
@@ -94,10 +81,6 @@ class ShapeGP:
                     f"ShapeGP: {name} = {getattr(self, name):g} m is not above 0. "
                     "Give the distance that a node may be off by, e.g. 0.001 m."
                 )
-        if self.frame not in get_args(Frame):
-            raise InputError(
-                f"ShapeGP: frame = {self.frame!r} is not known. Choose 'earth' or 'current'."
-            )
 
     def fit(
         self,
@@ -121,8 +104,6 @@ class ShapeGP:
         node_position = checked_outputs(
             node_position, what="ShapeGP.fit", rows=len(x), shape="(rows, nodes, 3)"
         )
-        if self.frame == "current":
-            check_turnable(x, what="ShapeGP.fit")
         if self.symmetry is not None:
             check_symmetry(self.symmetry, x, node_position, tolerance=self.asymmetry, seed=seed)
             x, node_position = _brought_home(self.symmetry, x, node_position)
@@ -132,13 +113,12 @@ class ShapeGP:
         self, x: Float[np.ndarray, "n feature"], shape: Float[np.ndarray, "n node 3"], seed: int
     ) -> "FittedShapeGP":
         centre = shape.mean(axis=0)
-        parts = _in_frame(self.frame, x, shape - centre).reshape(len(x), -1)
-        # A node's two parts may be off in the same direction.
-        modes = modes_within(parts, self.tolerance / np.sqrt(parts.shape[1] // centre.size))
-        scores = modes.encode(parts)
+        displacement = (shape - centre).reshape(len(x), -1)
+        modes = modes_within(displacement, self.tolerance)
+        scores = modes.encode(displacement)
         process = fitted_process(
             kernel_named(self.kernel),
-            seen_along(x) if self.frame == "current" else x,
+            x,
             scores,
             taught_by=condensed(scores),
             restarts=self.restarts,
@@ -151,10 +131,9 @@ class ShapeGP:
             left_out=np.zeros_like(centre),
             scale=np.ones_like(centre),
             features=x.shape[1],
-            frame=self.frame,
             symmetry=self.symmetry,
         )
-        missed = shape - fitted.rendered(x, scores)
+        missed = shape - fitted.rendered(scores)
         fitted = replace(fitted, left_out=np.sqrt(np.mean(missed**2, axis=0)))
         return replace(fitted, scale=_calibrated(fitted, x, shape))
 
@@ -168,8 +147,7 @@ class FittedShapeGP:
     Parameters
     ----------
     basis
-        The modes kept, of displacements from the mean shape; in the current's frame of their
-        earthly part and of their part along the current.
+        The modes kept, of displacements from the mean shape.
     scores
         One process with an output per mode.
     centre
@@ -181,10 +159,10 @@ class FittedShapeGP:
         training cases lie inside 1.96 of them, each predicted from all others.
     features
         How many the sea state has.
-    frame, symmetry
+    symmetry
         As in ``ShapeGP``.
     products
-        Of the modes' coordinates at each node, which variances are sums of.
+        Of the modes' coordinates at each node, which variances are sums of: x x, y y, z z, x y.
     prior_moments
         These sums where every score is as uncertain as before the training [m2].
     """
@@ -197,15 +175,14 @@ class FittedShapeGP:
     left_out: Float[np.ndarray, "node 3"]
     scale: Float[np.ndarray, "node 3"]
     features: int
-    frame: Frame
     symmetry: Symmetry | None
     products: Float[np.ndarray, "mode product node"] = field(init=False, repr=False)
     prior_moments: Float[np.ndarray, "product node"] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         # Formed once: it would cost more than all the rest of a prediction.
-        direction = self.basis.direction.reshape(self.modes, -1, len(self.centre), 3)
-        products = moment_products(direction)
+        x, y, z = np.moveaxis(self.basis.direction.reshape(self.modes, -1, 3), 2, 0)
+        products = np.stack([x * x, y * y, z * z, x * y], axis=1)
         object.__setattr__(self, "products", products)
         prior = np.tensordot(self.scores.amplitude**2, products, axes=1)
         object.__setattr__(self, "prior_moments", prior)
@@ -267,7 +244,7 @@ class FittedShapeGP:
         if self.symmetry is not None:
             return self.predict_nodes(x, nodes).mean
         x = self._checked(x, what="mean_of_nodes")
-        return self._mean(x, self.scores.mean(self._seen(x)).reshape(len(x), self.modes), nodes)
+        return self._mean(self.scores.mean(x).reshape(len(x), self.modes), nodes)
 
     def coordinate(self, node: int, axis: int) -> "FittedCoordinate":
         """One coordinate of one node, answered without the rest of the shape.
@@ -287,22 +264,15 @@ class FittedShapeGP:
             )
         return FittedCoordinate(shape=self, node=node, axis=axis)
 
-    def rendered(
-        self, x: Float[np.ndarray, "row feature"], score: Float[np.ndarray, "row mode"]
-    ) -> Float[np.ndarray, "row node 3"]:
+    def rendered(self, score: Float[np.ndarray, "row mode"]) -> Float[np.ndarray, "row node 3"]:
         """Shapes of scores [m], at home in the sector of the symmetry, if there is one."""
-        return self._mean(x, score, EVERY)
+        return self._mean(score, EVERY)
 
     def variance(
-        self,
-        x: Float[np.ndarray, "row feature"],
-        score_std: Float[np.ndarray, "row mode"],
-        nodes: Nodes,
+        self, score_std: Float[np.ndarray, "row mode"], nodes: Nodes
     ) -> Float[np.ndarray, "row 4 node"]:
         """Of x, y and z of each node, and the covariance of x with y, at home [m2]."""
         moments = self._moments(score_std**2, nodes)
-        if self.frame == "current":
-            moments = whole_moments(x, moments)
         scale = self.scale[nodes].T
         moments[:, :3] += self.left_out[nodes].T ** 2
         return moments * np.vstack([scale**2, scale[0] * scale[1]])
@@ -312,7 +282,7 @@ class FittedShapeGP:
         settings, arrays = self.scores.to_arrays()
         saved: Settings = {
             "model": self.MODEL,
-            "frame": self.frame,
+            "frame": "earth",
             "features": self.features,
             "symmetric": self.symmetry is not None,
             "scores": [settings],
@@ -334,14 +304,18 @@ class FittedShapeGP:
         if len(parts) != 1:
             raise ModelError(f"The saved ShapeGP holds {len(parts)} processes; expected 1.")
         scores = FittedGaussianProcess.from_arrays(parts[0], within(0, arrays))
-        frame = _saved_frame(setting(settings, "frame", str))
+        if (frame := setting(settings, "frame", str)) != "earth":
+            raise ModelError(
+                f"The saved ShapeGP has frame {frame!r}, which this version does not know. "
+                "Train the model again."
+            )
         centre = array(arrays, "mean_shape", None, 3)
         nodes = len(centre)
         basis = modes_from_arrays(arrays, modes=len(scores.centre))
-        if len(basis.centre) != 3 * nodes * (2 if frame == "current" else 1):
+        if len(basis.centre) != 3 * nodes:
             raise ModelError(
-                f"The saved ShapeGP has modes of {len(basis.centre)} coordinates, which is not "
-                f"the {frame}'s frame of {nodes} nodes. Train the model again."
+                f"The saved ShapeGP has modes of {len(basis.centre)} coordinates, but {nodes} "
+                "nodes. Train the model again."
             )
         symmetric = setting(settings, "symmetric", bool)
         return cls(
@@ -351,7 +325,6 @@ class FittedShapeGP:
             left_out=array(arrays, "left_out", nodes, 3),
             scale=array(arrays, "scale", nodes, 3),
             features=setting(settings, "features", int),
-            frame=frame,
             symmetry=Symmetry.from_arrays(arrays, nodes=nodes) if symmetric else None,
         )
 
@@ -381,32 +354,24 @@ class FittedShapeGP:
         self, x: Float[np.ndarray, "row feature"], *, what: str
     ) -> Float[np.ndarray, "_ _"]:
         x = checked_inputs(x, what=what, width=self.features)
-        if self.symmetry is not None or self.frame == "current":
+        if self.symmetry is not None:
             check_turnable(x, what=what)
         return x
-
-    def _seen(self, x: Float[np.ndarray, "row feature"]) -> Float[np.ndarray, "row seen"]:
-        return seen_along(x) if self.frame == "current" else x
 
     def _at_home(
         self, x: Float[np.ndarray, "row feature"], nodes: Nodes, *, noisy: bool
     ) -> tuple[Float[np.ndarray, "row node 3"], Float[np.ndarray, "row 4 node"]]:
-        score = self.scores.predict(self._seen(x), noisy=noisy)
+        score = self.scores.predict(x, noisy=noisy)
         rows = (len(x), self.modes)
-        mean = self._mean(x, score.mean.reshape(rows), nodes)
-        return mean, self.variance(x, score.std.reshape(rows), nodes)
+        mean = self._mean(score.mean.reshape(rows), nodes)
+        return mean, self.variance(score.std.reshape(rows), nodes)
 
     def _mean(
-        self,
-        x: Float[np.ndarray, "row feature"],
-        score: Float[np.ndarray, "row mode"],
-        nodes: Nodes,
+        self, score: Float[np.ndarray, "row mode"], nodes: Nodes
     ) -> Float[np.ndarray, "row node 3"]:
-        direction = self._parts(self.basis.direction, nodes)
-        centre = self._parts(self.basis.centre[None], nodes)
-        parts = centre + np.tensordot(score, direction, axes=1)
-        moved = whole(x, parts) if self.frame == "current" else parts[:, 0]
-        return self.centre[nodes] + moved
+        direction = self.basis.direction.reshape(self.modes, -1, 3)[:, nodes]
+        centre = self.basis.centre.reshape(-1, 3)[nodes]
+        return self.centre[nodes] + (centre + np.tensordot(score, direction, axes=1))
 
     def _moments(
         self, power: Float[np.ndarray, "row mode"], nodes: Nodes
@@ -419,11 +384,6 @@ class FittedShapeGP:
         if (np.abs(power - alike) <= 1e-9 * alike).all():
             return share[:, None, None] * self.prior_moments[:, nodes]
         return np.tensordot(power, self.products[..., nodes], axes=1)
-
-    def _parts(
-        self, rows: Float[np.ndarray, "row coordinate"], nodes: Nodes
-    ) -> Float[np.ndarray, "row part node 3"]:
-        return rows.reshape(len(rows), -1, len(self.centre), 3)[:, :, nodes]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -482,12 +442,6 @@ def _asked(
             yield image, rows, shares[rows, image, None, None]
 
 
-def _in_frame(
-    frame: Frame, x: Float[np.ndarray, "row feature"], displacement: Float[np.ndarray, "row node 3"]
-) -> Float[np.ndarray, "row *part node 3"]:
-    return parted(x, displacement) if frame == "current" else displacement
-
-
 def _turned(
     moments: Float[np.ndarray, "row 4 node"], turn: Float[np.ndarray, "2 2"]
 ) -> Float[np.ndarray, "row node 3"]:
@@ -508,16 +462,9 @@ def _calibrated(
     """
     left_out = fitted.scores.leave_one_out()
     rows = (len(x), fitted.modes)
-    missed = np.abs(shape - fitted.rendered(x, left_out.mean.reshape(rows)))
-    moments = fitted.variance(x, left_out.std.reshape(rows), EVERY)
+    missed = np.abs(shape - fitted.rendered(left_out.mean.reshape(rows)))
+    moments = fitted.variance(left_out.std.reshape(rows), EVERY)
     std = np.sqrt(np.swapaxes(moments[:, :3], 1, 2))
     ratio = np.divide(missed, std, out=np.full_like(missed, DEVIATIONS), where=std > 0.0)
     rank = min(int(np.ceil(LEVEL * (len(x) + 1))), len(x)) - 1
     return np.partition(ratio, rank, axis=0)[rank] / DEVIATIONS
-
-
-def _saved_frame(name: str) -> Frame:
-    for frame in get_args(Frame):
-        if name == frame:
-            return frame
-    raise ModelError(f"The saved ShapeGP has frame {name!r}, which this version does not know.")

@@ -11,7 +11,7 @@ from seacage.conventions import InputError
 from seacage.service._cli._app import app
 from seacage.service._cli._study import _seeds
 from seacage.studies import BenchmarkStudy
-from seacage.studies._benchmarks._verdicts import Verdict
+from seacage.studies._claim import Claim
 
 
 @pytest.fixture
@@ -22,8 +22,8 @@ def asked(monkeypatch):
     def study(out, **options):
         given.update(options, out=out)
         verdicts = (
-            Verdict(claim="Park: better.", holds=True, finding="It is."),
-            Verdict(claim="Currin: better.", holds=None, finding="Not run."),
+            Claim(claim="Park: better.", holds=True, finding="It is."),
+            Claim(claim="Currin: better.", holds=None, finding="Not run."),
         )
         return BenchmarkStudy(
             report=out / "report.html", scores=out / "scores.json", verdicts=verdicts, summaries=()
@@ -51,7 +51,7 @@ def test_verdicts_are_told_in_words(asked, tmp_path):
     words = ["study", "benchmarks", "--out", str(tmp_path)]
     said = CliRunner().invoke(app, words, catch_exceptions=False).stdout
     assert "holds" in said
-    assert "not judged" in said
+    assert "not evaluated" in said
     assert list(asked["seeds"]) == list(range(10))
 
 

@@ -67,7 +67,7 @@ def test_the_page_says_who_is_best_and_what_was_not_run():
     # 0.1 times seeds 5 and 6: mean and median 0.55.
     assert '<span class="better">0.550<small> 0.550</small></span>' in html
     assert html.count("<img") == 3
-    assert "not judged" in html
+    assert "not evaluated" in html
     assert "Computed from formulas" in html
 
 

@@ -41,7 +41,7 @@ def contest(**rivals: float):
 
 
 def words(found) -> list[str]:
-    return [one.word for one in verdicts(found)]
+    return [one.verdict for one in verdicts(found)]
 
 
 def test_a_clear_winner_holds_every_promise():

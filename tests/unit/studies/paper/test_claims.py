@@ -43,7 +43,7 @@ def test_underestimated_is_too_deep():
     assert verdict("underestimate") == "reproduced"
     high = sensor("depth-1", unit="m", low_bias=-0.5)
     assert verdict("underestimate", judged(high, LOAD)) == "not reproduced"
-    assert verdict("underestimate", judged(LOAD)) == "not judged"
+    assert verdict("underestimate", judged(LOAD)) == "not evaluated"
 
 
 def test_readings_that_scatter_no_more_than_their_means_do_not_oscillate():
@@ -53,7 +53,7 @@ def test_readings_that_scatter_no_more_than_their_means_do_not_oscillate():
 
 
 def test_minutes_in_a_row_are_judged_where_they_were_tried():
-    assert verdict("few minutes") == "not judged"
+    assert verdict("few minutes") == "not evaluated"
     poor = way(sensor("depth-1", unit="m", gain_low=-2.0, gain_high=-1.0), LOAD, name=IN_A_ROW)
     assert verdict("few minutes", judged(DEPTH, LOAD, more=(poor,))) == "partly"
 
@@ -86,7 +86,7 @@ def test_errors_that_do_not_grow_with_the_speed_are_not_said_to():
 def test_the_network_has_to_win_to_be_said_to_win():
     assert verdict("graph network predicts") == "not reproduced"
     assert verdict("graph network predicts", study=shapes(network=0.2)) == "reproduced"
-    assert verdict("graph network predicts", study=shapes(network=None)) == "not judged"
+    assert verdict("graph network predicts", study=shapes(network=None)) == "not evaluated"
 
 
 def test_a_spread_is_compared_along_x_and_z():

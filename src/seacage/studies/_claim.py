@@ -1,0 +1,27 @@
+"""A claim of a study, evaluated on the study's own numbers."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Claim:
+    """A sentence that the numbers support or contradict.
+
+    Parameters
+    ----------
+    claim
+        The sentence.
+    holds
+        Whether the numbers support it; None where a run that it needs is missing.
+    finding
+        The numbers.
+    """
+
+    claim: str
+    holds: bool | None
+    finding: str
+
+    @property
+    def verdict(self) -> str:
+        """In a word."""
+        return {True: "holds", False: "missed", None: "not evaluated"}[self.holds]
