@@ -54,7 +54,7 @@ def level_two(models: Models) -> dict[str, float]:
         "one sensor after another": each(lambda: [one.predict(x) for one in alone]),
         "all together": each(lambda: level.predict(x, low)),
         "their triangular systems alone": each(
-            lambda: [factor.explained(right) for factor, right in systems]
+            lambda: [factor.variance_reduction(right) for factor, right in systems]
         ),
     }
 

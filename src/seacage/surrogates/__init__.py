@@ -13,7 +13,7 @@ from seacage.surrogates._domain import Domain
 from seacage.surrogates._features import current_features, metocean_features, wave_features
 from seacage.surrogates._gcn import GCN, FittedGCN
 from seacage.surrogates._gp import FittedGaussianProcess, GaussianProcess
-from seacage.surrogates._multifidelity import AR1, NARGP, FittedNARGP, Together
+from seacage.surrogates._multifidelity import AR1, NARGP, BatchedLevels, FittedNARGP
 from seacage.surrogates._prediction import Prediction, Predicts
 from seacage.surrogates._saving import Fitted, decode, encode
 from seacage.surrogates._scores import block_bootstrap, coverage, crps, mae, mnll, rmse, skill
@@ -35,6 +35,7 @@ __all__ = [
     "NARGP",
     "AdaptiveConformal",
     "Arrays",
+    "BatchedLevels",
     "Box",
     "Disc",
     "Domain",
@@ -57,7 +58,6 @@ __all__ = [
     "Symmetry",
     "Table",
     "Tabulable",
-    "Together",
     "block_bootstrap",
     "check_symmetry",
     "conformal_factor",

@@ -64,7 +64,7 @@ def array(arrays: Mapping[str, np.ndarray], name: str, *shape: int | None) -> np
     return np.require(values, requirements=["C", "A"])
 
 
-def joined(parts: Sequence[Arrays]) -> Arrays:
+def join(parts: Sequence[Arrays]) -> Arrays:
     """The arrays of several models in one, each named by its place."""
     return {
         f"{place}.{name}": values

@@ -1,4 +1,4 @@
-"""Which of many observations teach: spread over inputs and time, or the first in a row."""
+"""Choice of training observations: spread over inputs and time, or the first in a row."""
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -11,8 +11,8 @@ def spread_design(
 ) -> Int[np.ndarray, " chosen"]:
     """Choose points as far from each other as can be, one after the other.
 
-    Neighbours in time are the same sample twice: several hundred in a row teach little more
-    than one and make a model too sure of itself. With inputs and time among the axes the choice
+    Neighbours in time are the same sample twice: several hundred in a row add little to
+    one and make intervals too narrow. With inputs and time among the axes the choice
     reaches rare inputs and every part of the time.
 
     Parameters

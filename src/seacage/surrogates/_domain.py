@@ -6,7 +6,7 @@ from typing import Self
 import numpy as np
 from jaxtyping import Bool, Float
 
-from seacage.surrogates._prediction import checked_inputs
+from seacage.surrogates._prediction import check_inputs
 
 MARGIN = 0.01
 """Of each feature's range: a sampled campaign never quite reaches its own limits."""
@@ -30,11 +30,11 @@ class Domain:
     @classmethod
     def of(cls, x: Float[np.ndarray, "n feature"]) -> Self:
         """Learn from the training inputs."""
-        x = checked_inputs(x, what="Domain.of")
+        x = check_inputs(x, what="Domain.of")
         return cls(lower=x.min(axis=0), upper=x.max(axis=0))
 
     def contains(self, x: Float[np.ndarray, "row feature"]) -> Bool[np.ndarray, " row"]:
         """Whether each row lies within every range, give or take 1 % of it."""
-        x = checked_inputs(x, what="Domain.contains", width=len(self.lower))
+        x = check_inputs(x, what="Domain.contains", width=len(self.lower))
         margin = MARGIN * (self.upper - self.lower)
         return np.all((x >= self.lower - margin) & (x <= self.upper + margin), axis=1)

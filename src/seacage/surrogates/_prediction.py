@@ -77,7 +77,7 @@ class Predicts(Protocol):
         ...
 
 
-def checked_inputs(
+def check_inputs(
     x: ArrayLike, *, what: str, width: int | None = None
 ) -> Float[np.ndarray, "row feature"]:
     """Features as finite numbers, one row per case.
@@ -111,7 +111,7 @@ def checked_inputs(
     return rows
 
 
-def checked_outputs(
+def check_outputs(
     y: ArrayLike, *, what: str, rows: int, shape: str, least: int = 2
 ) -> Float[np.ndarray, "row *rest"]:
     """Outputs as finite numbers, one entry per row of inputs.

@@ -22,7 +22,7 @@ class Scaling:
         varies = spread > 1e-12 * np.abs(values).max(axis=0)
         return cls(centre=centre, spread=np.where(varies, spread, 0.0))
 
-    def standardised(
+    def standardise(
         self, values: Float[np.ndarray, "row column"]
     ) -> Float[np.ndarray, "row column"]:
         """In spreads from the centre; a constant column keeps its unit."""

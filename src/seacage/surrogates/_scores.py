@@ -1,4 +1,4 @@
-"""How good predictions are: of the mean, of the spread, and how sure we are of it."""
+"""Scores of predictions: of the mean, of the intervals, and the uncertainty of a score."""
 
 import math
 

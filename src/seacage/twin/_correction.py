@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float, Shaped
 
 from seacage.conventions import InputError
-from seacage.surrogates import NARGP, Domain, FittedNARGP, Prediction, Predicts, Together
+from seacage.surrogates import NARGP, BatchedLevels, Domain, FittedNARGP, Prediction, Predicts
 from seacage.twin._pairs import Pairs
 
 GAIN_SD = 0.5
@@ -191,7 +191,7 @@ class Corrections:
         Of each ``Correction`` and its ``Spread``.
     """
 
-    rest: Together
+    rest: BatchedLevels
     gain: Float[np.ndarray, " sensor"]
     own: Float[np.ndarray, " sensor"]
     scale: Float[np.ndarray, " sensor"]
@@ -202,7 +202,7 @@ class Corrections:
     def of(cls, models: Sequence[Correction]) -> Self:
         """Put together."""
         return cls(
-            rest=Together.of([level for model in models for level in model.rest.upper]),
+            rest=BatchedLevels.of([level for model in models for level in model.rest.upper]),
             gain=np.array([model.gain for model in models]),
             own=np.array([model.own for model in models]),
             scale=np.array([model.spread.scale for model in models]),

@@ -1,4 +1,4 @@
-"""Intervals that hold what they promise: calibrated on a lesson kept aside, or as truth comes."""
+"""Conformal calibration of intervals: on held-out scores, or online as observations arrive."""
 
 import math
 from dataclasses import dataclass
@@ -25,7 +25,7 @@ def conformal_factor(score: Series, *, independent: float, level: float = 0.95) 
 
     The quantile of the scores is the split-conformal one, which needs no distribution but
     exchangeable scores. Scores in time are not: neighbours err alike. So few independent ones
-    tell the size of the errors badly, and the interval is widened by the ratio of the Student-t
+    give the size of the errors poorly, and the interval is widened by the ratio of the Student-t
     to the normal quantile.
 
     Parameters

@@ -91,7 +91,7 @@ class ResidualModel:
         fitted = self._start(time, residual, centre)
         for _ in range(self.rounds if self.degrees_of_freedom else 1):
             fitted = _search(fitted, centre, spread)
-            weight = fitted.expected_weight()
+            weight = fitted.mean_weight()
             settled = np.max(np.abs(weight - fitted.weight)) < SETTLED
             fitted = replace(fitted, weight=weight)
             if settled:
@@ -191,7 +191,7 @@ class FittedResidual:
         innovation, variance = run.value - run.mean, run.variance + run.noise
         return -0.5 * float(np.sum(innovation**2 / variance + np.log(2.0 * math.pi * variance)))
 
-    def expected_weight(self) -> Series:
+    def mean_weight(self) -> Series:
         """Expected weight of each value, given all."""
         if self.degrees_of_freedom is None:
             return np.ones(len(self.value))
@@ -259,19 +259,19 @@ def _search(
     """The most probable sizes and memory, the weights given."""
     from scipy.optimize import minimize
 
-    def sized(offset: Float[np.ndarray, " 3"]) -> FittedResidual:
+    def with_sizes(offset: Float[np.ndarray, " 3"]) -> FittedResidual:
         sd, memory_s, noise_sd = np.exp(centre + spread * offset).tolist()
         return replace(fitted, sd=sd, memory_s=memory_s, noise_sd=noise_sd)
 
     now = np.log([fitted.sd, fitted.memory_s, fitted.noise_sd])
     end = minimize(
-        lambda offset: 0.5 * float(offset @ offset) - sized(offset).log_likelihood,
+        lambda offset: 0.5 * float(offset @ offset) - with_sizes(offset).log_likelihood,
         (now - centre) / spread,
         method="L-BFGS-B",
         bounds=[(-REACH, REACH)] * 3,
         options={"maxiter": 40, "ftol": 1e-7},
     )
-    return sized(end.x)
+    return with_sizes(end.x)
 
 
 def _check_series(time_s: ArrayLike, value: ArrayLike) -> tuple[Series, Series]:

@@ -16,7 +16,7 @@ from seacage.surrogates._gcn._layers import Kind, first_parameters, parameter_sh
 from seacage.surrogates._gcn._network import Network, standard_rest
 from seacage.surrogates._gcn._recipe import Recipe, recipe_of
 from seacage.surrogates._gcn._spread import Spread
-from seacage.surrogates._prediction import Prediction, checked_inputs, checked_outputs
+from seacage.surrogates._prediction import Prediction, check_inputs, check_outputs
 from seacage.surrogates._scaling import Scaling
 from seacage.surrogates._shape import all_modes
 
@@ -24,9 +24,9 @@ MODES = 48
 """Most modes of the modal network."""
 
 HELD_OUT = 0.1
-"""Share of the cases that is held back where the user does not say."""
+"""Default share of held-out cases."""
 
-FEWEST_HELD_OUT, FEWEST_TAUGHT = 2, 2
+FEWEST_HELD_OUT, FEWEST_TRAINING = 2, 2
 
 Cases = tuple[Float[np.ndarray, "case feature"], Float[np.ndarray, "case node 3"]]
 
@@ -47,9 +47,9 @@ class GCN:
     direction; give ``x`` so, or as a vector, which has no seam at north.
 
     ``kind="modal"`` learns displacements from the mean shape. Three hops along the edges, and
-    a sea state copied to every node, cannot tell the net as a whole how to lean. Here residual
+    a sea state copied to every node, cannot make the net as a whole lean. Here residual
     graph convolutions make modes of the whole net, beside principal components, and a token
-    made from the sea state says how much of each there is. On half-hours in waves the token
+    made from the sea state gives the amplitude of each. On half-hours in waves the token
     and the modes are what helps; without the graph the error was the same within 2 %.
 
     Training needs JAX and optax (the extra ``gcn``); predicting needs neither.
@@ -111,7 +111,7 @@ class GCN:
         seed
             Of the first weights, the batches and the draw of held-out cases.
         validation
-            Cases that do not train: they say when to stop and how far the network is off. A
+            Held-out cases, which decide when to stop and give the standard deviation. A
             share of these cases, drawn at random, None for a tenth; or features and shapes of
             their own, as for a record in time, where neighbours are the same sample.
         progress
@@ -125,21 +125,21 @@ class GCN:
         training = _training()
         graph = self._graph()
         x, shape, held_out = _cases(x, node_position, graph, validation, seed)
-        taught = np.setdiff1d(np.arange(len(x)), held_out)
-        scaling = Scaling.of(x[taught])
-        x = scaling.standardised(x)
-        centre, spread = _units(shape[taught], self.kind)
+        train = np.setdiff1d(np.arange(len(x)), held_out)
+        scaling = Scaling.of(x[train])
+        x = scaling.standardise(x)
+        centre, spread = _units(shape[train], self.kind)
         target = (shape - centre) / spread
-        parameters, epochs = training.trained(
+        parameters, epochs = training.train_network(
             self.kind,
-            self._first(x.shape[1], target[taught], seed),
-            training.Lesson(
+            self._first(x.shape[1], target[train], seed),
+            training.TrainingSet(
                 rest=standard_rest(graph),
                 propagation=graph.propagation(),
                 weight=self._weight(graph),
                 x=x,
                 target=target,
-                taught=taught,
+                train=train,
                 held_out=held_out,
             ),
             recipe=self._recipe(),
@@ -157,7 +157,7 @@ class GCN:
         residual = shape - network.answer(x)
         return FittedGCN(
             network=network,
-            off=Spread.of(x, residual, taught=taught, held_out=held_out),
+            off=Spread.of(x, residual, train=train, held_out=held_out),
             epochs=epochs,
         )
 
@@ -240,8 +240,8 @@ class FittedGCN:
             neighbouring cases, which with many features holds much of the network's own miss:
             for an interval about a shape ask noisy.
         """
-        x = checked_inputs(x, what="GCN.predict", width=len(self.network.scaling.centre))
-        x = self.network.scaling.standardised(x)
+        x = check_inputs(x, what="GCN.predict", width=len(self.network.scaling.centre))
+        x = self.network.scaling.standardise(x)
         return Prediction(mean=self.network.answer(x), std=self.off.std(x, noisy=noisy))
 
     def to_arrays(self) -> tuple[Settings, Arrays]:
@@ -288,9 +288,9 @@ def _cases(
     Int[np.ndarray, " held"],
 ]:
     """All cases, and which of them are held out."""
-    x, shape = _checked_cases(x, node_position, graph, what="GCN.fit")
+    x, shape = _check_cases(x, node_position, graph, what="GCN.fit")
     if isinstance(validation, tuple) and len(validation) == 2:
-        other, other_shape = _checked_cases(
+        other, other_shape = _check_cases(
             validation[0], validation[1], graph, what="GCN.fit, validation"
         )
         if other.shape[1] != x.shape[1]:
@@ -300,12 +300,12 @@ def _cases(
             )
         held_out = len(x) + np.arange(len(other))
         return np.vstack([x, other]), np.concatenate([shape, other_shape]), held_out
-    return x, shape, _drawn(len(x), validation, seed)
+    return x, shape, _draw_held_out(len(x), validation, seed)
 
 
-def _checked_cases(x: np.ndarray, node_position: np.ndarray, graph: Graph, *, what: str) -> Cases:
-    x = checked_inputs(x, what=what)
-    shape = checked_outputs(node_position, what=what, rows=len(x), shape="(rows, nodes, 3)")
+def _check_cases(x: np.ndarray, node_position: np.ndarray, graph: Graph, *, what: str) -> Cases:
+    x = check_inputs(x, what=what)
+    shape = check_outputs(node_position, what=what, rows=len(x), shape="(rows, nodes, 3)")
     if shape.shape[1] != graph.nodes:
         raise InputError(
             f"{what}: the shapes have {shape.shape[1]} nodes, but the graph has {graph.nodes}. "
@@ -314,7 +314,7 @@ def _checked_cases(x: np.ndarray, node_position: np.ndarray, graph: Graph, *, wh
     return x, shape
 
 
-def _drawn(cases: int, validation: object, seed: int) -> Int[np.ndarray, " held"]:
+def _draw_held_out(cases: int, validation: object, seed: int) -> Int[np.ndarray, " held"]:
     share = HELD_OUT if validation is None else validation
     if not isinstance(share, float | int) or not 0.0 < share < 1.0:
         raise InputError(
@@ -322,10 +322,10 @@ def _drawn(cases: int, validation: object, seed: int) -> Int[np.ndarray, " held"
             "(x, node_position). Give 0.1 for a tenth."
         )
     count = max(FEWEST_HELD_OUT, round(share * cases))
-    if cases - count < FEWEST_TAUGHT:
+    if cases - count < FEWEST_TRAINING:
         raise InputError(
             f"GCN.fit: of {cases} cases {count} are held out, which leaves fewer than "
-            f"{FEWEST_TAUGHT} to learn from. Give more cases or a smaller validation share."
+            f"{FEWEST_TRAINING} to learn from. Give more cases or a smaller validation share."
         )
     return np.sort(np.random.default_rng(seed).permutation(cases)[:count])
 

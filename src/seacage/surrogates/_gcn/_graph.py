@@ -1,4 +1,4 @@
-"""A net as a graph: which node hands to which."""
+"""A net as a graph of nodes and ties."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from jaxtyping import Float, Int
 from seacage.conventions import InputError
 
 Propagate = Callable[[Any], Any]
-"""Hands what nodes say (row, node, channel) to their neighbours, in NumPy or in JAX."""
+"""Passes the nodes' channels (row, node, channel) to their neighbours, in NumPy or in JAX."""
 
 
 # No slots here: the propagation is computed once and kept.
@@ -58,7 +58,8 @@ class Graph:
             )
         if np.any(pairs[:, 0] == pairs[:, 1]):
             raise InputError(
-                "Graph: an edge ties a node to itself. Leave it out; nodes hear themselves."
+                "Graph: an edge ties a node to itself. Leave it out; every node is its own "
+                "neighbour already."
             )
         return cls(edges=pairs, rest_position=rest)
 
@@ -68,7 +69,7 @@ class Graph:
         return len(self.rest_position)
 
     def propagation(self) -> Float[np.ndarray, "node node"]:
-        """Weights with which nodes hear their neighbours and themselves, D^-1/2 (A + I) D^-1/2.
+        """Weights of a node's neighbours and of itself in a convolution, D^-1/2 (A + I) D^-1/2.
 
         A is the adjacency matrix and D the diagonal of the row sums of A + I.
 
@@ -76,15 +77,15 @@ class Graph:
         ----------
         Kipf & Welling (2017), the renormalisation of their eq. (2).
         """
-        heard = np.eye(self.nodes)
+        adjacency = np.eye(self.nodes)
         one, other = self.edges.T
-        heard[one, other] = heard[other, one] = 1.0
-        degree = heard.sum(axis=1)
-        return heard / np.sqrt(np.outer(degree, degree))
+        adjacency[one, other] = adjacency[other, one] = 1.0
+        degree = adjacency.sum(axis=1)
+        return adjacency / np.sqrt(np.outer(degree, degree))
 
     @cached_property
     def propagate(self) -> Propagate:
-        """The same as a function of what the nodes say, over the edges alone.
+        """The same as a function of the nodes' channels, over the edges alone.
 
         A net has few edges per node, and a full matrix is mostly zeros.
         """
@@ -92,9 +93,9 @@ class Graph:
 
         sparse = csr_array(self.propagation())
 
-        def heard(told: Float[np.ndarray, "row node channel"]) -> np.ndarray:
-            rows, nodes, channels = told.shape
-            columns = told.transpose(1, 0, 2).reshape(nodes, rows * channels)
+        def propagate(signal: Float[np.ndarray, "row node channel"]) -> np.ndarray:
+            rows, nodes, channels = signal.shape
+            columns = signal.transpose(1, 0, 2).reshape(nodes, rows * channels)
             return (sparse @ columns).reshape(nodes, rows, channels).transpose(1, 0, 2)
 
-        return heard
+        return propagate

@@ -88,11 +88,11 @@ def paper_network(
         Standardised (row, node, 3).
     """
     p = parameters
-    heard = propagate(xp.ones((1, len(rest), 1), rest.dtype))
-    told = propagate((rest @ p["place"])[None]) + heard * (x @ p["sea"])[:, None]
-    told = _swish(xp, told + p["bias_1"])
-    told = _swish(xp, propagate(told @ p["weight_2"]) + p["bias_2"])
-    return propagate(told @ p["weight_3"]) + p["bias_3"]
+    received = propagate(xp.ones((1, len(rest), 1), rest.dtype))
+    signal = propagate((rest @ p["place"])[None]) + received * (x @ p["sea"])[:, None]
+    signal = _swish(xp, signal + p["bias_1"])
+    signal = _swish(xp, propagate(signal @ p["weight_2"]) + p["bias_2"])
+    return propagate(signal @ p["weight_3"]) + p["bias_3"]
 
 
 def modal_network(
@@ -105,17 +105,17 @@ def modal_network(
     """Modes of the whole net, made on its graph and driven by the sea state.
 
     Two residual graph convolutions read the rest position and a learned mark of each node and
-    say how it moves in each mode, beside what its principal components say. They do not
+    give its motion in each mode, beside the principal components. They do not
     depend on the sea state, so they cost nothing per case. The sea state becomes one token,
-    which says how much of each mode there is. Parameters and result as for
+    which gives the amplitude of each mode. Parameters and result as for
     ``paper_network``, the result a displacement.
     """
     p = parameters
-    told = rest @ p["place"] + p["node_bias"]
+    signal = rest @ p["place"] + p["node_bias"]
     for layer in ("1", "2"):
-        heard = propagate((told @ p[f"weight_{layer}"])[None])[0]
-        told = told + _swish(xp, heard + p[f"bias_{layer}"])
-    beyond = (told @ p["move"]).reshape(p["mode"].shape[::-1]).T
+        received = propagate((signal @ p[f"weight_{layer}"])[None])[0]
+        signal = signal + _swish(xp, received + p[f"bias_{layer}"])
+    beyond = (signal @ p["move"]).reshape(p["mode"].shape[::-1]).T
     token = _swish(xp, x @ p["token_1"] + p["token_bias_1"])
     token = token + _swish(xp, token @ p["token_2"] + p["token_bias_2"])
     token = token + _swish(xp, token @ p["token_3"] + p["token_bias_3"])

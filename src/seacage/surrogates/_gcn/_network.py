@@ -14,7 +14,7 @@ from seacage.surrogates._gcn._layers import NETWORKS, Kind, Parameters, paramete
 from seacage.surrogates._scaling import Scaling
 
 BLOCK = 64
-"""Rows answered at once, so that what the nodes say stays in the cache."""
+"""Rows answered at once, so that the channels of all nodes stay in the cache."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -80,7 +80,7 @@ class Network:
         ModelError
             A setting or an array is missing, of another kind or shape, or not finite.
         """
-        kind = _saved_kind(settings)
+        kind = _restore_kind(settings)
         rest = array(arrays, "rest_position", None, 3)
         feature_centre = array(arrays, "feature_centre", None)
         shapes = parameter_shapes(
@@ -92,7 +92,7 @@ class Network:
         )
         return cls(
             kind=kind,
-            graph=_saved_graph(array(arrays, "edges", None, 2), rest),
+            graph=_restore_graph(array(arrays, "edges", None, 2), rest),
             scaling=Scaling(
                 centre=feature_centre,
                 spread=array(arrays, "feature_spread", len(feature_centre)),
@@ -108,10 +108,10 @@ class Network:
 def standard_rest(graph: Graph) -> Float[np.ndarray, "node 3"]:
     """Rest position as a feature of the nodes."""
     rest = graph.rest_position
-    return Scaling.of(rest).standardised(rest)
+    return Scaling.of(rest).standardise(rest)
 
 
-def _saved_kind(settings: Mapping[str, object]) -> Kind:
+def _restore_kind(settings: Mapping[str, object]) -> Kind:
     kind = setting(settings, "kind", str)
     for known in NETWORKS:
         if kind == known:
@@ -119,7 +119,7 @@ def _saved_kind(settings: Mapping[str, object]) -> Kind:
     raise ModelError(f"The saved GCN is of kind {kind!r}, which this version does not know.")
 
 
-def _saved_graph(edges: Float[np.ndarray, "edge 2"], rest: Float[np.ndarray, "node 3"]) -> Graph:
+def _restore_graph(edges: Float[np.ndarray, "edge 2"], rest: Float[np.ndarray, "node 3"]) -> Graph:
     try:
         return Graph.of(np.rint(edges).astype(int), rest)
     except InputError as error:

@@ -1,4 +1,4 @@
-"""How a network is trained where its user does not say."""
+"""Default choices of a network's training."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

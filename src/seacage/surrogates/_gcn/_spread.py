@@ -1,4 +1,4 @@
-"""How far a network is off: judged on cases that it was not trained on."""
+"""Standard deviation of a network's answer, from held-out cases."""
 
 import math
 from collections.abc import Mapping
@@ -27,14 +27,14 @@ NOISE_SHARE = (0.01, 0.98)
 class Spread:
     """Standard deviation of a network's answer, by coordinate and by place among its cases.
 
-    A network does not know what it does not know, so its held-out cases say it: each
+    A network has no variance of its own, so its held-out cases give one: each
     coordinate has the miss that 95 % of them stay within (split conformal), made larger or
     smaller by the misses of the nearest of them. Beyond the farthest that a held-out case lay
     from its nearest training case, it grows in proportion to that distance.
 
     Parameters
     ----------
-    taught, held_out
+    train, held_out
         Standardised features of the cases that trained the network, and of the others.
     size
         Of the miss of each held-out case, 1 on average.
@@ -44,7 +44,7 @@ class Spread:
         Share of the variance that differs between neighbouring cases.
     """
 
-    taught: Float[np.ndarray, "taught feature"]
+    train: Float[np.ndarray, "train feature"]
     held_out: Float[np.ndarray, "held feature"]
     size: Float[np.ndarray, " held"]
     miss: Float[np.ndarray, "node 3"]
@@ -56,10 +56,10 @@ class Spread:
         x: Float[np.ndarray, "case feature"],
         residual: Float[np.ndarray, "case node 3"],
         *,
-        taught: Int[np.ndarray, " taught"],
+        train: Int[np.ndarray, " train"],
         held_out: Int[np.ndarray, " held"],
     ) -> Self:
-        """Judge a network.
+        """From the residuals of a network.
 
         Parameters
         ----------
@@ -67,7 +67,7 @@ class Spread:
             Standardised features of all cases.
         residual
             Truth less the network's answer [m].
-        taught, held_out
+        train, held_out
             Which cases are which.
         """
         missed = residual[held_out]
@@ -80,9 +80,9 @@ class Spread:
         enough = min(1.0, math.ceil(0.95 * (len(missed) + 1)) / len(missed))
         scaled = np.quantile(np.abs(missed) / around, enough, axis=0, method="higher")
         miss = scaled / TWO_SIGMA + tiny
-        rough = _roughness(x[taught], residual[taught])
+        rough = _roughness(x[train], residual[train])
         return cls(
-            taught=x[taught],
+            train=x[train],
             held_out=x[held_out],
             size=size,
             miss=miss,
@@ -102,19 +102,21 @@ class Spread:
             Of a case as it was learned from; otherwise without what differs between neighbours.
         """
         around = np.sqrt(_nearest_mean(x, self.held_out, self.size**2))
-        grown = np.maximum(1.0, _nearest(x, self.taught) / self._reach)
+        grown = np.maximum(1.0, _nearest(x, self.train) / self._reach)
         kept = grown[:, None, None] ** 2 - (0.0 if noisy else self.noise)
         return around[:, None, None] * self.miss * np.sqrt(kept)
 
     @cached_property
     def _reach(self) -> float:
-        """How far from a training case the network was judged."""
-        return max(1e-6, float(_nearest(self.held_out, self.taught).max()))
+        """Largest distance of a held-out case from its nearest training case."""
+        return max(1e-6, float(_nearest(self.held_out, self.train).max()))
 
     def to_arrays(self) -> Arrays:
         """By the names of its parts."""
-        names = ("taught", "held_out", "size", "miss", "noise")
-        return {name: np.ascontiguousarray(getattr(self, name)) for name in names}
+        parts = {"taught": self.train} | {
+            name: getattr(self, name) for name in ("held_out", "size", "miss", "noise")
+        }
+        return {name: np.ascontiguousarray(part) for name, part in parts.items()}
 
     @classmethod
     def from_arrays(cls, arrays: Mapping[str, np.ndarray], *, features: int, nodes: int) -> Self:
@@ -133,7 +135,7 @@ class Spread:
                 "The file is damaged. Train the model again."
             )
         return cls(
-            taught=array(arrays, "taught", None, features),
+            train=array(arrays, "taught", None, features),
             held_out=held_out,
             size=array(arrays, "size", len(held_out)),
             miss=array(arrays, "miss", nodes, 3),

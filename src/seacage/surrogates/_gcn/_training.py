@@ -16,14 +16,14 @@ from seacage.surrogates._gcn._layers import NETWORKS, Kind, Parameters
 from seacage.surrogates._gcn._recipe import FEWEST_BATCHES, LARGEST_BATCH, Recipe
 
 REMEMBERED = 0.98
-"""Share of the averaged weights that a step keeps: about the last fifty steps speak."""
+"""Share of the averaged weights that a step keeps: an average over about the last fifty steps."""
 
 ADAM = optax.chain(optax.clip_by_global_norm(1.0), optax.scale_by_adam())
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Lesson:
-    """What a network is taught, standardised.
+class TrainingSet:
+    """Inputs and targets of a training, standardised.
 
     Parameters
     ----------
@@ -35,8 +35,8 @@ class Lesson:
         Of each node's error in the loss, 1 on average.
     x, target
         The cases.
-    taught, held_out
-        Which cases train, and which say when to stop.
+    train, held_out
+        Which cases train, and which decide when to stop.
     """
 
     rest: Float[np.ndarray, "node 3"]
@@ -44,14 +44,14 @@ class Lesson:
     weight: Float[np.ndarray, " node"]
     x: Float[np.ndarray, "case feature"]
     target: Float[np.ndarray, "case node 3"]
-    taught: Int[np.ndarray, " taught"]
+    train: Int[np.ndarray, " train"]
     held_out: Int[np.ndarray, " held"]
 
 
-def trained(
+def train_network(
     kind: Kind,
     first: Mapping[str, np.ndarray],
-    lesson: Lesson,
+    training_set: TrainingSet,
     *,
     recipe: Recipe,
     seed: int,
@@ -60,23 +60,24 @@ def trained(
     """The averaged parameters that answered the held-out cases best, and the epochs it took.
 
     Adam on batches, in single precision, with a learning rate that rises and falls. A running
-    average of the parameters is what is judged and kept. ``progress`` is called as ("gcn",
-    epoch, epochs); training that ends early says that it is done.
+    average of the parameters is evaluated and kept. ``progress`` is called as ("gcn",
+    epoch, epochs); training that ends early reports all epochs as done.
     """
     single = {name: jnp.asarray(values, jnp.float32) for name, values in first.items()}
     net = tuple(
-        jnp.asarray(a, jnp.float32) for a in (lesson.rest, lesson.propagation, lesson.weight)
+        jnp.asarray(a, jnp.float32)
+        for a in (training_set.rest, training_set.propagation, training_set.weight)
     )
-    x, target = (jnp.asarray(a, jnp.float32) for a in (lesson.x, lesson.target))
-    unseen = x[lesson.held_out], target[lesson.held_out]
+    x, target = (jnp.asarray(a, jnp.float32) for a in (training_set.x, training_set.target))
+    unseen = x[training_set.held_out], target[training_set.held_out]
     random = np.random.default_rng(seed)
     state = (single, ADAM.init(single), single)
     best, least, best_epoch = single, np.inf, 0
-    batches, batch = batches_of(len(lesson.taught))
+    batches, batch = batches_of(len(training_set.train))
     rate = learning_rates(recipe, batches)
     epoch = 0
     for epoch in range(1, recipe.epochs + 1):
-        order = random.permutation(lesson.taught)[: batches * batch].reshape(batches, batch)
+        order = random.permutation(training_set.train)[: batches * batch].reshape(batches, batch)
         state, unseen_loss = _epoch(kind, state, net, (x, target), unseen, order, rate[epoch - 1])
         loss = float(unseen_loss)
         if loss < least:
@@ -107,8 +108,8 @@ def _loss(parameters: Any, kind: Kind, net: Any, x: jax.Array, target: jax.Array
     """Mean square error, each node by its weight."""
     rest, propagation, weight = net
 
-    def propagate(told: jax.Array) -> jax.Array:
-        return jnp.einsum("ij,bjf->bif", propagation, told)
+    def propagate(signal: jax.Array) -> jax.Array:
+        return jnp.einsum("ij,bjf->bif", propagation, signal)
 
     answer = NETWORKS[kind](jnp, parameters, rest, x, propagate)
     return jnp.mean(weight[:, None] * (answer - target) ** 2)

@@ -5,9 +5,9 @@ from seacage.surrogates._gp._gaussian_process import (
     FittedGaussianProcess,
     GaussianProcess,
     check_restarts,
-    condensed,
-    fitted_process,
-    teachers,
+    condense,
+    fit_process,
+    select_likelihood_outputs,
 )
 from seacage.surrogates._gp._kernels import (
     VARIANCE_PRIOR,
@@ -22,7 +22,7 @@ from seacage.surrogates._gp._kernels import (
     length_priors,
     prior_of,
     register_kernels,
-    scaled,
+    stationary_covariance,
     unit,
 )
 from seacage.surrogates._gp._noise import NoiseName, check_noise
@@ -44,15 +44,15 @@ __all__ = [
     "check_noise",
     "check_restarts",
     "chunks",
-    "condensed",
+    "condense",
     "correlation",
     "correlation_slope",
-    "fitted_process",
+    "fit_process",
     "kernel_named",
     "length_priors",
     "prior_of",
     "register_kernels",
-    "scaled",
-    "teachers",
+    "select_likelihood_outputs",
+    "stationary_covariance",
     "unit",
 ]

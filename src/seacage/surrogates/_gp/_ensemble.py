@@ -37,8 +37,8 @@ def is_drawn(ensemble: Ensemble, *, observations: int) -> bool:
     return ensemble == "always" or (ensemble == "auto" and observations <= FEW)
 
 
-def widened(points: int) -> float:
-    """Factor on the spread that each draw leaves: few points leave more open than they say.
+def widening(points: int) -> float:
+    """Factor on the spread that each draw leaves: few points leave more open than the draws show.
 
     Found and not derived (decision 0040): of 1, 1 + 1/2n, 1 + 1/n and 1 + 2/n this one gave
     tuning samples of published problems the largest likelihood.
@@ -54,7 +54,7 @@ def check_ensemble(ensemble: str) -> None:
         )
 
 
-def drawn(mode: Mode, *, seed: int) -> Float[np.ndarray, "member parameter"]:
+def draw_members(mode: Mode, *, seed: int) -> Float[np.ndarray, "member parameter"]:
     """Log hyperparameters from their posterior, the most probable first.
 
     Hamiltonian Monte Carlo from the mode, in the scales of the curvature there. A log variance
@@ -74,7 +74,7 @@ def drawn(mode: Mode, *, seed: int) -> Float[np.ndarray, "member parameter"]:
     """
     random = np.random.default_rng(seed)
     scale = _scale(mode)
-    at, now = mode.log_parameters, _held_loss(mode.evidence, mode.log_parameters)
+    at, now = mode.log_parameters, _loss_within_bounds(mode.evidence, mode.log_parameters)
     step = LENGTH / LEAPS
     bounds = mode.evidence.bounds().T
     kept: list[Parameters] = []
@@ -92,7 +92,7 @@ def drawn(mode: Mode, *, seed: int) -> Float[np.ndarray, "member parameter"]:
             kept.append(np.clip(at, *bounds))
 
     def loss(draw: Parameters) -> float:
-        return _held_loss(mode.evidence, draw)[0]
+        return _loss_within_bounds(mode.evidence, draw)[0]
 
     return np.stack(sorted(kept, key=loss))
 
@@ -110,7 +110,7 @@ def _trajectory(
     for _ in range(LEAPS):
         momentum = momentum - 0.5 * step * (scale.T @ gradient)
         at = at + step * (scale @ momentum)
-        now = _held_loss(evidence, at)
+        now = _loss_within_bounds(evidence, at)
         gradient = now[1]
         if not math.isfinite(now[0]):
             break
@@ -122,7 +122,7 @@ def _scale(mode: Mode) -> Float[np.ndarray, "parameter parameter"]:
     """A square root of the posterior's covariance about the mode, no wider than the prior's."""
     at, evidence = mode.log_parameters, mode.evidence
     moved = [
-        _held_loss(evidence, at + one)[1] - _held_loss(evidence, at - one)[1]
+        _loss_within_bounds(evidence, at + one)[1] - _loss_within_bounds(evidence, at - one)[1]
         for one in STEP * np.eye(len(at))
     ]
     sd = evidence.prior().sd
@@ -131,7 +131,7 @@ def _scale(mode: Mode) -> Float[np.ndarray, "parameter parameter"]:
     return sd[:, None] * direction / np.sqrt(np.maximum(value, 1.0))
 
 
-def _held_loss(evidence: Evidence, log_parameters: Parameters) -> tuple[float, Parameters]:
+def _loss_within_bounds(evidence: Evidence, log_parameters: Parameters) -> tuple[float, Parameters]:
     """The loss, the likelihood held at its value on the bounds beyond them."""
     from scipy.linalg import LinAlgError
 

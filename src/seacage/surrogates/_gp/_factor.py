@@ -52,11 +52,11 @@ class Cholesky:
         # In C order, as they come back from a file: the same rounding in every prediction.
         return np.ascontiguousarray(cho_solve((self.lower, True), y, check_finite=False))
 
-    def observed(self, weights: Float[np.ndarray, "n output"]) -> Float[np.ndarray, "n output"]:
+    def observations(self, weights: Float[np.ndarray, "n output"]) -> Float[np.ndarray, "n output"]:
         """Outputs whose inverse is the weights."""
         return self.lower @ (self.lower.T @ weights)
 
-    def explained(self, cross: Float[np.ndarray, "row n"]) -> Float[np.ndarray, "row 1"]:
+    def variance_reduction(self, cross: Float[np.ndarray, "row n"]) -> Float[np.ndarray, "row 1"]:
         """Of each row's variance, by the cases that it varies with."""
         # Called bare: for one row, looking at the arguments first would cost as much again.
         half = _trtrs()(self.lower, cross.T, lower=True)[0]
@@ -137,12 +137,14 @@ class Spectrum:
         self._refuse_mixture()
         return self.basis @ ((self.basis.T @ y) * self.inverse_value)
 
-    def observed(self, weights: Float[np.ndarray, "n output"]) -> Float[np.ndarray, "n output"]:
+    def observations(self, weights: Float[np.ndarray, "n output"]) -> Float[np.ndarray, "n output"]:
         """Outputs whose inverse is the weights."""
         self._refuse_mixture()
         return self.basis @ ((self.basis.T @ weights) / self.inverse_value)
 
-    def explained(self, cross: Float[np.ndarray, "row n"]) -> Float[np.ndarray, "row output"]:
+    def variance_reduction(
+        self, cross: Float[np.ndarray, "row n"]
+    ) -> Float[np.ndarray, "row output"]:
         """Of each row's variance, by the cases that it varies with."""
         return (cross @ self.basis) ** 2 @ self.inverse_value
 

@@ -9,16 +9,22 @@ from jaxtyping import Float
 
 from seacage.conventions import InputError
 from seacage.surrogates._arrays import Arrays, Settings, array, setting
-from seacage.surrogates._gp._ensemble import Ensemble, check_ensemble, drawn, is_drawn, widened
-from seacage.surrogates._gp._hyperparameters import Evidence, learned
-from seacage.surrogates._gp._kernels import AbstractKernel, KernelName, kernel_named, saved_kernel
-from seacage.surrogates._gp._noise import NoiseName, check_noise, noise_named, saved_noise
+from seacage.surrogates._gp._ensemble import (
+    Ensemble,
+    check_ensemble,
+    draw_members,
+    is_drawn,
+    widening,
+)
+from seacage.surrogates._gp._hyperparameters import Evidence, most_probable
+from seacage.surrogates._gp._kernels import AbstractKernel, KernelName, kernel_named, restore_kernel
+from seacage.surrogates._gp._noise import NoiseName, check_noise, noise_named, restore_noise
 from seacage.surrogates._gp._posterior import Posterior
-from seacage.surrogates._prediction import Moments, Prediction, checked_inputs, checked_outputs
+from seacage.surrogates._prediction import Moments, Prediction, check_inputs, check_outputs
 from seacage.surrogates._scaling import Scaling
 
 MANY_OUTPUTS = 16
-"""More outputs than this are condensed before they teach the kernel."""
+"""More outputs than this are condensed before the kernel is fitted to them."""
 
 CONDENSED = 1e-6
 """Share of the outputs' variance that condensing may leave out."""
@@ -46,10 +52,10 @@ class GaussianProcess:
         ``"white"``: Gaussian, the same share of every output's variance. ``"per-output"``: its
         own share for each. ``"by-input"``: changing smoothly with the inputs, the same share
         for all. ``"student-t"``: with outliers, four degrees of freedom; what is wrong in one
-        output of a case is doubted in all.
+        output of a case counts less in all.
     ensemble
         ``"auto"``: where observations are few, the answer is that of 16 draws of the
-        hyperparameters from their posterior, as one choice of them would be too sure of itself.
+        hyperparameters from their posterior, as one choice would make intervals too narrow.
         ``"always"`` and ``"never"`` decide it.
     restarts
         Starts of the hyperparameter search beside the one at the prior's mean, for more than 40
@@ -86,15 +92,15 @@ class GaussianProcess:
             Of the subset of points and of the random starts.
         """
         what = "GaussianProcess.fit"
-        x = checked_inputs(x, what=what)
+        x = check_inputs(x, what=what)
         shape = "(rows,)" if np.ndim(y) == 1 else "(rows, outputs)"
-        y = checked_outputs(y, what=what, rows=len(x), shape=shape)
+        y = check_outputs(y, what=what, rows=len(x), shape=shape)
         table = y.reshape(len(y), -1)
-        fitted = fitted_process(
+        fitted = fit_process(
             kernel_named(self.kernel),
             x,
             table,
-            taught_by=teachers(table, unlike=self.noise == "per-output"),
+            likelihood_outputs=select_likelihood_outputs(table, unlike=self.noise == "per-output"),
             noise=self.noise,
             ensemble=self.ensemble,
             restarts=self.restarts,
@@ -150,7 +156,7 @@ class FittedGaussianProcess:
 
     def noise_at(self, x: Float[np.ndarray, "row feature"]) -> Float[np.ndarray, "row *output"]:
         """Variance of the noise of a new observation at each row, in its unit squared."""
-        return self._shaped(self._noise(self._standardised(x, what="noise_at")))
+        return self._reshape(self._noise(self._standardise(x, what="noise_at")))
 
     def predict(self, x: Float[np.ndarray, "row feature"], *, noisy: bool = False) -> Prediction:
         """Answer at each row of features.
@@ -162,28 +168,28 @@ class FittedGaussianProcess:
         noisy
             Of a new observation rather than of what lies behind it: adds the noise.
         """
-        x = self._standardised(x, what="predict")
-        mean, variance = self._mixed(x, [member.predict(x) for member in self.members])
+        x = self._standardise(x, what="predict")
+        mean, variance = self._mix(x, [member.predict(x) for member in self.members])
         if noisy:
             variance = variance + self._noise(x)
         return self._answer(mean, variance)
 
     def mean(self, x: Float[np.ndarray, "row feature"]) -> Float[np.ndarray, "row *output"]:
         """The mean of ``predict`` alone, at a fraction of its cost; all rows are held at once."""
-        x = self._standardised(x, what="mean")
+        x = self._standardise(x, what="mean")
         means = [
             member.kernel.covariance(member.log_parameters, x, member.x) @ member.weights
             for member in self.members
         ]
-        return self._shaped(self._average(means) + self._expected(x))
+        return self._reshape(self._average(means) + self._trend(x))
 
     def jacobian(
         self, x: Float[np.ndarray, "row feature"]
     ) -> Float[np.ndarray, "row *output feature"]:
         """Change of the mean per change of each feature, at each row."""
-        x = self._standardised(x, what="jacobian")
+        x = self._standardise(x, what="jacobian")
         slope = self._average([member.mean_slope(x) for member in self.members]) + self.line.T
-        return self._shaped(slope / self.inputs.unit)
+        return self._reshape(slope / self.inputs.unit)
 
     def moments(self, x: Float[np.ndarray, "row feature"]) -> Moments:
         """Mean and variance of the one output with their gradients, for what builds on it."""
@@ -192,10 +198,10 @@ class FittedGaussianProcess:
                 f"moments: this model has {len(self.centre)} outputs. Ask one, e.g. "
                 "`fitted.output(0)`."
             )
-        x = self._standardised(x, what="moments")
+        x = self._standardise(x, what="moments")
         answers = [member.predict(x) for member in self.members]
-        mean, variance = self._mixed(x, answers)
-        of_members = mean - self._expected(x)
+        mean, variance = self._mix(x, answers)
+        of_members = mean - self._trend(x)
         slopes = [member.mean_slope(x)[:, 0] for member in self.members]
         mean_slope = self._average(slopes)
         square = self.amplitude[0] ** 2
@@ -228,17 +234,17 @@ class FittedGaussianProcess:
             (new,) or (new, outputs), as in the training.
         """
         what = "updated"
-        x = checked_inputs(x, what=what, width=len(self.inputs.centre))
+        x = check_inputs(x, what=what, width=len(self.inputs.centre))
         shape = "(rows,)" if self.single else "(rows, outputs)"
-        y = checked_outputs(y, what=what, rows=len(x), shape=shape, least=1)
+        y = check_outputs(y, what=what, rows=len(x), shape=shape, least=1)
         y = y.reshape(len(x), -1)
         if y.shape[1] != len(self.centre):
             raise InputError(
                 f"{what}: {y.shape[1]} outputs, but {len(self.centre)} were learned. "
                 "Give the outputs of the training, in the same order."
             )
-        x = self.inputs.standardised(x)
-        y = y - self._expected(x)
+        x = self.inputs.standardise(x)
+        y = y - self._trend(x)
         members = [member.updated(x, y, amplitude=self.amplitude) for member in self.members]
         return replace(self, members=tuple(members))
 
@@ -248,10 +254,12 @@ class FittedGaussianProcess:
 
     def moved(self, x: Float[np.ndarray, "n feature"]) -> Self:
         """Conditioned on the same outputs at other inputs, one row for each case."""
-        x = self.inputs.standardised(x)
+        x = self.inputs.standardise(x)
         members = [
             member.reconditioned(
-                x, member.observed() + (member.x - x) @ self.line, doubt=member.doubt
+                x,
+                member.observations() + (member.x - x) @ self.line,
+                noise_factor=member.noise_factor,
             )
             for member in self.members
         ]
@@ -268,10 +276,10 @@ class FittedGaussianProcess:
         """
         left_out = [member.leave_one_out() for member in self.members]
         answers = [
-            (member.observed() - residual, variance)
+            (member.observations() - residual, variance)
             for member, (residual, variance) in zip(self.members, left_out, strict=True)
         ]
-        return self._answer(*self._mixed(self.posterior.x, answers))
+        return self._answer(*self._mix(self.posterior.x, answers))
 
     def output(self, index: int) -> "FittedGaussianProcess":
         """One output as a model that answers (row,); it shares the factor."""
@@ -308,7 +316,7 @@ class FittedGaussianProcess:
             "log_noise": np.stack([member.log_noise for member in self.members]),
             "weights": np.stack([member.weights for member in self.members]),
             "inputs": first.x,
-            "doubt": first.doubt,
+            "doubt": first.noise_factor,
             "input_centre": self.inputs.centre,
             "input_spread": self.inputs.spread,
             "output_centre": self.centre,
@@ -328,23 +336,25 @@ class FittedGaussianProcess:
         ModelError
             A setting or an array is missing, of another kind or shape, or not finite.
         """
-        kernel = saved_kernel(setting(settings, "kernel", str))
+        kernel = restore_kernel(setting(settings, "kernel", str))
         single = setting(settings, "single", bool)
         x = array(arrays, "inputs", None, None)
         rows, width = x.shape
         share = array(arrays, "share", None)
         weights = array(arrays, "weights", len(share), rows, 1 if single else None)
         outputs = weights.shape[2]
-        noise = saved_noise(
+        noise = restore_noise(
             setting(settings, "noise", str),
             lambda: array(arrays, "anchor", None, width),
             outputs=outputs,
         )
         parameters = array(arrays, "log_parameters", len(share), len(kernel.prior(width).mean))
         log_noise = array(arrays, "log_noise", len(share), len(noise.prior().mean))
-        doubt = array(arrays, "doubt", rows)
+        noise_factor = array(arrays, "doubt", rows)
         members = [
-            Posterior.restored(kernel, *hyperparameters, x, weight, noise=noise, doubt=doubt)
+            Posterior.restored(
+                kernel, *hyperparameters, x, weight, noise=noise, noise_factor=noise_factor
+            )
             for hyperparameters, weight in zip(
                 zip(parameters, log_noise, strict=True), weights, strict=True
             )
@@ -365,11 +375,11 @@ class FittedGaussianProcess:
             else np.zeros((width, outputs)),
         )
 
-    def _standardised(
+    def _standardise(
         self, x: Float[np.ndarray, "row feature"], *, what: str
     ) -> Float[np.ndarray, "row feature"]:
-        x = checked_inputs(x, what=what, width=len(self.inputs.centre))
-        return self.inputs.standardised(x)
+        x = check_inputs(x, what=what, width=len(self.inputs.centre))
+        return self.inputs.standardise(x)
 
     def _noise(self, x: Float[np.ndarray, "row feature"]) -> Float[np.ndarray, "row output"]:
         shares = self._average([member.noise_at(x) for member in self.members])
@@ -381,7 +391,7 @@ class FittedGaussianProcess:
             return parts[0]
         return np.tensordot(self.share, np.stack(parts), axes=1)
 
-    def _mixed(
+    def _mix(
         self, x: Float[np.ndarray, "row feature"], answers: Sequence[Answer]
     ) -> tuple[Float[np.ndarray, "row output"], Float[np.ndarray, "row output"]]:
         """Mean and variance of the outputs, by the law of total variance over the members."""
@@ -390,36 +400,36 @@ class FittedGaussianProcess:
         variance = self._average([variance for _, variance in answers]) * self.amplitude**2
         if len(answers) > 1:
             variance = variance + self._average([(one - mean) ** 2 for one in means])
-        return mean + self._expected(x), variance
+        return mean + self._trend(x), variance
 
-    def _expected(self, x: Float[np.ndarray, "row feature"]) -> Float[np.ndarray, "row output"]:
+    def _trend(self, x: Float[np.ndarray, "row feature"]) -> Float[np.ndarray, "row output"]:
         """What the members are about, at standardised inputs."""
         return self.centre + x @ self.line
 
     def _answer(
         self, mean: Float[np.ndarray, "row output"], variance: Float[np.ndarray, "row output"]
     ) -> Prediction:
-        return Prediction(mean=self._shaped(mean), std=self._shaped(np.sqrt(variance)))
+        return Prediction(mean=self._reshape(mean), std=self._reshape(np.sqrt(variance)))
 
-    def _shaped(
+    def _reshape(
         self, values: Float[np.ndarray, "row output *rest"]
     ) -> Float[np.ndarray, "row *answer"]:
         return values[:, 0] if self.single else values
 
 
-def fitted_process(
+def fit_process(
     kernel: AbstractKernel,
     x: Float[np.ndarray, "n feature"],
     y: Float[np.ndarray, "n output"],
     *,
-    taught_by: Float[np.ndarray, "n teacher"],
+    likelihood_outputs: Float[np.ndarray, "n some"],
     noise: NoiseName = "white",
     ensemble: Ensemble = "never",
     slope: Float[np.ndarray, " feature"] | None = None,
     restarts: int,
     seed: int,
 ) -> FittedGaussianProcess:
-    """Learn the kernel from its teachers, then condition on the outputs.
+    """Fit the hyperparameters, then condition on the outputs.
 
     Parameters
     ----------
@@ -427,28 +437,28 @@ def fitted_process(
         That all outputs share.
     x, y
         Inputs and outputs in their own units.
-    taught_by
-        What the hyperparameters are learned from, of unit variance all in all.
+    likelihood_outputs
+        Outputs of the likelihood that is maximised, of unit variance all in all.
     noise, ensemble
         As for ``GaussianProcess``.
     slope
         What each output is expected to rise by per unit of each feature; None for nothing. The
-        teachers are without it.
+        outputs of the likelihood are without it.
     restarts, seed
         Of the search.
     """
     inputs, outputs = Scaling.of(x), Scaling.of(y)
-    standardised = inputs.standardised(x)
+    standardised = inputs.standardise(x)
     line = np.zeros((x.shape[1], y.shape[1]))
     if slope is not None:
         line += (slope * inputs.unit)[:, None]
     rest = y - outputs.centre - standardised @ line
-    scatter = noise_named(noise, standardised, outputs=taught_by.shape[1])
-    evidence = Evidence.of(kernel, scatter, standardised, taught_by)
-    mode = learned(evidence, restarts=restarts, seed=seed)
+    scatter = noise_named(noise, standardised, outputs=likelihood_outputs.shape[1])
+    evidence = Evidence.of(kernel, scatter, standardised, likelihood_outputs)
+    mode = most_probable(evidence, restarts=restarts, seed=seed)
     hyperparameters, wider = mode.log_parameters[None], 1.0
-    if is_drawn(ensemble, observations=taught_by.size):
-        hyperparameters, wider = drawn(mode, seed=seed), widened(len(y))
+    if is_drawn(ensemble, observations=likelihood_outputs.size):
+        hyperparameters, wider = draw_members(mode, seed=seed), widening(len(y))
     members = [
         Posterior.conditioned(
             kernel,
@@ -456,7 +466,7 @@ def fitted_process(
             standardised,
             rest,
             noise=scatter,
-            doubt=mode.evidence.doubt,
+            noise_factor=mode.evidence.noise_factor,
         )
         for log_parameters in hyperparameters
     ]
@@ -479,10 +489,10 @@ def fitted_process(
     )
 
 
-def teachers(
+def select_likelihood_outputs(
     y: Float[np.ndarray, "n output"], *, unlike: bool = False
-) -> Float[np.ndarray, "n teacher"]:
-    """Standardised outputs for the hyperparameters to be learned from, all alike important.
+) -> Float[np.ndarray, "n some"]:
+    """Standardised outputs of the likelihood, all of the same importance.
 
     Parameters
     ----------
@@ -491,14 +501,14 @@ def teachers(
     unlike
         Each output has noise of its own to learn, so that none can stand for others.
     """
-    standardised = Scaling.of(y).standardised(y)
+    standardised = Scaling.of(y).standardise(y)
     if unlike or y.shape[1] <= MANY_OUTPUTS:
         return standardised
-    return condensed(standardised)
+    return condense(standardised)
 
 
-def condensed(y: Float[np.ndarray, "n output"]) -> Float[np.ndarray, "n teacher"]:
-    """Fewer outputs that teach a kernel the same.
+def condense(y: Float[np.ndarray, "n output"]) -> Float[np.ndarray, "n some"]:
+    """Fewer outputs with the same likelihood of a kernel.
 
     The likelihood summed over outputs knows them only by their products between cases, Y Y',
     which the principal scores keep; an output counts as much as it varies.

@@ -15,7 +15,7 @@ from seacage.surrogates._gp._noise import (
     AbstractNoise,
     NoisePerOutput,
     StudentNoise,
-    doubt_of,
+    noise_factor_of,
 )
 
 SUBSET = 250
@@ -39,8 +39,8 @@ From lengths longer than the waves in the points the search often ends at taking
 SMALL, MORE = 40, 4
 """Up to so many points, whose loss has more modes and costs little, so many times the restarts."""
 
-DOUBTING, DOUBTING_ALL = 25, 6
-"""Rounds of doubt and learning with Student's t, on the subset and then on all points."""
+ROUNDS, ROUNDS_ALL = 25, 6
+"""Rounds of noise factors and search with Student's t, on the subset and then on all points."""
 
 ROUND = 4
 """L-BFGS steps in each of them."""
@@ -48,7 +48,7 @@ ROUND = 4
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Evidence:
-    """What points say of hyperparameters.
+    """Posterior of hyperparameters, given points.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ class Evidence:
         Whose logarithmic hyperparameters are wanted, the kernel's first.
     x, y
         Standardised inputs, and outputs of unit variance, which share the hyperparameters.
-    doubt
+    noise_factor
         Factor on each point's noise.
     """
 
@@ -64,7 +64,7 @@ class Evidence:
     noise: AbstractNoise
     x: Float[np.ndarray, "n feature"]
     y: Float[np.ndarray, "n output"]
-    doubt: Float[np.ndarray, " n"]
+    noise_factor: Float[np.ndarray, " n"]
 
     @classmethod
     def of(
@@ -74,8 +74,8 @@ class Evidence:
         x: Float[np.ndarray, "n feature"],
         y: Float[np.ndarray, "n output"],
     ) -> Self:
-        """Without a doubt."""
-        return cls(kernel=kernel, noise=noise, x=x, y=y, doubt=np.ones(len(x)))
+        """With all noise factors at 1."""
+        return cls(kernel=kernel, noise=noise, x=x, y=y, noise_factor=np.ones(len(x)))
 
     def prior(self) -> Prior:
         """Of all hyperparameters."""
@@ -99,7 +99,9 @@ class Evidence:
 
     def rows(self, chosen: Int[np.ndarray, " row"]) -> Self:
         """Of some of the points."""
-        return replace(self, x=self.x[chosen], y=self.y[chosen], doubt=self.doubt[chosen])
+        return replace(
+            self, x=self.x[chosen], y=self.y[chosen], noise_factor=self.noise_factor[chosen]
+        )
 
     def loss(
         self, log_parameters: Float[np.ndarray, " parameter"]
@@ -133,13 +135,13 @@ class Evidence:
         outputs = self.y.shape[1]
         covariance, pull_kernel = self.kernel.with_pullback(kernel, self.x)
         scale, pull_noise = self.noise.with_pullback(noise, self.x)
-        lower = Cholesky.of(covariance, scale * self.doubt).lower
+        lower = Cholesky.of(covariance, scale * self.noise_factor).lower
         precision = inverse(lower)
         weights = precision @ self.y
         value = 0.5 * np.sum(self.y * weights) + outputs * np.sum(np.log(np.diag(lower)))
 
         adjoint = 0.5 * (outputs * precision - weights @ weights.T)
-        of_noise = pull_noise(np.diag(adjoint) * self.doubt)
+        of_noise = pull_noise(np.diag(adjoint) * self.noise_factor)
         adjoint[np.diag_indices_from(adjoint)] *= 1.0 + JITTERS[0]
         return float(value), np.append(pull_kernel(adjoint), of_noise)
 
@@ -159,8 +161,8 @@ class Evidence:
         of_noise = 0.5 * np.exp(noise) * np.sum(inverse_value - turned_weights**2, axis=0)
         return float(value), np.append(pull_kernel(adjoint), of_noise)
 
-    def doubted(self, log_parameters: Float[np.ndarray, " parameter"]) -> Self:
-        """With each point's doubt as these hyperparameters and the other points see it.
+    def reweighted(self, log_parameters: Float[np.ndarray, " parameter"]) -> Self:
+        """With the noise factor that each point has under these hyperparameters.
 
         References
         ----------
@@ -169,13 +171,13 @@ class Evidence:
         kernel, noise = self.split(log_parameters)
         scale = float(np.exp(noise[0]))
         covariance = self.kernel.covariance(kernel, self.x, self.x)
-        each = scale * self.doubt
+        each = scale * self.noise_factor
         factor = Cholesky.of(covariance, each)
         residual = each[:, None] * factor.solve(self.y)
         outputs = self.y.shape[1]
         unsure = outputs * (each - each**2 * factor.precision()[:, 0])
         square = np.sum(residual**2, axis=1) + unsure
-        return replace(self, doubt=doubt_of(square, scale=scale, outputs=outputs))
+        return replace(self, noise_factor=noise_factor_of(square, scale=scale, outputs=outputs))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -189,7 +191,7 @@ class Mode:
     loss
         Negative log posterior there.
     evidence
-        All points, with the doubt that was found.
+        All points, with the noise factors that were found.
     """
 
     log_parameters: Float[np.ndarray, " parameter"]
@@ -197,7 +199,7 @@ class Mode:
     evidence: Evidence
 
 
-def learned(evidence: Evidence, *, restarts: int, seed: int) -> Mode:
+def most_probable(evidence: Evidence, *, restarts: int, seed: int) -> Mode:
     """Most probable log hyperparameters.
 
     Each start is improved on a random subset, the best one then on all points.
@@ -217,19 +219,19 @@ def learned(evidence: Evidence, *, restarts: int, seed: int) -> Mode:
     rows = np.sort(random.permutation(len(evidence.x))[:SUBSET])
     few = len(rows) == len(evidence.x)
     some = evidence if few else evidence.rows(rows)
-    ends = [improved(some, start, steps=200) for start in _starts(evidence, restarts, random)]
+    ends = [improve(some, start, steps=200) for start in _starts(evidence, restarts, random)]
     best = min(ends, key=lambda end: end.loss)
     if isinstance(evidence.noise, StudentNoise):
-        best = _doubting(best, rounds=DOUBTING)
+        best = _alternate(best, rounds=ROUNDS)
         if not few:
-            best = replace(best, evidence=evidence.doubted(best.log_parameters))
-            best = _doubting(best, rounds=DOUBTING_ALL)
+            best = replace(best, evidence=evidence.reweighted(best.log_parameters))
+            best = _alternate(best, rounds=ROUNDS_ALL)
     elif not few:
-        best = improved(evidence, best.log_parameters, steps=POLISH)
+        best = improve(evidence, best.log_parameters, steps=POLISH)
     return best
 
 
-def improved(evidence: Evidence, start: Float[np.ndarray, " parameter"], *, steps: int) -> Mode:
+def improve(evidence: Evidence, start: Float[np.ndarray, " parameter"], *, steps: int) -> Mode:
     """The nearest mode, or what so many steps come to."""
     from scipy.optimize import minimize
 
@@ -245,10 +247,10 @@ def improved(evidence: Evidence, start: Float[np.ndarray, " parameter"], *, step
     return Mode(log_parameters=end.x, loss=float(end.fun), evidence=evidence)
 
 
-def _doubting(mode: Mode, *, rounds: int) -> Mode:
+def _alternate(mode: Mode, *, rounds: int) -> Mode:
     for _ in range(rounds):
-        evidence = mode.evidence.doubted(mode.log_parameters)
-        mode = improved(evidence, mode.log_parameters, steps=ROUND)
+        evidence = mode.evidence.reweighted(mode.log_parameters)
+        mode = improve(evidence, mode.log_parameters, steps=ROUND)
     return mode
 
 

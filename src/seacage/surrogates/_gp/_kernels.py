@@ -27,7 +27,7 @@ LENGTH_SPREAD = 1.5
 """Median length in spreads of a feature (which is about 3.5 across), and sd of its log.
 
 The median grows with the root of the number of features, as distances do: without that a
-process of many inputs believes beforehand that no case tells anything about the next.
+prior over many inputs would make every case independent of the next.
 """
 
 
@@ -40,7 +40,7 @@ class Prior:
 
 
 class AbstractKernel(ABC):
-    """A positive definite function of two inputs, and what is believed of it beforehand."""
+    """A positive definite function of two inputs, and the prior of its hyperparameters."""
 
     @property
     @abstractmethod
@@ -121,7 +121,7 @@ class StationaryKernel(AbstractKernel):
     def with_pullback(
         self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "n feature"]
     ) -> tuple[Float[np.ndarray, "n n"], Pullback]:
-        return scaled(self.shape, log_parameters, x)
+        return stationary_covariance(self.shape, log_parameters, x)
 
     def slope(
         self,
@@ -157,7 +157,7 @@ def register_kernels(*kernels: AbstractKernel) -> None:
     _SAVED.update({kernel.name: kernel for kernel in kernels})
 
 
-def saved_kernel(name: str) -> AbstractKernel:
+def restore_kernel(name: str) -> AbstractKernel:
     """Kernel of a saved model: one with a public name, or a registered one."""
     if name not in _SAVED:
         raise ModelError(f"The saved model has kernel {name!r}, which this version does not know.")
@@ -191,7 +191,7 @@ def _shape(
     return (1.0 + far + 5.0 / 3.0 * squared) * decay, 5.0 / 3.0 * (1.0 + far) * decay
 
 
-def _squared_distance(
+def _distance_squared(
     x: Float[np.ndarray, "row feature"], z: Float[np.ndarray, "n feature"]
 ) -> Float[np.ndarray, "row n"]:
     squared = x @ (-2.0 * z.T)
@@ -208,7 +208,7 @@ def correlation(
 ) -> Float[np.ndarray, "row n"]:
     """Of two sets of inputs, of unit variance."""
     length = np.exp(log_length)
-    return _shape(name, _squared_distance(x / length, z / length))[0]
+    return _shape(name, _distance_squared(x / length, z / length))[0]
 
 
 def correlation_slope(
@@ -221,7 +221,7 @@ def correlation_slope(
     """Gradient in each row of x of the sum over z of share times correlation."""
     length = np.exp(log_length)
     scaled_x, scaled_z = x / length, z / length
-    fall = share * _shape(name, _squared_distance(scaled_x, scaled_z))[1]
+    fall = share * _shape(name, _distance_squared(scaled_x, scaled_z))[1]
     return (fall @ scaled_z - fall.sum(axis=1)[:, None] * scaled_x) / length
 
 
@@ -232,11 +232,11 @@ def unit(
 ) -> tuple[Float[np.ndarray, "n n"], Pullback]:
     """Correlation of the rows with one another, and its pullback to the log lengths."""
     z = x / np.exp(log_length)
-    alike, fall = _shape(name, _squared_distance(z, z))
-    return alike, partial(_pulled_lengths, z, fall)
+    alike, fall = _shape(name, _distance_squared(z, z))
+    return alike, partial(_pull_lengths, z, fall)
 
 
-def _pulled_lengths(
+def _pull_lengths(
     z: Float[np.ndarray, "n feature"],
     fall: Float[np.ndarray, "n n"],
     adjoint: Float[np.ndarray, "n n"],
@@ -246,7 +246,7 @@ def _pulled_lengths(
     return 2.0 * (weight.sum(axis=1) @ z**2 - np.sum(z * (weight @ z), axis=0))
 
 
-def scaled(
+def stationary_covariance(
     name: KernelName,
     log_parameters: Float[np.ndarray, " parameter"],
     x: Float[np.ndarray, "n feature"],
@@ -255,10 +255,10 @@ def scaled(
     variance = float(np.exp(log_parameters[0]))
     alike, pull_lengths = unit(name, log_parameters[1:], x)
     covariance = variance * alike
-    return covariance, partial(_pulled_scale, covariance, variance, pull_lengths)
+    return covariance, partial(_pull_scale, covariance, variance, pull_lengths)
 
 
-def _pulled_scale(
+def _pull_scale(
     covariance: Float[np.ndarray, "n n"],
     variance: float,
     pull_lengths: Pullback,

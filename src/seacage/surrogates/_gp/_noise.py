@@ -1,4 +1,4 @@
-"""What a measurement scatters by: alike everywhere, by output, by input, or with outliers."""
+"""Noise of measurements: alike everywhere, by output, by input, or with outliers."""
 
 import math
 from abc import ABC, abstractmethod
@@ -22,7 +22,7 @@ FREEDOM = 4.0
 """Degrees of freedom of Student's t: outliers are common, and the variance exists."""
 
 SETTLING = 50
-"""Steps of the fixed point that a doubt is."""
+"""Steps of the fixed-point iteration for a case's noise factor."""
 
 ANCHORS = 20
 """Places that noise by input is learned at, at most."""
@@ -56,7 +56,7 @@ class AbstractNoise(ABC):
     def with_pullback(
         self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "n feature"]
     ) -> tuple[Float[np.ndarray, " n"], PullDiagonal]:
-        """Scale of each training case's noise, which its doubt multiplies, and the pullback."""
+        """Scale of each training case's noise, before its noise factor, and the pullback."""
 
     @property
     def sizes(self) -> int:
@@ -94,10 +94,10 @@ class WhiteNoise(AbstractNoise):
 
 @dataclass(frozen=True, slots=True)
 class StudentNoise(WhiteNoise):
-    """Student's t with four degrees of freedom, as Gaussian noise of doubted size.
+    """Student's t with four degrees of freedom, as a scale mixture of Gaussians.
 
-    Each case's own doubt multiplies its variance, found by variational inference while
-    learning: an outlier is doubted and hardly pulls. Outputs of one case share its doubt.
+    Each case has a factor on its noise variance, found by variational inference while
+    fitting: large for an outlier, which so has little weight. Outputs of one case share it.
 
     References
     ----------
@@ -209,7 +209,7 @@ def noise_named(name: str, x: Float[np.ndarray, "n feature"], *, outputs: int) -
     return WhiteNoise()
 
 
-def saved_noise(
+def restore_noise(
     name: str, anchor: Callable[[], Float[np.ndarray, "anchor feature"]], *, outputs: int
 ) -> AbstractNoise:
     """Noise of a saved model, of so many outputs and with the anchors that were saved."""
@@ -236,7 +236,7 @@ def check_noise(name: str) -> None:
         )
 
 
-def doubt_of(
+def noise_factor_of(
     square: Float[np.ndarray, " row"], *, scale: float, outputs: int
 ) -> Float[np.ndarray, " row"]:
     """Factor on a case's noise that its squared residuals call for, under Student's t.
@@ -246,21 +246,21 @@ def doubt_of(
     square
         Expected square of the residuals, summed over the outputs.
     scale
-        Variance of the noise of a case that is not doubted.
+        Variance of the noise of a case whose factor is 1.
     outputs
         How many.
     """
     return (FREEDOM + square / scale) / (FREEDOM + outputs)
 
 
-def settled_doubt(
+def noise_factor_of_new(
     square: Float[np.ndarray, " row"],
     variance: Float[np.ndarray, " row"],
     *,
     scale: float,
     outputs: int,
 ) -> Float[np.ndarray, " row"]:
-    """Doubt of cases against a prediction of them, each by itself.
+    """Noise factor of new cases, each from the prediction of it by the others.
 
     Parameters
     ----------
@@ -269,14 +269,16 @@ def settled_doubt(
     variance
         Of the prediction, without noise.
     scale, outputs
-        As for ``doubt_of``.
+        As for ``noise_factor_of``.
     """
-    doubt = np.ones(len(square))
+    noise_factor = np.ones(len(square))
     for _ in range(SETTLING):
-        noise = scale * doubt
+        noise = scale * noise_factor
         kept = noise / (variance + noise)
-        doubt = doubt_of(kept**2 * square + outputs * kept * variance, scale=scale, outputs=outputs)
-    return doubt
+        noise_factor = noise_factor_of(
+            kept**2 * square + outputs * kept * variance, scale=scale, outputs=outputs
+        )
+    return noise_factor
 
 
 def _prior(parameters: int) -> Prior:

@@ -1,4 +1,4 @@
-"""The Gaussian process itself: condition on points, predict, differentiate, take in more."""
+"""Posterior of a Gaussian process: condition on points, predict, differentiate, update."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -14,7 +14,7 @@ from seacage.surrogates._gp._noise import (
     AbstractNoise,
     NoisePerOutput,
     StudentNoise,
-    settled_doubt,
+    noise_factor_of_new,
 )
 
 CHUNK = 2**22
@@ -33,7 +33,7 @@ class Posterior:
         What the outputs scatter by, as a share of their unit variance.
     x
         Standardised inputs.
-    doubt
+    noise_factor
         Factor on the noise of each point; other than 1 for Student's t alone.
     weights
         Inverse covariance times outputs, so that the mean is one product.
@@ -46,7 +46,7 @@ class Posterior:
     noise: AbstractNoise
     log_noise: Float[np.ndarray, " noise"]
     x: Float[np.ndarray, "n feature"]
-    doubt: Float[np.ndarray, " n"]
+    noise_factor: Float[np.ndarray, " n"]
     weights: Float[np.ndarray, "n output"]
     factor: Factor
 
@@ -60,7 +60,7 @@ class Posterior:
         y: Float[np.ndarray, "n output"],
         *,
         noise: AbstractNoise,
-        doubt: Float[np.ndarray, " n"] | None = None,
+        noise_factor: Float[np.ndarray, " n"] | None = None,
     ) -> Self:
         """Condition on outputs of zero mean.
 
@@ -71,9 +71,9 @@ class Posterior:
         """
         from scipy.linalg import LinAlgError
 
-        doubt = np.ones(len(x)) if doubt is None else doubt
+        noise_factor = np.ones(len(x)) if noise_factor is None else noise_factor
         try:
-            factor = factorised(kernel, log_parameters, noise, log_noise, x, doubt)
+            factor = factorise(kernel, log_parameters, noise, log_noise, x, noise_factor)
         except LinAlgError as error:
             raise InputError(
                 f"{len(x)} cases give a covariance that is not positive definite. Look for "
@@ -85,7 +85,7 @@ class Posterior:
             noise=noise,
             log_noise=log_noise,
             x=x,
-            doubt=doubt,
+            noise_factor=noise_factor,
             weights=factor.solve(y),
             factor=factor,
         )
@@ -100,7 +100,7 @@ class Posterior:
         weights: Float[np.ndarray, "n output"],
         *,
         noise: AbstractNoise,
-        doubt: Float[np.ndarray, " n"],
+        noise_factor: Float[np.ndarray, " n"],
     ) -> Self:
         """The same again from what was saved; the factor is cheaper to make than to store.
 
@@ -114,8 +114,8 @@ class Posterior:
         broken = "The saved model's covariance is not positive definite. Train the model again."
         try:
             with np.errstate(over="ignore", invalid="ignore"):
-                factor = factorised(kernel, log_parameters, noise, log_noise, x, doubt)
-                known = factor.explained(kernel.covariance(log_parameters, x[:1], x))
+                factor = factorise(kernel, log_parameters, noise, log_noise, x, noise_factor)
+                known = factor.variance_reduction(kernel.covariance(log_parameters, x[:1], x))
         except (LinAlgError, ValueError) as error:
             raise ModelError(broken) from error
         if not np.isfinite(known).all():
@@ -126,7 +126,7 @@ class Posterior:
             noise=noise,
             log_noise=log_noise,
             x=x,
-            doubt=doubt,
+            noise_factor=noise_factor,
             weights=weights,
             factor=factor,
         )
@@ -154,7 +154,7 @@ class Posterior:
         prior = self.kernel.variance(self.log_parameters, x)
         cross = self.kernel.covariance(self.log_parameters, x, self.x)
         # Rounding can explain a hair more than there is.
-        variance = np.maximum(prior[:, None] - self.factor.explained(cross), 0.0)
+        variance = np.maximum(prior[:, None] - self.factor.variance_reduction(cross), 0.0)
         return cross @ self.weights, variance
 
     def mean_slope(
@@ -186,9 +186,9 @@ class Posterior:
         precision = self.factor.precision()
         return self.weights / precision, 1.0 / precision
 
-    def observed(self) -> Float[np.ndarray, "n output"]:
+    def observations(self) -> Float[np.ndarray, "n output"]:
         """The outputs that it was conditioned on."""
-        return self.factor.observed(self.weights)
+        return self.factor.observations(self.weights)
 
     def updated(
         self,
@@ -209,15 +209,17 @@ class Posterior:
         amplitude
             Standard deviation of each output that the kernel's is a share of.
         """
-        doubt = np.append(self.doubt, self._doubts(x, y, amplitude))
-        all_x, all_y = np.concatenate([self.x, x]), np.concatenate([self.observed(), y])
-        factor = self._extended(x, doubt[len(self.x) :])
+        noise_factor = np.append(self.noise_factor, self._new_noise_factors(x, y, amplitude))
+        all_x, all_y = np.concatenate([self.x, x]), np.concatenate([self.observations(), y])
+        factor = self._extend(x, noise_factor[len(self.x) :])
         if factor is None:
-            return self.reconditioned(all_x, all_y, doubt=doubt)
-        return replace(self, x=all_x, doubt=doubt, weights=factor.solve(all_y), factor=factor)
+            return self.reconditioned(all_x, all_y, noise_factor=noise_factor)
+        return replace(
+            self, x=all_x, noise_factor=noise_factor, weights=factor.solve(all_y), factor=factor
+        )
 
-    def _extended(
-        self, x: Float[np.ndarray, "new feature"], doubt: Float[np.ndarray, " new"]
+    def _extend(
+        self, x: Float[np.ndarray, "new feature"], noise_factor: Float[np.ndarray, " new"]
     ) -> Cholesky | None:
         from scipy.linalg import LinAlgError
 
@@ -227,7 +229,7 @@ class Posterior:
             return self.factor.extended(
                 self.kernel.covariance(self.log_parameters, x, self.x),
                 self.kernel.covariance(self.log_parameters, x, x),
-                self.noise.with_pullback(self.log_noise, x)[0] * doubt,
+                self.noise.with_pullback(self.log_noise, x)[0] * noise_factor,
             )
         except LinAlgError:
             return None  # The whole can afford a larger jitter.
@@ -237,7 +239,7 @@ class Posterior:
         x: Float[np.ndarray, "n feature"],
         y: Float[np.ndarray, "n output"],
         *,
-        doubt: Float[np.ndarray, " n"],
+        noise_factor: Float[np.ndarray, " n"],
     ) -> Self:
         """Conditioned on other points, with the same hyperparameters."""
         return self.conditioned(
@@ -247,7 +249,7 @@ class Posterior:
             x,
             y,
             noise=self.noise,
-            doubt=doubt,
+            noise_factor=noise_factor,
         )
 
     def combined(
@@ -272,35 +274,35 @@ class Posterior:
         factor = self.factor.mixed(np.where(share == 0.0, 0.0, variance))
         return replace(self, weights=weights, factor=factor, log_noise=log_noise)
 
-    def _doubts(
+    def _new_noise_factors(
         self,
         x: Float[np.ndarray, "new feature"],
         y: Float[np.ndarray, "new output"],
         amplitude: Float[np.ndarray, " output"],
     ) -> Float[np.ndarray, " new"]:
-        """Doubt of new points, each judged by what the old ones made it expect."""
+        """Noise factor of new points, each from its prediction by the old ones."""
         if not isinstance(self.noise, StudentNoise):
             return np.ones(len(x))
         mean, variance = self.predict(x)
         known = amplitude > 0.0
         square = np.sum(((y - mean)[:, known] / amplitude[known]) ** 2, axis=1)
         scale, outputs = float(np.exp(self.log_noise[0])), int(np.sum(known))
-        return settled_doubt(square, variance[:, 0], scale=scale, outputs=outputs)
+        return noise_factor_of_new(square, variance[:, 0], scale=scale, outputs=outputs)
 
 
-def factorised(
+def factorise(
     kernel: AbstractKernel,
     log_parameters: Float[np.ndarray, " parameter"],
     noise: AbstractNoise,
     log_noise: Float[np.ndarray, " noise"],
     x: Float[np.ndarray, "n feature"],
-    doubt: Float[np.ndarray, " n"],
+    noise_factor: Float[np.ndarray, " n"],
 ) -> Factor:
     """Of the covariance of points with noise."""
     covariance = kernel.covariance(log_parameters, x, x)
     if isinstance(noise, NoisePerOutput):
         return Spectrum.of(covariance, np.exp(log_noise))
-    return Cholesky.of(covariance, noise.with_pullback(log_noise, x)[0] * doubt)
+    return Cholesky.of(covariance, noise.with_pullback(log_noise, x)[0] * noise_factor)
 
 
 def chunks(rows: int, size: int) -> Iterator[slice]:

@@ -18,7 +18,7 @@ from seacage.surrogates._multifidelity._kernel import (
     StraightKernel,
 )
 from seacage.surrogates._multifidelity._quadrature import node_counts, rule, total_moments
-from seacage.surrogates._prediction import Prediction, checked_inputs
+from seacage.surrogates._prediction import Prediction, check_inputs
 from seacage.surrogates._scaling import Scaling
 
 CELLS = 2**17
@@ -30,7 +30,7 @@ EachPoint = Float[np.ndarray, "member 1 1 n"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Links:
+class BatchedLinkKernels:
     """Link kernels with the points that each has learned from.
 
     A member that has fewer points than the most has some at 0 in the end.
@@ -91,7 +91,7 @@ class Links:
         below: Float[np.ndarray, "member row node"],
     ) -> Float[np.ndarray, "member row node n"]:
         """With the points, where the level below has several values for each row of features."""
-        rho, delta = np.exp(-0.5 * _squared_distance(x / self.local_length, self.local_point))
+        rho, delta = np.exp(-0.5 * _distance_squared(x / self.local_length, self.local_point))
         link = (below / self.link_length)[..., None]
         covariance = np.exp(-0.5 * (link - self.link_point) ** 2)
         covariance -= np.exp(-0.5 * link**2) * self.held_point
@@ -159,7 +159,7 @@ def _as_columns(point: Float[np.ndarray, "2 member n feature"]) -> np.ndarray:
     return np.ascontiguousarray(np.swapaxes(columns, -1, -2))
 
 
-def _squared_distance(
+def _distance_squared(
     x: Float[np.ndarray, "2 member row feature"], point: Float[np.ndarray, "2 member column n"]
 ) -> Float[np.ndarray, "2 member row n"]:
     square = np.sum(x**2, axis=-1, keepdims=True)
@@ -168,7 +168,7 @@ def _squared_distance(
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Together:
+class BatchedLevels:
     """Processes of the same features, each with a level below of its own as the last input.
 
     Parameters
@@ -197,7 +197,7 @@ class Together:
     members: tuple[Posterior, ...]
     owner: Int[np.ndarray, " member"]
     share: Float[np.ndarray, "level member"]
-    links: Links
+    links: BatchedLinkKernels
     weights: Float[np.ndarray, "member n 1"]
     line: Float[np.ndarray, "member feature 1"]
     centre: Float[np.ndarray, "member 1 feature"]
@@ -212,7 +212,7 @@ class Together:
         owner = np.repeat(np.arange(len(levels)), [len(level.members) for level in levels])
         share = np.zeros((len(levels), len(members)))
         share[owner, np.arange(len(members))] = np.concatenate([level.share for level in levels])
-        links = Links.of(members)
+        links = BatchedLinkKernels.of(members)
         weights = np.zeros((len(members), links.local_point.shape[-1], 1))
         for index, member in enumerate(members):
             weights[index, : len(member.weights)] = member.weights
@@ -245,18 +245,18 @@ class Together:
         below
             The level below each, (row, level).
         """
-        x = checked_inputs(x, what="predict", width=self.unit.shape[2] - 1)
+        x = check_inputs(x, what="predict", width=self.unit.shape[2] - 1)
         counts = node_counts(below.std / self.bend)
         mean, variance = np.empty(counts.shape), np.empty(counts.shape)
         for count in sorted(set(counts.ravel().tolist())):
-            asked = counts == count
-            rows, levels = (np.flatnonzero(asked.any(axis=axis)) for axis in (1, 0))
+            same_rule = counts == count
+            rows, levels = (np.flatnonzero(same_rule.any(axis=axis)) for axis in (1, 0))
             some = self if len(levels) == len(self.levels) else self._chosen(levels)
             for piece in chunks(len(rows), CELLS // (count * some.weights.size)):
                 at = np.ix_(rows[piece], levels)
-                said = some._with_rule(count, x[rows[piece]], below.mean[at], below.std[at])  # noqa: SLF001
-                for whole, part in zip((mean, variance), said, strict=True):
-                    whole[at] = np.where(asked[at], part, whole[at])
+                parts = some._with_rule(count, x[rows[piece]], below.mean[at], below.std[at])  # noqa: SLF001
+                for whole, part in zip((mean, variance), parts, strict=True):
+                    whole[at] = np.where(same_rule[at], part, whole[at])
         return Prediction(mean=mean, std=np.sqrt(variance))
 
     def _chosen(self, levels: Int[np.ndarray, " chosen"]) -> Self:
@@ -283,7 +283,7 @@ class Together:
         cross = self.links.covariance(local, link)
         cross = cross.reshape(len(cross), -1, cross.shape[-1])
         known = [
-            member.factor.explained(own[:, : len(member.x)])
+            member.factor.variance_reduction(own[:, : len(member.x)])
             for member, own in zip(self.members, cross, strict=True)
         ]
         prior = self.links.variance(link).reshape(len(cross), -1)
@@ -291,10 +291,10 @@ class Together:
         variances = np.maximum(prior - np.stack(known)[..., 0], 0.0)
         means = (local @ self.line[:, :-1] + link * self.line[:, -1:]).reshape(len(cross), -1)
         means += (cross @ self.weights)[..., 0]
-        mean, variance = self._mixed(means, variances)
+        mean, variance = self._mix(means, variances)
         return mean.reshape(below.shape), variance.reshape(below.shape)
 
-    def _mixed(
+    def _mix(
         self, means: Float[np.ndarray, "member value"], variances: Float[np.ndarray, "member value"]
     ) -> tuple[Float[np.ndarray, "level value"], Float[np.ndarray, "level value"]]:
         """Mean and variance of the outputs, by the law of total variance over the members."""

@@ -18,7 +18,7 @@ from seacage.surrogates._gp import (
     length_priors,
     prior_of,
     register_kernels,
-    scaled,
+    stationary_covariance,
     unit,
 )
 
@@ -160,7 +160,7 @@ KNOWN_LENGTH = (0.2, 0.5)
 """Mean and sd of delta's log length less that of the lowest level, where that is known and short.
 
 A level that turns fast with a feature leaves something that does so too. One that hardly follows
-a feature may do so wrongly: of what it leaves there, a long length tells nothing.
+a feature may do so wrongly: of the remainder there, a long length says nothing.
 """
 
 STRANGE = 2.5
@@ -189,7 +189,7 @@ class AutoregressiveKernel(AbstractKernel):
         Log lengths of the lowest level, in spreads of the inputs; empty where they are not
         known. They shape the prior alone.
     alike
-        Whether the level below tells most of this one as it is: the line is then about a ratio
+        Whether the level below explains most of this one as it is: the line is then about a ratio
         of 1, in the units of the levels, and not about 0.
 
     References
@@ -248,9 +248,9 @@ class AutoregressiveKernel(AbstractKernel):
     ) -> tuple[Float[np.ndarray, "n n"], Pullback]:
         rho, length, delta, line = self._split(log_parameters)
         local, below = x[:, :-1], x[:, -1:]
-        k_rho, pull_rho = scaled(BELL, rho, local)
+        k_rho, pull_rho = stationary_covariance(BELL, rho, local)
         k_f, pull_f = self.bend.with_pullback(length, below)
-        k_delta, pull_delta = scaled(BELL, delta, local)
+        k_delta, pull_delta = stationary_covariance(BELL, delta, local)
         straight = line * (1.0 + below * below[:, 0])
 
         def pullback(adjoint: Float[np.ndarray, "n n"]) -> Float[np.ndarray, " parameter"]:
@@ -289,7 +289,7 @@ class AutoregressiveKernel(AbstractKernel):
         general = _lengths(width, *DELTA_LENGTH)
         if not self.lengths:
             return general
-        return [_told(known, one) for known, one in zip(self.lengths, general, strict=True)]
+        return [_delta_length(known, one) for known, one in zip(self.lengths, general, strict=True)]
 
     def link_length(self, log_parameters: Float[np.ndarray, " parameter"]) -> float:
         """Length over which the answer bends with f, in the unit of the standardised f."""
@@ -348,7 +348,7 @@ class StraightKernel(AbstractKernel):
         self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "n feature"]
     ) -> tuple[Float[np.ndarray, "n n"], Pullback]:
         ratio = np.exp(log_parameters[0]) * x[:, -1:] * x[:, -1]
-        delta, pull_delta = scaled(BELL, log_parameters[1:], x[:, :-1])
+        delta, pull_delta = stationary_covariance(BELL, log_parameters[1:], x[:, :-1])
 
         def pullback(adjoint: Float[np.ndarray, "n n"]) -> Float[np.ndarray, " parameter"]:
             return np.append(np.sum(adjoint * ratio), pull_delta(adjoint))
@@ -387,7 +387,7 @@ def _lengths(width: int, mean: float, sd: float) -> list[tuple[float, float]]:
     return [(mean + 0.5 * math.log(width), sd)] * width
 
 
-def _told(known: float, general: tuple[float, float]) -> tuple[float, float]:
+def _delta_length(known: float, general: tuple[float, float]) -> tuple[float, float]:
     """Mean and sd of delta's log length of a feature, given that of the lowest level."""
     shift, sd = KNOWN_LENGTH
     expected = max(known, general[0] - STRANGE) + shift

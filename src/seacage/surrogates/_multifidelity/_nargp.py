@@ -13,7 +13,7 @@ from seacage.conventions import InputError, ModelError
 from seacage.surrogates._arrays import (
     Arrays,
     Settings,
-    joined,
+    join,
     setting,
     sub_settings,
     within,
@@ -26,7 +26,7 @@ from seacage.surrogates._gp import (
     check_ensemble,
     check_noise,
     check_restarts,
-    fitted_process,
+    fit_process,
     kernel_named,
 )
 from seacage.surrogates._multifidelity._kernel import (
@@ -34,13 +34,13 @@ from seacage.surrogates._multifidelity._kernel import (
     LinkKernel,
     StraightKernel,
 )
-from seacage.surrogates._multifidelity._quadrature import carried, carried_slope
+from seacage.surrogates._multifidelity._quadrature import propagate_moments, propagate_slope
 from seacage.surrogates._prediction import (
     Moments,
     Prediction,
     Predicts,
-    checked_inputs,
-    checked_outputs,
+    check_inputs,
+    check_outputs,
 )
 from seacage.surrogates._scaling import Scaling
 
@@ -76,9 +76,9 @@ class AbstractMultifidelity(ABC):
         ----------
         lengths
             Log lengths of the lowest level, in spreads of this level's inputs; empty where a
-            lent one does not tell.
+            lent one has none.
         alike
-            Whether the level below tells most of this one as it is.
+            Whether the level below explains most of this one as it is.
         """
 
     def fit(
@@ -110,7 +110,7 @@ class AbstractMultifidelity(ABC):
             No level, tables that do not fit, or inputs that are not nested though they should be.
         """
         what = f"{type(self).__name__}.fit"
-        cases = _checked_cases(levels, first=1 if lower is None else 2, what=what)
+        cases = _check_cases(levels, first=1 if lower is None else 2, what=what)
         if nested and lower is not None:
             raise InputError(
                 f"{what}: nested=True needs the cases of level 1, but `lower` has none to give. "
@@ -123,7 +123,7 @@ class AbstractMultifidelity(ABC):
             inputs, slope = x, np.zeros(x.shape[1])
             if fitted.levels:
                 if nested:
-                    below = _observed_below(x, cases[index - 1], level=index + 1, what=what)
+                    below = _observations_below(x, cases[index - 1], level=index + 1, what=what)
                 else:
                     below = _one_per_row(fitted.predict(x).mean, what=what)
                 alike = bool(np.std(y - below) < ALIKE * np.std(y))
@@ -144,12 +144,12 @@ class AbstractMultifidelity(ABC):
     ) -> FittedGaussianProcess:
         rest = y - x @ slope[:, None]
         rest = rest - rest.mean(axis=0)
-        return fitted_process(
+        return fit_process(
             kernel,
             x,
             y,
             # In spreads of the level itself, whatever is left of it, as the priors are.
-            taught_by=rest / Scaling.of(y).unit,
+            likelihood_outputs=rest / Scaling.of(y).unit,
             noise=self.noise,
             ensemble=self.ensemble,
             slope=slope,
@@ -171,7 +171,7 @@ class NARGP(AbstractMultifidelity):
     linear
         Expect a line in the level below, the same everywhere, which carries a plain ratio of
         the two to where nothing was observed, and about it a curve that is held to an offset at
-        the mean of the level below. Where the level below tells most of this one as it is, the
+        the mean of the level below. Where the level below explains most of this one as it is, the
         ratio is expected to be near 1. False is the kernel as published.
     noise, ensemble
         Of every level, as for ``GaussianProcess``; a level has one output.
@@ -225,7 +225,7 @@ class FittedNARGP:
     lent
         Level 1 where another model serves as it; it is not saved with this one.
     nested
-        Whether each level was taught at what the level below observed, not at its mean.
+        Whether each level was fitted at the observations of the level below, not at its mean.
     """
 
     MODEL: ClassVar[str] = "nargp"
@@ -271,9 +271,9 @@ class FittedNARGP:
         if level == 1:
             return self._lowest(x, noisy=noisy)
         upper = self.upper[: level - 1]
-        x = checked_inputs(x, what="predict", width=self._width)
+        x = check_inputs(x, what="predict", width=self._width)
         below = self.lower.predict(x)
-        mean, variance = carried(self._steps(level), x, below.mean, below.std**2)
+        mean, variance = propagate_moments(self._steps(level), x, below.mean, below.std**2)
         if noisy:
             # Where the noise changes with the level below, it is that at its mean.
             at = below.mean if level == 2 else self.predict(x, level=level - 1).mean
@@ -295,9 +295,9 @@ class FittedNARGP:
             As for ``predict``.
         """
         level = self._level(level, lowest=1, what="jacobian")
-        x = checked_inputs(x, what="jacobian", width=self._width)
+        x = check_inputs(x, what="jacobian", width=self._width)
         below = self._lowest_moments(x)
-        return carried_slope(self._steps(level), x, below) if level > 1 else below.mean_slope
+        return propagate_slope(self._steps(level), x, below) if level > 1 else below.mean_slope
 
     def updated(
         self,
@@ -308,8 +308,8 @@ class FittedNARGP:
     ) -> Self:
         """Conditioned on more cases of a level above the first, without learning anew.
 
-        Levels below stay the same objects. Levels above were taught at the mean of this one, so
-        they are conditioned again on their own cases at its new mean, unless taught nested.
+        Levels below stay the same objects. Levels above were fitted at the mean of this one, so
+        they are conditioned again on their own cases at its new mean, unless fitted nested.
 
         Parameters
         ----------
@@ -319,17 +319,17 @@ class FittedNARGP:
             From 2 to ``levels``, which None means.
         """
         level = self._level(level, lowest=2, what="updated")
-        x = checked_inputs(x, what="updated", width=self._width)
-        y = checked_outputs(y, what="updated", rows=len(x), shape="(rows,)", least=1)
+        x = check_inputs(x, what="updated", width=self._width)
+        y = check_outputs(y, what="updated", rows=len(x), shape="(rows,)", least=1)
         below = self.predict(x, level=level - 1).mean
         process = self.upper[level - 2].updated(np.column_stack([x, below]), y)
         fitted = self._replaced(level, process)
         if not self.nested:
             for above in range(level + 1, self.levels + 1):
-                taught = fitted.upper[above - 2]
-                x = taught.cases()[:, :-1]
+                upper_process = fitted.upper[above - 2]
+                x = upper_process.cases()[:, :-1]
                 below = fitted.predict(x, level=above - 1).mean
-                fitted = fitted._replaced(above, taught.moved(np.column_stack([x, below])))  # noqa: SLF001
+                fitted = fitted._replaced(above, upper_process.moved(np.column_stack([x, below])))  # noqa: SLF001
         return fitted
 
     def _replaced(self, level: int, process: FittedGaussianProcess) -> Self:
@@ -339,7 +339,7 @@ class FittedNARGP:
 
     @property
     def _width(self) -> int | None:
-        """Features of a row, where a level tells."""
+        """Features of a row, where a level of this model has them."""
         if self.upper:
             return len(self.upper[0].inputs.centre) - 1
         return len(self.own[0].inputs.centre) if self.own else None
@@ -359,7 +359,7 @@ class FittedNARGP:
     def _lowest_moments(self, x: Float[np.ndarray, "row feature"]) -> Moments:
         if isinstance(self.lower, FittedGaussianProcess):
             return self.lower.moments(x)
-        return _differenced(self.lower, x, step=DIFFERENCE * self.upper[0].inputs.unit[:-1])
+        return _central_differences(self.lower, x, step=DIFFERENCE * self.upper[0].inputs.unit[:-1])
 
     def _lowest(self, x: Float[np.ndarray, "row feature"], *, noisy: bool) -> Prediction:
         if self.lent is None:
@@ -380,7 +380,7 @@ class FittedNARGP:
             "nested": self.nested,
             "levels": [settings for settings, _ in saved],
         }
-        return settings, joined([arrays for _, arrays in saved])
+        return settings, join([arrays for _, arrays in saved])
 
     @classmethod
     def from_arrays(
@@ -437,13 +437,13 @@ class _Step:
         answer = self.process.predict(np.column_stack([x, below]))
         return answer.mean, answer.std**2
 
-    def sloped(
+    def moments_with_slopes(
         self, x: Float[np.ndarray, "row feature"], below: Float[np.ndarray, " row"]
     ) -> Moments:
         return self.process.moments(np.column_stack([x, below]))
 
 
-def _checked_cases(
+def _check_cases(
     levels: Sequence[tuple[ArrayLike, ArrayLike]], *, first: int, what: str
 ) -> list[Cases]:
     if len(levels) == 0:
@@ -451,12 +451,12 @@ def _checked_cases(
     cases: list[Cases] = []
     for level, (x, y) in enumerate(levels, start=first):
         who = f"{what}, level {level}"
-        rows = checked_inputs(x, what=who, width=cases[0][0].shape[1] if cases else None)
-        cases.append((rows, checked_outputs(y, what=who, rows=len(rows), shape="(rows,)")))
+        rows = check_inputs(x, what=who, width=cases[0][0].shape[1] if cases else None)
+        cases.append((rows, check_outputs(y, what=who, rows=len(rows), shape="(rows,)")))
     return cases
 
 
-def _observed_below(
+def _observations_below(
     x: Float[np.ndarray, "n feature"], below: Cases, *, level: int, what: str
 ) -> Float[np.ndarray, " n"]:
     """What the level below observed at the same inputs."""
@@ -490,7 +490,7 @@ def _one_per_row(mean: Float[np.ndarray, "n *rest"], *, what: str) -> Float[np.n
     return mean
 
 
-def _differenced(
+def _central_differences(
     lower: Predicts, x: Float[np.ndarray, "row feature"], *, step: Float[np.ndarray, " feature"]
 ) -> Moments:
     """Mean and variance of a lent level, and their gradients by central differences."""

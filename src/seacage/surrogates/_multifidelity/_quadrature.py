@@ -46,14 +46,14 @@ class Level(Protocol):
 class SlopedLevel(Level, Protocol):
     """One that knows its gradients too."""
 
-    def sloped(
+    def moments_with_slopes(
         self, x: Float[np.ndarray, "row feature"], below: Float[np.ndarray, " row"]
     ) -> Moments:
         """The same with their gradients in the features and, last, in the value below."""
         ...
 
 
-def carried(
+def propagate_moments(
     levels: Sequence[Level],
     x: Float[np.ndarray, "row feature"],
     mean: Float[np.ndarray, " row"],
@@ -86,7 +86,7 @@ def carried(
     return top_mean, top_variance
 
 
-def carried_slope(
+def propagate_slope(
     levels: Sequence[SlopedLevel], x: Float[np.ndarray, "row feature"], below: Moments
 ) -> Float[np.ndarray, "row feature"]:
     """Gradient in each row of the mean that ``carried`` gives there.
@@ -110,8 +110,8 @@ def _slope_with_rule(
     node, weight = rule(count)
     value, its_slope = below.at(node)
     inputs = np.repeat(x, count, axis=0)
-    at = levels[0].sloped(inputs, value).through(its_slope)
-    slope = at.mean_slope if len(levels) == 1 else carried_slope(levels[1:], inputs, at)
+    at = levels[0].moments_with_slopes(inputs, value).through(its_slope)
+    slope = at.mean_slope if len(levels) == 1 else propagate_slope(levels[1:], inputs, at)
     return np.einsum("rnf,n->rf", slope.reshape(len(x), count, -1), weight)
 
 
@@ -141,7 +141,7 @@ def _with_rule(
     inputs = np.repeat(x, count, axis=0)
     at_mean, at_variance = levels[0].moments(inputs, below.ravel())
     if len(levels) > 1:
-        at_mean, at_variance = carried(levels[1:], inputs, at_mean, at_variance)
+        at_mean, at_variance = propagate_moments(levels[1:], inputs, at_mean, at_variance)
     return total_moments(at_mean.reshape(-1, count), at_variance.reshape(-1, count), weight)
 
 
@@ -159,7 +159,7 @@ def _largest_ratio(
     ratio = np.sqrt(variance) / levels[0].bend
     if len(levels) == 1:
         return ratio
-    above = carried(levels[:1], x, mean, variance)
+    above = propagate_moments(levels[:1], x, mean, variance)
     return np.maximum(ratio, _largest_ratio(levels[1:], x, *above))
 
 

@@ -12,7 +12,7 @@ from seacage.surrogates._arrays import (
     Arrays,
     Settings,
     array,
-    joined,
+    join,
     setting,
     sub_settings,
     within,
@@ -21,11 +21,11 @@ from seacage.surrogates._gp import (
     FittedGaussianProcess,
     KernelName,
     check_restarts,
-    fitted_process,
+    fit_process,
     kernel_named,
-    teachers,
+    select_likelihood_outputs,
 )
-from seacage.surrogates._prediction import Prediction, checked_inputs, checked_outputs
+from seacage.surrogates._prediction import Prediction, check_inputs, check_outputs
 
 PAPER_VARIANCE = 0.93
 """Share of the variance that the paper keeps, in three modes."""
@@ -91,7 +91,7 @@ class OverTime:
     @classmethod
     def of_snapshots(cls, node_position: Float[np.ndarray, "t node 3"]) -> Self:
         """Of the shapes themselves, e.g. ``History.node_position`` of all cases [m]."""
-        node_position = checked_outputs(
+        node_position = check_outputs(
             node_position, what="OverTime", rows=len(node_position), shape="(steps, nodes, 3)"
         )
         rows = node_position.reshape(len(node_position), -1)
@@ -144,7 +144,7 @@ def all_modes(
     """
     centre = shape.mean(axis=0) if about is None else about
     _, size, direction = np.linalg.svd(shape - centre, full_matrices=False)
-    return _sorted_modes(centre, direction, size**2)
+    return _sort_modes(centre, direction, size**2)
 
 
 def modes_over_time(
@@ -155,7 +155,7 @@ def modes_over_time(
     moved = over_time.mean - centre
     size, direction = np.linalg.eigh(over_time.scatter + np.outer(moved, moved))
     # Rounding can leave a hair less than nothing.
-    return _sorted_modes(centre, direction.T[::-1], np.maximum(size[::-1], 0.0))
+    return _sort_modes(centre, direction.T[::-1], np.maximum(size[::-1], 0.0))
 
 
 def modes_within(shape: Float[np.ndarray, "row coordinate"], tolerance: float) -> Modes:
@@ -168,7 +168,7 @@ def modes_within(shape: Float[np.ndarray, "row coordinate"], tolerance: float) -
     return modes.truncated(shape, int(enough[0]) + 1 if len(enough) else len(worst))
 
 
-def _sorted_modes(
+def _sort_modes(
     centre: Float[np.ndarray, " coordinate"],
     direction: Float[np.ndarray, "mode coordinate"],
     size: Float[np.ndarray, " mode"],
@@ -186,7 +186,7 @@ class PcaGP:
 
     The paper's model. Its matrix M of all nodes at all time steps of all cases gives the modes
     as eigenvectors of M M', the scores as phi' M (the paper prints M phi), their means over
-    each case teach the processes, and the shape is the sum over modes (the paper also sums over
+    each case train the processes, and the shape is the sum over modes (the paper also sums over
     the cases); ``centred=False`` reads M M' literally.
 
     Parameters
@@ -197,7 +197,7 @@ class PcaGP:
         keep the fewest that explain this share. Neither means the paper's 0.93.
     centred
         Whether the mean shape is taken out first. Otherwise M holds coordinates, or, where
-        ``fit`` is told the shape at rest, displacements from it: the paper says both.
+        ``fit`` is given the shape at rest, displacements from it: the paper says both.
     kernel, restarts
         As for ``GaussianProcess``.
 
@@ -250,8 +250,8 @@ class PcaGP:
         seed
             Of the subsets of points and of the random starts.
         """
-        x = checked_inputs(x, what="PcaGP.fit")
-        node_position = checked_outputs(
+        x = check_inputs(x, what="PcaGP.fit")
+        node_position = check_outputs(
             node_position, what="PcaGP.fit", rows=len(x), shape="(rows, nodes, 3)"
         )
         shape = node_position.reshape(len(x), -1)
@@ -268,11 +268,11 @@ class PcaGP:
         count = self._count(share)
         modes = modes.truncated(shape, count)
         scores = tuple(
-            fitted_process(
+            fit_process(
                 kernel_named(self.kernel),
                 x,
                 score[:, None],
-                taught_by=teachers(score[:, None]),
+                likelihood_outputs=select_likelihood_outputs(score[:, None]),
                 restarts=self.restarts,
                 seed=seed + mode,
             )
@@ -287,7 +287,7 @@ class PcaGP:
             return None
         if rest_position is None:
             return np.zeros(coordinates)
-        rest = checked_inputs(rest_position, what="PcaGP.fit: rest_position", width=3).ravel()
+        rest = check_inputs(rest_position, what="PcaGP.fit: rest_position", width=3).ravel()
         if len(rest) != coordinates:
             raise InputError(
                 f"PcaGP.fit: the shape at rest has {len(rest) // 3} nodes, those of the cases "
@@ -336,7 +336,7 @@ class FittedPcaGP:
     ) -> Float[np.ndarray, "row mode"]:
         """Scores of shapes [m]."""
         rows = np.reshape(node_position, (len(node_position), -1))
-        return self.basis.encode(checked_inputs(rows, what="encode", width=len(self.basis.centre)))
+        return self.basis.encode(check_inputs(rows, what="encode", width=len(self.basis.centre)))
 
     def decode(self, score: Float[np.ndarray, "row mode"]) -> Float[np.ndarray, "row node 3"]:
         """Shapes of scores [m]."""
@@ -366,7 +366,7 @@ class FittedPcaGP:
             "explained_variance": self.explained_variance,
             "scores": [settings for settings, _ in saved],
         }
-        return settings, modes_to_arrays(self.basis) | joined([arrays for _, arrays in saved])
+        return settings, modes_to_arrays(self.basis) | join([arrays for _, arrays in saved])
 
     @classmethod
     def from_arrays(cls, settings: Mapping[str, object], arrays: Mapping[str, np.ndarray]) -> Self:

@@ -12,7 +12,7 @@ from seacage.surrogates._arrays import (
     Arrays,
     Settings,
     array,
-    joined,
+    join,
     setting,
     sub_settings,
     within,
@@ -22,11 +22,11 @@ from seacage.surrogates._gp import (
     FittedGaussianProcess,
     KernelName,
     check_restarts,
-    condensed,
-    fitted_process,
+    condense,
+    fit_process,
     kernel_named,
 )
-from seacage.surrogates._prediction import Prediction, checked_inputs, checked_outputs
+from seacage.surrogates._prediction import Prediction, check_inputs, check_outputs
 from seacage.surrogates._shape._pca import Modes, modes_from_arrays, modes_to_arrays, modes_within
 from seacage.surrogates._shape._symmetry import Symmetry
 from seacage.surrogates._shape._symmetry_check import check_symmetry
@@ -100,27 +100,27 @@ class ShapeGP:
         seed
             Of the subset of points and of the random starts.
         """
-        x = checked_inputs(x, what="ShapeGP.fit")
-        node_position = checked_outputs(
+        x = check_inputs(x, what="ShapeGP.fit")
+        node_position = check_outputs(
             node_position, what="ShapeGP.fit", rows=len(x), shape="(rows, nodes, 3)"
         )
         if self.symmetry is not None:
             check_symmetry(self.symmetry, x, node_position, tolerance=self.asymmetry, seed=seed)
-            x, node_position = _brought_home(self.symmetry, x, node_position)
-        return self._learned(x, node_position, seed)
+            x, node_position = _fold_cases(self.symmetry, x, node_position)
+        return self._fit(x, node_position, seed)
 
-    def _learned(
+    def _fit(
         self, x: Float[np.ndarray, "n feature"], shape: Float[np.ndarray, "n node 3"], seed: int
     ) -> "FittedShapeGP":
         centre = shape.mean(axis=0)
         displacement = (shape - centre).reshape(len(x), -1)
         modes = modes_within(displacement, self.tolerance)
         scores = modes.encode(displacement)
-        process = fitted_process(
+        process = fit_process(
             kernel_named(self.kernel),
             x,
             scores,
-            taught_by=condensed(scores),
+            likelihood_outputs=condense(scores),
             restarts=self.restarts,
             seed=seed,
         )
@@ -135,7 +135,7 @@ class ShapeGP:
         )
         missed = shape - fitted.rendered(scores)
         fitted = replace(fitted, left_out=np.sqrt(np.mean(missed**2, axis=0)))
-        return replace(fitted, scale=_calibrated(fitted, x, shape))
+        return replace(fitted, scale=_interval_scale(fitted, x, shape))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -226,12 +226,12 @@ class FittedShapeGP:
         nodes
             Which, from 0.
         """
-        x = self._checked(x, what="predict")
+        x = self._check(x, what="predict")
         if self.symmetry is None:
-            mean, variance = self._at_home(x, nodes, noisy=noisy)
+            mean, variance = self._in_sector(x, nodes, noisy=noisy)
             return Prediction(mean=mean, std=np.sqrt(np.swapaxes(variance[:, :3], 1, 2)))
         mean, std = np.zeros((2, len(x), len(self.centre[nodes]), 3))
-        for image, rows, share in _asked(self.symmetry, x):
+        for image, rows, share in _images_in_use(self.symmetry, x):
             own = self._by_image(self.symmetry, image, x[rows], nodes, noisy=noisy)
             mean[rows] += share * own.mean
             std[rows] += share * own.std
@@ -243,7 +243,7 @@ class FittedShapeGP:
         """The mean of ``predict_nodes`` alone [m], at a fraction of its cost without symmetry."""
         if self.symmetry is not None:
             return self.predict_nodes(x, nodes).mean
-        x = self._checked(x, what="mean_of_nodes")
+        x = self._check(x, what="mean_of_nodes")
         return self._mean(self.scores.mean(x).reshape(len(x), self.modes), nodes)
 
     def coordinate(self, node: int, axis: int) -> "FittedCoordinate":
@@ -289,7 +289,7 @@ class FittedShapeGP:
         }
         own = {"mean_shape": self.centre, "left_out": self.left_out, "scale": self.scale}
         symmetry = {} if self.symmetry is None else self.symmetry.to_arrays()
-        return saved, modes_to_arrays(self.basis) | own | symmetry | joined([arrays])
+        return saved, modes_to_arrays(self.basis) | own | symmetry | join([arrays])
 
     @classmethod
     def from_arrays(cls, settings: Mapping[str, object], arrays: Mapping[str, np.ndarray]) -> Self:
@@ -337,28 +337,26 @@ class FittedShapeGP:
         *,
         noisy: bool,
     ) -> Prediction:
-        """What an image of each sea state says, moved back."""
+        """Answer to an image of each sea state, moved back."""
         undo = symmetry.back(image)
         source, turn = symmetry.source[undo][nodes], symmetry.turn[undo]
         home = symmetry.turned(x, image)
         if nodes is EVERY:
             # Answering in order and then sorting the nodes spares a copy of all modes.
-            mean, moments = self._at_home(home, EVERY, noisy=noisy)
+            mean, moments = self._in_sector(home, EVERY, noisy=noisy)
             mean, moments = mean[:, source], moments[..., source]
         else:
-            mean, moments = self._at_home(home, source, noisy=noisy)
+            mean, moments = self._in_sector(home, source, noisy=noisy)
         mean[..., :2] = symmetry.centre + (mean[..., :2] - symmetry.centre) @ turn.T
-        return Prediction(mean=mean, std=np.sqrt(_turned(moments, turn)))
+        return Prediction(mean=mean, std=np.sqrt(_turn_variance(moments, turn)))
 
-    def _checked(
-        self, x: Float[np.ndarray, "row feature"], *, what: str
-    ) -> Float[np.ndarray, "_ _"]:
-        x = checked_inputs(x, what=what, width=self.features)
+    def _check(self, x: Float[np.ndarray, "row feature"], *, what: str) -> Float[np.ndarray, "_ _"]:
+        x = check_inputs(x, what=what, width=self.features)
         if self.symmetry is not None:
             check_turnable(x, what=what)
         return x
 
-    def _at_home(
+    def _in_sector(
         self, x: Float[np.ndarray, "row feature"], nodes: Nodes, *, noisy: bool
     ) -> tuple[Float[np.ndarray, "row node 3"], Float[np.ndarray, "row 4 node"]]:
         score = self.scores.predict(x, noisy=noisy)
@@ -404,7 +402,7 @@ class FittedCoordinate:
 
     def predict(self, x: Float[np.ndarray, "row feature"], *, noisy: bool = False) -> Prediction:
         """The coordinate at each row of features, as the whole shape would answer [m]."""
-        x = checked_inputs(x, what="predict", width=self.shape.features)
+        x = check_inputs(x, what="predict", width=self.shape.features)
         nodes = np.array([self.node])
         blocks = [
             self.shape.predict_nodes(x[first : first + BLOCK], nodes, noisy=noisy)
@@ -416,7 +414,7 @@ class FittedCoordinate:
         )
 
 
-def _brought_home(
+def _fold_cases(
     symmetry: Symmetry,
     x: Float[np.ndarray, "n feature"],
     node_position: Float[np.ndarray, "n node 3"],
@@ -431,10 +429,10 @@ def _brought_home(
     return home_x, home_position
 
 
-def _asked(
+def _images_in_use(
     symmetry: Symmetry, x: Float[np.ndarray, "row feature"]
 ) -> Iterator[tuple[int, Int[np.ndarray, " asked"], Float[np.ndarray, "asked 1 1"]]]:
-    """Each image that has something to say, about which rows, and how much."""
+    """Each image that has a share in an answer, with the rows and its shares."""
     shares = symmetry.shares(x)
     for image in range(len(symmetry)):
         rows = np.flatnonzero(shares[:, image])
@@ -442,7 +440,7 @@ def _asked(
             yield image, rows, shares[rows, image, None, None]
 
 
-def _turned(
+def _turn_variance(
     moments: Float[np.ndarray, "row 4 node"], turn: Float[np.ndarray, "2 2"]
 ) -> Float[np.ndarray, "row node 3"]:
     """Variances of x, y and z after a turn."""
@@ -452,7 +450,7 @@ def _turned(
     return np.maximum(np.stack([*horizontal, z], axis=2), 0.0)
 
 
-def _calibrated(
+def _interval_scale(
     fitted: FittedShapeGP, x: Float[np.ndarray, "n feature"], shape: Float[np.ndarray, "n node 3"]
 ) -> Float[np.ndarray, "node 3"]:
     """The scale that makes intervals of each coordinate cover what they should.

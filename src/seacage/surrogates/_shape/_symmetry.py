@@ -16,7 +16,7 @@ BAND = math.radians(3.0)
 """Half the width over which neighbouring sectors pass into one another [rad]."""
 
 SLACK_SPEED = 0.02
-"""Below this the current's direction fades, and all images have a say [m/s]."""
+"""Below this the current's direction fades, and all images have a share [m/s]."""
 
 COINCIDE = 0.01
 """How far a node's image may lie from a node [m]."""
@@ -77,7 +77,7 @@ class Symmetry:
         return cls(
             centre=centre,
             turn=turn,
-            source=np.stack([_matched(rest_position, centre, one) for one in turn]),
+            source=np.stack([_match(rest_position, centre, one) for one in turn]),
             middle=0.0 if plane is None else plane + half,
             half=half,
         )
@@ -110,9 +110,9 @@ class Symmetry:
         return np.argmin(self._off_middle(x), axis=1)
 
     def shares(self, x: Float[np.ndarray, "row feature"]) -> Float[np.ndarray, "row image"]:
-        """How much each image has to say about each sea state; they sum to 1.
+        """Share of each image in the answer to each sea state; they sum to 1.
 
-        One image says all, but for a band where two sectors meet and for slack water. Without
+        One image has all, but for a band where two sectors meet and for slack water. Without
         those the shape would jump where another image takes over.
         """
         inside = _smooth(0.5 + (self.half - self._off_middle(x)) / (2.0 * BAND))
@@ -171,7 +171,7 @@ def _operations(fold: int, plane: float | None) -> Float[np.ndarray, "image 2 2"
     return np.concatenate([turns, turns @ np.array([[cos, sin], [sin, -cos]])])
 
 
-def _matched(
+def _match(
     position: Float[np.ndarray, "node 3"],
     centre: Float[np.ndarray, "2"],
     turn: Float[np.ndarray, "2 2"],
@@ -183,7 +183,7 @@ def _matched(
     image[:, :2] = centre + (position[:, :2] - centre) @ turn.T
     distance, nearest = KDTree(image).query(position)
     source = np.asarray(nearest)
-    if distance.max() > COINCIDE or _repeated(source):
+    if distance.max() > COINCIDE or _has_repeats(source):
         node = int(np.argmax(distance))
         angle = math.degrees(math.atan2(turn[1, 0], turn[0, 0]))
         act = f"turned by {angle:.4g} deg" if np.linalg.det(turn) > 0.0 else "mirrored"
@@ -194,7 +194,7 @@ def _matched(
     return source
 
 
-def _repeated(source: Int[np.ndarray, " node"]) -> bool:
+def _has_repeats(source: Int[np.ndarray, " node"]) -> bool:
     met: Bool[np.ndarray, " node"] = np.zeros(len(source), dtype=bool)
     met[source] = True
     return not met.all()

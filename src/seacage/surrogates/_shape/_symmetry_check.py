@@ -5,8 +5,8 @@ from jaxtyping import Float
 
 from seacage.conventions import InputError
 from seacage.surrogates._features import check_turnable
-from seacage.surrogates._gp import condensed, fitted_process, kernel_named
-from seacage.surrogates._prediction import checked_inputs, checked_outputs
+from seacage.surrogates._gp import condense, fit_process, kernel_named
+from seacage.surrogates._prediction import check_inputs, check_outputs
 from seacage.surrogates._shape._pca import modes_within
 from seacage.surrogates._shape._symmetry import Symmetry
 
@@ -17,7 +17,7 @@ COMPRESSION = 0.01
 """Of the trial model [m]."""
 
 FEW = 20
-"""Fewer cases than this cannot tell."""
+"""Least number of cases that can show an asymmetry."""
 
 
 def check_symmetry(
@@ -60,20 +60,22 @@ def check_symmetry(
         The asymmetry is above the tolerance, or the cases are too few, or too hard for the trial
         model, to tell.
     """
-    x = checked_inputs(x, what="check_symmetry")
+    x = check_inputs(x, what="check_symmetry")
     check_turnable(x, what="check_symmetry")
-    node_position = checked_outputs(
+    node_position = check_outputs(
         node_position, what="check_symmetry", rows=len(x), shape="(rows, nodes, 3)"
     )
     _check_nodes(symmetry, node_position)
     if len(x) < FEW:
         raise InputError(
-            f"check_symmetry: {len(x)} cases cannot tell a symmetry; give at least {FEW}, or learn "
-            "without one."
+            f"check_symmetry: {len(x)} cases are too few; give at least {FEW}, or learn without "
+            "a symmetry."
         )
     rows = np.random.default_rng(seed).permutation(len(x))
-    judge, teach = np.split(rows[: TEACH + JUDGE], [min(JUDGE, len(x) // 5)])
-    missed = _missed(symmetry, x, node_position, teach=teach, judge=judge, seed=seed)
+    held_out, training = np.split(rows[: TEACH + JUDGE], [min(JUDGE, len(x) // 5)])
+    missed = _errors_by_image(
+        symmetry, x, node_position, training=training, held_out=held_out, seed=seed
+    )
     direct, by_image = np.median(missed[0]), np.median(np.sqrt(np.mean(missed[1:] ** 2, axis=0)))
     asymmetry = float(np.sqrt(max(by_image**2 - direct**2, 0.0)))
     if asymmetry > tolerance:
@@ -85,36 +87,36 @@ def check_symmetry(
         )
     if direct > 4.0 * tolerance:
         raise InputError(
-            f"check_symmetry: {len(teach)} cases teach the shapes to {direct:.3g} m only, too "
-            f"poorly to tell an asymmetry of {tolerance:g} m. Give more cases, a larger "
+            f"check_symmetry: {len(training)} training cases give an error of {direct:.3g} m, too "
+            f"large to see an asymmetry of {tolerance:g} m. Give more cases, a larger "
             "tolerance, or no symmetry."
         )
     return asymmetry
 
 
-def _missed(
+def _errors_by_image(
     symmetry: Symmetry,
     x: Float[np.ndarray, "n feature"],
     node_position: Float[np.ndarray, "n node 3"],
     *,
-    teach: np.ndarray,
-    judge: np.ndarray,
+    training: np.ndarray,
+    held_out: np.ndarray,
     seed: int,
-) -> Float[np.ndarray, "image judged"]:
-    """Root mean square distance over the nodes of each judged case, by each image [m]."""
+) -> Float[np.ndarray, "image held_out"]:
+    """Root mean square distance over the nodes of each held-out case, by each image [m]."""
     shape = node_position.reshape(len(x), -1)
-    modes = modes_within(shape[teach], COMPRESSION)
-    scores = modes.encode(shape[teach])
+    modes = modes_within(shape[training], COMPRESSION)
+    scores = modes.encode(shape[training])
     kernel = kernel_named("matern-5/2")
-    model = fitted_process(
-        kernel, x[teach], scores, taught_by=condensed(scores), restarts=0, seed=seed
+    model = fit_process(
+        kernel, x[training], scores, likelihood_outputs=condense(scores), restarts=0, seed=seed
     )
-    missed = np.empty((len(symmetry), len(judge)))
+    missed = np.empty((len(symmetry), len(held_out)))
     for image in range(len(symmetry)):
-        score = model.predict(symmetry.turned(x[judge], image)).mean.reshape(len(judge), -1)
-        answer = modes.decode(score).reshape(len(judge), -1, 3)
+        score = model.predict(symmetry.turned(x[held_out], image)).mean.reshape(len(held_out), -1)
+        answer = modes.decode(score).reshape(len(held_out), -1, 3)
         moved_back = symmetry.moved(answer, symmetry.back(image))
-        distance = np.sum((moved_back - node_position[judge]) ** 2, axis=2)
+        distance = np.sum((moved_back - node_position[held_out]) ** 2, axis=2)
         missed[image] = np.sqrt(distance.mean(axis=1))
     return missed
 

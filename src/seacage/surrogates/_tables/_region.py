@@ -40,7 +40,7 @@ class AbstractRegion(ABC):
         """Place of each input; outside 0..1 where it is not in the region."""
 
     @abstractmethod
-    def described(self) -> str:
+    def description(self) -> str:
         """What it covers, for an error's sentence."""
 
     @abstractmethod
@@ -51,7 +51,7 @@ class AbstractRegion(ABC):
         """Whether each input lies in the region, its rim included."""
         return _inside(self.places(x))
 
-    def checked_places(
+    def check_places(
         self, x: Float[np.ndarray, "row feature"], *, what: str
     ) -> Float[np.ndarray, "row axis"]:
         """Place of each input, all of them inside.
@@ -66,7 +66,7 @@ class AbstractRegion(ABC):
         if len(outside):
             row = ", ".join(f"{value:g}" for value in x[outside[0]])
             raise InputError(
-                f"{what}: {len(outside)} of {len(x)} rows lie outside {self.described()} "
+                f"{what}: {len(outside)} of {len(x)} rows lie outside {self.description()} "
                 f"(first: row {outside[0]}, x = {row}). "
                 "Ask the model itself there, or tabulate a larger region."
             )
@@ -127,7 +127,7 @@ class Box(AbstractRegion):
         place[:, closed] %= 1.0
         return place
 
-    def described(self) -> str:
+    def description(self) -> str:
         limits = (f"{low:g} to {high:g}" for low, high in zip(self.lower, self.upper, strict=True))
         return f"the table ({', '.join(limits)})"
 
@@ -186,14 +186,14 @@ class Disc(AbstractRegion):
             _check_length(x[:, 0], self.radius * place[:, 0], margin=1e-6 * self.radius)
         return place
 
-    def described(self) -> str:
+    def description(self) -> str:
         return f"the table (vectors up to {self.radius:g} long)"
 
     def to_settings(self) -> Settings:
         return {"kind": "disc", "radius": self.radius, "length_first": self.length_first}
 
 
-def saved_region(settings: Mapping[str, object]) -> AbstractRegion:
+def restore_region(settings: Mapping[str, object]) -> AbstractRegion:
     """Region that ``to_settings`` described.
 
     Raises

@@ -59,7 +59,7 @@ class Spline:
         table = values.reshape(*shape, fields)
         for axis, closed in enumerate(periodic):
             lines = np.moveaxis(table, axis, 0)
-            solved = (_closed if closed else _open)(lines.reshape(len(lines), -1))
+            solved = (_close if closed else _open)(lines.reshape(len(lines), -1))
             table = np.moveaxis(solved.reshape(-1, *lines.shape[1:]), 0, axis)
         coefficients = np.ascontiguousarray(table).reshape(-1, fields)
         return cls(shape=shape, periodic=periodic, coefficients=coefficients)
@@ -147,7 +147,7 @@ def _open(values: Float[np.ndarray, "node line"]) -> Float[np.ndarray, "coeffici
     return solve_banded((4, 4), band, target, check_finite=False)
 
 
-def _closed(values: Float[np.ndarray, "node line"]) -> Float[np.ndarray, "coefficient line"]:
+def _close(values: Float[np.ndarray, "node line"]) -> Float[np.ndarray, "coefficient line"]:
     """B-spline coefficients of lines that close on themselves, the first three repeated."""
     count = len(values)
     wave = 2.0 * np.pi * np.arange(count // 2 + 1) / count

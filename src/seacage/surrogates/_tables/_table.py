@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike
 
 from seacage.conventions import InputError, ModelError
 from seacage.surrogates._arrays import Arrays, Settings, array, setting
-from seacage.surrogates._prediction import Prediction, Predicts, checked_inputs
-from seacage.surrogates._tables._region import AbstractRegion, saved_region
+from seacage.surrogates._prediction import Prediction, Predicts, check_inputs
+from seacage.surrogates._tables._region import AbstractRegion, restore_region
 from seacage.surrogates._tables._spline import FEWEST, Spline, coefficient_count, nodes
 
 START = 12
@@ -128,19 +128,19 @@ class Table:
         for one in (tolerance, std_tolerance):
             _check_tolerance(one)
         _check_size(most_nodes, axes=len(region.periodic))
-        asked = _Asked(predict=fitted.predict, level=level, noise=noise)
+        query = _Query(predict=fitted.predict, level=level, noise=noise)
         random = np.random.default_rng(seed)
         shape = (START,) * len(region.periodic)
         while True:
-            table = _gridded(asked, region, shape, least_std=least_std)
+            table = _tabulate(query, region, shape, least_std=least_std)
             table = replace(table, tolerance=tolerance, std_tolerance=std_tolerance)
             for _ in range(2):
-                table = _held_against(table, asked, random)
+                table = _verify(table, query, random)
                 if table.excess > 1.0:
                     break
             else:
                 return table
-            shape = _finer(table, asked, random, most_nodes=most_nodes)
+            shape = _finer(table, query, random, most_nodes=most_nodes)
 
     @property
     def excess(self) -> float:
@@ -177,8 +177,8 @@ class Table:
                 "Table.predict: this table was made without noise. "
                 "Make it with `noise=True`, or ask what lies behind an observation."
             )
-        x = checked_inputs(x, what="Table.predict", width=self.region.width)
-        fields = self.spline.at(self.region.checked_places(x, what="Table.predict"))
+        x = check_inputs(x, what="Table.predict", width=self.region.width)
+        fields = self.spline.at(self.region.check_places(x, what="Table.predict"))
         outputs = len(self.least_std)
         variance = fields[:, outputs : 2 * outputs]
         if noisy:
@@ -217,7 +217,7 @@ class Table:
         ModelError
             A setting or an array is missing, of another kind or shape, or not finite.
         """
-        region = saved_region(setting(settings, "region", dict))
+        region = restore_region(setting(settings, "region", dict))
         shape = _counts(settings, "nodes", least=FEWEST)
         output_shape = _counts(settings, "output_shape", least=1)
         outputs = prod(output_shape)
@@ -242,7 +242,7 @@ class Table:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Asked:
+class _Query:
     """The model, and how it is asked."""
 
     predict: Callable[..., Prediction]
@@ -256,17 +256,17 @@ class _Asked:
         return quiet, self.predict(x, noisy=True, **at) if self.noise else quiet
 
 
-def _gridded(
-    asked: _Asked,
+def _tabulate(
+    query: _Query,
     region: AbstractRegion,
     shape: tuple[int, ...],
     *,
     least_std: ArrayLike,
 ) -> Table:
     """Table through the model's answers at a grid's nodes, its errors not yet known."""
-    quiet, noisy = asked(region.inputs(nodes(shape, region.periodic)))
+    quiet, noisy = query(region.inputs(nodes(shape, region.periodic)))
     mean, std, total = (_flat(one) for one in (quiet.mean, quiet.std, noisy.std))
-    fields = np.hstack([mean, std**2] + [total**2 - std**2] * asked.noise)
+    fields = np.hstack([mean, std**2] + [total**2 - std**2] * query.noise)
     least = np.broadcast_to(np.ravel(np.asarray(least_std, dtype=float)), mean.shape[1:])
     return Table(
         region=region,
@@ -280,19 +280,19 @@ def _gridded(
     )
 
 
-def _held_against(table: Table, asked: _Asked, random: np.random.Generator) -> Table:
+def _verify(table: Table, query: _Query, random: np.random.Generator) -> Table:
     """Table with the larger of its errors so far and at fresh random inputs."""
-    mean, std = _errors(table, asked, random.uniform(size=(CHECKS, len(table.nodes))))
+    mean, std = _errors(table, query, random.uniform(size=(CHECKS, len(table.nodes))))
     return replace(
         table, mean_error=max(table.mean_error, mean), std_error=max(table.std_error, std)
     )
 
 
 def _errors(
-    table: Table, asked: _Asked, place: Float[np.ndarray, "row axis"]
+    table: Table, query: _Query, place: Float[np.ndarray, "row axis"]
 ) -> tuple[float, float]:
     x = table.region.inputs(place)
-    quiet, noisy = asked(x)
+    quiet, noisy = query(x)
     own, own_noisy = table.predict(x), table.predict(x, noisy=table.has_noise)
     std = np.maximum(_flat(quiet.std), table.least_std)
     # An output that is nothing everywhere has no unit to measure its error in.
@@ -306,7 +306,7 @@ def _errors(
 
 
 def _finer(
-    table: Table, asked: _Asked, random: np.random.Generator, *, most_nodes: int
+    table: Table, query: _Query, random: np.random.Generator, *, most_nodes: int
 ) -> tuple[int, ...]:
     """Grid to try next: each axis finer by what its own error asks for.
 
@@ -316,7 +316,7 @@ def _finer(
         The grid is as large as it may be.
     """
     axes, size = len(table.nodes), prod(table.nodes)
-    excess = np.array([_excess_along(axis, table, asked, random) for axis in range(axes)])
+    excess = np.array([_excess_along(axis, table, query, random) for axis in range(axes)])
     # The error of a cubic falls with the fourth power; the axes' errors add up.
     growth = np.clip((2.0 * axes * excess) ** 0.25, 1.0, GROWTH[1])
     growth = np.maximum(growth, GROWTH[0] if np.all(growth < GROWTH[0]) else 1.0)
@@ -334,14 +334,14 @@ def _finer(
     return shape
 
 
-def _excess_along(axis: int, table: Table, asked: _Asked, random: np.random.Generator) -> float:
+def _excess_along(axis: int, table: Table, query: _Query, random: np.random.Generator) -> float:
     """Excess where every other coordinate is a node's, so that only this axis errs."""
     place = random.uniform(size=(PROBES, len(table.nodes)))
     for other, count in enumerate(table.nodes):
         if other != axis:
             cells = count if table.region.periodic[other] else count - 1
             place[:, other] = np.floor(place[:, other] * count) / cells
-    mean_error, std_error = _errors(table, asked, place)
+    mean_error, std_error = _errors(table, query, place)
     return replace(table, mean_error=mean_error, std_error=std_error).excess
 
 

@@ -152,7 +152,9 @@ def _of_cases(
 ) -> FittedGaussianProcess:
     """Return a process conditioned on some of its cases alone."""
     members = [
-        member.reconditioned(member.x[kept], member.observed()[kept], doubt=member.doubt[kept])
+        member.reconditioned(
+            member.x[kept], member.observations()[kept], noise_factor=member.noise_factor[kept]
+        )
         for member in process.members
     ]
     return replace(process, members=tuple(members))

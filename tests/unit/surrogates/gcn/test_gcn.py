@@ -10,7 +10,7 @@ import pytest
 from seacage.cage import Cage
 from seacage.conventions import InputError, ModelError
 from seacage.surrogates import GCN, FittedGCN, current_features, decode, encode
-from seacage.surrogates._gcn._gcn import _drawn
+from seacage.surrogates._gcn._gcn import _draw_held_out
 from seacage.testing import stand_in_campaign, stand_in_seas
 
 CAGE = Cage.named("ace").altered(mesh={"spokes": 6})
@@ -79,14 +79,14 @@ def test_a_cage_and_its_edges_are_the_same_net(modal: FittedGCN) -> None:
 def test_cases_of_ones_own_can_be_held_out() -> None:
     x, truth = shapes(12, seed=2)
     fitted = GCN(cage=CAGE, epochs=3).fit(X[:108], SHAPES[:108], validation=(x, truth))
-    assert (len(fitted.off.taught), len(fitted.off.held_out)) == (108, 12)
+    assert (len(fitted.off.train), len(fitted.off.held_out)) == (108, 12)
     kept = fitted.off.held_out * fitted.network.scaling.spread + fitted.network.scaling.centre
     np.testing.assert_allclose(kept, x, atol=1e-12)  # roundings
 
 
 @pytest.mark.parametrize(("share", "expected"), [(None, 12), (0.25, 30), (0.001, 2)])
 def test_the_share_held_out_is_what_was_asked_for(share: float | None, expected: int) -> None:
-    held_out = _drawn(120, share, seed=0)
+    held_out = _draw_held_out(120, share, seed=0)
     assert len(set(held_out.tolist())) == expected
     assert set(held_out.tolist()) <= set(range(120))
 

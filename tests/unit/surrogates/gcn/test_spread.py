@@ -11,7 +11,7 @@ TAUGHT, HELD_OUT = np.arange(300), np.arange(300, 600)
 
 
 def spread_of(residual: np.ndarray) -> Spread:
-    return Spread.of(X, residual, taught=TAUGHT, held_out=HELD_OUT)
+    return Spread.of(X, residual, train=TAUGHT, held_out=HELD_OUT)
 
 
 def heavy(rows: int) -> np.ndarray:
@@ -65,11 +65,11 @@ def test_a_network_that_is_never_off_has_next_to_no_spread() -> None:
 
 
 def test_two_held_out_cases_are_enough() -> None:
-    few = Spread.of(X[:5], heavy(5), taught=np.arange(3), held_out=np.arange(3, 5))
+    few = Spread.of(X[:5], heavy(5), train=np.arange(3), held_out=np.arange(3, 5))
     assert np.isfinite(few.std(X, noisy=False)).all()
 
 
 def test_equal_cases_are_no_division_by_nothing() -> None:
     x = np.zeros((600, 2))
-    same = Spread.of(x, heavy(600), taught=TAUGHT, held_out=HELD_OUT)
+    same = Spread.of(x, heavy(600), train=TAUGHT, held_out=HELD_OUT)
     assert np.isfinite(same.std(x + 1.0, noisy=False)).all()

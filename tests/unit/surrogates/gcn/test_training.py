@@ -6,7 +6,7 @@ import pytest
 from seacage.surrogates._gcn._graph import Graph
 from seacage.surrogates._gcn._layers import first_parameters, paper_network, parameter_shapes
 from seacage.surrogates._gcn._recipe import Recipe
-from seacage.surrogates._gcn._training import Lesson, batches_of, learning_rates, trained
+from seacage.surrogates._gcn._training import TrainingSet, batches_of, learning_rates, train_network
 
 RANDOM = np.random.default_rng(0)
 REST = RANDOM.standard_normal((5, 3))
@@ -18,17 +18,17 @@ SHAPES = parameter_shapes("paper", features=2, nodes=5, width=6, modes=0)
 FIRST = first_parameters(SHAPES, modes=np.zeros((0, 15)), seed=0)
 
 
-def taught(target=TARGET, *, weight=None, recipe=RECIPE, progress=None):
-    lesson = Lesson(
+def train(target=TARGET, *, weight=None, recipe=RECIPE, progress=None):
+    training_set = TrainingSet(
         rest=REST,
         propagation=GRAPH.propagation(),
         weight=np.ones(5) if weight is None else weight,
         x=X,
         target=target,
-        taught=np.arange(32),
+        train=np.arange(32),
         held_out=np.arange(32, 40),
     )
-    return trained("paper", FIRST, lesson, recipe=recipe, seed=0, progress=progress)
+    return train_network("paper", FIRST, training_set, recipe=recipe, seed=0, progress=progress)
 
 
 def missed(parameters) -> np.ndarray:
@@ -39,14 +39,14 @@ def missed(parameters) -> np.ndarray:
 
 @pytest.mark.slow
 def test_training_brings_the_network_nearer_to_its_cases() -> None:
-    parameters, epochs = taught()
+    parameters, epochs = train()
     assert epochs == 40
     assert missed(parameters).mean() < 0.85 * missed(FIRST).mean()
 
 
 def test_a_node_that_weighs_nothing_is_not_learned() -> None:
     weight = np.array([2.0, 2.0, 1.0, 0.0, 0.0])
-    alike, unlike = missed(taught()[0]), missed(taught(weight=weight)[0])
+    alike, unlike = missed(train()[0]), missed(train(weight=weight)[0])
     assert unlike[3:].mean() > 1.1 * alike[3:].mean()
 
 
@@ -55,7 +55,7 @@ def test_training_ends_when_the_held_out_cases_no_longer_gain() -> None:
     turned = np.concatenate([TARGET[:32], -3.0 * TARGET[:8]])
     told: list[tuple[str, int, int]] = []
     recipe = Recipe(width=6, epochs=400, patience=5, learning_rate=1e-2)
-    _, epochs = taught(turned, recipe=recipe, progress=lambda *step: told.append(step))
+    _, epochs = train(turned, recipe=recipe, progress=lambda *step: told.append(step))
     assert epochs < 40
     assert told[0] == ("gcn", 1, 400)
     assert told[-2:] == [("gcn", epochs, 400), ("gcn", 400, 400)]
@@ -63,7 +63,7 @@ def test_training_ends_when_the_held_out_cases_no_longer_gain() -> None:
 
 def test_every_epoch_is_told_and_the_last_one_once() -> None:
     told: list[tuple[str, int, int]] = []
-    taught(progress=lambda *step: told.append(step))
+    train(progress=lambda *step: told.append(step))
     assert told == [("gcn", epoch, 40) for epoch in range(1, 41)]
 
 

@@ -6,8 +6,8 @@ import pytest
 from seacage.conventions import InputError
 from seacage.surrogates import GaussianProcess, coverage, decode, encode, rmse
 from seacage.surrogates._gp import _gaussian_process
-from seacage.surrogates._gp._ensemble import FEW, MEMBERS, drawn
-from seacage.surrogates._gp._hyperparameters import Evidence, learned
+from seacage.surrogates._gp._ensemble import FEW, MEMBERS, draw_members
+from seacage.surrogates._gp._hyperparameters import Evidence, most_probable
 from seacage.surrogates._gp._kernels import StationaryKernel
 from seacage.surrogates._gp._noise import WhiteNoise
 
@@ -31,7 +31,7 @@ def evidence(rows: int) -> Evidence:
 def test_draws_have_the_moments_of_the_posterior() -> None:
     # Three hyperparameters can be integrated on a grid: the mean of each is compared in its sd.
     of = evidence(4)
-    mode = learned(of, restarts=0, seed=0)
+    mode = most_probable(of, restarts=0, seed=0)
     axes = [np.linspace(low, high, 15) for low, high in of.bounds()]
     grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
     loss = np.array([of.loss(at)[0] for at in grid])
@@ -39,7 +39,7 @@ def test_draws_have_the_moments_of_the_posterior() -> None:
     weight /= weight.sum()
     mean = weight @ grid
     sd = np.sqrt(weight @ (grid - mean) ** 2)
-    found = np.concatenate([drawn(mode, seed=seed) for seed in range(9)])
+    found = np.concatenate([draw_members(mode, seed=seed) for seed in range(9)])
     # 144 draws that follow one another, of some 48 independent ones: sd of the mean 0.15.
     np.testing.assert_allclose((found.mean(axis=0) - mean) / sd, 0.0, atol=0.8)
     np.testing.assert_allclose(found.std(axis=0) / sd, 1.0, atol=0.5)
@@ -47,7 +47,7 @@ def test_draws_have_the_moments_of_the_posterior() -> None:
 
 def test_the_most_probable_draw_comes_first() -> None:
     of = evidence(6)
-    found = drawn(learned(of, restarts=0, seed=0), seed=0)
+    found = draw_members(most_probable(of, restarts=0, seed=0), seed=0)
     losses = [of.loss(at)[0] for at in found]
     assert np.argmin(losses) == 0
     assert len(found) == MEMBERS
@@ -77,7 +77,7 @@ def test_the_mixture_obeys_the_law_of_total_variance() -> None:
     x, new = some(8), some(5, seed=1)
     fitted = GaussianProcess(restarts=0).fit(x, wave(x))
     answer = fitted.predict(new)
-    scaled = fitted.inputs.standardised(new)
+    scaled = fitted.inputs.standardise(new)
     parts = [member.predict(scaled) for member in fitted.members]
     random, draws = np.random.default_rng(0), 100_000
     which = random.integers(0, MEMBERS, draws)
@@ -129,7 +129,7 @@ def test_the_spread_of_each_draw_of_few_points_is_widened_and_no_mean(
     given = GaussianProcess().fit(x, wave(x)).predict(some(20, seed=1))
     means, variances = [], []
     for factor in (1.0, 2.0):
-        monkeypatch.setattr(_gaussian_process, "widened", lambda _, factor=factor: factor)
+        monkeypatch.setattr(_gaussian_process, "widening", lambda _, factor=factor: factor)
         one = GaussianProcess().fit(x, wave(x)).predict(some(20, seed=1))
         means.append(one.mean)
         variances.append(one.std**2)
@@ -145,6 +145,6 @@ def test_many_points_are_given_what_their_posterior_says(
 ) -> None:
     x = some(FEW + 1)
     said = GaussianProcess().fit(x, wave(x)).predict(some(20, seed=1))
-    monkeypatch.setattr(_gaussian_process, "widened", lambda _: 2.0)
+    monkeypatch.setattr(_gaussian_process, "widening", lambda _: 2.0)
     same = GaussianProcess().fit(x, wave(x)).predict(some(20, seed=1))
     np.testing.assert_array_equal(said.std, same.std)

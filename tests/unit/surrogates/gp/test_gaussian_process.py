@@ -6,7 +6,7 @@ import pytest
 from seacage.conventions import InputError
 from seacage.surrogates import GaussianProcess, coverage, rmse
 from seacage.surrogates._gp._ensemble import Ensemble
-from seacage.surrogates._gp._gaussian_process import SHARED_POINTS, condensed
+from seacage.surrogates._gp._gaussian_process import SHARED_POINTS, condense
 
 
 def bumps(rows: int, *, seed: int, noise: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
@@ -135,7 +135,7 @@ def test_leaving_one_out_is_a_fair_judge_of_itself() -> None:
 
 def test_condensed_outputs_have_the_same_products_between_cases() -> None:
     y = np.random.default_rng(0).standard_normal((12, 40))
-    few = condensed(y)
+    few = condense(y)
     assert few.shape[1] == 11
     assert np.mean(few**2) == pytest.approx(1.0)
     centred = y - y.mean(axis=0)
@@ -146,8 +146,8 @@ def test_condensed_outputs_have_the_same_products_between_cases() -> None:
 def test_condensing_leaves_rounding_out() -> None:
     random = np.random.default_rng(0)
     y = random.standard_normal((30, 2)) @ random.standard_normal((2, 50))
-    assert condensed(y).shape == (30, 2)
-    assert condensed(np.zeros((4, 20))).shape == (4, 1)
+    assert condense(y).shape == (30, 2)
+    assert condense(np.zeros((4, 20))).shape == (4, 1)
 
 
 def test_lists_and_whole_numbers_will_do() -> None:

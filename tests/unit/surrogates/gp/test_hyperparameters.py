@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seacage.surrogates._gp import _hyperparameters
-from seacage.surrogates._gp._hyperparameters import Evidence, learned
+from seacage.surrogates._gp._hyperparameters import Evidence, most_probable
 from seacage.surrogates._gp._kernels import AbstractKernel, StationaryKernel
 from seacage.surrogates._gp._noise import (
     AbstractNoise,
@@ -62,7 +62,7 @@ def test_so_does_that_of_every_noise(noise: AbstractNoise) -> None:
     at[-count:] += np.linspace(0.0, 0.5, count)
     # Where there is some noise, as differences of an all but singular covariance are coarse.
     at[-count:][: noise.sizes] = np.log(0.02) + np.linspace(0.0, 0.5, noise.sizes)
-    agrees_with_differences(of.doubted(at) if noise.name == "student-t" else of, at)
+    agrees_with_differences(of.reweighted(at) if noise.name == "student-t" else of, at)
 
 
 def test_the_loss_is_the_gaussian_log_density_of_each_output_and_of_the_prior() -> None:
@@ -96,7 +96,9 @@ def test_learning_finds_the_hyperparameters_that_made_the_points() -> None:
     true = np.log([1.0, 0.4, 0.01])
     factor = np.linalg.cholesky(SMOOTH.covariance(true[:-1], x, x) + 0.01 * np.eye(len(x)))
     y = factor @ random.standard_normal((250, 4))
-    found = learned(Evidence.of(SMOOTH, WhiteNoise(), x, y), restarts=1, seed=0).log_parameters
+    found = most_probable(
+        Evidence.of(SMOOTH, WhiteNoise(), x, y), restarts=1, seed=0
+    ).log_parameters
     # Four realisations of 250 points fix a length to a few percent, a variance to a few tens.
     assert found[1] == pytest.approx(true[1], abs=0.15)
     assert found[2] == pytest.approx(true[2], abs=0.15)
@@ -106,14 +108,14 @@ def test_learning_finds_the_hyperparameters_that_made_the_points() -> None:
 def test_more_points_than_the_subset_are_polished_on_all(monkeypatch: pytest.MonkeyPatch) -> None:
     of = evidence(rows=60)
     monkeypatch.setattr(_hyperparameters, "SUBSET", 15)
-    polished = learned(of, restarts=0, seed=0)
+    polished = most_probable(of, restarts=0, seed=0)
     monkeypatch.setattr(_hyperparameters, "POLISH", 0)
-    rough = learned(of, restarts=0, seed=0)
+    rough = most_probable(of, restarts=0, seed=0)
     assert of.loss(polished.log_parameters)[0] < of.loss(rough.log_parameters)[0] - 1.0
 
 
 def test_restarts_never_end_worse() -> None:
-    ends = [learned(evidence(), restarts=restarts, seed=3).loss for restarts in (0, 2, 4)]
+    ends = [most_probable(evidence(), restarts=restarts, seed=3).loss for restarts in (0, 2, 4)]
     assert ends == sorted(ends, reverse=True)
 
 
@@ -121,9 +123,9 @@ def test_a_doubted_point_says_less(monkeypatch: pytest.MonkeyPatch) -> None:
     x, y = cases(60)
     y[7] += 20.0
     monkeypatch.setattr(_hyperparameters, "SUBSET", 40)
-    end = learned(Evidence.of(SMOOTH, StudentNoise(), x, y), restarts=0, seed=0)
-    assert np.argmax(end.evidence.doubt) == 7
-    assert end.evidence.doubt[7] > 1e3
+    end = most_probable(Evidence.of(SMOOTH, StudentNoise(), x, y), restarts=0, seed=0)
+    assert np.argmax(end.evidence.noise_factor) == 7
+    assert end.evidence.noise_factor[7] > 1e3
     assert len(end.evidence.x) == 60
 
 
@@ -135,5 +137,5 @@ def test_waves_shorter_than_believed_are_not_taken_for_noise() -> None:
         x = (np.arange(80) + random.uniform(size=80))[:, None] / 80.0
         y = np.sin(16.0 * np.pi * x)
         of = Evidence.of(SMOOTH, WhiteNoise(), (x - x.mean()) / x.std(), y / y.std())
-        mode = learned(of, restarts=1, seed=seed)
+        mode = most_probable(of, restarts=1, seed=seed)
         assert np.exp(mode.log_parameters[-1]) < 1e-3

@@ -8,7 +8,7 @@ from seacage.surrogates._gp._kernels import (
     AbstractKernel,
     StationaryKernel,
     kernel_named,
-    saved_kernel,
+    restore_kernel,
 )
 from seacage.surrogates._multifidelity._kernel import (
     AutoregressiveKernel,
@@ -166,9 +166,9 @@ def test_an_unknown_kernel_is_refused() -> None:
     with pytest.raises(InputError, match="is not known"):
         kernel_named("autoregressive")
     with pytest.raises(ModelError, match="'cubic'"):
-        saved_kernel("cubic")
+        restore_kernel("cubic")
 
 
 @every_kernel
 def test_a_saved_kernel_is_found_by_its_name(kernel: AbstractKernel) -> None:
-    assert saved_kernel(kernel.name) == kernel
+    assert restore_kernel(kernel.name) == kernel

@@ -21,8 +21,8 @@ from seacage.surrogates._gp._noise import (
     NoisePerOutput,
     StudentNoise,
     WhiteNoise,
-    doubt_of,
-    settled_doubt,
+    noise_factor_of,
+    noise_factor_of_new,
 )
 
 LINE = np.linspace(0.0, 1.0, 200)[:, None]
@@ -114,8 +114,8 @@ def test_outliers_do_not_pull_what_expects_them() -> None:
     robust, gaussian = fitted(outliers(), "student-t"), fitted(outliers(), "white")
     assert rmse(TRUTH, robust.predict(LINE).mean) < 0.04
     assert rmse(TRUTH, gaussian.predict(LINE).mean) > 0.2
-    doubt = robust.posterior.doubt
-    assert doubt[::11].min() > 100.0 * np.median(doubt)
+    noise_factor = robust.posterior.noise_factor
+    assert noise_factor[::11].min() > 100.0 * np.median(noise_factor)
 
 
 def test_the_variance_of_student_t_noise_is_that_of_the_distribution() -> None:
@@ -191,9 +191,9 @@ def test_noise_per_output_is_one_number_for_each() -> None:
 
 def test_a_doubt_is_settled_where_its_own_residual_calls_for_it() -> None:
     square, variance = np.array([0.0, 1.0, 100.0]), np.array([0.2, 0.0, 0.2])
-    doubt = settled_doubt(square, variance, scale=0.5, outputs=1)
-    noise = 0.5 * doubt
+    noise_factor = noise_factor_of_new(square, variance, scale=0.5, outputs=1)
+    noise = 0.5 * noise_factor
     kept = noise / (variance + noise)
-    again = doubt_of(kept**2 * square + kept * variance, scale=0.5, outputs=1)
-    np.testing.assert_allclose(doubt, again, rtol=1e-9)
-    assert doubt[0] < 1.0 < doubt[2]
+    again = noise_factor_of(kept**2 * square + kept * variance, scale=0.5, outputs=1)
+    np.testing.assert_allclose(noise_factor, again, rtol=1e-9)
+    assert noise_factor[0] < 1.0 < noise_factor[2]

@@ -26,11 +26,13 @@ def conditioned(
     x: np.ndarray,
     y: np.ndarray,
     noise: AbstractNoise | None = None,
-    doubt: np.ndarray | None = None,
+    noise_factor: np.ndarray | None = None,
 ) -> Posterior:
     noise = noise or WhiteNoise()
     log_noise = np.full(noise.sizes, np.log(NOISE)) + np.arange(noise.sizes)
-    return Posterior.conditioned(SMOOTH, AT, log_noise, x, y, noise=noise, doubt=doubt)
+    return Posterior.conditioned(
+        SMOOTH, AT, log_noise, x, y, noise=noise, noise_factor=noise_factor
+    )
 
 
 def test_a_prediction_is_the_textbook_formula() -> None:
@@ -73,7 +75,7 @@ def test_leaving_one_out_in_closed_form_is_leaving_one_out_by_hand(noise: Abstra
 @pytest.mark.parametrize("noise", [WhiteNoise(), NoisePerOutput(2)], ids=lambda one: one.name)
 def test_the_outputs_can_be_had_back_from_the_weights(noise: AbstractNoise) -> None:
     x, y = cases()
-    np.testing.assert_allclose(conditioned(x, y, noise).observed(), y, atol=1e-10)
+    np.testing.assert_allclose(conditioned(x, y, noise).observations(), y, atol=1e-10)
 
 
 @pytest.mark.parametrize(
@@ -83,7 +85,7 @@ def test_an_update_answers_as_if_all_points_had_been_there(noise: AbstractNoise)
     x, y = cases()
     new = np.random.default_rng(1).standard_normal((7, 2))
     updated = conditioned(x[:20], y[:20], noise).updated(x[20:], y[20:], amplitude=np.ones(2))
-    anew = conditioned(x, y, noise, updated.doubt)
+    anew = conditioned(x, y, noise, updated.noise_factor)
     for one, other in zip(updated.predict(new), anew.predict(new), strict=True):
         np.testing.assert_allclose(one, other, rtol=1e-9, atol=1e-12)
 
@@ -100,7 +102,7 @@ def test_a_point_that_comes_again_is_no_trouble() -> None:
     x, y = cases()
     sure = replace(conditioned(x, y), log_noise=np.array([-30.0]))
     smooth = np.sin(x)
-    exact = sure.reconditioned(x, smooth, doubt=np.ones(len(x)))
+    exact = sure.reconditioned(x, smooth, noise_factor=np.ones(len(x)))
     again = exact.updated(x[:3], smooth[:3], amplitude=np.ones(2))
     # Repeated without noise, only a jitter keeps the points apart.
     np.testing.assert_allclose(again.predict(x)[0], smooth, atol=1e-3)
@@ -110,9 +112,9 @@ def test_a_surprising_new_point_is_doubted() -> None:
     x, y = cases()
     posterior = conditioned(x, y, StudentNoise())
     wrong = posterior.predict(x[:2])[0] + np.array([[0.0, 0.0], [30.0, 0.0]])
-    doubt = posterior.updated(x[:2], wrong, amplitude=np.ones(2)).doubt[-2:]
-    assert doubt[0] < 1.0
-    assert doubt[1] > 100.0
+    noise_factor = posterior.updated(x[:2], wrong, amplitude=np.ones(2)).noise_factor[-2:]
+    assert noise_factor[0] < 1.0
+    assert noise_factor[1] > 100.0
 
 
 def test_slopes_agree_with_finite_differences() -> None:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from seacage.surrogates import AR1, NARGP, FittedNARGP, Prediction, Together, rmse
+from seacage.surrogates import AR1, NARGP, BatchedLevels, FittedNARGP, Prediction, rmse
 from seacage.surrogates._multifidelity import _nargp
 
 RANDOM = np.random.default_rng(5)
@@ -136,7 +136,7 @@ def test_levels_asked_together_keep_their_lines(alike: FittedNARGP) -> None:
     both = Prediction(
         mean=np.column_stack([below.mean, below.mean]), std=np.column_stack([below.std, below.std])
     )
-    said = Together.of([alike.upper[0], other.upper[0]]).predict(NEW, both)
+    said = BatchedLevels.of([alike.upper[0], other.upper[0]]).predict(NEW, both)
     for column, model in enumerate((alike, other)):
         np.testing.assert_allclose(said.mean[:, column], model.predict(NEW).mean, rtol=1e-9)
         np.testing.assert_allclose(said.std[:, column], model.predict(NEW).std, rtol=1e-6)

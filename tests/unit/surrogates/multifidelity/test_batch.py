@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from seacage.surrogates import AR1, NARGP, FittedNARGP, GaussianProcess, Prediction, Together
+from seacage.surrogates import AR1, NARGP, BatchedLevels, FittedNARGP, GaussianProcess, Prediction
 from seacage.surrogates._multifidelity import _batch as batch
 from seacage.surrogates._multifidelity._nargp import AbstractMultifidelity
 
@@ -48,8 +48,8 @@ class Known:
         return self.prediction
 
 
-def levels_of(models: tuple[FittedNARGP, ...]) -> Together:
-    return Together.of([model.upper[0] for model in models])
+def levels_of(models: tuple[FittedNARGP, ...]) -> BatchedLevels:
+    return BatchedLevels.of([model.upper[0] for model in models])
 
 
 def agree(models: tuple[FittedNARGP, ...], x: np.ndarray, below: Prediction) -> None:

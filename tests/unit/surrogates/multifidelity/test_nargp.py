@@ -137,9 +137,9 @@ def test_an_update_answers_as_if_all_cases_had_been_there(two_levels: FittedNARG
     whole = np.concatenate([X2, new])
     process = two_levels.own[1]
     below = two_levels.predict(whole, level=1).mean
-    x = process.inputs.standardised(np.column_stack([whole, below]))
+    x = process.inputs.standardise(np.column_stack([whole, below]))
     y = (high(whole) - process.centre)[:, None]
-    anew = process.posterior.reconditioned(x, y, doubt=np.ones(len(x)))
+    anew = process.posterior.reconditioned(x, y, noise_factor=np.ones(len(x)))
     for one, other in zip(updated.own[1].posterior.predict(x), anew.predict(x), strict=True):
         np.testing.assert_allclose(one, other, rtol=1e-6, atol=1e-9)
     truth = high(NEW)
@@ -155,7 +155,7 @@ def test_an_update_in_the_middle_moves_only_what_stands_on_it() -> None:
     moved = updated.own[2].cases()
     np.testing.assert_allclose(moved[:, 1], updated.predict(X2[:10], level=2).mean, atol=1e-9)
     np.testing.assert_allclose(
-        updated.own[2].posterior.observed(), fitted.own[2].posterior.observed(), atol=1e-6
+        updated.own[2].posterior.observations(), fitted.own[2].posterior.observations(), atol=1e-6
     )
     top = fitted.updated(X2[10:], highest(X2[10:]))
     assert top.own[:2] == fitted.own[:2]

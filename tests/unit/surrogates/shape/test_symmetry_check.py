@@ -43,9 +43,9 @@ def test_a_held_side_is_found_out_and_its_size_told() -> None:
 def test_too_few_cases_and_too_poor_a_model_cannot_tell() -> None:
     symmetry = Symmetry.of(REST, fold=4)
     x, position = swaying(60)
-    with pytest.raises(InputError, match="10 cases cannot tell a symmetry"):
+    with pytest.raises(InputError, match="10 cases are too few"):
         check_symmetry(symmetry, x[:10], position[:10])
-    with pytest.raises(InputError, match="too poorly to tell an asymmetry"):
+    with pytest.raises(InputError, match="too large to see an asymmetry"):
         check_symmetry(symmetry, x, position + np.random.default_rng(0).normal(size=(60, 1, 3)))
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from seacage.conventions import InputError, ModelError
 from seacage.surrogates import current_features
-from seacage.surrogates._tables._region import Box, Disc, saved_region
+from seacage.surrogates._tables._region import Box, Disc, restore_region
 
 REGIONS = [
     Box(lower=(-1.0, 10.0), upper=(1.0, 30.0)),
@@ -23,12 +23,12 @@ def test_an_input_is_found_at_its_place(region) -> None:
     x = region.inputs(place)
     assert x.shape == (50, region.width)
     assert region.contains(x).all()
-    np.testing.assert_allclose(region.checked_places(x, what="test"), place, atol=1e-12)
+    np.testing.assert_allclose(region.check_places(x, what="test"), place, atol=1e-12)
 
 
 @pytest.mark.parametrize("region", REGIONS, ids=str)
 def test_a_region_is_saved_and_comes_back(region) -> None:
-    assert saved_region(json.loads(json.dumps(region.to_settings()))) == region
+    assert restore_region(json.loads(json.dumps(region.to_settings()))) == region
 
 
 def test_the_rim_is_inside_and_a_little_beyond_is_not() -> None:
@@ -44,7 +44,7 @@ def test_the_rim_is_inside_and_a_little_beyond_is_not() -> None:
 
 def test_a_closed_feature_is_brought_back_from_any_turn() -> None:
     box = Box(lower=(0.0,), upper=(360.0,), closed=(0,))
-    place = box.checked_places(np.array([[-90.0], [270.0], [630.0], [360.0]]), what="test")
+    place = box.check_places(np.array([[-90.0], [270.0], [630.0], [360.0]]), what="test")
     np.testing.assert_allclose(place[:, 0], [0.75, 0.75, 0.75, 0.0])
 
 
@@ -53,9 +53,9 @@ def test_an_input_outside_is_refused_with_its_row_and_the_limits() -> None:
     with pytest.raises(
         InputError, match=r"1 of 2 rows lie outside .*up to 1 long.*row 1, x = 1.27"
     ):
-        Disc(radius=1.0).checked_places(x, what="Table.predict")
+        Disc(radius=1.0).check_places(x, what="Table.predict")
     with pytest.raises(InputError, match=r"the table \(0 to 1, 2 to 3\)"):
-        Box(lower=(0.0, 2.0), upper=(1.0, 3.0)).checked_places(np.zeros((1, 2)), what="test")
+        Box(lower=(0.0, 2.0), upper=(1.0, 3.0)).check_places(np.zeros((1, 2)), what="test")
 
 
 def test_a_length_that_is_not_the_vectors_is_refused() -> None:
@@ -93,4 +93,4 @@ def test_a_region_that_cannot_be_is_refused(make, why: str) -> None:
 )
 def test_a_damaged_region_is_refused(settings) -> None:
     with pytest.raises(ModelError):
-        saved_region(settings)
+        restore_region(settings)

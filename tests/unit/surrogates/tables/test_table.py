@@ -177,9 +177,9 @@ def test_an_input_of_another_kind_is_refused(table: Table, x: np.ndarray) -> Non
 
 @pytest.mark.parametrize("tolerance", [0.0, -1.0, np.nan, np.inf])
 def test_a_tolerance_of_nothing_is_refused(nargp, tolerance: float) -> None:
-    for asked in ({"tolerance": tolerance}, {"std_tolerance": tolerance}):
+    for query in ({"tolerance": tolerance}, {"std_tolerance": tolerance}):
         with pytest.raises(InputError, match="is not above 0"):
-            Table.of(nargp, CURRENTS, **asked)
+            Table.of(nargp, CURRENTS, **query)
 
 
 def test_too_small_a_size_is_refused(nargp) -> None:

@@ -111,7 +111,9 @@ def test_a_reading_is_judged_without_the_days_around_it():
     low = lower.predict(chosen.metocean.features(("current",))).mean
     moved = process.members[0]
     moved = moved.reconditioned(
-        moved.x, (wrong.value - gain * low - process.centre)[:, None], doubt=moved.doubt
+        moved.x,
+        (wrong.value - gain * low - process.centre)[:, None],
+        noise_factor=moved.noise_factor,
     )
     fooled = replace(taught, rest=replace(taught.rest, own=(replace(process, members=(moved,)),)))
     mean, doubt = without_in_turn(taught, chosen, pairs, x)
