@@ -7,7 +7,7 @@ import pytest
 
 from seacage.cage import Cage
 from seacage.campaigns import Hidden, Plan, run_campaign, true_shapes
-from seacage.studies import Judged, judged_paths, judged_points, learned_discrepancy
+from seacage.studies import Reliability, learned_discrepancy, score_paths, score_points
 from seacage.twin import Training, train
 
 CAGE = Cage.named("ace").altered(mesh={"spokes": 8})
@@ -30,14 +30,14 @@ def unseen():
     return true_shapes(CAGE, hidden=Hidden.read(), seeds=range(50, 55), cases=24, workers=1)
 
 
-def brier(judged: Judged) -> float:
+def brier(judged: Reliability) -> float:
     return float(np.mean((judged.p - judged.happened) ** 2))
 
 
 @pytest.mark.slow
 @pytest.mark.timeout(600)
 def test_of_a_hundred_points_foretold_to_be_too_near_so_many_are(twin, unseen):
-    judged = judged_points(twin, unseen)
+    judged = score_points(twin, unseen)
     for count, foretold, happened in judged.table(bins=5):
         # Points of one shape err together, so fewer than a hundred say little.
         if count >= 100:
@@ -48,7 +48,7 @@ def test_of_a_hundred_points_foretold_to_be_too_near_so_many_are(twin, unseen):
 @pytest.mark.slow
 @pytest.mark.timeout(600)
 def test_of_a_hundred_paths_foretold_to_come_too_near_so_many_do(twin, unseen):
-    judged = judged_paths(twin, unseen)
+    judged = score_paths(twin, unseen)
     assert judged.happened.mean() == pytest.approx(judged.p.mean(), abs=0.05)
     for count, foretold, happened in judged.table(bins=3):
         if count >= 60:
@@ -58,5 +58,5 @@ def test_of_a_hundred_paths_foretold_to_come_too_near_so_many_do(twin, unseen):
 @pytest.mark.slow
 @pytest.mark.timeout(600)
 def test_a_twin_that_does_not_know_its_error_is_much_too_sure(twin, unseen):
-    ignorant = judged_points(replace(twin, discrepancy=None), unseen)
-    assert brier(judged_points(twin, unseen)) < 0.7 * brier(ignorant)
+    ignorant = score_points(replace(twin, discrepancy=None), unseen)
+    assert brier(score_points(twin, unseen)) < 0.7 * brier(ignorant)

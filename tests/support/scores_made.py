@@ -10,7 +10,7 @@ from seacage.studies._paper._level_one import LevelOneScore
 from seacage.studies._paper._shape_models import GCN_PAPER, PCA_PAPER, SHAPE
 from seacage.studies._paper._shape_scores import ShapeScore
 from seacage.studies._paper._shape_study import ShapeStudy
-from seacage.studies._paper._ways import SPREAD, Judged, WayScore
+from seacage.studies._paper._ways import SPREAD, ScoredWays, WayScore
 from seacage.studies._sensor_scores import Errors, SensorScore
 from seacage.twin import Twin
 
@@ -48,11 +48,11 @@ def sensor(name: str, *, unit: str = "kN", slope: float = 1.0, **changes: float)
 
 
 def way(*sensors: SensorScore, name: str = SPREAD) -> WayScore:
-    return WayScore(name=name, taught=tuple(one.sensor for one in sensors), sensors=sensors)
+    return WayScore(name=name, trained=tuple(one.sensor for one in sensors), sensors=sensors)
 
 
-def judged(*sensors: SensorScore, more: tuple[WayScore, ...] = ()) -> Judged:
-    return Judged(twin=Mock(spec=Twin), readings={}, ways=(way(*sensors), *more))
+def scored(*sensors: SensorScore, more: tuple[WayScore, ...] = ()) -> ScoredWays:
+    return ScoredWays(twin=Mock(spec=Twin), readings={}, ways=(way(*sensors), *more))
 
 
 def level_one(bridle_mae: float = 10.0) -> LevelOneScore:
@@ -88,8 +88,8 @@ def shapes(*, pca: float = 0.3, network: float | None = 0.5, variance: float = 0
     if network is not None:
         scores[GCN_PAPER] = shape(GCN_PAPER, network)
     return ShapeStudy(
-        taught=90,
-        judged=10,
+        training_cases=90,
+        test_cases=10,
         current_speed=np.linspace(0.0, 1.0, 10),
         scores=scores,
         cases=(),

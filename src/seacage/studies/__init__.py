@@ -15,10 +15,10 @@ from seacage.studies._paper import (
 from seacage.studies._quality import quality_page
 from seacage.studies._sensor_scores import Errors, SensorScore
 from seacage.studies._shape_error import (
-    Judged,
-    judged_paths,
-    judged_points,
+    Reliability,
     learned_discrepancy,
+    score_paths,
+    score_points,
 )
 
 __all__ = [
@@ -26,20 +26,20 @@ __all__ = [
     "Demonstration",
     "Errors",
     "FidelityStudy",
-    "Judged",
     "LevelOneScore",
     "PaperClaim",
     "PaperStudy",
+    "Reliability",
     "SensorScore",
     "ShapeScore",
     "WayScore",
     "benchmark_study",
     "fidelity_study",
-    "judged_paths",
-    "judged_points",
     "learned_discrepancy",
     "paper_study",
     "prepare_demonstration",
     "quality_page",
+    "score_paths",
+    "score_points",
     "score_record",
 ]

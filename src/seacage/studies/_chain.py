@@ -41,18 +41,18 @@ class Recipe:
     Parameters
     ----------
     cases, held_out_cases
-        Simulations that level 1 learns from, and others that judge it.
+        Simulations that level 1 is trained on, and held-out ones.
     method
         "settle" takes equilibria in currents without waves, in minutes; "simulate" the paper's
         half-hours in waves and currents, and a virtual field in time, in hours.
     days, teaching_days
-        Length of the generated current record, and how many of its days teach.
+        Length of the generated current record, and how many of its days are training days.
     one_in
         Simulate one hour of the field in so many, and those of the shackles.
     start
         Of the record.
     high_fidelity_points
-        Readings that each sensor teaches with.
+        Training readings of each sensor.
     seed
         Of plan, current, virtual field and training.
     """
@@ -74,7 +74,7 @@ class Recipe:
 
     @property
     def plan(self) -> Plan:
-        """The paper's sea states, the last of which judge; or currents alone, all to learn from."""
+        """The paper's sea states, the last ones held out; or currents alone, all for training."""
         if self.in_time:
             return Plan.named("paper", self.seed, self.cases + self.held_out_cases)
         return Plan.sample(self.seed, self.cases, hs=(0.0, 0.0), name="current")
@@ -90,7 +90,7 @@ class Recipe:
         return Training(
             high_fidelity_points=self.high_fidelity_points,
             days=float(self.teaching_days),
-            # The split by day has said already what teaches; silence in between is no end.
+            # The split by day has fixed the training days; silence in between is no end.
             pause_s=86400.0 * self.teaching_days,
             seed=self.seed,
         )
@@ -110,7 +110,7 @@ class Chain:
     recipe
         How much of everything.
     given_campaign
-        Folder of a finished campaign to take in place of the recipe's; its last cases judge.
+        Folder of a finished campaign to take in place of the recipe's; its last cases are held out.
     given_field
         Folder of a virtual field, with its truth in ``truth``, to take in place of the recipe's.
     workers
@@ -134,7 +134,7 @@ class Chain:
 
     @property
     def held_out(self) -> CampaignRecord:
-        """The simulations that judge level 1."""
+        """The held-out simulations."""
         return self._campaigns[1]
 
     @property
@@ -149,21 +149,21 @@ class Chain:
 
     @cached_property
     def truth(self) -> FieldRecord:
-        """The same sensors without their errors; it may judge and never teaches."""
+        """The same sensors without their errors; for scores alone, never for training."""
         given = self.given_field
         return FieldRecord.read(given / "truth" if given else self._field_folder / "truth")
 
     @property
     def twin_folder(self) -> Path:
         """The twin trained on the campaign and on the field record's teaching days."""
-        return self.trained(self.recipe.training)
+        return self.ensure_twin(self.recipe.training)
 
     @cached_property
     def twin(self) -> Twin:
         """The twin, read."""
         return Twin.read(self.twin_folder)
 
-    def trained(self, training: Training) -> Path:
+    def ensure_twin(self, training: Training) -> Path:
         """The folder of a twin that learned so from the campaign and the teaching days."""
 
         def make(begun: Path) -> None:
@@ -178,18 +178,18 @@ class Chain:
             "teaching_days": self.recipe.teaching_days,
             "training": asdict(training),
         }
-        return self.stages.made("twin", settings, make, rooms=TRAINING) / "twin"
+        return self.stages.ensure("twin", settings, make, rooms=TRAINING) / "twin"
 
-    def driven_by(self, record: Record) -> FieldRecord:
-        """Virtual sensors under another buoy record: to look at, for no twin learns from them."""
+    def display_field(self, record: Record) -> FieldRecord:
+        """Virtual sensors under another buoy record: for display, not for training."""
         settings = {**self._truth_settings, "record_sha256": record.sha256}
-        folder = self.stages.made(
+        folder = self.stages.ensure(
             "display", settings, lambda begun: self._drive(begun, record), rooms=_FIELD
         )
         return FieldRecord.read(folder / "field")
 
     def report(self, stage: str, done: int, total: int) -> None:
-        """Tell whoever listens how far a stage is."""
+        """Report the progress of a stage."""
         if self.progress is not None:
             self.progress(stage, done, total)
 
@@ -229,11 +229,11 @@ class Chain:
 
     @cached_property
     def _field_folder(self) -> Path:
-        return self.stages.made("field", self._field_settings, self._make_field, rooms=_FIELD)
+        return self.stages.ensure("field", self._field_settings, self._make_field, rooms=_FIELD)
 
     @cached_property
     def _campaigns(self) -> tuple[CampaignRecord, CampaignRecord]:
-        """The simulations that teach, and those that judge."""
+        """The simulations for training, and those held out."""
         recipe = self.recipe
         if self.given_campaign is None and not recipe.in_time:
             return self._run("campaign", recipe.plan), self._run("held-out", recipe.held_out_plan)
@@ -250,8 +250,8 @@ class Chain:
         count = min(recipe.held_out_cases, len(whole) // 2)
         rows = np.flatnonzero(whole.converged)
         return (
-            chosen_cases(whole, rows[:-count]),
-            chosen_cases(whole, rows[-count:]),
+            select_cases(whole, rows[:-count]),
+            select_cases(whole, rows[-count:]),
         )
 
     def _run(self, stage: str, plan: Plan) -> CampaignRecord:
@@ -270,7 +270,7 @@ class Chain:
             "plan_sha256": plan.sha256,
             "method": self.recipe.method,
         }
-        folder = self.stages.made(stage, settings, make, rooms=_SIMULATION)
+        folder = self.stages.ensure(stage, settings, make, rooms=_SIMULATION)
         return read_campaign(folder / "campaign.zarr")
 
     def _make_field(self, begun: Path) -> None:
@@ -309,7 +309,7 @@ class Chain:
         made.truth.write(begun / "truth")
 
 
-def chosen_cases(campaign: CampaignRecord, rows: Int[np.ndarray, " row"]) -> CampaignRecord:
+def select_cases(campaign: CampaignRecord, rows: Int[np.ndarray, " row"]) -> CampaignRecord:
     """A campaign's cases of these rows; the second moment stays that of all.
 
     Parameters

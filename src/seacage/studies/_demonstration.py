@@ -65,7 +65,7 @@ def prepare_demonstration(
         progress=progress,
     )
     twin_folder = _with_discrepancy(chain)
-    field = chain.field if record is None else chain.driven_by(record)
+    field = chain.field if record is None else chain.display_field(record)
     return Demonstration(cage=chain.cage, twin_folder=twin_folder, buoy=field.buoy, field=field)
 
 
@@ -85,4 +85,4 @@ def _with_discrepancy(chain: Chain) -> Path:
         "cases": CASES,
     }
     rooms = TRAINING
-    return chain.stages.made("demonstration", settings, make, rooms=rooms) / "twin"
+    return chain.stages.ensure("demonstration", settings, make, rooms=rooms) / "twin"

@@ -1,4 +1,4 @@
-"""A twin judged on a field record: scores, and the figures that go with them."""
+"""Scores of a twin on held-out days of a field record, and the figures that go with them."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -9,7 +9,7 @@ import numpy as np
 
 from seacage.figures import Comparison, density_figure, series_figure, write_figure
 from seacage.records import FieldRecord
-from seacage.studies._sensor_scores import Readings, SensorScore, compared, score_sensor
+from seacage.studies._sensor_scores import Readings, SensorScore, compare, score_sensor
 from seacage.studies._split import unseen
 from seacage.twin import Twin
 
@@ -23,14 +23,14 @@ _BREAK = np.timedelta64(12, "h")
 def score_record(
     twin: Twin, field: FieldRecord, *, out: str | Path | None = None, seed: int = 0
 ) -> tuple[SensorScore, ...]:
-    """Score a twin on the days of a field record that did not teach it.
+    """Score a twin on the days of a field record that it was not trained on.
 
     Parameters
     ----------
     twin
-        What its sensors taught, and when, is written in it.
+        Its provenance holds the training window of each sensor.
     field
-        The record that taught it, whose later days judge, or another.
+        The record that it was trained on, whose later days are scored, or another.
     out
         Folder for ``scores.json``, and per sensor a density scatter and a time series of both
         fidelities (SVG); None writes nothing.
@@ -40,10 +40,10 @@ def score_record(
     Raises
     ------
     InputError
-        A sensor of the record has no day that did not teach.
+        A sensor of the record has no held-out day.
     """
     judging = unseen(field, twin.provenance.lessons)
-    readings = compared(twin.predict_record(field.buoy), judging)
+    readings = compare(twin.predict_record(field.buoy), judging)
     scores = tuple(score_sensor(one, seed=seed) for one in readings.values())
     if out is not None:
         _write(Path(out), scores, readings)
@@ -69,7 +69,7 @@ def comparison(score: SensorScore, readings: Readings) -> Comparison:
     )
 
 
-def shown(readings: Readings) -> tuple[np.datetime64, np.datetime64]:
+def display_span(readings: Readings) -> tuple[np.datetime64, np.datetime64]:
     """Start and end of the time that a series shows: the first days of the longest part unbroken.
 
     A part ends where nothing was read for hours.
@@ -92,7 +92,7 @@ def _write(out: Path, scores: Sequence[SensorScore], readings: Mapping[str, Read
     write_scores(out / "scores.json", {"sensors": scores})
     for score in scores:
         drawn = comparison(score, readings[score.sensor])
-        start, end = shown(readings[score.sensor])
+        start, end = display_span(readings[score.sensor])
         write_figure(density_figure(drawn), out / f"{score.sensor}-density.svg")
         write_figure(series_figure(drawn, start=start, end=end), out / f"{score.sensor}-series.svg")
 
@@ -102,5 +102,7 @@ def _plain(value: object) -> object:
     if isinstance(value, np.ndarray):
         return value.tolist()
     if is_dataclass(value) and not isinstance(value, type):
-        return {part.name: getattr(value, part.name) for part in fields(value)}
+        return {
+            part.metadata.get("key", part.name): getattr(value, part.name) for part in fields(value)
+        }
     raise TypeError(f"{type(value)} has no place in a score file")

@@ -49,9 +49,9 @@ def _summary(records: Sequence[Record]) -> str:
     flagged = sum(counts.values())
     if not flagged:
         return f"None of {readings:,} readings is flagged."
-    said = ", ".join(f"{count:,} {_WORDS[flag]}" for flag, count in counts.items() if count)
+    parts = ", ".join(f"{count:,} {_WORDS[flag]}" for flag, count in counts.items() if count)
     share = _percent(flagged, readings)
-    return f"{flagged:,} of {readings:,} readings are flagged ({share}): {said}."
+    return f"{flagged:,} of {readings:,} readings are flagged ({share}): {parts}."
 
 
 def _overview(records: Sequence[Record]) -> Html:
@@ -102,7 +102,7 @@ def _stream(record: Record, limits: Limits) -> list[Html]:
             )
         )
     verdicts = verdicts_on(record, limits)
-    return [*parts, *_found(record, verdicts), _counts(record), *_notes(record, verdicts)]
+    return [*parts, *_findings(record, verdicts), _counts(record), *_notes(record, verdicts)]
 
 
 def _span(record: Record) -> str:
@@ -130,8 +130,8 @@ def _counts(record: Record) -> Html:
     )
 
 
-def _found(record: Record, verdicts: Sequence[Verdict]) -> list[Html]:
-    """What each test found; quantities that it found in the same readings are told at once."""
+def _findings(record: Record, verdicts: Sequence[Verdict]) -> list[Html]:
+    """What each test found; quantities that it found in the same readings are listed at once."""
     if not verdicts:
         return [tag("p", "No test found anything.")]
 
@@ -187,9 +187,9 @@ def _percent(part: int, whole: int) -> str:
 
 
 def _notes(record: Record, verdicts: Sequence[Verdict]) -> list[Html]:
-    """What else the record says of itself; what the tests found is told already."""
-    told = tuple(one.example for one in verdicts)
-    notes = [note for note in record.notes if not note.startswith(told)]
+    """What else the record says of itself; what the tests found is listed already."""
+    examples = tuple(one.example for one in verdicts)
+    notes = [note for note in record.notes if not note.startswith(examples)]
     if not notes:
         return []
     return [

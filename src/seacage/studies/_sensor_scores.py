@@ -14,7 +14,7 @@ from seacage.twin import Answer, align
 MEAN_S = 600.0
 """Scores are given raw and on means of this length [s]."""
 
-LESSON_S = 60.0
+MINUTE_S = 60.0
 """Readings teach as means of this length, and the twin's intervals are of such means [s]."""
 
 _DRAWS = 1000
@@ -28,7 +28,7 @@ _PEOPLE = {"m": ("m", 1.0), "N": ("kN", 1e-3)}
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Readings:
-    """What one sensor read, and what the twin says it would, in the unit that people read.
+    """Readings of one sensor and the twin's predictions of them, in the unit that people read.
 
     Parameters
     ----------
@@ -137,7 +137,7 @@ class Errors:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SensorScore:
-    """One sensor on the days that it did not teach.
+    """Scores of one sensor on validation days.
 
     Parameters
     ----------
@@ -148,7 +148,7 @@ class SensorScore:
     blocks
         Of the bootstrap: the days that have readings, eight at least.
     raw, minutes, means
-        Errors on single readings, on means over a minute as they teach, and on 10-minute means.
+        Errors on single readings, on means over a minute as in training, and on 10-minute means.
         Coverage and CRPS are those of minutes: the twin's interval is of such means.
     low_line, multi_line
         Slope [-] and intercept [unit] of the best fit of the prediction on the reading.
@@ -171,10 +171,10 @@ class SensorScore:
     multi_truth_mae: float | None
 
 
-def compared(answer: Answer, field: FieldRecord) -> dict[str, Readings]:
-    """Every sound reading of a field record beside what a twin says about it.
+def compare(answer: Answer, field: FieldRecord) -> dict[str, Readings]:
+    """Every sound reading of a field record beside a twin's prediction of it.
 
-    The buoy's last word holds until the next; where it was unsound or too old there is no
+    The buoy's last sample holds until the next; where it was unsound or too old there is no
     number, and the reading is not scored. Sensors that the twin does not know are left out.
 
     Parameters
@@ -185,7 +185,7 @@ def compared(answer: Answer, field: FieldRecord) -> dict[str, Readings]:
         Sensors and buoy.
     """
     known = [name for name in answer.sensor_names if name in field.sensors]
-    return {name: _compared(answer, field, name) for name in known}
+    return {name: _compare(answer, field, name) for name in known}
 
 
 def score_sensor(readings: Readings, *, seed: int, truth: Readings | None = None) -> SensorScore:
@@ -208,7 +208,7 @@ def score_sensor(readings: Readings, *, seed: int, truth: Readings | None = None
     blocks = max(_LEAST_BLOCKS, len(np.unique(readings.time.astype("datetime64[D]"))))
     raw, minutes, means = (
         _errors(some, blocks=blocks, seed=seed)
-        for some in (readings, readings.averaged(LESSON_S), readings.averaged(MEAN_S))
+        for some in (readings, readings.averaged(MINUTE_S), readings.averaged(MEAN_S))
     )
     return SensorScore(
         sensor=readings.sensor,
@@ -227,7 +227,7 @@ def score_sensor(readings: Readings, *, seed: int, truth: Readings | None = None
     )
 
 
-def _compared(answer: Answer, field: FieldRecord, sensor: str) -> Readings:
+def _compare(answer: Answer, field: FieldRecord, sensor: str) -> Readings:
     column = answer.sensor_names.index(sensor)
     unit, scale = _PEOPLE[answer.sensor_units[column]]
     pairs = align(field, sensor)

@@ -1,4 +1,4 @@
-"""What a twin's shapes miss of a virtual field's true ones, learned and judged."""
+"""Discrepancy of a twin's shapes from a virtual field's true ones, and its reliability."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,20 +16,20 @@ CASES = 120
 """Of the virtual field, and times of each, that a demonstration's twin learns its error from."""
 
 SCATTERED = 4.0
-"""Of the points that judge, about the predicted net [m]: an ROV's distances."""
+"""Standard deviation of the test points about the predicted net [m]: an ROV's distances."""
 
 
 _NOW = datetime(2020, 1, 18, tzinfo=UTC)  # any time will do
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Judged:
-    """Probabilities that were foretold of some events, and what happened.
+class Reliability:
+    """Predicted probabilities of some events, and what happened.
 
     Parameters
     ----------
     p
-        That the true net would be nearer than the distance asked about [-].
+        That the true net is nearer than the given distance [-].
     happened
         Whether it was.
     speed
@@ -59,7 +59,7 @@ def learned_discrepancy(
     workers: int | None = None,
     progress: Progress | None = None,
 ) -> Discrepancy:
-    """Learn how far a virtual field's true nets are from a twin's shapes.
+    """Estimate how far a virtual field's true nets are from a twin's shapes.
 
     Virtual field: at a farm the truth would have to be measured, by sonar or by divers; until
     it is, this is an assumption about how such shapes err.
@@ -91,21 +91,21 @@ def learned_discrepancy(
     )
 
 
-def judged_points(
+def score_points(
     twin: Twin, shapes: TrueShapes, *, points: int = 60, below: float = 1.0, seed: int = 0
-) -> Judged:
-    """Ask a twin about points near its net, and see how near the true nets are.
+) -> Reliability:
+    """Compare predicted clearances of points near the net with those of true nets.
 
     Parameters
     ----------
     twin
-        Asked with what the buoy reported.
+        Its inputs are what the buoy reported.
     shapes
-        That did not teach it.
+        Held out from its training.
     points
         For each shape, scattered about the predicted net.
     below
-        The distance asked about [m].
+        The distance of the event [m].
     seed
         Of the points.
     """
@@ -117,15 +117,15 @@ def judged_points(
         foretold.append(net.clearance(point, below=below).p_below)
         happened.append(twin.cage.nearest(point, true).distance < below)
         speed += [float(np.hypot(*velocity))] * len(point)
-    return Judged(
+    return Reliability(
         p=np.concatenate(foretold), happened=np.concatenate(happened), speed=np.array(speed)
     )
 
 
-def judged_paths(
+def score_paths(
     twin: Twin, shapes: TrueShapes, *, paths: int = 6, below: float = 1.0, seed: int = 0
-) -> Judged:
-    """Ask a twin about straight paths through and around its net, as ``judged_points`` does.
+) -> Reliability:
+    """Compare predicted clearances of straight paths through and around the net.
 
     A path begins somewhere near the cage and ends some 15 m off.
     """
@@ -138,7 +138,7 @@ def judged_paths(
             foretold.append(along.p_below)
             happened.append(bool(twin.cage.nearest(along.point, true).distance.min() < below))
             speed.append(float(np.hypot(*velocity)))
-    return Judged(p=np.array(foretold), happened=np.array(happened), speed=np.array(speed))
+    return Reliability(p=np.array(foretold), happened=np.array(happened), speed=np.array(speed))
 
 
 def _water(velocity: Float[np.ndarray, "case 2"]) -> Metocean:

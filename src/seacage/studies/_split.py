@@ -1,4 +1,4 @@
-"""Which part of a field record teaches and which judges: cut by day, never at random."""
+"""Split of a field record into training and validation days: cut by day, never at random."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -12,23 +12,23 @@ _FIRST, _LAST = datetime.min.replace(tzinfo=UTC), datetime.max.replace(tzinfo=UT
 
 
 def split(field: FieldRecord, *, teaching_days: int) -> tuple[FieldRecord, FieldRecord]:
-    """Cut a field record at a midnight: the days before teach, the days after judge.
+    """Cut a field record at a midnight: training days before, validation days after.
 
     Neighbours in time are the same sample, so no day is in both parts. A shackle that came in
-    two windows, one before the cut and one after, teaches with the first and is judged on the
+    two windows, one before the cut and one after, is trained on the first and scored on the
     second.
 
     Parameters
     ----------
     field
-        The whole record; both parts keep its buoy whole, for the twin may always hear it.
+        The whole record; both parts keep its buoy whole, which is an input of the twin.
     teaching_days
-        Counted from the midnight (UTC) before the buoy's first word.
+        Counted from the midnight (UTC) before the buoy's first sample.
 
     Raises
     ------
     InputError
-        A sensor would have nothing to teach or nothing to be judged on.
+        A sensor would have no reading on one side.
     """
     cut = moment(field.buoy.time[0].astype("datetime64[D]")) + timedelta(days=teaching_days)
     teaching = {name: sensor.between(_FIRST, cut) for name, sensor in field.sensors.items()}
@@ -43,11 +43,11 @@ def split(field: FieldRecord, *, teaching_days: int) -> tuple[FieldRecord, Field
     return replace(field, sensors=teaching), replace(field, sensors=judging)
 
 
-def unseen(field: FieldRecord, lessons: Mapping[str, Lesson]) -> FieldRecord:
-    """The days of a field record that did not teach a twin.
+def unseen(field: FieldRecord, windows: Mapping[str, Lesson]) -> FieldRecord:
+    """The days of a field record that a twin was not trained on.
 
-    Of a sensor that taught, the days after its lesson, or those before where none follow; all
-    of one that did not.
+    Of a sensor with a training window, the days after it, or those before where none follow;
+    all days of any other.
 
     Raises
     ------
@@ -57,18 +57,18 @@ def unseen(field: FieldRecord, lessons: Mapping[str, Lesson]) -> FieldRecord:
     return replace(
         field,
         sensors={
-            name: _unseen(sensor, lessons[name]) if name in lessons else sensor
+            name: _unseen(sensor, windows[name]) if name in windows else sensor
             for name, sensor in field.sensors.items()
         },
     )
 
 
-def _unseen(sensor: Record, lesson: Lesson) -> Record:
-    after = sensor.between(_midnight(lesson.end) + timedelta(days=1), _LAST)
-    before = sensor.between(_FIRST, _midnight(lesson.start))
+def _unseen(sensor: Record, window: Lesson) -> Record:
+    after = sensor.between(_midnight(window.end) + timedelta(days=1), _LAST)
+    before = sensor.between(_FIRST, _midnight(window.start))
     if not len(after) and not len(before):
         raise InputError(
-            f"{sensor.stream}: all its readings are of days that taught the twin. "
+            f"{sensor.stream}: all its readings are of training days of the twin. "
             "Give a record that goes on after them."
         )
     return after if len(after) else before

@@ -25,7 +25,7 @@ class Stages:
 
     folder: Path
 
-    def made(
+    def ensure(
         self,
         stage: str,
         settings: Mapping[str, object],

@@ -15,7 +15,7 @@ def percent(share: float, *, digits: int = 0) -> str:
     return written.replace("-", "\N{MINUS SIGN}")
 
 
-def listed(names: Sequence[str]) -> str:
+def join_names(names: Sequence[str]) -> str:
     """Names as a sentence lists them."""
     *others, last = names
     return f"{', '.join(others)} and {last}" if others else last

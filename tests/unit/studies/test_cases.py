@@ -5,7 +5,7 @@ import pytest
 
 from seacage.cage import Cage
 from seacage.campaigns import Plan, run_campaign
-from seacage.studies._chain import chosen_cases
+from seacage.studies._chain import select_cases
 from stand_in import StandIn
 
 
@@ -17,7 +17,7 @@ def campaign(tmp_path, monkeypatch):
 
 
 def test_every_array_follows_its_cases_and_what_has_none_stays(campaign):
-    part = chosen_cases(campaign, np.array([4, 1]))
+    part = select_cases(campaign, np.array([4, 1]))
     assert part.seas == (campaign.seas[4], campaign.seas[1])
     np.testing.assert_array_equal(part.node_position, campaign.node_position[[4, 1]])
     np.testing.assert_array_equal(

@@ -26,28 +26,28 @@ def readings(count: int, **columns: np.ndarray) -> Readings:
     return Readings(**{**whole, **columns})
 
 
-def scored(some: Readings, **options):
+def score_run(some: Readings, **options):
     return score_sensor(some, seed=0, **options)
 
 
 def test_a_better_prediction_is_called_better_and_a_worse_one_is_not():
     good = readings(1440)
-    assert scored(good).raw.better
-    assert scored(good).raw.ratio < 0.15
+    assert score_run(good).raw.better
+    assert score_run(good).raw.ratio < 0.15
     swapped = readings(1440, low=good.multi, multi=good.low)
-    assert not scored(swapped).raw.better
-    assert scored(swapped).raw.gain == pytest.approx(-scored(good).raw.gain)
+    assert not score_run(swapped).raw.better
+    assert score_run(swapped).raw.gain == pytest.approx(-score_run(good).raw.gain)
 
 
 def test_equal_predictions_show_no_gain():
     good = readings(1440)
-    same = scored(readings(1440, low=good.multi))
+    same = score_run(readings(1440, low=good.multi))
     assert not same.raw.better
     assert same.raw.gain == 0.0
 
 
 def test_an_honest_spread_holds_its_share_of_readings():
-    assert scored(readings(1440)).raw.coverage == pytest.approx(0.95, abs=0.02)
+    assert score_run(readings(1440)).raw.coverage == pytest.approx(0.95, abs=0.02)
 
 
 def test_means_begin_at_whole_ten_minutes_and_average_the_noise_away():
@@ -56,38 +56,38 @@ def test_means_begin_at_whole_ten_minutes_and_average_the_noise_away():
     assert means.time[1] - means.time[0] == np.timedelta64(600, "s")
     first = readings(1440)
     assert means.reading[0] == pytest.approx(first.reading[:5].mean()), "from 00:05 on"
-    assert scored(first).means.multi_mae < 0.5 * scored(first).raw.multi_mae
+    assert score_run(first).means.multi_mae < 0.5 * score_run(first).raw.multi_mae
 
 
 def test_the_truth_is_taken_at_the_readings_times_alone():
     some = readings(1440).at(np.arange(1440) < 700)
     truth = readings(1440, reading=readings(1440).multi)
     truth.low[700:] = np.nan  # would spoil the mean if it were taken
-    score = scored(some, truth=truth)
+    score = score_run(some, truth=truth)
     assert score.multi_truth_mae == 0.0
     assert score.low_truth_mae == pytest.approx(np.mean(0.5 * truth.multi[:700]))
 
 
 def test_bias_is_prediction_less_reading():
-    score = scored(readings(1440))
+    score = score_run(readings(1440))
     assert score.raw.low_bias == pytest.approx(-5.0, rel=0.15)
     assert abs(score.raw.multi_bias) < 0.05
 
 
 def test_the_best_fit_is_of_the_prediction_on_the_reading():
-    slope, intercept = scored(readings(1440, low=readings(1440).reading * 0.5 + 3.0)).low_line
+    slope, intercept = score_run(readings(1440, low=readings(1440).reading * 0.5 + 3.0)).low_line
     assert (slope, intercept) == pytest.approx((0.5, 3.0))
 
 
 def test_blocks_are_the_days_or_eight_of_a_shorter_span():
-    assert scored(readings(1441)).blocks == 8
-    assert scored(readings(12 * 1440)).blocks == 13, "it begins five minutes after midnight"
+    assert score_run(readings(1441)).blocks == 8
+    assert score_run(readings(12 * 1440)).blocks == 13, "it begins five minutes after midnight"
 
 
 def test_a_sparse_record_counts_the_hours_that_it_has():
     hours = np.arange(20 * 60) // 60  # one hour in two days, twenty times
     time = START + (np.arange(20 * 60) % 60 + 2880 * hours) * np.timedelta64(60, "s")
-    score = scored(readings(1200, time=time))
+    score = score_run(readings(1200, time=time))
     assert score.told_h == pytest.approx(20.0)
     assert score.span_h == pytest.approx(19 * 48 + 59 / 60)
     assert score.blocks == 20
@@ -96,7 +96,7 @@ def test_a_sparse_record_counts_the_hours_that_it_has():
 def test_the_interval_is_judged_on_means_as_long_as_those_that_teach():
     time = START + np.arange(1440) * np.timedelta64(2, "s")
     sway = np.where(np.arange(1440) % 2, 3.0, -3.0)  # six of the twin's standard deviations
-    score = scored(readings(1440, time=time, reading=readings(1440).multi + sway))
+    score = score_run(readings(1440, time=time, reading=readings(1440).multi + sway))
     assert score.raw.coverage == 0.0
     assert score.minutes.coverage == 1.0
     assert score.minutes.readings == 48

@@ -5,7 +5,7 @@ import pytest
 
 from netted import CAGE, currents, drifting, erring_twin, water
 from seacage.campaigns import TrueShapes
-from seacage.studies import Judged, judged_paths, judged_points, learned_discrepancy
+from seacage.studies import Reliability, learned_discrepancy, score_paths, score_points
 from seacage.testing import stand_in_twin
 from stand_in import StandIn
 
@@ -20,7 +20,7 @@ def truth(count: int, seed: int) -> TrueShapes:
 def test_a_table_holds_every_event_once():
     p = np.array([0.0, 0.05, 0.5, 0.52, 1.0])
     happened = np.array([False, True, True, True, True])
-    judged = Judged(p=p, happened=happened, speed=np.zeros(5))
+    judged = Reliability(p=p, happened=happened, speed=np.zeros(5))
     assert judged.table(bins=2) == [
         (2, pytest.approx(0.025), 0.5),
         (3, pytest.approx(2.02 / 3.0), 1.0),
@@ -31,14 +31,14 @@ def test_a_twin_that_knows_its_error_foretells_better_than_one_that_does_not():
     shapes = truth(30, seed=7)
 
     def brier(twin):
-        judged = judged_points(twin, shapes, points=40)
+        judged = score_points(twin, shapes, points=40)
         return np.mean((judged.p - judged.happened) ** 2)
 
     assert brier(erring_twin()) < 0.9 * brier(stand_in_twin())
 
 
 def test_paths_are_judged_as_points_are():
-    judged = judged_paths(erring_twin(), truth(20, seed=8), paths=3)
+    judged = score_paths(erring_twin(), truth(20, seed=8), paths=3)
     assert len(judged.p) == len(judged.happened) == len(judged.speed) == 60
     assert abs(judged.p.mean() - judged.happened.mean()) < 0.1
     assert judged.p[judged.happened].mean() > judged.p[~judged.happened].mean() + 0.3

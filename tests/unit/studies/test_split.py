@@ -94,5 +94,5 @@ def test_the_days_before_a_late_lesson_are_unseen_too(field):
 
 def test_a_record_of_lesson_days_alone_judges_nobody(field):
     whole = lesson(datetime(2020, 1, 18, tzinfo=UTC), datetime(2020, 1, 29, tzinfo=UTC))
-    with pytest.raises(InputError, match="depth-1: all its readings are of days that taught"):
+    with pytest.raises(InputError, match="depth-1: all its readings are of training days"):
         unseen(field, {"depth-1": whole})

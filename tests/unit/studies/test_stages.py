@@ -24,21 +24,21 @@ def never(begun):
 
 
 def test_a_stage_is_made_once(stages):
-    first = stages.made("field", {"seed": 1}, write_answer, rooms=ROOMS)
+    first = stages.ensure("field", {"seed": 1}, write_answer, rooms=ROOMS)
     assert (first / "answer").read_text() == "42"
-    assert stages.made("field", {"seed": 1}, never, rooms=ROOMS) == first
+    assert stages.ensure("field", {"seed": 1}, never, rooms=ROOMS) == first
 
 
 def test_other_settings_make_another_stage_and_leave_the_first(stages):
-    first = stages.made("field", {"seed": 1}, write_answer, rooms=ROOMS)
-    second = stages.made("field", {"seed": 2}, write_answer, rooms=ROOMS)
+    first = stages.ensure("field", {"seed": 1}, write_answer, rooms=ROOMS)
+    second = stages.ensure("field", {"seed": 2}, write_answer, rooms=ROOMS)
     assert first != second
     assert first.exists()
 
 
 def test_other_code_makes_another_stage(stages):
-    first = stages.made("field", {}, write_answer, rooms=("conventions",))
-    assert stages.made("field", {}, write_answer, rooms=("ocean",)) != first
+    first = stages.ensure("field", {}, write_answer, rooms=("conventions",))
+    assert stages.ensure("field", {}, write_answer, rooms=("ocean",)) != first
     assert code_sha256(("conventions",)) == code_sha256(("conventions",))
 
 
@@ -48,18 +48,18 @@ def test_a_stop_in_between_finishes_nothing_and_loses_nothing(stages):
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        stages.made("field", {}, stopped, rooms=ROOMS)
+        stages.ensure("field", {}, stopped, rooms=ROOMS)
 
     def resumed(begun):
         assert (begun / "half").read_text() == "so far"
         write_answer(begun)
 
-    finished = stages.made("field", {}, resumed, rooms=ROOMS)
+    finished = stages.ensure("field", {}, resumed, rooms=ROOMS)
     assert [path.name for path in stages.folder.iterdir()] == [finished.name]
 
 
 def test_the_manifest_says_what_the_stage_was_made_from(stages):
-    folder = stages.made("field", {"seed": 1}, write_answer, rooms=ROOMS)
+    folder = stages.ensure("field", {"seed": 1}, write_answer, rooms=ROOMS)
     manifest = json.loads((folder / "stage.json").read_text())
     assert manifest["stage"] == "field"
     assert manifest["settings"] == {"seed": 1}
@@ -67,7 +67,7 @@ def test_the_manifest_says_what_the_stage_was_made_from(stages):
 
 
 def test_a_stage_that_was_tampered_with_is_refused(stages):
-    folder = stages.made("field", {}, write_answer, rooms=ROOMS)
+    folder = stages.ensure("field", {}, write_answer, rooms=ROOMS)
     (folder / "stage.json").write_text("{}")
     with pytest.raises(RecordError, match="Delete this folder"):
-        stages.made("field", {}, write_answer, rooms=ROOMS)
+        stages.ensure("field", {}, write_answer, rooms=ROOMS)

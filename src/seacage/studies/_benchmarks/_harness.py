@@ -38,9 +38,9 @@ def main(script: Path, method: str, out: Path, jobs: list[Path]) -> None:
         answer = out / job.name
         try:
             if not warmed:
-                _warmed(fit)
+                _warm_up(fit)
                 warmed = True
-            done = _done(fit, job, answer)
+            done = _answer_job(fit, job, answer)
         except Exception as error:  # noqa: BLE001 - a peer may fail in any way; the report says how
             traceback.print_exc()
             done = {"error": f"{type(error).__name__}: {error}"}
@@ -49,13 +49,13 @@ def main(script: Path, method: str, out: Path, jobs: list[Path]) -> None:
         sys.stdout.flush()
 
 
-def _warmed(fit: Callable[..., Any]) -> None:
+def _warm_up(fit: Callable[..., Any]) -> None:
     """Let a library compile and load what it does only once, before anything is timed."""
     x = np.linspace(0.0, 1.0, 8)[:, None]
     fit([(x, np.sin(5.0 * x[:, 0])), (x[::2], np.cos(5.0 * x[::2, 0]))], noisy=False, seed=0)(x)
 
 
-def _done(fit: Callable[..., Any], job: Path, answer: Path) -> dict[str, float]:
+def _answer_job(fit: Callable[..., Any], job: Path, answer: Path) -> dict[str, float]:
     with np.load(job) as given:
         levels = [(given[f"x_{index}"], given[f"y_{index}"]) for index in range(given["levels"])]
         x_test, noisy, seed = given["x_test"], bool(given["noisy"]), int(given["seed"])

@@ -15,7 +15,7 @@ SIZES_SOURCE = "sizes and designs of Cutajar et al. (2019), arXiv:1903.07320"
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Sample:
-    """What a learner is given of a problem, and what it is judged by.
+    """Training and test cases of a problem.
 
     Parameters
     ----------

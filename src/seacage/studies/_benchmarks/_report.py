@@ -12,7 +12,7 @@ from seacage.studies._benchmarks._scores import Summary
 from seacage.studies._benchmarks._verdicts import COVERAGE, Summaries
 from seacage.studies._claim import Claim
 from seacage.studies._page import Html, claims, facts, page, picture, table, tag
-from seacage.studies._text import listed, number, percent
+from seacage.studies._text import join_names, number, percent
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -109,8 +109,8 @@ class BenchmarkReport:
             tag(
                 "p",
                 "Root mean square error at the test points against the truth without noise, over "
-                f"seeds {listed([str(seed) for seed in self.seeds])}, none of which was looked at "
-                "while settings were chosen. A seed draws the training cases of every fidelity, "
+                f"seeds {join_names([str(seed) for seed in self.seeds])}, none of which was looked "
+                "at while settings were chosen. A seed draws the training cases of every fidelity, "
                 "and the test points.",
             ),
             picture(
@@ -234,8 +234,8 @@ class BenchmarkReport:
             table(
                 head,
                 rows,
-                caption=f"Seeds {listed([str(seed) for seed in self.tuning_seeds])}. They decide "
-                "no verdict.",
+                caption=f"Seeds {join_names([str(seed) for seed in self.tuning_seeds])}. They "
+                "decide no verdict.",
             ),
         ]
 

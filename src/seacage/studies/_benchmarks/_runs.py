@@ -31,7 +31,7 @@ class Run:
     fit_s, predict_s, tick_s
         Of the processor: to fit, to answer all test points, and to answer one [s].
     error
-        What the method said when it failed.
+        Message of the method that failed.
     """
 
     problem: str
@@ -55,33 +55,33 @@ class Runs:
 
     folder: Path
 
-    def made(
+    def ensure(
         self,
         problem: Problem,
         method: Method,
         seeds: Sequence[int],
         *,
-        heard: Callable[[int], None],
+        on_done: Callable[[int], None],
     ) -> list[Run]:
         """The method's answers for some seeds; those that are there are not made again.
 
         Parameters
         ----------
         problem, method, seeds
-            What is asked, of whom.
-        heard
+            The question, the method, and the samples.
+        on_done
             Called with the number of seeds that are done.
         """
         out = self._answers(method)
         out.mkdir(parents=True, exist_ok=True)
         jobs = {seed: self._job(problem, seed) for seed in seeds}
         missing = [job for job in jobs.values() if not _sign(out, job).is_file()]
-        heard(len(seeds) - len(missing))
+        on_done(len(seeds) - len(missing))
         if missing:
-            said = _answered(method, out, missing, lambda: heard(_there(out, jobs.values())))
+            error = _run(method, out, missing, lambda: on_done(_there(out, jobs.values())))
             for job in missing:
                 if not _sign(out, job).is_file():
-                    _sign(out, job).write_text(json.dumps({"error": said}), encoding="utf-8")
+                    _sign(out, job).write_text(json.dumps({"error": error}), encoding="utf-8")
         return [_read(problem, method, seed, out, job) for seed, job in jobs.items()]
 
     def complete(self, problem: Problem, method: Method, seeds: Sequence[int]) -> bool:
@@ -90,7 +90,7 @@ class Runs:
         return all(_sign(out, self._job(problem, seed)).is_file() for seed in seeds)
 
     def forget(self, problem: Problem, method: Method) -> None:
-        """Drop what a method answered to a problem, so that it is timed again."""
+        """Drop the answers of a method to a problem, so that it is timed again."""
         for path in self._answers(method).glob(f"{problem.name}-*"):
             path.unlink()
 
@@ -99,7 +99,7 @@ class Runs:
 
     def _job(self, problem: Problem, seed: int) -> Path:
         """The file of what a method is given; the answers to the tests are not in it."""
-        given = _given(problem.sample(seed), noisy=problem.noise > 0.0, seed=seed)
+        given = _job_inputs(problem.sample(seed), noisy=problem.noise > 0.0, seed=seed)
         digest = hashlib.sha256()
         for name, values in given.items():
             digest.update(name.encode() + np.ascontiguousarray(values).tobytes())
@@ -113,7 +113,7 @@ class Runs:
         return path
 
 
-def _given(sample: Sample, *, noisy: bool, seed: int) -> dict[str, np.ndarray]:
+def _job_inputs(sample: Sample, *, noisy: bool, seed: int) -> dict[str, np.ndarray]:
     tables = {f"x_{index}": x for index, (x, _) in enumerate(sample.levels)}
     tables |= {f"y_{index}": y for index, (_, y) in enumerate(sample.levels)}
     plain = {"levels": len(sample.levels), "noisy": noisy, "seed": seed}
@@ -121,8 +121,8 @@ def _given(sample: Sample, *, noisy: bool, seed: int) -> dict[str, np.ndarray]:
     return {**tables, "x_test": sample.x_test, **named}
 
 
-def _answered(method: Method, out: Path, jobs: Sequence[Path], heard: Callable[[], None]) -> str:
-    """Let the method answer, and return the last that it said if it fell over."""
+def _run(method: Method, out: Path, jobs: Sequence[Path], on_done: Callable[[], None]) -> str:
+    """Let the method answer, and return the last line of its errors if it failed."""
     command = [method.python, harness(), method.script, method.name, out, *jobs]
     complaints = out / "stderr.txt"
     with (
@@ -139,20 +139,23 @@ def _answered(method: Method, out: Path, jobs: Sequence[Path], heard: Callable[[
         try:
             for line in process.stdout:
                 if line.startswith("done "):
-                    heard()
+                    on_done()
         except BaseException:
             process.kill()
             raise
     lines = complaints.read_text("utf-8", errors="replace").strip().splitlines()
-    last = lines[-1] if lines else "it said nothing"
+    last = lines[-1] if lines else "it printed nothing"
     return f"the process ended with code {process.returncode}: {last}"
 
 
 def _read(problem: Problem, method: Method, seed: int, out: Path, job: Path) -> Run:
-    said: Mapping[str, float | str] = json.loads(_sign(out, job).read_text("utf-8"))
-    if "error" in said:
+    result: Mapping[str, float | str] = json.loads(_sign(out, job).read_text("utf-8"))
+    if "error" in result:
         return Run(
-            problem=problem.name, method=method.name, seed=seed, error=str(said["error"])[:300]
+            problem=problem.name,
+            method=method.name,
+            seed=seed,
+            error=str(result["error"])[:300],
         )
     with np.load(out / job.name) as answer:
         mean, std = answer["mean"], answer["std"]
@@ -165,9 +168,9 @@ def _read(problem: Problem, method: Method, seed: int, out: Path, job: Path) -> 
         seed=seed,
         mean=mean,
         std=std,
-        fit_s=float(said["fit_s"]),
-        predict_s=float(said["predict_s"]),
-        tick_s=float(said["tick_s"]),
+        fit_s=float(result["fit_s"]),
+        predict_s=float(result["predict_s"]),
+        tick_s=float(result["tick_s"]),
     )
 
 

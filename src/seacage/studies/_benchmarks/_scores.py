@@ -86,7 +86,7 @@ class Summary:
     error: str | None
 
 
-def scored(run: Run, truth: Float[np.ndarray, " row"]) -> RunScore:
+def score_run(run: Run, truth: Float[np.ndarray, " row"]) -> RunScore:
     """Score a run."""
     if run.mean is None or run.std is None:
         return RunScore(problem=run.problem, method=run.method, seed=run.seed, error=run.error)

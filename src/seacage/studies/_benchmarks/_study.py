@@ -9,11 +9,11 @@ from seacage.studies._benchmarks._methods import OURS, Method, own_methods, peer
 from seacage.studies._benchmarks._problems import CAGE_SIZE, PROBLEMS, Problem
 from seacage.studies._benchmarks._report import BenchmarkReport
 from seacage.studies._benchmarks._runs import Runs
-from seacage.studies._benchmarks._scores import RunScore, Summary, scored, summary
+from seacage.studies._benchmarks._scores import RunScore, Summary, score_run, summary
 from seacage.studies._benchmarks._verdicts import verdicts
 from seacage.studies._claim import Claim
 from seacage.studies._held_out import write_scores
-from seacage.studies._text import listed
+from seacage.studies._text import join_names
 
 TUNING_SEEDS = range(5)
 """Settings may be chosen by these, so they decide no verdict."""
@@ -34,7 +34,7 @@ class BenchmarkStudy:
     report, scores
         The HTML page and the same numbers as JSON.
     verdicts
-        Each promise, judged.
+        Each promise with its verdict.
     summaries
         Of the report seeds, one for each problem and method.
     """
@@ -81,8 +81,8 @@ def benchmark_study(
     InputError
         No report seed among the seeds, or no environment of peers where one is named.
     """
-    out, heard = Path(out), progress or unheard
-    tuning, report = _parted(seeds, quick=quick)
+    out, notify = Path(out), progress or unheard
+    tuning, report = _split_seeds(seeds, quick=quick)
     problems = PROBLEMS if quick else (*PROBLEMS, CAGE_SIZE)
     methods = (*own_methods(), *(peer_methods(peers) if peers is not None else ()))
     runs = Runs(folder=out / "runs")
@@ -93,17 +93,17 @@ def benchmark_study(
     for problem in problems:
         each = _of(problem, tuning, report)
         there = [one for one in methods if not kept or runs.complete(problem, one, each)]
-        scores += _scores(runs, problem, there, each, heard)
+        scores += _scores(runs, problem, there, each, notify)
     found, tuned = _summaries(scores, report), _summaries(scores, tuning)
     lost = [problem.title for problem in problems if (problem.name, OURS) not in found]
     if lost:
         raise InputError(
-            f"study benchmarks: our own answers to {listed(lost)} are not there. Leave out "
+            f"study benchmarks: our own answers to {join_names(lost)} are not there. Leave out "
             "`kept`, and they are made."
         )
-    judged = verdicts(found)
+    evaluated = verdicts(found)
     page = BenchmarkReport(
-        verdicts=judged,
+        verdicts=evaluated,
         problems=problems,
         methods=methods,
         report=found,
@@ -116,15 +116,16 @@ def benchmark_study(
     study = BenchmarkStudy(
         report=out / "report.html",
         scores=out / "scores.json",
-        verdicts=judged,
+        verdicts=evaluated,
         summaries=tuple(found.values()),
     )
     study.report.write_text(page, encoding="utf-8")
-    write_scores(study.scores, {"verdicts": judged, "summaries": study.summaries, "runs": scores})
+    everything = {"verdicts": evaluated, "summaries": study.summaries, "runs": scores}
+    write_scores(study.scores, everything)
     return study
 
 
-def _parted(seeds: Sequence[int], *, quick: bool) -> tuple[list[int], list[int]]:
+def _split_seeds(seeds: Sequence[int], *, quick: bool) -> tuple[list[int], list[int]]:
     """Tuning and report seeds, each once and in order."""
     tuning = sorted({seed for seed in seeds if seed in TUNING_SEEDS})
     report = sorted(set(seeds) - set(tuning))
@@ -146,20 +147,20 @@ def _scores(
     problem: Problem,
     methods: Sequence[Method],
     seeds: Sequence[int],
-    heard: Progress,
+    notify: Progress,
 ) -> list[RunScore]:
     truths = {seed: problem.sample(seed).y_test for seed in seeds}
     total = len(methods) * len(seeds)
     found: list[RunScore] = []
     for method in methods:
         before = len(found)
-        made = runs.made(
+        made = runs.ensure(
             problem,
             method,
             seeds,
-            heard=lambda done, before=before: heard(problem.title, before + done, total),
+            on_done=lambda done, before=before: notify(problem.title, before + done, total),
         )
-        found += [scored(run, truths[run.seed]) for run in made]
+        found += [score_run(run, truths[run.seed]) for run in made]
     return found
 
 
@@ -180,7 +181,7 @@ def _provenance(methods: Sequence[Method]) -> dict[str, str]:
     theirs = {
         maker: found
         for lock in locks
-        for maker, found in _locked(lock, {one.maker for one in methods} | {"gpy", "gpytorch"})
+        for maker, found in _read_lock(lock, {one.maker for one in methods} | {"gpy", "gpytorch"})
     }
     return {
         "Versions": "\n".join(f"{name} {found}" for name, found in {**own, **theirs}.items()),
@@ -189,7 +190,7 @@ def _provenance(methods: Sequence[Method]) -> dict[str, str]:
     }
 
 
-def _locked(lock: Path, packages: set[str]) -> list[tuple[str, str]]:
+def _read_lock(lock: Path, packages: set[str]) -> list[tuple[str, str]]:
     """Versions that a lock gives to some packages."""
     lines = (line.split()[0] for line in lock.read_text("utf-8").splitlines() if "==" in line)
     pins = (line.split("==") for line in lines)

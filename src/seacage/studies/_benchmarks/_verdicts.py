@@ -1,4 +1,4 @@
-"""What was promised of the benchmarks, and whether the numbers hold it."""
+"""Promises of the benchmarks, and whether the numbers support them."""
 
 from collections.abc import Mapping, Sequence
 
@@ -6,7 +6,7 @@ from seacage.studies._benchmarks._methods import EMUKIT, HIGH_ONLY, OURS, SMT
 from seacage.studies._benchmarks._problems import CAGE_SIZE, PROBLEMS, Problem, problem_named
 from seacage.studies._benchmarks._scores import Summary
 from seacage.studies._claim import Claim
-from seacage.studies._text import listed, number, percent
+from seacage.studies._text import join_names, number, percent
 
 RATIOS = {"pedagogical": 1.0, "branin-3": 0.7, "park": 0.5, "borehole": 0.3}
 """Our mean RMSE over that of Emukit's NARGP, at most."""
@@ -29,7 +29,7 @@ Summaries = Mapping[tuple[str, str], Summary]
 
 
 def verdicts(found: Summaries) -> tuple[Claim, ...]:
-    """Every promise, judged by the report seeds' summaries."""
+    """Every promise, evaluated on the report seeds' summaries."""
     return (
         *(_ratio(found, name, most) for name, most in RATIOS.items()),
         _no_worse(found),
@@ -59,7 +59,7 @@ def _ratio(found: Summaries, name: str, most: float) -> Claim:
     claim = f"{title}: mean RMSE at most {most:g} times that of Emukit's NARGP."
     share = ratio(found, name, EMUKIT)
     if share is None:
-        return _unjudged(claim, found, name, EMUKIT)
+        return _not_evaluated(claim, found, name, EMUKIT)
     ours, theirs = found[name, OURS], found[name, EMUKIT]
     return Claim(
         claim=claim,
@@ -77,9 +77,9 @@ def _no_worse(found: Summaries) -> Claim:
     # High fidelity only is always there, and no rival by itself.
     if not any(rival in {EMUKIT, SMT} for _, rival in found):
         return Claim(claim=claim, holds=None, finding="Neither peer was run.")
-    judged = [problem for problem in (*PROBLEMS, CAGE_SIZE) if (problem.name, OURS) in found]
-    worse = [line for problem in judged if (line := _where_worse(found, problem))]
-    finding = " ".join(worse) or f"It holds on each of {len(judged)} problems."
+    evaluated = [problem for problem in (*PROBLEMS, CAGE_SIZE) if (problem.name, OURS) in found]
+    worse = [line for problem in evaluated if (line := _where_worse(found, problem))]
+    finding = " ".join(worse) or f"It holds on each of {len(evaluated)} problems."
     return Claim(claim=claim, holds=not worse, finding=finding)
 
 
@@ -109,11 +109,11 @@ def _coverage(found: Summaries) -> Claim:
         if (problem.name, OURS) in found
     }
     outside = [name for name, share in shares.items() if not low <= share <= high]
-    each = listed([f"{name} {percent(share)}" for name, share in shares.items()] or ["nothing"])
+    each = join_names([f"{name} {percent(share)}" for name, share in shares.items()] or ["nothing"])
     return Claim(
         claim=f"Our 95 % intervals hold {percent(low)} to {percent(high)} on every problem.",
         holds=not outside if shares else None,
-        finding=f"{each}." + (f" Outside: {listed(outside)}." if outside else ""),
+        finding=f"{each}." + (f" Outside: {join_names(outside)}." if outside else ""),
     )
 
 
@@ -121,7 +121,7 @@ def _speed(found: Summaries, name: str) -> Claim:
     what, least = SPEEDS[name]
     claim = f"{CAGE_SIZE.title}: {what.lower()} at least {least:g} times faster than Emukit's."
     if ratio(found, CAGE_SIZE.name, EMUKIT) is None:
-        return _unjudged(claim, found, CAGE_SIZE.name, EMUKIT)
+        return _not_evaluated(claim, found, CAGE_SIZE.name, EMUKIT)
     ours, theirs = (getattr(found[CAGE_SIZE.name, one], name) for one in (OURS, EMUKIT))
     return Claim(
         claim=claim,
@@ -135,7 +135,7 @@ def _cage_accuracy(found: Summaries) -> Claim:
     claim = f"{CAGE_SIZE.title}: at no worse RMSE than Emukit's."
     share = ratio(found, CAGE_SIZE.name, EMUKIT)
     if share is None:
-        return _unjudged(claim, found, CAGE_SIZE.name, EMUKIT)
+        return _not_evaluated(claim, found, CAGE_SIZE.name, EMUKIT)
     ours, theirs = found[CAGE_SIZE.name, OURS], found[CAGE_SIZE.name, EMUKIT]
     return Claim(
         claim=claim,
@@ -145,13 +145,13 @@ def _cage_accuracy(found: Summaries) -> Claim:
     )
 
 
-def _unjudged(claim: str, found: Summaries, problem: str, rival: str) -> Claim:
+def _not_evaluated(claim: str, found: Summaries, problem: str, rival: str) -> Claim:
     missing: Sequence[str] = [one for one in (OURS, rival) if (problem, one) not in found]
     if missing:
-        return Claim(claim=claim, holds=None, finding=f"Not run: {listed(missing)}.")
+        return Claim(claim=claim, holds=None, finding=f"Not run: {join_names(missing)}.")
     failed = [found[problem, one] for one in (OURS, rival) if found[problem, one].failures]
     words = [f"{one.method} failed on {one.failures} seeds: {one.error}" for one in failed]
-    return Claim(claim=claim, holds=None, finding=f"{listed(words)}.")
+    return Claim(claim=claim, holds=None, finding=f"{join_names(words)}.")
 
 
 def _time(seconds: float) -> str:

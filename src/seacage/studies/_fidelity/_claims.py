@@ -1,4 +1,4 @@
-"""What the fidelity study claims, and whether its own numbers hold it."""
+"""Claims of the fidelity study, and whether its own numbers support them."""
 
 from collections.abc import Sequence
 
@@ -10,7 +10,7 @@ from seacage.studies._fidelity._gap import SensorGap
 from seacage.studies._fidelity._null_case import NullCase
 from seacage.studies._fidelity._rescaling import LEAST_LEFT, Rescaling
 from seacage.studies._interval import Interval
-from seacage.studies._text import listed, number, percent
+from seacage.studies._text import join_names, number, percent
 
 THOUSANDTH = {"m": "mm", "kN": "N"}
 """Units that a null case's errors are read in."""
@@ -24,8 +24,8 @@ def claims(
 ) -> tuple[Claim, ...]:
     """The rules against an inverse crime, and what growth does."""
     return (
-        _underestimated(gaps),
-        _left(rescalings),
+        _underestimation(gaps),
+        _remainder(rescalings),
         _nothing_gained(null),
         _zero_covered(null),
         _widening(fouling),
@@ -37,7 +37,7 @@ def ends(interval: Interval) -> str:
     return f"{number(interval.low)} … {number(interval.high)}"
 
 
-def _underestimated(gaps: Sequence[SensorGap]) -> Claim:
+def _underestimation(gaps: Sequence[SensorGap]) -> Claim:
     depth = [gap for gap in gaps if gap.unit == "m"]
     found = [
         f"{gap.sensor} rises {number(gap.truth)} m in truth and {number(gap.low)} m in the low "
@@ -47,7 +47,7 @@ def _underestimated(gaps: Sequence[SensorGap]) -> Claim:
     return Claim(
         claim=f"The low fidelity underestimates the displacement of {_all(len(depth))} on average.",
         holds=bool(depth) and all(gap.underestimates for gap in depth),
-        finding=f"On average {listed(found or ['no depth sensor was there'])}.",
+        finding=f"On average {join_names(found or ['no depth sensor was there'])}.",
     )
 
 
@@ -55,7 +55,7 @@ def _all(count: int) -> str:
     return "all three depth sensors" if count == 3 else f"each of {count} depth sensors"
 
 
-def _left(rescalings: Sequence[Rescaling]) -> Claim:
+def _remainder(rescalings: Sequence[Rescaling]) -> Claim:
     ranked = sorted(rescalings, key=lambda one: one.left)
     short = [one.sensor for one in ranked if not one.enough]
     least, most = ranked[0], ranked[-1]
@@ -64,7 +64,7 @@ def _left(rescalings: Sequence[Rescaling]) -> Claim:
         f"({most.sensor}) of the mean absolute error are left."
     )
     if short:
-        finding += f" Less than {percent(LEAST_LEFT)} are left at {listed(short)}."
+        finding += f" Less than {percent(LEAST_LEFT)} are left at {join_names(short)}."
     return Claim(
         claim="The best rescaling and rotation of the low fidelity leaves at least "
         f"{percent(LEAST_LEFT)} of its error at every sensor.",
@@ -82,9 +82,9 @@ def _nothing_gained(null: NullCase) -> Claim:
         f"{_shares(null.real.together)}."
     )
     if above:
-        finding += f" It gains at {listed(above)}, where there is nothing to gain."
+        finding += f" It gains at {join_names(above)}, where there is nothing to gain."
     if null.unjudged:
-        finding += f" {listed(null.unjudged)} had too few readings to be judged."
+        finding += f" {join_names(null.unjudged)} had too few readings to be evaluated."
     return Claim(
         claim="Where the truth is the low fidelity itself, multifidelity gains nothing: no "
         "interval of its gain lies above zero.",
@@ -105,7 +105,7 @@ def _zero_covered(null: NullCase) -> Claim:
         unit = THOUSANDTH[worst.unit]
         real = {one.sensor: one.gain.mean for one in null.real.sensors}[worst.sensor]
         finding += (
-            f" Below zero: {listed([one.sensor for one in below])}. There level 2 learned from "
+            f" Below zero: {join_names([one.sensor for one in below])}. There level 2 learned from "
             f"noise, which costs: most at {worst.sensor}, {number(-1e3 * worst.gain.mean)} {unit}, "
             f"where the field's gain is {number(1e3 * real)} {unit}."
         )
@@ -139,5 +139,5 @@ def _widening(fouling: FoulingGap) -> Claim:
         claim="The gap at the depth sensors widens as the net grows, at every settled current.",
         holds=bool(np.all(wider > 0.0)),
         finding=f"At {fouling.speed[middle]:g} m/s, from a net just cleaned to one grown out: "
-        f"{listed(found or ['no depth sensor'])}.",
+        f"{join_names(found or ['no depth sensor'])}.",
     )

@@ -9,7 +9,7 @@ from seacage.cage import Cage
 from seacage.campaigns import Hidden, Plan
 from seacage.conventions import Progress, unheard
 from seacage.dynamics import Law
-from seacage.studies._fidelity._windows import Windows, kept_campaign
+from seacage.studies._fidelity._windows import Windows, campaign_of_stage
 from seacage.studies._stages import Stages
 
 SPEEDS = (0.3, 0.5, 0.7)
@@ -99,10 +99,10 @@ def fouling_gap(
     plan = Plan.grid(current_speed=SPEEDS, current_to=(to,), name="fouling")
 
     def settled(cage: Cage, law: Law) -> Float[np.ndarray, "speed sensor"]:
-        record = kept_campaign(
+        record = campaign_of_stage(
             "fouling", cage, plan, stages, law=law, workers=workers, progress=unheard
         )
-        return sensors.computed(record.node_position, record.bridle_tension)
+        return sensors.responses_of(record.node_position, record.bridle_tension)
 
     low = settled(sensors.cage, "kristiansen-faltinsen")
     gaps: list[Float[np.ndarray, "speed sensor"]] = []
@@ -118,11 +118,11 @@ def fouling_gap(
         growth=np.array(GROWTHS),
         speed=np.array(SPEEDS),
         gap=np.stack(gaps),
-        met=_met(windows, growth),
+        met=_met_gaps(windows, growth),
     )
 
 
-def _met(windows: Windows, growth: Float[np.ndarray, " window"]) -> tuple[MetGap, ...]:
+def _met_gaps(windows: Windows, growth: Float[np.ndarray, " window"]) -> tuple[MetGap, ...]:
     """Equal shares of the growth that the record has, each with enough windows."""
     edges = np.linspace(growth.min(), growth.max(), _BINS + 1)
     share = np.clip(np.searchsorted(edges, growth, side="right") - 1, 0, _BINS - 1)

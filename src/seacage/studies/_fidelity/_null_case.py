@@ -1,4 +1,4 @@
-"""What multifidelity gains, and that it gains nothing where there is nothing to gain."""
+"""Gain of multifidelity on a field, and on a null case where there is nothing to gain."""
 
 from dataclasses import dataclass
 
@@ -13,7 +13,7 @@ from seacage.surrogates import Prediction
 from seacage.twin import Correction, Pairs, Said, spread_out
 
 LEAST = 20
-"""Fewer readings neither teach nor judge."""
+"""Least number of readings to train on, and to score on."""
 
 _SHORT_S = 60.0
 """Means of this length where a sensor lives too shortly for 10-minute means [s]."""
@@ -28,8 +28,8 @@ Series = Float[np.ndarray, " reading"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Trial:
-    """One sensor's readings beside what the low fidelity says, some to teach, some to judge.
+class SensorTrial:
+    """One sensor's readings beside the low fidelity's answers, some to train on, some to score on.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ class Trial:
     reading, truth, low
         Responses: of the sensor, without its error, of the low fidelity.
     teach
-        Readings before the midnight that parts the days; the others judge.
+        Training readings: those before the midnight that parts the days; the others are scored.
     """
 
     sensor: str
@@ -59,7 +59,7 @@ class Trial:
 
     @property
     def enough(self) -> bool:
-        """There is something to learn from and something to judge by."""
+        """There are enough readings to train on and to score on."""
         return bool(min(np.sum(self.teach), np.sum(~self.teach)) >= LEAST)
 
 
@@ -74,7 +74,7 @@ class Gain:
     teaching, judging
         How many readings.
     low_mae, multi_mae
-        Mean absolute errors against the readings that judge.
+        Mean absolute errors against the readings that are scored.
     gain
         Low-fidelity less multifidelity absolute error, paired, by blocks of a day.
     """
@@ -97,13 +97,13 @@ class Gain:
         )
 
 
-Judged = tuple[Gain, Float[np.ndarray, " _"], Trial]
-"""A sensor's gain in the mean and reading by reading, and what it was judged on."""
+ScoredSensor = tuple[Gain, Float[np.ndarray, " _"], SensorTrial]
+"""A sensor's gain in the mean and reading by reading, and the readings it was scored on."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Gains:
-    """Of all sensors that could be judged.
+    """Of all sensors with enough readings.
 
     Parameters
     ----------
@@ -140,10 +140,10 @@ class NullCase:
 def null_case(
     windows: Windows, field: FieldRecord, *, points: int, seed: int, progress: Progress
 ) -> NullCase:
-    """Teach and judge twice alike: with the sensors' readings, and with a truth that is null.
+    """Train and score twice alike: on the sensors' readings, and on a truth that is null.
 
-    In the null case a sensor reads the low fidelity's own answer in the water heard, and its
-    own noise: what it really read less the truth, less what lasts for days in that.
+    In the null case a sensor reads the low fidelity's own answer in the water that the
+    buoy reports, and its own noise: its reading less the truth, less what lasts for days in that.
     Level 1 is the low fidelity itself, not a model of it, in both.
 
     Parameters
@@ -158,27 +158,27 @@ def null_case(
         Of the choice of readings, the searches and the draws.
     """
     trials = [_trial(windows, field, column) for column in range(len(windows.sensors.names))]
-    judged = [trial for trial in trials if trial.enough]
-    real: list[Judged] = []
-    null: list[Judged] = []
-    for done, trial in enumerate(judged):
-        progress("null case", done, len(judged))
-        real.append(_gained(trial, trial.reading, windows, points, seed))
-        null.append(_gained(trial, trial.low + noise(trial), windows, points, seed))
-    progress("null case", len(judged), len(judged))
+    usable = [trial for trial in trials if trial.enough]
+    real: list[ScoredSensor] = []
+    null: list[ScoredSensor] = []
+    for done, trial in enumerate(usable):
+        progress("null case", done, len(usable))
+        real.append(_score(trial, trial.reading, windows, points, seed))
+        null.append(_score(trial, trial.low + noise(trial), windows, points, seed))
+    progress("null case", len(usable), len(usable))
     return NullCase(
         null=_together(null, windows, seed),
         real=_together(real, windows, seed),
         unjudged=tuple(trial.sensor for trial in trials if not trial.enough),
-        mean_s={trial.sensor: trial.mean_s for trial in judged},
+        mean_s={trial.sensor: trial.mean_s for trial in usable},
     )
 
 
-def noise(trial: Trial) -> Series:
+def noise(trial: SensorTrial) -> Series:
     """What a sensor read beside the truth, without what lasts: its mean is 0 on each day.
 
-    Offset, drift and the weather's air pressure last for days, and a gain forever; a lesson
-    cannot tell them from a difference of the cage. A spike, or a sensor that stood still, is
+    Offset, drift and the weather's air pressure last for days, and a gain forever; training
+    cannot separate them from a difference of the cage. A spike, or a sensor that stood still, is
     no noise: what no check found of them is cut.
     """
     error = trial.reading - trial.truth
@@ -191,13 +191,13 @@ def noise(trial: Trial) -> Series:
     return np.where(sound, left, 0.0)
 
 
-def _trial(windows: Windows, field: FieldRecord, column: int) -> Trial:
+def _trial(windows: Windows, field: FieldRecord, column: int) -> SensorTrial:
     """Ten-minute means of a sensor, or shorter ones where there are too few."""
     trial = _read(windows, field, column, MEAN_S)
     return trial if trial.enough else _read(windows, field, column, _SHORT_S)
 
 
-def _read(windows: Windows, field: FieldRecord, column: int, mean_s: float) -> Trial:
+def _read(windows: Windows, field: FieldRecord, column: int, mean_s: float) -> SensorTrial:
     sensors = windows.sensors
     name, unit = sensors.names[column], sensors.units[column]
     read = field.sensors.get(name)
@@ -210,7 +210,7 @@ def _read(windows: Windows, field: FieldRecord, column: int, mean_s: float) -> T
     known = np.isfinite(mean) & (before >= 0.0) & (before < MEAN_S)
     time, window = time[known], window[known]
     days = np.unique(windows.day)
-    return Trial(
+    return SensorTrial(
         sensor=name,
         unit=unit,
         mean_s=mean_s,
@@ -223,13 +223,15 @@ def _read(windows: Windows, field: FieldRecord, column: int, mean_s: float) -> T
     )
 
 
-def _gained(trial: Trial, reading: Series, windows: Windows, points: int, seed: int) -> Judged:
-    """Teach level 2 of one sensor as a twin does, and judge it; the gain of each reading too."""
-    multi = _predicted(trial, reading, windows, points, seed)
-    judge = ~trial.teach
-    low = np.abs(trial.low - reading)[judge]
-    gain = low - np.abs(multi - reading[judge])
-    day = windows.day[trial.window[judge]]
+def _score(
+    trial: SensorTrial, reading: Series, windows: Windows, points: int, seed: int
+) -> ScoredSensor:
+    """Train level 2 of one sensor as a twin does, and score it; the gain of each reading too."""
+    multi = _predict(trial, reading, windows, points, seed)
+    held_out = ~trial.teach
+    low = np.abs(trial.low - reading)[held_out]
+    gain = low - np.abs(multi - reading[held_out])
+    day = windows.day[trial.window[held_out]]
     score = Gain(
         sensor=trial.sensor,
         unit=trial.unit,
@@ -242,13 +244,13 @@ def _gained(trial: Trial, reading: Series, windows: Windows, points: int, seed: 
     return score, gain, trial
 
 
-def _predicted(
-    trial: Trial, reading: Series, windows: Windows, points: int, seed: int
-) -> Float[np.ndarray, " judged"]:
+def _predict(
+    trial: SensorTrial, reading: Series, windows: Windows, points: int, seed: int
+) -> Float[np.ndarray, " held_out"]:
     inputs = ("current", "waves") if windows.waves else ("current",)
     water = windows.water.rows(trial.window)
-    lessons = Pairs(time=trial.time, metocean=water, value=reading).rows(trial.teach)
-    chosen = spread_out(lessons, points, seed=seed)
+    training = Pairs(time=trial.time, metocean=water, value=reading).rows(trial.teach)
+    chosen = spread_out(training, points, seed=seed)
     rows = np.searchsorted(trial.time, chosen.time)
     model = Correction.learned(
         chosen,
@@ -259,15 +261,15 @@ def _predicted(
     )
     if not model.proven(chosen, trial.low[rows]):  # a twin would stay at level 1
         return trial.low[~trial.teach]
-    asked = water.rows(~trial.teach).features(inputs)
-    return model.behind(asked, _exactly(trial.low[~trial.teach])).mean
+    features = water.rows(~trial.teach).features(inputs)
+    return model.behind(features, _exactly(trial.low[~trial.teach])).mean
 
 
 def _exactly(answers: Series) -> Prediction:
     return Prediction(mean=answers, std=np.zeros(len(answers)))
 
 
-def _together(parts: list[Judged], windows: Windows, seed: int) -> Gains:
+def _together(parts: list[ScoredSensor], windows: Windows, seed: int) -> Gains:
     """All sensors at once: in each window the mean of those that have readings there."""
     total, count = np.zeros(len(windows)), np.zeros(len(windows))
     for score, gain, trial in parts:
@@ -276,6 +278,6 @@ def _together(parts: list[Judged], windows: Windows, seed: int) -> Gains:
         share = np.bincount(window, gain / score.low_mae, minlength=len(windows))
         total += share / np.maximum(readings, 1)
         count += readings > 0
-    judged = count > 0
-    together = by_day(total[judged] / count[judged], windows.day[judged], seed=seed)
+    usable = count > 0
+    together = by_day(total[usable] / count[usable], windows.day[usable], seed=seed)
     return Gains(sensors=tuple(score for score, _, _ in parts), together=together)

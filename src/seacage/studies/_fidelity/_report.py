@@ -186,7 +186,7 @@ class FidelityReport:
                     "Left − a tenth [95 % interval]",
                 ),
                 [_rescaling_row(one) for one in sensors],
-                caption=f"Fitted to {sensors[0].teaching} windows, judged on {sensors[0].judging} "
+                caption=f"Fitted to {sensors[0].teaching} windows, scored on {sensors[0].judging} "
                 "(virtual field). How an answer changes with the current is interpolated between "
                 "settled currents; left out one by one, these are off by "
                 + ", ".join(f"{name} {number(error)}" for name, error in off.items())
@@ -202,12 +202,12 @@ class FidelityReport:
             tag(
                 "p",
                 "Here the truth is the low fidelity itself: each sensor reads its answer in the "
-                "water heard, with the sensor's own noise, and teaches level 2 as in a twin. "
-                "Beside it stands the field as it is: same windows, same inputs, same number of "
-                "readings. A method that gained in the null case would gain by a trick of its "
-                "scoring. The noise is what the sensor really read less the truth, without "
+                "water that the buoy reports, with the sensor's own noise, and trains level 2 as "
+                "in a twin. Beside it stands the field as it is: same windows, same inputs, same "
+                "number of readings. A method that gained in the null case would gain by a trick "
+                "of its scoring. The noise is what the sensor really read less the truth, without "
                 "faults, gain and each day's mean: what lasts for days, as the weather's air "
-                "pressure does, no lesson can tell from a difference of the cage.",
+                "pressure does, no training can separate from a difference of the cage.",
             ),
             picture(
                 gain_figure(names, _shares(null), _shares(real), origin=ORIGIN),

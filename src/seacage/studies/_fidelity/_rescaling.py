@@ -9,7 +9,7 @@ from jaxtyping import Bool, Float
 
 from seacage.campaigns import Plan
 from seacage.conventions import Progress, Result
-from seacage.studies._fidelity._windows import Sensors, Windows, kept_campaign
+from seacage.studies._fidelity._windows import Sensors, Windows, campaign_of_stage
 from seacage.studies._interval import Interval, by_day
 from seacage.studies._stages import Stages
 from seacage.surrogates import FittedGaussianProcess, GaussianProcess, current_features
@@ -54,7 +54,7 @@ class Rescaling:
     teaching, judging
         How many windows.
     low_mae, left_mae
-        Mean absolute errors on the days that judge, before and after [m] or [kN].
+        Mean absolute errors on the test days, before and after [m] or [kN].
     above_least
         What is left less a tenth of what there was: above 0 where more than a tenth is left.
     """
@@ -114,24 +114,24 @@ class Moving:
     windows: Windows
     settled: "tuple[RectBivariateSpline, ...]"
 
-    def moved(self, factor: float, turn: float) -> Columns:
+    def answers_at(self, factor: float, turn: float) -> Columns:
         """Answers to faster and turned currents, the turn clockwise [deg]."""
         velocity = self.windows.water.current_velocity
         angle = np.deg2rad(turn)
         rotation = np.array(
             [[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]
         )  # of rows (east, north)
-        change = self._settled(factor * velocity @ rotation) - self._settled(velocity)
+        change = self._at_current(factor * velocity @ rotation) - self._at_current(velocity)
         return self.windows.low + change
 
-    def _settled(self, velocity: Float[np.ndarray, "window 2"]) -> Columns:
+    def _at_current(self, velocity: Float[np.ndarray, "window 2"]) -> Columns:
         speed = np.linalg.norm(velocity, axis=1, keepdims=True)
         limited = velocity * np.minimum(1.0, _FASTEST / np.maximum(speed, _FASTEST))
         return np.column_stack([one.ev(*limited.T) for one in self.settled])
 
 
 def teaching_days(windows: Windows) -> Bool[np.ndarray, " window"]:
-    """Every other day, from the first on: growth and weather teach and judge alike."""
+    """Every other day, from the first on: growth and weather are alike in training and test."""
     days, index = np.unique(windows.day, return_inverse=True)
     return index % 2 == 0 if len(days) > 1 else np.arange(len(windows)) < len(windows) // 2
 
@@ -139,50 +139,52 @@ def teaching_days(windows: Windows) -> Bool[np.ndarray, " window"]:
 def rescalings(
     windows: Windows, stages: Stages, *, seed: int, workers: int | None, progress: Progress
 ) -> Rescalings:
-    """Find the best rescaling of each sensor on days that teach; judge it on the others.
+    """Fit the best rescaling of each sensor on training days; score it on the others.
 
     The current's speed is multiplied, its direction turned, and the answer multiplied and
-    shifted, with the least mean absolute error. The truth itself teaches, without any sensor's
-    noise, so that a rescaling has every advantage. How an answer changes with the current comes
-    from settled currents; what waves add stays as simulated.
+    shifted, with the least mean absolute error. It is fitted to the truth itself, without any
+    sensor's noise, so that a rescaling has every advantage. How an answer changes with the current
+    comes from settled currents; what waves add stays as simulated.
     """
-    process, errors = _learned(windows.sensors, stages, seed, workers, progress)
-    settled, teach = _tabled(process), teaching_days(windows)
-    lesson, exam = (Moving(windows=windows.rows(days), settled=settled) for days in (teach, ~teach))
+    process, errors = _fit_settled(windows.sensors, stages, seed, workers, progress)
+    settled, teach = _tabulate(process), teaching_days(windows)
+    training, test = (
+        Moving(windows=windows.rows(days), settled=settled) for days in (teach, ~teach)
+    )
     coarse = list(product(_FACTORS.tolist(), _TURNS.tolist()))
-    first = np.stack([lesson.moved(*change) for change in coarse])
+    first = np.stack([training.answers_at(*change) for change in coarse])
     names = windows.sensors.names
     found: list[Rescaling] = []
     for column in range(len(names)):
         progress("rescaling", column, len(names))
-        change = coarse[_least(first[..., column], lesson.windows.truth[:, column])]
-        found.append(_judged(lesson, exam, column, _refined(lesson, column, change), seed))
+        change = coarse[_least(first[..., column], training.windows.truth[:, column])]
+        found.append(_score(training, test, column, _refine(training, column, change), seed))
     progress("rescaling", len(names), len(names))
     return Rescalings(
         sensors=tuple(found), emulation_mae=dict(zip(names, errors.tolist(), strict=True))
     )
 
 
-def _learned(
+def _fit_settled(
     sensors: Sensors, stages: Stages, seed: int, workers: int | None, progress: Progress
 ) -> tuple[FittedGaussianProcess, Float[np.ndarray, " sensor"]]:
     """Answers to currents alone, and how far they are off at a current left out."""
     plan = Plan.sample(
         seed, _CURRENTS, current_speed=(0.0, _FASTEST), hs=(0.0, 0.0), name="currents"
     )
-    record = kept_campaign(
+    record = campaign_of_stage(
         "currents", sensors.cage, plan, stages, workers=workers, progress=progress
     )
     known = record.result != Result.DIVERGED
     velocity = np.array([sea.current_velocity for sea in record.seas])[known]
-    answers = sensors.computed(record.node_position[known], record.bridle_tension[known])
+    answers = sensors.responses_of(record.node_position[known], record.bridle_tension[known])
     settled = GaussianProcess(kernel="matern-5/2").fit(
         current_features(velocity), answers, seed=seed
     )
     return settled, np.abs(settled.leave_one_out().mean - answers).mean(axis=0)
 
 
-def _tabled(process: FittedGaussianProcess) -> "tuple[RectBivariateSpline, ...]":
+def _tabulate(process: FittedGaussianProcess) -> "tuple[RectBivariateSpline, ...]":
     from scipy.interpolate import RectBivariateSpline
 
     east, north = np.meshgrid(_TABLE, _TABLE, indexing="ij")
@@ -193,24 +195,24 @@ def _tabled(process: FittedGaussianProcess) -> "tuple[RectBivariateSpline, ...]"
     )
 
 
-def _refined(lesson: Moving, column: int, change: tuple[float, float]) -> tuple[float, float]:
+def _refine(training: Moving, column: int, change: tuple[float, float]) -> tuple[float, float]:
     """The best change within a coarse step of a first one."""
     steps = np.linspace(-1.0, 1.0, 2 * _FINER + 1)
     factors = np.maximum(change[0] + (_FACTORS[1] - _FACTORS[0]) * steps, 0.0)
     turns = change[1] + (_TURNS[1] - _TURNS[0]) * steps
     tried = list(product(factors.tolist(), turns.tolist()))
-    answers = np.stack([lesson.moved(*one)[:, column] for one in tried])
-    return tried[_least(answers, lesson.windows.truth[:, column])]
+    answers = np.stack([training.answers_at(*one)[:, column] for one in tried])
+    return tried[_least(answers, training.windows.truth[:, column])]
 
 
 def _least(answers: Float[np.ndarray, "change window"], truth: Float[np.ndarray, " window"]) -> int:
     """Which change leaves the least error, its best gain and offset given."""
-    gain, offset = _fitted(answers, truth).T
+    gain, offset = _fit_gain_and_offset(answers, truth).T
     error = np.abs(gain[:, None] * answers + offset[:, None] - truth).mean(axis=1)
     return int(np.argmin(error))
 
 
-def _fitted(
+def _fit_gain_and_offset(
     answers: Float[np.ndarray, "change window"], truth: Float[np.ndarray, " window"]
 ) -> Float[np.ndarray, "change 2"]:
     """Gain and offset of least mean absolute error, for each row of answers.
@@ -235,16 +237,16 @@ def _fitted(
     return np.column_stack([gain, offset])
 
 
-def _judged(
-    lesson: Moving, exam: Moving, column: int, change: tuple[float, float], seed: int
+def _score(
+    training: Moving, test: Moving, column: int, change: tuple[float, float], seed: int
 ) -> Rescaling:
-    """Gain and offset from the days that teach; errors on the others."""
-    taught, windows = lesson.windows, exam.windows
-    answers = lesson.moved(*change)[:, column]
-    gain, offset = _fitted(answers[None], taught.truth[:, column])[0].tolist()
+    """Gain and offset from the training days; errors on the others."""
+    train, windows = training.windows, test.windows
+    answers = training.answers_at(*change)[:, column]
+    gain, offset = _fit_gain_and_offset(answers[None], train.truth[:, column])[0].tolist()
     truth = windows.truth[:, column]
     low = np.abs(windows.low[:, column] - truth)
-    left = np.abs(gain * exam.moved(*change)[:, column] + offset - truth)
+    left = np.abs(gain * test.answers_at(*change)[:, column] + offset - truth)
     factor, turn = change
     return Rescaling(
         sensor=windows.sensors.names[column],
@@ -253,7 +255,7 @@ def _judged(
         turn=turn,
         gain=gain,
         offset=offset,
-        teaching=len(taught),
+        teaching=len(train),
         judging=len(windows),
         low_mae=float(low.mean()),
         left_mae=float(left.mean()),

@@ -18,7 +18,7 @@ from seacage.studies._fidelity._gap import SensorGap, sensor_gaps
 from seacage.studies._fidelity._null_case import NullCase, null_case
 from seacage.studies._fidelity._report import FidelityReport
 from seacage.studies._fidelity._rescaling import Rescaling, rescalings
-from seacage.studies._fidelity._windows import Sensors, Windows, answered, chosen_windows
+from seacage.studies._fidelity._windows import Sensors, Windows, answer_windows, choose_windows
 from seacage.studies._held_out import write_scores
 from seacage.studies._stages import Stages
 
@@ -108,8 +108,8 @@ def fidelity_study(
     record, truth, cage = _field(out, field, cage, seed, workers, report)
     _check(record, hidden, windows)
     sensors = Sensors.of(cage)
-    chosen = chosen_windows(sensors, record, truth, count=windows, seed=seed)
-    whole = answered(chosen, stages, seed=seed, workers=workers, progress=report)
+    chosen = choose_windows(sensors, record, truth, count=windows, seed=seed)
+    whole = answer_windows(chosen, stages, seed=seed, workers=workers, progress=report)
     survey = whole.rows(whole.surveyed)
     gaps = sensor_gaps(survey, seed=seed)
     scaled = rescalings(survey, stages, seed=seed, workers=workers, progress=report)
@@ -185,7 +185,7 @@ def _recipe(record: FieldRecord, windows: Windows, *, lost: int) -> dict[str, st
     surveyed = int(np.sum(windows.surveyed))
     how = (
         "simulated in time for 600 s after 300 s, in long-crested waves of the height, period and "
-        "direction heard, 16 side by side"
+        "direction that the buoy reports, 16 side by side"
         if windows.waves
         else "settled, as the buoy reports no waves"
     )
@@ -196,8 +196,8 @@ def _recipe(record: FieldRecord, windows: Windows, *, lost: int) -> dict[str, st
         f"of the day, and {len(windows) - surveyed} more in which a shackle lives",
         "Low fidelity (computed)": f"Kristiansen–Faltinsen screens on a clean net, uniform "
         f"current, corners on springs; {how}; {lost} lost",
-        "Days": "for the rescaling every other day teaches; for the null case the first half "
-        "teaches, the second judges",
+        "Days": "for the rescaling every other day trains; for the null case the first half "
+        "trains, the second is scored",
     }
 
 

@@ -30,10 +30,10 @@ SIMULATION = ("conventions", "ocean", "cage", "dynamics", "campaigns")
 """Rooms whose code makes the low fidelity's answers."""
 
 _EVERY_S = 2.0
-"""How often the buoy's held word is looked at for a window's mean [s]."""
+"""Interval at which the buoy's held sample enters a window's mean [s]."""
 
-_HEARD = 0.9
-"""Share of a window in which the buoy's word must be sound and fresh."""
+_LEAST_SHARE = 0.9
+"""Share of a window in which the buoy's sample must be sound and fresh."""
 
 _LONGEST_GAP_S = 200.0
 _LEAST = 40
@@ -84,7 +84,7 @@ class Sensors:
         """Response that a depth [m] or a tension [kN] stands for."""
         return self.rest[sensor] - value if self.units[sensor] == "m" else value
 
-    def computed(
+    def responses_of(
         self, node_position: Float[np.ndarray, "case node 3"], tension: Float[np.ndarray, "case _"]
     ) -> Float[np.ndarray, "case sensor"]:
         """Responses of simulated cages [m] or [kN]."""
@@ -105,7 +105,7 @@ class Windows:
     end
         Of each window, UTC, ascending.
     water
-        Means of what the twin hears.
+        Means of what the buoy reports to the twin.
     period
         Peak period of the waves, 0 without [s].
     surveyed
@@ -113,7 +113,7 @@ class Windows:
         lives besides.
     truth, low
         Mean responses without any sensor's error: of the virtual field, and of the low
-        fidelity in the water heard; NaN where it was not asked yet.
+        fidelity in the water reported; NaN before it is computed.
     """
 
     sensors: Sensors
@@ -167,10 +167,10 @@ class Windows:
         ]
 
 
-def chosen_windows(
+def choose_windows(
     sensors: Sensors, field: FieldRecord, truth: FieldRecord, *, count: int, seed: int
 ) -> Windows:
-    """Choose windows in which the truth is whole and the buoy was heard.
+    """Choose windows in which the truth is whole and the buoy reports.
 
     About ``count`` are drawn evenly over all days, one from each equal share of a day's
     windows, so that no hour of the tide is preferred; besides all in which a shackle's own
@@ -184,7 +184,7 @@ def chosen_windows(
     means = [window_means(truth.sensors[name], field) for name in sensors.names]
     end = means[0][0]
     responses = np.column_stack([sensors.response(i, mean) for i, (_, mean) in enumerate(means)])
-    water, period = heard(field.buoy, end)
+    water, period = buoy_water(field.buoy, end)
     whole = Windows(
         sensors=sensors,
         end=end,
@@ -234,10 +234,10 @@ def window_means(
     return means.time, next(iter(means.values.values()))
 
 
-def heard(
+def buoy_water(
     buoy: Record, end: Shaped[np.ndarray, " window"]
 ) -> tuple[Metocean, Float[np.ndarray, " window"]]:
-    """Mean water over each window as a twin hears it: the buoy's last word, held.
+    """Mean water over each window as a twin receives it: the buoy's last sample, held.
 
     Returns
     -------
@@ -247,16 +247,16 @@ def heard(
         Peak period of the waves, 0 where there is none [s].
     """
     ago = np.arange(MEAN_S - _EVERY_S, -_EVERY_S / 2.0, -_EVERY_S)
-    asked = end[:, None] - (ago * 1e6).astype("timedelta64[us]")
-    word = np.searchsorted(buoy.time, asked, side="right") - 1
-    age = (asked - buoy.time[word]) / np.timedelta64(1, "s")
+    at = end[:, None] - (ago * 1e6).astype("timedelta64[us]")
+    word = np.searchsorted(buoy.time, at, side="right") - 1
+    age = (at - buoy.time[word]) / np.timedelta64(1, "s")
     fresh = (word >= 0) & (age <= Watch().stale_after_s)
     water = Metocean.of_record(buoy)
     period = buoy.values.get("tp_s", np.zeros(len(buoy)))
-    said = np.column_stack([water.current_velocity, water.hs, water.wave_direction, period])
+    columns = np.column_stack([water.current_velocity, water.hs, water.wave_direction, period])
     doubtful = [flags == Flag.SUSPECT for key, flags in buoy.flags.items() if "current" in key]
-    said[np.logical_or.reduce(doubtful), :2] = np.nan
-    means = np.column_stack([_mean(column[word], fresh) for column in said.T])
+    columns[np.logical_or.reduce(doubtful), :2] = np.nan
+    means = np.column_stack([_mean(column[word], fresh) for column in columns.T])
     length = np.linalg.norm(means[:, 3:5], axis=1, keepdims=True)
     water = Metocean(
         current_velocity=means[:, :2],
@@ -266,7 +266,7 @@ def heard(
     return water, np.nan_to_num(means[:, 5])
 
 
-def answered(
+def answer_windows(
     windows: Windows, stages: Stages, *, seed: int, workers: int | None, progress: Progress
 ) -> Windows:
     """Windows with the low fidelity's answers; those in which it was lost are left out.
@@ -275,7 +275,7 @@ def answered(
     """
     seas = windows.seas()
     plan = Plan.listed(seas, duration=MEAN_S, seed=seed, name="windows")
-    record = kept_campaign(
+    record = campaign_of_stage(
         "windows",
         windows.sensors.cage,
         plan,
@@ -284,11 +284,11 @@ def answered(
         workers=workers,
         progress=progress,
     )
-    low = windows.sensors.computed(record.node_position, record.bridle_tension)
+    low = windows.sensors.responses_of(record.node_position, record.bridle_tension)
     return replace(windows, low=low).rows(record.result != Result.DIVERGED)
 
 
-def kept_campaign(
+def campaign_of_stage(
     stage: str,
     cage: Cage,
     plan: Plan,
@@ -319,7 +319,7 @@ def kept_campaign(
         "method": method,
         "law": law,
     }
-    return read_campaign(stages.made(stage, settings, make, rooms=SIMULATION) / "campaign.zarr")
+    return read_campaign(stages.ensure(stage, settings, make, rooms=SIMULATION) / "campaign.zarr")
 
 
 def _shortly_after(field: FieldRecord, row: int) -> datetime:
@@ -336,12 +336,12 @@ def _flat(water: Metocean) -> Metocean:
 
 
 def _mean(
-    value: Float[np.ndarray, "window asked"], fresh: Bool[np.ndarray, "window asked"]
+    value: Float[np.ndarray, "window at"], fresh: Bool[np.ndarray, "window at"]
 ) -> Float[np.ndarray, " window"]:
     sound = fresh & np.isfinite(value)
     total = np.sum(np.where(sound, value, 0.0), axis=1)
     count = np.sum(sound, axis=1)
-    return np.where(count >= _HEARD * value.shape[1], total / np.maximum(count, 1), np.nan)
+    return np.where(count >= _LEAST_SHARE * value.shape[1], total / np.maximum(count, 1), np.nan)
 
 
 def _spread(

@@ -1,4 +1,4 @@
-"""What the paper says, and whether this study's own numbers say it too."""
+"""Statements of the paper, and whether this study's own numbers support them."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -10,9 +10,9 @@ from jaxtyping import Float
 from seacage.studies._paper._shape_models import GCN_DEGREES, GCN_PAPER, PCA_DEGREES, PCA_PAPER
 from seacage.studies._paper._shape_scores import ShapeScore
 from seacage.studies._paper._shape_study import ShapeStudy
-from seacage.studies._paper._ways import IN_A_ROW, Judged
+from seacage.studies._paper._ways import IN_A_ROW, ScoredWays
 from seacage.studies._sensor_scores import SensorScore
-from seacage.studies._text import listed, number, percent
+from seacage.studies._text import join_names, number, percent
 
 ROV_M = 1.0
 """The distance that the paper would have an ROV keep from the net [m]."""
@@ -39,7 +39,7 @@ UNJUDGED = (
     ),
     ("Figures for more than one winter, which the paper asks for itself."),
 )
-"""What could not be judged, and why."""
+"""What could not be evaluated, and why."""
 
 INCONSISTENT = (
     (
@@ -100,21 +100,21 @@ class PaperClaim:
     finding: str
 
 
-def paper_claims(judged: Judged, shapes: ShapeStudy) -> tuple[PaperClaim, ...]:
+def paper_claims(scored: ScoredWays, shapes: ShapeStudy) -> tuple[PaperClaim, ...]:
     """Each statement of the paper's results that this study can hold numbers against."""
-    sensors = judged.sensors
+    sensors = scored.sensors
     loads = [one for one in sensors if one.unit == "kN"]
     depths = [one for one in sensors if one.unit == "m"]
     return (
         *(
-            _gained(some, what)
+            _gain(some, what)
             for some, what in ((loads, "mooring loads"), (depths, "depths"))
             if some
         ),
         _slopes(sensors),
-        _underestimated(depths),
+        _underestimation(depths),
         _oscillation(loads),
-        _few_minutes(judged),
+        _few_minutes(scored),
         _three_modes(shapes),
         _within_a_metre(shapes),
         _harder_when_faster(shapes),
@@ -130,13 +130,13 @@ def _share(sensors: Sequence[SensorScore], true: Sequence[str]) -> Verdict:
     return "partly" if true else "not reproduced"
 
 
-def _gained(sensors: Sequence[SensorScore], what: str) -> PaperClaim:
+def _gain(sensors: Sequence[SensorScore], what: str) -> PaperClaim:
     better = [one.sensor for one in sensors if one.means.better]
     pairs = [
         f"{one.sensor} {number(one.means.low_mae)} → {number(one.means.multi_mae)} {one.unit}"
         for one in sensors
     ]
-    proven = f"Proven at {listed(better)}." if better else "Proven at no sensor."
+    proven = f"Proven at {join_names(better)}." if better else "Proven at no sensor."
     return PaperClaim(
         claim=f"Multifidelity predicts the {what} much better than low fidelity.",
         verdict=_share(sensors, better),
@@ -158,7 +158,7 @@ def _slopes(sensors: Sequence[SensorScore]) -> PaperClaim:
     )
 
 
-def _underestimated(depths: Sequence[SensorScore]) -> PaperClaim:
+def _underestimation(depths: Sequence[SensorScore]) -> PaperClaim:
     # A depth that is too large is a displacement that is too small.
     under = [one.sensor for one in depths if one.raw.low_bias > 0.0]
     return PaperClaim(
@@ -188,19 +188,19 @@ def _oscillation(loads: Sequence[SensorScore]) -> PaperClaim:
     )
 
 
-def _few_minutes(judged: Judged) -> PaperClaim:
-    claim = "A few minutes of a sensor's data suffice to teach it."
-    row = [way for way in judged.ways if way.name == IN_A_ROW]
+def _few_minutes(scored: ScoredWays) -> PaperClaim:
+    claim = "A few minutes of a sensor's data suffice to train it."
+    row = [way for way in scored.ways if way.name == IN_A_ROW]
     if not row:
         return PaperClaim(
             claim=claim,
             verdict="not evaluated",
-            finding="Readings a minute apart hold no few minutes; the full study judges it.",
+            finding="Readings a minute apart hold no few minutes; the full study evaluates it.",
         )
-    sensors = [one for one in row[0].sensors if one.sensor in row[0].taught]
+    sensors = [one for one in row[0].sensors if one.sensor in row[0].trained]
     better = [one.sensor for one in sensors if one.means.better]
     worse = [one.sensor for one in sensors if one.means.worse]
-    spread = {one.sensor: one for one in judged.sensors}
+    spread = {one.sensor: one for one in scored.sensors}
     beaten = [
         one.sensor
         for one in row[0].sensors
@@ -214,9 +214,9 @@ def _few_minutes(judged: Judged) -> PaperClaim:
         claim=claim,
         verdict=_share(row[0].sensors, better),
         finding="Read as minutes in a row, which the paper does not say: better than low fidelity "
-        f"at {listed(better or ['no sensor'])}, worse at {listed(worse or ['none'])}. "
+        f"at {join_names(better or ['no sensor'])}, worse at {join_names(worse or ['none'])}. "
         f"{held}Readings spread over the teaching days do better at "
-        f"{listed(beaten or ['no sensor'])}.",
+        f"{join_names(beaten or ['no sensor'])}.",
     )
 
 
@@ -291,8 +291,8 @@ def _network_wins(shapes: ShapeStudy) -> PaperClaim:
     if not pairs:
         return PaperClaim(claim=claim, verdict="not evaluated", finding=" ".join(shapes.left_out))
     wins = [network.mae < modes.mae for network, modes in pairs]
-    told = [
-        f"hearing the {network.inputs} "
+    pairs_text = [
+        f"with {network.inputs} "
         + ", ".join(
             f"{axis} {number(ours)} against {number(theirs)} m"
             for axis, ours, theirs in zip("xyz", network.axis_mae, modes.axis_mae, strict=True)
@@ -302,9 +302,9 @@ def _network_wins(shapes: ShapeStudy) -> PaperClaim:
     return PaperClaim(
         claim=claim,
         verdict="reproduced" if all(wins) else "partly" if any(wins) else "not reproduced",
-        finding=f"Mean absolute errors, network against PCA-GP: {'; '.join(told)}. The paper gives "
-        "neither width, learning rate nor epochs, so another network may do better; this is no "
-        "refutation.",
+        finding=f"Mean absolute errors, network against PCA-GP: {'; '.join(pairs_text)}. The paper "
+        "gives neither width, learning rate nor epochs, so another network may do better; this is "
+        "no refutation.",
     )
 
 

@@ -1,4 +1,4 @@
-"""How well level 1 says what a simulation computes at the bridles."""
+"""Score of level 1 on the bridle tensions of held-out simulations."""
 
 from dataclasses import dataclass
 

@@ -18,7 +18,7 @@ from seacage.figures import (
     shape_views_figure,
 )
 from seacage.ocean import SeaState
-from seacage.studies._held_out import comparison, shown
+from seacage.studies._held_out import comparison, display_span
 from seacage.studies._page import Html, bar, claims, facts, page, picture, table, tag
 from seacage.studies._paper._claims import INCONSISTENT, UNJUDGED, PaperClaim, paper_claims
 from seacage.studies._paper._discussion import NOMINAL, findings
@@ -31,7 +31,7 @@ from seacage.studies._paper._shape_models import (
 )
 from seacage.studies._paper._shape_scores import ShapeScore
 from seacage.studies._paper._shape_study import ShapeCase, ShapeStudy
-from seacage.studies._paper._ways import Judged, WayScore
+from seacage.studies._paper._ways import ScoredWays, WayScore
 from seacage.studies._sensor_scores import Errors, SensorScore
 from seacage.studies._text import number, percent
 from seacage.twin import Answer
@@ -45,13 +45,13 @@ _NETS = (PCA_PAPER, GCN_PAPER)
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PaperReport:
-    """What the page is written from.
+    """Contents of the page.
 
     Parameters
     ----------
     cage, sea, answer
         The cage, and the twin's answer in one sea state to draw.
-    judged
+    scored
         Ways of teaching and their scores, with the readings of the first.
     level_one
         Scores of level 1 on held-out simulations.
@@ -68,7 +68,7 @@ class PaperReport:
     cage: Cage
     sea: SeaState
     answer: Answer
-    judged: Judged
+    scored: ScoredWays
     level_one: LevelOneScore
     shapes: ShapeStudy
     recipe: Mapping[str, str]
@@ -79,12 +79,12 @@ class PaperReport:
     @property
     def claims(self) -> tuple[PaperClaim, ...]:
         """Of the paper, with what the numbers say of them."""
-        return paper_claims(self.judged, self.shapes)
+        return paper_claims(self.scored, self.shapes)
 
     @property
     def sensors(self) -> tuple[SensorScore, ...]:
         """Of the way that the page shows."""
-        return self.judged.sensors
+        return self.scored.sensors
 
     def html(self) -> str:
         """The whole page."""
@@ -148,8 +148,8 @@ class PaperReport:
                 "p",
                 "Level 1 learns from simulations alone: the tensions of all bridles and the shape "
                 "of the whole net, as functions of the current. Level 2 learns, for each sensor, "
-                "how its readings follow from the current and from level 1. The days that teach "
-                "and the days that judge are apart; no day is in both.",
+                "how its readings follow from the current and from level 1. Training "
+                "days and validation days are apart; no day is in both.",
             ),
             facts(self.recipe),
             picture(figure, caption=caption, alternative="The net in side and top view"),
@@ -176,10 +176,10 @@ class PaperReport:
 
     def _rows(self, sensors: Sequence[str]) -> Html:
         scores = {score.sensor: score for score in self.sensors}
-        readings = self.judged.readings
+        readings = self.scored.readings
         figure = rows_figure(
             [comparison(scores[name], readings[name]) for name in sensors],
-            [shown(readings[name]) for name in sensors],
+            [display_span(readings[name]) for name in sensors],
         )
         counts = [
             f"{name} {scores[name].raw.readings:,} readings of {scores[name].told_h:,.0f} hours"
@@ -229,56 +229,56 @@ class PaperReport:
         return table(head, [_error_row(*row) for row in rows], caption=caption)
 
     def _ways(self) -> list[Html]:
-        """What else might have taught, beside the way shown."""
-        if len(self.judged.ways) < 2:
+        """Other ways of training, beside the way shown."""
+        if len(self.scored.ways) < 2:
             return []
-        first = self.judged.ways[0]
+        first = self.scored.ways[0]
         low = np.array([one.minutes.low_mae for one in first.sensors])
         figure = lessons_figure(
             [one.sensor for one in first.sensors],
-            {way.name: _lessons(way, low) for way in self.judged.ways},
+            {way.name: _way_bars(way, low) for way in self.scored.ways},
             origin=first.sensors[0].origin,
         )
         rows = [
             (
                 f"{one.sensor} [{one.unit}]",
                 way.name,
-                "yes" if one.sensor in way.taught else "no",
+                "yes" if one.sensor in way.trained else "no",
                 tag("span", number(one.minutes.low_mae), look="low"),
                 tag("span", number(one.minutes.multi_mae), look="multi"),
                 percent(one.minutes.coverage),
                 number(one.minutes.crps),
                 tag("small", one.origin),
             )
-            for row in zip(*(way.sensors for way in self.judged.ways), strict=True)
-            for way, one in zip(self.judged.ways, row, strict=True)
+            for row in zip(*(way.sensors for way in self.scored.ways), strict=True)
+            for way, one in zip(self.scored.ways, row, strict=True)
         ]
-        head = ("Sensor", "Way", "Taught", "Low MAE", "Multi MAE", "Coverage", "CRPS", "Origin")
+        head = ("Sensor", "Way", "Level 2", "Low MAE", "Multi MAE", "Coverage", "CRPS", "Origin")
         return [
-            tag("h2", "What teaches, and what is heard"),
+            tag("h2", "Training readings and inputs"),
             tag(
                 "p",
-                "The paper's twin hears the current alone and learns from a few minutes of depths "
-                "and a few seconds of loads; which ones, it does not say. The page's figures take "
-                f"{_points(self.judged)} one-minute means "
+                "The paper's twin has the current alone as its input and learns from a few minutes "
+                "of depths and a few seconds of loads; which ones, it does not say. The page's "
+                f"figures take {_points(self.scored)} one-minute means "
                 "spread over currents and days. Beside it stand readings in a row, five minutes "
-                "of a depth and ten seconds of a load, and the same spread lesson for a twin that "
-                "hears the waves, too. All are judged on the same means over a minute.",
+                "of a depth and ten seconds of a load, and the same spread readings for a twin "
+                "with waves as inputs. All are scored on the same means over a minute.",
             ),
             picture(
                 figure,
-                caption="Left: multifidelity error over the low fidelity's of a twin that hears "
-                "the current. Middle: CRPS over the same. Right: share of means inside the 95 % "
-                "interval (virtual field). A sensor that was not taught answers at level 1, with "
-                "the emulator's own spread, which is no interval.",
-                alternative="Errors, scores and coverage by way of teaching",
+                caption="Left: multifidelity error over the low fidelity's of a twin with "
+                "the current as input. Middle: CRPS over the same. Right: share of means inside "
+                "the 95 % interval (virtual field). A sensor without a level-2 model answers at "
+                "level 1, with the emulator's own spread, which is no interval.",
+                alternative="Errors, scores and coverage by way of training",
                 look="wide",
             ),
             table(
                 head,
                 rows,
-                caption="Means over a minute on the days that judge. Taught: whether the lesson "
-                "was long enough and believed.",
+                caption="Means over a minute on the validation days. Level 2: whether the "
+                "training window was long enough and the model better than level 1.",
             ),
         ]
 
@@ -286,10 +286,10 @@ class PaperReport:
         shapes = self.shapes
         drawn = [*(name for name in _DRAWN_MODELS if name in shapes.scores), shapes.best.model]
         case_errors = {name: shapes.scores[name].case_axis_mae for name in drawn}
-        judged = picture(
+        by_case = picture(
             shape_cases_figure(case_errors),
-            caption=f"Mean absolute error over all nodes in each of {shapes.judged} simulations "
-            "that did not teach (computed). The red line is the distance that the paper would "
+            caption=f"Mean absolute error over all nodes in each of {shapes.test_cases} held-out "
+            "simulations (computed). The red line is the distance that the paper would "
             "have an ROV keep. Last panel: mean and standard deviation over the cases.",
             alternative="Errors along x, y and z by test case and model",
             look="wide",
@@ -306,7 +306,7 @@ class PaperReport:
         return [
             tag("h2", "The whole shape"),
             *(tag("p", sentence) for sentence in shapes.left_out),
-            judged,
+            by_case,
             self._nets(),
             self._shape_table(),
             speed,
@@ -348,15 +348,16 @@ class PaperReport:
                 "CRPS [mm]",
                 "Fit [s]",
                 "Shape [ms]",
-                "Hears",
+                "Inputs",
                 "Origin",
             ),
             [_shape_row(score) for score in self.shapes.scores.values()],
-            caption=f"Taught by {self.shapes.taught} simulations, judged on {self.shapes.judged}. "
-            "x, y, z: mean absolute errors. 99 %: of all nodes in all cases, so many are nearer "
-            "than this to where they should be; worst is the farthest of them. Covers: share of "
-            "coordinates inside the 95 % interval. Fit and shape: processor time to train and of "
-            "one answer, in one run on a shared machine: only their ratios mean something.",
+            caption=f"Trained on {self.shapes.training_cases} simulations, tested on "
+            f"{self.shapes.test_cases}. x, y, z: mean absolute errors. 99 %: of all nodes in all "
+            "cases, so many are nearer than this to where they should be; worst is the farthest of "
+            "them. Covers: share of coordinates inside the 95 % interval. Fit and shape: processor "
+            "time to train and of one answer, in one run on a shared machine: only their ratios "
+            "mean something.",
         )
 
     def _level_one(self) -> list[Html]:
@@ -383,7 +384,7 @@ class PaperReport:
         return [tag("h2", "Level 1 at the bridles"), bridles]
 
     def _discussion(self) -> list[Html]:
-        told = findings(self.judged, self.level_one, self.shapes)
+        paragraphs = findings(self.scored, self.level_one, self.shapes)
         both = (
             "Both are simulated in time, in waves, by the same kernel with other parts."
             if self.in_time
@@ -399,9 +400,9 @@ class PaperReport:
             tag("h3", "The paper's statements, held against these numbers"),
             claims((one.verdict, one.claim, one.finding) for one in self.claims),
             tag("h3", "What was found"),
-            *(tag("p", finding) for finding in told),
+            *(tag("p", finding) for finding in paragraphs),
             tag("p", limits),
-            tag("h3", "What could not be judged"),
+            tag("h3", "What could not be evaluated"),
             tag("ul", *(tag("li", one) for one in UNJUDGED)),
             tag("h3", "Where the paper is at odds with itself"),
             tag("ul", *(tag("li", one) for one in INCONSISTENT)),
@@ -453,7 +454,7 @@ def _shape_row(score: ShapeScore) -> tuple[str, ...]:
     )
 
 
-def _lessons(way: WayScore, low: np.ndarray) -> Lessons:
+def _way_bars(way: WayScore, low: np.ndarray) -> Lessons:
     minutes = [one.minutes for one in way.sensors]
     return Lessons(
         error=np.array([one.multi_mae for one in minutes]) / low,
@@ -462,8 +463,8 @@ def _lessons(way: WayScore, low: np.ndarray) -> Lessons:
     )
 
 
-def _points(judged: Judged) -> str:
-    points = [lesson.points for lesson in judged.twin.provenance.lessons.values()]
+def _points(scored: ScoredWays) -> str:
+    points = [one.points for one in scored.twin.provenance.lessons.values()]
     return str(max(points)) if points else "no"
 
 

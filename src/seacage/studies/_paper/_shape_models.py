@@ -46,14 +46,14 @@ class ShapeModel:
     name
         In tables and figures.
     inputs
-        What it is asked with.
+        Its inputs.
     settings
         All that its answers depend on beside the simulations, as JSON takes it.
     fit
         Takes features, shapes [m], a seed and what ``needs`` names.
     needs
-        What its fit takes besides: the shapes over time, the shape at rest, or whom to tell of
-        progress.
+        What its fit takes besides: the shapes over time, the shape at rest, or a
+        callback for progress.
     """
 
     name: str
@@ -73,11 +73,11 @@ def shape_models(
     cage
         Whose net it is.
     waves
-        Whether there are waves to hear.
+        Whether there are waves.
     networks
         Whether to train graph networks, which takes minutes and needs JAX.
     """
-    heard = ALL if waves else CURRENT
+    inputs = ALL if waves else CURRENT
     pca, process = PcaGP(modes=3), ShapeGP(tolerance=_TOLERANCE)
     turns = Symmetry.of(cage.design_position, fold=_FOLD, mirror=0.0)
     literal = PcaGP(modes=3, centred=False)
@@ -92,28 +92,28 @@ def shape_models(
             _model(SHAPE_CURRENT, CURRENT, process),
         ]
     models += [
-        _model(SHAPE, heard, process),
-        _model(SHAPE_FOLDED, heard, ShapeGP(tolerance=_TOLERANCE, symmetry=turns)),
+        _model(SHAPE, inputs, process),
+        _model(SHAPE_FOLDED, inputs, ShapeGP(tolerance=_TOLERANCE, symmetry=turns)),
     ]
     if not networks:
         return tuple(models), ("The graph networks take minutes and are left to the full study.",)
     if find_spec("jax") is None:
         why = (
             "The graph networks are missing: JAX is not installed here. "
-            "Install seacage with the extra gcn and say the same again."
+            "Install seacage with the extra gcn and run the same again."
         )
         return tuple(models), (why,)
-    return (*models, *_networks(cage, heard)), ()
+    return (*models, *_networks(cage, inputs)), ()
 
 
-def _networks(cage: Cage, heard: tuple[Input, ...]) -> list[ShapeModel]:
+def _networks(cage: Cage, inputs: tuple[Input, ...]) -> list[ShapeModel]:
     from seacage.surrogates import GCN
 
     paper, ours = GCN(cage=cage, kind="paper"), GCN(cage=cage, kind="modal")
     return [
         _model(GCN_PAPER, CURRENT, paper, "progress"),
         _model(GCN_DEGREES, DEGREES, paper, "progress"),
-        _model(GCN_OURS, heard, ours, "progress"),
+        _model(GCN_OURS, inputs, ours, "progress"),
     ]
 
 
@@ -121,13 +121,13 @@ def _model(name: str, inputs: tuple[Input, ...], estimator: Any, *needs: Need) -
     return ShapeModel(
         name=name,
         inputs=inputs,
-        settings={"estimator": type(estimator).__name__, "how": _told(estimator)},
+        settings={"estimator": type(estimator).__name__, "how": _settings_of(estimator)},
         fit=estimator.fit,
         needs=needs,
     )
 
 
-def _told(estimator: Any) -> dict[str, str]:
+def _settings_of(estimator: Any) -> dict[str, str]:
     """Settings of an unfitted model; those of the cage are named beside it."""
     names = [name for name in estimator.__dataclass_fields__ if name not in _OF_CAGE]
     return {name: repr(getattr(estimator, name)) for name in names}

@@ -38,15 +38,15 @@ _TIMED = 20
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Trial:
-    """What models of the shape learn from and are judged on.
+class ShapeTrial:
+    """Training and test cases of models of the shape.
 
     Parameters
     ----------
     cage
         That was simulated.
     campaign, held_out
-        Those that teach and those that judge, of which the converged cases count.
+        Training and test cases, of which the converged ones count.
     seed
         Of the trainings.
     """
@@ -58,30 +58,30 @@ class Trial:
 
     @property
     def computed(self) -> Float[np.ndarray, "case node 3"]:
-        """Shapes that judge [m]."""
+        """Shapes of the test cases [m]."""
         return self.held_out.node_position[self.held_out.converged]
 
     @property
     def seas(self) -> list[SeaState]:
         """That they were computed in."""
-        return _converged_seas(self.held_out)
+        return _seas_of(self.held_out)
 
     @property
     def over_time(self) -> OverTime | None:
-        """Shapes at all time steps, judging cases included, as in the paper; None without them."""
+        """Shapes at all time steps, test cases included, as in the paper; None without them."""
         moment = self.campaign.second_moment
         if moment is None:
             return None
-        taught = self.campaign.node_position[self.campaign.converged]
-        every = np.concatenate([taught, self.computed])
+        training = self.campaign.node_position[self.campaign.converged]
+        every = np.concatenate([training, self.computed])
         return OverTime.of_moment(every, moment, rest_position=self.cage.design_position)
 
-    def taught(self, inputs: tuple[Input, ...]) -> Float[np.ndarray, "case feature"]:
-        """Features of the cases that teach."""
-        return _features(_converged_seas(self.campaign), inputs)
+    def training_features(self, inputs: tuple[Input, ...]) -> Float[np.ndarray, "case feature"]:
+        """Features of the training cases."""
+        return _features(_seas_of(self.campaign), inputs)
 
-    def asked(self, inputs: tuple[Input, ...]) -> Float[np.ndarray, "case feature"]:
-        """Features of the cases that judge."""
+    def test_features(self, inputs: tuple[Input, ...]) -> Float[np.ndarray, "case feature"]:
+        """Features of the test cases."""
         return _features(self.seas, inputs)
 
 
@@ -116,8 +116,8 @@ class ShapeStudy:
 
     Parameters
     ----------
-    taught, judged
-        Simulations that taught, and that judge.
+    training_cases, test_cases
+        Number of simulations to train on, and to test on.
     current_speed
         Of the test cases [m/s].
     scores
@@ -130,8 +130,8 @@ class ShapeStudy:
         Why some models are missing, a sentence each.
     """
 
-    taught: int
-    judged: int
+    training_cases: int
+    test_cases: int
     current_speed: Float[np.ndarray, " case"]
     scores: Mapping[str, ShapeScore]
     cases: tuple[ShapeCase, ...]
@@ -140,13 +140,13 @@ class ShapeStudy:
 
     @property
     def best(self) -> ShapeScore:
-        """The process with a shared kernel that hears all there is, folded where it can be."""
+        """The process with a shared kernel with all inputs, folded where it can be."""
         return self.scores.get(SHAPE_FOLDED, self.scores[SHAPE])
 
 
 def shape_study(
     models: Sequence[ShapeModel],
-    trial: Trial,
+    trial: ShapeTrial,
     stages: Stages,
     *,
     left_out: tuple[str, ...] = (),
@@ -178,28 +178,28 @@ def shape_study(
             progress("shape", number + 1, len(models))
 
         try:
-            folder = stages.made("shape", _settings(model, trial), make, rooms=_ROOMS)
+            folder = stages.ensure("shape", _settings(model, trial), make, rooms=_ROOMS)
         except InputError as error:
             if model.name != SHAPE_FOLDED:
                 raise
             left_out = (*left_out, f"{model.name} is missing: {error}")  # not every cage can be
             continue
-        answers[model.name], cost = _kept(folder)
+        answers[model.name], cost = _read_answers(folder)
         scores[model.name] = shape_score(
             model.name, answers[model.name], trial.computed, inputs=WORDS[model.inputs], **cost
         )
     return ShapeStudy(
-        taught=int(np.sum(trial.campaign.converged)),
-        judged=len(trial.seas),
+        training_cases=int(np.sum(trial.campaign.converged)),
+        test_cases=len(trial.seas),
         current_speed=np.array([sea.current_speed for sea in trial.seas]),
         scores=scores,
-        cases=_drawn(trial, answers),
+        cases=_draw_cases(trial, answers),
         variance=_variance(trial),
         left_out=left_out,
     )
 
 
-def _settings(model: ShapeModel, trial: Trial) -> dict[str, object]:
+def _settings(model: ShapeModel, trial: ShapeTrial) -> dict[str, object]:
     return {
         "model": model.name,
         "inputs": list(model.inputs),
@@ -211,9 +211,9 @@ def _settings(model: ShapeModel, trial: Trial) -> dict[str, object]:
     }
 
 
-def _make(begun: Path, model: ShapeModel, trial: Trial, progress: Progress) -> None:
+def _make(begun: Path, model: ShapeModel, trial: ShapeTrial, progress: Progress) -> None:
     """Train a model, ask it, and keep its shapes and what they took."""
-    x, asked = trial.taught(model.inputs), trial.asked(model.inputs)
+    x, test_features = trial.training_features(model.inputs), trial.test_features(model.inputs)
     shape = trial.campaign.node_position[trial.campaign.converged]
     known = {
         "over_time": trial.over_time,
@@ -223,11 +223,11 @@ def _make(begun: Path, model: ShapeModel, trial: Trial, progress: Progress) -> N
     began = time.process_time()
     fitted = model.fit(x, shape, seed=trial.seed, **{name: known[name] for name in model.needs})
     took = time.process_time() - began
-    answer = fitted.predict(asked, noisy=True)  # a half-hour's mean has noise of its own
+    answer = fitted.predict(test_features, noisy=True)  # a half-hour's mean has noise of its own
     cost = {
         "modes": getattr(fitted, "modes", None),
         "fit_cpu_s": took,
-        "predict_ms": _one_shape_ms(fitted, asked),
+        "predict_ms": _one_shape_ms(fitted, test_features),
     }
     np.savez(
         begun / "shapes.npz",
@@ -237,17 +237,17 @@ def _make(begun: Path, model: ShapeModel, trial: Trial, progress: Progress) -> N
     (begun / "cost.json").write_text(json.dumps(cost), encoding="utf-8")
 
 
-def _kept(folder: Path) -> tuple[Prediction, dict[str, Any]]:
+def _read_answers(folder: Path) -> tuple[Prediction, dict[str, Any]]:
     with np.load(folder / "shapes.npz", allow_pickle=False) as kept:
         answer = Prediction(mean=kept["mean"].astype(float), std=kept["std"].astype(float))
     return answer, json.loads((folder / "cost.json").read_text("utf-8"))
 
 
-def _one_shape_ms(fitted: Any, asked: Float[np.ndarray, "case feature"]) -> float:
+def _one_shape_ms(fitted: Any, test_features: Float[np.ndarray, "case feature"]) -> float:
     took: list[float] = []
-    for row in range(min(_TIMED, len(asked))):
+    for row in range(min(_TIMED, len(test_features))):
         began = time.process_time()
-        fitted.predict(asked[row : row + 1])
+        fitted.predict(test_features[row : row + 1])
         took.append(time.process_time() - began)
     return 1000.0 * float(np.median(took))
 
@@ -268,11 +268,11 @@ def _features(
     )
 
 
-def _converged_seas(record: CampaignRecord) -> list[SeaState]:
+def _seas_of(record: CampaignRecord) -> list[SeaState]:
     return [sea for sea, good in zip(record.seas, record.converged, strict=True) if good]
 
 
-def _drawn(trial: Trial, answers: Mapping[str, Prediction]) -> tuple[ShapeCase, ...]:
+def _draw_cases(trial: ShapeTrial, answers: Mapping[str, Prediction]) -> tuple[ShapeCase, ...]:
     seas, computed = trial.seas, trial.computed
     speed = np.array([sea.current_speed for sea in seas])
     order = np.argsort(speed, kind="stable")
@@ -292,7 +292,7 @@ def _drawn(trial: Trial, answers: Mapping[str, Prediction]) -> tuple[ShapeCase, 
     )
 
 
-def _variance(trial: Trial) -> dict[str, float]:
+def _variance(trial: ShapeTrial) -> dict[str, float]:
     """What three modes hold, of the cases' means and, where it was kept, of all time steps."""
     rest = trial.cage.design_position.ravel()
     shapes = {

@@ -1,4 +1,4 @@
-"""The paper's study: simulations, sensors and the twin between them, scored and told."""
+"""The paper's study: simulations, sensors and the twin between them, scored and reported."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -17,10 +17,10 @@ from seacage.studies._paper._level_one import LevelOneScore, score_level_one
 from seacage.studies._paper._report import PaperReport
 from seacage.studies._paper._shape_models import shape_models
 from seacage.studies._paper._shape_scores import ShapeScore
-from seacage.studies._paper._shape_study import ShapeStudy, Trial, shape_study
-from seacage.studies._paper._ways import Judged, WayScore, has_waves, judge, ways_of
+from seacage.studies._paper._shape_study import ShapeStudy, ShapeTrial, shape_study
+from seacage.studies._paper._ways import ScoredWays, WayScore, compare_ways, has_waves, ways_of
 from seacage.studies._sensor_scores import SensorScore
-from seacage.studies._text import listed
+from seacage.studies._text import join_names
 from seacage.twin import Lesson
 
 _SHOWN_SPEED = 0.6
@@ -36,15 +36,15 @@ class PaperStudy:
     report, scores
         The HTML page and the same numbers as JSON.
     sensors
-        The score of each sensor on days that it did not teach.
+        The score of each sensor on days that it was not trained on.
     level_one
         The score of level 1 on simulations that it has not seen.
     ways
-        The scores of each way of teaching, that of ``sensors`` first.
+        The scores of each way of training, that of ``sensors`` first.
     shapes
         The score of each model of the whole shape.
     claims
-        Of the paper, and what the numbers say of them.
+        Of the paper, with their verdicts.
     """
 
     report: Path
@@ -73,7 +73,7 @@ def paper_study(
     """Repeat the paper's study with a virtual field, into one HTML page.
 
     The paper's figures of loads, depths and shapes on days and simulations not trained on, with
-    their errors; beside them what else may teach and be heard, other models of the shape, and
+    their errors; beside them other training readings and inputs, other models of the shape, and
     which of the paper's statements these numbers repeat.
 
     Parameters
@@ -85,13 +85,13 @@ def paper_study(
         The cage; None for that of the campaign given, or ``ace``.
     quick
         400 equilibria without waves and a settled field, in minutes. Otherwise, and where a
-        campaign or a field is given, the paper's 1,000 half-hours, the last 100 of which judge,
+        campaign or a field is given, the paper's 1,000 half-hours, the last 100 held out,
         and a field simulated in time.
     campaign
-        A finished campaign to take in place of one made here; its last 100 cases judge.
+        A finished campaign to take in place of one made here; its last 100 cases are held out.
     field
         Folder of a virtual field with its truth in ``truth``, in place of one made here. The
-        first half of its days teaches.
+        first half of its days are training days.
     days, one_in
         Of a field made in full size: its length, and to simulate one hour in so many and those
         of the shackles.
@@ -123,31 +123,31 @@ def paper_study(
 
 
 def study_chain(chain: Chain, out: Path, *, networks: bool = False) -> PaperStudy:
-    """Score a chain and tell it, making what it still lacks."""
+    """Score a chain and report on it, making the stages that are missing."""
     _check(chain)
     waves = has_waves(chain)
-    judged = judge(chain, ways_of(chain.recipe, waves=waves))
-    level_one = score_level_one(judged.twin, chain.held_out)
+    scored = compare_ways(chain, ways_of(chain.recipe, waves=waves))
+    level_one = score_level_one(scored.twin, chain.held_out)
     shapes = _shapes(chain, networks=networks)
     sea = SeaState(current_speed=_SHOWN_SPEED, current_to=chain.cage.site.current_to)
     page = PaperReport(
         cage=chain.cage,
         sea=sea,
-        answer=judged.twin.predict(sea),
-        judged=judged,
+        answer=scored.twin.predict(sea),
+        scored=scored,
         level_one=level_one,
         shapes=shapes,
-        recipe=_recipe(chain, judged, shapes),
-        provenance=_provenance(chain, judged),
+        recipe=_recipe(chain, scored, shapes),
+        provenance=_provenance(chain, scored),
         in_time=chain.recipe.in_time,
         progress=chain.report,
     )
     study = PaperStudy(
         report=out / "report.html",
         scores=out / "scores.json",
-        sensors=judged.sensors,
+        sensors=scored.sensors,
         level_one=level_one,
-        ways=judged.ways,
+        ways=scored.ways,
         shapes=tuple(shapes.scores.values()),
         claims=page.claims,
     )
@@ -208,7 +208,7 @@ def _shapes(chain: Chain, *, networks: bool) -> ShapeStudy:
     models, left_out = shape_models(chain.cage, waves=waves, networks=networks)
     return shape_study(
         models,
-        Trial(
+        ShapeTrial(
             cage=chain.cage,
             campaign=chain.campaign,
             held_out=chain.held_out,
@@ -220,37 +220,37 @@ def _shapes(chain: Chain, *, networks: bool) -> ShapeStudy:
     )
 
 
-def _recipe(chain: Chain, judged: Judged, shapes: ShapeStudy) -> dict[str, str]:
+def _recipe(chain: Chain, scored: ScoredWays, shapes: ShapeStudy) -> dict[str, str]:
     recipe, campaign, field = chain.recipe, chain.campaign, chain.field
     waves = chain.in_waves
     what = "half-hours in waves and currents" if waves else "currents settled"
-    told = sum(len(sensor) for sensor in field.sensors.values())
+    readings = sum(len(sensor) for sensor in field.sensors.values())
     begin, end = (str(time)[:10] for time in field.buoy.time[[0, -1]])
     return {
         "Simulations (computed)": f"{np.sum(campaign.converged)} of {len(campaign)} {what}, "
         f"0 to 1 m/s from all sides, law {campaign.law}",
-        "Held-out simulations (computed)": f"{shapes.judged}, none of which taught",
-        "Buoy record and sensors (virtual field)": f"{begin} to {end}, {told:,} readings of "
+        "Held-out simulations (computed)": f"{shapes.test_cases}, none of which was trained on",
+        "Buoy record and sensors (virtual field)": f"{begin} to {end}, {readings:,} readings of "
         f"{len(field.sensors)} sensors",
-        "Days": f"the first {recipe.teaching_days} teach, the later ones judge",
-        **_lessons(judged.twin.provenance.lessons),
+        "Days": f"the first {recipe.teaching_days} train, the later ones validate",
+        **_training_windows(scored.twin.provenance.lessons),
     }
 
 
-def _lessons(lessons: Mapping[str, Lesson]) -> dict[str, str]:
-    """Who taught what, sensors that taught alike in one line."""
+def _training_windows(windows: Mapping[str, Lesson]) -> dict[str, str]:
+    """Training windows of the sensors, those with the same window in one line."""
     alike: dict[Lesson, list[str]] = {}
-    for name, lesson in lessons.items():
-        alike.setdefault(lesson, []).append(name)
+    for name, window in windows.items():
+        alike.setdefault(window, []).append(name)
     return {
-        f"{listed(names)} (virtual field)": f"taught with {lesson.points} readings each, "
-        f"{lesson.start:%d %b %H:%M} to {lesson.end:%d %b %H:%M} UTC"
-        for lesson, names in alike.items()
+        f"{join_names(names)} (virtual field)": f"trained on {window.points} readings each, "
+        f"{window.start:%d %b %H:%M} to {window.end:%d %b %H:%M} UTC"
+        for window, names in alike.items()
     }
 
 
-def _provenance(chain: Chain, judged: Judged) -> dict[str, str]:
-    provenance = judged.twin.provenance
+def _provenance(chain: Chain, scored: ScoredWays) -> dict[str, str]:
+    provenance = scored.twin.provenance
     return {
         "seacage": provenance.version,
         "Seed": str(chain.recipe.seed),

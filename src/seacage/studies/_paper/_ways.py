@@ -1,14 +1,14 @@
-"""Ways of teaching a twin, judged on the same readings."""
+"""Ways of training a twin, scored on the same readings."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import reduce
 
 import numpy as np
 from jaxtyping import Shaped
 
 from seacage.studies._chain import Chain, Recipe
-from seacage.studies._sensor_scores import Readings, SensorScore, compared, score_sensor
+from seacage.studies._sensor_scores import Readings, SensorScore, compare, score_sensor
 from seacage.studies._split import split
 from seacage.twin import Training, Twin
 
@@ -17,12 +17,12 @@ SPREAD, IN_A_ROW, HEARING = (
     "Current, minutes in a row",
     "Current and waves, spread",
 )
-"""Names of the ways: the page's own, the paper's minutes read as a row, and one that hears more."""
+"""Names of the ways: the page's own, the paper's minutes read as a row, and one with waves."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Way:
-    """One way of teaching a twin.
+    """One way of training a twin.
 
     Parameters
     ----------
@@ -38,25 +38,25 @@ class Way:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class WayScore:
-    """How a way of teaching did on days that did not teach.
+    """Score of a way of training on validation days.
 
     Parameters
     ----------
     name
         Of the way.
-    taught
-        Sensors whose lesson was believed; the others answer at level 1.
+    trained
+        Sensors with a level-2 model; the others answer at level 1.
     sensors
         The score of each sensor.
     """
 
     name: str
-    taught: tuple[str, ...]
+    trained: tuple[str, ...] = field(metadata={"key": "taught"})
     sensors: tuple[SensorScore, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Judged:
+class ScoredWays:
     """All ways, and the readings behind the first.
 
     Parameters
@@ -83,7 +83,7 @@ def ways_of(recipe: Recipe, *, waves: bool) -> tuple[Way, ...]:
     """What a study compares: the page's own way first.
 
     Settled studies have one way; in time the paper's few minutes in a row stand beside it, and
-    with waves at the buoy and in the campaign the twin that hears them.
+    with waves at the buoy and in the campaign the twin that has them as inputs.
     """
     spread = recipe.training
     ways = [Way(name=SPREAD, training=spread)]
@@ -96,23 +96,25 @@ def ways_of(recipe: Recipe, *, waves: bool) -> tuple[Way, ...]:
 
 
 def has_waves(chain: Chain) -> bool:
-    """Whether a twin of this chain can hear waves: the buoy has them and the campaign, too."""
+    """Whether waves can be inputs of a twin of this chain: buoy and campaign have them."""
     return "hs_m" in chain.field.buoy.values and chain.in_waves
 
 
-def judge(chain: Chain, ways: Sequence[Way]) -> Judged:
-    """Teach in each way, and score all on the same readings of the days that judge."""
+def compare_ways(chain: Chain, ways: Sequence[Way]) -> ScoredWays:
+    """Train in each way, and score all on the same readings of the validation days."""
     days = chain.recipe.teaching_days
     _, judging = split(chain.field, teaching_days=days)
     _, truth = split(chain.truth, teaching_days=days)
-    truth = replace(truth, buoy=judging.buoy)  # what was heard, gaps and all, not what was true
-    twins = [Twin.read(chain.trained(way.training)) for way in ways]
+    truth = replace(truth, buoy=judging.buoy)  # as reported, gaps and all
+    twins = [Twin.read(chain.ensure_twin(way.training)) for way in ways]
     answers = [twin.predict_record(chain.field.buoy) for twin in twins]
-    said = [compared(answer, judging) for answer in answers]
-    exact = compared(answers[0], truth)
-    common = {name: reduce(np.intersect1d, (one[name].time for one in said)) for name in said[0]}
+    compared = [compare(answer, judging) for answer in answers]
+    exact = compare(answers[0], truth)
+    common = {
+        name: reduce(np.intersect1d, (one[name].time for one in compared)) for name in compared[0]
+    }
     total, scores = len(ways) * len(common), []
-    for number, (way, twin, readings) in enumerate(zip(ways, twins, said, strict=True)):
+    for number, (way, twin, readings) in enumerate(zip(ways, twins, compared, strict=True)):
         sensors: list[SensorScore] = []
         for name, time in common.items():
             chain.report("score", number * len(common) + len(sensors), total)
@@ -124,11 +126,11 @@ def judge(chain: Chain, ways: Sequence[Way]) -> Judged:
                 )
             )
         scores.append(
-            WayScore(name=way.name, taught=tuple(twin.provenance.lessons), sensors=tuple(sensors))
+            WayScore(name=way.name, trained=tuple(twin.provenance.lessons), sensors=tuple(sensors))
         )
     chain.report("score", total, total)
-    first = {name: _at(said[0][name], time) for name, time in common.items()}
-    return Judged(twin=twins[0], readings=first, ways=tuple(scores))
+    first = {name: _at(compared[0][name], time) for name, time in common.items()}
+    return ScoredWays(twin=twins[0], readings=first, ways=tuple(scores))
 
 
 def _at(readings: Readings, time: Shaped[np.ndarray, " t"]) -> Readings:

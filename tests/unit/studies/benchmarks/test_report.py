@@ -13,7 +13,7 @@ from seacage.studies._benchmarks._problems import problem_named
 from seacage.studies._benchmarks._report import BenchmarkReport
 from seacage.studies._benchmarks._runs import Runs
 from seacage.studies._benchmarks._scores import RunScore, summary
-from seacage.studies._benchmarks._study import _locked, _parted
+from seacage.studies._benchmarks._study import _read_lock, _split_seeds
 from seacage.studies._benchmarks._verdicts import verdicts
 
 
@@ -86,16 +86,16 @@ def test_tuning_seeds_have_a_table_of_their_own():
 
 
 def test_seeds_below_five_tune_and_the_others_report():
-    assert _parted(range(10), quick=False) == ([0, 1, 2, 3, 4], [5, 6, 7, 8, 9])
-    assert _parted(range(10), quick=True) == ([0, 1], [5, 6])
-    assert _parted([7, 5, 7], quick=False) == ([], [5, 7])
+    assert _split_seeds(range(10), quick=False) == ([0, 1, 2, 3, 4], [5, 6, 7, 8, 9])
+    assert _split_seeds(range(10), quick=True) == ([0, 1], [5, 6])
+    assert _split_seeds([7, 5, 7], quick=False) == ([], [5, 7])
     with pytest.raises(InputError, match="hold no report seed"):
-        _parted(range(5), quick=False)
+        _split_seeds(range(5), quick=False)
 
 
 def test_versions_come_from_the_lock():
     lock = Path(__file__).parents[4] / "benchmarks" / "peers" / "requirements.lock"
-    found = dict(_locked(lock, {"emukit", "smt", "gpy"}))
+    found = dict(_read_lock(lock, {"emukit", "smt", "gpy"}))
     assert set(found) == {"emukit", "smt", "gpy"}
     assert all(version[0].isdecimal() for version in found.values())
 
@@ -130,6 +130,6 @@ def test_what_is_not_there_is_left_out_of_the_page_but_never_ours(tmp_path, monk
     with pytest.raises(InputError, match="our own answers to Currin are not there"):
         benchmark_study(tmp_path, seeds=[5], quick=True, kept=True)
     runs = Runs(folder=tmp_path / "runs")
-    runs.made(problem_named("currin"), own[0], [5], heard=lambda _: None)
+    runs.ensure(problem_named("currin"), own[0], [5], on_done=lambda _: None)
     study = benchmark_study(tmp_path, seeds=[5], quick=True, kept=True)
     assert [one.method for one in study.summaries] == [OURS]

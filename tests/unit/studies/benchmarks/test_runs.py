@@ -17,7 +17,7 @@ from seacage.studies._benchmarks._methods import (
 from seacage.studies._benchmarks._ours import METHODS
 from seacage.studies._benchmarks._problems import Problem, problem_named
 from seacage.studies._benchmarks._runs import Runs
-from seacage.studies._benchmarks._scores import scored, summary
+from seacage.studies._benchmarks._scores import score_run, summary
 from seacage.surrogates import rmse
 
 SCRIPT = """
@@ -59,7 +59,7 @@ def method(folder: Path, name: str) -> Method:
 def test_a_method_answers_every_seed_once(tmp_path, problem):
     runs, told = Runs(folder=tmp_path / "runs"), []
     mean = method(tmp_path, "mean")
-    first = runs.made(problem, mean, [0, 3], heard=told.append)
+    first = runs.ensure(problem, mean, [0, 3], on_done=told.append)
     # A report counts what is there when it is read: on a busy machine the next seed too.
     assert told in ([0, 1, 2], [0, 2, 2])
     assert [run.seed for run in first] == [0, 3]
@@ -68,13 +68,13 @@ def test_a_method_answers_every_seed_once(tmp_path, problem):
     assert first[1].fit_s > 0.0
 
     made = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.json")}
-    again = runs.made(problem, mean, [3, 0], heard=told.append)
+    again = runs.ensure(problem, mean, [3, 0], on_done=told.append)
     assert [run.seed for run in again] == [3, 0]
     assert {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.json")} == made
 
 
 def test_a_method_never_sees_the_answers_to_the_tests(tmp_path, problem):
-    Runs(folder=tmp_path).made(problem, method(tmp_path, "mean"), [0], heard=lambda _: None)
+    Runs(folder=tmp_path).ensure(problem, method(tmp_path, "mean"), [0], on_done=lambda _: None)
     (job,) = (tmp_path / "jobs").glob("*.npz")
     with np.load(job) as given:
         held = [given[name].ravel() for name in given.files]
@@ -84,9 +84,9 @@ def test_a_method_never_sees_the_answers_to_the_tests(tmp_path, problem):
 
 def test_a_failure_is_kept_with_its_words_and_has_no_score(tmp_path, problem):
     runs = Runs(folder=tmp_path)
-    (run,) = runs.made(problem, method(tmp_path, "refuse"), [5], heard=lambda _: None)
+    (run,) = runs.ensure(problem, method(tmp_path, "refuse"), [5], on_done=lambda _: None)
     assert run.error == "ValueError: seed 5 is not liked"
-    score = scored(run, problem.sample(5).y_test)
+    score = score_run(run, problem.sample(5).y_test)
     assert score.error == run.error
     assert np.isnan(score.rmse)
     whole = summary([score, score])
@@ -94,30 +94,30 @@ def test_a_failure_is_kept_with_its_words_and_has_no_score(tmp_path, problem):
 
 
 def test_a_process_that_dies_is_told_of(tmp_path, problem):
-    (run,) = Runs(folder=tmp_path).made(
-        problem, method(tmp_path, "vanish"), [0], heard=lambda _: None
+    (run,) = Runs(folder=tmp_path).ensure(
+        problem, method(tmp_path, "vanish"), [0], on_done=lambda _: None
     )
     assert run.error == "the process ended with code 1: gone"
 
 
 def test_what_was_begun_and_not_signed_is_made_again(tmp_path, problem):
     runs, mean = Runs(folder=tmp_path / "runs"), method(tmp_path, "mean")
-    runs.made(problem, mean, [0], heard=lambda _: None)
+    runs.ensure(problem, mean, [0], on_done=lambda _: None)
     (sign,) = (tmp_path / "runs").glob("mean-*/*.json")
     kept = json.loads(sign.read_text())
     sign.unlink()
-    (run,) = runs.made(problem, mean, [0], heard=lambda _: None)
+    (run,) = runs.ensure(problem, mean, [0], on_done=lambda _: None)
     assert run.error is None
     assert kept["rows"] == problem.tests
 
 
 def test_an_answer_that_is_no_number_is_an_error(tmp_path, problem):
     runs, mean = Runs(folder=tmp_path / "runs"), method(tmp_path, "mean")
-    runs.made(problem, mean, [0], heard=lambda _: None)
+    runs.ensure(problem, mean, [0], on_done=lambda _: None)
     (answer,) = (tmp_path / "runs").glob("mean-*/*.npz")
     with answer.open("wb") as file:
         np.savez(file, mean=np.full(problem.tests, np.nan), std=np.ones(problem.tests))
-    (run,) = runs.made(problem, mean, [0], heard=lambda _: None)
+    (run,) = runs.ensure(problem, mean, [0], on_done=lambda _: None)
     assert "not a finite number" in run.error
 
 

@@ -9,7 +9,7 @@ from seacage.studies._benchmarks._verdicts import best_rival, verdicts
 NAMES = [problem.name for problem in (*PROBLEMS, CAGE_SIZE)]
 
 
-def made(problem: str, method: str, rmse: float, *, speed: float = 1.0, error: str | None = None):
+def ensure(problem: str, method: str, rmse: float, *, speed: float = 1.0, error: str | None = None):
     scores = [
         RunScore(problem=problem, method=method, seed=seed, error=error)
         if error is not None
@@ -34,9 +34,9 @@ def contest(**rivals: float):
     """Ours at 0.25 and 20 times as fast as all others, on every problem."""
     found = {}
     for name in NAMES:
-        found |= made(name, "nargp", 0.25, speed=20.0) | made(name, "high-only", 2.0)
+        found |= ensure(name, "nargp", 0.25, speed=20.0) | ensure(name, "high-only", 2.0)
         for method, rmse in rivals.items():
-            found |= made(name, method.replace("_", "-"), rmse)
+            found |= ensure(name, method.replace("_", "-"), rmse)
     return found
 
 
@@ -55,7 +55,7 @@ def test_without_peers_only_the_coverage_is_judged():
 
 
 def test_a_ratio_above_its_limit_is_missed_with_its_numbers():
-    found = contest(emukit_nargp=1.0, smt_mfk=1.0) | made("borehole", "nargp", 0.31, speed=20.0)
+    found = contest(emukit_nargp=1.0, smt_mfk=1.0) | ensure("borehole", "nargp", 0.31, speed=20.0)
     missed = [one for one in verdicts(found) if one.holds is False]
     assert [one.claim for one in missed] == [
         "Borehole: mean RMSE at most 0.3 times that of Emukit's NARGP."
@@ -64,7 +64,7 @@ def test_a_ratio_above_its_limit_is_missed_with_its_numbers():
 
 
 def test_a_rival_that_is_a_tenth_better_is_named_with_how_many_seeds():
-    found = contest(emukit_nargp=1.0, smt_mfk=1.0) | made("currin", "smt-mfk", 0.2)
+    found = contest(emukit_nargp=1.0, smt_mfk=1.0) | ensure("currin", "smt-mfk", 0.2)
     (missed,) = (one for one in verdicts(found) if one.holds is False)
     assert "Currin: 25" in missed.finding
     assert "worse than smt-mfk, better on 0 of 5 seeds" in missed.finding
@@ -72,12 +72,12 @@ def test_a_rival_that_is_a_tenth_better_is_named_with_how_many_seeds():
 
 
 def test_a_rival_within_a_tenth_is_no_reproach():
-    found = contest(emukit_nargp=1.0, smt_mfk=1.0) | made("currin", "smt-mfk", 0.24)
+    found = contest(emukit_nargp=1.0, smt_mfk=1.0) | ensure("currin", "smt-mfk", 0.24)
     assert words(found) == ["holds"] * 10
 
 
 def test_a_slower_fit_is_missed():
-    found = contest(emukit_nargp=1.0, smt_mfk=1.0) | made("cage-size", "nargp", 0.25, speed=4.0)
+    found = contest(emukit_nargp=1.0, smt_mfk=1.0) | ensure("cage-size", "nargp", 0.25, speed=4.0)
     missed = [one.claim for one in verdicts(found) if one.holds is False]
     assert [claim.split(" at least")[0] for claim in missed] == [
         "Cage size: a fit",
@@ -99,8 +99,8 @@ def test_narrow_intervals_are_missed_and_named():
 
 def test_a_peer_that_failed_is_no_rival_and_its_words_are_told():
     found = contest(emukit_nargp=1.0, smt_mfk=0.1)
-    found |= made("park", "emukit-nargp", 0.0, error="LinAlgError: not positive definite")
-    found |= made("park", "smt-mfk", 0.0, error="ValueError: no")
+    found |= ensure("park", "emukit-nargp", 0.0, error="LinAlgError: not positive definite")
+    found |= ensure("park", "smt-mfk", 0.0, error="ValueError: no")
     assert best_rival(found, "park").method == "high-only"
     park = next(one for one in verdicts(found) if one.claim.startswith("Park"))
     assert park.holds is None

@@ -7,7 +7,7 @@ import pytest
 
 from seacage.conventions import Origin
 from seacage.records import FieldRecord, Record
-from seacage.studies._fidelity._null_case import Trial, noise, null_case
+from seacage.studies._fidelity._null_case import SensorTrial, noise, null_case
 from seacage.twin import Metocean
 from windowed import START, made_windows
 
@@ -81,9 +81,9 @@ def test_a_sensor_that_lived_shortly_is_judged_on_shorter_means():
     assert case.mean_s == {"depth-1": 60.0}, "twelve windows teach"
 
 
-def trial(error: np.ndarray) -> Trial:
+def trial(error: np.ndarray) -> SensorTrial:
     truth = 5.0 + np.sin(np.arange(len(error)) / 7.0)
-    return Trial(
+    return SensorTrial(
         sensor="shackle-1",
         unit="kN",
         mean_s=600.0,

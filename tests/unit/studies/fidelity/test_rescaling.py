@@ -7,7 +7,12 @@ import numpy as np
 import pytest
 
 from seacage.studies._fidelity import _rescaling
-from seacage.studies._fidelity._rescaling import Moving, _fitted, rescalings, teaching_days
+from seacage.studies._fidelity._rescaling import (
+    Moving,
+    _fit_gain_and_offset,
+    rescalings,
+    teaching_days,
+)
 from seacage.studies._stages import Stages
 from seacage.surrogates import GaussianProcess, current_features
 from windowed import answers, made_windows
@@ -20,12 +25,12 @@ def smooth():
     velocity = rng.uniform(-1.8, 1.8, (150, 2))
     values = answers(velocity, 8)
     process = GaussianProcess(restarts=0).fit(current_features(velocity), values)
-    return _rescaling._tabled(process), process
+    return _rescaling._tabulate(process), process
 
 
 @pytest.fixture
 def learned(smooth, monkeypatch):
-    monkeypatch.setattr(_rescaling, "_learned", lambda *_: (smooth[1], np.zeros(8)))
+    monkeypatch.setattr(_rescaling, "_fit_settled", lambda *_: (smooth[1], np.zeros(8)))
 
 
 def found(windows):
@@ -65,15 +70,15 @@ def test_what_waves_add_stays(smooth):
     windows = made_windows(days=2)
     shifted = replace(windows, low=windows.low + 7.0)
     calm, wavy = (Moving(windows=some, settled=smooth[0]) for some in (windows, shifted))
-    assert wavy.moved(1.3, 20.0) - calm.moved(1.3, 20.0) == pytest.approx(7.0)
-    assert calm.moved(1.0, 0.0) == pytest.approx(windows.low)
+    assert wavy.answers_at(1.3, 20.0) - calm.answers_at(1.3, 20.0) == pytest.approx(7.0)
+    assert calm.answers_at(1.0, 0.0) == pytest.approx(windows.low)
 
 
 def test_the_fit_of_least_absolute_error_does_not_hear_outliers():
     answer = np.linspace(0.0, 10.0, 200)
     truth = 2.0 * answer - 1.0
     truth[::10] += 50.0
-    gain, offset = _fitted(answer[None], truth)[0]
+    gain, offset = _fit_gain_and_offset(answer[None], truth)[0]
     assert (gain, offset) == pytest.approx((2.0, -1.0), abs=1e-2)
 
 

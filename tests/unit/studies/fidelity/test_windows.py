@@ -8,7 +8,7 @@ import pytest
 from seacage.cage import Cage
 from seacage.conventions import Flag, InputError, Origin
 from seacage.records import Record
-from seacage.studies._fidelity._windows import Sensors, chosen_windows, heard
+from seacage.studies._fidelity._windows import Sensors, buoy_water, choose_windows
 from seacage.testing import stand_in_field
 
 CAGE = Cage.named("ace").altered(mesh={"ring_depths_m": [0.0, 7.0, 15.0, 23.0], "spokes": 16})
@@ -48,7 +48,7 @@ def truth(field):
 
 
 def test_the_buoys_word_is_held_and_averaged_as_a_vector():
-    water, _ = heard(buoy([1.0, 1.0, 1.0], [350.0, 10.0, 10.0]), ENDS[:2])
+    water, _ = buoy_water(buoy([1.0, 1.0, 1.0], [350.0, 10.0, 10.0]), ENDS[:2])
     assert water.current_velocity[0] == pytest.approx(
         [-np.sin(np.deg2rad(10.0)), np.cos(np.deg2rad(10.0))]
     )
@@ -59,14 +59,14 @@ def test_the_buoys_word_is_held_and_averaged_as_a_vector():
 def test_water_is_unknown_once_the_word_is_stale_or_unsound():
     silent = buoy([0.5, 0.5], [0.0, 0.0])
     late = np.array([START + np.timedelta64(4, "h")])
-    assert np.isnan(heard(silent, late)[0].current_velocity).all()
+    assert np.isnan(buoy_water(silent, late)[0].current_velocity).all()
     flags = {"current_speed_m_s": np.array([Flag.SUSPECT, Flag.GOOD], np.uint8)}
-    water, _ = heard(replace(silent, flags=flags), ENDS[:2])
+    water, _ = buoy_water(replace(silent, flags=flags), ENDS[:2])
     assert np.isnan(water.current_velocity[0]).all()
 
 
 def test_waves_that_no_buoy_reports_are_none(sensors, field, truth):
-    windows = chosen_windows(sensors, field, truth, count=40, seed=0)
+    windows = choose_windows(sensors, field, truth, count=40, seed=0)
     assert not windows.waves
     assert {sea.hs for sea in windows.seas()} == {0.0}
 
@@ -79,13 +79,13 @@ def test_a_sea_too_steep_to_stand_gets_the_shortest_period_it_may(sensors, field
     }
     values = {**field.buoy.values, **steep}
     wavy = replace(field, buoy=replace(field.buoy, values=values, flags={}))
-    seas = chosen_windows(sensors, wavy, truth, count=40, seed=0).seas()
+    seas = choose_windows(sensors, wavy, truth, count=40, seed=0).seas()
     assert {round(sea.peak_period, 2) for sea in seas} == {3.1}
     assert {round(sea.wave_from) for sea in seas} == {270}
 
 
 def test_the_survey_takes_as_many_windows_of_each_day(sensors, field, truth):
-    windows = chosen_windows(sensors, field, truth, count=40, seed=0)
+    windows = choose_windows(sensors, field, truth, count=40, seed=0)
     days, count = np.unique(windows.day[windows.surveyed], return_counts=True)
     assert len(days) >= 4
     assert np.ptp(count[:-1]) == 0
@@ -95,8 +95,8 @@ def test_the_survey_takes_as_many_windows_of_each_day(sensors, field, truth):
 def test_responses_grow_with_the_load(sensors):
     position = CAGE.design_position[None] + np.array([0.0, 0.0, 1.0])
     tension = np.full((1, CAGE.bridle_count), 5000.0)
-    lifted = sensors.computed(position, tension)[0]
-    still = sensors.computed(CAGE.design_position[None], tension)[0]
+    lifted = sensors.responses_of(position, tension)[0]
+    still = sensors.responses_of(CAGE.design_position[None], tension)[0]
     depth = len(CAGE.depth_sensors)
     assert lifted[:depth] - still[:depth] == pytest.approx(1.0)
     assert lifted[depth:] == pytest.approx(5.0)
@@ -113,4 +113,4 @@ def test_a_field_too_short_is_refused(sensors, field, truth):
         for name, sensor in truth.sensors.items()
     }
     with pytest.raises(InputError, match="Give a longer virtual field"):
-        chosen_windows(sensors, field, replace(truth, sensors=short), count=40, seed=0)
+        choose_windows(sensors, field, replace(truth, sensors=short), count=40, seed=0)

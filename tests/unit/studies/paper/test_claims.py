@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from scores_made import judged, sensor, shapes, way
+from scores_made import scored, sensor, shapes, way
 from seacage.studies._paper._claims import paper_claims
 from seacage.studies._paper._ways import IN_A_ROW
 
@@ -16,7 +16,7 @@ def verdict(of: str, some=None, study=None) -> str:
     """Of the one claim that has these words."""
     found = [
         claim
-        for claim in paper_claims(some or judged(DEPTH, LOAD), study or shapes())
+        for claim in paper_claims(some or scored(DEPTH, LOAD), study or shapes())
         if of in claim.claim
     ]
     assert len(found) == 1, of
@@ -29,12 +29,12 @@ def verdict(of: str, some=None, study=None) -> str:
 )
 def test_a_gain_is_reproduced_where_it_is_proven_at_all_sensors(gains, said):
     loads = [sensor(f"shackle-{i}", gain_low=low) for i, low in enumerate(gains, 1)]
-    assert verdict("mooring loads", judged(DEPTH, *loads)) == said
+    assert verdict("mooring loads", scored(DEPTH, *loads)) == said
 
 
 def test_a_fit_that_turns_past_the_diagonal_as_far_is_no_closer():
     assert verdict("closer to the diagonal") == "reproduced"
-    assert verdict("closer to the diagonal", judged(sensor("shackle-1", slope=1.6))) == (
+    assert verdict("closer to the diagonal", scored(sensor("shackle-1", slope=1.6))) == (
         "not reproduced"
     )
 
@@ -42,27 +42,27 @@ def test_a_fit_that_turns_past_the_diagonal_as_far_is_no_closer():
 def test_underestimated_is_too_deep():
     assert verdict("underestimate") == "reproduced"
     high = sensor("depth-1", unit="m", low_bias=-0.5)
-    assert verdict("underestimate", judged(high, LOAD)) == "not reproduced"
-    assert verdict("underestimate", judged(LOAD)) == "not evaluated"
+    assert verdict("underestimate", scored(high, LOAD)) == "not reproduced"
+    assert verdict("underestimate", scored(LOAD)) == "not evaluated"
 
 
 def test_readings_that_scatter_no_more_than_their_means_do_not_oscillate():
     assert verdict("oscillate") == "not reproduced"
     swaying = replace(LOAD, raw=replace(LOAD.raw, multi_mae=2.0))
-    assert verdict("oscillate", judged(DEPTH, swaying)) == "reproduced"
+    assert verdict("oscillate", scored(DEPTH, swaying)) == "reproduced"
 
 
 def test_minutes_in_a_row_are_judged_where_they_were_tried():
     assert verdict("few minutes") == "not evaluated"
     poor = way(sensor("depth-1", unit="m", gain_low=-2.0, gain_high=-1.0), LOAD, name=IN_A_ROW)
-    assert verdict("few minutes", judged(DEPTH, LOAD, more=(poor,))) == "partly"
+    assert verdict("few minutes", scored(DEPTH, LOAD, more=(poor,))) == "partly"
 
 
 def test_a_sensor_that_a_few_minutes_never_taught_is_no_success():
     untaught = replace(
-        way(sensor("depth-1", unit="m", gain_low=0.0), LOAD, name=IN_A_ROW), taught=()
+        way(sensor("depth-1", unit="m", gain_low=0.0), LOAD, name=IN_A_ROW), trained=()
     )
-    assert verdict("few minutes", judged(DEPTH, LOAD, more=(untaught,))) == "not reproduced"
+    assert verdict("few minutes", scored(DEPTH, LOAD, more=(untaught,))) == "not reproduced"
 
 
 @pytest.mark.parametrize(("variance", "said"), [(0.99, "partly"), (0.90, "not reproduced")])
@@ -95,6 +95,6 @@ def test_a_spread_is_compared_along_x_and_z():
 
 
 def test_every_claim_has_its_numbers():
-    for claim in paper_claims(judged(DEPTH, LOAD), shapes()):
+    for claim in paper_claims(scored(DEPTH, LOAD), shapes()):
         assert claim.finding
         assert "nan" not in claim.finding

@@ -2,15 +2,15 @@
 
 import pytest
 
-from scores_made import judged, level_one, sensor, shapes, way
+from scores_made import level_one, scored, sensor, shapes, way
 from seacage.studies._paper._discussion import findings
 from seacage.studies._paper._ways import HEARING
 from seacage.studies._sensor_scores import SensorScore
-from seacage.studies._text import listed, number, percent
+from seacage.studies._text import join_names, number, percent
 
 
 def told(*sensors: SensorScore, **options: float) -> str:
-    return " ".join(findings(judged(*sensors), level_one(**options), shapes()))
+    return " ".join(findings(scored(*sensors), level_one(**options), shapes()))
 
 
 def test_a_sensor_without_a_proven_gain_is_named():
@@ -54,7 +54,7 @@ def test_what_hears_the_waves_is_held_against_what_does_not():
     heard = way(
         sensor("shackle-1", multi_mae=0.5), sensor("shackle-2", multi_mae=2.0), name=HEARING
     )
-    both = judged(sensor("shackle-1"), sensor("shackle-2"), more=(heard,))
+    both = scored(sensor("shackle-1"), sensor("shackle-2"), more=(heard,))
     text = " ".join(findings(both, level_one(), shapes()))
     assert "smaller multifidelity error at shackle-1 and a larger one at the others" in text
     assert "median change is 25" in text
@@ -78,5 +78,5 @@ def test_numbers_have_three_digits_that_matter(value, written):
 def test_percent_and_lists_read_as_prose():
     assert percent(-0.05) == "\N{MINUS SIGN}5\N{NARROW NO-BREAK SPACE}%"
     assert percent(0.946) == "95\N{NARROW NO-BREAK SPACE}%"
-    assert listed(["a"]) == "a"
-    assert listed(["a", "b", "c"]) == "a, b and c"
+    assert join_names(["a"]) == "a"
+    assert join_names(["a", "b", "c"]) == "a, b and c"

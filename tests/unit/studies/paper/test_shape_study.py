@@ -17,7 +17,7 @@ from seacage.studies._paper._shape_models import (
     SHAPE_FOLDED,
     shape_models,
 )
-from seacage.studies._paper._shape_study import Trial, shape_study
+from seacage.studies._paper._shape_study import ShapeTrial, shape_study
 from seacage.studies._stages import Stages
 from stand_in import StandIn
 
@@ -33,7 +33,7 @@ def refuse(stage, *_):
 
 
 @pytest.fixture(scope="module")
-def trial(tmp_path_factory) -> Trial:
+def trial(tmp_path_factory) -> ShapeTrial:
     """A cage that waves push, too, as 30 and 8 half-hours of a formula."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("seacage.campaigns._cases.simulate", StandIn().simulate)
@@ -51,7 +51,7 @@ def trial(tmp_path_factory) -> Trial:
     away = (every - CAGE.design_position).reshape(len(every), -1)
     sway = 0.01 * np.eye(away.shape[1])  # within a half-hour, in no direction more than another
     campaign = replace(campaign, second_moment=away.T @ away / len(every) + sway)
-    return Trial(cage=CAGE, campaign=campaign, held_out=held_out, seed=0)
+    return ShapeTrial(cage=CAGE, campaign=campaign, held_out=held_out, seed=0)
 
 
 def _pushed(record):
