@@ -36,7 +36,7 @@ from seacage.studies import Demonstration, prepare_demonstration
 from seacage.twin import AlarmPolicy, Twin
 
 PICTURES = Path(__file__).parents[1] / "docs" / "pictures"
-CALM = datetime(2020, 2, 24, 13, 30, tzinfo=UTC)
+CALM = datetime(2020, 2, 24, 5, 50, tzinfo=UTC)
 PEAK = datetime(2020, 2, 24, 10, 50, tzinfo=UTC)
 # Below the usual 0.8, so that the hours shown here reach it.
 LIMITS = {"load": {"raise_at": 0.45, "clear_at": 0.4}}
