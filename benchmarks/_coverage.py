@@ -168,7 +168,7 @@ def _scored(
         online = held(true[labelled], mean[labelled], std[labelled] * factor)
     return SensorCoverage(
         sensor=name,
-        calibrated=twin.provenance.lessons[name].calibrated,
+        calibrated=twin.provenance.training_windows[name].calibrated,
         offline=held(true, mean, std),
         same_hours=same,
         online=online,
@@ -251,7 +251,7 @@ def _alone(
     rows: Int[np.ndarray, " t"],
 ) -> tuple[Prediction, float]:
     """What a NARGP alone says, taught by the same points; and the noise that it found."""
-    lesson, inputs = twin.provenance.lessons[sensor], twin.models.inputs
+    lesson, inputs = twin.provenance.training_windows[sensor], twin.models.inputs
     pairs = align(field, sensor, start=lesson.start, end=lesson.end, mean_s=training.mean_s)
     chosen = spread_out(pairs, training.high_fidelity_points, seed=training.seed)
     fitted = model.fit(

@@ -17,7 +17,7 @@ from seacage.dynamics import settle
 from seacage.ocean import SeaState
 from seacage.surrogates import Prediction
 from seacage.testing import stand_in_campaign, stand_in_field, stand_in_seas
-from seacage.twin import Metocean, Models, Said, Training, replay, train
+from seacage.twin import FixedPrediction, Metocean, Models, Training, replay, train
 
 TIMES = 1 if ONCE else 200
 """That a short work is done for one measurement."""
@@ -46,7 +46,10 @@ def level_two(models: Models) -> dict[str, float]:
     said = twin.predict(sea).sensor_low
     low = Prediction(mean=said.mean[:, columns], std=said.std[:, columns])
     alone = [
-        replace(models.upper[names[column]].rest, lent=Said(prediction=Prediction(mean=m, std=s)))
+        replace(
+            models.upper[names[column]].rest,
+            lent=FixedPrediction(prediction=Prediction(mean=m, std=s)),
+        )
         for column, m, s in zip(columns, low.mean.T, low.std.T, strict=True)
     ]
     systems = [(one.factor, np.ones((3, len(one.x)))) for one in level.members]

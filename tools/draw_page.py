@@ -102,7 +102,7 @@ def samples_of(replay: Replay, other: Others, start: datetime, end: datetime) ->
 def lived(made: Demonstration, end: datetime, names: tuple[str, ...]) -> Iterator[Shown]:
     """Serve cages that have heard all until a time, and have judged it step by step."""
     twin, replay = Twin.read(made.twin_folder), replay_of(made.buoy, made.field)
-    policy = AlarmPolicy.from_dict(LIMITS, twin.cage, buoy=twin.buoy, watch=twin.watch)
+    policy = AlarmPolicy.from_dict(LIMITS, twin.cage, buoy=twin.buoy, timeouts=twin.timeouts)
     clock, metrics = StandingClock(end - DAY), Metrics()
     with tempfile.TemporaryDirectory() as folder:
         store, tokens = open_store(Path(folder) / "samples.sqlite"), Tokens(Path(folder))

@@ -29,7 +29,7 @@ class Assessed:
 
     def __post_init__(self) -> None:
         if self.policy is None:
-            self.policy = AlarmPolicy.default(self.twin.cage, watch=self.twin.watch)
+            self.policy = AlarmPolicy.default(self.twin.cage, timeouts=self.twin.timeouts)
 
     def hear(self, *samples: Sample) -> None:
         """Take samples in, each at its own time."""

@@ -31,12 +31,12 @@ def small_twin() -> Twin:
     twin = stand_in_twin()
     upper = {name: twin.models.upper[name] for name in STREAMS if name in twin.models.upper}
     watch = replace(
-        twin.watch,
+        twin.timeouts,
         adapt_rate=0.05,
-        stale_after_s=twin.watch.stale_after_s / HURRY,
-        sensor_silent_after_s=twin.watch.sensor_silent_after_s / HURRY,
+        stale_after_s=twin.timeouts.stale_after_s / HURRY,
+        sensor_silent_after_s=twin.timeouts.sensor_silent_after_s / HURRY,
     )
-    return replace(twin, models=replace(twin.models, upper=upper), watch=watch)
+    return replace(twin, models=replace(twin.models, upper=upper), timeouts=watch)
 
 
 @cache
@@ -61,7 +61,9 @@ class Lived:
 
     def begin(self) -> None:
         self.store: Store = open_store(self._place)
-        policy = AlarmPolicy.default(self.twin.cage, buoy=self.twin.buoy, watch=self.twin.watch)
+        policy = AlarmPolicy.default(
+            self.twin.cage, buoy=self.twin.buoy, timeouts=self.twin.timeouts
+        )
         self.desk = AlarmDesk(cage="ace", twin=self.twin, store=self.store, policy=policy)
         self._live = LiveTwin(
             name="ace",

@@ -48,7 +48,7 @@ def erring_twin(*, cases: int = 400, seed: int = 0) -> Twin:
     random, twin = np.random.default_rng(seed), stand_in_twin()
     velocity = currents(cases, random)
     shapes = twin.predict(water(velocity)).node_position
-    known = Discrepancy.learned(
+    known = Discrepancy.fit(
         twin.cage,
         velocity,
         predicted=shapes,

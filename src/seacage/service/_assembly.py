@@ -85,7 +85,7 @@ def policy_of(settings: Settings, name: str, twin: Twin) -> AlarmPolicy:
     """
     own = [cage.alarms for cage in settings.cages if (cage.name or twin.cage.name) == name]
     table = {**settings.alarms, **(own[0] if own else {})}
-    return AlarmPolicy.from_dict(table, twin.cage, buoy=twin.buoy, watch=twin.watch)
+    return AlarmPolicy.from_dict(table, twin.cage, buoy=twin.buoy, timeouts=twin.timeouts)
 
 
 def store_place(settings: Settings, *, replayed: bool = False) -> Path | str:

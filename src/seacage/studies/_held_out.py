@@ -42,7 +42,7 @@ def score_record(
     InputError
         A sensor of the record has no held-out day.
     """
-    judging = unseen(field, twin.provenance.lessons)
+    judging = unseen(field, twin.provenance.training_windows)
     readings = compare(twin.predict_record(field.buoy), judging)
     scores = tuple(score_sensor(one, seed=seed) for one in readings.values())
     if out is not None:

@@ -82,7 +82,7 @@ def learned_discrepancy(
         progress=progress,
     )
     velocity = shapes.current_velocity
-    return Discrepancy.learned(
+    return Discrepancy.fit(
         twin.cage,
         velocity,
         predicted=twin.predict(_water(velocity)).node_position,

@@ -6,7 +6,7 @@ from datetime import UTC, datetime, timedelta
 
 from seacage.conventions import InputError
 from seacage.records import FieldRecord, Record, moment
-from seacage.twin import Lesson
+from seacage.twin import TrainingWindow
 
 _FIRST, _LAST = datetime.min.replace(tzinfo=UTC), datetime.max.replace(tzinfo=UTC)
 
@@ -43,7 +43,7 @@ def split(field: FieldRecord, *, teaching_days: int) -> tuple[FieldRecord, Field
     return replace(field, sensors=teaching), replace(field, sensors=judging)
 
 
-def unseen(field: FieldRecord, windows: Mapping[str, Lesson]) -> FieldRecord:
+def unseen(field: FieldRecord, windows: Mapping[str, TrainingWindow]) -> FieldRecord:
     """The days of a field record that a twin was not trained on.
 
     Of a sensor with a training window, the days after it, or those before where none follow;
@@ -63,7 +63,7 @@ def unseen(field: FieldRecord, windows: Mapping[str, Lesson]) -> FieldRecord:
     )
 
 
-def _unseen(sensor: Record, window: Lesson) -> Record:
+def _unseen(sensor: Record, window: TrainingWindow) -> Record:
     after = sensor.between(_midnight(window.end) + timedelta(days=1), _LAST)
     before = sensor.between(_FIRST, _midnight(window.start))
     if not len(after) and not len(before):

@@ -1,6 +1,5 @@
 """The live loop as pure functions: sample in, events out."""
 
-from seacage.twin._adaptation import ADAPTATION_BLOCK
 from seacage.twin._alarm_book import AlarmBook
 from seacage.twin._alarms import (
     Action,
@@ -23,14 +22,14 @@ from seacage.twin._alarms import (
 )
 from seacage.twin._answer import Answer, interval_reason
 from seacage.twin._assess import assess
-from seacage.twin._correction import Correction, Said, Spread
+from seacage.twin._correction import Correction, FixedPrediction, Spread
 from seacage.twin._discrepancy import Discrepancy
 from seacage.twin._events import Answered, Event, Flagged, StreamBack, StreamSilent
-from seacage.twin._interval_factors import adapted_at, adapted_at_us, block_begin
+from seacage.twin._interval_factors import ADAPTATION_BLOCK, adapted_at, adapted_at_us, block_begin
 from seacage.twin._metocean import Metocean
 from seacage.twin._models import Models
-from seacage.twin._pairs import Pairs, align, spread_out, teaching_window
-from seacage.twin._provenance import Lesson, Provenance
+from seacage.twin._pairs import Pairs, align, spread_out, training_window
+from seacage.twin._provenance import Provenance, TrainingWindow
 from seacage.twin._rov import (
     Clearance,
     InspectionPath,
@@ -42,7 +41,7 @@ from seacage.twin._rov import (
     inspection_path,
 )
 from seacage.twin._saving import read_key
-from seacage.twin._state import TwinState, Watch
+from seacage.twin._state import StreamTimeouts, TwinState
 from seacage.twin._tabulated import Loads, TabulatedTwin
 from seacage.twin._training import Training, train, update
 from seacage.twin._twin import Twin, replay
@@ -63,9 +62,9 @@ __all__ = [
     "Correction",
     "Discrepancy",
     "Event",
+    "FixedPrediction",
     "Flagged",
     "InspectionPath",
-    "Lesson",
     "Limit",
     "Loads",
     "Metocean",
@@ -75,17 +74,17 @@ __all__ = [
     "Pattern",
     "PredictedNet",
     "Provenance",
-    "Said",
     "Side",
     "Spread",
     "StaleError",
     "StreamBack",
     "StreamSilent",
+    "StreamTimeouts",
     "TabulatedTwin",
     "Training",
+    "TrainingWindow",
     "Twin",
     "TwinState",
-    "Watch",
     "acknowledge",
     "adapted_at",
     "adapted_at_us",
@@ -104,8 +103,8 @@ __all__ = [
     "shelve",
     "spread_out",
     "take_out_of_service",
-    "teaching_window",
     "train",
+    "training_window",
     "unshelve",
     "update",
 ]

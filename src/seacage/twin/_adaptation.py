@@ -1,50 +1,47 @@
-"""The intervals of a twin, adapted to blocks of readings that have passed."""
+"""Adaptation of a twin's intervals to the readings of blocks that have passed."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from datetime import datetime, timedelta
+from datetime import datetime
 
 from seacage.records import Sample
 from seacage.twin._interval_factors import (
-    BLOCK_US,
-    Expected,
+    ADAPTATION_BLOCK,
+    MeanStd,
     Tracked,
-    adapted_by,
+    adapt_factor,
     block_begin,
     counts,
 )
 from seacage.twin._metocean import INPUT_KEYS, Metocean
 from seacage.twin._models import Models
-from seacage.twin._reading import Reading, held_reading
-from seacage.twin._state import TwinState, Watch
-
-ADAPTATION_BLOCK = timedelta(microseconds=BLOCK_US)
-"""Length of a block of readings that the intervals are adapted to at once."""
+from seacage.twin._reading import Reading, reading_at
+from seacage.twin._state import StreamTimeouts, TwinState
 
 _Counted = tuple[str, Sample]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Adapter:
-    """Adapts the intervals of a twin to what its sensors read.
+    """Adapts the intervals of a twin to the readings of its sensors.
 
     Parameters
     ----------
-    models, buoy, watch
+    models, buoy, timeouts
         Of the twin.
     """
 
     models: Models
     buoy: str
-    watch: Watch
+    timeouts: StreamTimeouts
 
-    def adapted(self, state: TwinState, now: datetime) -> TwinState:
-        """Take in the blocks of readings that are due at a time.
+    def adapt(self, state: TwinState, now: datetime) -> TwinState:
+        """Return the state with intervals adapted to the blocks that are due at a time.
 
         Parameters
         ----------
         state
-            With the samples of the last minutes.
+            Of the twin, with the samples of the last minutes.
         now
             The clock; where it has stepped back nothing is due.
         """
@@ -52,29 +49,29 @@ class Adapter:
         if state.adapted_until is None or until <= state.adapted_until:
             return replace(state, adapted_until=until)
         start, end = state.adapted_until - ADAPTATION_BLOCK, until - ADAPTATION_BLOCK
-        counted = [] if self.watch.adapt_rate == 0.0 else list(self._counted(state, start, end))
+        counted = [] if self.timeouts.adapt_rate == 0.0 else list(self._readings(state, start, end))
         tracked = dict(state.tracked)
-        for (name, sample), expected in zip(counted, self._expected(state, counted), strict=True):
+        for (name, sample), expected in zip(counted, self._predict(state, counted), strict=True):
             before = tracked.get(name, Tracked())
-            tracked[name] = adapted_by(before, sample, expected, rate=self.watch.adapt_rate)
+            tracked[name] = adapt_factor(before, sample, expected, rate=self.timeouts.adapt_rate)
         return replace(state, tracked=tracked, adapted_until=until)
 
-    def _counted(self, state: TwinState, start: datetime, end: datetime) -> Iterator[_Counted]:
-        """The readings of a span that count, where there is a valid answer to compare with."""
+    def _readings(self, state: TwinState, start: datetime, end: datetime) -> Iterator[_Counted]:
+        """Readings of a span that count, where there is a valid prediction to compare with."""
         for name in self.models.upper:
             tracked = state.tracked.get(name, Tracked())
             for taken in state.streams.get(name, ()):
                 sample = taken.sample
                 if (
                     start <= sample.t < end
-                    and counts(tracked, sample, every_s=self.watch.adapt_every_s)
+                    and counts(tracked, sample, every_s=self.timeouts.adapt_every_s)
                     and not self._reading(state, sample.t).trouble
                 ):
                     tracked = replace(tracked, counted=sample.t)
                     yield name, sample
 
-    def _expected(self, state: TwinState, counted: Sequence[_Counted]) -> list[Expected]:
-        """What the models expect of each reading, in the water of its time."""
+    def _predict(self, state: TwinState, counted: Sequence[_Counted]) -> list[MeanStd]:
+        """Predict each reading, in the water of its time."""
         if not counted:
             return []
         water = [self._reading(state, sample.t).metocean for _, sample in counted]
@@ -90,5 +87,5 @@ class Adapter:
     def _reading(self, state: TwinState, t: datetime) -> Reading:
         stream = state.streams.get(self.buoy, ())
         keys = [key for name in self.models.inputs for key in INPUT_KEYS[name]]
-        stale_after_s = self.watch.stale_after_s
-        return held_reading(stream, t, buoy=self.buoy, keys=keys, stale_after_s=stale_after_s)
+        stale_after_s = self.timeouts.stale_after_s
+        return reading_at(stream, t, buoy=self.buoy, keys=keys, stale_after_s=stale_after_s)

@@ -1,4 +1,4 @@
-"""What a twin says about a cage: loads, depths, shape, how sure it is and why not."""
+"""A twin's answer: loads, depths and shape of a cage, with intervals and validity."""
 
 from dataclasses import dataclass, replace
 from typing import Self
@@ -28,27 +28,27 @@ class Answer:
     in_domain
         The input lies inside what level 1 was trained on; False means extrapolating.
     bridle_in_domain, sensor_in_domain
-        The same of the level that answers: level 2 has a domain of its own, of the water in
-        which its sensor trained it, and rests on level 1's.
+        The same of the level that predicts: level 2 has a domain of its own, of the water in
+        its training window, within level 1's.
     reason
         One sentence where a row is not valid or extrapolates, else "".
     bridle_names, bridle_tension, bridle_level
         Best mean and standard deviation of each bridle's tension [N], and the fidelity that
-        gave them: 2 where a shackle has taught it, else 1. At level 1 the standard deviation is
-        the emulator's own, about the simulations.
+        gave them: 2 where a shackle has a level-2 model, else 1. At level 1 the standard
+        deviation is the emulator's own, about the simulations.
     bridle_low
         The simulations alone [N].
     sensor_names, sensor_units, sensor, sensor_level
-        What each sensor would read, with the scatter of its readings [N] or [m] depth. The
-        standard deviation at level 2 is calibrated: mean ± 1.96 of it is to hold 95 %. At
+        Predicted reading of each sensor, with the scatter of its readings [N] or [m] depth. The
+        standard deviation at level 2 is calibrated: mean ± 1.96 of it has a coverage of 95 %. At
         level 1 it is the emulator's own.
     sensor_low
         The simulations alone at the sensor's place, with the emulator's spread [N] or [m].
     node_position, shape_level
         Of the whole net [m], x east, y north, z up.
     node_sigma
-        Standard deviation along the least known axis of each node [m], the emulator's own: what
-        the simulations miss of the real net is not in it at level 1.
+        Largest standard deviation over the axes of each node [m], the emulator's own: the
+        simulations' discrepancy from the real net is not in it at level 1.
     volume_fraction
         Volume over the same model's volume in still water [-].
     """

@@ -19,41 +19,41 @@ HOUR = 3_600_000_000
 """[us]"""
 
 PROOF_SD = 2.0
-"""Standard errors by which a lesson has to beat level 1 to be believed [-]."""
+"""Standard errors by which level 2 has to beat level 1 to be used [-]."""
 
 LEAST_SHARE = 0.5
-"""Of the noise that a lesson found: what is the cage's and not the instrument's, at least. Where a
-sensor is met to its own noise, the two cannot be told apart, and too wide is better."""
+"""Least share of the fitted noise variance that is the cage's and not the instrument's. Where the
+errors are as small as the instrument's noise, the two cannot be separated; too wide is better."""
 
 Features = Float[np.ndarray, "case feature"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Said:
-    """What a level has answered already, so that many sensors ask it once."""
+class FixedPrediction:
+    """A level's prediction made before, so that many sensors share it."""
 
     prediction: Prediction
 
     def predict(self, _: Features, /) -> Prediction:
-        """Answer as it did."""
+        """Return the prediction."""
         return self.prediction
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Spread:
-    """How far the truth lies from the mean, calibrated on readings that did not teach.
+    """Calibration of level 2's standard deviations, by held-out readings.
 
     Parameters
     ----------
     scale
-        Of the standard deviation that the lesson itself gives [-].
+        Calibration factor of the model's own standard deviation [-].
     water_sd
-        Of each component of the current at the cage that the buoy does not tell [m/s]: eddies
-        on the way, and the time it takes. It weighs where level 1 is steep.
+        Standard deviation of each component of the current at the cage that the buoy does not
+        measure [m/s]: eddies on the way, and the time it takes. It counts where level 1 is steep.
     white
         Variance of the instrument's own noise [N2] or [m2], which the truth does not have.
     by
-        "own" readings, "carried" from sensors that stayed longer, or "none".
+        "own" readings, "carried" from sensors with longer windows, or "none".
     """
 
     scale: float = 1.0
@@ -71,11 +71,11 @@ class Spread:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Correction:
-    """What a sensor reads, from the water and from what level 1 says of its place.
+    """Level 2 of a sensor: its reading, from the water and the prediction of level 1.
 
-    A NARGP alone returns to the mean of its lesson where the water was never like that during
-    the lesson. A shackle teaches for half a day, so its correction has to carry further: the
-    gain does, and the NARGP learns the rest.
+    A NARGP alone returns to the mean of its training data in water unlike that of the training
+    window. A shackle's window is half a day, so its correction has to extrapolate: the gain
+    does, and the NARGP is fitted to the remainder.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ class Correction:
     rest
         Of the reading less gain times level 1 [N] or [m]; its own level 1 is lent.
     spread
-        What calibration made of the lesson's own doubt.
+        Calibration of the standard deviation.
     """
 
     gain: float
@@ -92,27 +92,25 @@ class Correction:
     spread: Spread = Spread()
 
     @classmethod
-    def learned(
-        cls, pairs: Pairs, x: Features, lower: Predicts, *, restarts: int, seed: int
-    ) -> Self:
-        """Learn from readings and the features of the water at their times."""
+    def fit(cls, pairs: Pairs, x: Features, lower: Predicts, *, restarts: int, seed: int) -> Self:
+        """Fit to readings and the features of the water at their times."""
         low = lower.predict(x).mean
-        gain = fitted_gain(low, pairs.value, pairs.time)
+        gain = fit_gain(low, pairs.value, pairs.time)
         rest = NARGP(restarts=restarts).fit([(x, pairs.value - gain * low)], seed=seed, lower=lower)
         return cls(gain=gain, rest=rest)
 
-    def proven(self, pairs: Pairs, low: Float[np.ndarray, " pair"]) -> bool:
-        """Whether readings that it was taught are met better than by level 1, and not by chance.
+    def beats_level_1(self, pairs: Pairs, low: Float[np.ndarray, " pair"]) -> bool:
+        """Whether it predicts its training readings better than level 1, and not by chance.
 
         Each reading is left out in turn. Readings within an hour share their error and count
-        as one. What learned from noise alone seldom passes, and would only add noise.
+        as one. A model fitted to noise alone seldom passes, and would only add noise.
 
         Parameters
         ----------
         pairs
-            The lesson.
+            The training readings.
         low
-            What level 1 says at its readings [N] or [m].
+            Level 1 at them [N] or [m].
         """
         (rest,) = self.rest.upper
         left_out = self.gain * low + np.ravel(rest.leave_one_out().mean)
@@ -121,7 +119,7 @@ class Correction:
         count = np.bincount(hour)
         by_hour = np.bincount(hour, weights=better) / count
         if len(by_hour) < 2:
-            return True  # nothing to judge by; the caller wants a minimum of readings
+            return True  # no second hour to compare; the caller wants a minimum of readings
         return bool(by_hour.mean() > PROOF_SD * by_hour.std(ddof=1) / np.sqrt(len(by_hour)))
 
     def updated(self, pairs: Pairs, x: Features) -> Self:
@@ -136,26 +134,25 @@ class Correction:
 
     @property
     def noise(self) -> float:
-        """Variance of a reading about what lies behind it: the instrument's own [N2] or [m2]."""
+        """Variance of the instrument's noise [N2] or [m2]."""
         return self.spread.white
 
     @property
     def own(self) -> float:
-        """Variance of what the cage does that the water does not explain [N2] or [m2].
+        """Variance of the cage's response that the water does not explain [N2] or [m2].
 
-        Of the noise that the lesson found, the instrument's share is taken out, but never more
-        than half.
+        This is the fitted noise less the instrument's share, which is at most half of it.
         """
         found = float(self.rest.upper[-1].noise[0])
         return max(found - self.spread.white, LEAST_SHARE * found)
 
-    def behind(
+    def latent(
         self,
         x: Features,
         low: Prediction,
         steepness: Float[np.ndarray, " case"] | None = None,
     ) -> Prediction:
-        """Return what lies behind a reading, given what level 1 says there.
+        """Predict a reading without the instrument's noise, given level 1.
 
         Parameters
         ----------
@@ -165,28 +162,28 @@ class Correction:
             Level 1 there.
         steepness
             Of level 1: length of its gradient over the current [N s/m] or [s]; None where the
-            spread has no share of the water.
+            spread has no part of the current.
         """
         steepness = np.zeros_like(low.mean) if steepness is None else steepness
         column = Prediction(mean=low.mean[:, None], std=low.std[:, None])
-        behind = Corrections.of([self]).behind(x, column, steepness[:, None])
-        return Prediction(mean=behind.mean[:, 0], std=behind.std[:, 0])
+        latent = Corrections.of([self]).latent(x, column, steepness[:, None])
+        return Prediction(mean=latent.mean[:, 0], std=latent.std[:, 0])
 
-    def doubt(
+    def latent_variance(
         self, rest_std: Float[np.ndarray, " case"], low_std: Float[np.ndarray, " case"]
     ) -> Float[np.ndarray, " case"]:
-        """Variance that the lesson gives to what lies behind a reading, before calibration."""
+        """Variance of a reading without the instrument's noise, before calibration."""
         return rest_std**2 + (self.gain * low_std) ** 2 + self.own
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Corrections:
-    """Level 2 of several sensors, asked in one go.
+    """Level 2 of several sensors, predicted at once.
 
     Parameters
     ----------
     rest
-        What each learned beside the gain.
+        Of each, beside the gain.
     gain, own, scale, water_sd, noise
         Of each ``Correction`` and its ``Spread``.
     """
@@ -210,14 +207,13 @@ class Corrections:
             noise=np.array([model.noise for model in models]),
         )
 
-    def behind(
+    def latent(
         self, x: Features, low: Prediction, steepness: Float[np.ndarray, "case sensor"]
     ) -> Prediction:
-        """Return what lies behind each sensor's reading, given what level 1 says there.
+        """Predict each sensor's reading without the instrument's noise, given level 1.
 
-        The instrument's noise is left out; what the lesson could not explain by the water is
-        not, for the cage itself scattered so. The line's and the rest's shares of level 1's
-        small variance are taken as independent.
+        The scatter that the water does not explain is not left out, as it is the cage's own.
+        The line's and the NARGP's shares of level 1's small variance are taken as independent.
 
         Parameters
         ----------
@@ -229,17 +225,17 @@ class Corrections:
             Of level 1: length of its gradient over the current [N s/m] or [s].
         """
         rest = self.rest.predict(x, low)
-        doubt = rest.std**2 + (self.gain * low.std) ** 2 + self.own
-        variance = self.scale**2 * doubt + (self.gain * steepness * self.water_sd) ** 2
+        own = rest.std**2 + (self.gain * low.std) ** 2 + self.own
+        variance = self.scale**2 * own + (self.gain * steepness * self.water_sd) ** 2
         return Prediction(mean=rest.mean + self.gain * low.mean, std=np.sqrt(variance))
 
 
-def fitted_gain(
+def fit_gain(
     low: Float[np.ndarray, " pair"],
     value: Float[np.ndarray, " pair"],
     time: Shaped[np.ndarray, " pair"],
 ) -> float:
-    """Slope of readings over level 1, drawn towards 1 where the lesson says little of it.
+    """Slope of readings over level 1, drawn towards 1 where the readings say little of it.
 
     Readings within an hour share their error, and weigh as one against the expectation.
 

@@ -1,4 +1,4 @@
-"""How far real nets were from a twin's shapes: what it knows of its own error."""
+"""Discrepancy: the distribution of true shapes about a twin's shapes."""
 
 from dataclasses import dataclass
 from typing import Self
@@ -9,24 +9,24 @@ from jaxtyping import Float, Int
 from seacage.cage import Cage, Nearest
 from seacage.conventions import InputError, Origin, compass
 
-ALIKE_SPEED = 0.15
-"""Currents whose speeds differ by so much are alike [m/s]: the sd of a bell."""
+SIMILAR_SPEED = 0.15
+"""Difference of speeds at which currents are similar [m/s]: sd of a Gaussian weight."""
 
-ALIKE_DIRECTION = 35.0
-"""And those whose directions differ by so much [deg]; slack water has none."""
+SIMILAR_DIRECTION = 35.0
+"""The same difference of directions [deg]; slack water has none."""
 
 NEGLIGIBLE = 0.02
-"""Of the likeliest case's weight: what weighs less is left out."""
+"""Least weight of a case, over the largest; cases with less are left out."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Discrepancy:
     """Errors of a twin's shapes, case by case and ring by ring.
 
-    Each case holds how far the net was from the twin's answer to what the buoy reported: the
-    mean over each ring's nodes, and the scatter of nodes about it. Asked about a current, the
-    cases whose currents were alike stand for what the error may be now; as each is a whole
-    net, errors hang together along it as they did there.
+    Each case holds the true shape less the prediction under the buoy's current: the mean over
+    each ring's nodes, and the scatter of nodes about it. In a current, the cases with similar
+    currents are the distribution of the error; as each is a whole net, errors are correlated
+    along it as they were there.
 
     Parameters
     ----------
@@ -47,10 +47,10 @@ class Discrepancy:
 
     def __post_init__(self) -> None:
         if not len(self.ring):
-            raise InputError("Discrepancy: there is no case to learn from. Give at least one.")
+            raise InputError("Discrepancy: there is no case to fit to. Give at least one.")
 
     @classmethod
-    def learned(
+    def fit(
         cls,
         cage: Cage,
         current_velocity: Float[np.ndarray, "case 2"],
@@ -59,7 +59,7 @@ class Discrepancy:
         true: Float[np.ndarray, "case node 3"],
         origin: Origin,
     ) -> Self:
-        """Learn from predicted and true node positions [m] under reported currents [m/s]."""
+        """Fit to predicted and true node positions [m] under reported currents [m/s]."""
         error = true - predicted
         tip = error[:, cage.bottom_node :]
         rings = error[:, : cage.bottom_node].reshape(len(error), cage.rings, cage.spokes, 3)
@@ -73,9 +73,9 @@ class Discrepancy:
         )
 
     def at(self, cage: Cage, current_velocity: Float[np.ndarray, " 2"]) -> "ShapeError":
-        """What the error may be in a current (east, north) [m/s].
+        """Return the distribution of the error in a current (east, north) [m/s].
 
-        A current faster than all that were met counts as the fastest.
+        A current faster than those of all cases counts as the fastest.
         """
         speed, top = np.hypot(*current_velocity), np.hypot(*self.current_velocity.T).max()
         slower = current_velocity * min(1.0, top / speed) if speed > 0.0 else current_velocity
@@ -96,14 +96,14 @@ class Discrepancy:
         turned = compass(self.current_velocity) - compass(velocity)
         turned = (turned + 180.0) % 360.0 - 180.0
         # Where either is slack, directions mean less and less.
-        sense = np.minimum(np.minimum(speed, here) / ALIKE_SPEED, 1.0)
-        off = ((speed - here) / ALIKE_SPEED) ** 2 + (sense * turned / ALIKE_DIRECTION) ** 2
+        sense = np.minimum(np.minimum(speed, here) / SIMILAR_SPEED, 1.0)
+        off = ((speed - here) / SIMILAR_SPEED) ** 2 + (sense * turned / SIMILAR_DIRECTION) ** 2
         return np.exp(-0.5 * (off - off.min()))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ShapeError:
-    """What the error of one predicted shape may be: weighed cases about their mean.
+    """Distribution of the error of one predicted shape: weighted cases about their mean.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ class ShapeError:
 
     @classmethod
     def none(cls, cage: Cage) -> Self:
-        """Of a twin that knows nothing of its error beyond its surrogates' spread."""
+        """No error beyond the surrogates' standard deviations."""
         ring_of = _rings(cage)
         rings = int(ring_of[-1]) + 1
         nothing = np.zeros((rings, 3))
@@ -144,8 +144,8 @@ class ShapeError:
         """How far each node is expected to be from the prediction [m]."""
         return self.mean[self.ring_of]
 
-    def moved(self, near: Nearest) -> Float[np.ndarray, "point case"]:
-        """How far outwards the net lies in each case, at some points of it [m]."""
+    def displacement(self, near: Nearest) -> Float[np.ndarray, "point case"]:
+        """Displacement of the net outwards in each case, at some points of it [m]."""
         cases, rings, _ = self.deviation.shape
         share = np.zeros((len(near.distance), rings))
         for corner in range(3):
@@ -157,7 +157,7 @@ class ShapeError:
     def scatter(
         self, near: Nearest, node_sigma: Float[np.ndarray, " node"]
     ) -> Float[np.ndarray, " point"]:
-        """Standard deviation across the net that the cases leave, and the surrogate's [m].
+        """Standard deviation across the net about the cases, with the surrogate's [m].
 
         Parameters
         ----------

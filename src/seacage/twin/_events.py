@@ -1,4 +1,4 @@
-"""What a step of the twin has to tell."""
+"""Events of a step of the twin."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -10,7 +10,7 @@ from seacage.twin._metocean import Metocean
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Answered:
-    """The twin answered, with or without a number.
+    """An answer of the twin, with or without a number.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ class Flagged:
     Parameters
     ----------
     sample
-        As it came, with the flags it got.
+        As it came, with its flags.
     reason
         One sentence for a person.
     used
@@ -51,7 +51,7 @@ class Flagged:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StreamSilent:
-    """A stream that had spoken has been quiet for longer than it may; said once."""
+    """A stream has sent no sample for longer than its timeout; reported once."""
 
     stream: str
     since: datetime
@@ -59,7 +59,7 @@ class StreamSilent:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StreamBack:
-    """A silent stream speaks again."""
+    """A silent stream sends again."""
 
     stream: str
     t: datetime

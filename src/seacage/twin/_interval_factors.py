@@ -1,8 +1,8 @@
-"""Intervals that adapt to the sensors that are there, by what their readings show of them.
+"""Factors on the intervals of the sensors, adapted online to the coverage of their readings.
 
-Ten minutes of readings are taken in at once, when ten minutes more have passed: by then samples
-that were on their way have come. So the intervals of a time depend on the samples alone, and not
-on the order in which they came or on when the service was stopped.
+Ten minutes of readings count at once, when ten minutes more have passed: by then late samples have
+come. So the intervals of a time depend on the samples alone, and not on the order in which they
+came or on when the service was stopped.
 """
 
 import json
@@ -13,6 +13,7 @@ from datetime import UTC, datetime, timedelta
 from seacage.conventions import Flag, InputError
 from seacage.records import Sample
 from seacage.surrogates import AdaptiveConformal
+from seacage.twin._pairs import SI
 
 DEVIATIONS = 1.96
 """Half the width of an interval, in standard deviations; it holds 95 %."""
@@ -20,16 +21,16 @@ DEVIATIONS = 1.96
 BLOCK_US = 600_000_000
 """Length of a block of readings that the intervals are adapted to at once [us]."""
 
-_BLOCK = timedelta(microseconds=BLOCK_US)
+ADAPTATION_BLOCK = timedelta(microseconds=BLOCK_US)
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 
-Expected = tuple[float, float]
+MeanStd = tuple[float, float]
 """Mean and standard deviation of a sensor's reading, as trained [N] or [m]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Tracked:
-    """What a twin expects of a sensor, and how well its intervals have held.
+    """Prediction of a sensor's reading, and the factor on its interval.
 
     Parameters
     ----------
@@ -42,13 +43,13 @@ class Tracked:
     """
 
     factor: float = 1.0
-    expected: Expected | None = None
+    expected: MeanStd | None = None
     counted: datetime | None = None
 
 
 def adapted_at(t: datetime) -> datetime:
-    """When a reading of some time takes effect on the intervals."""
-    return block_begin(t) + 2 * _BLOCK
+    """Time at which a reading of some time takes effect on the intervals."""
+    return block_begin(t) + 2 * ADAPTATION_BLOCK
 
 
 def adapted_at_us(t: int) -> int:
@@ -57,8 +58,8 @@ def adapted_at_us(t: int) -> int:
 
 
 def block_begin(t: datetime) -> datetime:
-    """When the block of a time begins."""
-    return t - (t - _EPOCH) % _BLOCK
+    """Begin of the block that a time belongs to."""
+    return t - (t - _EPOCH) % ADAPTATION_BLOCK
 
 
 def counts(tracked: Tracked, sample: Sample, *, every_s: float) -> bool:
@@ -72,8 +73,8 @@ def counts(tracked: Tracked, sample: Sample, *, every_s: float) -> bool:
     return due and sample.flags[key] == Flag.GOOD
 
 
-def adapted_by(tracked: Tracked, sample: Sample, expected: Expected, *, rate: float) -> Tracked:
-    """Adapt a sensor's interval to a reading that counts.
+def adapt_factor(tracked: Tracked, sample: Sample, expected: MeanStd, *, rate: float) -> Tracked:
+    """Return a sensor's state after a reading that counts.
 
     Parameters
     ----------
@@ -88,23 +89,23 @@ def adapted_by(tracked: Tracked, sample: Sample, expected: Expected, *, rate: fl
     """
     ((key, value),) = sample.values.items()
     mean, std = expected
-    reading = value * (1000.0 if key == "tension_kn" else 1.0)
+    reading = value * SI[key]
     held = abs(reading - mean) <= DEVIATIONS * tracked.factor * std
     factor = AdaptiveConformal(rate=rate).stepped(tracked.factor, held=held)
     return replace(tracked, factor=factor, counted=sample.t)
 
 
-def expecting(
-    tracked: Mapping[str, Tracked], expected: Mapping[str, Expected | None]
+def with_predictions(
+    tracked: Mapping[str, Tracked], expected: Mapping[str, MeanStd | None]
 ) -> dict[str, Tracked]:
-    """Remember what an answer expects of each sensor."""
+    """Keep an answer's prediction of each sensor."""
     return {
         name: replace(tracked.get(name, Tracked()), expected=one) for name, one in expected.items()
     }
 
 
 def factors_to_json(tracked: Mapping[str, Tracked]) -> str:
-    """Write how far the intervals of each sensor were adapted, and by which reading last."""
+    """Write the factor of each sensor, and the time of the last reading that counted."""
     return json.dumps(
         {
             name: {"factor": one.factor, "judged": one.counted and one.counted.isoformat()}
@@ -114,7 +115,7 @@ def factors_to_json(tracked: Mapping[str, Tracked]) -> str:
 
 
 def factors_from_json(text: str) -> dict[str, Tracked]:
-    """Read back what ``factors_to_json`` wrote; what was expected is found anew.
+    """Read back what ``factors_to_json`` wrote; the predictions are made again.
 
     Raises
     ------

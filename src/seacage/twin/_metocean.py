@@ -1,4 +1,4 @@
-"""What a buoy tells a twin: currents and waves as vectors, one row per reading."""
+"""Input of a twin: currents and waves at the buoy as vectors, one row per sample."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -123,7 +123,7 @@ class Metocean:
         )
 
     def features(self, inputs: tuple[Input, ...]) -> Float[np.ndarray, "case feature"]:
-        """Columns that the surrogates learn from.
+        """Features of the surrogates.
 
         The current enters as (speed, east, north), so that neither slack water nor north has
         a seam; the waves as (hs, hs east, hs north). The peak period is left out: campaigns
@@ -136,7 +136,7 @@ class Metocean:
         return np.hstack([columns[name]() for name in inputs])
 
     def known(self, inputs: tuple[Input, ...]) -> Bool[np.ndarray, " case"]:
-        """Where all of these inputs are."""
+        """Rows in which all of these inputs are known."""
         return np.all(np.isfinite(self.features(inputs)), axis=1)
 
 

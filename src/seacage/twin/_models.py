@@ -1,4 +1,4 @@
-"""The models of every level, and the answer they make of known water."""
+"""The models of every level, and their prediction in known water."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -20,8 +20,8 @@ from seacage.twin._answer import Answer
 from seacage.twin._correction import Correction, Corrections
 from seacage.twin._metocean import Input, Metocean, nearest_inside
 
-BLOCK = 512
-"""Rows answered at once: the shapes of more would crowd a small computer's memory."""
+BLOCK_ROWS = 512
+"""Rows predicted at once: the shapes of more would crowd a small computer's memory."""
 
 ROUNDING = 1e-9
 """What sines and cosines may add to a speed [m/s]."""
@@ -47,21 +47,21 @@ class Depth:
     height: Predicts
 
     def predict(self, x: Features, /) -> Prediction:
-        """Answer at each row of features [m]."""
+        """Predict at each row of features [m]."""
         height = self.height.predict(x)
         return Prediction(mean=-height.mean, std=height.std)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Models:
-    """Level 1 of loads and shape, and level 2 of each sensor that has taught.
+    """Level 1 of loads and shape, and level 2 of the sensors that have it.
 
     Parameters
     ----------
     cage
         As it was simulated; says where the sensors are.
     inputs
-        What the models are asked with.
+        Inputs of the models.
     domain
         Of the features that level 1 was trained on.
     edge
@@ -104,7 +104,7 @@ class Models:
             return Depth(height=self.shape.coordinate(nodes[sensor], 2))
         return self.bridles.output(self._lines()[sensor])
 
-    def taught(self, sensor: str, model: Correction) -> Self:
+    def with_level_2(self, sensor: str, model: Correction) -> Self:
         """Return a copy that has level 2 of one more sensor."""
         return replace(self, upper={**self.upper, sensor: model})
 
@@ -122,20 +122,25 @@ class Models:
         return np.hypot(east - west, north - south) / (2.0 * STRIDE)
 
     def answer(self, water: Metocean, trouble: Sequence[str]) -> Answer:
-        """Answer each row of water, with no number where there is trouble with it.
+        """Predict in each row of water, with no number where there is trouble with it.
 
         Outside the domain the variance grows by the square of how far the mean has moved from
-        the nearest milder water inside: what the models say about the way beyond the edge is
-        not to be relied on. Outside its own domain, that of level 2 grows so too.
+        the nearest milder water inside, as the models are not reliable beyond it. Outside its
+        own domain, the variance of level 2 grows in the same way.
         """
         valid = np.array([not one for one in trouble], dtype=bool)
         rows = np.flatnonzero(valid)
         inside = self._inside(water.rows(rows))
         blocks = [
-            self._numbers(water.rows(rows[first : first + BLOCK]), inside[first : first + BLOCK])
-            for first in range(0, max(len(rows), 1), BLOCK)
+            self._numbers(water.rows(rows[part]), inside[part])
+            for part in (
+                slice(first, first + BLOCK_ROWS)
+                for first in range(0, max(len(rows), 1), BLOCK_ROWS)
+            )
         ]
-        numbers = {name: _scattered([block[name] for block in blocks], valid) for name in blocks[0]}
+        numbers = {
+            name: _fill_valid([block[name] for block in blocks], valid) for name in blocks[0]
+        }
         in_domain = valid.copy()
         in_domain[rows] = inside
         bridle_in_domain, sensor_in_domain = self._own_domains(water, in_domain)
@@ -150,13 +155,13 @@ class Models:
                 for one, here in zip(trouble, in_domain, strict=True)
             ),
             bridle_names=self.cage.bridle_names,
-            bridle_tension=_both(numbers, "bridle"),
+            bridle_tension=_prediction(numbers, "bridle"),
             bridle_low=numbers["bridle_low_mean"],
             bridle_level=self._bridle_level(),
             sensor_names=self.cage.sensor_names,
             sensor_units=self._sensor_units(),
-            sensor=_both(numbers, "sensor"),
-            sensor_low=_both(numbers, "sensor_low"),
+            sensor=_prediction(numbers, "sensor"),
+            sensor_low=_prediction(numbers, "sensor_low"),
             sensor_level=np.array([self._level(name) for name in self.cage.sensor_names]),
             node_position=numbers["node_position"],
             node_sigma=numbers["node_sigma"],
@@ -186,15 +191,15 @@ class Models:
         return bridle, sensor
 
     def _numbers(self, water: Metocean, inside: Bool[np.ndarray, " case"]) -> Numbers:
-        said = self._said(water)
+        parts = self._predict(water)
         if not inside.all():
             speed, hs = self.edge
             milder = water.rows(~inside).limited(current_speed=speed, hs=hs)
-            edge = self._said(milder)
-            said = {name: _widened(one, edge[name], ~inside) for name, one in said.items()}
-        shape = said.pop("shape")
-        numbers = {f"{name}_mean": one.mean for name, one in said.items()}
-        numbers |= {f"{name}_std": one.std for name, one in said.items()}
+            edge = self._predict(milder)
+            parts = {name: _widen(one, edge[name], ~inside) for name, one in parts.items()}
+        shape = parts.pop("shape")
+        numbers = {f"{name}_mean": one.mean for name, one in parts.items()}
+        numbers |= {f"{name}_std": one.std for name, one in parts.items()}
         # A rope never pushes, whatever a Gaussian says.
         for name in ("bridle_mean", "bridle_low_mean"):
             numbers[name] = np.maximum(numbers[name], 0.0)
@@ -204,13 +209,14 @@ class Models:
             "volume_fraction": self.cage.volume(shape.mean) / self.still_volume,
         }
 
-    def _said(self, water: Metocean) -> dict[str, Prediction]:
+    def _predict(self, water: Metocean) -> dict[str, Prediction]:
         x = water.features(self.inputs)
         bridle, shape = self.bridles.predict(x), self.shape.predict(x)
-        said = {"bridle_low": bridle, "shape": shape, "sensor_low": self._seen(bridle, shape)}
-        return said | self._corrected(water, bridle, said["sensor_low"])
+        low = self._sensor_low(bridle, shape)
+        parts = {"bridle_low": bridle, "shape": shape, "sensor_low": low}
+        return parts | self._level_2(water, bridle, low)
 
-    def _seen(self, bridle: Prediction, shape: Prediction) -> Prediction:
+    def _sensor_low(self, bridle: Prediction, shape: Prediction) -> Prediction:
         nodes = [one.node for one in self.cage.depth_sensors]
         lines = [one.bridle for one in self.cage.shackles]
         return Prediction(
@@ -218,45 +224,46 @@ class Models:
             std=np.hstack([shape.std[:, nodes, 2], bridle.std[:, lines]]),
         )
 
-    def _corrected(
+    def _level_2(
         self, water: Metocean, bridle_low: Prediction, sensor_low: Prediction
     ) -> dict[str, Prediction]:
-        """Return best tensions, and readings: what lies behind them and their scatter.
+        """Predict tensions and readings by the best level.
 
-        The bridle that a shackle taught has no scatter: the rope is meant, not the instrument.
+        A reading has the instrument's noise; the tension of a shackle's bridle has none.
         """
-        bridle, sensor = _copied(bridle_low), _copied(sensor_low)
+        bridle, sensor = _copy(bridle_low), _copy(sensor_low)
         if self.together is None:
             return {"bridle": bridle, "sensor": sensor}
-        taught = np.array([name in self.upper for name in self.cage.sensor_names])
-        low = Prediction(mean=sensor_low.mean[:, taught], std=sensor_low.std[:, taught])
+        corrected = np.array([name in self.upper for name in self.cage.sensor_names])
+        low = Prediction(mean=sensor_low.mean[:, corrected], std=sensor_low.std[:, corrected])
         steepness = np.zeros_like(low.mean)
         if self.together.water_sd.any():
-            steepness = self.steepness(water)[:, taught]
+            steepness = self.steepness(water)[:, corrected]
         x = water.features(self.inputs)
-        behind = self._widened_outside(x, self.together.behind(x, low, steepness))
-        sensor.mean[:, taught] = behind.mean
-        sensor.std[:, taught] = np.sqrt(behind.std**2 + self.together.noise)
+        latent = self.together.latent(x, low, steepness)
+        latent = self._widen_outside(x, latent)
+        sensor.mean[:, corrected] = latent.mean
+        sensor.std[:, corrected] = np.sqrt(latent.std**2 + self.together.noise)
         lines = [line for name, line in self._lines().items() if name in self.upper]
         if lines:  # the shackles are the last of the sensors
-            bridle.mean[:, lines] = behind.mean[:, -len(lines) :]
-            bridle.std[:, lines] = behind.std[:, -len(lines) :]
+            bridle.mean[:, lines] = latent.mean[:, -len(lines) :]
+            bridle.std[:, lines] = latent.std[:, -len(lines) :]
         return {"bridle": bridle, "sensor": sensor}
 
-    def _widened_outside(self, x: Features, behind: Prediction) -> Prediction:
+    def _widen_outside(self, x: Features, latent: Prediction) -> Prediction:
         """Widen each level 2 outside its own domain, without a step at its edge."""
-        std = behind.std.copy()
+        std = latent.std.copy()
         for column, (name, domain) in enumerate(self.upper_domains.items()):
             edge = nearest_inside(x, domain)
             # Not ``contains``, whose margin would make a step that no table can follow.
             beyond = np.any(np.abs(edge - x) > ROUNDING, axis=1)
             if beyond.any():
                 edge = edge[beyond]
-                there = self.upper[name].behind(edge, self.lower(name).predict(edge)).mean
+                there = self.upper[name].latent(edge, self.lower(name).predict(edge)).mean
                 std[beyond, column] = np.hypot(
-                    std[beyond, column], behind.mean[beyond, column] - there
+                    std[beyond, column], latent.mean[beyond, column] - there
                 )
-        return Prediction(mean=behind.mean, std=std)
+        return Prediction(mean=latent.mean, std=std)
 
     def _lines(self) -> dict[str, int]:
         return {one.name: one.bridle for one in self.cage.shackles}
@@ -282,21 +289,21 @@ class Models:
         )
 
 
-def _widened(here: Prediction, edge: Prediction, beyond: Bool[np.ndarray, " case"]) -> Prediction:
+def _widen(here: Prediction, edge: Prediction, beyond: Bool[np.ndarray, " case"]) -> Prediction:
     """Add in quadrature how far the mean moved between the edge and the rows beyond it."""
     std = here.std.copy()
     std[beyond] = np.hypot(std[beyond], here.mean[beyond] - edge.mean)
     return Prediction(mean=here.mean, std=std)
 
 
-def _copied(prediction: Prediction) -> Prediction:
+def _copy(prediction: Prediction) -> Prediction:
     return Prediction(mean=prediction.mean.copy(), std=prediction.std.copy())
 
 
-def _scattered(
+def _fill_valid(
     parts: Sequence[Float[np.ndarray, "_ *rest"]], valid: Bool[np.ndarray, " case"]
 ) -> Float[np.ndarray, "case *rest"]:
-    """One quantity of all rows, NaN in those that are not valid."""
+    """Values of the valid rows, in all rows, NaN elsewhere."""
     values = np.concatenate(parts)
     if len(values) == len(valid):
         return values
@@ -305,5 +312,5 @@ def _scattered(
     return scattered
 
 
-def _both(numbers: Numbers, name: str) -> Prediction:
+def _prediction(numbers: Numbers, name: str) -> Prediction:
     return Prediction(mean=numbers[f"{name}_mean"], std=numbers[f"{name}_std"])

@@ -1,4 +1,4 @@
-"""A buoy and a sensor brought together in time: what was the water when the sensor spoke."""
+"""Pairs of a sensor's readings and the buoy's samples in force at their times."""
 
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
@@ -13,15 +13,15 @@ from seacage.surrogates import spread_design
 from seacage.twin._metocean import INPUT_KEYS, Metocean
 
 HOLD_S = 10800.0
-"""A buoy's value is held for at most so long [s]; the live twin's default."""
+"""Longest time for which a buoy's value is held [s]; the live twin's default."""
 
 SI = {"tension_kn": 1000.0, "depth_m": 1.0}
-"""What the door keys of cage sensors are multiplied by: to N, to m."""
+"""Factors on values by the door keys of cage sensors, to N and m."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Pairs:
-    """Readings of one sensor, each with the water that the buoy reported then.
+    """Readings of one sensor, each with the water that the buoy had reported.
 
     Parameters
     ----------
@@ -57,9 +57,9 @@ def align(
     hold_s: float = HOLD_S,
     suspect: bool = False,
 ) -> Pairs:
-    """Pair each reading of a sensor with the buoy's last word before it.
+    """Pair each reading of a sensor with the buoy's last sample before it.
 
-    Readings that failed a check, and times without a sound and fresh word of the buoy, are
+    Readings that failed a check, and times without a sound and fresh sample of the buoy, are
     left out.
 
     Parameters
@@ -73,7 +73,7 @@ def align(
         sensor's readings, and the buoy's vectors as they were held at each of them. The time
         is the middle of the window.
     hold_s
-        Oldest word of the buoy that is taken [s].
+        Largest age of the buoy's sample [s].
     suspect
         Keep readings, of sensor or buoy, that a check found suspect.
     """
@@ -86,30 +86,29 @@ def align(
     sound = _sound(record, key, suspect=suspect) & _between(record.time, start, end)
     time, value = record.time[sound], SI[key] * record.values[key][sound]
 
-    word = np.searchsorted(field.buoy.time, time, side="right") - 1
-    heard = word >= 0
-    time, value, word = time[heard], value[heard], word[heard]
-    age = (time - field.buoy.time[word]) / np.timedelta64(1, "s")
+    held = np.searchsorted(field.buoy.time, time, side="right") - 1
+    found = held >= 0
+    time, value, held = time[found], value[found], held[found]
+    age = (time - field.buoy.time[held]) / np.timedelta64(1, "s")
     trusted = np.logical_and.reduce(
         [_sound(field.buoy, key, suspect=suspect) for key in INPUT_KEYS["current"]]
     )
-    known = (age <= hold_s) & trusted[word]
+    known = (age <= hold_s) & trusted[held]
     pairs = Pairs(
         time=time[known],
-        metocean=Metocean.of_record(field.buoy).rows(word[known]),
+        metocean=Metocean.of_record(field.buoy).rows(held[known]),
         value=value[known],
     )
-    return pairs if mean_s is None else _averaged(pairs, mean_s)
+    return pairs if mean_s is None else _block_means(pairs, mean_s)
 
 
-def teaching_window(
+def training_window(
     record: Record, *, days: float, pause_s: float
 ) -> tuple[datetime, datetime] | None:
-    """First window of a sensor's data: what may teach, so that the rest can judge.
+    """First window of a sensor's data, so that the remainder can validate.
 
-    It ends at the first silence longer than ``pause_s`` [s] and is at most ``days`` long, so a
-    shackle that came in two windows teaches with the first, and a depth sensor that never
-    stopped with its first days.
+    It ends at the first silence longer than ``pause_s`` [s] and is at most ``days`` long: the
+    first of a shackle's two windows, and the first days of a depth sensor that never stopped.
 
     Returns
     -------
@@ -128,9 +127,9 @@ def teaching_window(
 
 
 def spread_out(pairs: Pairs, count: int, *, seed: int) -> Pairs:
-    """Choose pairs that fill the plane of currents and the time, farthest from each other.
+    """Select pairs that fill the plane of currents and the time, farthest from each other.
 
-    The whole time counts as much as two typical speeds; why, says ``spread_design``.
+    The whole time counts as much as two typical speeds; ``spread_design`` has the reason.
     """
     if len(pairs) <= count:
         return pairs
@@ -160,7 +159,7 @@ def _between(
     return counts
 
 
-def _averaged(pairs: Pairs, mean_s: float) -> Pairs:
+def _block_means(pairs: Pairs, mean_s: float) -> Pairs:
     length = round(mean_s * 1e6)
     window, group = np.unique(
         pairs.time.astype("datetime64[us]").astype(np.int64) // length, return_inverse=True

@@ -1,4 +1,4 @@
-"""What a twin was trained from, so that its numbers can be traced and judged."""
+"""Provenance of a twin: the simulations and training windows that its numbers come from."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -6,21 +6,22 @@ from datetime import datetime
 from typing import Literal
 
 from seacage.conventions import Origin
+from seacage.twin._saved_keys import saved_keys
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Lesson:
-    """What one sensor taught.
+class TrainingWindow:
+    """Training window of one sensor.
 
     Parameters
     ----------
     start, end
-        The window its readings were taken from; what lies outside may judge the twin.
+        Of the window; readings outside it may validate the twin.
     points
-        How many were used.
+        Number of readings that level 2 was fitted to.
     calibrated
-        Whose readings its intervals were calibrated on: its "own", those of sensors that stayed
-        longer ("carried"), or "none".
+        Readings that its intervals were calibrated on: its "own", those of sensors with longer
+        windows ("carried"), or "none".
     """
 
     start: datetime
@@ -31,24 +32,24 @@ class Lesson:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Provenance:
-    """Where a twin comes from.
+    """Provenance of a twin.
 
     Parameters
     ----------
     version
         Of the seacage that trained it.
     law, campaign_seed, campaign_sha256, cases
-        Of the simulations behind level 1; the hash is over inputs and answers.
+        Of the simulations behind level 1; the hash is over their inputs and results.
     kernel
         Of the bridles' level 1, the better of two by leave-one-out.
     origin
-        Of the sensors' data; "computed" where no sensor taught.
+        Of the sensors' data; "computed" where no sensor has level 2.
     hidden_sha256
         Of a virtual field's hidden parameters.
     seed
         Of the training.
-    lessons
-        By sensor; a sensor that is not here answers at level 1.
+    training_windows
+        By sensor; a sensor that is not here is predicted at level 1.
     """
 
     version: str
@@ -60,4 +61,8 @@ class Provenance:
     origin: Origin
     hidden_sha256: str | None
     seed: int
-    lessons: Mapping[str, Lesson] = field(default_factory=dict[str, Lesson])
+    training_windows: Mapping[str, TrainingWindow] = field(
+        default_factory=dict[str, TrainingWindow]
+    )
+
+    __pydantic_config__ = saved_keys(training_windows="lessons")

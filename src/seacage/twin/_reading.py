@@ -31,7 +31,7 @@ class Reading:
     trouble: str
 
 
-def held_reading(
+def reading_at(
     stream: Stream, now: datetime, *, buoy: str, keys: Sequence[str], stale_after_s: float
 ) -> Reading:
     """Return the buoy's newest value of each key, if it is sound and fresh.
@@ -43,17 +43,17 @@ def held_reading(
     Parameters
     ----------
     stream, now
-        What the buoy sent, and the clock.
+        The buoy's samples, and the clock.
     buoy, keys
         Its name, and the quantities that the models take.
     stale_after_s
-        How long a value is held [s].
+        Longest time for which a value is held [s].
     """
     taken = latest_in(stream, now)
     newest: Mapping[str, Sample] = taken.newest if taken else {}
-    unsaid = [key for key in keys if key not in newest]
-    if unsaid:
-        return Reading(metocean=None, age_s=None, trouble=f"{buoy} has not said {unsaid[0]} yet.")
+    missing = [key for key in keys if key not in newest]
+    if missing:
+        return Reading(metocean=None, age_s=None, trouble=f"{buoy} has not sent {missing[0]} yet.")
 
     columns = {
         key: np.array([sample.values[key] if usable(sample, key) else np.nan])
@@ -62,7 +62,7 @@ def held_reading(
     age = max((now - newest[key].t).total_seconds() for key in keys)
     bad = [key for key in keys if not usable(newest[key], key)]
     if bad:
-        trouble = failed(buoy, bad[0], newest[bad[0]].flags[bad[0]])
+        trouble = fault_of(buoy, bad[0], newest[bad[0]].flags[bad[0]])
     elif age > stale_after_s:
         trouble = (
             f"The last reading of {buoy} is {age:.0f} s old; {stale_after_s:.0f} s is the limit."
@@ -72,7 +72,7 @@ def held_reading(
     return Reading(metocean=Metocean.from_columns(columns, 1), age_s=age, trouble=trouble)
 
 
-def failed(buoy: str, key: str, flag: int) -> str:
-    """Say why a value is no input."""
+def fault_of(buoy: str, key: str, flag: int) -> str:
+    """Return why a value is no input."""
     word = Flag(flag).name.lower().replace("_", " ")
     return f"{buoy}: {key} is flagged {flag:d} ({word}); there is no valid input."

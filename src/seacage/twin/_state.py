@@ -1,4 +1,4 @@
-"""What a twin remembers between two steps: its clock and the latest of each stream."""
+"""State of a twin between two steps: its clock and the last minutes of each stream."""
 
 from bisect import bisect_left
 from collections.abc import Iterable, Mapping
@@ -8,30 +8,35 @@ from datetime import datetime, timedelta
 from seacage.conventions import Flag
 from seacage.records import Amendment, QualityState, Sample, check_sample, is_evaluated
 from seacage.twin._answer import Answer
-from seacage.twin._interval_factors import Tracked, expecting, factors_from_json, factors_to_json
+from seacage.twin._interval_factors import (
+    Tracked,
+    factors_from_json,
+    factors_to_json,
+    with_predictions,
+)
 from seacage.twin._metocean import Metocean
 from seacage.twin._models import Models
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Watch:
-    """How long a twin waits for its streams.
+class StreamTimeouts:
+    """Timeouts of a twin's streams, and the rate at which its intervals adapt.
 
     Parameters
     ----------
     stale_after_s
-        A buoy's value is held for at most so long [s]. The default suits the sparse records of
+        Longest time for which a buoy's value is held [s]. The default suits the sparse records of
         coastal buoys, where it also spans the longest gaps.
     sensor_silent_after_s
-        A cage sensor is silent after so long [s].
+        Timeout of a cage sensor [s].
     disorder_s
-        Samples that nobody has checked yet may come out of order within so long [s]; a later one
-        is checked alone.
+        Time within which samples without flags may come out of order [s]; a later one is
+        checked alone.
     future_s
-        A sample further ahead of the clock than this has a wrong clock [s].
+        A sample further ahead of the clock has a wrong time [s].
     adapt_rate
-        How quickly the intervals follow what sensors read: step of the logarithm of their width
-        per reading that counts [-]; 0 leaves them as trained.
+        Rate of adaptation of the intervals: step of the logarithm of their width per reading
+        that counts [-]; 0 leaves them as trained.
     adapt_every_s
         Time between readings that count [s].
     """
@@ -46,7 +51,7 @@ class Watch:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Taken:
-    """What a stream had sent, up to and with one of its samples.
+    """A sample of a stream, and the newest values up to it.
 
     Parameters
     ----------
@@ -55,8 +60,8 @@ class Taken:
     newest
         The last sample that carried each key.
     quality
-        Of the checks that look back, where the sample came without flags; holds what it showed
-        of the one before it. None where it was checked before it came here.
+        Of the checks that look back, where the sample came without flags, with the amendment of
+        the one before it. None where it was checked before it came here.
     """
 
     sample: Sample
@@ -70,38 +75,38 @@ Stream = tuple[Taken, ...]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Held:
-    """What these models answered to this water, before any interval was adapted."""
+    """The answer of the models in some water, before any interval was adapted."""
 
     models: Models
     water: Metocean
     answer: Answer
 
     def answers(self, models: Models, water: Metocean) -> bool:
-        """Whether the models would only say it again."""
+        """Whether the answer holds for these models and this water."""
         return models is self.models and water.same(self.water)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TwinState:
-    """Everything that ``step`` carries on; two equal ones answer equally ever after.
+    """State that ``step`` carries on; two equal ones give equal answers ever after.
 
     Parameters
     ----------
     clock
         Of the last step; None before the first.
     streams
-        By name, those that have sent anything.
+        By name, those with at least one sample.
     silent
-        Those that have fallen silent.
+        Streams that have exceeded their timeout.
     tracked
-        How well the intervals of each sensor that has level 2 have held.
+        Prediction and factor of the interval, of each sensor that has level 2.
     adapted_until
         The intervals are adapted to the readings of blocks that had passed by then; None before
         the first step.
     amendments
         Flags that have changed since the samples came, of the last minutes.
     held
-        The last answer, to be given again while the water is the same.
+        The last answer, given again while the water is the same.
     """
 
     clock: datetime | None = None
@@ -124,7 +129,7 @@ class TwinState:
 
     @property
     def adapted(self) -> str:
-        """How far the intervals were adapted, for ``Twin.start`` after a restart, as JSON."""
+        """Factors of the intervals, for ``Twin.start`` after a restart, as JSON."""
         return factors_to_json(self.tracked)
 
     @property
@@ -136,16 +141,16 @@ class TwinState:
         )
 
     def with_factors(self, adapted: str | None) -> "TwinState":
-        """Return a copy with intervals adapted otherwise; see ``adapted``."""
+        """Return a copy with other factors of the intervals; see ``adapted``."""
         factors = factors_from_json(adapted) if adapted is not None else {}
         expected = {name: one.expected for name, one in self.tracked.items()}
-        return replace(self, tracked=expecting(factors, expected))
+        return replace(self, tracked=with_predictions(factors, expected))
 
     def with_amendments(self, amendments: Iterable[Amendment]) -> "TwinState":
         """Return a copy in which flags of samples have changed."""
         streams, kept = dict(self.streams), {_place(one): one for one in self.amendments}
         for one in amendments:
-            streams[one.stream] = _amended(streams.get(one.stream, ()), one)
+            streams[one.stream] = _apply(streams.get(one.stream, ()), one)
             kept.pop(_place(one), None)
             if one.was is None or one.flag > one.was:
                 kept[_place(one)] = one
@@ -154,14 +159,14 @@ class TwinState:
 
 
 def latest_in(stream: Stream, now: datetime | None) -> Taken | None:
-    """What a stream had sent that is not ahead of a clock, or ever; None where there is nothing."""
+    """Return the newest of a stream that is not ahead of a clock, or of all; None without any."""
     for taken in reversed(stream):
         if now is None or taken.sample.t <= now:
             return taken
     return None
 
 
-def taken_in(stream: Stream, sample: Sample, *, horizon: datetime, disorder_s: float) -> Stream:
+def insert(stream: Stream, sample: Sample, *, horizon: datetime, disorder_s: float) -> Stream:
     """Put a sample in its place in time.
 
     Whatever the order in which samples come, the stream ends the same. One that carries no flags
@@ -171,11 +176,11 @@ def taken_in(stream: Stream, sample: Sample, *, horizon: datetime, disorder_s: f
     Parameters
     ----------
     stream, sample
-        Before, and what comes.
+        Before, and the new one.
     horizon
-        What is older is forgotten, but for the last of it.
+        Older samples are forgotten, but for the last of them.
     disorder_s
-        See ``Watch`` [s].
+        See ``StreamTimeouts`` [s].
 
     Returns
     -------
@@ -194,16 +199,16 @@ def taken_in(stream: Stream, sample: Sample, *, horizon: datetime, disorder_s: f
         late = stream and sample.t < stream[-1].sample.t - timedelta(seconds=disorder_s)
         before = stream[place - 1].quality if place and not late else None
         quality, sample = check_sample(before or QualityState(), sample)
-        after = after if late else _checked_again(after, quality)
+        after = after if late else _check_again(after, quality)
     newest = dict(stream[place - 1].newest) if place else {}
     newest |= dict.fromkeys(sample.values, sample)
     grown = [*stream[:place], Taken(sample=sample, newest=newest, quality=quality)]
     grown += [replace(taken, newest=_newest(taken.newest, sample)) for taken in after]
-    return trimmed(tuple(grown), horizon, disorder_s=disorder_s)
+    return trim(tuple(grown), horizon, disorder_s=disorder_s)
 
 
-def trimmed(stream: Stream, horizon: datetime, *, disorder_s: float) -> Stream:
-    """Forget what is older than a time and than what may still come, but for the last of it."""
+def trim(stream: Stream, horizon: datetime, *, disorder_s: float) -> Stream:
+    """Forget samples older than a time and than late ones may be, but for the last of them."""
     if not stream:
         return stream
     root, horizon = 0, min(horizon, stream[-1].sample.t - timedelta(seconds=disorder_s))
@@ -213,14 +218,14 @@ def trimmed(stream: Stream, horizon: datetime, *, disorder_s: float) -> Stream:
 
 
 def amendments_in(stream: Stream) -> tuple[Amendment, ...]:
-    """What samples of a stream that were checked here showed of those before them."""
+    """Return the amendments by samples of a stream that were checked here."""
     return tuple(
         one for taken in stream if taken.quality is not None for one in taken.quality.amended
     )
 
 
-def troubled(sample: Sample) -> bool:
-    """Whether a check had something to say about a value."""
+def is_flagged(sample: Sample) -> bool:
+    """Whether a value has a flag worse than good."""
     return any(flag in {Flag.SUSPECT, Flag.FAIL, Flag.MISSING} for flag in sample.flags.values())
 
 
@@ -229,8 +234,8 @@ def usable(sample: Sample, key: str) -> bool:
     return sample.flags[key] not in {Flag.FAIL, Flag.MISSING}
 
 
-def _checked_again(after: list[Taken], quality: QualityState) -> list[Taken]:
-    """Check what follows a late sample, as far as it was checked here."""
+def _check_again(after: list[Taken], quality: QualityState) -> list[Taken]:
+    """Check the samples after a late one again, as far as they were checked here."""
     again, now = list[Taken](), dict[int, Sample]()
     for taken in after:
         if taken.quality is None:
@@ -244,7 +249,7 @@ def _checked_again(after: list[Taken], quality: QualityState) -> list[Taken]:
 
 
 def _newest(newest: Mapping[str, Sample], sample: Sample) -> dict[str, Sample]:
-    """The last samples that carried each key, with one more that may be older."""
+    """Return the last samples that carried each key, with one more that may be older."""
     fresh = {
         key: sample
         for key in sample.values
@@ -253,7 +258,7 @@ def _newest(newest: Mapping[str, Sample], sample: Sample) -> dict[str, Sample]:
     return {**newest, **fresh}
 
 
-def _amended(stream: Stream, one: Amendment) -> Stream:
+def _apply(stream: Stream, one: Amendment) -> Stream:
     def meant(sample: Sample) -> Sample:
         if sample.t != one.t or one.key not in sample.flags:
             return sample

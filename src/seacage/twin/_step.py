@@ -6,40 +6,40 @@ from datetime import datetime, timedelta
 
 from seacage.conventions import InputError
 from seacage.records import Amendment, Sample, amended
-from seacage.twin._adaptation import ADAPTATION_BLOCK
 from seacage.twin._events import Flagged, StreamBack, StreamSilent
+from seacage.twin._interval_factors import ADAPTATION_BLOCK
 from seacage.twin._state import (
     Stream,
+    StreamTimeouts,
     TwinState,
-    Watch,
     amendments_in,
+    insert,
+    is_flagged,
     latest_in,
-    taken_in,
-    trimmed,
-    troubled,
+    trim,
 )
 
 Notice = Flagged | StreamSilent | StreamBack
 
 
-def received(
+def receive(
     state: TwinState,
     samples: Sequence[Sample],
     now: datetime,
     *,
     timeouts: Mapping[str, float],
-    watch: Watch,
+    limits: StreamTimeouts,
     amendments: Sequence[Amendment] = (),
 ) -> tuple[TwinState, tuple[Notice, ...]]:
-    """Take samples in, or let time pass, and report what was noticed.
+    """Take samples in, or let time pass, and report notices.
 
     Parameters
     ----------
     state, samples, now
-        Where we were, what came, and the clock, with its zone.
+        The state before, the samples, and the clock, with its zone.
     timeouts
-        The streams listened to, and how long each may be silent [s].
-    watch
+        The streams of the twin, and the timeout of each [s].
+    limits
         Limits on disorder and on clocks that are ahead.
     amendments
         Flags that have changed since, of these samples or of earlier ones.
@@ -53,10 +53,10 @@ def received(
     streams = dict(state.streams)
     horizon = _horizon(state, now)
     for sample in samples:
-        notices += _taken(streams, sample, now, timeouts, watch, horizon)
+        notices += _take(streams, sample, now, timeouts, limits, horizon)
     state = replace(state, streams=streams)
     if amendments:
-        notices += _reported(state, amendments)
+        notices += _report_worse(state, amendments)
         state = state.with_amendments(amendments)
     silent = _silent(state, now, timeouts)
     # Where only these samples reveal the silence that they end, both are reported.
@@ -71,19 +71,18 @@ def received(
     return replace(state, clock=now, silent=silent), (*gone, *back, *notices)
 
 
-def forgotten(state: TwinState, now: datetime, *, disorder_s: float) -> TwinState:
-    """Forget what nothing asks for any more."""
+def forget(state: TwinState, now: datetime, *, disorder_s: float) -> TwinState:
+    """Forget samples and amendments that are no longer needed."""
     horizon = _horizon(state, now)
     streams = {
-        name: trimmed(stream, horizon, disorder_s=disorder_s)
-        for name, stream in state.streams.items()
+        name: trim(stream, horizon, disorder_s=disorder_s) for name, stream in state.streams.items()
     }
     amendments = tuple(one for one in state.amendments if one.t > now - ADAPTATION_BLOCK)
     return replace(state, streams=streams, amendments=amendments)
 
 
 def _horizon(state: TwinState, now: datetime) -> datetime:
-    """From when on samples are remembered: those that intervals will be adapted to."""
+    """Time from which samples are kept: those that intervals will be adapted to."""
     until = state.adapted_until
     return (now if until is None else min(until, now)) - ADAPTATION_BLOCK
 
@@ -101,55 +100,55 @@ def _silent(state: TwinState, now: datetime, timeouts: Mapping[str, float]) -> f
     )
 
 
-def _taken(
+def _take(
     streams: dict[str, Stream],
     sample: Sample,
     now: datetime,
     timeouts: Mapping[str, float],
-    watch: Watch,
+    limits: StreamTimeouts,
     horizon: datetime,
 ) -> list[Notice]:
     if sample.stream not in timeouts:
         return _set_aside(
             sample, f"no stream {sample.stream!r} here; there are {', '.join(timeouts)}"
         )
-    if sample.t > now + timedelta(seconds=watch.future_s):
+    if sample.t > now + timedelta(seconds=limits.future_s):
         ahead = (sample.t - now).total_seconds()
         return _set_aside(
             sample, f"its time is {ahead:.0f} s ahead of the clock; check the source's clock"
         )
     before = streams.get(sample.stream, ())
-    after = taken_in(before, sample, horizon=horizon, disorder_s=watch.disorder_s)
+    after = insert(before, sample, horizon=horizon, disorder_s=limits.disorder_s)
     if after is before:
         return []
     streams[sample.stream] = after
     moment = sample.t, sample.seq
     seen = (taken.sample for taken in reversed(after))
     flagged = next((one for one in seen if (one.t, one.seq) == moment), sample)
-    notices: list[Notice] = [*_mended(before, after)]
-    if troubled(flagged):
+    notices: list[Notice] = [*_new_spikes(before, after)]
+    if is_flagged(flagged):
         notices.append(Flagged(sample=flagged, reason=" ".join(flagged.remarks), used=True))
     return notices
 
 
-def _mended(before: Stream, after: Stream) -> list[Flagged]:
-    """Report which earlier samples of a stream are now known to be spikes."""
+def _new_spikes(before: Stream, after: Stream) -> list[Flagged]:
+    """Report the earlier samples of a stream that later ones show to be spikes."""
     if after[-1].quality is None:
         return []
     known = amendments_in(before)
     new = [one for one in amendments_in(after) if one not in known]
-    return _flagged([taken.sample for taken in after], new) if new else []
+    return _with_amendments([taken.sample for taken in after], new) if new else []
 
 
-def _reported(state: TwinState, amendments: Sequence[Amendment]) -> list[Flagged]:
-    """Report which samples have become worse."""
+def _report_worse(state: TwinState, amendments: Sequence[Amendment]) -> list[Flagged]:
+    """Report the samples whose flags have become worse."""
     worse = [one for one in amendments if one.was is None or one.flag > one.was]
     streams = {one.stream for one in worse} & state.streams.keys()
     samples = [taken.sample for name in streams for taken in state.streams[name]]
-    return _flagged(samples, worse)
+    return _with_amendments(samples, worse)
 
 
-def _flagged(samples: Sequence[Sample], amendments: Sequence[Amendment]) -> list[Flagged]:
+def _with_amendments(samples: Sequence[Sample], amendments: Sequence[Amendment]) -> list[Flagged]:
     times = {(one.stream, one.t) for one in amendments}
     return [
         Flagged(

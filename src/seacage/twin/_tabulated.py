@@ -1,4 +1,4 @@
-"""A twin that asks for the current alone, as one table: a whole winter in seconds."""
+"""A twin whose only input is the current, as one table: a whole winter in seconds."""
 
 from dataclasses import dataclass
 from typing import Self
@@ -15,15 +15,15 @@ from seacage.twin._twin import Twin
 
 LEAST_TENSION_STD = 50.0
 LEAST_DEPTH_STD = 0.01
-"""Spreads that no instrument here resolves [N], [m]: smaller ones count as these."""
+"""Standard deviations that no instrument here resolves [N], [m]: smaller ones count as these."""
 
-BLOCK = 4096
-"""Rows that the twin is asked for at once: it makes every node of the net for each of them."""
+ROWS_AT_ONCE = 4096
+"""Rows that the twin predicts at once: it makes every node of the net for each of them."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Loads:
-    """What a tabulated twin says: an ``Answer`` without the shape.
+    """Loads of a tabulated twin: an ``Answer`` without the shape.
 
     A row that is not valid holds NaN in every number.
 
@@ -55,7 +55,7 @@ class Loads:
 class TabulatedTwin:
     """The bridles and the sensors of a twin, both levels, from one table of the current.
 
-    Beyond the table, where the twin extrapolates, the twin itself is asked.
+    Beyond the table, where the twin extrapolates, the twin itself predicts.
 
     Parameters
     ----------
@@ -91,27 +91,27 @@ class TabulatedTwin:
             deviation in itself.
         least_tension_std, least_depth_std
             Standard deviations below these count as these [N], [m]: a simulator is emulated
-            nearly without doubt close to its own cases, more sharply than any sensor sees.
+            with almost no variance close to its own cases, more sharply than any sensor sees.
         most_nodes
             Largest size; a node takes 0.64 kB for 12 bridles and 8 sensors.
 
         Raises
         ------
         InputError
-            The twin asks for waves too, or the tolerance cannot be met.
+            The twin has waves as an input too, or the tolerance cannot be met.
         """
         inputs = twin.models.inputs
         if inputs != ("current",):
             raise InputError(
-                f"tabulated: this twin asks for {' and '.join(inputs)}; a table holds the current "
-                "alone. Ask the twin itself, or train one with inputs=('current',)."
+                f"tabulated: the inputs of this twin are {' and '.join(inputs)}; a table holds the "
+                "current alone. Use the twin itself, or train one with inputs=('current',)."
             )
         floor = {"N": least_tension_std, "m": least_depth_std}
         bridles = [least_tension_std] * len(twin.bridle_names)
         units = twin.predict(Metocean.from_columns({}, 0)).sensor_units
         sensors = [floor[unit] for unit in units]
         table = Table.of(
-            _Asked(twin=twin),
+            _DirectTwin(twin=twin),
             Disc(radius=twin.models.edge[0]),
             tolerance=tolerance,
             std_tolerance=std_tolerance,
@@ -122,9 +122,9 @@ class TabulatedTwin:
         return cls(twin=twin, table=table)
 
     def predict(self, metocean: Metocean) -> Loads:
-        """Answer for each row of water; a row without a current is not valid.
+        """Predict in each row of water; a row without a current is not valid.
 
-        Two million rows take a gigabyte: ask a long record day by day.
+        Two million rows take a gigabyte: predict a long record day by day.
         """
         x = metocean.features(("current",))
         valid = metocean.known(("current",))
@@ -132,10 +132,10 @@ class TabulatedTwin:
         inside[valid] = self.table.region.contains(x[valid])
         mean, std = (np.full((len(x), *self.table.output_shape), np.nan) for _ in range(2))
         beyond = valid & ~inside
-        for rows, model in ((inside, self.table), (beyond, _Asked(twin=self.twin))):
+        for rows, model in ((inside, self.table), (beyond, _DirectTwin(twin=self.twin))):
             if rows.any():
-                said = model.predict(x[rows])
-                mean[rows], std[rows] = said.mean, said.std
+                part = model.predict(x[rows])
+                mean[rows], std[rows] = part.mean, part.std
         return self._loads(valid, inside, mean, std)
 
     def _loads(
@@ -161,13 +161,15 @@ class TabulatedTwin:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class _Asked:
+class _DirectTwin:
     """The twin as a model of the current's features, smooth where a rope goes slack."""
 
     twin: Twin
 
     def predict(self, x: Float[np.ndarray, "row feature"], /) -> Prediction:
-        parts = [self._block(x[start : start + BLOCK]) for start in range(0, len(x), BLOCK)]
+        parts = [
+            self._block(x[start : start + ROWS_AT_ONCE]) for start in range(0, len(x), ROWS_AT_ONCE)
+        ]
         return Prediction(
             mean=np.concatenate([one.mean for one in parts]),
             std=np.concatenate([one.std for one in parts]),
@@ -184,7 +186,7 @@ class _Asked:
             mean=np.hstack(
                 [
                     low.mean,
-                    _unheld(answer, low, self.twin.cage),
+                    _free_mean(answer, low, self.twin.cage),
                     answer.sensor_low.mean,
                     answer.sensor.mean,
                 ]
@@ -195,7 +197,7 @@ class _Asked:
         )
 
 
-def _unheld(answer: Answer, low: Prediction, cage: Cage) -> Float[np.ndarray, "case line"]:
+def _free_mean(answer: Answer, low: Prediction, cage: Cage) -> Float[np.ndarray, "case line"]:
     """Best mean of each tension, also where a rope that goes slack holds it at zero."""
     best = low.mean.copy()
     for shackle in cage.shackles:

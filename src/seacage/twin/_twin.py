@@ -16,14 +16,14 @@ from seacage.twin._adaptation import Adapter
 from seacage.twin._answer import Answer
 from seacage.twin._discrepancy import Discrepancy
 from seacage.twin._events import Answered, Event
-from seacage.twin._interval_factors import Expected, expecting, factors_from_json
+from seacage.twin._interval_factors import MeanStd, factors_from_json, with_predictions
 from seacage.twin._metocean import INPUT_KEYS, Metocean
 from seacage.twin._models import Models
 from seacage.twin._provenance import Provenance
-from seacage.twin._reading import failed, held_reading
-from seacage.twin._saving import read_folder, restored, saved, write_folder
-from seacage.twin._state import Held, TwinState, Watch
-from seacage.twin._step import forgotten, received
+from seacage.twin._reading import fault_of, reading_at
+from seacage.twin._saving import from_parts, read_folder, to_parts, write_folder
+from seacage.twin._state import Held, StreamTimeouts, TwinState
+from seacage.twin._step import forget, receive
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -37,19 +37,19 @@ class Twin:
     models
         Of every level, and the cage they are of.
     provenance
-        What they were learned from.
+        Of the models.
     buoy
         The stream that the inputs come from.
-    watch
-        How long streams may be quiet, late or ahead.
+    timeouts
+        How long streams may be silent, late or ahead.
     discrepancy
-        How far real nets were from its shapes; None where nobody has looked.
+        Distribution of true shapes about its shapes; None where there is none.
     """
 
     models: Models
     provenance: Provenance
     buoy: str = "buoy-1"
-    watch: Watch = field(default_factory=Watch)
+    timeouts: StreamTimeouts = field(default_factory=StreamTimeouts)
     discrepancy: Discrepancy | None = None
 
     @classmethod
@@ -61,7 +61,7 @@ class Twin:
         ModelError
             A file is missing, foreign, of another version, or changed by as little as a byte.
         """
-        return cls(**restored(*read_folder(Path(folder), key=key), source=str(folder)))
+        return cls(**from_parts(*read_folder(Path(folder), key=key), source=str(folder)))
 
     def write(self, folder: str | Path, *, key: bytes | None = None) -> None:
         """Save as a folder of JSON and safetensors, sealed by a manifest of SHA-256 sums.
@@ -75,8 +75,8 @@ class Twin:
         ModelError
             The folder holds something else.
         """
-        parts = self.models, self.provenance, self.buoy, self.watch, self.discrepancy
-        write_folder(Path(folder), *saved(*parts), key=key)
+        parts = self.models, self.provenance, self.buoy, self.timeouts, self.discrepancy
+        write_folder(Path(folder), *to_parts(*parts), key=key)
 
     @property
     def cage(self) -> Cage:
@@ -85,7 +85,7 @@ class Twin:
 
     @property
     def origin(self) -> Origin:
-        """Where the sensors' lessons came from; "computed" where no sensor taught."""
+        """Origin of the sensors' data; "computed" where no sensor has level 2."""
         return self.provenance.origin
 
     @property
@@ -120,7 +120,7 @@ class Twin:
         """Answer for each row of a buoy's record; a row that failed its checks is not valid.
 
         These are the answers that ``step`` gives to the record's samples, made in blocks and
-        so faster; what the sensors' own readings make of the intervals, ``step`` alone knows.
+        so faster; only ``step`` adapts the intervals to the sensors' readings.
         """
         keys = self._keys()
         absent = [key for key in keys if key not in buoy.values]
@@ -132,7 +132,7 @@ class Twin:
         trouble = [""] * len(buoy)
         for key in keys:
             for row in np.flatnonzero(~buoy.usable(key)):
-                trouble[row] = trouble[row] or failed(buoy.stream, key, int(buoy.flags[key][row]))
+                trouble[row] = trouble[row] or fault_of(buoy.stream, key, int(buoy.flags[key][row]))
         return self.models.answer(Metocean.of_record(buoy), trouble)
 
     def start(self, adapted: str | None = None, *, until: datetime | None = None) -> TwinState:
@@ -160,7 +160,7 @@ class Twin:
         """Take one sample in, or let the clock tick.
 
         Nothing is read but the arguments: the same samples and clock give the same events.
-        A tick is always answered, and so is a sample that changes the buoy's last word.
+        A tick is always answered, and so is a sample that changes the buoy's newest values.
 
         Parameters
         ----------
@@ -174,13 +174,12 @@ class Twin:
         Returns
         -------
         state, events
-            Silence and return of streams first, then what was wrong with the sample, then
-            the answer.
+            Silence and return of streams first, then flags of the sample, then the answer.
         """
         before = state
         state, notices = self.receive(state, () if sample is None else (sample,), now)
         if sample is None or _newest(state, self.buoy) != _newest(before, self.buoy):
-            state, answered = self._answered(state, now)
+            state, answered = self._answer(state, now)
             return state, (*notices, answered)
         return state, notices
 
@@ -199,26 +198,26 @@ class Twin:
         state, now
             As for ``step``.
         samples
-            In any order. Those that carry flags are believed; the others are checked.
+            In any order. Those without flags are checked.
         amendments
             Flags of earlier samples that have changed since.
         """
-        state, notices = received(
+        state, notices = receive(
             state,
             samples,
             now,
-            timeouts=self._timeouts(),
-            watch=self.watch,
+            timeouts=self._timeout_by_stream(),
+            limits=self.timeouts,
             amendments=amendments,
         )
-        adapter = Adapter(models=self.models, buoy=self.buoy, watch=self.watch)
-        state = adapter.adapted(state, now)
-        return forgotten(state, now, disorder_s=self.watch.disorder_s), notices
+        adapter = Adapter(models=self.models, buoy=self.buoy, timeouts=self.timeouts)
+        state = adapter.adapt(state, now)
+        return forget(state, now, disorder_s=self.timeouts.disorder_s), notices
 
-    def _answered(self, state: TwinState, now: datetime) -> tuple[TwinState, Answered]:
-        stale_after_s = self.watch.stale_after_s
+    def _answer(self, state: TwinState, now: datetime) -> tuple[TwinState, Answered]:
+        stale_after_s = self.timeouts.stale_after_s
         stream = state.streams.get(self.buoy, ())
-        reading = held_reading(
+        reading = reading_at(
             stream, now, buoy=self.buoy, keys=self._keys(), stale_after_s=stale_after_s
         )
         unknown = Metocean.from_columns({}, 1)
@@ -229,15 +228,15 @@ class Twin:
         else:
             answer = self.models.answer(water, [reading.trouble])
             held = Held(models=self.models, water=water, answer=answer)
-        tracked = expecting(state.tracked, self._expected(answer))
+        tracked = with_predictions(state.tracked, self._predictions(answer))
         state = replace(state, tracked=tracked, held=None if reading.trouble else held)
-        answer = self._adapted(answer, state)
+        answer = self._adapt(answer, state)
         return state, Answered(
             t=now, answer=answer, metocean=reading.metocean, input_age_s=reading.age_s
         )
 
-    def _expected(self, answer: Answer) -> dict[str, Expected | None]:
-        """What is expected of the sensors that have level 2."""
+    def _predictions(self, answer: Answer) -> dict[str, MeanStd | None]:
+        """Mean and standard deviation of the sensors that have level 2."""
         mean, std = answer.sensor.mean[0].tolist(), answer.sensor.std[0].tolist()
         return {
             name: (mean[column], std[column]) if answer.valid[0] else None
@@ -245,8 +244,8 @@ class Twin:
             if name in self.models.upper
         }
 
-    def _adapted(self, answer: Answer, state: TwinState) -> Answer:
-        """Widen or narrow the intervals of sensors that speak, and of the ropes they are on."""
+    def _adapt(self, answer: Answer, state: TwinState) -> Answer:
+        """Scale the intervals of sensors that are not silent, and of the lines they are on."""
         factor = {
             name: 1.0 if name in state.silent else tracked.factor
             for name, tracked in state.tracked.items()
@@ -260,9 +259,9 @@ class Twin:
     def _keys(self) -> list[str]:
         return [key for name in self.models.inputs for key in INPUT_KEYS[name]]
 
-    def _timeouts(self) -> dict[str, float]:
-        sensors = dict.fromkeys(self.sensor_names, self.watch.sensor_silent_after_s)
-        return {self.buoy: self.watch.stale_after_s, **sensors}
+    def _timeout_by_stream(self) -> dict[str, float]:
+        sensors = dict.fromkeys(self.sensor_names, self.timeouts.sensor_silent_after_s)
+        return {self.buoy: self.timeouts.stale_after_s, **sensors}
 
 
 def replay(twin: Twin, samples: Iterable[Sample]) -> Iterator[Event]:
@@ -279,5 +278,5 @@ def replay(twin: Twin, samples: Iterable[Sample]) -> Iterator[Event]:
 
 
 def _newest(state: TwinState, stream: str) -> Sample | None:
-    """The newest sample of a stream that governed at the state's clock."""
+    """Newest sample of a stream that is not ahead of the state's clock."""
     return state.latest(stream, state.clock)

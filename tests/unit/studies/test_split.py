@@ -8,7 +8,7 @@ import pytest
 from seacage.conventions import InputError, Origin
 from seacage.records import FieldRecord, Record
 from seacage.studies._split import split, unseen
-from seacage.twin import Lesson
+from seacage.twin import TrainingWindow
 
 START = np.datetime64("2020-01-18T06:00", "us")
 
@@ -75,8 +75,8 @@ def test_a_sensor_with_nothing_to_teach_or_to_judge_is_refused(field, teaching_d
         split(field, teaching_days=teaching_days)
 
 
-def lesson(first: datetime, last: datetime) -> Lesson:
-    return Lesson(start=first, end=last, points=300)
+def lesson(first: datetime, last: datetime) -> TrainingWindow:
+    return TrainingWindow(start=first, end=last, points=300)
 
 
 def test_the_days_after_a_lesson_are_unseen_and_a_sensor_that_taught_nothing_is_whole(field):

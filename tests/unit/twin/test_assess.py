@@ -35,7 +35,7 @@ def assessed(**limits: Limit) -> Assessed:
     return Assessed(stand_in_twin(), policy=policy)
 
 
-def told(happened):
+def events_of(happened):
     return [(line.alarm, line.action) for line in happened]
 
 
@@ -60,7 +60,7 @@ def test_a_computed_load_beyond_its_limit_raises_its_bridle_alone():
     limit = Limit(raise_at=0.9 * alarm.value, clear_at=0.5 * alarm.value)
     watch = assessed(**{name: limit})
     watch.hear(buoy(0))
-    assert told(watch.tick(at(0))) == [(name, Action.RAISED)]
+    assert events_of(watch.tick(at(0))) == [(name, Action.RAISED)]
 
 
 def test_a_measured_load_counts_where_it_is_the_larger():
@@ -85,10 +85,10 @@ def test_a_suspect_reading_never_wakes_anyone():
 def test_without_valid_input_a_load_neither_raises_nor_clears():
     watch = assessed(load=Limit(raise_at=0.01, clear_at=0.0), input=AT_ONCE)
     watch.hear(buoy(0))
-    before = sum(action is Action.RAISED for _, action in told(watch.tick(at(0))))
+    before = sum(action is Action.RAISED for _, action in events_of(watch.tick(at(0))))
     assert before > 0
     watch.hear(buoy(12, speed=-3.0))
-    assert told(watch.tick(at(12))) == [("input.buoy-1", Action.RAISED)]
+    assert events_of(watch.tick(at(12))) == [("input.buoy-1", Action.RAISED)]
     assert "flagged" in alarm_text(watch.book.alarms["input.buoy-1"], watch.policy).message
 
 
@@ -99,10 +99,10 @@ def test_a_silent_stream_is_named_and_its_return_clears_it():
         watch.tick(at(minutes))
     assert watch.raised == ["silent.shackle-2"]
     watch.hear(shackle(21, 20.0))
-    assert told(watch.tick(at(21))) == [("silent.shackle-2", Action.CLEARED)]
+    assert events_of(watch.tick(at(21))) == [("silent.shackle-2", Action.CLEARED)]
 
 
-def test_a_silent_buoy_is_said_once_and_not_as_missing_input_too():
+def test_a_silent_buoy_raises_one_alarm_and_not_as_missing_input_too():
     watch = assessed()
     watch.hear(buoy(0))
     for minutes in range(0, 400, 5):
@@ -110,7 +110,7 @@ def test_a_silent_buoy_is_said_once_and_not_as_missing_input_too():
     assert watch.raised == ["silent.buoy-1"]
 
 
-def test_water_beyond_what_was_learned_is_told_when_it_lasts_and_labels_the_loads():
+def test_water_outside_the_training_domain_is_raised_when_it_lasts_and_labels_the_loads():
     watch = assessed(load=Limit(raise_at=0.01, clear_at=0.0, on_delay_s=60.0))
     for minutes in range(30):
         watch.hear(buoy(minutes, speed=1.3))
@@ -124,16 +124,16 @@ def test_water_beyond_what_was_learned_is_told_when_it_lasts_and_labels_the_load
 def test_a_fault_of_the_service_lasts_as_long_as_it_is_named():
     watch = assessed()
     trouble = {"history.store": "The database was moved aside; its history is lost."}
-    assert told(watch.tick(at(0), trouble=trouble)) == [("history.store", Action.RAISED)]
+    assert events_of(watch.tick(at(0), trouble=trouble)) == [("history.store", Action.RAISED)]
     assert "moved aside" in alarm_text(watch.book.alarms["history.store"], watch.policy).message
-    assert told(watch.tick(at(1))) == [("history.store", Action.CLEARED)]
+    assert events_of(watch.tick(at(1))) == [("history.store", Action.CLEARED)]
 
 
 @pytest.mark.parametrize("hours", [-1, 1])
 def test_a_clock_that_jumps_by_an_hour_raises_and_clears_nothing(hours):
     watch = assessed(load=Limit(raise_at=0.8, clear_at=0.7, on_delay_s=60.0, off_delay_s=60.0))
     watch.hear(buoy(0))
-    for minutes in (0, 0.5):  # a load that is about to be told
+    for minutes in (0, 0.5):  # a load that is about to be raised
         watch.hear(shackle(minutes, 140.0))
         assert watch.tick(at(minutes)) == []
     assert watch.tick(at(0.6 + 60 * hours)) == []
@@ -145,25 +145,25 @@ def test_a_clock_that_went_back_does_not_keep_an_unseen_alarm_quiet():
     trouble = {"history.store": "The disk is full."}
     watch.tick(at(0), trouble=trouble)
     watch.tick(at(-300), trouble=trouble)
-    assert told(watch.tick(at(-289), trouble=trouble)) == [("history.store", Action.REPEATED)]
+    assert events_of(watch.tick(at(-289), trouble=trouble)) == [("history.store", Action.REPEATED)]
 
 
 def test_every_alarm_of_a_cage_is_described_in_words_active_or_not():
     policy = AlarmPolicy.default(stand_in_twin().cage)
     for name in policy.names:
         for active in (False, True):
-            said = alarm_text(Alarm(name=name, active=active, value=0.9, worst=0.95), policy)
-            assert said.title
-            assert said.advice.endswith(".")
-            assert "{" not in said.title + said.message
+            text = alarm_text(Alarm(name=name, active=active, value=0.9, worst=0.95), policy)
+            assert text.title
+            assert text.advice.endswith(".")
+            assert "{" not in text.title + text.message
 
 
-def test_a_cause_is_told_while_it_lasts_and_names_stand_as_the_sentence_needs_them():
+def test_a_cause_is_shown_while_it_lasts_and_names_stand_as_the_sentence_needs_them():
     policy = AlarmPolicy.default()
     raised = Alarm(name="domain.input", active=True, value=1.0, detail="Extrapolating: …")
     assert "Extrapolating" in alarm_text(raised, policy).message
     assert "Extrapolating" not in alarm_text(replace(raised, active=False), policy).message
     load = Alarm(name="load.bridle-7", active=True, value=0.85, worst=0.9)
-    said = alarm_text(load, policy)
-    assert said.title == "High load on bridle-7"
-    assert said.message.startswith("Bridle-7 bears 85 % of what it may bear, 90 % at worst")
+    text = alarm_text(load, policy)
+    assert text.title == "High load on bridle-7"
+    assert text.message.startswith("Bridle-7 bears 85 % of what it may bear, 90 % at worst")

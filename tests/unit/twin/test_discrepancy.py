@@ -13,7 +13,7 @@ def known(velocity, drift) -> Discrepancy:
     """Return what is learned from nets that drift as wholes, each by its own vector."""
     velocity, drift = np.array(velocity, dtype=float), np.array(drift, dtype=float)
     predicted = np.broadcast_to(CAGE.design_position, (len(velocity), CAGE.node_count, 3))
-    return Discrepancy.learned(
+    return Discrepancy.fit(
         CAGE,
         velocity,
         predicted=predicted,
@@ -26,7 +26,7 @@ def test_a_net_that_always_drifts_alike_is_expected_there_and_nowhere_else():
     error = known([[0.5, 0.0], [0.5, 0.0]], [[1.0, 2.0, 3.0]] * 2).at(CAGE, np.array([0.5, 0.0]))
     np.testing.assert_allclose(error.shift, np.tile([1.0, 2.0, 3.0], (CAGE.node_count, 1)))
     near = CAGE.nearest(np.array([[0.0, 0.0, -5.0]]), CAGE.design_position)
-    np.testing.assert_allclose(error.moved(near), 0.0, atol=1e-12)
+    np.testing.assert_allclose(error.displacement(near), 0.0, atol=1e-12)
     assert error.scatter(near, np.full(CAGE.node_count, 0.2)) == pytest.approx(0.2)
 
 
@@ -56,9 +56,9 @@ def test_an_outward_drift_takes_the_net_outwards_on_one_side_and_inwards_on_the_
     one = known([[0.5, 0.0]] * 2, [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]])
     error = one.at(CAGE, np.array([0.5, 0.0]))
     sides = np.array([[20.0, 0.0, -5.0], [-20.0, 0.0, -5.0]])
-    moved = error.moved(CAGE.nearest(sides, CAGE.design_position))
+    displacement = error.displacement(CAGE.nearest(sides, CAGE.design_position))
     # Of eight spokes the panels beside the east lie askew, by the cosine of 22.5 degrees.
-    np.testing.assert_allclose(moved, [[0.92, -0.92], [-0.92, 0.92]], atol=0.01)
+    np.testing.assert_allclose(displacement, [[0.92, -0.92], [-0.92, 0.92]], atol=0.01)
 
 
 def test_a_twins_known_error_is_saved_with_it_and_an_older_twin_has_none(tmp_path):
@@ -89,6 +89,6 @@ def test_nothing_teaches_nothing():
         known(np.empty((0, 2)), np.empty((0, 3)))
 
 
-def test_what_was_learned_is_told_apart_from_what_was_not():
+def test_a_net_with_a_discrepancy_differs_from_one_without():
     assert net_in(erring_twin(cases=10), 0.4, 0.1).learned == "virtual field"
     assert net_in(stand_in_twin(), 0.4, 0.1).learned is None

@@ -7,7 +7,7 @@ from seacage.conventions import Flag, InputError
 from seacage.records import Amendment, Sample
 from seacage.testing import stand_in_twin
 from seacage.twin import Answered, TwinState, adapted_at, adapted_at_us
-from seacage.twin._interval_factors import Tracked, adapted_by, counts
+from seacage.twin._interval_factors import Tracked, adapt_factor, counts
 
 NOON = datetime(2020, 2, 1, 12, tzinfo=UTC)
 
@@ -22,19 +22,19 @@ def reading(metres, *, seconds=0.0, flag=Flag.GOOD):
 
 
 def test_a_reading_outside_the_interval_widens_it_and_one_inside_narrows_it():
-    assert adapted_by(Tracked(), reading(12.0), (10.0, 0.5), rate=0.1).factor > 1.0
-    assert adapted_by(Tracked(), reading(10.2), (10.0, 0.5), rate=0.1).factor < 1.0
+    assert adapt_factor(Tracked(), reading(12.0), (10.0, 0.5), rate=0.1).factor > 1.0
+    assert adapt_factor(Tracked(), reading(10.2), (10.0, 0.5), rate=0.1).factor < 1.0
 
 
 def test_a_reading_is_compared_with_the_widened_interval():
-    assert adapted_by(Tracked(factor=3.0), reading(12.0), (10.0, 0.5), rate=0.1).factor < 3.0
+    assert adapt_factor(Tracked(factor=3.0), reading(12.0), (10.0, 0.5), rate=0.1).factor < 3.0
 
 
 def test_a_load_is_compared_in_newtons():
     load = Sample(
         stream="shackle-1", t=NOON, values={"tension_kn": 20.0}, flags={"tension_kn": Flag.GOOD}
     )
-    assert adapted_by(Tracked(), load, (20100.0, 100.0), rate=0.1).factor < 1.0
+    assert adapt_factor(Tracked(), load, (20100.0, 100.0), rate=0.1).factor < 1.0
 
 
 @pytest.mark.parametrize("flag", [Flag.SUSPECT, Flag.FAIL, Flag.MISSING])
@@ -43,7 +43,7 @@ def test_a_reading_that_is_not_sound_does_not_count(flag):
 
 
 def test_readings_of_the_same_minute_count_once():
-    tracked = adapted_by(Tracked(), reading(12.0), (10.0, 0.5), rate=0.1)
+    tracked = adapt_factor(Tracked(), reading(12.0), (10.0, 0.5), rate=0.1)
     assert not counts(tracked, reading(12.0, seconds=59.0), every_s=60.0)
     assert counts(tracked, reading(12.0, seconds=60.0), every_s=60.0)
 
@@ -71,7 +71,7 @@ def sensor(minutes, value, stream="depth-1", key="depth_m"):
 
 def quick(rate=0.1):
     twin = stand_in_twin()
-    return replace(twin, watch=replace(twin.watch, adapt_rate=rate))
+    return replace(twin, timeouts=replace(twin.timeouts, adapt_rate=rate))
 
 
 def played(samples, ticks, *, rate=0.1):

@@ -5,7 +5,7 @@ import pytest
 
 from seacage.conventions import Flag, InputError, Origin
 from seacage.records import FieldRecord, Record, moment
-from seacage.twin import align, spread_out, teaching_window
+from seacage.twin import align, spread_out, training_window
 
 START = np.datetime64("2020-01-18T00:00", "us")
 
@@ -88,20 +88,20 @@ def test_an_unknown_sensor_is_refused_with_the_names_there_are():
 
 def test_a_sensor_teaches_with_its_first_window_alone():
     sensor = stream("shackle-1", [0, 700, 40000, 40700], tension_kn=[1.0, 2.0, 3.0, 4.0])
-    start, end = teaching_window(sensor, days=25.0, pause_s=86400.0)
+    start, end = training_window(sensor, days=25.0, pause_s=86400.0)
     assert start == moment(sensor.time[0])
     assert moment(sensor.time[1]) < end < moment(sensor.time[2])
 
 
 def test_a_sensor_that_never_stops_teaches_with_its_first_days():
     sensor = stream("depth-1", np.arange(0, 5 * 1440, 60), depth_m=np.ones(120))
-    start, end = teaching_window(sensor, days=2.0, pause_s=86400.0)
+    start, end = training_window(sensor, days=2.0, pause_s=86400.0)
     assert end - start == timedelta(days=2)
 
 
 def test_a_sensor_without_a_sound_reading_has_no_teaching_window():
     sensor = stream("depth-1", [0, 1], depth_m=[np.nan, np.nan])
-    assert teaching_window(sensor, days=2.0, pause_s=86400.0) is None
+    assert training_window(sensor, days=2.0, pause_s=86400.0) is None
 
 
 def test_pairs_spread_out_reach_the_rare_currents_and_the_whole_time():

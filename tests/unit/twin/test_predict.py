@@ -17,8 +17,8 @@ def numbers(answer):
         answer.node_sigma,
         answer.volume_fraction,
         *(
-            getattr(said, part)
-            for said in (answer.bridle_tension, answer.sensor, answer.sensor_low)
+            getattr(prediction, part)
+            for prediction in (answer.bridle_tension, answer.sensor, answer.sensor_low)
             for part in ("mean", "std")
         ),
     )
@@ -68,9 +68,9 @@ def test_no_rows_are_answered_with_no_rows():
 def test_every_answer_says_its_level():
     twin = stand_in_twin()
     answer = twin.predict(SeaState(current_speed=0.5, current_to=90.0))
-    taught = {one.bridle for one in twin.cage.shackles}
+    corrected = {one.bridle for one in twin.cage.shackles}
     assert answer.sensor_level.tolist() == [2] * 8
-    assert answer.bridle_level.tolist() == [2 if line in taught else 1 for line in range(12)]
+    assert answer.bridle_level.tolist() == [2 if line in corrected else 1 for line in range(12)]
     assert answer.shape_level == 1
     assert answer.sensor_units == ("m", "m", "m", "N", "N", "N", "N", "N")
 
@@ -89,7 +89,7 @@ def test_level_one_repeats_the_simulations():
     assert np.abs(answer.bridle_low - truth.bridle_tension).max() < 0.1 * spread
 
 
-def test_a_sensor_answers_the_same_whoever_else_has_taught():
+def test_a_sensor_answers_the_same_whichever_others_have_level_2():
     twin, seas = stand_in_twin(), stand_in_seas(9, seed=3, current_speed=1.3)
     whole, bridles = twin.predict(seas), {one.name: one.bridle for one in twin.cage.shackles}
     for names in (["depth-2"], ["shackle-4", "depth-3", "shackle-1"]):
@@ -177,7 +177,9 @@ def half_a_tide():
         for one in process.members
     )
     trained = replace(model, rest=replace(model.rest, own=(replace(process, members=members),)))
-    return replace(twin, models=twin.models.taught("shackle-1", trained)), process.cases()[west]
+    return replace(twin, models=twin.models.with_level_2("shackle-1", trained)), process.cases()[
+        west
+    ]
 
 
 def test_the_spread_of_level_2_has_no_step_at_the_edge_of_its_own_domain():
@@ -229,7 +231,7 @@ def test_slack_and_fast_water_are_outside_what_trained_level_2():
     assert not answer.sensor_in_domain[:, column].any()
 
 
-def test_faster_water_than_was_trained_is_answered_and_said_to_be():
+def test_faster_water_than_was_trained_is_answered_and_labelled():
     seas = [SeaState(current_speed=speed, current_to=40.0) for speed in (0.9, 1.0, 1.001, 1.3)]
     answer = stand_in_twin().predict(seas)
     assert answer.valid.all()
@@ -241,10 +243,10 @@ def test_faster_water_than_was_trained_is_answered_and_said_to_be():
 def test_beyond_the_edge_the_spread_holds_the_step_from_the_edge():
     seas = [SeaState(current_speed=speed, current_to=40.0) for speed in (1.0, 1.4)]
     answer = stand_in_twin().predict(seas)
-    for said in (answer.sensor, answer.sensor_low, answer.bridle_tension):
-        step = np.abs(said.mean[1] - said.mean[0])
-        assert (said.std[1] >= step * 0.999).all()
-        assert (said.std[1] > said.std[0]).all()
+    for prediction in (answer.sensor, answer.sensor_low, answer.bridle_tension):
+        step = np.abs(prediction.mean[1] - prediction.mean[0])
+        assert (prediction.std[1] >= step * 0.999).all()
+        assert (prediction.std[1] > prediction.std[0]).all()
     moved = np.abs(answer.node_position[1] - answer.node_position[0]).max(axis=1)
     assert (answer.node_sigma[1] >= moved * 0.999).all()
 

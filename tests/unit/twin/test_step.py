@@ -28,15 +28,15 @@ def depth(minutes=0.0, metres=14.0, stream="depth-2"):
 def played(*samples, ticks=()):
     """Steps through samples, each at its own time, then ticks at minutes after noon."""
     twin = stand_in_twin()
-    state, told = twin.start(), []
+    state, seen = twin.start(), []
     for sample in samples:
         now = max(sample.t, state.clock or sample.t)
         state, events = twin.step(state, sample, now)
-        told += events
+        seen += events
     for minutes in ticks:
         state, events = twin.step(state, None, NOON + timedelta(minutes=minutes))
-        told += events
-    return state, told
+        seen += events
+    return state, seen
 
 
 def only(events, kind):
@@ -63,7 +63,7 @@ def test_before_the_first_reading_there_is_no_number():
     _, (event,) = played(ticks=[0])
     assert event.answer.valid.tolist() == [False]
     assert np.isnan(event.answer.bridle_tension.mean).all()
-    assert event.answer.reason == ("buoy-1 has not said current_speed_m_s yet.",)
+    assert event.answer.reason == ("buoy-1 has not sent current_speed_m_s yet.",)
     assert event.metocean is None
     assert event.input_age_s is None
 
@@ -130,7 +130,7 @@ def test_a_repeated_sample_changes_nothing_and_says_nothing():
     assert len(events) == 1
 
 
-def test_a_spike_is_told_when_the_next_reading_has_come():
+def test_a_spike_is_reported_when_the_next_reading_has_come():
     readings = [depth(0, 7.0), depth(1, 7.1), depth(2, 30.0)]
     before, events = played(*readings)
     (jump,) = only(events, Flagged)
@@ -231,7 +231,7 @@ def test_a_stream_that_this_cage_does_not_have_is_named():
     assert state.streams == {}
 
 
-def test_silence_and_return_are_said_once_each():
+def test_silence_and_return_are_reported_once_each():
     state, events = played(depth(), ticks=[14, 16, 17])
     assert only(events, StreamSilent) == [StreamSilent(stream="depth-2", since=NOON)]
     assert state.silent == {"depth-2"}
@@ -261,7 +261,7 @@ def test_a_late_delivery_of_old_words_does_not_end_a_silence():
     assert state.silent == {"depth-2"}
 
 
-def test_a_flat_line_of_a_cage_sensor_is_flagged_and_said():
+def test_a_flat_line_of_a_cage_sensor_is_flagged_and_reported():
     _, events = played(*(depth(minutes, 14.0) for minutes in range(0, 121, 10)))
     flags = [event.sample.flags["depth_m"] for event in only(events, Flagged)]
     assert Flag.SUSPECT in flags

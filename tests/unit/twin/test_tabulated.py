@@ -19,7 +19,7 @@ COARSE = {
 
 @cache
 def twin() -> Twin:
-    """The stand-in twin with two taught sensors, for the sake of time."""
+    """The stand-in twin with level 2 of two sensors, for the sake of time."""
     whole = stand_in_twin()
     upper = {name: whole.models.upper[name] for name in ("depth-2", "shackle-3")}
     return replace(whole, models=replace(whole.models, upper=upper))

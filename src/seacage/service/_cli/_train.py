@@ -95,7 +95,7 @@ def train(
         given = " with ".join(str(path) for path in (field, campaign or base) if path)
         raise NonsenseError(f"{given}: {error}") from error
     twin.write(out, key=key)
-    lessons = twin.provenance.lessons
+    lessons = twin.provenance.training_windows
     levels = {name: 2 if name in lessons else 1 for name in twin.sensor_names}
     taught = {name: lessons[name].points if name in lessons else 0 for name in levels}
     tell(

@@ -73,7 +73,7 @@ def state_of(name: str, twin: Twin, answered: Answered, memory: TwinState) -> St
         origin=str(twin.origin),
         water=_water(answered.metocean, _period(memory, twin.buoy, answered.t)),
         bridles=_bridles(twin.cage, answer, shackle_loads(twin, memory, answered.t)),
-        sensors=_sensors(answer, memory, answered.t, twin.watch.sensor_silent_after_s),
+        sensors=_sensors(answer, memory, answered.t, twin.timeouts.sensor_silent_after_s),
         shape_level=answer.shape_level,
         shape=_shape_state(answer),
         volume_fraction=_number(answer.volume_fraction[0], 4),
@@ -227,7 +227,7 @@ def topology_of(name: str, twin: Twin, *, speed: float) -> Topology:
         bridle_capacity_kn=(cage.bridle_capacity / 1e3).round(_DECIMALS).tolist(),
         depth_sensors=[Position(name=one.name, node=one.node) for one in cage.depth_sensors],
         shackles=[ShacklePlace(name=one.name, bridle=one.bridle) for one in cage.shackles],
-        stale_after_s=twin.watch.stale_after_s,
+        stale_after_s=twin.timeouts.stale_after_s,
         speed=speed,
     )
     digest = hashlib.sha256(topology.model_dump_json().encode()).hexdigest()

@@ -114,7 +114,7 @@ class LiveCage:
         self._mailboxes: set[Mailbox[Snapshot]] = set()
         self._topology = topology_of(name, twin, speed=clock.speed)
         self.rest_position = np.array(self._topology.rest_position_m)
-        limits = policy or AlarmPolicy.default(twin.cage, buoy=twin.buoy, watch=twin.watch)
+        limits = policy or AlarmPolicy.default(twin.cage, buoy=twin.buoy, timeouts=twin.timeouts)
         self.desk = AlarmDesk(cage=name, twin=twin, store=store, policy=limits)
         self.live = LiveTwin(
             name=name, twin=twin, store=store, clock=clock, desk=self.desk, tick_s=tick_s
@@ -134,7 +134,7 @@ class LiveCage:
     @property
     def latest_allowed(self) -> datetime:
         """The time after which a sample's own clock must be wrong."""
-        return latest_allowed(self.clock, self.twin.watch.future_s)
+        return latest_allowed(self.clock, self.twin.timeouts.future_s)
 
     def state_of(
         self, answered: Answered, memory: TwinState, *, alarms: Sequence[AlarmBrief] = ()

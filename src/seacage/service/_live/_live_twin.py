@@ -226,7 +226,7 @@ class LiveTwin:
         self.begin()
         # What was withdrawn by a clock that has come back to where it had been was right.
         off_s = [(one, by_s + step.by_s) for one, by_s in self._went_back]
-        undone = [one for one, by_s in off_s if abs(by_s) <= self._twin.watch.future_s]
+        undone = [one for one, by_s in off_s if abs(by_s) <= self._twin.timeouts.future_s]
         self._went_back = [(one, by_s) for one, by_s in off_s if one not in undone]
         self._withdrawing = [one for one in self._withdrawing if one[0] not in undone]
         self._reinstating += [(one, stream) for one in undone for stream in streams]

@@ -77,7 +77,7 @@ def remembered(
     """
     begin = until - ADAPTATION_BLOCK
     # With those that are a little ahead: they are there already, and govern when their time comes.
-    end = at + timedelta(seconds=twin.watch.future_s) + _INSTANT
+    end = at + timedelta(seconds=twin.timeouts.future_s) + _INSTANT
     state = _started(twin, cage, kept, until)
     samples = list[Sample]()
     for stream in streams_of(twin):

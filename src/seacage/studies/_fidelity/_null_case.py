@@ -10,7 +10,7 @@ from seacage.records import FieldRecord
 from seacage.studies._fidelity._windows import MEAN_S, Windows, window_means
 from seacage.studies._interval import Interval, by_day
 from seacage.surrogates import Prediction
-from seacage.twin import Correction, Pairs, Said, spread_out
+from seacage.twin import Correction, FixedPrediction, Pairs, spread_out
 
 LEAST = 20
 """Least number of readings to train on, and to score on."""
@@ -252,17 +252,17 @@ def _predict(
     training = Pairs(time=trial.time, metocean=water, value=reading).rows(trial.teach)
     chosen = spread_out(training, points, seed=seed)
     rows = np.searchsorted(trial.time, chosen.time)
-    model = Correction.learned(
+    model = Correction.fit(
         chosen,
         chosen.metocean.features(inputs),
-        Said(prediction=_exactly(trial.low[rows])),
+        FixedPrediction(prediction=_exactly(trial.low[rows])),
         restarts=_RESTARTS,
         seed=seed,
     )
-    if not model.proven(chosen, trial.low[rows]):  # a twin would stay at level 1
+    if not model.beats_level_1(chosen, trial.low[rows]):  # a twin would stay at level 1
         return trial.low[~trial.teach]
     features = water.rows(~trial.teach).features(inputs)
-    return model.behind(features, _exactly(trial.low[~trial.teach])).mean
+    return model.latent(features, _exactly(trial.low[~trial.teach])).mean
 
 
 def _exactly(answers: Series) -> Prediction:

@@ -24,7 +24,7 @@ from seacage.records import (
 )
 from seacage.studies._sensor_scores import MEAN_S
 from seacage.studies._stages import Stages
-from seacage.twin import Metocean, Watch
+from seacage.twin import Metocean, StreamTimeouts
 
 SIMULATION = ("conventions", "ocean", "cage", "dynamics", "campaigns")
 """Rooms whose code makes the low fidelity's answers."""
@@ -250,7 +250,7 @@ def buoy_water(
     at = end[:, None] - (ago * 1e6).astype("timedelta64[us]")
     word = np.searchsorted(buoy.time, at, side="right") - 1
     age = (at - buoy.time[word]) / np.timedelta64(1, "s")
-    fresh = (word >= 0) & (age <= Watch().stale_after_s)
+    fresh = (word >= 0) & (age <= StreamTimeouts().stale_after_s)
     water = Metocean.of_record(buoy)
     period = buoy.values.get("tp_s", np.zeros(len(buoy)))
     columns = np.column_stack([water.current_velocity, water.hs, water.wave_direction, period])

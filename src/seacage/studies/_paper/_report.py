@@ -464,7 +464,7 @@ def _way_bars(way: WayScore, low: np.ndarray) -> Lessons:
 
 
 def _points(scored: ScoredWays) -> str:
-    points = [one.points for one in scored.twin.provenance.lessons.values()]
+    points = [one.points for one in scored.twin.provenance.training_windows.values()]
     return str(max(points)) if points else "no"
 
 

@@ -21,7 +21,7 @@ from seacage.studies._paper._shape_study import ShapeStudy, ShapeTrial, shape_st
 from seacage.studies._paper._ways import ScoredWays, WayScore, compare_ways, has_waves, ways_of
 from seacage.studies._sensor_scores import SensorScore
 from seacage.studies._text import join_names
-from seacage.twin import Lesson
+from seacage.twin import TrainingWindow
 
 _SHOWN_SPEED = 0.6
 """Of the current that the report draws the net in [m/s]."""
@@ -233,13 +233,13 @@ def _recipe(chain: Chain, scored: ScoredWays, shapes: ShapeStudy) -> dict[str, s
         "Buoy record and sensors (virtual field)": f"{begin} to {end}, {readings:,} readings of "
         f"{len(field.sensors)} sensors",
         "Days": f"the first {recipe.teaching_days} train, the later ones validate",
-        **_training_windows(scored.twin.provenance.lessons),
+        **_training_windows(scored.twin.provenance.training_windows),
     }
 
 
-def _training_windows(windows: Mapping[str, Lesson]) -> dict[str, str]:
+def _training_windows(windows: Mapping[str, TrainingWindow]) -> dict[str, str]:
     """Training windows of the sensors, those with the same window in one line."""
-    alike: dict[Lesson, list[str]] = {}
+    alike: dict[TrainingWindow, list[str]] = {}
     for name, window in windows.items():
         alike.setdefault(window, []).append(name)
     return {

@@ -126,7 +126,11 @@ def compare_ways(chain: Chain, ways: Sequence[Way]) -> ScoredWays:
                 )
             )
         scores.append(
-            WayScore(name=way.name, trained=tuple(twin.provenance.lessons), sensors=tuple(sensors))
+            WayScore(
+                name=way.name,
+                trained=tuple(twin.provenance.training_windows),
+                sensors=tuple(sensors),
+            )
         )
     chain.report("score", total, total)
     first = {name: _at(compared[0][name], time) for name, time in common.items()}

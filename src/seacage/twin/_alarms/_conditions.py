@@ -54,7 +54,7 @@ def shackle_loads(
     """Load of each bridle whose shackle has given a good reading within its timeout [N]."""
     loads = {
         shackle.bridle: _recent_load(
-            state.streams.get(shackle.name, ()), now, twin.watch.sensor_silent_after_s
+            state.streams.get(shackle.name, ()), now, twin.timeouts.sensor_silent_after_s
         )
         for shackle in twin.cage.shackles
         if shackle.name not in distrusted | state.silent

@@ -8,7 +8,7 @@ from typing import Any, Self, cast
 from seacage.cage import Cage
 from seacage.conventions import InputError
 from seacage.twin._alarms._alarm import Limit
-from seacage.twin._state import Watch
+from seacage.twin._state import StreamTimeouts
 
 DEFAULT_LIMITS: Mapping[str, Limit] = {
     # Of the capacity, which the material factor has divided already: reached, the line has used
@@ -80,7 +80,11 @@ class AlarmPolicy:
 
     @classmethod
     def default(
-        cls, cage: Cage | None = None, *, buoy: str = "buoy-1", watch: Watch | None = None
+        cls,
+        cage: Cage | None = None,
+        *,
+        buoy: str = "buoy-1",
+        timeouts: StreamTimeouts | None = None,
     ) -> Self:
         """Return the default limits.
 
@@ -90,14 +94,14 @@ class AlarmPolicy:
             Names the bridles and sensors that limits may be given for.
         buoy
             The stream that the inputs come from.
-        watch
+        timeouts
             Timeouts of the streams; None for the defaults.
         """
-        watch = Watch() if watch is None else watch
+        timeouts = StreamTimeouts() if timeouts is None else timeouts
         limits = dict(DEFAULT_LIMITS)
-        limits["silent"] = _silence(limits["silent"], watch.sensor_silent_after_s)
+        limits["silent"] = _silence(limits["silent"], timeouts.sensor_silent_after_s)
         limits[f"silent.{buoy}"] = _silence(
-            replace(limits["silent"], severity=600), watch.stale_after_s
+            replace(limits["silent"], severity=600), timeouts.stale_after_s
         )
         return cls(limits=limits, names=alarm_names(cage, buoy) if cage else frozenset())
 
@@ -108,7 +112,7 @@ class AlarmPolicy:
         cage: Cage | None = None,
         *,
         buoy: str = "buoy-1",
-        watch: Watch | None = None,
+        timeouts: StreamTimeouts | None = None,
     ) -> Self:
         """Return the default limits, changed by a table.
 
@@ -121,7 +125,7 @@ class AlarmPolicy:
             A kind, a name or a key that is unknown, a value that is no number, or limits that
             ``Limit`` refuses.
         """
-        policy = cls.default(cage, buoy=buoy, watch=watch)
+        policy = cls.default(cage, buoy=buoy, timeouts=timeouts)
         limits = dict(policy.limits)
         for name in sorted(table, key=lambda one: "." in one):  # a name starts from its kind
             _check_name(name, policy.names)

@@ -1,4 +1,4 @@
-"""How far points and paths are from a net that is not known exactly."""
+"""Clearance of points and paths from a net whose shape is uncertain."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
@@ -9,16 +9,16 @@ from jaxtyping import Bool, Float, Int
 
 from seacage.conventions import InputError
 
-STRETCH = 0.25
-"""Longest between two points at which a path is looked at [m]."""
+SPACING = 0.25
+"""Largest distance between two sampled points of a path [m]."""
 
-LONGEST = 8_000
-"""Points at most at which a path is looked at: two kilometres."""
+MOST_POINTS = 8_000
+"""Sampled points of a path at most: two kilometres."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Clearance:
-    """How far points are from a net.
+    """Clearance of points from a net.
 
     Parameters
     ----------
@@ -29,14 +29,14 @@ class Clearance:
     position, normal
         The nearest point of the predicted net [m], and its normal out of the cage.
     expected
-        How far the point is from the net that is to be expected, once the twin's known error
-        is taken off; negative where that net lies beyond the point [m].
+        Distance of the point from the expected net, which is the predicted one less the twin's
+        mean error; negative where that net lies beyond the point [m].
     sigma
-        Standard deviation of that, across the net [m]. Where the twin has no discrepancy
+        Standard deviation of that distance, across the net [m]. Where the twin has no discrepancy
         (``PredictedNet.learned`` is None) it is the emulator's own, about the simulations, and
         the probabilities below are no statement about the true net.
     below
-        The distance that ``p_below`` asks about [m].
+        Distance of ``p_below`` [m].
     p_below
         Probability that the true net is nearer than ``below``, on whichever side [-].
     p_through
@@ -73,27 +73,27 @@ class Clearance:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PathClearance:
-    """How far a path is from a net.
+    """Clearance of a path from a net.
 
-    Between two looks, ``STRETCH`` apart at most, a path may come nearer by half of that. In
+    Between two samples, ``SPACING`` apart at most, a path may come nearer by half of that. In
     each case of the twin's error the whole net is displaced, so that all points of a path
-    share it; what the cases leave is taken to be one number over a patch of the net, three rings
-    high and a quarter of the way round, and another in the next: on the virtual field that was
-    nearest to the truth. Left out: that the net moves while the path is swum.
+    share it; the scatter about the cases is taken as one number over a patch of the net, three
+    rings high and a quarter of the way round, and independent in the next: on the virtual field
+    that was nearest to the truth. Left out: that the net moves while the path is swum.
 
     Parameters
     ----------
     point
-        Where the path was looked at [m].
+        Samples of the path [m].
     along
-        How far along the path that is [m].
+        Distance of each along the path [m].
     clearance
-        There.
+        At the samples.
     p_below
         Probability that the path comes nearer to the true net than ``clearance.below`` [-].
     p_least, p_most
-        Were what the cases leave the same all over the net, and were it another from each point
-        to the next: the one is too low and the other too high.
+        The same if the scatter about the cases were one number all over the net, and if it were
+        independent from each point to the next: the one is too low and the other too high.
     """
 
     point: Float[np.ndarray, "point 3"]
@@ -109,21 +109,22 @@ class PathClearance:
         return int(np.argmin(self.clearance.distance))
 
 
-def sampled(
-    path: Float[np.ndarray, "corner 3"], *, stretch: float = STRETCH
+def sample_path(
+    path: Float[np.ndarray, "corner 3"], *, spacing: float = SPACING
 ) -> tuple[Float[np.ndarray, "point 3"], Float[np.ndarray, " point"]]:
-    """Points along straight lines, and how far along they are [m].
+    """Sample straight lines: points, and their distance along the lines [m].
 
-    Every corner is among them, and no two neighbours are farther apart than ``stretch`` [m].
+    Every corner is among them, and no two neighbours are farther apart than ``spacing`` [m].
     """
     leg = np.linalg.norm(np.diff(path, axis=0), axis=1)
     total = np.append(0.0, np.cumsum(leg))
-    if total[-1] / stretch > LONGEST:
+    if total[-1] / spacing > MOST_POINTS:
         raise InputError(
-            f"A path of {total[-1]:.0f} m is longer than the {LONGEST * stretch:.0f} m that can be "
-            "looked at at once. Cut it, and check that its unit is metres."
+            f"A path of {total[-1]:.0f} m is longer than the "
+            f"{MOST_POINTS * spacing:.0f} m that can be sampled at once. Cut it, and "
+            "check that its unit is metres."
         )
-    parts = np.maximum(np.ceil(leg / stretch), 1).astype(int)
+    parts = np.maximum(np.ceil(leg / spacing), 1).astype(int)
     # Corners and what lies between them, leg by leg: how many legs, and parts of the next.
     legs = np.repeat(np.arange(len(leg)), parts)
     within = np.arange(len(legs)) - (np.cumsum(parts) - parts)[legs]

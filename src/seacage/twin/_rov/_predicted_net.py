@@ -1,4 +1,4 @@
-"""The net as a twin predicts it, and how far one is from it, and how surely."""
+"""The net as a twin predicts it, and the clearance of points and paths from it."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -14,14 +14,14 @@ from seacage.twin._answer import Answer
 from seacage.twin._discrepancy import ShapeError
 from seacage.twin._events import Answered
 from seacage.twin._metocean import Metocean
-from seacage.twin._rov._clearance import Clearance, PathClearance, sampled
+from seacage.twin._rov._clearance import Clearance, PathClearance, sample_path
 from seacage.twin._twin import Twin
 
 PATCH_RINGS = 3
 """Height of a patch of the net over which what the cases leave is one number."""
 
-BLOCK = 2000
-"""Points answered at once: each meets every case of the error."""
+POINTS_AT_ONCE = 2000
+"""Points at once: each is compared with every case of the error."""
 
 
 class StaleError(SeacageError):
@@ -30,7 +30,7 @@ class StaleError(SeacageError):
 
 # The expected net and its error's spread at some points, case by case.
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class _Expected:
+class _ExpectedNet:
     near: Nearest
     room: Float[np.ndarray, "point case"]
     scatter: Float[np.ndarray, " point"]
@@ -58,13 +58,13 @@ class PredictedNet:
     node_sigma
         Standard deviation of the surrogate [m].
     error
-        What the prediction's error may be, beyond the surrogate's.
+        Distribution of the prediction's error, beyond the surrogate's.
     learned
-        How the true shapes were made that the error was learned from; None where it was not.
+        Origin of the true shapes behind ``error``; None where there are none.
     t, age_s
         The time of the prediction, and the age of the reading it rests on [s].
     in_domain
-        Whether the twin had learned about such a current.
+        Whether the current is in the twin's training domain.
     """
 
     cage: Cage
@@ -90,7 +90,7 @@ class PredictedNet:
         Parameters
         ----------
         twin, answered
-            Who answered, and what.
+            The twin and its answer.
         allow_stale
             Take the last reading however old it is, as long as there was a sound one.
         most_age_s
@@ -156,10 +156,10 @@ class PredictedNet:
         point
             East, north and up of the cage's centre [m].
         below
-            The distance asked about [m].
+            Distance of ``p_below`` [m].
         """
         _check(point, below)
-        blocks = np.array_split(np.arange(len(point)), 1 + len(point) // BLOCK)
+        blocks = np.array_split(np.arange(len(point)), 1 + len(point) // POINTS_AT_ONCE)
         return Clearance.joined([self._clearance(point[rows], below) for rows in blocks])
 
     def along(self, path: Float[np.ndarray, "corner 3"], *, below: float = 1.0) -> PathClearance:
@@ -170,14 +170,14 @@ class PredictedNet:
         path
             Its corners, in order [m].
         below
-            The distance asked about [m].
+            Distance of ``p_below`` [m].
         """
         _check(path, below)
-        point, along = sampled(path)
+        point, along = sample_path(path)
         weight = self.error.weight
         p, patch = np.empty((len(point), len(weight))), np.empty(len(point), dtype=int)
-        for rows in np.array_split(np.arange(len(point)), 1 + len(point) // BLOCK):
-            expected = self._expected(point[rows])
+        for rows in np.array_split(np.arange(len(point)), 1 + len(point) // POINTS_AT_ONCE):
+            expected = self._expect(point[rows])
             p[rows], patch[rows] = expected.p_below(below), self._patch(expected.near)
         return PathClearance(
             point=point,
@@ -194,18 +194,18 @@ class PredictedNet:
         quarter = 4 * (node % self.cage.spokes) // self.cage.spokes
         return 4 * (self.error.ring_of[node] // PATCH_RINGS) + quarter
 
-    def _expected(self, point: Float[np.ndarray, "point 3"]) -> _Expected:
+    def _expect(self, point: Float[np.ndarray, "point 3"]) -> _ExpectedNet:
         near = self.cage.nearest(point, self.expected_position)
         room = np.where(near.inside, near.distance, -near.distance)
-        return _Expected(
+        return _ExpectedNet(
             near=near,
-            room=room[:, None] + self.error.moved(near),
+            room=room[:, None] + self.error.displacement(near),
             scatter=self.error.scatter(near, self.node_sigma),
         )
 
     def _clearance(self, point: Float[np.ndarray, "point 3"], below: float) -> Clearance:
         near = self.cage.nearest(point, self.node_position)
-        expected, weight = self._expected(point), self.error.weight
+        expected, weight = self._expect(point), self.error.weight
         room = expected.room @ weight
         variance = (expected.room - room[:, None]) ** 2 @ weight
         p_inside = expected.p_inside() @ weight
@@ -231,7 +231,7 @@ def _check_fresh(answer: Answer, age_s: float, most_age_s: float | None) -> None
     if most_age_s is not None and age_s > most_age_s:
         raise StaleError(
             f"The net rests on a reading of {age_s:.0f} s ago; {most_age_s:.0f} s is the limit "
-            "asked for. Wait for the next reading, or allow a stale state."
+            "given. Wait for the next reading, or allow a stale state."
         )
 
 
@@ -242,7 +242,7 @@ def _check(point: Float[np.ndarray, "point 3"], below: float) -> None:
             "give at least one point, each with three numbers in metres."
         )
     if not (np.isfinite(below) and below >= 0.0):
-        raise InputError(f"The distance asked about, {below:g} m, must be 0 m or more.")
+        raise InputError(f"below = {below:g} m must be 0 m or more.")
 
 
 def _by_patch(

@@ -1,7 +1,7 @@
 """A twin's folder: settings, arrays, the manifest that seals them and its signature."""
 
 from seacage.twin._saving._folder import read_folder, write_folder
-from seacage.twin._saving._parts import restored, saved
+from seacage.twin._saving._parts import from_parts, to_parts
 from seacage.twin._saving._signature import read_key
 
-__all__ = ["read_folder", "read_key", "restored", "saved", "write_folder"]
+__all__ = ["from_parts", "read_folder", "read_key", "to_parts", "write_folder"]

@@ -73,12 +73,12 @@ def read_folder(
         A file is missing, foreign, changed, too large or a link, an array is not plain numbers,
         or the signature is missing or another's.
     """
-    contents = _sealed(folder, key)
-    settings = _parsed(contents[SETTINGS], folder / SETTINGS)
+    contents = _read_sealed(folder, key)
+    settings = _settings(contents[SETTINGS], folder / SETTINGS)
     return settings, _arrays(contents[ARRAYS], folder / ARRAYS)
 
 
-def _sealed(folder: Path, key: bytes | None) -> dict[str, bytes]:
+def _read_sealed(folder: Path, key: bytes | None) -> dict[str, bytes]:
     expected = {SETTINGS, ARRAYS, MANIFEST}
     found = {path.name for path in folder.iterdir()} if folder.is_dir() else set[str]()
     if found - {SIGNATURE} != expected:
@@ -129,7 +129,7 @@ def _arrays(content: bytes, path: Path) -> dict[str, np.ndarray]:
     return arrays
 
 
-def _parsed(content: bytes, path: Path) -> dict[str, object]:
+def _settings(content: bytes, path: Path) -> dict[str, object]:
     settings: object = parse_json(content, str(path), refusal=ModelError)
     if not isinstance(settings, dict):
         raise ModelError(f"{path} holds no settings.")

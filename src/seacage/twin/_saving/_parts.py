@@ -25,7 +25,8 @@ from seacage.twin._discrepancy import Discrepancy
 from seacage.twin._metocean import Input
 from seacage.twin._models import Models
 from seacage.twin._provenance import Provenance
-from seacage.twin._state import Watch
+from seacage.twin._saved_keys import saved_keys
+from seacage.twin._state import StreamTimeouts
 
 FORMAT = "seacage twin"
 VERSION = 2
@@ -34,7 +35,7 @@ UPPER = "upper/"
 """Before the sensor's name, in the names of level 2's parts."""
 
 DISCREPANCY = "discrepancy:"
-"""Before the names of what is known of the shapes' errors."""
+"""Before the names of the arrays of the shapes' errors."""
 
 _ERRORS = ("current_velocity", "ring", "rest")
 
@@ -55,15 +56,17 @@ class Header:
     gains: Mapping[str, float]
     spreads: Mapping[str, Spread]
     buoy: str
-    watch: Watch
+    timeouts: StreamTimeouts
     provenance: Provenance
 
+    __pydantic_config__ = saved_keys(timeouts="watch")
 
-def saved(
+
+def to_parts(
     models: Models,
     provenance: Provenance,
     buoy: str,
-    watch: Watch,
+    timeouts: StreamTimeouts,
     discrepancy: Discrepancy | None,
 ) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
     """Return a twin's settings and arrays."""
@@ -80,10 +83,10 @@ def saved(
         gains={name: model.gain for name, model in models.upper.items()},
         spreads={name: model.spread for name, model in models.upper.items()},
         buoy=buoy,
-        watch=watch,
+        timeouts=timeouts,
         provenance=provenance,
     )
-    settings = TypeAdapter(Header).dump_python(header, mode="json")
+    settings = TypeAdapter(Header).dump_python(header, mode="json", by_alias=True)
     parts: dict[str, Fitted] = {"bridles": models.bridles, "shape": models.shape}
     parts |= {f"{UPPER}{name}": model.rest for name, model in models.upper.items()}
     encoded = {name: encode(part) for name, part in parts.items()}
@@ -99,10 +102,10 @@ def saved(
     return settings, arrays
 
 
-def restored(
+def from_parts(
     settings: Mapping[str, Any], arrays: Mapping[str, np.ndarray], *, source: str
 ) -> dict[str, Any]:
-    """Return the parts of the twin that ``saved`` described.
+    """Return the fields of the twin that ``to_parts`` took apart.
 
     Raises
     ------
@@ -130,7 +133,7 @@ def restored(
         "models": models,
         "provenance": header.provenance,
         "buoy": header.buoy,
-        "watch": header.watch,
+        "timeouts": header.timeouts,
         "discrepancy": discrepancy,
     }
 
@@ -177,5 +180,5 @@ def _models(
     for sensor, gain in header.gains.items():
         rest = part(f"{UPPER}{sensor}", FittedNARGP, lower=models.lower(sensor))
         model = Correction(gain=gain, rest=rest, spread=header.spreads[sensor])
-        models = models.taught(sensor, model)
+        models = models.with_level_2(sensor, model)
     return models

@@ -1,4 +1,4 @@
-"""Who judges whose lesson: a sensor its own, or sensors that stayed those that did not."""
+"""Calibration of level-2 intervals: by a sensor's held-out readings, or by those of others."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -10,213 +10,213 @@ from seacage.surrogates import conformal_factor, variance_components
 from seacage.twin._correction import LEAST_SHARE, Correction, Spread
 from seacage.twin._models import Models
 from seacage.twin._pairs import Pairs
-from seacage.twin._provenance import Lesson
+from seacage.twin._provenance import TrainingWindow
 from seacage.twin._training._held_out import (
     DAY,
-    Judged,
-    apart,
-    blocks_in,
-    evenly,
+    HeldOut,
+    cross_validate,
+    independent_count,
+    outside,
     span_s,
-    stretches,
+    stretch_rows,
+    thin,
     white_noise,
-    without_in_turn,
 )
 
 SHORT = 2.0 * DAY
-"""A lesson shorter than this says little of other days [s]."""
+"""A training window shorter than this is calibrated by other sensors [s]."""
 
 LEAST_PAIRS = 20
-"""Readings of a sensor that stayed, in a short lesson's hours."""
+"""Readings of another sensor within a short training window."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Taught:
-    """What one sensor has to teach.
+class SensorTraining:
+    """Training data of one sensor.
 
     Parameters
     ----------
-    lesson
-        Its window.
-    pairs, chosen
-        All its readings, and those that teach.
+    window
+        Its training window.
+    pairs, selected
+        All its readings in the window, and those that level 2 is fitted to.
     calibrates
-        Whether the others are to calibrate.
+        Whether the remaining readings calibrate the intervals.
     """
 
-    lesson: Lesson
+    window: TrainingWindow
     pairs: Pairs
-    chosen: Pairs
+    selected: Pairs
     calibrates: bool
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Lessons:
-    """All that the sensors of a cage have to teach, and how they do.
+class CageTraining:
+    """Training data of all sensors of a cage, and the settings of their fits.
 
     Parameters
     ----------
     models
         Level 1.
-    taught
-        By sensor.
+    sensors
+        The data by sensor.
     restarts, seed
-        Of the searches.
-    choose
-        Which readings teach.
-    judged
-        What lessons on other sensors' hours were found to miss, by sensor and hours; filled as
-        it is asked for.
+        Of the searches for hyperparameters.
+    select
+        Selects the readings to fit to.
+    held_out
+        Held-out readings of models fitted within another sensor's short window, by sensor and
+        hours; filled on demand.
     """
 
     models: Models
-    taught: Mapping[str, Taught]
+    sensors: Mapping[str, SensorTraining]
     restarts: int
     seed: int
-    choose: Callable[[Pairs], Pairs]
-    judged: dict[tuple[str, int, int], Judged] = field(
-        default_factory=dict[tuple[str, int, int], Judged]
+    select: Callable[[Pairs], Pairs]
+    held_out: dict[tuple[str, int, int], HeldOut] = field(
+        default_factory=dict[tuple[str, int, int], HeldOut]
     )
 
-    def learned(self, sensor: str, chosen: Pairs) -> Correction:
-        """Level 2 of a sensor from some of its readings, not calibrated."""
-        x = chosen.metocean.features(self.models.inputs)
+    def fit(self, sensor: str, selected: Pairs) -> Correction:
+        """Fit level 2 of a sensor to some of its readings, without calibration."""
+        x = selected.metocean.features(self.models.inputs)
         lower = self.models.lower(sensor)
-        return Correction.learned(chosen, x, lower, restarts=self.restarts, seed=self.seed)
+        return Correction.fit(selected, x, lower, restarts=self.restarts, seed=self.seed)
 
-    def stayed(self, short: Pairs) -> list[str]:
-        """Sensors with a day at least beside a short lesson, that taught in its hours too."""
+    def references(self, short: Pairs) -> list[str]:
+        """Sensors with readings in a short training window, and on a day at least beside it."""
         return [
             name
-            for name, one in self.taught.items()
+            for name, one in self.sensors.items()
             if one.calibrates
             and span_s(one.pairs) >= SHORT
             and len(_within(one.pairs, short)) >= LEAST_PAIRS
-            and _days_apart(one.pairs, short) >= 1.0
+            and _days_outside(one.pairs, short) >= 1.0
         ]
 
 
-def calibrated(model: Correction, lessons: Lessons, sensor: str) -> Correction:
-    """Calibrate what a sensor taught.
+def calibrate(model: Correction, training: CageTraining, sensor: str) -> Correction:
+    """Calibrate the intervals of a sensor's level 2.
 
     Parameters
     ----------
     model
-        What it taught, not calibrated.
-    lessons
+        As fitted.
+    training
         Of all sensors.
     sensor
         Its name.
     """
-    pairs = lessons.taught[sensor].pairs
-    model = _less_noise(model, lessons, pairs)
-    stayed = lessons.stayed(pairs) if span_s(pairs) < SHORT else []
-    if stayed:
-        others = [_judged_short(lessons, name, pairs) for name in stayed]
-        days = sum(_days_apart(lessons.taught[name].pairs, pairs) for name in stayed)
-        return replace(model, spread=carried_spread(model, others, days))
-    blocks = blocks_in(pairs)
-    if blocks < 2:
+    pairs = training.sensors[sensor].pairs
+    model = _with_white_noise(model, training, pairs)
+    references = training.references(pairs) if span_s(pairs) < SHORT else []
+    if references:
+        others = [_held_out_of_reference(training, name, pairs) for name in references]
+        days = sum(_days_outside(training.sensors[name].pairs, pairs) for name in references)
+        return replace(model, spread=spread_by_others(model, others, days))
+    count = independent_count(pairs)
+    if count < 2:
         return model
-    judging = evenly(pairs)
-    x = judging.metocean.features(lessons.models.inputs)
-    mean, doubt = without_in_turn(model, lessons.taught[sensor].chosen, judging, x)
-    column = lessons.models.cage.sensor_names.index(sensor)
-    kept = Judged(
-        error=judging.value - mean,
-        doubt=doubt,
-        steepness=model.gain * lessons.models.steepness(judging.metocean)[:, column],
+    held_out = thin(pairs)
+    x = held_out.metocean.features(training.models.inputs)
+    mean, variance = cross_validate(model, training.sensors[sensor].selected, held_out, x)
+    column = training.models.cage.sensor_names.index(sensor)
+    errors = HeldOut(
+        error=held_out.value - mean,
+        variance=variance,
+        steepness=model.gain * training.models.steepness(held_out.metocean)[:, column],
         white=model.spread.white,
     )
-    return replace(model, spread=own_spread(model, kept, blocks))
+    return replace(model, spread=own_spread(model, errors, count))
 
 
-def own_spread(model: Correction, kept: Judged, blocks: int) -> Spread:
-    """Calibrate by a sensor's own readings, each judged by a lesson without its days.
+def own_spread(model: Correction, errors: HeldOut, independent: int) -> Spread:
+    """Calibrate by a sensor's own readings, each predicted without its part of the window.
 
-    Two variances are fitted to the squared errors, each as large as it has to be: the lesson's
-    own, scaled, and that of the current which the buoy does not tell. Both are then scaled so
-    that the intervals hold their share, and a little more where the blocks are few.
+    Two variances are fitted to the squared errors, each as large as it has to be: the model's
+    own, scaled, and that of the current which the buoy did not measure. Both are then scaled so
+    that the intervals have their coverage, and a little more where the readings are few.
 
     Parameters
     ----------
     model
-        Of all the lesson.
-    kept
-        Readings beside lessons without them.
-    blocks
-        Independent readings that they are worth.
+        Fitted to the whole window.
+    errors
+        Of held-out readings.
+    independent
+        Number of independent readings among them.
     """
-    terms = np.column_stack([kept.doubt, kept.steepness**2])
+    terms = np.column_stack([errors.variance, errors.steepness**2])
     # Some are below 0, as the noise is known on average alone.
-    square = kept.error**2 - kept.white
+    square = errors.error**2 - errors.white
     scale2, water2 = variance_components(terms, square).tolist()
     # A twin that is as good as its sensors can be is still not perfect.
-    least = LEAST_SHARE * float(np.mean(kept.error**2)) / float(np.mean(kept.doubt))
+    least = LEAST_SHARE * float(np.mean(errors.error**2)) / float(np.mean(errors.variance))
     scale2 = max(scale2, least) if water2 == 0.0 else scale2
     fitted = replace(model.spread, scale=math.sqrt(scale2), water_sd=math.sqrt(water2), by="own")
-    factor = conformal_factor(kept.score(fitted), independent=max(blocks, 2))
+    factor = conformal_factor(errors.scores(fitted), independent=max(independent, 2))
     return replace(fitted, scale=fitted.scale * factor, water_sd=fitted.water_sd * factor)
 
 
-def carried_spread(model: Correction, others: Sequence[Judged], days: float) -> Spread:
-    """Calibrate a short lesson by how much such lessons failed sensors that stayed longer.
+def spread_by_others(model: Correction, others: Sequence[HeldOut], days: float) -> Spread:
+    """Calibrate a short training window by the held-out errors of other sensors.
 
-    Each sensor that stayed was taught on the short lesson's own hours, and judged on its other
-    days. How much too sure of itself it was there is taken to be alike for all sensors of a
-    cage, for it is what those hours lacked: other currents, and a net that grows.
+    Each of the others is fitted within the short window, and predicts its readings on its other
+    days. Its calibration factor is taken to be alike for all sensors of a cage, because it comes
+    from what the window lacks: other currents, and a net that gets fouled.
 
     Parameters
     ----------
     model
-        Of the short lesson.
+        Fitted to the short window.
     others
-        Readings of each sensor that stayed, beside its short lesson.
+        Held-out readings of each of the others.
     days
-        On which they judged, all sensors together.
+        Of these readings, all sensors together.
     """
     plain = Spread()
     independent = max(days, 2.0)
-    factors = [conformal_factor(one.score(plain), independent=independent) for one in others]
+    factors = [conformal_factor(one.scores(plain), independent=independent) for one in others]
     return replace(model.spread, scale=float(np.mean(factors)), by="carried")
 
 
-def _less_noise(model: Correction, lessons: Lessons, pairs: Pairs) -> Correction:
-    """Tell a model what of the scatter is the instrument's."""
-    rows = pairs.rows(stretches(len(pairs)))
-    x = rows.metocean.features(lessons.models.inputs)
-    error = rows.value - model.behind(x, model.rest.lower.predict(x)).mean
+def _with_white_noise(model: Correction, training: CageTraining, pairs: Pairs) -> Correction:
+    """Return a model with the variance of its instrument's noise."""
+    rows = pairs.rows(stretch_rows(len(pairs)))
+    x = rows.metocean.features(training.models.inputs)
+    error = rows.value - model.latent(x, model.rest.lower.predict(x)).mean
     return replace(model, spread=replace(model.spread, white=white_noise(error, rows.time)))
 
 
-def _judged_short(lessons: Lessons, sensor: str, short: Pairs) -> Judged:
-    """What a sensor that stayed would have missed, had it gone with the short lesson."""
+def _held_out_of_reference(training: CageTraining, sensor: str, short: Pairs) -> HeldOut:
+    """Return held-out readings of a sensor, by a model fitted within a short window."""
     first, last = (
         round(one.astype("datetime64[s]").astype(int) / 3600) for one in short.time[[0, -1]]
     )
     key = sensor, first, last
-    if key not in lessons.judged:
-        pairs = lessons.taught[sensor].pairs
-        model = lessons.learned(sensor, lessons.choose(_within(pairs, short)))
-        model = _less_noise(model, lessons, _within(pairs, short))
-        judging = evenly(apart(pairs, short))
-        x = judging.metocean.features(lessons.models.inputs)
+    if key not in training.held_out:
+        pairs = training.sensors[sensor].pairs
+        model = training.fit(sensor, training.select(_within(pairs, short)))
+        model = _with_white_noise(model, training, _within(pairs, short))
+        held_out = thin(outside(pairs, short))
+        x = held_out.metocean.features(training.models.inputs)
         low = model.rest.lower.predict(x)
-        behind = model.behind(x, low)
-        lessons.judged[key] = Judged(
-            error=judging.value - behind.mean,
-            doubt=behind.std**2,
-            steepness=0.0 * behind.std,
+        latent = model.latent(x, low)
+        training.held_out[key] = HeldOut(
+            error=held_out.value - latent.mean,
+            variance=latent.std**2,
+            steepness=0.0 * latent.std,
             white=model.spread.white,
         )
-    return lessons.judged[key]
+    return training.held_out[key]
 
 
 def _within(pairs: Pairs, short: Pairs) -> Pairs:
     return pairs.rows((pairs.time >= short.time[0]) & (pairs.time <= short.time[-1]))
 
 
-def _days_apart(pairs: Pairs, short: Pairs) -> float:
-    """Days on which a sensor judges a short lesson."""
-    left = apart(pairs, short)
+def _days_outside(pairs: Pairs, short: Pairs) -> float:
+    """Days of a sensor's readings that are outside a short training window."""
+    left = outside(pairs, short)
     return 0.0 if len(left) == 0 else (span_s(pairs) - span_s(short)) / DAY - 1.0

@@ -1,4 +1,4 @@
-"""Training: the simulations teach level 1, each sensor teaches its own level 2."""
+"""Training: level 1 is fitted to simulations, level 2 of each sensor to its readings."""
 
 import math
 from collections.abc import Mapping
@@ -23,9 +23,9 @@ from seacage.surrogates import (
 from seacage.twin._correction import Correction
 from seacage.twin._metocean import INPUT_KEYS, Input, Metocean
 from seacage.twin._models import Models
-from seacage.twin._pairs import Pairs, align, spread_out, teaching_window
-from seacage.twin._provenance import Lesson, Provenance
-from seacage.twin._training._calibration import Lessons, Taught, calibrated
+from seacage.twin._pairs import Pairs, align, spread_out, training_window
+from seacage.twin._provenance import Provenance, TrainingWindow
+from seacage.twin._training._calibration import CageTraining, SensorTraining, calibrate
 from seacage.twin._twin import Twin
 
 KERNELS = ("matern-5/2", "squared-exponential")
@@ -33,34 +33,34 @@ KERNELS = ("matern-5/2", "squared-exponential")
 
 LEAST_CASES = 20
 LEAST_PAIRS = 20
-"""Fewer than these say nothing about a cage."""
+"""Least converged cases of a campaign, and least readings of a sensor."""
 
 PAPER_WINDOW_S = {"depth_m": 300.0, "tension_kn": 10.0}
 PAPER_LEAST = 5
-"""The paper's "few minutes" of a depth sensor and "few seconds" of a shackle [s], which it does
-not count; of slow sensors so many readings in a row."""
+"""The paper's "few minutes" of a depth sensor and "few seconds" of a shackle [s], whose readings it
+does not count; and the least consecutive readings of slow sensors."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Training:
-    """What a twin learns from, and how much of it.
+    """Settings of a twin's training.
 
     Parameters
     ----------
     inputs
-        What the models are asked with; waves need a campaign and a buoy that have them.
+        Inputs of the models; waves need a campaign and a buoy that have them.
     high_fidelity_points
-        Readings that each sensor teaches with, at most.
+        Readings of each sensor that level 2 is fitted to, at most.
     choice
         ``"spread"`` over currents and time, or ``"paper"``: the single readings of a few
-        minutes (depth) or a few seconds (shackles) from the first on, which teaches the noise
-        of one hour and too narrow intervals; nothing is left to calibrate them on.
+        minutes (depth) or a few seconds (shackles) from the first on. The latter gives the noise
+        of one hour and too narrow intervals; no readings remain to calibrate them on.
     days
-        Longest that a sensor teaches [d]; later days are left to judge the twin.
+        Longest training window [d]; later days remain to validate the twin.
     pause_s
-        A sensor silent for longer has taught enough: what follows judges the twin [s].
+        A longer silence of a sensor ends its training window [s].
     mean_s
-        Readings are averaged over so long, and the intervals are of such means [s].
+        Time over which readings are averaged [s]; the intervals are of such means.
     restarts
         Random starts of each search for hyperparameters, beside the deterministic one.
     seed
@@ -88,12 +88,12 @@ def train(
 ) -> Twin:
     """Train a twin.
 
-    Level 1 learns bridle tensions and shape from the campaign's converged cases. Each sensor
-    of the field record then teaches its own level 2 (NARGP) on top: a shackle on its bridle's
-    tension, a depth sensor on the depth of its node in the reconstructed shape. A sensor
-    without enough sound readings, or whose readings level 1 meets as well as what they taught,
-    stays at level 1. The intervals are calibrated on readings that did not teach: a sensor's
-    own, or for a short lesson those of sensors that stayed longer.
+    Level 1 of bridle tensions and shape is fitted to the campaign's converged cases. Level 2
+    (NARGP) of each sensor of the field record is then fitted on top: of a shackle to its bridle's
+    tension, of a depth sensor to the depth of its node in the reconstructed shape. A sensor
+    without enough sound readings, or whose level 2 predicts no better than level 1, stays at
+    level 1. The intervals are calibrated on held-out readings: a sensor's own, or for a short
+    training window those of sensors with longer ones.
 
     Parameters
     ----------
@@ -105,9 +105,9 @@ def train(
         None trains level 1 alone.
     base
         A twin of the same cage whose level 1 is taken as it is, and level 2 of every sensor
-        that has not moved: only sensors that moved, or are new, are taught.
+        that has not moved: only sensors that moved, or are new, are trained.
     training
-        What to learn from; the default suits one buoy and 300 readings of each sensor.
+        Settings; the default suits one buoy and 300 readings of each sensor.
     progress
         Called after each model.
 
@@ -119,35 +119,35 @@ def train(
     training = Training() if training is None else training
     report: Progress = progress or unheard
     _check_inputs(campaign, field, training)
-    begun = _begun(cage, campaign, field, base, training, report)
-    kept = begun.models.upper
-    asked = [name for name in cage.sensor_names if field and name in field.sensors]
-    lessons = Lessons(
-        models=begun.models,
-        taught={
+    base_twin = _start(cage, campaign, field, base, training, report)
+    kept = base_twin.models.upper
+    sensors = [name for name in cage.sensor_names if field and name in field.sensors]
+    data = CageTraining(
+        models=base_twin.models,
+        sensors={
             name: one
-            for name in asked
-            if field and (one := _taught(field, name, training)) is not None
+            for name in sensors
+            if field and (one := _sensor_training(field, name, training)) is not None
         },
         restarts=training.restarts,
         seed=training.seed,
-        choose=lambda pairs: _chosen(pairs, training),
+        select=lambda pairs: _select(pairs, training),
     )
-    models, told = begun.models, dict(begun.provenance.lessons)
-    for done, name in enumerate(asked, start=3):
-        if name not in kept and (model := _learned(lessons, name)) is not None:
-            models = models.taught(name, model)
-            told[name] = replace(lessons.taught[name].lesson, calibrated=model.spread.by)
-        report(f"train {name}", done, 2 + len(asked))
-    new = field is not None and told != begun.provenance.lessons
+    models, windows = base_twin.models, dict(base_twin.provenance.training_windows)
+    for done, name in enumerate(sensors, start=3):
+        if name not in kept and (model := _fit_level_2(data, name)) is not None:
+            models = models.with_level_2(name, model)
+            windows[name] = replace(data.sensors[name].window, calibrated=model.spread.by)
+        report(f"train {name}", done, 2 + len(sensors))
+    new = field is not None and windows != base_twin.provenance.training_windows
     provenance = replace(
-        begun.provenance,
-        origin=field.origin if field and new else begun.provenance.origin,
-        hidden_sha256=field.hidden_sha256 if field else begun.provenance.hidden_sha256,
+        base_twin.provenance,
+        origin=field.origin if field and new else base_twin.provenance.origin,
+        hidden_sha256=field.hidden_sha256 if field else base_twin.provenance.hidden_sha256,
         seed=training.seed,
-        lessons=told,
+        training_windows=windows,
     )
-    return replace(begun, models=models, provenance=provenance)
+    return replace(base_twin, models=models, provenance=provenance)
 
 
 def _check_inputs(
@@ -166,41 +166,42 @@ def _check_inputs(
 
 
 def update(twin: Twin, field: FieldRecord, *, points: int = 60, mean_s: float = 60.0) -> Twin:
-    """Take in what sensors have said since their lessons, without learning anew.
+    """Condition level 2 on readings since the training windows, without fitting again.
 
-    Level 2 of each sensor is conditioned on more readings; its hyperparameters, its gain and
-    its intervals' calibration stay, and level 1 is not touched. Every reading makes the twin a
-    little slower: where they have doubled, train again.
+    The hyperparameters, the gain and the calibration of each sensor stay, and level 1 is not
+    touched. Every reading makes the twin a little slower: where they have doubled, train again.
 
     Parameters
     ----------
     twin
-        Whose sensors have taught it.
+        With level 2 of some sensors.
     field
         Has later readings of some of them.
     points
         Readings of each sensor that are taken in, at most, spread over currents and time.
     mean_s
-        Readings are averaged over so long, as in the training [s].
+        Time over which readings are averaged, as in the training [s].
     """
-    models, lessons = twin.models, dict(twin.provenance.lessons)
+    models, windows = twin.models, dict(twin.provenance.training_windows)
     for name, model in twin.models.upper.items():
         if name not in field.sensors:
             continue
-        pairs = align(field, name, start=lessons[name].end, mean_s=mean_s)
-        pairs = _known(pairs, models.inputs)
+        pairs = align(field, name, start=windows[name].end, mean_s=mean_s)
+        pairs = _complete(pairs, models.inputs)
         if len(pairs) == 0:
             continue
         end = moment(pairs.time[-1]) + timedelta(seconds=mean_s)
         pairs = spread_out(pairs, points, seed=twin.provenance.seed)
         x = pairs.metocean.features(models.inputs)
-        models = models.taught(name, model.updated(pairs, x))
-        lesson = lessons[name]
-        lessons[name] = replace(lesson, end=end, points=lesson.points + len(pairs))
-    return replace(twin, models=models, provenance=replace(twin.provenance, lessons=lessons))
+        models = models.with_level_2(name, model.updated(pairs, x))
+        window = windows[name]
+        windows[name] = replace(window, end=end, points=window.points + len(pairs))
+    return replace(
+        twin, models=models, provenance=replace(twin.provenance, training_windows=windows)
+    )
 
 
-def _begun(
+def _start(
     cage: Cage,
     campaign: CampaignRecord | None,
     field: FieldRecord | None,
@@ -211,7 +212,7 @@ def _begun(
     """Level 1, and level 2 of the sensors that have not moved since the base."""
     if (campaign is None) == (base is None):
         raise InputError(
-            "train: give either a campaign, to teach level 1, or a base, whose level 1 is taken."
+            "train: give either a campaign, to fit level 1 to, or a base, whose level 1 is taken."
         )
     if base is not None:
         report("train bridles", 1, 2)
@@ -243,12 +244,12 @@ def _from_base(cage: Cage, base: Twin, training: Training) -> Twin:
         )
     if training.inputs != base.models.inputs:
         raise InputError(
-            f"train: the base is asked with {' and '.join(base.models.inputs)}, not with "
-            f"{' and '.join(training.inputs)}. Ask for the same, or give a campaign."
+            f"train: the inputs of the base are {' and '.join(base.models.inputs)}, not "
+            f"{' and '.join(training.inputs)}. Give the same, or give a campaign."
         )
     places, now = _places(before), _places(cage)
     stay = [name for name in base.models.upper if now.get(name) == places[name]]
-    lessons = base.provenance.lessons
+    windows = base.provenance.training_windows
     return replace(
         base,
         models=replace(
@@ -256,7 +257,7 @@ def _from_base(cage: Cage, base: Twin, training: Training) -> Twin:
         ),
         provenance=replace(
             base.provenance,
-            lessons={name: lessons[name] for name in stay},
+            training_windows={name: windows[name] for name in stay},
             origin=base.origin if stay else Origin.COMPUTED,
         ),
     )
@@ -324,15 +325,15 @@ def _better_kernel(
     return fitted[best], KERNELS[best]
 
 
-def _taught(field: FieldRecord, sensor: str, training: Training) -> Taught | None:
-    """Return what a sensor has to teach; None where that is too little."""
+def _sensor_training(field: FieldRecord, sensor: str, training: Training) -> SensorTraining | None:
+    """Return a sensor's training data; None where that is too little."""
     record = field.sensors[sensor]
-    window = teaching_window(record, days=training.days, pause_s=training.pause_s)
+    window = training_window(record, days=training.days, pause_s=training.pause_s)
     if window is None:
         return None
     start, end = window
     if training.choice == "paper":
-        pairs = _known(align(field, sensor, start=start, end=end), training.inputs)
+        pairs = _complete(align(field, sensor, start=start, end=end), training.inputs)
         span = PAPER_WINDOW_S[next(iter(record.values))]
         second = (pairs.time - pairs.time[:1]) / np.timedelta64(1, "s")
         most = max(training.high_fidelity_points, PAPER_LEAST)
@@ -341,18 +342,18 @@ def _taught(field: FieldRecord, sensor: str, training: Training) -> Taught | Non
         if len(pairs) < PAPER_LEAST:
             return None
         end = _after(pairs)
-        lesson = Lesson(start=start, end=end, points=len(pairs))
-        return Taught(lesson=lesson, pairs=pairs, chosen=pairs, calibrates=False)
+        own = TrainingWindow(start=start, end=end, points=len(pairs))
+        return SensorTraining(window=own, pairs=pairs, selected=pairs, calibrates=False)
     pairs = align(field, sensor, start=start, end=end, mean_s=training.mean_s)
-    pairs = _known(pairs, training.inputs)
+    pairs = _complete(pairs, training.inputs)
     if len(pairs) < LEAST_PAIRS:
         return None
-    chosen = _chosen(pairs, training)
-    lesson = Lesson(start=start, end=end, points=len(chosen))
-    return Taught(lesson=lesson, pairs=pairs, chosen=chosen, calibrates=True)
+    selected = _select(pairs, training)
+    own = TrainingWindow(start=start, end=end, points=len(selected))
+    return SensorTraining(window=own, pairs=pairs, selected=selected, calibrates=True)
 
 
-def _known(pairs: Pairs, inputs: tuple[Input, ...]) -> Pairs:
+def _complete(pairs: Pairs, inputs: tuple[Input, ...]) -> Pairs:
     return pairs.rows(pairs.metocean.known(inputs))
 
 
@@ -360,19 +361,19 @@ def _after(pairs: Pairs) -> datetime:
     return moment(pairs.time[-1]) + timedelta(microseconds=1)
 
 
-def _learned(lessons: Lessons, sensor: str) -> Correction | None:
-    """Return level 2 of a sensor, calibrated; None where it says nothing new."""
-    taught = lessons.taught.get(sensor)
-    if taught is None:
+def _fit_level_2(data: CageTraining, sensor: str) -> Correction | None:
+    """Fit and calibrate level 2 of a sensor; None where it is no better than level 1."""
+    own = data.sensors.get(sensor)
+    if own is None:
         return None
-    model = lessons.learned(sensor, taught.chosen)
-    x = taught.chosen.metocean.features(lessons.models.inputs)
-    if not model.proven(taught.chosen, lessons.models.lower(sensor).predict(x).mean):
+    model = data.fit(sensor, own.selected)
+    x = own.selected.metocean.features(data.models.inputs)
+    if not model.beats_level_1(own.selected, data.models.lower(sensor).predict(x).mean):
         return None
-    return calibrated(model, lessons, sensor) if taught.calibrates else model
+    return calibrate(model, data, sensor) if own.calibrates else model
 
 
-def _chosen(pairs: Pairs, training: Training) -> Pairs:
+def _select(pairs: Pairs, training: Training) -> Pairs:
     return spread_out(pairs, training.high_fidelity_points, seed=training.seed)
 
 

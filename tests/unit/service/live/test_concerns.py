@@ -36,7 +36,7 @@ def seen(*samples: Sample, minutes: float = 0.0, least_volume: float = 0.0):
     memory, events = twin.step(memory, None, at(minutes))
     answered = next(event for event in reversed(events) if isinstance(event, Answered))
     state = state_of("ace", twin, answered, memory)
-    policy = AlarmPolicy.default(twin.cage, buoy=twin.buoy, watch=twin.watch)
+    policy = AlarmPolicy.default(twin.cage, buoy=twin.buoy, timeouts=twin.timeouts)
     found = concerns_of(state, memory, policy=policy, least_volume=least_volume)
     return state, {one.kind: one for one in found}
 

@@ -46,7 +46,7 @@ def test_the_past_has_the_intervals_that_it_had(one):
     for minute in (0, 11, 12, 29, 30, 45, 59):
         assert one.at(NOON + timedelta(minutes=minute)) == shown[minute]
     assert one.at(NOON - timedelta(minutes=1))["reason"] == (
-        "buoy-1 has not said current_speed_m_s yet."
+        "buoy-1 has not sent current_speed_m_s yet."
     )
 
 

@@ -27,11 +27,11 @@ def run(
     alarm: Alarm, values: list[float | None], limit: Limit = LIMIT, *, step_s: float = 2.0
 ) -> tuple[Alarm, list[tuple[float, Action]]]:
     """Feed numbers at a fixed pace; what happened, with its second."""
-    told: list[tuple[float, Action]] = []
+    events_seen: list[tuple[float, Action]] = []
     for tick, value in enumerate(values):
         alarm, events = evaluate(alarm, value, limit, at(tick * step_s))
-        told += [(tick * step_s, event.action) for event in events]
-    return alarm, told
+        events_seen += [(tick * step_s, event.action) for event in events]
+    return alarm, events_seen
 
 
 def raised(limit: Limit = LIMIT) -> Alarm:
@@ -39,21 +39,23 @@ def raised(limit: Limit = LIMIT) -> Alarm:
 
 
 def test_an_alarm_is_raised_at_its_limit_and_clears_only_at_the_lower_one():
-    alarm, told = run(Alarm(name="a"), [99.9, 100.0, 95.0, 110.0, 91.0, 90.0])
-    assert told == [(2.0, Action.RAISED), (10.0, Action.CLEARED)]
+    alarm, events_seen = run(Alarm(name="a"), [99.9, 100.0, 95.0, 110.0, 91.0, 90.0])
+    assert events_seen == [(2.0, Action.RAISED), (10.0, Action.CLEARED)]
     assert alarm.worst == 110.0
     assert not alarm.active
 
 
 def test_a_number_has_to_stay_beyond_its_limit_for_the_delay():
     limit = Limit(raise_at=100.0, clear_at=90.0, on_delay_s=5.0, off_delay_s=4.0)
-    _, told = run(Alarm(name="a"), [101, 101, 99, 101, 101, 101, 101, 80, 95, 80, 80, 80], limit)
-    assert told == [(12.0, Action.RAISED), (22.0, Action.CLEARED)]
+    _, events_seen = run(
+        Alarm(name="a"), [101, 101, 99, 101, 101, 101, 101, 80, 95, 80, 80, 80], limit
+    )
+    assert events_seen == [(12.0, Action.RAISED), (22.0, Action.CLEARED)]
 
 
 def test_a_number_that_is_not_known_neither_raises_nor_clears():
-    alarm, told = run(Alarm(name="a"), [None, 120.0, None, None])
-    assert told == [(2.0, Action.RAISED)]
+    alarm, events_seen = run(Alarm(name="a"), [None, 120.0, None, None])
+    assert events_seen == [(2.0, Action.RAISED)]
     assert alarm.active
     assert alarm.value == 120.0
 
@@ -69,20 +71,20 @@ def test_what_has_cleared_still_waits_for_somebody_to_see_it():
 
 def test_an_acknowledged_alarm_that_is_raised_again_has_to_be_seen_again():
     alarm, _ = acknowledge(raised(), now=START, **WHO)
-    alarm, told = run(alarm, [50.0, 120.0])
-    assert told == [(0.0, Action.CLEARED), (2.0, Action.RAISED)]
+    alarm, events_seen = run(alarm, [50.0, 120.0])
+    assert events_seen == [(0.0, Action.CLEARED), (2.0, Action.RAISED)]
     assert not alarm.acknowledged
 
 
-def test_what_nobody_has_seen_is_said_again_and_what_was_seen_is_not():
+def test_an_alarm_is_repeated_until_it_is_acknowledged():
     limit = Limit(raise_at=100.0, clear_at=90.0, repeat_after_s=4.0)
-    _, told = run(Alarm(name="a"), [120.0] * 6, limit)
-    assert told == [(0.0, Action.RAISED), (4.0, Action.REPEATED), (8.0, Action.REPEATED)]
+    _, events_seen = run(Alarm(name="a"), [120.0] * 6, limit)
+    assert events_seen == [(0.0, Action.RAISED), (4.0, Action.REPEATED), (8.0, Action.REPEATED)]
     seen, _ = acknowledge(raised(limit), now=START, **WHO)
     assert run(seen, [120.0] * 6, limit)[1] == []
 
 
-def test_a_shelved_alarm_goes_on_being_judged_without_waking_anyone():
+def test_a_shelved_alarm_goes_on_being_evaluated_without_waking_anyone():
     alarm, (event,) = shelve(Alarm(name="a"), now=START, seconds=6.0, who="the watch", why="noise")
     assert event.action is Action.SHELVED
     alarm, (event,) = evaluate(alarm, 120.0, LIMIT, at(2))
@@ -96,8 +98,12 @@ def test_a_shelved_alarm_goes_on_being_judged_without_waking_anyone():
 
 def test_shelved_once_it_is_quiet_until_it_has_cleared():
     alarm, _ = shelve(raised(), now=START, who="the watch", why="noise")
-    alarm, told = run(alarm, [120.0, 50.0, 120.0])
-    assert [action for _, action in told] == [Action.CLEARED, Action.UNSHELVED, Action.RAISED]
+    alarm, events_seen = run(alarm, [120.0, 50.0, 120.0])
+    assert [action for _, action in events_seen] == [
+        Action.CLEARED,
+        Action.UNSHELVED,
+        Action.RAISED,
+    ]
     assert alarm.waiting
 
 

@@ -32,7 +32,7 @@ def test_a_buoy_may_be_quiet_for_longer_than_a_sensor():
     assert policy.limit("silent.buoy-1").raise_at > policy.limit("silent.depth-1").raise_at
 
 
-def test_a_fault_that_has_no_limit_of_its_own_is_judged_as_lost_history_is():
+def test_a_fault_that_has_no_limit_of_its_own_has_the_limit_of_lost_history():
     policy = AlarmPolicy.default(ACE)
     assert policy.limit("broker.mqtt") == policy.limit("history.store")
 

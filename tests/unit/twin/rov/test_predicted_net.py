@@ -9,7 +9,7 @@ from seacage.conventions import InputError
 from seacage.ocean import SeaState
 from seacage.testing import stand_in_twin
 from seacage.twin import Answered, PredictedNet, StaleError
-from seacage.twin._rov._clearance import sampled
+from seacage.twin._rov._clearance import sample_path
 
 
 def near_net(net: PredictedNet, random: np.random.Generator, count: int) -> np.ndarray:
@@ -20,12 +20,12 @@ def near_net(net: PredictedNet, random: np.random.Generator, count: int) -> np.n
 def test_the_distance_is_to_the_predicted_net_on_either_side():
     net = net_in(erring_twin(), 0.4, 0.2)
     point = near_net(net, np.random.default_rng(1), 200)
-    said = net.clearance(point)
+    found = net.clearance(point)
     slow = brute_distance(point, net.node_position, CAGE.panels)
-    np.testing.assert_allclose(said.distance, slow, atol=1e-6)
+    np.testing.assert_allclose(found.distance, slow, atol=1e-6)
     assert net.clearance(np.array([[0.0, 0.0, -5.0]])).inside.all()
     np.testing.assert_allclose(
-        np.linalg.norm(point - said.position, axis=1), said.distance, atol=1e-6
+        np.linalg.norm(point - found.position, axis=1), found.distance, atol=1e-6
     )
 
 
@@ -61,12 +61,12 @@ def test_of_a_hundred_foretellings_so_many_come_true():
 
 def test_without_a_known_error_the_surrogates_spread_is_all_there_is():
     net = net_in(stand_in_twin(), 0.4, 0.2)
-    said = net.clearance(near_net(net, np.random.default_rng(1), 50))
-    np.testing.assert_allclose(said.expected, said.distance, atol=1e-9)
-    assert (said.sigma <= net.node_sigma.max() + 1e-9).all()
-    far = said.distance > 1.0 + 6.0 * said.sigma
+    found = net.clearance(near_net(net, np.random.default_rng(1), 50))
+    np.testing.assert_allclose(found.expected, found.distance, atol=1e-9)
+    assert (found.sigma <= net.node_sigma.max() + 1e-9).all()
+    far = found.distance > 1.0 + 6.0 * found.sigma
     assert far.any()
-    np.testing.assert_allclose(said.p_below[far], 0.0, atol=1e-6)
+    np.testing.assert_allclose(found.p_below[far], 0.0, atol=1e-6)
 
 
 def test_a_point_on_the_expected_net_may_be_on_either_side_of_the_true_one():
@@ -97,24 +97,24 @@ def test_many_points_answer_as_one_does():
 
 def test_a_path_is_looked_at_all_along_and_at_its_corners():
     path = np.array([[0.0, 0.0, -2.0], [3.1, 0.0, -2.0], [3.1, 4.0, -2.0], [3.1, 4.0, -2.0]])
-    point, along = sampled(path)
+    point, along = sample_path(path)
     assert np.linalg.norm(np.diff(point, axis=0), axis=1).max() <= 0.25 + 1e-12
     assert along[-1] == pytest.approx(7.1)
     for corner in path:
         assert np.linalg.norm(point - corner, axis=1).min() < 1e-12
-    np.testing.assert_allclose(sampled(path[:1])[0], path[:1])
+    np.testing.assert_allclose(sample_path(path[:1])[0], path[:1])
 
 
 def test_a_paths_closest_approach_is_where_its_points_are_nearest_and_its_bounds_hold():
     net = net_in(erring_twin(), 0.4, 0.0)
     path = np.array([[0.0, 0.0, -5.0], [15.0, 0.0, -8.0], [15.0, 12.0, -8.0]])
-    said = net.along(path)
-    assert said.clearance.distance[said.closest] == said.clearance.distance.min()
+    found = net.along(path)
+    assert found.clearance.distance[found.closest] == found.clearance.distance.min()
     # Where one point decides, bound and probability are the same sum added in two orders.
     rounding = 1 + 1e-12
-    assert said.clearance.p_below.max() <= said.p_least * rounding
-    assert said.p_least <= said.p_below * rounding <= said.p_most * rounding**2
-    assert said.p_most <= 1.0
+    assert found.clearance.p_below.max() <= found.p_least * rounding
+    assert found.p_least <= found.p_below * rounding <= found.p_most * rounding**2
+    assert found.p_most <= 1.0
     through = net.along(np.array([[0.0, 0.0, -5.0], [60.0, 0.0, -5.0]]))
     assert through.p_below > 0.99
 

@@ -40,7 +40,7 @@ def test_a_twin_read_back_gives_the_same_answers(written):
 def test_a_twin_read_back_is_the_same_twin(written):
     before, after = stand_in_twin(), Twin.read(written)
     assert after.provenance == before.provenance
-    assert after.watch == before.watch
+    assert after.timeouts == before.timeouts
     assert after.buoy == before.buoy
     assert after.cage == before.cage
     assert after.models.edge == before.models.edge
@@ -157,7 +157,7 @@ def changed(settings, path, value):
 
 
 @pytest.mark.parametrize(
-    ("path", "value", "said"),
+    ("path", "value", "message"),
     [
         (("spreads", "shackle-1", "scale"), float("nan"), "NaN is no finite number"),
         (("spreads", "shackle-1", "scale"), "nan", "Input should be a valid number"),
@@ -168,10 +168,10 @@ def changed(settings, path, value):
         (("buoy",), "../../etc/passwd", "no stream's name"),
     ],
 )
-def test_what_cannot_be_is_refused_though_it_is_sealed(copy, path, value, said):
+def test_what_cannot_be_is_refused_though_it_is_sealed(copy, path, value, message):
     settings = json.loads((copy / "model.json").read_text())
     resealed(copy, changed(settings, path, value))
-    with pytest.raises(ModelError, match=said):
+    with pytest.raises(ModelError, match=message):
         Twin.read(copy)
 
 
@@ -252,10 +252,11 @@ def test_a_key_that_others_may_use_is_refused(tmp_path, rights):
 
 
 @pytest.mark.parametrize(
-    ("content", "said"), [(b"", "0 bytes"), (KEY[:15], "15 bytes"), (bytes(5000), "at most 4096")]
+    ("content", "message"),
+    [(b"", "0 bytes"), (KEY[:15], "15 bytes"), (bytes(5000), "at most 4096")],
 )
-def test_a_key_that_can_be_guessed_or_is_none_is_refused(tmp_path, content, said):
-    with pytest.raises(InputError, match=said):
+def test_a_key_that_can_be_guessed_or_is_none_is_refused(tmp_path, content, message):
+    with pytest.raises(InputError, match=message):
         read_key(key_file(tmp_path / "key", content))
 
 

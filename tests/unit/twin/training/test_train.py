@@ -15,7 +15,7 @@ def coarse():
     return stand_in_twin().cage
 
 
-def taught_by(field, *, training=FEW, cases=40):
+def trained(field, *, training=FEW, cases=40):
     campaign = stand_in_campaign(coarse(), stand_in_seas(cases))
     return train(coarse(), campaign, field, training=training)
 
@@ -27,11 +27,11 @@ def with_sensors(field, *names):
 def test_level_two_is_nearer_to_every_sensor_than_level_one_on_days_that_did_not_teach():
     twin, field = stand_in_twin(), stand_in_field(coarse())
     for column, name in enumerate(twin.sensor_names):
-        pairs = align(field, name, start=twin.provenance.lessons[name].end)
+        pairs = align(field, name, start=twin.provenance.training_windows[name].end)
         answer = twin.predict(pairs.metocean)
         low, multi = (
-            np.mean(np.abs(said.mean[:, column] - pairs.value))
-            for said in (answer.sensor_low, answer.sensor)
+            np.mean(np.abs(one.mean[:, column] - pairs.value))
+            for one in (answer.sensor_low, answer.sensor)
         )
         assert multi < 0.4 * low, name
 
@@ -39,20 +39,20 @@ def test_level_two_is_nearer_to_every_sensor_than_level_one_on_days_that_did_not
 def test_the_interval_of_a_reading_holds_most_unseen_readings():
     twin, field = stand_in_twin(), stand_in_field(coarse())
     for column, name in enumerate(("depth-1", "depth-2", "depth-3")):
-        pairs = align(field, name, start=twin.provenance.lessons[name].end)
+        pairs = align(field, name, start=twin.provenance.training_windows[name].end)
         lower, upper = twin.predict(pairs.metocean).sensor_interval()
         held = (lower[:, column] <= pairs.value) & (pairs.value <= upper[:, column])
-        # One tide's lesson; block to block the share moves by a few per cent.
+        # One tide's window; block to block the share moves by a few per cent.
         assert 0.9 < held.mean() < 1.0
 
 
 def test_a_shackle_teaches_with_its_first_window_alone():
-    lesson = stand_in_twin().provenance.lessons["shackle-1"]
-    assert (lesson.end - lesson.start).total_seconds() < 43200.0
+    window = stand_in_twin().provenance.training_windows["shackle-1"]
+    assert (window.end - window.start).total_seconds() < 43200.0
 
 
 def test_without_a_field_record_everything_answers_at_level_one():
-    twin = taught_by(None)
+    twin = trained(None)
     answer = twin.predict(stand_in_seas(3))
     assert twin.origin == Origin.COMPUTED
     assert set(answer.sensor_level) == set(answer.bridle_level) == {1}
@@ -66,17 +66,17 @@ def test_a_sensor_with_too_few_sound_readings_stays_at_level_one():
     flags = {"depth_m": np.full(len(bad), Flag.FAIL)}
     flags["depth_m"][:10] = Flag.GOOD
     broken = replace(field, sensors={**field.sensors, "depth-2": replace(bad, flags=flags)})
-    twin = taught_by(broken)
+    twin = trained(broken)
     assert twin.predict(stand_in_seas(2)).sensor_level[:2].tolist() == [2, 1]
-    assert list(twin.provenance.lessons) == ["depth-1"]
+    assert list(twin.provenance.training_windows) == ["depth-1"]
 
 
 def test_a_sensor_without_any_sound_reading_stays_at_level_one():
     field = with_sensors(stand_in_field(coarse(), days=1.0), "depth-1")
     flags = {"depth_m": np.full(len(field.sensors["depth-1"]), Flag.FAIL)}
     silent = replace(field.sensors["depth-1"], flags=flags)
-    twin = taught_by(replace(field, sensors={"depth-1": silent}))
-    assert twin.provenance.lessons == {}
+    twin = trained(replace(field, sensors={"depth-1": silent}))
+    assert twin.provenance.training_windows == {}
     assert twin.origin == Origin.COMPUTED
 
 
@@ -95,7 +95,7 @@ def test_a_sensor_moved_to_another_bridle_is_trained_from_the_same_campaign():
 @pytest.mark.slow
 def test_training_twice_with_one_seed_gives_one_twin():
     field = with_sensors(stand_in_field(coarse(), days=1.0), "depth-1", "shackle-1")
-    once, twice = (taught_by(field).predict(stand_in_seas(5, seed=9)) for _ in range(2))
+    once, twice = (trained(field).predict(stand_in_seas(5, seed=9)) for _ in range(2))
     np.testing.assert_array_equal(once.sensor.mean, twice.sensor.mean)
     np.testing.assert_array_equal(once.node_position, twice.node_position)
 
@@ -104,7 +104,7 @@ def test_training_twice_with_one_seed_gives_one_twin():
 def test_the_papers_choice_is_the_first_readings_in_a_row():
     field = with_sensors(stand_in_field(coarse(), days=1.0), "depth-1")
     spread, paper = (
-        taught_by(field, training=replace(FEW, choice=choice)) for choice in ("spread", "paper")
+        trained(field, training=replace(FEW, choice=choice)) for choice in ("spread", "paper")
     )
     pairs = align(field, "depth-1", mean_s=60.0)
     misses = [
@@ -146,7 +146,7 @@ def moved(cage):
 
 
 @pytest.mark.slow
-def test_moved_and_added_sensors_are_taught_alone_and_all_else_stays_what_it_was():
+def test_moved_and_added_sensors_are_trained_alone_and_all_else_stays_what_it_was():
     base, cage = stand_in_twin(), moved(coarse())
     twin = train(cage, None, stand_in_field(cage), base=base, training=FEW)
     assert twin.models.bridles is base.models.bridles
@@ -154,7 +154,7 @@ def test_moved_and_added_sensors_are_taught_alone_and_all_else_stays_what_it_was
     for name, model in base.models.upper.items():
         if name != "shackle-1":
             assert twin.models.upper[name] is model, name
-            assert twin.provenance.lessons[name] == base.provenance.lessons[name]
+            assert twin.provenance.training_windows[name] == base.provenance.training_windows[name]
     assert twin.models.upper["shackle-1"] is not base.models.upper["shackle-1"]
     assert "depth-9" in twin.models.upper
     answer = twin.predict(stand_in_seas(2))
@@ -167,8 +167,8 @@ def test_moved_and_added_sensors_are_taught_alone_and_all_else_stays_what_it_was
 def test_a_sensor_that_left_the_cage_is_forgotten():
     cage = replace(coarse(), shackle=coarse().shackle[1:])
     twin = train(cage, None, None, base=stand_in_twin(), training=FEW)
-    assert "shackle-1" not in twin.provenance.lessons
-    assert "shackle-2" in twin.provenance.lessons
+    assert "shackle-1" not in twin.provenance.training_windows
+    assert "shackle-2" in twin.provenance.training_windows
 
 
 def test_a_base_of_another_cage_is_refused():
@@ -219,9 +219,9 @@ def test_new_readings_mend_level_two_and_leave_level_one_and_others_alone():
     assert twin.models.shape is base.models.shape
     for name in set(base.models.upper) - {"depth-3"}:
         assert twin.models.upper[name] is base.models.upper[name]
-    lesson, before = (one.provenance.lessons["depth-3"] for one in (twin, base))
-    assert lesson.points == before.points + 60
-    assert lesson.end > before.end
+    window, before = (one.provenance.training_windows["depth-3"] for one in (twin, base))
+    assert window.points == before.points + 60
+    assert window.end > before.end
     pairs = align(field, "depth-3", start=before.end)
     column = base.sensor_names.index("depth-3")
     misses = [
@@ -239,9 +239,9 @@ def test_without_new_readings_an_update_changes_nothing():
 
 
 @pytest.mark.slow
-def test_a_short_lesson_is_calibrated_by_sensors_that_stayed_and_a_long_one_by_itself():
-    lessons = stand_in_twin().provenance.lessons
-    assert lessons["depth-1"].calibrated == "own"
+def test_a_short_window_is_calibrated_by_other_sensors_and_a_long_one_by_itself():
+    windows = stand_in_twin().provenance.training_windows
+    assert windows["depth-1"].calibrated == "own"
     assert stand_in_twin().models.upper["depth-1"].spread.by == "own"
     longer = train(
         coarse(),
@@ -250,30 +250,30 @@ def test_a_short_lesson_is_calibrated_by_sensors_that_stayed_and_a_long_one_by_i
         base=replace(stand_in_twin(), models=replace(stand_in_twin().models, upper={})),
         training=replace(FEW, days=3.5),
     )
-    assert longer.provenance.lessons["shackle-1"].calibrated == "carried"
+    assert longer.provenance.training_windows["shackle-1"].calibrated == "carried"
 
 
 @pytest.mark.slow
-def test_a_short_lesson_that_nobody_stayed_beside_is_judged_by_its_own_hours():
+def test_a_short_window_without_others_is_calibrated_by_its_own_hours():
     field = with_sensors(stand_in_field(coarse(), days=1.0), "shackle-1")
-    assert taught_by(field).provenance.lessons["shackle-1"].calibrated == "own"
+    assert trained(field).provenance.training_windows["shackle-1"].calibrated == "own"
 
 
 @pytest.mark.slow
 def test_the_papers_choice_is_a_few_minutes_of_depth_and_a_few_seconds_of_load():
     field = stand_in_field(coarse(), days=1.0, sensor_s=2.0)
     field = with_sensors(field, "depth-1", "shackle-1")
-    lessons = taught_by(
+    windows = trained(
         field, training=replace(FEW, choice="paper", high_fidelity_points=300)
-    ).provenance.lessons
+    ).provenance.training_windows
     # Whether so little is believed is another matter; what is believed spans no more.
     spans = {"depth-1": (150, 300.0), "shackle-1": (5, 10.0)}
-    for name, lesson in lessons.items():
+    for name, window in windows.items():
         points, span = spans[name]
-        assert lesson.points == points
-        assert (lesson.end - lesson.start).total_seconds() <= span
-        assert lesson.calibrated == "none"
-    assert lessons
+        assert window.points == points
+        assert (window.end - window.start).total_seconds() <= span
+        assert window.calibrated == "none"
+    assert windows
 
 
 def test_cases_that_did_not_converge_teach_nothing():
@@ -292,7 +292,7 @@ def test_the_cage_must_be_the_one_that_was_simulated():
 
 
 def test_training_tells_how_far_it_is():
-    told = []
+    steps = []
     campaign = stand_in_campaign(coarse(), stand_in_seas(40))
-    train(coarse(), campaign, training=FEW, progress=lambda *step: told.append(step))
-    assert told == [("train bridles", 1, 2), ("train shape", 2, 2)]
+    train(coarse(), campaign, training=FEW, progress=lambda *step: steps.append(step))
+    assert steps == [("train bridles", 1, 2), ("train shape", 2, 2)]
