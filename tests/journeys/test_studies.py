@@ -153,7 +153,7 @@ def test_a_given_campaign_and_field_are_studied_with_and_without_waves(in_waves,
     assert len(readings) == len(SMALL.sensor_names), "all ways are judged on the same readings"
     assert {one.inputs for one in study.shapes} > {"current", "current and waves"}
     page = study.report.read_text("utf-8")
-    assert "What teaches, and what is heard" in page
+    assert "Training readings and inputs" in page
     assert page.count("data:image/svg+xml") == 7
     again = study_chain(given(tmp_path, in_waves, progress=unheard), tmp_path)
     assert again.report.read_text("utf-8") == page
