@@ -8,7 +8,7 @@ from jaxtyping import Bool, Float, Shaped
 
 from seacage.conventions import InputError, Origin
 from seacage.records import FieldRecord
-from seacage.surrogates import block_bootstrap, coverage, crps, mae
+from seacage.surrogates import block_bootstrap, block_means, coverage, crps, mae
 from seacage.twin import Answer, align
 
 MEAN_S = 600.0
@@ -70,19 +70,16 @@ class Readings:
         The standard deviation is averaged too: the error of a held input does not average out.
         """
         second = self.time.astype("datetime64[s]").astype(np.int64)
-        window, group = np.unique(second // int(length), return_inverse=True)
-        count = np.bincount(group)
-
-        def mean(column: Float[np.ndarray, " t"]) -> Float[np.ndarray, " window"]:
-            return np.bincount(group, weights=column) / count
-
+        window, (reading, low, multi, multi_std) = block_means(
+            second // int(length), self.reading, self.low, self.multi, self.multi_std
+        )
         return replace(
             self,
             time=(window * int(length)).astype("datetime64[s]"),
-            reading=mean(self.reading),
-            low=mean(self.low),
-            multi=mean(self.multi),
-            multi_std=mean(self.multi_std),
+            reading=reading,
+            low=low,
+            multi=multi,
+            multi_std=multi_std,
         )
 
 

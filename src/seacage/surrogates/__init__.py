@@ -16,7 +16,16 @@ from seacage.surrogates._gp import FittedGaussianProcess, GaussianProcess
 from seacage.surrogates._multifidelity import AR1, NARGP, BatchedLevels, FittedNARGP
 from seacage.surrogates._prediction import Prediction, Predicts
 from seacage.surrogates._saving import Fitted, decode, encode
-from seacage.surrogates._scores import block_bootstrap, coverage, crps, mae, mnll, rmse, skill
+from seacage.surrogates._scores import (
+    block_bootstrap,
+    block_means,
+    coverage,
+    crps,
+    mae,
+    mnll,
+    rmse,
+    skill,
+)
 from seacage.surrogates._shape import (
     FittedCoordinate,
     FittedPcaGP,
@@ -59,6 +68,7 @@ __all__ = [
     "Table",
     "Tabulable",
     "block_bootstrap",
+    "block_means",
     "check_symmetry",
     "conformal_factor",
     "coverage",

@@ -3,7 +3,7 @@
 import math
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Shaped
 
 from seacage.conventions import InputError
 
@@ -118,6 +118,30 @@ def skill(score: float, reference: float) -> float:
             "Choose a reference that errs."
         )
     return 1.0 - score / reference
+
+
+def block_means(
+    label: Shaped[np.ndarray, " t"], *columns: Float[np.ndarray, " t"]
+) -> tuple[Shaped[np.ndarray, " block"], list[Float[np.ndarray, " block"]]]:
+    """Mean of each column over the rows of each block.
+
+    Parameters
+    ----------
+    label
+        Block of each row; rows of a block need not be neighbours.
+    columns
+        Any.
+
+    Returns
+    -------
+    label
+        Of the blocks, ascending.
+    means
+        Of each column, by block.
+    """
+    labels, block = np.unique(label, return_inverse=True)
+    count = np.bincount(block)
+    return labels, [np.bincount(block, weights=column) / count for column in columns]
 
 
 def block_bootstrap(

@@ -9,7 +9,15 @@ import numpy as np
 from jaxtyping import Float, Shaped
 
 from seacage.conventions import InputError
-from seacage.surrogates import NARGP, BatchedLevels, Domain, FittedNARGP, Prediction, Predicts
+from seacage.surrogates import (
+    NARGP,
+    BatchedLevels,
+    Domain,
+    FittedNARGP,
+    Prediction,
+    Predicts,
+    block_means,
+)
 from seacage.twin._pairs import Pairs
 
 GAIN_SD = 0.5
@@ -115,9 +123,7 @@ class Correction:
         (rest,) = self.rest.upper
         left_out = self.gain * low + np.ravel(rest.leave_one_out().mean)
         better = np.abs(pairs.value - low) - np.abs(pairs.value - left_out)
-        _, hour = np.unique(_hours(pairs.time), return_inverse=True)
-        count = np.bincount(hour)
-        by_hour = np.bincount(hour, weights=better) / count
+        by_hour = block_means(_hours(pairs.time), better)[1][0]
         if len(by_hour) < 2:
             return True  # no second hour to compare; the caller wants a minimum of readings
         return bool(by_hour.mean() > PROOF_SD * by_hour.std(ddof=1) / np.sqrt(len(by_hour)))

@@ -9,7 +9,7 @@ from jaxtyping import Bool, Float, Int, Shaped
 
 from seacage.conventions import Flag, InputError
 from seacage.records import FieldRecord, Record, instant
-from seacage.surrogates import spread_design
+from seacage.surrogates import block_means, spread_design
 from seacage.twin._metocean import INPUT_KEYS, Metocean
 
 HOLD_S = 10800.0
@@ -161,21 +161,16 @@ def _between(
 
 def _block_means(pairs: Pairs, mean_s: float) -> Pairs:
     length = round(mean_s * 1e6)
-    window, group = np.unique(
-        pairs.time.astype("datetime64[us]").astype(np.int64) // length, return_inverse=True
-    )
-    count = np.bincount(group, minlength=len(window))
-
-    def mean(column: Float[np.ndarray, " pair"]) -> Float[np.ndarray, " window"]:
-        return np.bincount(group, weights=column, minlength=len(window)) / count
-
+    microsecond = pairs.time.astype("datetime64[us]").astype(np.int64)
     water = pairs.metocean
+    columns = (*water.current_velocity.T, water.hs, *water.wave_direction.T, pairs.value)
+    window, (u, v, hs, x, y, value) = block_means(microsecond // length, *columns)
     return Pairs(
         time=(window * length + length // 2).astype("datetime64[us]"),
         metocean=Metocean(
-            current_velocity=np.column_stack([mean(column) for column in water.current_velocity.T]),
-            hs=mean(water.hs),
-            wave_direction=np.column_stack([mean(column) for column in water.wave_direction.T]),
+            current_velocity=np.column_stack([u, v]),
+            hs=hs,
+            wave_direction=np.column_stack([x, y]),
         ),
-        value=mean(pairs.value),
+        value=value,
     )

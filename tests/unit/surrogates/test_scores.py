@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seacage.conventions import InputError
-from seacage.surrogates import block_bootstrap, coverage, crps, mae, mnll, rmse, skill
+from seacage.surrogates import block_bootstrap, block_means, coverage, crps, mae, mnll, rmse, skill
 
 TRUTH = np.array([1.0, 2.0, 4.0])
 MEAN = np.array([1.5, 2.0, 3.0])
@@ -111,3 +111,12 @@ def test_the_seed_fixes_the_interval() -> None:
 def test_what_cannot_be_scored_is_refused(call, message: str) -> None:
     with pytest.raises(InputError, match=message):
         call()
+
+
+def test_blocks_have_the_means_of_their_rows() -> None:
+    label, (mean, other) = block_means(
+        np.array([3, 1, 3, 7]), np.array([1.0, 2.0, 5.0, 4.0]), np.array([0.0, 1.0, 1.0, 0.0])
+    )
+    assert label.tolist() == [1, 3, 7]
+    assert mean.tolist() == [2.0, 3.0, 4.0]
+    assert other.tolist() == [1.0, 0.5, 0.0]
