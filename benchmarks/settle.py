@@ -9,9 +9,9 @@ from seacage.cage import Cage
 from seacage.conventions import Result
 from seacage.dynamics import rest_shape, settle
 from seacage.dynamics._equilibrium._newton import nearer
-from seacage.dynamics._equilibrium._search import _balance, _begun, _first_shapes
+from seacage.dynamics._equilibrium._search import _balance, _first_shapes, _start
 from seacage.dynamics._kernel._library import kernel
-from seacage.dynamics._moored._pretension import assembled
+from seacage.dynamics._moored._pretension import assemble
 from seacage.dynamics._physics._flow import steady_flow
 from seacage.ocean import SeaState
 
@@ -46,14 +46,14 @@ def reliability(cases: int, starts: int) -> None:
 
 
 def iteration() -> None:
-    compiled, assembly = kernel(), assembled(CAGE)
+    compiled, assembly = kernel(), assemble(CAGE)
     cases = compiled.lanes
     velocity = np.array([sea.current_velocity for sea in random_currents(cases)])
     flow = steady_flow(assembly, velocity, law="kristiansen-faltinsen")
     balance = _balance(CAGE, np.ones(len(assembly.position), dtype=bool))
-    state = _begun(CAGE, _first_shapes(assembly, flow, 1), assembly)
+    state = _start(CAGE, _first_shapes(assembly, flow, 1), assembly)
     many, few = (
-        seconds(lambda n=n: compiled.balanced(assembly, flow, state, balance, iterations=n))
+        seconds(lambda n=n: compiled.balance(assembly, flow, state, balance, iterations=n))
         for n in (7, 2)
     )
     one = np.zeros(1, dtype=np.int64)

@@ -9,12 +9,12 @@ from _timing import ONCE
 
 from seacage.cage import Cage
 from seacage.campaigns import Plan
-from seacage.campaigns._virtual_field._truth_parameters import Hidden
+from seacage.campaigns._virtual_field._truth_parameters import TruthParameters
 from seacage.dynamics import MovingLaw, rest_shape, simulate, simulation_lanes
 from seacage.dynamics._kernel._march import REFRESH, March, Steps
 from seacage.dynamics._kernel._march_inputs import Ocean
-from seacage.dynamics._moored._detailed import detailed
-from seacage.dynamics._moored._mass_scaling import steadied
+from seacage.dynamics._moored._detailed import full_assembly
+from seacage.dynamics._moored._mass_scaling import scale_mass
 from seacage.dynamics._parts._assembly import Assembly
 from seacage.dynamics._physics._motion import NetLaw
 from seacage.dynamics._physics._wake import wake_share
@@ -91,7 +91,7 @@ def without(assembly: Assembly, what: str) -> Assembly:
 
 def parts(refreshes: int, rounds: int) -> None:
     """A step of the kernel, and how much of it goes when a part is left out."""
-    assembly, _ = steadied(Assembly.of(CAGE), STEP)
+    assembly, _ = scale_mass(Assembly.of(CAGE), STEP)
     kf: MovingLaw = "kristiansen-faltinsen"
     marches = {
         "all, Kristiansen and Faltinsen's law": march(assembly, kf, waves=30),
@@ -117,8 +117,8 @@ def parts(refreshes: int, rounds: int) -> None:
 
 def field(refreshes: int, rounds: int) -> None:
     """The virtual field's cage on its finer mesh, through what it is marched with."""
-    fine, law = Hidden.read().refined_cage(CAGE), "loland"
-    assembly, _ = steadied(detailed(fine, stiffening=(0.01, 0.5)), 0.001)
+    fine, law = TruthParameters.read().fine_cage(CAGE), "loland"
+    assembly, _ = scale_mass(full_assembly(fine, stiffening=(0.01, 0.5)), 0.001)
     one = march(assembly, law, waves=64, each=100, hold=8)
     taken = min(cpu_seconds(lambda: one.go(refreshes)) for _ in range(rounds))
     pace = CASES * refreshes * REFRESH / taken

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from seacage.cage import Cage
-from seacage.campaigns import Hidden, Plan, run_campaign, true_shapes
+from seacage.campaigns import Plan, TruthParameters, run_campaign, true_shapes
 from seacage.ocean import SeaState
 from seacage.studies import judged_points, learned_discrepancy
 from seacage.twin import PredictedNet, Training, inspection_path, train
@@ -50,7 +50,7 @@ way = inspection_path(net, stand_off=2.0, side="inside", row_spacing=3.0, step=2
 print(f"inspection: {len(way)} waypoints, the first looking {way.heading[0]:.0f} degrees")
 
 # The probabilities judged on days that did not teach them.
-judged = judged_points(twin, true_shapes(cage, hidden=Hidden.read(), seeds=(9,), cases=20))
+judged = judged_points(twin, true_shapes(cage, hidden=TruthParameters.read(), seeds=(9,), cases=20))
 print("virtual field: points, foretold, happened")
 for count, foretold, happened in judged.table(bins=5):
     print(f"{count:6d}  {foretold:.2f}  {happened:.2f}")

@@ -13,8 +13,8 @@ import numpy as np
 from seacage.cage import Cage
 from seacage.conventions import Origin
 from seacage.dynamics import rest_shape
-from seacage.dynamics._equilibrium._search import _balance, _begun, _near, _seek
-from seacage.dynamics._moored._pretension import assembled
+from seacage.dynamics._equilibrium._search import _balance, _near, _seek, _start
+from seacage.dynamics._moored._pretension import assemble
 from seacage.dynamics._physics._flow import steady_flow
 from seacage.figures._style import INK, LOW, MULTI, MUTED, blank_figure, head, style, write_figure
 
@@ -25,9 +25,9 @@ SHOWN = 1.3
 
 def followed(speeds, shape, law):
     """Shapes in currents towards the north: the first as settle seeks, then from the one before."""
-    assembly = assembled(CAGE)
+    assembly = assemble(CAGE)
     balance = _balance(CAGE, ~assembly.fixed)
-    shapes, state = [], _begun(CAGE, shape[None].copy(), assembly)
+    shapes, state = [], _start(CAGE, shape[None].copy(), assembly)
     with ThreadPoolExecutor(1) as pool:
         for speed in speeds:
             flow = steady_flow(assembly, np.array([[0.0, speed]]), law=law)
@@ -76,7 +76,7 @@ def drawn(one, lifted, ruling):
 
 def main(path):
     """Follow, tell and draw."""
-    start = assembled(CAGE).position
+    start = assemble(CAGE).position
     ruling = followed(SPEEDS, start, "kristiansen-faltinsen")
     one = followed(SPEEDS, start, "loland")
     other = followed(SPEEDS[::-1], start, "loland")[::-1]

@@ -10,7 +10,7 @@ from jaxtyping import Float
 from seacage.cage import Cage
 from seacage.conventions import WATER_DENSITY
 from seacage.dynamics import settle
-from seacage.dynamics._moored._mass_scaling import steadied
+from seacage.dynamics._moored._mass_scaling import scale_mass
 from seacage.dynamics._parts._assembly import Assembly
 from seacage.dynamics._physics._motion import NetLaw, Water, moving_cylinder_force, moving_net_load
 from seacage.dynamics._physics._screens import MOVING_LAWS
@@ -231,7 +231,7 @@ def _dissipation(what: str, power: Float[np.ndarray, "*n"], scale: Float[np.ndar
 def _decay() -> Iterator[Row]:
     """The cage bent by a current that stops at once, and its energy while it comes to rest."""
     cage = Cage.named("ace")
-    assembly, _ = steadied(Assembly.of(cage), 0.002)
+    assembly, _ = scale_mass(Assembly.of(cage), 0.002)
     start = assembly.position.copy()
     bent = settle(cage, SeaState(current_speed=0.8, current_to=30.0))
     start[: cage.node_count] = bent.node_position

@@ -13,7 +13,7 @@ from seacage.cage import Cage
 from seacage.conventions import GRAVITY, WATER_DENSITY
 from seacage.dynamics import History, catenary, simulate
 from seacage.dynamics._moored._anchor_line import STEEL_DENSITY, hung, resting_line, segments
-from seacage.dynamics._moored._mooring import anchored
+from seacage.dynamics._moored._mooring import anchor_assembly
 from seacage.dynamics._parts._assembly import Assembly
 from seacage.dynamics._physics._loads import bar_force, float_force
 from seacage.ocean import SeaState
@@ -108,7 +108,7 @@ def _corner_force(assembly: Assembly, moved: Float[np.ndarray, "3"]) -> Float[np
 
 
 def _corner() -> Iterator[Row]:
-    assembly, step = anchored(ACE), 0.1
+    assembly, step = anchor_assembly(ACE), 0.1
     for axis, name, reference in ((0, "x", (40.0, 120.0)), (2, "z", (29.7, 36.3))):
         moved = np.eye(3)[axis] * step
         fall = _corner_force(assembly, -moved) - _corner_force(assembly, moved)

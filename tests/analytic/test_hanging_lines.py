@@ -92,7 +92,7 @@ def relaxed(line, *, held, tolerance):
         steps=300,
     )
     state = Relaxing.begun(line.position[None].copy(), len(rate), np.array([0.01]))
-    return kernel().relaxed(line, STILL, state, relaxation, rounds=200)
+    return kernel().relax(line, STILL, state, relaxation, rounds=200)
 
 
 def balanced(line, *, held, tolerance):
@@ -108,7 +108,7 @@ def balanced(line, *, held, tolerance):
     )
     borne = np.full((1, len(line.bars.length)), 1000.0)
     state = Balancing.begun(line.position[None].copy(), borne, barrier=1.0, shift=1.0)
-    return kernel().balanced(line, STILL, state, balance, iterations=100)
+    return kernel().balance(line, STILL, state, balance, iterations=100)
 
 
 @pytest.fixture(params=[relaxed, balanced])

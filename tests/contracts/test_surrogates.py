@@ -101,11 +101,11 @@ def test_a_table_keeps_its_models_promises_within_its_region(outputs: tuple[int,
 # is held back, so the worst case given is one that the network never saw.
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("kind", "epochs", "worst_taught", "unseen_error"),
+    ("kind", "epochs", "training_error", "unseen_error"),
     [("modal", 100, 0.3, 0.08), ("paper", 300, 1.0, 0.2)],
 )
 def test_a_graph_network_keeps_its_promises(
-    kind, epochs: int, worst_taught: float, unseen_error: float
+    kind, epochs: int, training_error: float, unseen_error: float
 ) -> None:
     around = np.linspace(0.0, 2.0 * np.pi, 6, endpoint=False)
     rest = np.column_stack([np.cos(around), np.sin(around), np.linspace(0.0, -2.0, 6)])
@@ -115,4 +115,6 @@ def test_a_graph_network_keeps_its_promises(
         gcn = GCN(edges=two_ropes, rest_position=rest, kind=kind, epochs=epochs)
         return gcn.fit(x, y, seed=seed)
 
-    check_surrogate(fit, output_shape=(6, 3), worst_taught=worst_taught, unseen_error=unseen_error)
+    check_surrogate(
+        fit, output_shape=(6, 3), training_error=training_error, unseen_error=unseen_error
+    )

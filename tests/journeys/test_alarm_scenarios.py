@@ -18,7 +18,7 @@ import pytest
 
 from assessed import Assessed
 from damaged import ACE, DAMAGES, damaged_field, kept_answers, settled_answers
-from seacage.campaigns import Event, Hidden, Plan, run_campaign
+from seacage.campaigns import Event, Plan, TruthParameters, run_campaign
 from seacage.ocean import SeaState
 from seacage.records import CampaignRecord, FieldRecord, Record, Sample
 from seacage.twin import Action, AlarmEvent, Training, alarm_text, train
@@ -37,7 +37,7 @@ TICK = timedelta(minutes=15)
 class Sea:
     """A whole cage, its twin, and what that heard until things go wrong."""
 
-    hidden: Hidden
+    hidden: TruthParameters
     campaign: CampaignRecord
     whole: FieldRecord
     known: Assessed
@@ -52,7 +52,7 @@ def sea(tmp_path_factory: pytest.TempPathFactory) -> Sea:
     folder = tmp_path_factory.mktemp("sea")
     plan = Plan.sample(0, 150, current_speed=(0.0, 1.5), hs=(0.0, 0.0), name="current")
     campaign = run_campaign(COARSE, plan, folder / "campaign.zarr", method="settle", workers=1)
-    hidden = Hidden.read(_always_alive(folder / "hidden.toml"))
+    hidden = TruthParameters.read(_always_alive(folder / "hidden.toml"))
     whole = _field("whole", hidden)
     return Sea(hidden, campaign, whole, _known(campaign, whole))
 
@@ -66,7 +66,7 @@ def _known(campaign: CampaignRecord, whole: FieldRecord) -> Assessed:
     return known
 
 
-def _field(damage: str, hidden: Hidden) -> FieldRecord:
+def _field(damage: str, hidden: TruthParameters) -> FieldRecord:
     return damaged_field(
         damage, hidden=hidden, seed=0, start=START, days=QUIET + 1.0, every_s=600.0
     )
@@ -134,13 +134,13 @@ def _new(line: AlarmEvent) -> bool:
 
 def _with(field: FieldRecord, words: str) -> FieldRecord:
     event = Event.parse(words.replace("THEN", _at(KNOWN).strftime("%Y-%m-%dT%H:%MZ")))
-    sensors = {name: event.applied_to(record) for name, record in field.sensors.items()}
-    return replace(field, buoy=event.applied_to(field.buoy), sensors=sensors)
+    sensors = {name: event.apply_to(record) for name, record in field.sensors.items()}
+    return replace(field, buoy=event.apply_to(field.buoy), sensors=sensors)
 
 
 @pytest.mark.parametrize("damage", DAMAGES)
 def test_the_kept_answers_are_those_of_the_damaged_cage(damage: str) -> None:
-    kept, hidden = kept_answers(damage), Hidden.read()
+    kept, hidden = kept_answers(damage), TruthParameters.read()
     speed, towards = [3, 6, 9], [2, 7, 15]
     seas = [
         SeaState(current_speed=kept.speed[i], current_to=float(np.rad2deg(kept.direction[j])))

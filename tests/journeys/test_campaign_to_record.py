@@ -17,9 +17,9 @@ import pytest
 
 from seacage.cage import Cage
 from seacage.campaigns import (
-    Hidden,
     Plan,
     Simulator,
+    TruthParameters,
     campaign_status,
     generated_current,
     run_campaign,
@@ -269,7 +269,7 @@ def test_the_low_fidelity_underestimates_what_the_virtual_field_shows(
     monkeypatch.setattr(_responses, "_DIRECTIONS", tuple(range(0, 360, 45)))
     buoy = generated_current(3, start=datetime(2020, 1, 18, tzinfo=UTC), days=8.0)
     field = virtual_field(
-        SIXTEEN, buoy, hidden=Hidden.read(), seed=1, method="settle", every_s=720.0
+        SIXTEEN, buoy, hidden=TruthParameters.read(), seed=1, method="settle", every_s=720.0
     )
     rows = slice(40, None, 30)
     seas = [

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from seacage.cage import Cage
-from seacage.campaigns import Hidden, Plan, run_campaign, true_shapes
+from seacage.campaigns import Plan, TruthParameters, run_campaign, true_shapes
 from seacage.studies import Reliability, learned_discrepancy, score_paths, score_points
 from seacage.twin import Training, train
 
@@ -27,7 +27,9 @@ def twin(tmp_path_factory):
 @pytest.fixture(scope="module")
 def unseen():
     """Shapes of other seeds: other currents, growth, errors of the buoy, and uneven bridles."""
-    return true_shapes(CAGE, hidden=Hidden.read(), seeds=range(50, 55), cases=24, workers=1)
+    return true_shapes(
+        CAGE, hidden=TruthParameters.read(), seeds=range(50, 55), cases=24, workers=1
+    )
 
 
 def brier(judged: Reliability) -> float:

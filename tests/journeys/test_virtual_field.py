@@ -18,7 +18,7 @@ import sys
 from datetime import UTC, datetime, timedelta
 from seacage.cage import Cage
 from seacage.campaigns import (
-    Event, Hidden, Timetable, generated_current, generated_waves, virtual_field
+    Event, TruthParameters, Timetable, generated_current, generated_waves, virtual_field
 )
 def tell(stage, done, total):
     print(stage, flush=True)
@@ -27,7 +27,7 @@ mesh = {"ring_depths_m": [0.0, 7.0, 15.0, 23.0], "spokes": 16}
 start = datetime(2020, 1, 18, tzinfo=UTC)
 buoy = generated_current(0, start=start, days=1.0).between(start, start + timedelta(minutes=13))
 virtual_field(
-    Cage.named("ace").altered(mesh=mesh), buoy, hidden=Hidden.read(), seed=seed,
+    Cage.named("ace").altered(mesh=mesh), buoy, hidden=TruthParameters.read(), seed=seed,
     waves=generated_waves(0, start=start, days=1.0),
     events=[Event.parse("bridle-cut bridle-8 2020-01-18T00:06Z")],
     timetable=Timetable(stretch=40.0, spin_up=20.0, mean=20.0, time_step=0.002),

@@ -92,7 +92,7 @@ def test_the_kernel_takes_the_defined_step_towards_balance(
     balance = Balance(
         free=free, tolerance=1e-3, reach=0.5, least_barrier=1e-7, least_shift=0.1, most_shift=1e7
     )
-    computed = kernel().balanced(assembly, flow, begun, balance, iterations=1)
+    computed = kernel().balance(assembly, flow, begun, balance, iterations=1)
     for case in range(cases):
         one = np.array([case])
         defined = nearer(assembly, flow.cases(one), begun.cases(one), balance)

@@ -11,9 +11,9 @@ from seacage.cage import Cage
 from seacage.dynamics import MOVING_LAWS, simulation_lanes
 from seacage.dynamics._kernel._march import March, Steps, kernel_force, kernel_water
 from seacage.dynamics._kernel._march_inputs import Ocean
-from seacage.dynamics._moored._mass_scaling import steadied
+from seacage.dynamics._moored._mass_scaling import scale_mass
 from seacage.dynamics._parts._assembly import Assembly, Ground
-from seacage.dynamics._physics._loads import DYNAMIC, _gathered, bend_force, spring_force
+from seacage.dynamics._physics._loads import DYNAMIC, _gather, bend_force, spring_force
 from seacage.dynamics._physics._motion import (
     NetLaw,
     Water,
@@ -287,7 +287,7 @@ class Stepper:
         x = x + ahead * self.velocity
         load = moving_net_load(a.panels, self.law, water, x, self.velocity)
         corners, share = a.panels.corners, a.panels.share
-        self.load = _gathered(x, corners, load[:, :, None] * share[..., None])
+        self.load = _gather(x, corners, load[:, :, None] * share[..., None])
         self.load += moving_cylinder_force(a.cylinders, water, x, self.velocity)
         self.load += a.water_mass[:, None] * water.acceleration
         self.load[..., 2] += a.weight
@@ -384,7 +384,7 @@ def check_steps(mesh, law, cases, each, hold, held, seed):
     assembly = Assembly.of(cage)
     if held:
         assembly = replace(assembly, fixed=np.arange(len(assembly.position)) < cage.spokes)
-    assembly, _ = steadied(assembly, steps.time_step)
+    assembly, _ = scale_mass(assembly, steps.time_step)
     depth = 60.0
     seas = [
         SeaState(current_speed=0.0, current_to=0.0, hs=1.5, tp=5.0, wave_from=rng.uniform(0, 360))

@@ -12,14 +12,14 @@ from pathlib import Path
 import numpy as np
 
 from seacage.cage import Cage
-from seacage.campaigns import Hidden, generated_current
-from seacage.campaigns._virtual_field._field import _settled
+from seacage.campaigns import TruthParameters, generated_current
+from seacage.campaigns._virtual_field._field import _settle
 from seacage.campaigns._virtual_field._responses import _DIRECTIONS, _GROWTHS, _SPEEDS, Responses
 from seacage.campaigns._virtual_field._timetable import reading_times
 from seacage.dynamics import Damage
 from seacage.dynamics._equilibrium._search import equilibria
 from seacage.dynamics._moored._detailed import _tear
-from seacage.dynamics._moored._pretension import assembled, free_nodes
+from seacage.dynamics._moored._pretension import assemble, free_nodes
 from seacage.dynamics._physics._flow import steady_flow
 from seacage.dynamics._physics._loads import bar_tension
 from seacage.ocean import SeaState
@@ -46,7 +46,7 @@ def kept_answers(damage: str) -> Responses:
 
 
 def damaged_field(
-    damage: str, *, hidden: Hidden, seed: int, start: datetime, days: float, every_s: float
+    damage: str, *, hidden: TruthParameters, seed: int, start: datetime, days: float, every_s: float
 ) -> FieldRecord:
     """What the sensors say where the cage is damaged from the start; whatever the damage, the
     same weather, noise and outages."""
@@ -54,13 +54,13 @@ def damaged_field(
     times = reading_times(buoy, every_s)
     nothing_held_out = np.zeros((1, len(ACE.sensor_names)))
     answers = kept_answers(damage)
-    return _settled(ACE, buoy, hidden, seed, times, answers, nothing_held_out).record
+    return _settle(ACE, buoy, hidden, seed, times, answers, nothing_held_out).record
 
 
-def settled_answers(damage: str, hidden: Hidden, growth: float, seas: Sequence[SeaState]):
+def settled_answers(damage: str, hidden: TruthParameters, growth: float, seas: Sequence[SeaState]):
     """Settle the damaged cage: depths [m], then tensions [kN], of each sea."""
     cage, broken = hidden.true_cage(ACE, growth), DAMAGES[damage]
-    assembly = assembled(cage)
+    assembly = assemble(cage)
     stiffness = assembly.bars.stiffness.copy()
     whole = np.ones(len(assembly.panels.area), dtype=bool)
     if broken.bridle is not None:

@@ -31,7 +31,7 @@ from seacage.cage._parts import (
     quantity,
 )
 from seacage.cage._tangent_plane import TangentPlane
-from seacage.cage._toml import altered, parsed, written
+from seacage.cage._toml import alter, parse, to_text
 from seacage.cage._volume import enclosed_volume
 from seacage.conventions import InputError, read_text, towards
 
@@ -129,11 +129,11 @@ class Cage:
     @classmethod
     def from_toml(cls, text: str, *, source: str = "cage") -> Self:
         """A cage from TOML text; ``source`` names it in errors."""
-        return parsed(cls, text, source=source)
+        return parse(cls, text, source=source)
 
     def to_toml(self) -> str:
         """TOML text with the unit in every key and the meaning beside it."""
-        return written(self)
+        return to_text(self)
 
     @property
     def sha256(self) -> str:
@@ -158,7 +158,7 @@ class Cage:
                     f"Cage.altered: no section {name!r}; there are: {', '.join(parts)}."
                 )
         where = "Cage.altered"
-        changed = {n: altered(parts[n], keys, f"{where}, {n}") for n, keys in sections.items()}
+        changed = {n: alter(parts[n], keys, f"{where}, {n}") for n, keys in sections.items()}
         return replace(self, **changed)
 
     def fouled(self, *, shallow: float, deep: float, boundary_depth: float = 10.0) -> Self:
@@ -219,19 +219,19 @@ class Cage:
     @cached_property
     def design_position(self) -> Float[np.ndarray, "node 3"]:
         """The shape the net was cut to [m]; the rest shape hangs a little narrower."""
-        return _kept(
+        return _read_only(
             _graph.node_positions(self.mesh, radius=self.collar.radius, heading=self.heading)
         )
 
     @cached_property
     def edges(self) -> Int[np.ndarray, "edge 2"]:
         """Pairs of neighbouring nodes: rings, meridians, apex."""
-        return _kept(_graph.edges(self.rings, self.spokes))
+        return _read_only(_graph.edges(self.rings, self.spokes))
 
     @cached_property
     def panels(self) -> Int[np.ndarray, "panel 4"]:
         """Corners of each panel, counter-clockwise from outside; triangles repeat the last."""
-        return _kept(_graph.panels(self.rings, self.spokes))
+        return _read_only(_graph.panels(self.rings, self.spokes))
 
     def volume(
         self, node_position: Float[np.ndarray, "*case node 3"]
@@ -270,7 +270,7 @@ class Cage:
     @cached_property
     def bridle_nodes(self) -> Int[np.ndarray, " bridle"]:
         """The collar node that each bridle holds."""
-        return _kept(np.array([self._nearest_spoke(b) for b in self.bridles.bearings]))
+        return _read_only(np.array([self._nearest_spoke(b) for b in self.bridles.bearings]))
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -294,14 +294,14 @@ class Cage:
         """Frame corners in still water: north-east, north-west, south-west, south-east [m]."""
         bearing = np.array([45.0, 315.0, 225.0, 135.0]) + self.heading
         horizontal = towards(np.full(4, self.frame.side / np.sqrt(2.0)), bearing)
-        return _kept(np.column_stack([horizontal, np.full(4, -self.frame.depth)]))
+        return _read_only(np.column_stack([horizontal, np.full(4, -self.frame.depth)]))
 
     @cached_property
     def bridle_corner(self) -> Int[np.ndarray, " bridle"]:
         """The frame corner that each bridle comes from: the nearest."""
         ends = self.design_position[self.bridle_nodes]
         distance = np.linalg.norm(ends[:, None] - self.corner_position, axis=-1)
-        return _kept(np.argmin(distance, axis=1))
+        return _read_only(np.argmin(distance, axis=1))
 
     @property
     def bridle_capacity(self) -> Float[np.ndarray, " bridle"]:
@@ -339,7 +339,7 @@ class Cage:
         return self.node(ring, self._nearest_spoke(entry.bearing))
 
 
-def _kept(array: np.ndarray) -> np.ndarray:
+def _read_only(array: np.ndarray) -> np.ndarray:
     """An array that nobody can write into, for it is handed out more than once."""
     array.setflags(write=False)
     return array

@@ -21,7 +21,7 @@ from seacage.cage._structure_parts import (
     Tie,
     Twine,
 )
-from seacage.cage._toml import parsed, written
+from seacage.cage._toml import parse, to_text
 from seacage.cage._volume import enclosed_volume
 from seacage.conventions import InputError, read_text
 
@@ -101,11 +101,11 @@ class Structure:
     @classmethod
     def from_toml(cls, text: str, *, source: str = "structure") -> Self:
         """A structure from TOML text; ``source`` names it in errors."""
-        return parsed(cls, text, source=source)
+        return parse(cls, text, source=source)
 
     def to_toml(self) -> str:
         """TOML text with the unit in every key and the meaning beside it."""
-        return written(self)
+        return to_text(self)
 
     def write(self, path: str | Path) -> None:
         """Write a TOML file that ``read`` takes back."""
@@ -115,11 +115,11 @@ class Structure:
 
     def section_of(self, part: Ring | Tie | Line) -> Section:
         """The cross-section of a ring, of a tie or of a line."""
-        return self._found(self.section, part.section, "section", part.name)
+        return self._find(self.section, part.section, "section", part.name)
 
     def twine_of(self, net: Net) -> Twine:
         """The twine of a net."""
-        return self._found(self.twine, net.twine, "twine", net.name)
+        return self._find(self.twine, net.twine, "twine", net.name)
 
     # Nodes
 
@@ -226,10 +226,10 @@ class Structure:
     @cached_property
     def edges(self) -> Int[np.ndarray, "edge 2"]:
         """Pairs of neighbouring nodes: rings, nets, ties, lines."""
-        around = [_closed(self.ring_nodes(index)) for index in range(len(self.ring))]
+        around = [_loop_edges(self.ring_nodes(index)) for index in range(len(self.ring))]
         nets = [self._net_edges(index) for index in range(len(self.net))]
-        ties = [_chained(self.tie_nodes(index)) for index in range(len(self.tie))]
-        lines = [_chained(self.line_nodes(index)[None]) for index in range(len(self.line))]
+        ties = [_chain_edges(self.tie_nodes(index)) for index in range(len(self.tie))]
+        lines = [_chain_edges(self.line_nodes(index)[None]) for index in range(len(self.line))]
         return np.concatenate([*around, *nets, *ties, *lines])
 
     @property
@@ -254,7 +254,7 @@ class Structure:
         edges = (net.upper, net.lower or net.upper)
         return all(self._depth(self._ring_index(edge, net.name)) <= 0.0 for edge in edges)
 
-    def knitted(self, index: int) -> tuple[float, Float[np.ndarray, " level"]]:
+    def design_net(self, index: int) -> tuple[float, Float[np.ndarray, " level"]]:
         """A net as it was knitted, by its number.
 
         Returns
@@ -310,8 +310,8 @@ class Structure:
 
     def _net_edges(self, index: int) -> Int[np.ndarray, "edge 2"]:
         nodes = self.net_nodes(index)
-        inner = [_closed(level) for level in nodes[1:-1]]
-        return np.concatenate([*inner, _chained(nodes.T)])
+        inner = [_loop_edges(level) for level in nodes[1:-1]]
+        return np.concatenate([*inner, _chain_edges(nodes.T)])
 
     def _place(self, where: str, line: str) -> int:
         """The node of a point, of an anchor or of a ring's spoke."""
@@ -324,13 +324,13 @@ class Structure:
                 f"0 to {self.spokes - 1}."
             )
         places = (*self.point, *self.anchor)
-        found = self._found(places, where, "point, anchor or ring/spoke", line)
+        found = self._find(places, where, "point, anchor or ring/spoke", line)
         return self._first_point + places.index(found)
 
     def _ring_index(self, name: str, part: str) -> int:
-        return self.ring.index(self._found(self.ring, name, "ring", part))
+        return self.ring.index(self._find(self.ring, name, "ring", part))
 
-    def _found(self, parts: tuple[_Part, ...], name: str, what: str, part: str) -> _Part:
+    def _find(self, parts: tuple[_Part, ...], name: str, what: str, part: str) -> _Part:
         known = {p.name: p for p in parts}
         if name not in known:
             close = difflib.get_close_matches(name, known, n=1)
@@ -353,11 +353,11 @@ def _fill(position: Float[np.ndarray, "node 3"], chains: Int[np.ndarray, "chain 
     position[chains[:, 1:-1]] = first + share * (last - first)
 
 
-def _closed(nodes: Int[np.ndarray, " node"]) -> Int[np.ndarray, "edge 2"]:
+def _loop_edges(nodes: Int[np.ndarray, " node"]) -> Int[np.ndarray, "edge 2"]:
     return np.column_stack([nodes, np.roll(nodes, -1)])
 
 
-def _chained(chains: Int[np.ndarray, "chain link"]) -> Int[np.ndarray, "edge 2"]:
+def _chain_edges(chains: Int[np.ndarray, "chain link"]) -> Int[np.ndarray, "edge 2"]:
     return np.stack([chains[:, :-1], chains[:, 1:]], axis=-1).reshape(-1, 2)
 
 

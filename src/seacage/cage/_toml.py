@@ -12,7 +12,7 @@ from seacage.cage._parts import key_of
 from seacage.conventions import InputError, NonsenseError, parse_toml
 
 
-def parsed(kind: type, text: str, *, source: str) -> Any:
+def parse(kind: type, text: str, *, source: str) -> Any:
     """A cage (or any nest of parts) from TOML text.
 
     Raises
@@ -24,14 +24,14 @@ def parsed(kind: type, text: str, *, source: str) -> Any:
     """
     table = parse_toml(text, source)
     try:
-        return _built(kind, table, source)
+        return _build(kind, table, source)
     except InputError as error:
-        said = str(error)
-        raise NonsenseError(said if source in said else f"{source}: {said}") from error
+        message = str(error)
+        raise NonsenseError(message if source in message else f"{source}: {message}") from error
 
 
-def _built(kind: type, table: dict[str, Any], where: str) -> Any:
-    known = _known(kind, table, where)
+def _build(kind: type, table: dict[str, Any], where: str) -> Any:
+    known = _parameters(kind, table, where)
     missing = [key for key in known if key not in table and known[key].default is MISSING]
     if missing:
         meaning = known[missing[0]].metadata.get("meaning", "a section of its own")
@@ -39,13 +39,13 @@ def _built(kind: type, table: dict[str, Any], where: str) -> Any:
     return kind(**_values(known, table, where))
 
 
-def altered(part: Any, changes: Mapping[str, Any], where: str) -> Any:
+def alter(part: Any, changes: Mapping[str, Any], where: str) -> Any:
     """A copy of a part with some keys changed, each refused as in a file."""
-    known = _known(type(part), changes, where)
+    known = _parameters(type(part), changes, where)
     return replace(part, **_values(known, changes, where))
 
 
-def _known(kind: type, keys: Iterable[str], where: str) -> dict[str, Field[Any]]:
+def _parameters(kind: type, keys: Iterable[str], where: str) -> dict[str, Field[Any]]:
     """All parameters by their keys; none of the given keys is another."""
     known = {key_of(parameter): parameter for parameter in fields(kind)}
     for key in keys:
@@ -70,11 +70,11 @@ def _value(kind: Any, value: Any, where: str) -> Any:
         # What may be absent has a key only where it is there.
         kind = get_args(kind)[0]
     if get_origin(kind) is tuple:
-        items = value if isinstance(value, tuple) else _typed(list, value, where)
+        items = value if isinstance(value, tuple) else _check_type(list, value, where)
         return tuple(_value(get_args(kind)[0], item, where) for item in items)
     if isinstance(kind, type) and is_dataclass(kind):
-        return _built(kind, _typed(dict, value, where), where)
-    return kind(_typed(kind, value, where))
+        return _build(kind, _check_type(dict, value, where), where)
+    return kind(_check_type(kind, value, where))
 
 
 _KINDS: dict[type, tuple[type, str]] = {
@@ -86,15 +86,15 @@ _KINDS: dict[type, tuple[type, str]] = {
 }
 
 
-def _typed(kind: type, value: Any, where: str) -> Any:
+def _check_type(kind: type, value: Any, where: str) -> Any:
     accepted, meant = _KINDS[kind]
     if not isinstance(value, accepted) or isinstance(value, bool):
         raise InputError(f"{where}: must be {meant}, not {value!r}.")
     return value
 
 
-def written(cage: Any) -> str:
-    """TOML text of a cage; ``parsed`` gives the same cage back."""
+def to_text(cage: Any) -> str:
+    """TOML text of a cage; ``parse`` gives the same cage back."""
     entries = [(key_of(parameter), getattr(cage, parameter.name)) for parameter in fields(cage)]
     head = [f"{key} = {_literal(value)}" for key, value in entries if not _parts(value)]
     sections = [_section(key, value) for key, value in entries if _parts(value)]

@@ -7,9 +7,9 @@ from seacage.campaigns._run import run_campaign, run_share
 from seacage.campaigns._status import CampaignStatus, campaign_status
 from seacage.campaigns._virtual_field import (
     Event,
-    Hidden,
     Timetable,
     TrueShapes,
+    TruthParameters,
     VirtualField,
     read_events,
     true_shapes,
@@ -21,11 +21,11 @@ from seacage.campaigns._waves import generated_waves, waves_at_site
 __all__ = [
     "CampaignStatus",
     "Event",
-    "Hidden",
     "Plan",
     "Simulator",
     "Timetable",
     "TrueShapes",
+    "TruthParameters",
     "VirtualField",
     "campaign_status",
     "generated_current",

@@ -87,7 +87,7 @@ class Simulator:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Block:
+class CaseBlock:
     """Neighbouring cases, as they travel to a worker."""
 
     first: int
@@ -118,12 +118,12 @@ class Answers:
     core_seconds: float
 
 
-def made_by() -> str:
+def software_version() -> str:
     """The version of seacage that runs here, and the revision of its physics."""
     return f"seacage {version('seacage')}, physics {PHYSICS}"
 
 
-def answered(block: Block) -> Answers:
+def answer_block(block: CaseBlock) -> Answers:
     """Compute one block.
 
     Raises
@@ -131,18 +131,18 @@ def answered(block: Block) -> Answers:
     SeacageError
         The worker runs another version of seacage than who asks.
     """
-    if (here := made_by()) != block.made_by:
+    if (here := software_version()) != block.made_by:
         raise SeacageError(
             f"A worker runs {here}, the campaign {block.made_by}: their numbers may differ. "
             "Install the same version on every worker."
         )
     began = time.process_time()
     with one_thread():
-        values, moment = (_simulated if block.simulator.in_time else _settled)(block)
+        values, moment = (_simulate_block if block.simulator.in_time else _settle_block)(block)
     return Answers(values=values, moment=moment, core_seconds=time.process_time() - began)
 
 
-def _settled(block: Block) -> tuple[dict[str, np.ndarray], None]:
+def _settle_block(block: CaseBlock) -> tuple[dict[str, np.ndarray], None]:
     law = block.simulator.law
     assert law != "morison"  # the simulator refused it
     response = settle(_cage(block.cage_toml), block.seas, law=law, mean_waves=True)
@@ -150,8 +150,8 @@ def _settled(block: Block) -> tuple[dict[str, np.ndarray], None]:
     return {name: getattr(response, name) for name in names}, None
 
 
-def _simulated(
-    block: Block,
+def _simulate_block(
+    block: CaseBlock,
 ) -> tuple[dict[str, np.ndarray], Float[np.ndarray, "coordinate coordinate"] | None]:
     by = block.simulator
     history = simulate(

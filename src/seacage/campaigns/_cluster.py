@@ -20,7 +20,7 @@ Task = TypeVar("Task")
 Answer = TypeVar("Answer")
 
 
-def mapped_on_cluster(
+def map_on_cluster(
     work: Callable[[Task], Answer], tasks: Sequence[Task], *, address: str
 ) -> Generator[tuple[Task, Answer], None, None]:
     """Tasks with their answers, in the order in which the cluster's workers end them.
@@ -45,14 +45,14 @@ def mapped_on_cluster(
     from distributed import as_completed
     from distributed.scheduler import KilledWorker
 
-    with _connected(address) as client:
+    with _connect(address) as client:
         futures = [client.submit(work, task, pure=False) for task in tasks]
-        asked = {future.key: task for future, task in zip(futures, tasks, strict=True)}
+        task_of = {future.key: task for future, task in zip(futures, tasks, strict=True)}
         futures_left = as_completed(futures, loop=client.loop)
         del futures  # an answer that was taken need not stay in the cluster
         try:
             for future in futures_left:
-                yield asked[future.key], future.result()
+                yield task_of[future.key], future.result()
         except KilledWorker as error:
             raise SeacageError(
                 f"{address}: several workers ended with the same block of cases, perhaps for "
@@ -65,12 +65,12 @@ def mapped_on_cluster(
             ) from error
 
 
-def _connected(address: str) -> "Client":
+def _connect(address: str) -> "Client":
     from distributed import Client
 
     try:
         with ThreadPoolExecutor(1) as aside:  # a notebook's thread has a loop that is running
-            aside.submit(asyncio.run, _greeted(address)).result()
+            aside.submit(asyncio.run, _greet(address)).result()
     except (OSError, ValueError) as error:
         raise SeacageError(
             f"{address}: no Dask scheduler answers ({error}). Start one with `dask scheduler`, and "
@@ -88,7 +88,7 @@ def _connected(address: str) -> "Client":
     return client
 
 
-async def _greeted(address: str) -> None:
+async def _greet(address: str) -> None:
     """Connect once and leave: a client that cannot connect would go on trying for long."""
     from distributed.comm.core import connect
 

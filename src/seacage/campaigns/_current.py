@@ -59,11 +59,11 @@ def generated_current(
     along_across = _tide(rng, time) + np.array([_DRIFT, 0.0])
     weather = wandering(rng, steps, sd=0.09, step_s=every_s, memory_s=36.0 * _HOUR)
     turbulence = wandering(rng, steps, sd=0.03, step_s=every_s, memory_s=0.5 * _HOUR)
-    velocity = _turned(along_across, _STREAM_TO) + weather + turbulence
+    velocity = _turn(along_across, _STREAM_TO) + weather + turbulence
     record = Record(
         stream="buoy-1",
         time=instant(start) + (time * 1e6).astype("timedelta64[us]"),
-        values=_reported(rng, velocity),
+        values=_report(rng, velocity),
         origin=Origin.VIRTUAL_FIELD,
         notes=(f"A generated current: tide, weather and noise from seed {seed}.",),
     )
@@ -79,14 +79,14 @@ def _tide(rng: np.random.Generator, time: Float[np.ndarray, " t"]) -> Float[np.n
     return velocity
 
 
-def _turned(along_across: Float[np.ndarray, "t 2"], to: float) -> Float[np.ndarray, "t 2"]:
+def _turn(along_across: Float[np.ndarray, "t 2"], to: float) -> Float[np.ndarray, "t 2"]:
     """East and north, of components along and to the right of a direction."""
     along, across = along_across.T
     to_each = np.full(len(along), to)
     return towards(along, to_each) + towards(across, to_each + 90.0)
 
 
-def _reported(
+def _report(
     rng: np.random.Generator, velocity: Float[np.ndarray, "t 2"]
 ) -> dict[str, Float[np.ndarray, " t"]]:
     speed = np.linalg.norm(velocity, axis=1) + rng.normal(scale=0.015, size=len(velocity))

@@ -198,7 +198,7 @@ class Plan:
             rows = list(csv.reader(io.StringIO(text, newline="")))
         except csv.Error as error:
             raise InputError(f"{path}: cannot be read as a CSV file ({error}).") from error
-        seas = _tabled(rows, str(path))
+        seas = _read_seas(rows, str(path))
         return cls(name=name or path.stem, seas=seas, duration=duration, seed=seed)
 
     @classmethod
@@ -254,7 +254,7 @@ def _sea_of(case: Mapping[str, Any], where: str) -> SeaState:
         raise InputError(f"{where}: {error}") from error
 
 
-def _tabled(rows: Sequence[Sequence[str]], path: str) -> tuple[SeaState, ...]:
+def _read_seas(rows: Sequence[Sequence[str]], path: str) -> tuple[SeaState, ...]:
     """The sea states of a table, or the first row that is none, counted as an editor does."""
     header = [name.strip() for name in rows[0]] if rows else []
     missing = [name for name in _REQUIRED if name not in header]

@@ -29,12 +29,12 @@ def available_cores() -> int:
     return os.cpu_count() or 1
 
 
-def mapped(
+def map_tasks(
     work: Callable[[Task], Answer],
     tasks: Sequence[Task],
     *,
     workers: int,
-    heard: Callable[[float], None] | None = None,
+    progress: Callable[[float], None] | None = None,
 ) -> Generator[tuple[Task, Answer], None, None]:
     """Tasks with their answers, in the order in which they end.
 
@@ -49,15 +49,15 @@ def mapped(
         What to do.
     workers
         Processes at most.
-    heard
+    progress
         Called now and then, while an answer is waited for, with the sum of what the tasks say
-        by ``tell``.
+        by ``report_progress``.
     """
     workers = min(workers, len(tasks))
     spawn = multiprocessing.get_context("spawn")
     board = spawn.RawArray("d", max(len(tasks), 1))
     if workers <= 1:
-        _PLACE.take(board, heard)
+        _PLACE.take(board, progress)
         try:
             yield from ((task, _at(number, work, task)) for number, task in enumerate(tasks))
         finally:
@@ -74,8 +74,8 @@ def mapped(
         pending = set(futures)
         while pending:
             ended, pending = wait(pending, _LOOK_EVERY, FIRST_COMPLETED)
-            if heard is not None:
-                heard(sum(board))
+            if progress is not None:
+                progress(sum(board))
             for future in ended:
                 yield futures[future], future.result()
     except BrokenProcessPool as error:
@@ -90,9 +90,9 @@ def mapped(
         pool.shutdown(cancel_futures=True)
 
 
-def tell(amount: float) -> None:
+def report_progress(amount: float) -> None:
     """Say, from within a task, how much of it is done, in whatever whoever listens counts."""
-    _PLACE.tell(amount)
+    _PLACE.report_progress(amount)
 
 
 class _Place:
@@ -105,13 +105,13 @@ class _Place:
         self.number = 0
         self.take([0.0])
 
-    def take(self, board: Any, heard: Callable[[float], None] | None = None) -> None:
-        self._board, self._heard = board, heard
+    def take(self, board: Any, progress: Callable[[float], None] | None = None) -> None:
+        self._board, self._listener = board, progress
 
-    def tell(self, amount: float) -> None:
+    def report_progress(self, amount: float) -> None:
         self._board[self.number] = amount
-        if self._heard is not None:
-            self._heard(sum(self._board))
+        if self._listener is not None:
+            self._listener(sum(self._board))
 
 
 _PLACE = _Place()

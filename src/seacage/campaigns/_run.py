@@ -12,11 +12,11 @@ import numpy as np
 from jaxtyping import Int
 
 from seacage.cage import Cage
-from seacage.campaigns._cases import Answers, Block, Simulator, answered, made_by
-from seacage.campaigns._cluster import mapped_on_cluster
+from seacage.campaigns._cases import Answers, CaseBlock, Simulator, answer_block, software_version
+from seacage.campaigns._cluster import map_on_cluster
 from seacage.campaigns._plan import Plan
-from seacage.campaigns._pool import available_cores, mapped
-from seacage.conventions import InputError, Origin, Progress, unheard
+from seacage.campaigns._pool import available_cores, map_tasks
+from seacage.conventions import InputError, Origin, Progress, no_progress
 from seacage.dynamics import PHYSICS, Mooring, MovingLaw
 from seacage.records import (
     NOT_RUN,
@@ -132,18 +132,18 @@ def run_share(
     """
     store = Path(out)
     attributes = _attributes(cage, plan, by)
-    result, size = _begun(store, attributes, cases=len(plan), block=by.block)
+    result, size = _results_so_far(store, attributes, cases=len(plan), block=by.block)
     firsts = _firsts(share, cases=len(plan), size=size)
     cases = [case for first in firsts for case in range(len(plan))[first : first + size]]
     blocks = _blocks(cage, plan, by, size, [at for at in firsts if result[at] == NOT_RUN])
     done = sum(int(result[case]) != NOT_RUN for case in cases)
-    report = progress or unheard
+    report = progress or no_progress
     report("campaign", done, len(cases))
-    with closing(_mapped(blocks, workers=workers, cluster=cluster)) as finished:
+    with closing(_map_blocks(blocks, workers=workers, cluster=cluster)) as finished:
         for block, answers in finished:
             if not store.exists():  # a cage or a law that cannot be run leaves no store
                 _create(store, cage, plan, by, attributes)
-                _begun(store, attributes, cases=len(plan), block=by.block)
+                _results_so_far(store, attributes, cases=len(plan), block=by.block)
             write_cases(
                 store,
                 block.first,
@@ -181,14 +181,14 @@ def _firsts(share: tuple[int, int], *, cases: int, size: int) -> range:
     return firsts
 
 
-def _begun(
-    store: Path, asked: Mapping[str, object], *, cases: int, block: int
+def _results_so_far(
+    store: Path, identity: Mapping[str, object], *, cases: int, block: int
 ) -> tuple[Int[np.ndarray, " case"], int]:
-    """Results so far and the block size of a store, if it holds the campaign asked for."""
+    """Results so far and the block size of a store, if it holds this campaign."""
     if not store.exists():
         return np.full(cases, NOT_RUN), block
     found, result, size = campaign_results(store)
-    other = [name for key, name in _IDENTITY.items() if found.get(key) != asked.get(key)]
+    other = [name for key, name in _IDENTITY.items() if found.get(key) != identity.get(key)]
     if other:
         raise InputError(
             f"{store} holds a campaign with another {' and another '.join(other)}: it can be read, "
@@ -197,18 +197,20 @@ def _begun(
     return result, size
 
 
-def _blocks(cage: Cage, plan: Plan, by: Simulator, size: int, firsts: Sequence[int]) -> list[Block]:
+def _blocks(
+    cage: Cage, plan: Plan, by: Simulator, size: int, firsts: Sequence[int]
+) -> list[CaseBlock]:
     toml = cage.to_toml()
     spans = [slice(first, first + size) for first in firsts]
     return [
-        Block(
+        CaseBlock(
             first=span.start,
             cage_toml=toml,
             seas=plan.seas[span],
             wave_seeds=tuple(_wave_seed(plan, case) for case in range(len(plan))[span]),
             duration=plan.duration,
             simulator=by,
-            made_by=made_by(),
+            made_by=software_version(),
         )
         for span in spans
     ]
@@ -219,12 +221,12 @@ def _wave_seed(plan: Plan, case: int) -> int:
     return int(np.random.SeedSequence([plan.seed, case]).generate_state(1)[0])
 
 
-def _mapped(
-    blocks: Sequence[Block], *, workers: int | None, cluster: str | None
-) -> Generator[tuple[Block, Answers], None, None]:
+def _map_blocks(
+    blocks: Sequence[CaseBlock], *, workers: int | None, cluster: str | None
+) -> Generator[tuple[CaseBlock, Answers], None, None]:
     if cluster is not None and blocks:
-        return mapped_on_cluster(answered, blocks, address=cluster)
-    return mapped(answered, blocks, workers=workers or available_cores())
+        return map_on_cluster(answer_block, blocks, address=cluster)
+    return map_tasks(answer_block, blocks, workers=workers or available_cores())
 
 
 def _create(
@@ -244,7 +246,7 @@ def _create(
 
 
 def _attributes(cage: Cage, plan: Plan, by: Simulator) -> dict[str, Any]:
-    """Of the store: what was asked, by what, in the words of ACDD-1.3 where it has some."""
+    """Attributes of the store: the campaign and its software, by names of ACDD-1.3 where known."""
     number = version("seacage")
     what = "Simulations in time" if by.in_time else "Equilibria"
     return {

@@ -77,7 +77,7 @@ def campaign_status(out: str | Path) -> CampaignStatus:
     store = Path(out)
     attributes, result, block = campaign_results(store)
     diverged_at = campaign_variable(store, "diverged_at")
-    simulated_s = 0.0 if diverged_at is None else _simulated_s(attributes, result, diverged_at)
+    simulated_s = 0.0 if diverged_at is None else _simulation_s(attributes, result, diverged_at)
     return CampaignStatus(
         plan=attributes["plan"],
         law=attributes["law"],
@@ -100,11 +100,11 @@ def _failures(store: Path, result: Int[np.ndarray, " case"]) -> dict[int, str]:
         return {}
     names = ("current_speed", "current_to", "hs", "tp", "wave_from", "residual", "diverged_at")
     columns = {name: campaign_variable(store, name) for name in names}
-    said: dict[int, str] = {}
+    reasons: dict[int, str] = {}
     for case in failed:
         row = {n: np.nan if c is None else float(c[case]) for n, c in columns.items()}
-        said[case] = f"{_sea(row)}: {_reason(Result(int(result[case])), row)}"
-    return said
+        reasons[case] = f"{_sea(row)}: {_reason(Result(int(result[case])), row)}"
+    return reasons
 
 
 def _sea(row: Mapping[str, float]) -> str:
@@ -124,7 +124,7 @@ def _reason(result: Result, row: Mapping[str, float]) -> str:
     return f"its positions left the finite numbers{after}, so it carries no answer"
 
 
-def _simulated_s(
+def _simulation_s(
     attributes: dict[str, Any],
     result: Int[np.ndarray, " case"],
     diverged_at: Float[np.ndarray, " case"],

@@ -2,7 +2,7 @@
 
 from seacage.conventions._codes import RESULTS, Flag, Result
 from seacage.conventions._constants import GRAVITY, WATER_DENSITY, WATER_VISCOSITY
-from seacage.conventions._directions import compass, folded, towards
+from seacage.conventions._directions import compass, fold_degrees, towards
 from seacage.conventions._errors import (
     InputError,
     ModelError,
@@ -20,7 +20,7 @@ from seacage.conventions._intake import (
     read_text,
 )
 from seacage.conventions._origin import Origin
-from seacage.conventions._progress import Progress, unheard
+from seacage.conventions._progress import Progress, no_progress
 
 __all__ = [
     "GRAVITY",
@@ -40,11 +40,11 @@ __all__ = [
     "SeacageError",
     "check_file",
     "compass",
-    "folded",
+    "fold_degrees",
+    "no_progress",
     "parse_json",
     "parse_toml",
     "read_bytes",
     "read_text",
     "towards",
-    "unheard",
 ]

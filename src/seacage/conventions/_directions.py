@@ -6,7 +6,7 @@ from jaxtyping import Float
 from seacage.conventions._errors import InputError
 
 
-def folded(degrees: float, *, what: str) -> float:
+def fold_degrees(degrees: float, *, what: str) -> float:
     """Fold a compass direction into [0, 360): only 360 itself moves.
 
     Parameters

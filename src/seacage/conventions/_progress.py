@@ -6,5 +6,5 @@ Progress = Callable[[str, int, int], None]
 """Called as (stage, done, total), from the caller's own thread."""
 
 
-def unheard(stage: str, done: int, total: int) -> None:
+def no_progress(stage: str, done: int, total: int) -> None:
     """Where nobody asked for progress."""

@@ -15,7 +15,6 @@ from seacage.figures._fidelity import (
     left_figure,
     sector_figure,
 )
-from seacage.figures._lessons import Lessons, lessons_figure
 from seacage.figures._net import net_figure
 from seacage.figures._quality import quality_figure
 from seacage.figures._rose import tension_rose_figure
@@ -24,16 +23,17 @@ from seacage.figures._shape_error import shape_error_figure
 from seacage.figures._shape_views import ShapeView, shape_views_figure
 from seacage.figures._states import states_figure
 from seacage.figures._style import svg_text, write_figure
+from seacage.figures._training_scores import TrainingScores, training_scores_figure
 from seacage.figures._volume import MEASURED_VOLUMES, VolumeMark, volume_figure
 
 __all__ = [
     "MEASURED_VOLUMES",
     "Comparison",
     "Contest",
-    "Lessons",
     "Motion",
     "Panel",
     "ShapeView",
+    "TrainingScores",
     "VolumeMark",
     "cost_figure",
     "coverage_figure",
@@ -42,7 +42,6 @@ __all__ = [
     "fouling_figure",
     "gain_figure",
     "left_figure",
-    "lessons_figure",
     "net_figure",
     "quality_figure",
     "rows_figure",
@@ -54,6 +53,7 @@ __all__ = [
     "states_figure",
     "svg_text",
     "tension_rose_figure",
+    "training_scores_figure",
     "volume_figure",
     "write_animation",
     "write_figure",

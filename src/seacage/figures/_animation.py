@@ -158,7 +158,7 @@ class _Scene:
         figure = Figure(figsize=_SIZE, dpi=width / _SIZE[0])
         self._canvas = FigureCanvasAgg(figure)
         axes = figure.add_axes((0.0, 0.27, 1.0, 0.73))
-        reach = float(np.abs(self._eye.seen(cage.corner_position)[:, 0]).max()) + _MARGIN
+        reach = float(np.abs(self._eye.project(cage.corner_position)[:, 0]).max()) + _MARGIN
         self._moved = np.linalg.norm(motion.node_position - motion.rest_position, axis=2)
         _frame_axes(axes, reach, float(motion.rest_position[:, 2].min()))
         self._water = _Water(axes, self._eye, motion, reach)
@@ -179,14 +179,14 @@ class _Scene:
         self._water.show(frame)
         corners = shape[self._patches]
         order = np.argsort(corners.mean(axis=1) @ eye.toward)
-        self._net.set_verts(list(eye.seen(corners)[order]))
+        self._net.set_verts(list(eye.project(corners)[order]))
         self._net.set_array(self._moved[frame][self._patches].mean(axis=1)[order])
         ends = np.stack([cage.corner_position[cage.bridle_corner], shape[cage.bridle_nodes]], 1)
-        self._lines.set_segments(list(eye.seen(ends)))
+        self._lines.set_segments(list(eye.project(ends)))
         self._lines.set_array(motion.bridle_tension[frame])
-        collar = eye.seen(shape[np.append(cage.ring_nodes(0), 0)])
+        collar = eye.project(shape[np.append(cage.ring_nodes(0), 0)])
         self._collar.set_data(collar[:, 0], collar[:, 1])
-        held = eye.seen(shape[cage.bridle_nodes[[self._bridle]]])
+        held = eye.project(shape[cage.bridle_nodes[[self._bridle]]])
         self._mark.set_data(held[:, 0], held[:, 1])
         since = motion.time[: frame + 1] - motion.time[0]
         tension = motion.bridle_tension[: frame + 1, self._bridle] / 1e3
@@ -217,7 +217,7 @@ class _Eye:
             away=away,
         )
 
-    def seen(self, position: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 2"]:
+    def project(self, position: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 2"]:
         return position @ self.view.T
 
 
@@ -242,7 +242,7 @@ class _Water:
         if self._motion.waves is not None:
             time = np.full(height.shape, self._motion.time[frame])
             height = surface_elevation(self._motion.waves, self._place, time)
-        rows = self._eye.seen(np.concatenate([self._place, height[..., None]], axis=-1))
+        rows = self._eye.project(np.concatenate([self._place, height[..., None]], axis=-1))
         far, _, near = rows
         for crest, row in zip(self._crests, rows, strict=True):
             crest.set_data(row[:, 0], row[:, 1])
@@ -299,7 +299,7 @@ def _ramp(colours: tuple[str, ...], levels: int) -> "LinearSegmentedColormap":
 
 
 def _draw_frame(axes: "Axes", cage: Cage, eye: _Eye) -> None:
-    corner = eye.seen(cage.corner_position)
+    corner = eye.project(cage.corner_position)
     for side in range(4):
         ends = corner[[side, (side + 1) % 4]]
         axes.plot(ends[:, 0], ends[:, 1], color=MUTED, lw=0.9, ls=(0, (5, 3)), zorder=1)
@@ -323,7 +323,7 @@ def _write_head(axes: "Axes", cage: Cage, motion: Motion) -> None:
 
 def _write_legend(axes: "Axes", net: "PolyCollection", lines: "LineCollection") -> None:
     """Two slim colour bars in the corners of the deep water."""
-    for left, artist, unit, said, scale in (
+    for left, artist, unit, label, scale in (
         (0.03, net, "m", "Net: displacement from rest", 1.0),
         (0.72, lines, "kN", "Bridles: tension", 1e-3),
     ):
@@ -333,7 +333,7 @@ def _write_legend(axes: "Axes", net: "PolyCollection", lines: "LineCollection") 
         bar.set_axis_off()
         most = scale * artist.get_clim()[1]
         below = {"transform": bar.transAxes, "va": "top", "fontsize": 7.5}
-        bar.text(0.0, 1.5, said, transform=bar.transAxes, va="bottom", fontsize=8.0)
+        bar.text(0.0, 1.5, label, transform=bar.transAxes, va="bottom", fontsize=8.0)
         bar.text(0.0, -0.5, "0", **below)
         bar.text(1.0, -0.5, f"{most:.0f} {unit}", ha="right", **below)
 

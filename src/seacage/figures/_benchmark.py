@@ -134,7 +134,7 @@ def cost_figure(
             axes.set_title(title)
             axes.set_xlabel("Time of one core [ms]")
             axes.grid(visible=False, axis="y")
-        _named(panels[0], methods)
+        _name_methods(panels[0], methods)
     return figure
 
 
@@ -147,11 +147,11 @@ def _grid(methods: Sequence[str], count: int) -> "tuple[Figure, list[Axes]]":
         empty.set_visible(False)
     for one in axes.ravel():
         one.grid(visible=False, axis="y")
-    _named(axes[0, 0], methods)
+    _name_methods(axes[0, 0], methods)
     return figure, axes.ravel()[:count].tolist()
 
 
-def _named(axes: "Axes", methods: Sequence[str]) -> None:
+def _name_methods(axes: "Axes", methods: Sequence[str]) -> None:
     axes.set_yticks(np.arange(len(methods)), methods)
     axes.set_ylim(len(methods) - 0.5, -0.5)
 

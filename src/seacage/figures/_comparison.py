@@ -91,7 +91,7 @@ def density_figure(comparison: Comparison) -> "Figure":
             density_panel(right, comparison, multi=True),
         ]
         share_counts(panels)
-        left.set_ylabel(_predicted(comparison))
+        left.set_ylabel(_prediction_label(comparison))
         left.legend(loc="lower right", handlelength=1.8)
         right.legend(loc="lower right", handlelength=1.8)
         head(left, "Low fidelity")
@@ -138,7 +138,7 @@ def rows_figure(
                 density_panel(left, comparison, multi=False),
                 density_panel(right, comparison, multi=True),
             ]
-            left.set_ylabel(_predicted(comparison))
+            left.set_ylabel(_prediction_label(comparison))
             head(left, f"({next(letters)}) Low fidelity")
             head(right, f"({next(letters)}) Multifidelity")
             series_panel(series, comparison, start=start, end=end)
@@ -232,7 +232,7 @@ def count_bar(
     bar.outline.set_visible(False)  # pyright: ignore[reportCallIssue]
 
 
-def _predicted(comparison: Comparison) -> str:
+def _prediction_label(comparison: Comparison) -> str:
     return f"Predicted {comparison.quantity.lower()} [{comparison.unit}]"
 
 

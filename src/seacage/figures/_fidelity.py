@@ -74,8 +74,8 @@ def sector_figure(
             one.bar(place + 0.21, low[number], 0.4, color=LOW, label="Low fidelity")
             one.set_xticks(place, sectors)
             one.grid(visible=False, axis="x")
-            _named(one, panel)
-        _explained(figure, axes[0], "Mean response by where the current goes", origin)
+            _name_panel(one, panel)
+        _explain(figure, axes[0], "Mean response by where the current goes", origin)
     return figure
 
 
@@ -160,7 +160,7 @@ def gain_figure(
             axes.grid(visible=False, axis="y")
         left.set_yticks(place, names)
         left.set_ylim(-0.6, len(names) - 0.4)
-        _centred(left, null)
+        _centre(left, null)
         head(left, "Null case: the truth is the low fidelity")
         head(right, "Real case", origin=origin)
     return figure
@@ -203,10 +203,10 @@ def fouling_figure(
             one.plot(
                 met_growth, met_gap[:, number], "o", color=FIT, ms=4.0, label="The record's mean"
             )
-            _named(one, panel)
+            _name_panel(one, panel)
         for one in axes[-_COLUMNS:]:
             one.set_xlabel("Growth [-]")
-        _explained(figure, axes[0], "Truth less low fidelity", origin)
+        _explain(figure, axes[0], "Truth less low fidelity", origin)
     return figure
 
 
@@ -221,18 +221,18 @@ def _grid(count: int, height: float) -> "tuple[Figure, list[Axes]]":
     return figure, axes[:count]
 
 
-def _named(axes: "Axes", panel: Panel) -> None:
+def _name_panel(axes: "Axes", panel: Panel) -> None:
     axes.set_title(f"{panel.sensor}: {panel.quantity.lower()} [{panel.unit}]")
     axes.tick_params(labelbottom=True)
 
 
-def _explained(figure: "Figure", axes: "Axes", title: str, origin: Origin) -> None:
+def _explain(figure: "Figure", axes: "Axes", title: str, origin: Origin) -> None:
     """One line over all panels: what is drawn, in which colours, and where it comes from."""
     handles, labels = axes.get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper right", ncols=len(handles))
     figure.suptitle(f"{title} ({origin})", x=0.01, ha="left", fontsize=9.5, fontweight="bold")
 
 
-def _centred(axes: "Axes", gain: Float[np.ndarray, "row 3"]) -> None:
+def _centre(axes: "Axes", gain: Float[np.ndarray, "row 3"]) -> None:
     most = max(1.15 * float(np.max(np.abs(gain))), 0.01)
     axes.set_xlim(-most, most)

@@ -50,7 +50,7 @@ def _panel(axes: "Axes", record: Record, key: str) -> None:
     values, flags = record.values[key], record.flags[key]
     kept = record.usable(key)
     low, high = _limits(values[kept] if np.any(kept) else values[np.isfinite(values)], key)
-    time, line = _thinned(record.time[kept], values[kept])
+    time, line = _thin(record.time[kept], values[kept])
     turning = KEYS[key].unit == "deg"
     axes.plot(
         *(_broken(time, line) if not turning else (time, line)),
@@ -94,7 +94,7 @@ def _limits(values: Float[np.ndarray, " t"], key: str) -> tuple[float, float]:
     return low - margin, high + margin
 
 
-def _thinned(
+def _thin(
     time: Shaped[np.ndarray, " t"], values: Float[np.ndarray, " t"]
 ) -> tuple[Shaped[np.ndarray, " s"], Float[np.ndarray, " s"]]:
     """The least and the greatest of spans so short that few points are left."""

@@ -53,7 +53,7 @@ def tension_rose_figure(
         bearing = np.deg2rad(np.array(cage.bridles.bearings) + cage.heading)
         share = 100.0 / cage.bridle_capacity
         offset, width = _fan(bearing, len(current_speed))
-        for case, (speed, colour) in enumerate(_coloured(current_speed)):
+        for case, (speed, colour) in enumerate(_colour_runs(current_speed)):
             place, used = bearing + offset[case], share * bridle_tension[case]
             axes.bar(place, used, width, color=colour, label=f"{speed:g} m/s", zorder=3)
             if lowest is not None and highest is not None:
@@ -81,7 +81,7 @@ def _compass(figure: "Figure") -> "PolarAxes":
     return axes
 
 
-def _coloured(speed: Float[np.ndarray, " case"]) -> list[tuple[float, str]]:
+def _colour_runs(speed: Float[np.ndarray, " case"]) -> list[tuple[float, str]]:
     from matplotlib import colormaps
     from matplotlib.colors import to_hex
 
@@ -117,11 +117,18 @@ def _finish(
 
 
 def _explain(axes: "PolarAxes", cage: Cage, *, ranges: bool) -> None:
-    said = f"100 % is {cage.bridle_capacity[0] / 1e3:.0f} kN; bridles by number, north up"
+    caption = f"100 % is {cage.bridle_capacity[0] / 1e3:.0f} kN; bridles by number, north up"
     if ranges:
-        said += "\nbars: mean; lines: least to most"
+        caption += "\nbars: mean; lines: least to most"
     axes.text(
-        0.5, -0.07, said, transform=axes.transAxes, ha="center", va="top", color=MUTED, fontsize=8.0
+        0.5,
+        -0.07,
+        caption,
+        transform=axes.transAxes,
+        ha="center",
+        va="top",
+        color=MUTED,
+        fontsize=8.0,
     )
 
 

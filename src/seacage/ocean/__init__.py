@@ -13,7 +13,7 @@ from seacage.ocean._kinematics import (
 from seacage.ocean._profile import CurrentProfile
 from seacage.ocean._sea_state import MAX_CURRENT_SPEED, SeaState, steepness_limit
 from seacage.ocean._spectrum import peak_enhancement, spectrum
-from seacage.ocean._spread import WaveDraw, carried, spread_angle, turned_by
+from seacage.ocean._spread import WaveDraw, on_current, spread_angle, turn_vectors
 
 __all__ = [
     "MAX_CURRENT_SPEED",
@@ -21,7 +21,7 @@ __all__ = [
     "SeaState",
     "WaveDraw",
     "Waves",
-    "carried",
+    "on_current",
     "peak_enhancement",
     "pressure_head",
     "regular_wave",
@@ -30,7 +30,7 @@ __all__ = [
     "spread_angle",
     "steepness_limit",
     "surface_elevation",
-    "turned_by",
+    "turn_vectors",
     "water_motion",
     "wave_velocity_variance",
     "wavenumber",

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from seacage.conventions import GRAVITY, InputError, folded, towards
+from seacage.conventions import GRAVITY, InputError, fold_degrees, towards
 from seacage.ocean._sea_state import SeaState
 from seacage.ocean._spectrum import spectrum
 
@@ -151,7 +151,7 @@ def regular_wave(*, height: float, period: float, wave_from: float, depth: float
             f"regular_wave: height = {height:g} m with period = {period:g} s breaks above "
             f"{highest:.2g} m in {depth:g} m of water. Check that period is in s, not in Hz."
         )
-    origin = np.array(folded(wave_from, what="regular_wave: wave_from"))
+    origin = np.array(fold_degrees(wave_from, what="regular_wave: wave_from"))
     return Waves(
         amplitude=np.array([height / 2.0]),
         angular_frequency=omega,
@@ -220,12 +220,12 @@ def water_motion(
     cosine, sine = np.cos(angle), np.sin(angle)
     elevation = np.asarray(cosine @ waves.amplitude)
     wet = position[..., 2] <= elevation
-    height = _stretched(position[..., 2], elevation, waves.depth)
+    height = _stretch(position[..., 2], elevation, waves.depth)
     along, up = _decay(waves.wavenumber, height, waves.depth)
     omega = waves.angular_frequency
     speed = waves.amplitude * waves.intrinsic_frequency
-    velocity = _oriented(waves, speed * along * cosine, speed * up * sine)
-    acceleration = _oriented(waves, speed * omega * along * sine, -speed * omega * up * cosine)
+    velocity = _orient(waves, speed * along * cosine, speed * up * sine)
+    acceleration = _orient(waves, speed * omega * along * sine, -speed * omega * up * cosine)
     return velocity * wet[..., None], acceleration * wet[..., None]
 
 
@@ -265,7 +265,7 @@ def pressure_head(
     return np.asarray((share * cosine) @ waves.amplitude)
 
 
-def _stretched(
+def _stretch(
     z: Float[np.ndarray, "*#n"], elevation: Float[np.ndarray, "*n"], depth: float
 ) -> Float[np.ndarray, "*n"]:
     # Points above the surface are zeroed later; the clip keeps their exponentials finite.
@@ -285,7 +285,7 @@ def _decay(
     return fall * (1.0 + bounce) / floor, fall * (1.0 - bounce) / floor
 
 
-def _oriented(
+def _orient(
     waves: Waves, along: Float[np.ndarray, "*n wave"], up: Float[np.ndarray, "*n wave"]
 ) -> Float[np.ndarray, "*n 3"]:
     return np.concatenate([along @ waves.direction, up.sum(-1, keepdims=True)], axis=-1)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from seacage.conventions import GRAVITY, InputError, folded, towards
+from seacage.conventions import GRAVITY, InputError, fold_degrees, towards
 
 MAX_CURRENT_SPEED = 3.0
 """Above any current a net cage is moored in; a larger one is a unit mistake [m/s]."""
@@ -65,10 +65,14 @@ class SeaState:
         if hs > 0.0:
             _check_steepness(hs, tp)
         object.__setattr__(self, "current_speed", speed)
-        object.__setattr__(self, "current_to", folded(self.current_to, what="SeaState: current_to"))
+        object.__setattr__(
+            self, "current_to", fold_degrees(self.current_to, what="SeaState: current_to")
+        )
         object.__setattr__(self, "hs", hs)
         object.__setattr__(self, "tp", tp if hs > 0.0 else 0.0)
-        object.__setattr__(self, "wave_from", folded(self.wave_from, what="SeaState: wave_from"))
+        object.__setattr__(
+            self, "wave_from", fold_degrees(self.wave_from, what="SeaState: wave_from")
+        )
 
     @property
     def current_velocity(self) -> Float[np.ndarray, "2"]:

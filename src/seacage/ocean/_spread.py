@@ -70,7 +70,7 @@ class WaveDraw:
             angular_frequency=frequency,
             wavenumber=wavenumber(frequency, depth=depth),
             phase=self.phase,
-            direction=turned_by(sea.wave_direction, self.turned),
+            direction=turn_vectors(sea.wave_direction, self.turned),
             depth=depth,
         )
 
@@ -96,7 +96,7 @@ def spread_angle(share: Float[np.ndarray, " n"], *, spreading: float) -> Float[n
     return 2.0 * np.sign(share - 0.5) * np.arcsin(np.sqrt(off))
 
 
-def turned_by(
+def turn_vectors(
     direction: Float[np.ndarray, "*#n 2"], clockwise: Float[np.ndarray, "*#n"]
 ) -> Float[np.ndarray, "*n 2"]:
     """Vectors (east, north), turned clockwise by angles [rad]."""
@@ -105,7 +105,7 @@ def turned_by(
     return np.stack([cosine * east + sine * north, cosine * north - sine * east], axis=-1)
 
 
-def carried(waves: Waves, current: Float[np.ndarray, "2"]) -> Waves:
+def on_current(waves: Waves, current: Float[np.ndarray, "2"]) -> Waves:
     """Waves on a current, as seen from a fixed place: those that run with it pass faster.
 
     The water's motion under them stays as it was. Left out: what a current does to heights.

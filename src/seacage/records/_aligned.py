@@ -85,7 +85,7 @@ def aligned(
     flags: dict[str, np.ndarray] = {}
     for keys in GROUPS.values():
         for part in _parts(tuple(key for key in keys if key in record.values)):
-            found, flag = _averaged(record, part, times, clock)
+            found, flag = _average(record, part, times, clock)
             values |= found
             flags |= dict.fromkeys(part, flag)
     for key in values:
@@ -116,7 +116,7 @@ def _parts(keys: tuple[str, ...]) -> tuple[tuple[str, ...], ...]:
     return tuple((key,) for key in keys)
 
 
-def _averaged(
+def _average(
     record: Record, keys: tuple[str, ...], times: Shaped[np.ndarray, " time"], clock: Clock
 ) -> tuple[dict[str, Float[np.ndarray, " time"]], Shaped[np.ndarray, " time"]]:
     kept = np.logical_and.reduce([_usable(record, key, clock) for key in keys])

@@ -150,7 +150,7 @@ def read_campaign(path: str | Path) -> CampaignRecord:
         No campaign is there, or some of its cases have not been run.
     """
     path = Path(path)
-    with _opened(path) as dataset:
+    with _open(path) as dataset:
         names = [name for name in (*SEA, *MEAN, "result", *_MAY_LACK) if name in dataset.variables]
         variables = {name: np.asarray(dataset[name].values) for name in names}
         attributes = dict(dataset.attrs)
@@ -179,7 +179,7 @@ def export_campaign(store: str | Path, path: str | Path) -> None:
     """Write a campaign's Zarr store as one CF-NetCDF file."""
     path = Path(path)
     unborn = path.with_name(f".{path.name}.unborn")
-    with _opened(Path(store)) as dataset:
+    with _open(Path(store)) as dataset:
         for variable in dataset.variables.values():
             variable.encoding = {}  # Zarr's own, which NetCDF does not know
         result = dataset["result"]
@@ -188,7 +188,7 @@ def export_campaign(store: str | Path, path: str | Path) -> None:
     unborn.replace(path)
 
 
-def _opened(path: Path) -> "xarray.Dataset":
+def _open(path: Path) -> "xarray.Dataset":
     import xarray
 
     try:

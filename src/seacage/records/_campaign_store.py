@@ -226,7 +226,7 @@ def create_campaign(
             zarr.consolidate_metadata(unborn)
         if second_moment:  # after the metadata was gathered, for it will go again
             _create_block_moments(group, size["block"], size["coordinate"])
-        _moved(unborn, path)
+        _move(unborn, path)
     finally:
         shutil.rmtree(unborn, ignore_errors=True)
 
@@ -370,7 +370,7 @@ def _create_block_moments(group: Any, blocks: int, coordinates: int) -> None:
 def _sum_up(path: Path, *, converged: int) -> None:
     """Write the second moment of all blocks, in their order, and put them away."""
     try:
-        total = _summed(_array(path, f"{_BLOCKS}/moment"))
+        total = _sum(_array(path, f"{_BLOCKS}/moment"))
     except FileNotFoundError:  # another process did it meanwhile
         return
     if np.isnan(total).any():  # the same, a little later: missing blocks read as NaN
@@ -386,14 +386,14 @@ def _beside(path: Path, kind: str) -> Path:
     return path.with_name(f".{path.name}.{uuid.uuid4().hex[:8]}.{kind}")
 
 
-def _summed(moments: Any) -> Float[np.ndarray, "coordinate coordinate"]:
+def _sum(moments: Any) -> Float[np.ndarray, "coordinate coordinate"]:
     total = np.zeros(moments.shape[1:])
     for number in range(moments.shape[0]):
         total += moments[number]
     return total
 
 
-def _moved(unborn: Path, path: Path) -> None:
+def _move(unborn: Path, path: Path) -> None:
     """Give a store its name, unless another has it."""
     try:
         unborn.rename(path)

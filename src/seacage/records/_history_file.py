@@ -200,7 +200,7 @@ def _dataset(record: HistoryRecord) -> "xarray.Dataset":
     import xarray
 
     series = {
-        f"{name}_series": (known.dims, getattr(record, name), _said(known))
+        f"{name}_series": (known.dims, getattr(record, name), _attributes(known))
         for name, known in _SERIES.items()
     }
     return xarray.Dataset(
@@ -277,7 +277,7 @@ def _scalars(record: HistoryRecord) -> dict[str, Any]:
     return variables
 
 
-def _said(known: _Quantity) -> dict[str, str]:
+def _attributes(known: _Quantity) -> dict[str, str]:
     attributes = {"units": known.units, "long_name": known.long_name}
     if known.standard_name:
         attributes["standard_name"] = known.standard_name

@@ -60,13 +60,13 @@ def check_netcdf(path: Path, *, whole: bool) -> None:
 
     with h5py.File(path, "r") as file:
         file.visititems_links(keep)
-        declared = sum(_declared(name, file, link, whole=whole) for name, link in links)
+        declared = sum(_size_of(name, file, link, whole=whole) for name, link in links)
     most = min(_DECLARED_BYTES, _SMALL_BYTES + _INFLATION * size)
     if declared > most:
         raise ValueError(f"it has {size} bytes, declares {declared}, and at most {most} are read")
 
 
-def _declared(name: str, file: Any, link: Any, *, whole: bool) -> int:
+def _size_of(name: str, file: Any, link: Any, *, whole: bool) -> int:
     """Bytes that reading what a link leads to takes at once."""
     h5py: Any = importlib.import_module("h5py")
     if isinstance(link, h5py.ExternalLink):

@@ -51,7 +51,7 @@ class Sample:
                 f"{self.stream}: the time {self.t.isoformat()} does not say its zone. "
                 "Give it with an offset, in UTC."
             )
-        values = {key: _folded(key, value) for key, value in self.values.items()}
+        values = {key: _fold(key, value) for key, value in self.values.items()}
         object.__setattr__(self, "t", self.t.astimezone(UTC))
         object.__setattr__(self, "values", values)
         object.__setattr__(
@@ -74,6 +74,6 @@ def check_stream(name: str) -> None:
         )
 
 
-def _folded(key: str, value: float) -> float:
+def _fold(key: str, value: float) -> float:
     # At a door 360 degrees is 0; anything beyond is left for the check to flag.
     return 0.0 if value == 360.0 and key in DIRECTIONS else float(value)

@@ -120,8 +120,8 @@ class TrueMeans:
         variables: dict[str, Any] = {}
         for name in names:
             dims, units, meaning = _VARIABLES[name]
-            said = {"units": units, "long_name": meaning, "cell_methods": _method(name)}
-            variables[name] = (("time", *dims), getattr(self, name), said)
+            attributes = {"units": units, "long_name": meaning, "cell_methods": _method(name)}
+            variables[name] = (("time", *dims), getattr(self, name), attributes)
         axes = {dim for name in names for dim in _VARIABLES[name][0]}
         return xarray.Dataset(
             variables,

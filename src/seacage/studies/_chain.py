@@ -11,9 +11,9 @@ from jaxtyping import Int
 
 from seacage.cage import Cage
 from seacage.campaigns import (
-    Hidden,
     Plan,
     Timetable,
+    TruthParameters,
     generated_current,
     generated_waves,
     run_campaign,
@@ -202,7 +202,7 @@ class Chain:
     def _truth_settings(self) -> dict[str, object]:
         return {
             "cage": self.cage.to_toml(),
-            "hidden_sha256": Hidden.read().sha256,
+            "hidden_sha256": TruthParameters.read().sha256,
             "seed": self.recipe.seed,
         }
 
@@ -282,7 +282,7 @@ class Chain:
         made = virtual_field(
             self.cage,
             buoy,
-            hidden=Hidden.read(),
+            hidden=TruthParameters.read(),
             seed=recipe.seed,
             # To the last reading, and an hour on.
             waves=generated_waves(recipe.seed, start=recipe.start, days=recipe.days + 1.0),
@@ -298,7 +298,7 @@ class Chain:
         made = virtual_field(
             self.cage,
             buoy,
-            hidden=Hidden.read(),
+            hidden=TruthParameters.read(),
             seed=self.recipe.seed,
             method="settle",
             kept=self.folder / f"responses-{code_sha256(_SIMULATION)[:10]}",

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from seacage.cage import Cage
-from seacage.campaigns import Hidden
+from seacage.campaigns import TruthParameters
 from seacage.conventions import Progress
 from seacage.records import FieldRecord, Record
 from seacage.studies._chain import TRAINING, Chain, Recipe
@@ -80,7 +80,7 @@ def _with_discrepancy(chain: Chain) -> Path:
 
     settings = {
         "twin": plain.parent.name,
-        "hidden_sha256": Hidden.read().sha256,
+        "hidden_sha256": TruthParameters.read().sha256,
         "seeds": list(SEEDS),
         "cases": CASES,
     }

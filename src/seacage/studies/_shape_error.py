@@ -7,7 +7,7 @@ from datetime import UTC, datetime
 import numpy as np
 from jaxtyping import Bool, Float
 
-from seacage.campaigns import Hidden, TrueShapes, true_shapes
+from seacage.campaigns import TrueShapes, TruthParameters, true_shapes
 from seacage.conventions import Origin, Progress
 from seacage.twin import Discrepancy, Metocean, PredictedNet, Twin
 
@@ -53,7 +53,7 @@ class Reliability:
 def learned_discrepancy(
     twin: Twin,
     *,
-    hidden: Hidden | None = None,
+    hidden: TruthParameters | None = None,
     seeds: Sequence[int] = SEEDS,
     cases: int = CASES,
     workers: int | None = None,
@@ -75,7 +75,7 @@ def learned_discrepancy(
     """
     shapes = true_shapes(
         twin.cage,
-        hidden=hidden or Hidden.read(),
+        hidden=hidden or TruthParameters.read(),
         seeds=seeds,
         cases=cases,
         workers=workers,

@@ -43,7 +43,7 @@ def check_surrogate(
     *,
     output_shape: tuple[int, ...] = (),
     extrapolates: bool = True,
-    worst_taught: float = 1e-2,
+    training_error: float = 1e-2,
     unseen_error: float = 0.05,
 ) -> None:
     """Hold a surrogate to what the twin relies on; an assertion names the first broken promise.
@@ -60,7 +60,7 @@ def check_surrogate(
     extrapolates
         Whether it answers far from its cases too, less surely; False demands that it refuses.
         Its cases lie between -1 and 1.
-    worst_taught, unseen_error
+    training_error, unseen_error
         Largest miss of a case it was given, and root mean square miss of unseen ones, as
         shares of the spread. A network, which holds cases back and stops early, may need
         more; say how much.
@@ -70,7 +70,7 @@ def check_surrogate(
     fitted = make_fitted(x, y, 0)
     _check_answers(fitted, unseen, output_shape)
     _check_rows_are_independent(fitted, unseen)
-    _check_it_learns(fitted, (x, y), (unseen, truth), worst_taught, unseen_error)
+    _check_it_learns(fitted, (x, y), (unseen, truth), training_error, unseen_error)
     _check_far(fitted, x, extrapolates=extrapolates)
     _check_noise(fitted, unseen)
     _check_seed(make_fitted, x, y, unseen)
@@ -111,13 +111,13 @@ def _check_it_learns(
     fitted: FittedSurrogate,
     given: tuple[Inputs, Outputs],
     kept: tuple[Inputs, Outputs],
-    worst_taught: float,
+    training_error: float,
     unseen_error: float,
 ) -> None:
     (x, y), (unseen, truth) = given, kept
     spread = y.std()
     missed = np.max(np.abs(fitted.predict(x).mean - y)) / spread
-    assert missed < worst_taught, (
+    assert missed < training_error, (
         f"it misses noise-free training cases by {missed:.2g} of their spread"
     )
     error = np.sqrt(np.mean((fitted.predict(unseen).mean - truth) ** 2)) / spread

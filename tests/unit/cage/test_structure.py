@@ -147,11 +147,11 @@ def test_a_roof_faces_up_so_that_a_closed_net_encloses_the_same_volume():
 
 
 def test_a_net_is_knitted_as_built_unless_its_file_says_otherwise():
-    row, chord = DRUM.knitted(0)
+    row, chord = DRUM.design_net(0)
     np.testing.assert_allclose(row, np.hypot(1.0, 6.0) / 3.0)
     np.testing.assert_allclose(chord[[0, -1]], 2.0 * np.sin(np.pi / 8.0) * np.array([5.0, 4.0]))
     wide = replace(DRUM, net=(replace(DRUM.net[0], upper_width=80.0, height=9.0),))
-    row, chord = wide.knitted(0)
+    row, chord = wide.design_net(0)
     assert (row, chord[0]) == (3.0, 10.0)
 
 

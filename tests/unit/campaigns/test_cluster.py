@@ -2,7 +2,7 @@
 
 import pytest
 
-from seacage.campaigns._cluster import mapped_on_cluster
+from seacage.campaigns._cluster import map_on_cluster
 from seacage.conventions import SeacageError
 
 
@@ -19,7 +19,7 @@ def test_an_address_where_no_scheduler_answers_is_told_in_one_sentence(
 ) -> None:
     monkeypatch.setattr("seacage.campaigns._cluster._CONNECT_S", 0.3)
     with pytest.raises(SeacageError, match=says) as refused:
-        next(mapped_on_cluster(abs, [-1], address=address))
+        next(map_on_cluster(abs, [-1], address=address))
     assert "Start one with `dask scheduler`" in str(refused.value)
 
 
@@ -33,4 +33,4 @@ def test_a_scheduler_without_workers_is_told_in_one_sentence(
         LocalCluster(n_workers=0, dashboard_address=":0", silence_logs=50) as cluster,
         pytest.raises(SeacageError, match=r"had no worker for 0\.2 s"),
     ):
-        next(mapped_on_cluster(abs, [-1], address=cluster.scheduler_address))
+        next(map_on_cluster(abs, [-1], address=cluster.scheduler_address))

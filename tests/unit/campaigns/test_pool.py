@@ -14,33 +14,33 @@ import numpy as np  # noqa: F401  (brings the linear algebra whose threads are c
 import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from seacage.campaigns._pool import mapped, one_thread, tell
+from seacage.campaigns._pool import map_tasks, one_thread, report_progress
 from seacage.conventions import SeacageError
 
 UNGUARDED = """
-from seacage.campaigns._pool import mapped
+from seacage.campaigns._pool import map_tasks
 print("script")
-print(sorted(answer for _, answer in mapped(abs, [-1, -2, -3], workers=2)))
+print(sorted(answer for _, answer in map_tasks(abs, [-1, -2, -3], workers=2)))
 """
 
 LONG = """
 import time
-from seacage.campaigns._pool import mapped
-for task, answer in mapped(time.sleep, [0.1, 600, 600], workers=2):
+from seacage.campaigns._pool import map_tasks
+for task, answer in map_tasks(time.sleep, [0.1, 600, 600], workers=2):
     print("going", flush=True)
 """
 
 
 def test_answers_come_with_their_tasks() -> None:
     tasks = [-3, 4, -5]
-    assert sorted(mapped(abs, tasks, workers=1)) == [(-5, 5), (-3, 3), (4, 4)]
+    assert sorted(map_tasks(abs, tasks, workers=1)) == [(-5, 5), (-3, 3), (4, 4)]
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("workers", [1, 2])
 def test_tasks_say_how_far_they_are_while_they_work(workers: int) -> None:
     heard: list[float] = []
-    answers = mapped(_slow_halves, [1.0, 2.0, 3.0], workers=workers, heard=heard.append)
+    answers = map_tasks(_slow_halves, [1.0, 2.0, 3.0], workers=workers, progress=heard.append)
     assert len(list(answers)) == 3
     assert heard == sorted(heard)
     # while a task worked, half of it had been told
@@ -49,7 +49,7 @@ def test_tasks_say_how_far_they_are_while_they_work(workers: int) -> None:
 
 
 def test_one_task_stays_in_this_process() -> None:
-    assert list(mapped(_own_id, [0], workers=8)) == [(0, os.getpid())]
+    assert list(map_tasks(_own_id, [0], workers=8)) == [(0, os.getpid())]
 
 
 def test_workers_compute_on_one_thread_and_this_process_is_left_as_it_was(
@@ -57,7 +57,7 @@ def test_workers_compute_on_one_thread_and_this_process_is_left_as_it_was(
 ) -> None:
     monkeypatch.setenv("OMP_NUM_THREADS", "5")
     main = sys.modules["__main__"]
-    told = dict(mapped(os.getenv, ["OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"], workers=2))
+    told = dict(map_tasks(os.getenv, ["OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"], workers=2))
     assert set(told.values()) == {"1"}
     assert os.environ["OMP_NUM_THREADS"] == "5"
     assert sys.modules["__main__"] is main
@@ -74,7 +74,7 @@ def test_a_script_without_a_guard_runs_once(tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_closing_early_drops_what_has_not_begun() -> None:
     began = time.monotonic()
-    with closing(mapped(time.sleep, [0.01, 0.01, *[0.5] * 200], workers=2)) as finished:
+    with closing(map_tasks(time.sleep, [0.01, 0.01, *[0.5] * 200], workers=2)) as finished:
         next(finished)
     # A few naps may have begun; the other hundred seconds have not.
     assert time.monotonic() - began < 20.0
@@ -82,7 +82,7 @@ def test_closing_early_drops_what_has_not_begun() -> None:
 
 def test_a_worker_that_dies_is_told_in_one_sentence() -> None:
     with pytest.raises(SeacageError, match="ended from outside"):
-        list(mapped(os._exit, [1, 1], workers=2))
+        list(map_tasks(os._exit, [1, 1], workers=2))
 
 
 # The executor's own thread may stumble over a process that is born as it counts the dead.
@@ -96,7 +96,7 @@ def test_a_worker_that_dies_as_it_begins_does_not_keep_the_others_waiting(_time:
 
     threading.Thread(target=kill_first, daemon=True).start()
     with pytest.raises(SeacageError, match="ended from outside"):
-        list(mapped(abs, [-1, -2, -3], workers=2))
+        list(map_tasks(abs, [-1, -2, -3], workers=2))
 
 
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="reads /proc")
@@ -141,6 +141,6 @@ def _alive(pid: int) -> bool:
 
 
 def _slow_halves(size: float) -> None:
-    tell(size / 2.0)
+    report_progress(size / 2.0)
     time.sleep(1.2)
-    tell(size)
+    report_progress(size)

@@ -9,7 +9,7 @@ import pytest
 
 from seacage.cage import Cage
 from seacage.campaigns import Plan, Simulator, campaign_status, run_campaign, run_share
-from seacage.campaigns._cases import answered
+from seacage.campaigns._cases import answer_block
 from seacage.conventions import InputError, RecordError, Result, SeacageError
 from seacage.dynamics import PHYSICS, simulate
 from seacage.records import read_campaign
@@ -299,10 +299,10 @@ def test_a_way_to_answer_that_does_not_exist_is_refused(
 def test_a_worker_with_another_version_refuses_to_answer(
     small_cage: Cage, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("seacage.campaigns._run.made_by", lambda: "seacage 9.9, physics 7")
+    monkeypatch.setattr("seacage.campaigns._run.software_version", lambda: "seacage 9.9, physics 7")
     with pytest.raises(SeacageError, match=r"the campaign seacage 9\.9, physics 7: their numbers"):
         run_campaign(small_cage, Plan.sample(1, 2), tmp_path / "c", workers=1)
-    assert answered.__module__ == "seacage.campaigns._cases"  # by which name it travels
+    assert answer_block.__module__ == "seacage.campaigns._cases"  # by which name it travels
 
 
 @pytest.mark.parametrize("asks", [run_campaign, Simulator, run_command])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from seacage.conventions import InputError, compass, folded, towards
+from seacage.conventions import InputError, compass, fold_degrees, towards
 
 
 def test_a_current_to_the_east_has_an_east_component_alone():
@@ -26,15 +26,15 @@ def test_a_hair_west_of_north_stays_below_360():
 
 
 def test_full_circle_is_zero():
-    assert folded(360.0, what="current_to") == 0.0
+    assert fold_degrees(360.0, what="current_to") == 0.0
 
 
 def test_zero_and_anything_below_360_stay():
-    assert folded(0.0, what="current_to") == 0.0
-    assert folded(359.9, what="current_to") == 359.9
+    assert fold_degrees(0.0, what="current_to") == 0.0
+    assert fold_degrees(359.9, what="current_to") == 359.9
 
 
 @pytest.mark.parametrize("degrees", [412.0, -1.0, float("nan"), float("inf"), 360.0000001])
 def test_degrees_that_are_no_direction_are_refused_by_name_and_value(degrees):
     with pytest.raises(InputError, match=rf"wave_from = {degrees:g} deg is outside \[0, 360\]"):
-        folded(degrees, what="wave_from")
+        fold_degrees(degrees, what="wave_from")

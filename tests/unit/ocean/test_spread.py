@@ -6,11 +6,11 @@ import pytest
 from seacage.ocean import (
     SeaState,
     WaveDraw,
-    carried,
+    on_current,
     regular_wave,
     spread_angle,
     surface_elevation,
-    turned_by,
+    turn_vectors,
     water_motion,
 )
 
@@ -79,14 +79,14 @@ def test_a_flat_sea_and_a_draw_of_no_waves_are_still():
 def test_who_drifts_with_the_current_sees_the_waves_as_in_still_water():
     still = draw().waves(SEA, depth=40.0)
     time = np.linspace(0.0, 120.0, 241)
-    drifting = surface_elevation(carried(still, CURRENT), time[:, None] * CURRENT, time)
+    drifting = surface_elevation(on_current(still, CURRENT), time[:, None] * CURRENT, time)
     np.testing.assert_allclose(drifting, surface_elevation(still, np.zeros(2), time), atol=1e-12)
 
 
 @pytest.mark.parametrize(("east", "faster"), [(0.5, True), (-0.5, False)])
 def test_waves_that_run_with_the_current_pass_faster(east, faster):
     wave = regular_wave(height=1.0, period=6.0, wave_from=270.0)
-    passing = carried(wave, np.array([east, 0.0])).angular_frequency
+    passing = on_current(wave, np.array([east, 0.0])).angular_frequency
     assert (passing > wave.angular_frequency) == faster
 
 
@@ -94,11 +94,11 @@ def test_the_water_under_a_carried_wave_moves_as_in_still_water():
     still = draw().waves(SEA, depth=40.0)
     place = np.array([3.0, -7.0, -4.0])
     (here, _), (there, _) = (
-        water_motion(waves, place, np.array(0.0)) for waves in (still, carried(still, CURRENT))
+        water_motion(waves, place, np.array(0.0)) for waves in (still, on_current(still, CURRENT))
     )
     np.testing.assert_allclose(there, here, rtol=1e-12)
 
 
 def test_a_quarter_turn_clockwise_brings_north_to_east():
     north = np.array([0.0, 1.0])
-    np.testing.assert_allclose(turned_by(north, np.array(np.pi / 2.0)), [1.0, 0.0], atol=1e-15)
+    np.testing.assert_allclose(turn_vectors(north, np.array(np.pi / 2.0)), [1.0, 0.0], atol=1e-15)

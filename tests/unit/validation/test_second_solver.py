@@ -4,11 +4,11 @@ import numpy as np
 
 from seacage.cage import Structure
 from seacage.conventions import GRAVITY
-from seacage.dynamics._parts._structure import rigged
+from seacage.dynamics._parts._structure import assemble_structure
 from validation.second_solver import FILE, LINES
 
 CAGE = Structure.read(FILE)
-PARTS = rigged(CAGE)
+PARTS = assemble_structure(CAGE)
 
 
 def test_its_lines_have_the_names_of_the_reference():
@@ -17,7 +17,7 @@ def test_its_lines_have_the_names_of_the_reference():
 
 
 def test_the_net_has_520_twines_between_two_spokes_and_1000_from_edge_to_edge():
-    row, chord = CAGE.knitted(0)
+    row, chord = CAGE.design_net(0)
     half_mesh = CAGE.twine[0].half_mesh
     np.testing.assert_allclose(chord / half_mesh, 520.0)
     np.testing.assert_allclose(CAGE.net[0].rows * row / half_mesh, 1000.0)

@@ -4,13 +4,13 @@ from seacage.campaigns._virtual_field._events import Event, read_events
 from seacage.campaigns._virtual_field._field import VirtualField, virtual_field, virtual_field_share
 from seacage.campaigns._virtual_field._timetable import Timetable
 from seacage.campaigns._virtual_field._true_shapes import TrueShapes, true_shapes
-from seacage.campaigns._virtual_field._truth_parameters import Hidden
+from seacage.campaigns._virtual_field._truth_parameters import TruthParameters
 
 __all__ = [
     "Event",
-    "Hidden",
     "Timetable",
     "TrueShapes",
+    "TruthParameters",
     "VirtualField",
     "read_events",
     "true_shapes",

@@ -12,7 +12,7 @@ import numpy as np
 
 from seacage.cage import Cage
 from seacage.campaigns._virtual_field._spells import Spells
-from seacage.campaigns._virtual_field._truth_parameters import Hidden
+from seacage.campaigns._virtual_field._truth_parameters import TruthParameters
 from seacage.conventions import InputError, parse_toml, read_text
 from seacage.dynamics import Damage
 from seacage.records import Record, instant
@@ -77,7 +77,7 @@ class Event:
         self._check_size()
         if self.until is not None and not (self.kind in _ENDING and self.until > self.at):
             raise InputError(
-                f"Event: {self.kind} at {_said(self.at)} cannot end at {_said(self.until)}. "
+                f"Event: {self.kind} at {_text(self.at)} cannot end at {_text(self.until)}. "
                 "Only what is stuck or silent ends, and after it began."
             )
 
@@ -96,11 +96,11 @@ class Event:
 
     def __str__(self) -> str:
         """As ``parse`` reads it."""
-        words = [self.kind, self.target, _said(self.at)]
+        words = [self.kind, self.target, _text(self.at)]
         if self.size is not None:
             words.append(f"{_USUAL_SIZE[self.kind][0]}={self.size:g}")
         if self.until is not None:
-            words.append(f"until={_said(self.until)}")
+            words.append(f"until={_text(self.until)}")
         return " ".join(words)
 
     @classmethod
@@ -139,7 +139,7 @@ class Event:
             return Damage(bridle=cage.bridle_names.index(self.target))
         return Damage(hole=_hole(self, cage)) if self.kind == "net-hole" else None
 
-    def applied_to(self, record: Record) -> Record:
+    def apply_to(self, record: Record) -> Record:
         """What a stream says when this has met it; another's stream stays as it is.
 
         What a sensor says of damage to the cage comes from the simulation, so that changes no
@@ -165,7 +165,9 @@ class Event:
         return replace(record, values=values)
 
 
-def check_events(events: Sequence[Event], cage: Cage, buoy: Record, hidden: Hidden) -> None:
+def check_events(
+    events: Sequence[Event], cage: Cage, buoy: Record, hidden: TruthParameters
+) -> None:
     """Refuse an event that would meet nothing: no part, no stream, no time.
 
     Raises
@@ -263,7 +265,7 @@ def _number(value: object, where: str) -> float:
         raise InputError(f"{where}: {value!r} is no number.") from error
 
 
-def _said(time: datetime) -> str:
+def _text(time: datetime) -> str:
     return time.replace(tzinfo=None).isoformat(timespec="auto" if time.second else "minutes") + "Z"
 
 

@@ -15,13 +15,18 @@ from seacage.campaigns._virtual_field._events import Event
 from seacage.campaigns._virtual_field._responses import Responses, true_responses
 from seacage.campaigns._virtual_field._sensors import (
     air_pressure,
-    buoy_heard,
     radio_silence,
-    sensed,
+    receive_buoy,
+    sense,
 )
-from seacage.campaigns._virtual_field._simulated import Asked, Truth, gathered, simulate_share
+from seacage.campaigns._virtual_field._simulated import (
+    FieldRequest,
+    Truth,
+    gather_truth,
+    simulate_share,
+)
 from seacage.campaigns._virtual_field._timetable import Timetable, reading_times
-from seacage.campaigns._virtual_field._truth_parameters import Hidden
+from seacage.campaigns._virtual_field._truth_parameters import TruthParameters
 from seacage.campaigns._virtual_field._weather import current_at_cage
 from seacage.conventions import InputError, Origin, Progress
 from seacage.records import FieldRecord, Record, TrueMeans
@@ -65,7 +70,7 @@ def virtual_field(
     cage: Cage,
     buoy: Record,
     *,
-    hidden: Hidden,
+    hidden: TruthParameters,
     seed: int,
     method: FieldMethod = "simulate",
     waves: Record | None = None,
@@ -119,7 +124,7 @@ def virtual_field(
         a timetable for a settled field.
     """
     if method == "simulate":
-        asked = Asked.of(
+        request = FieldRequest.of(
             cage,
             buoy,
             hidden=hidden,
@@ -130,8 +135,8 @@ def virtual_field(
             timetable=timetable,
         )
         with _folder(kept) as folder:
-            stretches = simulate_share(asked, folder, workers=workers, progress=progress)
-            return _simulated(asked, gathered(asked, stretches))
+            stretches = simulate_share(request, folder, workers=workers, progress=progress)
+            return _simulate(request, gather_truth(request, stretches))
     if waves is not None or events or timetable is not None:
         raise InputError(
             "virtual_field: a settled field has no waves, no events and no timetable. "
@@ -142,14 +147,14 @@ def virtual_field(
         answers, error = true_responses(
             cage, hidden, store=folder, workers=workers, progress=progress
         )
-    return _settled(cage, buoy, hidden, seed, time, answers, error)
+    return _settle(cage, buoy, hidden, seed, time, answers, error)
 
 
 def virtual_field_share(
     cage: Cage,
     buoy: Record,
     *,
-    hidden: Hidden,
+    hidden: TruthParameters,
     seed: int,
     kept: str | Path,
     share: tuple[int, int],
@@ -173,7 +178,7 @@ def virtual_field_share(
     share
         Which share, from 0, and of how many.
     """
-    asked = Asked.of(
+    request = FieldRequest.of(
         cage,
         buoy,
         hidden=hidden,
@@ -183,7 +188,7 @@ def virtual_field_share(
         every_s=every_s,
         timetable=timetable,
     )
-    simulate_share(asked, Path(kept), share=share, workers=workers, progress=progress)
+    simulate_share(request, Path(kept), share=share, workers=workers, progress=progress)
 
 
 @contextmanager
@@ -195,69 +200,68 @@ def _folder(kept: str | Path | None) -> Generator[Path]:
         yield Path(folder)
 
 
-def _simulated(asked: Asked, truth: Truth) -> VirtualField:
+def _simulate(request: FieldRequest, truth: Truth) -> VirtualField:
     """Give the truth to the sensors, and the buoy's word to the radio."""
-    cage, hidden, time = asked.cage, asked.hidden, asked.time
-    chance = np.random.default_rng([asked.seed, *b"sensors"])
+    cage, hidden, time = request.cage, request.hidden, request.time
+    chance = np.random.default_rng([request.seed, *b"sensors"])
     radio, air, at_buoy, *own = chance.spawn(3 + len(cage.sensor_names))
     silence = radio_silence(hidden, time, radio)
-    told = truth.told
-    pressure = air_pressure(hidden, time, air)[told]
-    head = truth.wave_head[told]
-    exact = _exact_sensors(cage, time[told], truth.readings(cage)[told])
+    known = truth.available
+    pressure = air_pressure(hidden, time, air)[known]
+    head = truth.wave_head[known]
+    exact = _exact_sensors(cage, time[known], truth.readings(cage)[known])
     seen = {
-        name: sensed(
+        name: sense(
             sensor,
             hidden,
             rng,
             wave_head=head[:, number] if number < head.shape[1] else None,
             pressure=pressure,
             silence=silence,
-            events=asked.events,
+            events=request.events,
         )
         for number, ((name, sensor), rng) in enumerate(zip(exact.items(), own, strict=True))
     }
     record = FieldRecord(
         cage=cage.name,
-        buoy=buoy_heard(asked.buoy, hidden, at_buoy, silence=silence, events=asked.events),
+        buoy=receive_buoy(request.buoy, hidden, at_buoy, silence=silence, events=request.events),
         sensors=seen,
         origin=Origin.VIRTUAL_FIELD,
         hidden_sha256=hidden.sha256,
-        notes=_simulation_notes(asked, truth),
+        notes=_simulation_notes(request, truth),
     )
-    happened = tuple(f"Event: {event}." for event in asked.events)
+    happened = tuple(f"Event: {event}." for event in request.events)
     return VirtualField(
         record=record,
         truth=replace(
-            record, buoy=asked.buoy, sensors=exact, notes=(*record.notes, *happened, _EXACT)
+            record, buoy=request.buoy, sensors=exact, notes=(*record.notes, *happened, _EXACT)
         ),
         means=truth.means,
     )
 
 
-def _simulation_notes(asked: Asked, truth: Truth) -> tuple[str, ...]:
-    timetable = asked.timetable
-    notes = [
-        f"Virtual field, seed {asked.seed}, simulated in time, a reading every {asked.every:g} s."
-    ]
+def _simulation_notes(request: FieldRequest, truth: Truth) -> tuple[str, ...]:
+    timetable = request.timetable
+    every = f"a reading every {request.every:g} s"
+    notes = [f"Virtual field, seed {request.seed}, simulated in time, {every}."]
     if timetable.one_in > 1:
         notes.append(
             f"Of {timetable.one_in} stretches of {timetable.stretch:g} s one was simulated, and "
             "those in which the load shackles live; the others are gaps."
         )
     if truth.lost:
-        first = asked.time[truth.lost[0].first].astype("datetime64[s]")
+        first = request.time[truth.lost[0].first].astype("datetime64[s]")
         notes.append(
-            f"{len(truth.lost)} of {len(asked.stretches)} stretches did not stay finite, the "
+            f"{len(truth.lost)} of {len(request.stretches)} stretches did not stay finite, the "
             f"first at {first}Z; they are gaps."
         )
     return tuple(notes)
 
 
-def _settled(
+def _settle(
     cage: Cage,
     buoy: Record,
-    hidden: Hidden,
+    hidden: TruthParameters,
     seed: int,
     time: Shaped[np.ndarray, " t"],
     answers: Responses,
@@ -277,7 +281,7 @@ def _settled(
         notes=(f"Virtual field, seed {seed}.", *_interpolation_notes(cage, error)),
     )
     seen = {
-        name: sensed(sensor, hidden, rng)
+        name: sense(sensor, hidden, rng)
         for (name, sensor), rng in zip(truth.sensors.items(), own, strict=True)
     }
     return VirtualField(

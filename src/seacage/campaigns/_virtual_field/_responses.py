@@ -10,7 +10,7 @@ from seacage.cage import Cage
 from seacage.campaigns._cases import Simulator
 from seacage.campaigns._plan import Plan
 from seacage.campaigns._run import campaign_key, run_campaign
-from seacage.campaigns._virtual_field._truth_parameters import Hidden
+from seacage.campaigns._virtual_field._truth_parameters import TruthParameters
 from seacage.conventions import Progress, Result, SeacageError
 from seacage.ocean import SeaState
 from seacage.records import CampaignRecord
@@ -90,7 +90,7 @@ class Responses:
 
 def true_responses(
     cage: Cage,
-    hidden: Hidden,
+    hidden: TruthParameters,
     *,
     store: Path,
     workers: int | None = None,
@@ -123,11 +123,11 @@ def true_responses(
     between = Plan.sample(0, _HELD_OUT, current_speed=(0.0, 1.2), hs=(0.0, 0.0))
     still = SeaState(current_speed=0.0, current_to=0.0)  # the same however grown the net is
     others = Plan.listed((still, *between.seas), name="still and held out")
-    asked = [(growth, grid) for growth in _GROWTHS] + [(_HELD_OUT_GROWTH, others)]
-    total = sum(len(plan) for _, plan in asked)
+    runs = [(growth, grid) for growth in _GROWTHS] + [(_HELD_OUT_GROWTH, others)]
+    total = sum(len(plan) for _, plan in runs)
     campaigns: list[CampaignRecord] = []
     by = Simulator(method="settle", law=hidden.law)
-    for growth, plan in asked:
+    for growth, plan in runs:
         before = sum(map(len, campaigns))
         truth = hidden.true_cage(cage, growth)
         campaigns.append(

@@ -10,10 +10,10 @@ from seacage.campaigns._noise import wandering
 from seacage.campaigns._virtual_field._events import Event
 from seacage.campaigns._virtual_field._spells import Spells
 from seacage.campaigns._virtual_field._truth_parameters import (
-    Hidden,
-    HiddenDepth,
-    HiddenOutages,
-    HiddenShackle,
+    DepthTruth,
+    OutagesTruth,
+    ShackleTruth,
+    TruthParameters,
 )
 from seacage.records import Record, check_record
 
@@ -24,15 +24,15 @@ Times = Shaped[np.ndarray, " t"]
 Values = Float[np.ndarray, " t"]
 
 
-def radio_silence(hidden: Hidden, time: Times, rng: np.random.Generator) -> Spells:
-    """When no stream is heard, between the first and the last of some times."""
+def radio_silence(hidden: TruthParameters, time: Times, rng: np.random.Generator) -> Spells:
+    """When no stream is received, between the first and the last of some times."""
     outages = hidden.outages
     return Spells.by_chance(
         time, rng, per_week=outages.radio_losses_per_week, mean_h=outages.radio_loss_mean_h
     )
 
 
-def air_pressure(hidden: Hidden, time: Times, rng: np.random.Generator) -> Values:
+def air_pressure(hidden: TruthParameters, time: Times, rng: np.random.Generator) -> Values:
     """How far the air's pressure is off its mean at some times, for all sensors alike [hPa]."""
     errors, seconds = hidden.depth, _seconds(time)
     grid = np.arange(0.0, seconds[-1] + 2.0 * _WEATHER_STEP, _WEATHER_STEP)
@@ -46,9 +46,9 @@ def air_pressure(hidden: Hidden, time: Times, rng: np.random.Generator) -> Value
     return np.interp(seconds, grid, weather[:, 0])
 
 
-def sensed(
+def sense(
     truth: Record,
-    hidden: Hidden,
+    hidden: TruthParameters,
     rng: np.random.Generator,
     *,
     wave_head: Values | None = None,
@@ -82,7 +82,7 @@ def sensed(
     ((key, exact),) = truth.values.items()
     noise, faults = rng.spawn(2)
     if key == "tension_kn":
-        values = _loaded(exact, hidden.shackle, noise)
+        values = _load_cell(exact, hidden.shackle, noise)
         size = hidden.shackle.spike_kn
         alive = Spells.at_shares(truth.time, hidden.shackle.windows)
     else:
@@ -90,15 +90,15 @@ def sensed(
         values += 0.0 if wave_head is None else wave_head
         values += 0.0 if pressure is None else hidden.depth.m_per_hpa * pressure
         size, alive = hidden.depth.spike_m, None
-    said = _met(replace(truth, values={key: values}, flags={}), events)
-    return _received(
-        said, truth.time, {key: size}, hidden.outages, faults, silence=silence, alive=alive
+    sent = _apply_events(replace(truth, values={key: values}, flags={}), events)
+    return _receive(
+        sent, truth.time, {key: size}, hidden.outages, faults, silence=silence, alive=alive
     )
 
 
-def buoy_heard(
+def receive_buoy(
     buoy: Record,
-    hidden: Hidden,
+    hidden: TruthParameters,
     rng: np.random.Generator,
     *,
     silence: Spells | None = None,
@@ -114,39 +114,39 @@ def buoy_heard(
     buoy
         What it measured.
     hidden, rng, silence, events
-        As of ``sensed``.
+        As of ``sense``.
     """
     sizes = {"current_speed_m_s": hidden.buoy.spike_m_s}
-    said = _met(replace(buoy, flags={}), events)
-    return _received(said, buoy.time, sizes, hidden.outages, rng, silence=silence)
+    sent = _apply_events(replace(buoy, flags={}), events)
+    return _receive(sent, buoy.time, sizes, hidden.outages, rng, silence=silence)
 
 
 def _seconds(time: Times) -> Values:
     return (time - time[0]) / np.timedelta64(1, "s")
 
 
-def _met(said: Record, events: Sequence[Event]) -> Record:
+def _apply_events(sent: Record, events: Sequence[Event]) -> Record:
     for event in events:
-        said = event.applied_to(said)
-    return said
+        sent = event.apply_to(sent)
+    return sent
 
 
-def _loaded(exact: Values, errors: HiddenShackle, rng: np.random.Generator) -> Values:
+def _load_cell(exact: Values, errors: ShackleTruth, rng: np.random.Generator) -> Values:
     gain = 1.0 + errors.gain * rng.uniform(-1.0, 1.0)
     bias = errors.bias_kn * rng.uniform(-1.0, 1.0)
     return gain * exact + bias + rng.normal(scale=errors.noise_sd_kn, size=len(exact))
 
 
-def _sunk(exact: Values, seconds: Values, errors: HiddenDepth, rng: np.random.Generator) -> Values:
+def _sunk(exact: Values, seconds: Values, errors: DepthTruth, rng: np.random.Generator) -> Values:
     drift = rng.choice([-1.0, 1.0]) * errors.drift_m_week * seconds / _WEEK
     return exact + drift + rng.normal(scale=errors.noise_sd_m, size=len(exact))
 
 
-def _received(
-    said: Record,
+def _receive(
+    sent: Record,
     all_times: Times,
     spike_sizes: Mapping[str, float],
-    outages: HiddenOutages,
+    outages: OutagesTruth,
     rng: np.random.Generator,
     *,
     silence: Spells | None,
@@ -158,7 +158,7 @@ def _received(
     silences it moves no other fault.
     """
     sticking, spiking, losing = rng.spawn(3)
-    time, values = said.time, {key: column.copy() for key, column in said.values.items()}
+    time, values = sent.time, {key: column.copy() for key, column in sent.values.items()}
     stuck = Spells.by_chance(
         all_times, sticking, per_week=outages.stuck_per_week, mean_h=outages.stuck_mean_h
     )
@@ -171,13 +171,13 @@ def _received(
     gaps = Spells.by_chance(
         all_times, losing, per_week=outages.gaps_per_week, mean_h=outages.gap_mean_h
     )
-    heard = (losing.uniform(size=len(time)) >= outages.lost_share) & ~gaps.cover(time)
+    received = (losing.uniform(size=len(time)) >= outages.lost_share) & ~gaps.cover(time)
     if silence is not None:
-        heard &= ~silence.cover(time)
+        received &= ~silence.cover(time)
     if alive is not None:
-        heard &= alive.cover(time)
-    values = {key: column[heard] for key, column in values.items()}
-    return check_record(replace(said, time=time[heard], values=values, flags={}))
+        received &= alive.cover(time)
+    values = {key: column[received] for key, column in values.items()}
+    return check_record(replace(sent, time=time[received], values=values, flags={}))
 
 
 def _spike(

@@ -13,9 +13,9 @@ from jaxtyping import Bool, Float, Int, Shaped
 from seacage.cage import Cage
 from seacage.campaigns._virtual_field._events import Event, check_events
 from seacage.campaigns._virtual_field._spells import Spells
-from seacage.campaigns._virtual_field._stretches import Kept, TrueCage, simulate_stretches
+from seacage.campaigns._virtual_field._stretches import StretchStore, TrueCage, simulate_stretches
 from seacage.campaigns._virtual_field._timetable import Stretch, Timetable, cut, reading_times
-from seacage.campaigns._virtual_field._truth_parameters import Hidden
+from seacage.campaigns._virtual_field._truth_parameters import TruthParameters
 from seacage.campaigns._virtual_field._weather import Weather, true_weather
 from seacage.campaigns._waves import usable_waves
 from seacage.conventions import InputError, Progress, SeacageError
@@ -29,8 +29,8 @@ _WAVES = ("hs_m", "tp_s", "wave_from_deg")
 
 # No slots: the weather is made once and kept.
 @dataclass(frozen=True, kw_only=True)
-class Asked:
-    """A virtual field that is asked for, and all that its truth depends on.
+class FieldRequest:
+    """A virtual field to simulate, and all that its truth depends on.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ class Asked:
     cage: Cage
     buoy: Record
     waves: Record | None
-    hidden: Hidden
+    hidden: TruthParameters
     seed: int
     events: tuple[Event, ...]
     timetable: Timetable
@@ -55,7 +55,7 @@ class Asked:
         cage: Cage,
         buoy: Record,
         *,
-        hidden: Hidden,
+        hidden: TruthParameters,
         seed: int,
         waves: Record | None,
         events: Sequence[Event],
@@ -152,7 +152,7 @@ class Truth:
     lost: tuple[Stretch, ...]
 
     @property
-    def told(self) -> Bool[np.ndarray, " reading"]:
+    def available(self) -> Bool[np.ndarray, " reading"]:
         """Where something is known."""
         return np.isfinite(self.bridle_tension[:, 0])
 
@@ -164,18 +164,18 @@ class Truth:
 
 
 def simulate_share(
-    asked: Asked,
+    request: FieldRequest,
     folder: Path,
     *,
     share: tuple[int, int] = (0, 1),
     workers: int | None = None,
     progress: Progress | None = None,
-) -> Kept:
+) -> StretchStore:
     """Simulate every n-th stretch of a field into a folder, unless it is there.
 
     Parameters
     ----------
-    asked
+    request
         The field.
     folder
         Keeps the stretches, each as soon as it is done.
@@ -186,12 +186,12 @@ def simulate_share(
     progress
         Called as ("virtual field, simulated hours", done, total), in whole hours.
     """
-    kept = Kept.opened(folder, asked.identity)
+    kept = StretchStore.opened(folder, request.identity)
     which, shares = share
     if not 0 <= which < shares:
         raise InputError(f"Share {which} of {shares} does not exist. Shares count from 0.")
-    mine = asked.stretches[which::shares]
-    each = asked.timetable.stretch / _HOUR
+    mine = request.stretches[which::shares]
+    each = request.timetable.stretch / _HOUR
 
     def report(done: float) -> None:
         if progress is not None:
@@ -201,17 +201,17 @@ def simulate_share(
     simulate_stretches(
         mine,
         kept,
-        asked.weather,
-        cage=TrueCage.of(asked.cage, asked.hidden),
-        timetable=asked.timetable,
-        every=asked.every,
+        request.weather,
+        cage=TrueCage.of(request.cage, request.hidden),
+        timetable=request.timetable,
+        every=request.every,
         workers=workers,
         report=report,
     )
     return kept
 
 
-def gathered(asked: Asked, kept: Kept) -> Truth:
+def gather_truth(request: FieldRequest, kept: StretchStore) -> Truth:
     """The truth along the whole record, from its stretches.
 
     Raises
@@ -219,15 +219,15 @@ def gathered(asked: Asked, kept: Kept) -> Truth:
     SeacageError
         Not one stretch stayed finite.
     """
-    readings, cage = len(asked.time), asked.cage
+    readings, cage = len(request.time), request.cage
     position = np.full((readings, len(cage.depth_sensors), 3), np.nan, np.float32)
     head = np.full(position.shape[:2], np.nan, np.float32)
     tension = np.full((readings, cage.bridle_count), np.nan, np.float32)
-    _, of_mean = asked.timetable.readings(asked.every)
+    _, of_mean = request.timetable.readings(request.every)
     lost: list[Stretch] = []
     firsts: list[int] = []
     shapes: list[Float[np.ndarray, "mean node 3"]] = []
-    for stretch in asked.stretches:
+    for stretch in request.stretches:
         passed = kept.read(stretch)
         if passed.lost:
             lost.append(stretch)
@@ -247,30 +247,30 @@ def gathered(asked: Asked, kept: Kept) -> Truth:
         depth_position=position,
         bridle_tension=tension,
         wave_head=head,
-        means=_means(asked, np.array(firsts), of_mean, np.concatenate(shapes), tension),
+        means=_means(request, np.array(firsts), of_mean, np.concatenate(shapes), tension),
         lost=tuple(lost),
     )
 
 
 def _means(
-    asked: Asked,
+    request: FieldRequest,
     first: Int[np.ndarray, " mean"],
     of_mean: int,
     shape: Float[np.ndarray, "mean node 3"],
     tension: Float[np.ndarray, "reading bridle"],
 ) -> TrueMeans:
     each = tension[first[:, None] + np.arange(of_mean)].astype(np.float64)
-    length = asked.timetable.mean
-    begin = first * asked.every
+    length = request.timetable.mean
+    begin = first * request.every
     looks = begin[:, None] + length * (np.arange(_LOOKS) + 0.5) / _LOOKS
-    weather = asked.weather
+    weather = request.weather
     current = np.array([[weather.current(second) for second in row] for row in looks.tolist()])
     middle = begin + length / 2.0
     heights = [_height(weather, second) for second in middle.tolist()]
     return TrueMeans(
-        time=asked.time[first],
+        time=request.time[first],
         length=length,
-        bridle_names=asked.cage.bridle_names,
+        bridle_names=request.cage.bridle_names,
         level_depth=np.array(weather.level_depth),
         bridle_tension_mean=each.mean(axis=1),
         bridle_tension_std=each.std(axis=1),
@@ -278,7 +278,7 @@ def _means(
         node_position=shape,
         current_velocity=current.mean(axis=1),
         hs=np.array(heights),
-        growth=asked.hidden.fouling.grown(middle / _DAY),
+        growth=request.hidden.fouling.grown(middle / _DAY),
     )
 
 

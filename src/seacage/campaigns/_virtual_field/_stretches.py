@@ -12,9 +12,9 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.cage import Cage
-from seacage.campaigns._pool import available_cores, mapped, one_thread, tell
+from seacage.campaigns._pool import available_cores, map_tasks, one_thread, report_progress
 from seacage.campaigns._virtual_field._timetable import Stretch, Timetable, side_by_side
-from seacage.campaigns._virtual_field._truth_parameters import Hidden
+from seacage.campaigns._virtual_field._truth_parameters import TruthParameters
 from seacage.campaigns._virtual_field._weather import Weather
 from seacage.conventions import InputError, RecordError
 from seacage.dynamics import PHYSICS, Followed, MovingLaw, follow, simulation_lanes
@@ -48,9 +48,9 @@ class TrueCage:
     drawn: tuple[int, ...]
 
     @classmethod
-    def of(cls, cage: Cage, hidden: Hidden) -> Self:
+    def of(cls, cage: Cage, hidden: TruthParameters) -> Self:
         """What a drawn cage truly is."""
-        true, times = hidden.refined_cage(cage), hidden.netting.refined
+        true, times = hidden.fine_cage(cage), hidden.netting.refined
         rings, spokes = np.divmod(np.arange(cage.node_count - 1), cage.spokes)
         drawn = np.append(true.spokes * times * rings + times * spokes, true.bottom_node)
         return cls(
@@ -103,7 +103,7 @@ _NAMES = tuple(field.name for field in fields(Passed))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Kept:
+class StretchStore:
     """A folder of finished stretches of one field.
 
     A file comes in whole or not at all; which were there before a stop, and how many workers
@@ -121,7 +121,7 @@ class Kept:
         InputError
             It holds those of another field.
         """
-        asked = {
+        identity = {
             "schema": "seacage stretches 1",
             "seacage": version("seacage"),
             "physics": PHYSICS,
@@ -130,7 +130,7 @@ class Kept:
         manifest = folder / _MANIFEST
         if manifest.exists():
             found = _manifest(manifest)
-            other = [_words(name) for name, value in asked.items() if found.get(name) != value]
+            other = [_words(name) for name, value in identity.items() if found.get(name) != value]
             if other:
                 raise InputError(
                     f"{folder} holds stretches of a field with another {' and '.join(other)}. "
@@ -138,19 +138,19 @@ class Kept:
                 )
         else:
             folder.mkdir(parents=True, exist_ok=True)
-            _write(manifest, (json.dumps(asked, indent=2) + "\n").encode())
+            _write(manifest, (json.dumps(identity, indent=2) + "\n").encode())
         return cls(folder=folder)
 
     def has(self, stretch: Stretch) -> bool:
         """Whether a stretch is done."""
         return self._path(stretch).exists()
 
-    def keep(self, stretch: Stretch, passed: Passed) -> None:
+    def keep(self, stretch: Stretch, simulate_group: Passed) -> None:
         """Put a stretch in its place."""
         from safetensors.numpy import save
 
         # safetensors takes the memory as it lies
-        arrays = {name: np.ascontiguousarray(getattr(passed, name)) for name in _NAMES}
+        arrays = {name: np.ascontiguousarray(getattr(simulate_group, name)) for name in _NAMES}
         _write(self._path(stretch), save(arrays))
 
     def read(self, stretch: Stretch) -> Passed:
@@ -187,7 +187,7 @@ class Kept:
 
 def simulate_stretches(
     stretches: Sequence[Stretch],
-    kept: Kept,
+    kept: StretchStore,
     weather: Weather,
     *,
     cage: TrueCage,
@@ -217,7 +217,7 @@ def simulate_stretches(
     groups = [
         Group(
             stretches=alike,
-            weathers=tuple(_met(weather, one, timetable, every) for one in alike),
+            weathers=tuple(_weather_of(weather, one, timetable, every) for one in alike),
             cage=cage,
             timetable=timetable,
             every=every,
@@ -227,10 +227,12 @@ def simulate_stretches(
     there = len(stretches) - len(missing)
     report(there)
 
-    def heard(since: float) -> None:
+    def report_sum(since: float) -> None:
         report(there + since)
 
-    running = mapped(passed, groups, workers=workers or available_cores(), heard=heard)
+    running = map_tasks(
+        simulate_group, groups, workers=workers or available_cores(), progress=report_sum
+    )
     with closing(running) as finished:
         for group, answers in finished:
             for stretch, answer in zip(group.stretches, answers, strict=True):
@@ -238,7 +240,7 @@ def simulate_stretches(
     report(len(stretches))
 
 
-def passed(group: Group) -> list[Passed]:
+def simulate_group(group: Group) -> list[Passed]:
     """Simulate a group of stretches."""
     timetable = group.timetable
     with one_thread():
@@ -258,18 +260,20 @@ def passed(group: Group) -> list[Passed]:
             refined=group.cage.refined,
             shape_nodes=group.cage.drawn,
             shape_every=timetable.mean,
-            progress=lambda _, done, total: tell(len(group.stretches) * done / total),
+            progress=lambda _, done, total: report_progress(len(group.stretches) * done / total),
         )
-    return [_passed(followed, lane, weather) for lane, weather in enumerate(group.weathers)]
+    return [
+        _stretch_of_lane(followed, lane, weather) for lane, weather in enumerate(group.weathers)
+    ]
 
 
-def _met(weather: Weather, stretch: Stretch, timetable: Timetable, every: float) -> Weather:
+def _weather_of(weather: Weather, stretch: Stretch, timetable: Timetable, every: float) -> Weather:
     """What a stretch meets, its spin-up included."""
     start = stretch.first * every
     return weather.between(start - timetable.spin_up, start + timetable.stretch)
 
 
-def _passed(followed: Followed, lane: int, weather: Weather) -> Passed:
+def _stretch_of_lane(followed: Followed, lane: int, weather: Weather) -> Passed:
     seen = (followed.watched_position, followed.bridle_tension, followed.shape)
     position, tension, shape = (each[lane] for each in seen)
     finite = all(np.isfinite(each).all() for each in (position, tension, shape))

@@ -9,12 +9,12 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.cage import Cage
-from seacage.campaigns._cases import Block, Simulator, answered, made_by
+from seacage.campaigns._cases import CaseBlock, Simulator, answer_block, software_version
 from seacage.campaigns._current import generated_current
-from seacage.campaigns._pool import available_cores, mapped
-from seacage.campaigns._virtual_field._truth_parameters import Hidden
+from seacage.campaigns._pool import available_cores, map_tasks
+from seacage.campaigns._virtual_field._truth_parameters import TruthParameters
 from seacage.campaigns._virtual_field._weather import current_at_cage
-from seacage.conventions import InputError, Progress, Result, compass, towards, unheard
+from seacage.conventions import InputError, Progress, Result, compass, no_progress, towards
 from seacage.ocean import SeaState
 from seacage.records import Record
 
@@ -45,7 +45,7 @@ class TrueShapes:
 class _Moments:
     """Times at which a virtual field is looked at, and the cage's lines, which are of its seed."""
 
-    hidden: Hidden
+    hidden: TruthParameters
     reported: Float[np.ndarray, "case 2"]
     velocity: Float[np.ndarray, "case 2"]
     growth: Float[np.ndarray, " case"]
@@ -54,7 +54,7 @@ class _Moments:
 def true_shapes(
     cage: Cage,
     *,
-    hidden: Hidden,
+    hidden: TruthParameters,
     seeds: Sequence[int],
     cases: int,
     workers: int | None = None,
@@ -88,9 +88,9 @@ def true_shapes(
     moments = [_moments(hidden, seed, cases) for seed in seeds]
     reported = np.concatenate([one.reported for one in moments])
     position = np.full((len(reported), cage.node_count, 3), np.nan)
-    report, done = progress or unheard, 0
+    report, done = progress or no_progress, 0
     blocks = _blocks(cage, moments)
-    running = mapped(answered, list(blocks), workers=workers or available_cores())
+    running = map_tasks(answer_block, list(blocks), workers=workers or available_cores())
     with closing(running) as finished:
         for block, answers in finished:
             rows = blocks[block]
@@ -102,11 +102,13 @@ def true_shapes(
     return TrueShapes(current_velocity=reported[whole], node_position=position[whole])
 
 
-def _moments(hidden: Hidden, seed: int, cases: int) -> _Moments:
+def _moments(hidden: TruthParameters, seed: int, cases: int) -> _Moments:
     # The word keeps these draws apart from those of a field that has the same seed.
     weather, choice, turn = np.random.default_rng([seed, *b"shapes"]).spawn(3)
     strung = replace(hidden, bridles=replace(hidden.bridles, seed=int(turn.integers(2**31))))
-    buoy = _turned(generated_current(seed, start=_START, days=_DAYS), turn.uniform(0.0, 360.0))
+    buoy = _turn_current(
+        generated_current(seed, start=_START, days=_DAYS), turn.uniform(0.0, 360.0)
+    )
     at = (buoy.time - buoy.time[0]) / np.timedelta64(1, "s")
     seconds = np.arange(0.0, at[-1] + _EVERY_S, _EVERY_S)
     current = current_at_cage(buoy, seconds, hidden=strung, rng=weather)
@@ -124,13 +126,13 @@ def _moments(hidden: Hidden, seed: int, cases: int) -> _Moments:
     )
 
 
-def _turned(buoy: Record, degrees: float) -> Record:
+def _turn_current(buoy: Record, degrees: float) -> Record:
     values = dict(buoy.values)
     values["current_to_deg"] = (values["current_to_deg"] + degrees) % 360.0
     return replace(buoy, values=values)
 
 
-def _blocks(cage: Cage, moments: Sequence[_Moments]) -> dict[Block, np.ndarray]:
+def _blocks(cage: Cage, moments: Sequence[_Moments]) -> dict[CaseBlock, np.ndarray]:
     """Cases that share a cage, a campaign's block at a time, and their rows."""
     by, blocks, before = Simulator(method="settle", law=moments[0].hidden.law), {}, 0
     for one in moments:
@@ -138,14 +140,14 @@ def _blocks(cage: Cage, moments: Sequence[_Moments]) -> dict[Block, np.ndarray]:
             toml = one.hidden.true_cage(cage, float(growth)).to_toml()
             rows = np.flatnonzero(one.growth == growth)
             for part in np.split(rows, range(by.block, len(rows), by.block)):
-                block = Block(
+                block = CaseBlock(
                     first=before + int(part[0]),
                     cage_toml=toml,
                     seas=tuple(_sea(velocity) for velocity in one.velocity[part]),
                     wave_seeds=(0,) * len(part),
                     duration=0.0,
                     simulator=by,
-                    made_by=made_by(),
+                    made_by=software_version(),
                 )
                 blocks[block] = before + part
         before += len(one.growth)

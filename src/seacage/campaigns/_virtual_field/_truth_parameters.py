@@ -16,7 +16,7 @@ from seacage.dynamics import Law
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class HiddenNetting:
+class NettingTruth:
     """How the true net differs."""
 
     elastic_modulus_pa: float
@@ -24,7 +24,7 @@ class HiddenNetting:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class HiddenFouling:
+class FoulingTruth:
     """How growth adds solidity."""
 
     shallow_least: float
@@ -42,7 +42,7 @@ class HiddenFouling:
         age = day - begun[np.searchsorted(begun[1:], day, side="right")]
         return 1.0 / (1.0 + np.exp(-(age - self.half_grown_days) / self.growth_days))
 
-    def added(
+    def solidity_and_drag(
         self, growth: float, depth: Float[np.ndarray, " panel"]
     ) -> tuple[Float[np.ndarray, " panel"], Float[np.ndarray, " panel"]]:
         """Solidity added at some depths [m], and the drag factor of what grew there [-]."""
@@ -53,7 +53,7 @@ class HiddenFouling:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class HiddenBridles:
+class BridlesTruth:
     """How uneven the lines are."""
 
     length_sd_m: float
@@ -61,7 +61,7 @@ class HiddenBridles:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class HiddenLines:
+class LinesTruth:
     """How ropes stiffen under load."""
 
     stiffer_from_strain: float
@@ -69,7 +69,7 @@ class HiddenLines:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class HiddenProfile:
+class ProfileTruth:
     """How the current changes with depth, and how that wanders."""
 
     depth_m: tuple[float, ...]
@@ -81,7 +81,7 @@ class HiddenProfile:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class HiddenWaves:
+class WavesTruth:
     """What the waves at the cage are like."""
 
     components: int
@@ -91,7 +91,7 @@ class HiddenWaves:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class HiddenCurrent:
+class CurrentTruth:
     """What happens to the current between the buoy and the cage."""
 
     factor_least: float
@@ -107,7 +107,7 @@ class HiddenCurrent:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class HiddenBuoy:
+class BuoyTruth:
     """How far the buoy's numbers are off, and a reading that is wrong."""
 
     speed_sd_m_s: float
@@ -116,7 +116,7 @@ class HiddenBuoy:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class HiddenShackle:
+class ShackleTruth:
     """Errors of the load shackles, and when they were alive."""
 
     gain: float
@@ -127,7 +127,7 @@ class HiddenShackle:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class HiddenDepth:
+class DepthTruth:
     """Errors of the depth sensors."""
 
     noise_sd_m: float
@@ -139,7 +139,7 @@ class HiddenDepth:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class HiddenOutages:
+class OutagesTruth:
     """What goes wrong with every sensor now and then."""
 
     lost_share: float
@@ -153,24 +153,24 @@ class HiddenOutages:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Hidden:
+class TruthParameters:
     """The truth behind a virtual field, which no training may read.
 
-    ``Hidden.read()`` is the one of cage ``ace``; its file says what each number means.
+    ``TruthParameters.read()`` is the one of cage ``ace``; its file says what each number means.
     """
 
     law: Law
-    netting: HiddenNetting
-    fouling: HiddenFouling
-    bridles: HiddenBridles
-    lines: HiddenLines
-    current: HiddenCurrent
-    profile: HiddenProfile
-    waves: HiddenWaves
-    buoy: HiddenBuoy
-    shackle: HiddenShackle
-    depth: HiddenDepth
-    outages: HiddenOutages
+    netting: NettingTruth
+    fouling: FoulingTruth
+    bridles: BridlesTruth
+    lines: LinesTruth
+    current: CurrentTruth
+    profile: ProfileTruth
+    waves: WavesTruth
+    buoy: BuoyTruth
+    shackle: ShackleTruth
+    depth: DepthTruth
+    outages: OutagesTruth
     sha256: str
 
     @classmethod
@@ -186,7 +186,7 @@ class Hidden:
         text = own.read_text("utf-8") if path is None else read_text(path)
         table = parse_toml(text, f"{path or own}")
         sha256 = hashlib.sha256(text.encode()).hexdigest()
-        return _built(cls, {**table, "sha256": sha256}, where=f"{path or own}")
+        return _build(cls, {**table, "sha256": sha256}, where=f"{path or own}")
 
     def true_cage(self, cage: Cage, growth: float) -> Cage:
         """The cage as it truly is, its net grown by a share of the whole growth, 0 to 1."""
@@ -198,7 +198,7 @@ class Hidden:
             boundary_depth=self.fouling.boundary_depth_m,
         )
 
-    def refined_cage(self, cage: Cage) -> Cage:
+    def fine_cage(self, cage: Cage) -> Cage:
         """The true cage on a finer mesh, whose nodes include those drawn; nothing grows on it.
 
         Ropes run on all of the new meridians, as strong together as those drawn.
@@ -224,7 +224,7 @@ class Hidden:
         )
 
 
-def _built(kind: Any, table: dict[str, Any], *, where: str) -> Any:
+def _build(kind: Any, table: dict[str, Any], *, where: str) -> Any:
     """A frozen value from a table that has its keys, all of them and no other."""
     kinds = {field.name: field.type for field in fields(kind)}
     wrong = sorted(kinds.keys() ^ table.keys())
@@ -240,7 +240,7 @@ def _built(kind: Any, table: dict[str, Any], *, where: str) -> Any:
 
 def _value(kind: Any, value: Any, *, where: str) -> Any:
     if is_dataclass(kind):
-        return _built(kind, value if isinstance(value, dict) else {}, where=where)
+        return _build(kind, value if isinstance(value, dict) else {}, where=where)
     if get_origin(kind) is tuple and isinstance(value, list):
         return tuple(_value(get_args(kind)[0], item, where=where) for item in value)
     if get_origin(kind) is Literal and value not in get_args(kind):

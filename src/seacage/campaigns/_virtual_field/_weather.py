@@ -10,10 +10,10 @@ from jaxtyping import Float
 from seacage.campaigns._noise import wandering
 from seacage.campaigns._virtual_field._interpolation import Even
 from seacage.campaigns._virtual_field._truth_parameters import (
-    Hidden,
-    HiddenCurrent,
-    HiddenFouling,
-    HiddenProfile,
+    CurrentTruth,
+    FoulingTruth,
+    ProfileTruth,
+    TruthParameters,
 )
 from seacage.campaigns._waves import shortest_period, usable_waves
 from seacage.conventions import InputError, compass, towards
@@ -24,7 +24,7 @@ from seacage.ocean import (
     WaveDraw,
     Waves,
     pressure_head,
-    turned_by,
+    turn_vectors,
     wavenumber,
 )
 from seacage.records import Record
@@ -100,8 +100,8 @@ class Weather(AbstractWeather):
     surface: Even
     swing: Even
     sea: TrueWaves
-    profile: HiddenProfile
-    fouling: HiddenFouling
+    profile: ProfileTruth
+    fouling: FoulingTruth
 
     @property
     def level_depth(self) -> tuple[float, ...]:
@@ -131,7 +131,7 @@ class Weather(AbstractWeather):
     ) -> tuple[Float[np.ndarray, " panel"], Float[np.ndarray, " panel"]]:
         """Solidity added by growth at some depths [m], and the drag factor of what grew [-]."""
         (growth,) = self.fouling.grown(np.array([max(second, 0.0) / _DAY]))
-        return self.fouling.added(float(growth), depth)
+        return self.fouling.solidity_and_drag(float(growth), depth)
 
     def pressure_head(
         self, second: Float[np.ndarray, " t"], position: Float[np.ndarray, "t *sensor 3"]
@@ -169,7 +169,7 @@ def true_weather(
     buoy: Record,
     waves: Record | None,
     *,
-    hidden: Hidden,
+    hidden: TruthParameters,
     seed: int,
     every_s: float = 2.0,
     depth: float = 191.0,
@@ -251,7 +251,7 @@ def _phase(
     frequency = 2.0 * math.pi / middle[:, 1:2] * draw.frequency
     # by the compass, since a sea that turns right round passes through no direction at all
     ahead = towards(np.ones(len(middle)), compass(middle[:, 2:]))
-    right = turned_by(ahead, np.array(math.pi / 2.0))
+    right = turn_vectors(ahead, np.array(math.pi / 2.0))
     along, across = (np.sum(way * current, axis=1) for way in (ahead, right))
     speed = np.outer(along, np.cos(draw.turned)) + np.outer(across, np.sin(draw.turned))
     frequency += wavenumber(frequency, depth=depth) * speed
@@ -263,7 +263,7 @@ def current_at_cage(
     buoy: Record,
     seconds: Float[np.ndarray, " t"],
     *,
-    hidden: Hidden,
+    hidden: TruthParameters,
     rng: np.random.Generator,
 ) -> Float[np.ndarray, "t 2"]:
     """The true current at the cage (east, north) [m/s].
@@ -278,7 +278,7 @@ def current_at_cage(
     seconds
         Since the buoy's first time, in even steps [s].
     """
-    there, reported = _reported(buoy)
+    there, reported = _buoy_series(buoy)
     speed = np.linalg.norm(reported, axis=1)
     noise = hidden.buoy
     at_buoy = towards(
@@ -296,10 +296,10 @@ def current_at_cage(
         step_s=float(seconds[1] - seconds[0]),
         memory_s=way.residual_memory_s,
     )
-    return _sheltered(arrived, way) + eddies
+    return _shelter(arrived, way) + eddies
 
 
-def _reported(
+def _buoy_series(
     buoy: Record,
 ) -> tuple[Float[np.ndarray, " row"], Float[np.ndarray, "row 2"]]:
     """Times since the first row [s] and currents of the usable rows [m/s]."""
@@ -322,7 +322,7 @@ def _between(
     return np.column_stack([np.interp(at, seconds, column) for column in values.T])
 
 
-def _sheltered(velocity: Float[np.ndarray, "t 2"], way: HiddenCurrent) -> Float[np.ndarray, "t 2"]:
+def _shelter(velocity: Float[np.ndarray, "t 2"], way: CurrentTruth) -> Float[np.ndarray, "t 2"]:
     """Slowed and turned on its way, smoothly by direction."""
     to = compass(velocity)
     factor = _swing(to, way.factor_least, way.factor_most, way.factor_most_to_deg)

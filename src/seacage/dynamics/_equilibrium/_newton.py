@@ -51,12 +51,12 @@ def nearer(assembly: Assembly, flow: SteadyFlow, state: Balancing, balance: Bala
     farthest = float(np.abs(step).max())
     share = min(1.0, balance.reach / farthest)
     stretching = np.sum(law.unit * (step[bars.ends[:, 1]] - step[bars.ends[:, 0]]), axis=1)
-    told = law.tension + share * (law.lack + law.rate * stretching)
+    tension = law.tension + share * (law.lack + law.rate * stretching)
     shift = state.shift * (0.3 if share == 1.0 else 1.5)
     barrier = state.barrier * (0.3 if share > 0.5 else 0.7)
     taken = Balancing(
         position=state.position + share * step,
-        tension=np.where(bars.pushed, told, np.maximum(told, 0.05 * law.tension))[None],
+        tension=np.where(bars.pushed, tension, np.maximum(tension, 0.05 * law.tension))[None],
         barrier=np.maximum(barrier, balance.least_barrier),
         shift=np.clip(shift, balance.least_shift, balance.most_shift),
         moved=np.array([farthest]),

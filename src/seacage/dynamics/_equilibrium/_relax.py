@@ -29,7 +29,7 @@ def hung_on_a_spoke(cage: Cage) -> float:
     return max(float(hung) / cage.spokes, 1.0)
 
 
-def begun(assembly: Assembly, flow: SteadyFlow) -> Relaxing:
+def start_relaxing(assembly: Assembly, flow: SteadyFlow) -> Relaxing:
     """Cases at rest in the design shape."""
     damping = _damping(assembly, flow)
     start = np.repeat(assembly.position[None], len(damping), axis=0)
@@ -43,7 +43,7 @@ def relax(
     lanes = kernel().lanes
 
     def run(some: Int[np.ndarray, " some"]) -> None:
-        moved = kernel().relaxed(
+        moved = kernel().relax(
             assembly, flow.cases(some), state.cases(some), relaxation, rounds=STRETCH
         )
         state.take(some, moved)

@@ -9,7 +9,13 @@ from jaxtyping import Bool, Float, Int
 from seacage.cage import Cage
 from seacage.conventions import Result
 from seacage.dynamics._equilibrium._newton import hooke
-from seacage.dynamics._equilibrium._relax import LOST, begun, hung_on_a_spoke, relax, relaxation_of
+from seacage.dynamics._equilibrium._relax import (
+    LOST,
+    hung_on_a_spoke,
+    relax,
+    relaxation_of,
+    start_relaxing,
+)
 from seacage.dynamics._kernel import Balance, Balancing, kernel
 from seacage.dynamics._parts import Assembly
 from seacage.dynamics._physics import SteadyFlow, total_net_force
@@ -64,12 +70,12 @@ def equilibria(
     """
     cases = len(flow.direction)
     problem_of = np.repeat(np.arange(cases), starts)
-    state = _begun(cage, _first_shapes(assembly, flow, starts), assembly)
+    state = _start(cage, _first_shapes(assembly, flow, starts), assembly)
     balance = _balance(cage, free)
     with ThreadPoolExecutor(workers) as pool:
         _seek(assembly, flow.cases(problem_of), state, balance, pool)
         _relax_the_rest(cage, assembly, flow, state, balance, pool)
-    return _chosen(cage, state, starts)
+    return _choose(cage, state, starts)
 
 
 def _first_shapes(
@@ -110,7 +116,7 @@ def _swung(
     return shape
 
 
-def _begun(
+def _start(
     cage: Cage, position: Float[np.ndarray, "problem node 3"], assembly: Assembly
 ) -> Balancing:
     """All bars of the net taken to bear some of what hangs on a spoke."""
@@ -147,7 +153,7 @@ def _seek(
     lanes = kernel().lanes
 
     def run(some: Int[np.ndarray, " some"]) -> None:
-        moved = kernel().balanced(
+        moved = kernel().balance(
             assembly, flow.cases(some), state.cases(some), balance, iterations=STRETCH
         )
         state.take(some, moved)
@@ -176,7 +182,7 @@ def _relax_the_rest(
     if len(rest) == 0:
         return
     water = flow.cases(rest)
-    relaxing = begun(assembly, water)
+    relaxing = start_relaxing(assembly, water)
     relaxation = relaxation_of(cage, assembly, free=balance.free, tolerance=TOLERANCE)
     found = Balancing.begun(
         relaxing.position, np.zeros_like(relaxing.carried), barrier=AIM, shift=balance.least_shift
@@ -205,7 +211,7 @@ def _near(
     return Balancing.begun(position.copy(), borne, barrier=1.0, shift=balance.least_shift)
 
 
-def _chosen(cage: Cage, state: Balancing, starts: int) -> Equilibria:
+def _choose(cage: Cage, state: Balancing, starts: int) -> Equilibria:
     """Of each case's problems the one to answer with, and how many differ."""
     shapes = state.position.reshape(-1, starts, *state.position.shape[1:])
     residual = state.residual.reshape(-1, starts)

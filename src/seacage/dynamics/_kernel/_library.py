@@ -179,7 +179,7 @@ class Kernel:
         """All nodal forces, as ``nodal_force`` defines them, for at most ``lanes`` cases [N]."""
         rate = assembly.bars.stiffness / assembly.bars.length
         nothing = np.zeros((len(rate), self.lanes))
-        laned = self.laned(position)
+        laned = self.to_lanes(position)
         force = np.zeros_like(laned)
         self.library.seacage_forces(
             ctypes.byref(_assembly(assembly)),
@@ -192,7 +192,7 @@ class Kernel:
         )
         return np.moveaxis(force, -1, 0)[: len(position)]
 
-    def relaxed(
+    def relax(
         self,
         assembly: Assembly,
         flow: SteadyFlow,
@@ -204,7 +204,7 @@ class Kernel:
         """At most ``lanes`` cases, so many rounds nearer to rest."""
         rate = assembly.bars.stiffness / assembly.bars.length
         r = relaxation
-        laned = [self.laned(getattr(state, name)) for name in Relaxing.__slots__]
+        laned = [self.to_lanes(getattr(state, name)) for name in Relaxing.__slots__]
         position = laned[0]
         self.library.seacage_relax(
             ctypes.byref(_assembly(assembly)),
@@ -227,7 +227,7 @@ class Kernel:
             }
         )
 
-    def balanced(
+    def balance(
         self,
         assembly: Assembly,
         flow: SteadyFlow,
@@ -239,7 +239,7 @@ class Kernel:
         """At most ``lanes`` cases, so many iterations of ``nearer`` further on."""
         bars = assembly.bars
         pattern = Pattern.of(assembly)
-        laned = [self.laned(getattr(state, name)) for name in Balancing.__slots__]
+        laned = [self.to_lanes(getattr(state, name)) for name in Balancing.__slots__]
         self.library.seacage_balance(
             ctypes.byref(_assembly(assembly)),
             ctypes.byref(self.flow(flow)),
@@ -279,9 +279,11 @@ class Kernel:
             [flow.pressure, flow.constant, flow.slope, flow.third, flow.lift, flow.lift_second],
             axis=-1,
         )
-        return _Flow.filled(*map(self.laned, (flow.direction, panel, flow.pipe_pressure)))
+        return _Flow.filled(*map(self.to_lanes, (flow.direction, panel, flow.pipe_pressure)))
 
-    def laned(self, values: Float[np.ndarray, "case *shape"]) -> Float[np.ndarray, "*shape lane"]:
+    def to_lanes(
+        self, values: Float[np.ndarray, "case *shape"]
+    ) -> Float[np.ndarray, "*shape lane"]:
         """Cases as the last axis, the lanes left over filled with the first case."""
         spare = np.repeat(values[:1], self.lanes - len(values), axis=0)
         return np.ascontiguousarray(np.moveaxis(np.concatenate([values, spare]), 0, -1))
@@ -340,7 +342,7 @@ def kernel() -> Kernel:
     SeacageError
         Where none was built, or the named one is not to be had.
     """
-    name = chosen(*available(), os.environ.get("SEACAGE_KERNEL", ""))
+    name = choose(*available(), os.environ.get("SEACAGE_KERNEL", ""))
     return Kernel(library_of(name))
 
 
@@ -367,7 +369,7 @@ def available() -> tuple[list[str], int]:
     return built, ctypes.CDLL(str(library_of(plainest))).seacage_level()
 
 
-def chosen(built: Sequence[str], able: int, forced: str) -> str:
+def choose(built: Sequence[str], able: int, forced: str) -> str:
     """The name of the kernel to load.
 
     Parameters

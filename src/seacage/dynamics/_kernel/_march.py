@@ -10,14 +10,14 @@ from jaxtyping import Float, Int
 from seacage.conventions import InputError
 from seacage.dynamics._kernel._march_inputs import (
     Ocean,
-    aligned,
     body_of,
-    laned,
+    cache_zeros,
+    from_lanes,
     marching,
     netting_of,
     sea_tables,
     simulation_lanes,
-    unlaned,
+    to_lanes,
 )
 from seacage.dynamics._kernel._struct import DOUBLES, FLOATS, LONGS, Struct, pointer
 from seacage.dynamics._parts import Assembly, Bars
@@ -115,7 +115,7 @@ class March:
         self._body = body_of(assembly)
         self._net = netting_of(assembly, law)
         self._sea = sea_tables(ocean)
-        self._motion = _motion(assembly, laned(position))
+        self._motion = _motion(assembly, to_lanes(position))
         lanes, bridles = simulation_lanes(), len(assembly.bridles)
         sizes = {"node": (3 * nodes, lanes), "bridle": (bridles, lanes), "load": (3, lanes)}
         self.account = {
@@ -171,7 +171,7 @@ class March:
     def set_current(self, current: Float[np.ndarray, "case level 2"]) -> None:
         """From now on at each level [m/s]."""
         self._ocean = replace(self._ocean, current=current)
-        self._sea.arrays["current"][:] = laned(current)
+        self._sea.arrays["current"][:] = to_lanes(current)
 
     def set_waves(self, waves: Sequence[Waves]) -> None:
         """From now on, which is their time 0; the water takes a refresh to come round to them."""
@@ -195,12 +195,12 @@ class March:
     @property
     def position(self) -> Float[np.ndarray, "case node 3"]:
         """Where the nodes are now [m]."""
-        return unlaned(self._motion.arrays["position"])[: self.cases].astype(np.float64)
+        return from_lanes(self._motion.arrays["position"])[: self.cases].astype(np.float64)
 
     @property
     def velocity(self) -> Float[np.ndarray, "case node 3"]:
         """How the nodes move now [m/s]."""
-        return unlaned(self._motion.arrays["velocity"])[: self.cases].astype(np.float64)
+        return from_lanes(self._motion.arrays["velocity"])[: self.cases].astype(np.float64)
 
     def position_of(self, nodes: Int[np.ndarray, " kept"]) -> Float[np.ndarray, "case kept 3"]:
         """Where some nodes are now [m]."""
@@ -209,7 +209,7 @@ class March:
     def node_sum(self, nodes: Int[np.ndarray, " kept"]) -> Float[np.ndarray, "case kept 3"]:
         """Displacements from the assembly's positions, over all counted refreshes [m]."""
         lanes = simulation_lanes()
-        return unlaned(self.account["node_sum"].reshape(-1, 3, lanes)[nodes])[: self.cases]
+        return from_lanes(self.account["node_sum"].reshape(-1, 3, lanes)[nodes])[: self.cases]
 
     @property
     def tension(self) -> Float[np.ndarray, "case bridle"]:
@@ -222,7 +222,7 @@ class March:
         return damped_tension(bridles, assembly.mass[nodes], at, moving)
 
     def _of(self, name: str, nodes: Int[np.ndarray, " kept"]) -> Float[np.ndarray, "case kept 3"]:
-        return unlaned(self._motion.arrays[name][nodes])[: self.cases].astype(np.float64)
+        return from_lanes(self._motion.arrays[name][nodes])[: self.cases].astype(np.float64)
 
     @property
     def lost_at(self) -> Float[np.ndarray, " case"]:
@@ -247,20 +247,20 @@ def kernel_force(
 ) -> Float[np.ndarray, "case node 3"]:
     """All forces as the kernel computes them, for at most a vector of cases [N]."""
     cases = len(position)
-    motion = _motion(assembly, laned(position))
-    motion.arrays["velocity"][:] = laned(velocity)
-    motion.arrays["water"][:] = laned(water.velocity)
-    motion.arrays["current"][:] = laned(water.current)
-    motion.arrays["elevation"][:] = laned(water.elevation[:, assembly.floats.nodes])
+    motion = _motion(assembly, to_lanes(position))
+    motion.arrays["velocity"][:] = to_lanes(velocity)
+    motion.arrays["water"][:] = to_lanes(water.velocity)
+    motion.arrays["current"][:] = to_lanes(water.current)
+    motion.arrays["elevation"][:] = to_lanes(water.elevation[:, assembly.floats.nodes])
     inertia = assembly.water_mass[:, None] * water.acceleration
     inertia[..., 2] += assembly.weight
-    motion.arrays["base"][:] = laned(inertia)
+    motion.arrays["base"][:] = to_lanes(inertia)
     total = np.zeros((3, simulation_lanes()), np.float32)
     marching().seacage_march_forces(
         *map(ctypes.byref, (body_of(assembly), netting_of(assembly, law), motion)),
         pointer(total),
     )
-    return unlaned(motion.arrays["force"])[:cases].astype(np.float64)
+    return from_lanes(motion.arrays["force"])[:cases].astype(np.float64)
 
 
 def kernel_water(
@@ -274,7 +274,7 @@ def kernel_water(
     elevation, velocity = np.zeros(lanes, np.float32), np.zeros((3, lanes), np.float32)
     marching().seacage_march_water(
         ctypes.byref(sea_tables(ocean)),
-        pointer(laned(position)),
+        pointer(to_lanes(position)),
         ctypes.c_double(time),
         pointer(elevation),
         pointer(velocity),
@@ -294,6 +294,6 @@ def _motion(assembly: Assembly, position: Float[np.ndarray, "node 3 lane"]) -> _
         "panel_drag": (panels,),
         "panel_lift": (panels,),
     }
-    arrays = {name: aligned((*shape, lanes)) for name, shape in shapes.items()}
+    arrays = {name: cache_zeros((*shape, lanes)) for name, shape in shapes.items()}
     lost_at = np.full(lanes, -1.0, np.float32)
     return _State.filled(position=position, **arrays, lost_at=lost_at)

@@ -59,18 +59,18 @@ def simulation_lanes() -> int:
     return int(marching().seacage_march_lanes())
 
 
-def laned(
+def to_lanes(
     values: Float[np.ndarray, "case *shape"], kind: Any = np.float32
 ) -> Float[np.ndarray, "*shape lane"]:
     """Cases as the last axis, the lanes left over filled with the first case."""
     spare = np.repeat(values[:1], simulation_lanes() - len(values), axis=0)
     lanes = np.moveaxis(np.concatenate([values, spare]), 0, -1)
-    spread = aligned(lanes.shape, kind)
+    spread = cache_zeros(lanes.shape, kind)
     spread[...] = lanes
     return spread
 
 
-def aligned(shape: tuple[int, ...], kind: Any = np.float32) -> np.ndarray:
+def cache_zeros(shape: tuple[int, ...], kind: Any = np.float32) -> np.ndarray:
     """Zeros on whole lines of the cache, which a vector that lies across two reads slowly."""
     line, size = 64, math.prod(shape) * np.dtype(kind).itemsize
     room = np.zeros(size + line, np.uint8)
@@ -78,7 +78,7 @@ def aligned(shape: tuple[int, ...], kind: Any = np.float32) -> np.ndarray:
     return room[first : first + size].view(kind).reshape(shape)
 
 
-def unlaned(values: np.ndarray) -> np.ndarray:
+def from_lanes(values: np.ndarray) -> np.ndarray:
     """Cases first again."""
     return np.moveaxis(values, -1, 0)
 
@@ -188,9 +188,9 @@ def netting_of(assembly: Assembly, law: NetLaw) -> Netting:
     return Netting.filled(
         kind=kind,
         all=(ctypes.c_float * 4)(*numbers),
-        law=laned(np.broadcast_to(np.stack(np.broadcast_arrays(*each), axis=-1), shape)),
-        drag_factor=laned(law.factor),
-        wake=laned(law.wake),
+        law=to_lanes(np.broadcast_to(np.stack(np.broadcast_arrays(*each), axis=-1), shape)),
+        drag_factor=to_lanes(law.factor),
+        wake=to_lanes(law.wake),
     )
 
 
@@ -243,7 +243,7 @@ def sea_tables(ocean: Ocean, *, now: float = 0.0) -> SeaTables:
         levels=len(ocean.level_z),
         depth=ocean.depth,
         level_z=ocean.level_z.astype(np.float32),
-        current=laned(ocean.current),
+        current=to_lanes(ocean.current),
         **tables,
     )
 
@@ -253,9 +253,9 @@ def _wave_tables(waves: Sequence[Waves]) -> dict[str, np.ndarray]:
     count = max((len(w.amplitude) for w in waves), default=0)
     if count == 0:
         return {name: np.zeros((0, simulation_lanes()), k) for name, k in _WAVE_KINDS.items()}
-    each = [_padded(_wave_table(w), count) for w in waves]
+    each = [_pad(_wave_table(w), count) for w in waves]
     return {
-        name: laned(np.array([table[name] for table in each]), kind)
+        name: to_lanes(np.array([table[name] for table in each]), kind)
         for name, kind in _WAVE_KINDS.items()
     }
 
@@ -290,7 +290,7 @@ def _wave_table(waves: Waves) -> dict[str, np.ndarray]:
     }
 
 
-def _padded(table: dict[str, np.ndarray], count: int) -> dict[str, np.ndarray]:
+def _pad(table: dict[str, np.ndarray], count: int) -> dict[str, np.ndarray]:
     return {
         name: np.concatenate([values, np.zeros(count - len(values))])
         for name, values in table.items()

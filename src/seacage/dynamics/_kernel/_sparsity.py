@@ -55,7 +55,7 @@ def _pattern(nodes: int, ends: tuple[int, ...], parts: tuple[bytes, ...]) -> Pat
         np.frombuffer(part, dtype=np.int32).reshape(-1, end)
         for part, end in zip(parts, ends, strict=True)
     ]
-    order, filled = _eliminated(nodes, graph)
+    order, filled = _elimination(nodes, graph)
     rank = np.empty(nodes, dtype=np.int64)
     rank[order] = np.arange(nodes)
     key = filled[0] * nodes + filled[1]
@@ -76,7 +76,7 @@ def _pattern(nodes: int, ends: tuple[int, ...], parts: tuple[bytes, ...]) -> Pat
     return Pattern(**{name: values.astype(np.int32) for name, values in arrays.items()})
 
 
-def _eliminated(
+def _elimination(
     nodes: int, graph: list[np.ndarray]
 ) -> tuple[Int[np.ndarray, " node"], Int[np.ndarray, "2 block"]]:
     """An order of elimination, and rows and columns of all blocks that are not zero in it."""

@@ -1,16 +1,16 @@
 """A cage on its mooring: pretension, anchor lines, more detail and stable masses."""
 
-from seacage.dynamics._moored._detailed import Damage, broken, detailed
-from seacage.dynamics._moored._mass_scaling import steadied
-from seacage.dynamics._moored._mooring import anchored
-from seacage.dynamics._moored._pretension import assembled, free_nodes
+from seacage.dynamics._moored._detailed import Damage, broken, full_assembly
+from seacage.dynamics._moored._mass_scaling import scale_mass
+from seacage.dynamics._moored._mooring import anchor_assembly
+from seacage.dynamics._moored._pretension import assemble, free_nodes
 
 __all__ = [
     "Damage",
-    "anchored",
-    "assembled",
+    "anchor_assembly",
+    "assemble",
     "broken",
-    "detailed",
     "free_nodes",
-    "steadied",
+    "full_assembly",
+    "scale_mass",
 ]

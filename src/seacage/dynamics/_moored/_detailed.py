@@ -9,9 +9,9 @@ from jaxtyping import Bool, Float, Int
 from seacage.cage import Cage
 from seacage.conventions import WATER_DENSITY, InputError
 from seacage.dynamics._moored._anchor_line import is_rope
-from seacage.dynamics._moored._mooring import anchored
-from seacage.dynamics._moored._pretension import assembled
-from seacage.dynamics._parts import Assembly, Bars, joined_bars
+from seacage.dynamics._moored._mooring import anchor_assembly
+from seacage.dynamics._moored._pretension import assemble
+from seacage.dynamics._parts import Assembly, Bars, join_bars
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,7 +32,7 @@ class Damage:
 
 
 @lru_cache(maxsize=4)
-def detailed(cage: Cage, *, stiffening: tuple[float, float]) -> Assembly:
+def full_assembly(cage: Cage, *, stiffening: tuple[float, float]) -> Assembly:
     """The cage on frame, buoys and anchor lines, with more of what it has in truth.
 
     The sinker tube is a ring of its own that hangs on a rope from each meridian, below the
@@ -45,13 +45,13 @@ def detailed(cage: Cage, *, stiffening: tuple[float, float]) -> Assembly:
     stiffening
         The strain, and the stiffness that comes then, over the first [-].
     """
-    hung = _tube_hung(cage, anchored(cage))
+    hung = _tube_hung(cage, anchor_assembly(cage))
     return _stiffening(hung, _ropes(cage), *stiffening)
 
 
 def _ropes(cage: Cage) -> Int[np.ndarray, " bar"]:
-    """Bars of ``anchored(cage)`` that are ropes, the bridles first: frame and anchor lines."""
-    base, parts = assembled(cage), cage.anchor_lines
+    """Bars of ``anchor_assembly(cage)`` that are ropes: bridles, frame and anchor lines."""
+    base, parts = assemble(cage), cage.anchor_lines
     frame = len(base.bars.length) + np.arange(4)
     lines = np.flatnonzero(np.tile(is_rope(parts), 4 * parts.per_corner))
     return np.concatenate([base.bridles, frame, frame[-1] + 1 + lines])
@@ -74,13 +74,13 @@ def _tube_hung(cage: Cage, base: Assembly) -> Assembly:
     return replace(
         base,
         position=np.vstack([base.position, below]),
-        weight=_shifted(base.weight, ring, -tube.weight * arc),
-        mass=_shifted(base.mass, ring, lump),
-        water_mass=_shifted(base.water_mass, ring, water + tube.added_mass_coefficient * water),
+        weight=_shift(base.weight, ring, -tube.weight * arc),
+        mass=_shift(base.mass, ring, lump),
+        water_mass=_shift(base.water_mass, ring, water + tube.added_mass_coefficient * water),
         fixed=np.append(base.fixed, np.zeros(len(ring), dtype=bool)),
-        bars=joined_bars(bars, _hangers(cage, ring, count)),
-        bends=replace(bends, nodes=_moved(bends.nodes, ring, moved)),
-        cylinders=replace(pipes, ends=_moved(pipes.ends, ring, moved)),
+        bars=join_bars(bars, _hangers(cage, ring, count)),
+        bends=replace(bends, nodes=_move(bends.nodes, ring, moved)),
+        cylinders=replace(pipes, ends=_move(pipes.ends, ring, moved)),
     )
 
 
@@ -90,7 +90,7 @@ def _all_in(
     return np.asarray(np.isin(nodes, ring).all(axis=1))
 
 
-def _moved(
+def _move(
     nodes: Int[np.ndarray, "part end"],
     ring: Int[np.ndarray, " spoke"],
     moved: Int[np.ndarray, " node"],
@@ -98,7 +98,7 @@ def _moved(
     return np.where(_all_in(nodes, ring)[:, None], moved[nodes], nodes)
 
 
-def _shifted(
+def _shift(
     values: Float[np.ndarray, " node"],
     ring: Int[np.ndarray, " spoke"],
     share: Float[np.ndarray, " spoke"],
@@ -141,7 +141,7 @@ def _stiffening(
     beside = len(bars.length) + np.arange(len(assembly.bridles))
     return replace(
         assembly,
-        bars=joined_bars(bars, second),
+        bars=join_bars(bars, second),
         bridles=np.concatenate([assembly.bridles, beside]),
     )
 
@@ -149,7 +149,7 @@ def _stiffening(
 def broken(
     cage: Cage, assembly: Assembly, damages: tuple[Damage, ...], *, refined: int
 ) -> tuple[Assembly, Bool[np.ndarray, " panel"]]:
-    """A ``detailed`` cage after some damage, and which of its panels are still there.
+    """A ``full_assembly`` cage after some damage, and which of its panels are still there.
 
     Parameters
     ----------

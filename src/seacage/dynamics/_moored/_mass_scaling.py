@@ -15,7 +15,7 @@ MOST_ADDED = 4.0
 """Mass lent to a node, over its own, beyond which a time step is refused [-]."""
 
 
-def steadied(assembly: Assembly, time_step: float) -> tuple[Assembly, Float[np.ndarray, " node"]]:
+def scale_mass(assembly: Assembly, time_step: float) -> tuple[Assembly, Float[np.ndarray, " node"]]:
     """A copy with enough mass at each node for a time step, and the mass lent [kg].
 
     Light nodes on stiff bars ring faster than a time step can follow, at frequencies at which

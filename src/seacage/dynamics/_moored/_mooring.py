@@ -16,7 +16,7 @@ from seacage.dynamics._moored._anchor_line import (
     resting_line,
     segments,
 )
-from seacage.dynamics._moored._pretension import assembled
+from seacage.dynamics._moored._pretension import assemble
 from seacage.dynamics._parts import (
     SINKING,
     Assembly,
@@ -24,7 +24,7 @@ from seacage.dynamics._parts import (
     Cylinders,
     Floats,
     Ground,
-    joined_bars,
+    join_bars,
     no_springs,
 )
 
@@ -33,7 +33,7 @@ ROPE_DRAG = 1.2
 
 
 @lru_cache(maxsize=16)
-def anchored(cage: Cage) -> Assembly:
+def anchor_assembly(cage: Cage) -> Assembly:
     """The cage with frame ropes, corner buoys and anchor lines in place of corner springs.
 
     Nodes: the cage's, the four corners, then those of each anchor line from its corner to its
@@ -50,14 +50,14 @@ def anchored(cage: Cage) -> Assembly:
         A cage that cannot float, lines that do not reach the sea bed, and a buoy too small
         for what hangs on it.
     """
-    base = assembled(cage)
+    base = assemble(cage)
     shape = resting_line(cage)
     lines = _lines(cage, shape)
     bridles = _bridle_pull(cage, base)
-    lift = _carried(cage, shape, bridles)
+    lift = _buoy_load(cage, shape, bridles)
     position = np.vstack([base.position, lines.position])
     frame = _frame(cage, shape, bridles)
-    weight, mass, water_mass = _lumped(cage, base, frame, lines)
+    weight, mass, water_mass = _lump(cage, base, frame, lines)
     return Assembly(
         cage_nodes=base.cage_nodes,
         position=position,
@@ -65,7 +65,7 @@ def anchored(cage: Cage) -> Assembly:
         mass=mass,
         water_mass=water_mass,
         fixed=np.concatenate([base.fixed, lines.anchors]),
-        bars=joined_bars(base.bars, frame, lines.bars),
+        bars=join_bars(base.bars, frame, lines.bars),
         bridles=base.bridles,
         bends=base.bends,
         panels=base.panels,
@@ -139,7 +139,7 @@ def _bridle_pull(cage: Cage, base: Assembly) -> Float[np.ndarray, "corner 3"]:
     return pull
 
 
-def _carried(
+def _buoy_load(
     cage: Cage, shape: LineShape, bridles: Float[np.ndarray, "corner 3"]
 ) -> Float[np.ndarray, " corner"]:
     """What each buoy carries in still water [N]."""
@@ -182,7 +182,7 @@ def _frame(cage: Cage, shape: LineShape, bridles: Float[np.ndarray, "corner 3"])
     )
 
 
-def _lumped(
+def _lump(
     cage: Cage, base: Assembly, frame: Bars, lines: _Lines
 ) -> tuple[Float[np.ndarray, " n"], Float[np.ndarray, " n"], Float[np.ndarray, " n"]]:
     """Weight [N], mass with added mass, and the water's share of it [kg], of all nodes.

@@ -12,7 +12,7 @@ from seacage.dynamics._physics import steady_flow
 
 
 @lru_cache(maxsize=16)
-def assembled(cage: Cage) -> Assembly:
+def assemble(cage: Cage) -> Assembly:
     """The cage put together, its bridles cut so that each bears the pretension at rest.
 
     The collar gives to the bridles' pull by some decimetres. Its shape under that pull is found

@@ -9,9 +9,9 @@ from seacage.dynamics._parts._assembly import (
     Ground,
     Panels,
     Springs,
-    joined_bars,
+    join_bars,
 )
-from seacage.dynamics._parts._structure import SINKING, no_springs, rigged
+from seacage.dynamics._parts._structure import SINKING, assemble_structure, no_springs
 
 __all__ = [
     "SINKING",
@@ -23,7 +23,7 @@ __all__ = [
     "Ground",
     "Panels",
     "Springs",
-    "joined_bars",
+    "assemble_structure",
+    "join_bars",
     "no_springs",
-    "rigged",
 ]

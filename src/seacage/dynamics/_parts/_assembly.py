@@ -162,7 +162,7 @@ class Assembly:
 def _bars(
     cage: Cage, position: Float[np.ndarray, "node 3"]
 ) -> tuple[Bars, Int[np.ndarray, " bridle"]]:
-    bars = joined_bars(
+    bars = join_bars(
         _net_bars(cage),
         _hoop(cage, 0, cage.collar.pipes * cage.collar.pipe_axial_stiffness),
         _hoop(cage, cage.tube_ring, cage.sinker_tube.axial_stiffness),
@@ -172,7 +172,7 @@ def _bars(
     return bars, np.arange(count - cage.bridle_count, count)
 
 
-def joined_bars(*several: Bars) -> Bars:
+def join_bars(*several: Bars) -> Bars:
     """All bars of several groups, in their order."""
     names = Bars.__slots__
     return Bars(

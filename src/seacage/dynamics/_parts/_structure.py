@@ -16,7 +16,7 @@ from seacage.dynamics._parts._assembly import (
     Ground,
     Panels,
     Springs,
-    joined_bars,
+    join_bars,
 )
 
 SINKING = 0.01
@@ -29,7 +29,7 @@ MOST_SOLIDITY = 0.9
 """Beyond it a net is a wall, and no screen law is right [-]."""
 
 
-def rigged(structure: Structure) -> Assembly:
+def assemble_structure(structure: Structure) -> Assembly:
     """Put a structure together.
 
     Pipes float as boxes of their width and volume, centred on their nodes, and follow the
@@ -48,8 +48,8 @@ def rigged(structure: Structure) -> Assembly:
     members = _members(structure)
     position = structure.design_position
     wet_nets = [index for index, net in enumerate(structure.net) if not structure.is_dry(net)]
-    panels = _joined_panels([_panels(structure, index) for index in wet_nets])
-    bars = joined_bars(*_net_bars(structure), *(_bars(member) for member in members))
+    panels = _join_panels([_panels(structure, index) for index in wet_nets])
+    bars = join_bars(*_net_bars(structure), *(_bars(member) for member in members))
     lumps = _lumps(structure, members)
     _check_floats(structure, members)
     _check_masses(structure, lumps)
@@ -168,7 +168,7 @@ def _net_bars(structure: Structure) -> list[Bars]:
     several = []
     for index, net in enumerate(structure.net):
         twine, nodes = structure.twine_of(net), structure.net_nodes(index)
-        row, chord = structure.knitted(index)
+        row, chord = structure.design_net(index)
         down = np.stack([nodes[:-1], nodes[1:]], axis=-1)
         around = np.stack([nodes, np.roll(nodes, -1, axis=1)], axis=-1)
         rows, spokes = net.rows, structure.spokes
@@ -214,7 +214,7 @@ def _panels(structure: Structure, index: int) -> Panels:
     """
     net, position = structure.net[index], structure.design_position
     twine, corners = structure.twine_of(net), structure.net_panels(index)
-    row, chord = structure.knitted(index)
+    row, chord = structure.design_net(index)
     area = np.repeat((chord[:-1] + chord[1:]) / 2.0 * row, structure.spokes)
     folds = np.maximum(area / _outlines(corners, position), 1.0)
     cover = twine.diameter / twine.half_mesh
@@ -238,7 +238,7 @@ def _panels(structure: Structure, index: int) -> Panels:
     )
 
 
-def _joined_panels(several: list[Panels]) -> Panels:
+def _join_panels(several: list[Panels]) -> Panels:
     names = Panels.__slots__
     shapes = {"corners": (0, 4), "share": (0, 4), "outward": (0, 2)}
     kinds = {"corners": np.int64, "diamond": np.bool_}
@@ -344,7 +344,7 @@ def _put_net(structure: Structure, index: int, lumps: _Lumps) -> None:
     """A net weighs what was knitted, in folds or not."""
     net, corners = structure.net[index], structure.net_panels(index)
     twine = structure.twine_of(net)
-    row, chord = structure.knitted(index)
+    row, chord = structure.design_net(index)
     area = np.repeat((chord[:-1] + chord[1:]) / 2.0 * row, structure.spokes)
     volume = (twine.volume * area)[:, None] / 4.0
     triangle = corners[:, 2] == corners[:, 3]
@@ -417,7 +417,7 @@ def _check_floats(structure: Structure, members: list[_Member]) -> None:
         lift += member.section.displaced_mass * length * GRAVITY
         weight += member.section.mass * length * GRAVITY
     for index, net in enumerate(structure.net):
-        twine, (row, chord) = structure.twine_of(net), structure.knitted(index)
+        twine, (row, chord) = structure.twine_of(net), structure.design_net(index)
         area = structure.spokes * row * float(np.sum(chord[:-1] + chord[1:])) / 2.0
         weight += twine.density * twine.volume * area * GRAVITY
         lift += WATER_DENSITY * twine.volume * area * GRAVITY

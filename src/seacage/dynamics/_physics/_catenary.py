@@ -62,7 +62,7 @@ def catenary(
         friction=seabed_friction,
     )
     _check(line)
-    horizontal, vertical = _solved(line)
+    horizontal, vertical = _solve(line)
     lying = _lying(line, vertical)
     if lying > 0.0:
         held = max(horizontal - (line.friction or 0.0) * weight * lying, 0.0)
@@ -84,7 +84,7 @@ class _Line:
     friction: float | None
 
 
-def _solved(line: _Line) -> tuple[float, float]:
+def _solve(line: _Line) -> tuple[float, float]:
     """Horizontal and vertical tension at B [N].
 
     B comes to lie the higher the more is pulled up, and the further off the more is pulled

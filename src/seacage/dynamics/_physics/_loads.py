@@ -88,7 +88,7 @@ def bar_force(bars: Bars, position: Nodal) -> Nodal:
     along = position[:, bars.ends[:, 1]] - position[:, bars.ends[:, 0]]
     unit = along / np.linalg.norm(along, axis=-1, keepdims=True)
     pull = bar_tension(bars, position)[..., None] * unit
-    return _gathered(position, bars.ends, np.stack([pull, -pull], axis=2))
+    return _gather(position, bars.ends, np.stack([pull, -pull], axis=2))
 
 
 def bend_force(bends: Bends, position: Nodal) -> Nodal:
@@ -112,13 +112,13 @@ def bend_force(bends: Bends, position: Nodal) -> Nodal:
     on_first = slope * (t2 - c * t1) / length_1  # −dE/d(first)
     on_second = slope * (t1 - c * t2) / length_2
     shares = np.stack([-on_first, on_first - on_second, on_second], axis=2)
-    return _gathered(position, bends.nodes, shares)
+    return _gather(position, bends.nodes, shares)
 
 
 def net_force(panels: Panels, flow: SteadyFlow, position: Nodal) -> Nodal:
     """The water's load on the netting, shared among the corners of each panel [N]."""
     load = panel_load(panels, flow, position)
-    return _gathered(position, panels.corners, load[:, :, None] * panels.share[..., None])
+    return _gather(position, panels.corners, load[:, :, None] * panels.share[..., None])
 
 
 def panel_load(
@@ -164,7 +164,7 @@ def cylinder_force(cylinders: Cylinders, flow: SteadyFlow, position: Nodal) -> N
     speed = np.linalg.norm(across, axis=-1, keepdims=True)
     pressure = flow.pipe_pressure[:, None, None]
     load = pressure * cylinders.drag_width[:, None] * length * speed * across
-    return _gathered(position, cylinders.ends, np.stack([load, load], axis=2) / 2.0)
+    return _gather(position, cylinders.ends, np.stack([load, load], axis=2) / 2.0)
 
 
 def float_force(floats: Floats, position: Nodal) -> Nodal:
@@ -190,7 +190,7 @@ def total_net_force(
     return panel_load(panels, flow, position).sum(axis=1)
 
 
-def _gathered(
+def _gather(
     like: Nodal, nodes: Int[np.ndarray, "part end"], shares: Float[np.ndarray, "case part end 3"]
 ) -> Nodal:
     """Sum what each part puts on its nodes."""

@@ -16,7 +16,7 @@ from seacage.dynamics._physics._loads import (
     DYNAMIC,
     Nodal,
     SteadyFlow,
-    _gathered,
+    _gather,
     bar_tension,
     bend_force,
     screen_load,
@@ -113,7 +113,7 @@ def moving_force(
 ) -> Nodal:
     """All forces on all nodes but the inertia of their own mass and added mass [N]."""
     net = moving_net_load(assembly.panels, law, water, position, velocity)
-    force = _gathered(
+    force = _gather(
         position, assembly.panels.corners, net[:, :, None] * assembly.panels.share[..., None]
     )
     force += damped_bar_force(assembly.bars, assembly.mass, position, velocity)
@@ -224,7 +224,7 @@ def damped_bar_force(
     along = position[:, bars.ends[:, 1]] - position[:, bars.ends[:, 0]]
     unit = along / np.linalg.norm(along, axis=-1, keepdims=True)
     pull = damped_tension(bars, mass, position, velocity)[..., None] * unit
-    return _gathered(position, bars.ends, np.stack([pull, -pull], axis=2))
+    return _gather(position, bars.ends, np.stack([pull, -pull], axis=2))
 
 
 def moving_cylinder_force(
@@ -242,7 +242,7 @@ def moving_cylinder_force(
     load = cylinders.drag_width[:, None] * speed * across
     load += cylinders.skin_width[:, None] * np.abs(slide) * slide * tangent
     load *= DYNAMIC * length
-    return _gathered(position, ends, np.stack([load, load], axis=2) / 2.0)
+    return _gather(position, ends, np.stack([load, load], axis=2) / 2.0)
 
 
 def _surface_force(assembly: Assembly, water: Water, position: Nodal) -> Nodal:

@@ -92,16 +92,16 @@ def wake_in_sight(
     for case, shape in enumerate(position):
         speed = float(np.linalg.norm(current[case]))
         if speed > 0.0:
-            facing, seen = _seen(panels, shape, current[case] / speed)
+            facing, seen = _view(panels, shape, current[case] / speed)
             drag, _ = loland(solidity[case], np.abs(facing))
             root = np.sqrt(1.0 + drag_factor[case] * drag)
-            share[case] = _left(facing, seen, root)
+            share[case] = _flow_left(facing, seen, root)
             if own_too:
                 share[case] *= 2.0 / (1.0 + root)
     return share
 
 
-def _seen(
+def _view(
     panels: Panels, shape: Float[np.ndarray, "node 3"], unit: Float[np.ndarray, "2"]
 ) -> tuple[Float[np.ndarray, " panel"], Float[np.ndarray, "panel 2"]]:
     """Cosine of each panel's outward normal and the current, and its place as seen along it."""
@@ -112,7 +112,7 @@ def _seen(
     return facing, np.column_stack([centre[:, :2] @ np.array([-unit[1], unit[0]]), centre[:, 2]])
 
 
-def _left(
+def _flow_left(
     facing: Float[np.ndarray, " panel"],
     seen: Float[np.ndarray, "panel 2"],
     root: Float[np.ndarray, " panel"],

@@ -12,7 +12,7 @@ from seacage.conventions import InputError, Progress
 from seacage.dynamics._kernel import REFRESH, simulation_lanes
 from seacage.dynamics._moored import Damage
 from seacage.dynamics._physics import MovingLaw
-from seacage.dynamics._time._segments import Build, Course, Passage
+from seacage.dynamics._time._segments import Build, Course, SegmentBatch
 from seacage.dynamics._time._weather import AbstractWeather
 
 
@@ -85,7 +85,7 @@ def follow(
         Of the netting. Twine by twine ("morison"), the facing half meets what momentum leaves
         of the current.
     stiffening
-        As for ropes in ``detailed``: a strain, and the stiffness that comes then over the first.
+        As in ``full_assembly``: a strain, and the ropes' stiffness beyond it over the first.
     watched
         Nodes whose positions are sampled.
     damaged, breaking
@@ -106,73 +106,73 @@ def follow(
     course = _course(duration, every, spin_up, shape_every, time_step)
     _check(weathers, starts)
     build = Build(cage=cage, law=law, stiffening=stiffening, refined=refined)
-    passage = Passage(build, weathers, np.array(starts, dtype=np.float64), course, damaged)
-    seen = _Seen(passage, course, watched, shape_nodes)
+    segments = SegmentBatch(build, weathers, np.array(starts, dtype=np.float64), course, damaged)
+    seen = _Seen(segments, course, watched, shape_nodes)
     for step in range(-course.spin_up, course.samples):
         if step == 0 and breaking:
-            passage.breaks(damaged + breaking)
-        passage.meets(step)
+            segments.breaks(damaged + breaking)
+        segments.meets(step)
         if step >= 0:
             seen.takes(step)
-        passage.goes()
+        segments.goes()
         if step >= 0:
             seen.adds(step)
         if progress is not None:
             done = (step + 1 + course.spin_up) * every * len(starts)
             progress("follow", round(done), round((spin_up + duration) * len(starts)))
-    return seen.followed()
+    return seen.result()
 
 
 class _Seen:
-    """What has been seen of a passage so far."""
+    """What has been seen of some segments so far."""
 
     def __init__(
         self,
-        passage: Passage,
+        segments: SegmentBatch,
         course: Course,
         watched: Sequence[int],
         shape_nodes: Sequence[int] | None,
     ) -> None:
-        cage, stretches = passage.cage, len(passage.starts)
-        self._passage, self._course = passage, course
+        cage, stretches = segments.cage, len(segments.starts)
+        self._segments, self._course = segments, course
         self._watched = _nodes(cage, watched)
         self._shaped = _nodes(cage, range(cage.node_count) if shape_nodes is None else shape_nodes)
         self._place = np.empty((stretches, course.samples, len(self._watched), 3))
         self._tension = np.empty((stretches, course.samples, cage.bridle_count))
         self._shape: list[Float[np.ndarray, "stretch node 3"]] = []
-        self._sum = passage.displaced(self._shaped)
+        self._sum = segments.displacement_sum(self._shaped)
 
     def takes(self, step: int) -> None:
         """One sample."""
-        self._place[:, step] = self._passage.position(self._watched)
-        self._tension[:, step] = self._passage.bridle_tension
+        self._place[:, step] = self._segments.position(self._watched)
+        self._tension[:, step] = self._segments.bridle_tension
 
     def adds(self, step: int) -> None:
         """One mean, where its time is over."""
         if (step + 1) % self._course.shape_samples:
             return
-        now = self._passage.displaced(self._shaped)
+        now = self._segments.displacement_sum(self._shaped)
         count = self._course.shape_samples * self._course.refreshes
-        self._shape.append(self._passage.place[self._shaped] + (now - self._sum) / count)
+        self._shape.append(self._segments.place[self._shaped] + (now - self._sum) / count)
         self._sum = now
 
-    def followed(self) -> Followed:
+    def result(self) -> Followed:
         """All of it."""
-        starts, course = self._passage.starts, self._course
+        starts, course = self._segments.starts, self._course
         return Followed(
             time=starts[:, None] + course.every * np.arange(course.samples),
             watched_position=self._place,
             bridle_tension=self._tension,
             shape=np.stack(self._shape, axis=1),
-            lost_at=starts - course.spin_up * course.every + self._passage.lost_at,
+            lost_at=starts - course.spin_up * course.every + self._segments.lost_at,
         )
 
 
-def _nodes(cage: Cage, asked: Sequence[int]) -> Int[np.ndarray, " kept"]:
-    nodes = np.array(asked, dtype=np.int64)
+def _nodes(cage: Cage, numbers: Sequence[int]) -> Int[np.ndarray, " kept"]:
+    nodes = np.array(numbers, dtype=np.int64)
     if np.any((nodes < 0) | (nodes >= cage.node_count)):
         raise InputError(
-            f"follow: a node of {asked} is none of cage {cage.name}, whose nodes are 0 … "
+            f"follow: a node of {numbers} is none of cage {cage.name}, whose nodes are 0 … "
             f"{cage.node_count - 1}."
         )
     return nodes

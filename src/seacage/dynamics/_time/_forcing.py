@@ -16,7 +16,7 @@ MOST_COMPONENTS = 1000
 """Of the waves of a case: the kernel keeps their phases on a thread's stack."""
 
 
-def drawn_waves(
+def draw_waves(
     seas: list[SeaState],
     given: Waves | Sequence[Waves] | None,
     seed: int | Sequence[int],
@@ -29,7 +29,7 @@ def drawn_waves(
             raise InputError(
                 f"simulate: {len(waves)} waves for {len(seas)} seas. Give one for each, or one."
             )
-        return _checked_waves(waves, depth)
+        return _check_waves(waves, depth)
     if isinstance(seed, (int, np.integer)):
         seeds = [int(seed) + i for i in range(len(seas))]
     else:
@@ -43,7 +43,7 @@ def drawn_waves(
     return [sample_waves(s, seed=own, depth=depth) for s, own in zip(seas, seeds, strict=True)]
 
 
-def _checked_waves(waves: list[Waves], depth: float) -> list[Waves]:
+def _check_waves(waves: list[Waves], depth: float) -> list[Waves]:
     """Those that the kernel can march through."""
     for case, one in enumerate(waves):
         numbers = {name: getattr(one, name) for name in Waves.__slots__ if name != "depth"}

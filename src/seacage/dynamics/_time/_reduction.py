@@ -86,7 +86,7 @@ class Reduction:
             result=np.asarray(Result.CONVERGED),
             diverged_at=np.asarray(lost_at),
         )
-        return history if np.isnan(lost_at) else _given_up(history, march)
+        return history if np.isnan(lost_at) else _mask_lost(history, march)
 
     def _moment(
         self, net: Float[np.ndarray, "t node 3"]
@@ -139,12 +139,12 @@ def _quantiles(
     return np.moveaxis(between.astype(np.float64), -1, 0)
 
 
-def _given_up(history: History, march: March) -> History:
+def _mask_lost(history: History, march: March) -> History:
     """A case that left the finite numbers: nothing of it can be trusted but what was before."""
     spin_up = march.steps.spin_up * REFRESH
     gone = history.time + spin_up >= float(history.diverged_at)
 
-    def lost(statistics: Statistics) -> Statistics:
+    def mask(statistics: Statistics) -> Statistics:
         return Statistics(
             **{
                 f.name: np.full_like(getattr(statistics, f.name), np.nan)
@@ -159,10 +159,10 @@ def _given_up(history: History, march: March) -> History:
         history,
         node_position=after(history.node_position),
         bridle_tension=after(history.bridle_tension),
-        node=lost(history.node),
-        bridle=lost(history.bridle),
-        net_force=lost(history.net_force),
-        volume=lost(history.volume),
+        node=mask(history.node),
+        bridle=mask(history.bridle),
+        net_force=mask(history.net_force),
+        volume=mask(history.volume),
         node_displacement=np.full_like(history.node_displacement, np.nan),
         volume_fraction=np.asarray(np.nan),
         second_moment=np.full_like(history.second_moment, np.nan),
@@ -173,10 +173,10 @@ def _given_up(history: History, march: March) -> History:
 _SHARED = ("time", "nodes", "quantile_levels")
 
 
-def stacked(cases: list[History]) -> History:
+def stack(cases: list[History]) -> History:
     """Several cases as one history, with a leading axis."""
 
-    def joined(name: str) -> Any:
+    def join(name: str) -> Any:
         values = [getattr(case, name) for case in cases]
         if name in _SHARED:
             return values[0]
@@ -189,4 +189,4 @@ def stacked(cases: list[History]) -> History:
             )
         return np.stack(values)
 
-    return History(**{f.name: joined(f.name) for f in fields(History)})
+    return History(**{f.name: join(f.name) for f in fields(History)})

@@ -9,7 +9,7 @@ from jaxtyping import Bool, Float, Int
 from seacage.cage import Cage
 from seacage.conventions import compass
 from seacage.dynamics._kernel import REFRESH, March, Ocean, Steps
-from seacage.dynamics._moored import Damage, broken, detailed, steadied
+from seacage.dynamics._moored import Damage, broken, full_assembly, scale_mass
 from seacage.dynamics._parts import Assembly
 from seacage.dynamics._physics import MovingLaw, NetLaw, wake_in_sight
 from seacage.dynamics._settle import rest_shape, settle
@@ -69,11 +69,11 @@ class Build:
     ) -> tuple[Assembly, Bool[np.ndarray, " panel"]]:
         """The cage after some damage, steady at a time step, and the panels still there."""
         # steadied before anything breaks: masses must not change on the way
-        whole, _ = steadied(detailed(self.cage, stiffening=self.stiffening), time_step)
+        whole, _ = scale_mass(full_assembly(self.cage, stiffening=self.stiffening), time_step)
         return broken(self.cage, whole, damages, refined=self.refined)
 
 
-class Passage:
+class SegmentBatch:
     """Stretches side by side, each in its own weather; ``goes`` moves them all by one sample."""
 
     def __init__(
@@ -141,10 +141,10 @@ class Passage:
 
     @property
     def place(self) -> Float[np.ndarray, "node 3"]:
-        """Design positions, from which ``displaced`` counts [m]."""
+        """Design positions, from which ``displacement_sum`` counts [m]."""
         return self._assembly.position
 
-    def displaced(self, nodes: Int[np.ndarray, " n"]) -> Float[np.ndarray, "stretch n 3"]:
+    def displacement_sum(self, nodes: Int[np.ndarray, " n"]) -> Float[np.ndarray, "stretch n 3"]:
         """Sum of displacements over all counted looks at the water [m]."""
         return self.march.node_sum(nodes)
 

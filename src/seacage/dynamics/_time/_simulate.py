@@ -13,13 +13,13 @@ from jaxtyping import Float, Int
 from seacage.cage import Cage, Structure
 from seacage.conventions import InputError, Progress
 from seacage.dynamics._kernel import REFRESH, March, Steps, simulation_lanes
-from seacage.dynamics._moored import anchored, assembled, steadied
-from seacage.dynamics._parts import Assembly, rigged
+from seacage.dynamics._moored import anchor_assembly, assemble, scale_mass
+from seacage.dynamics._parts import Assembly, assemble_structure
 from seacage.dynamics._physics import MOVING_LAWS, MovingLaw, NetLaw
 from seacage.dynamics._settle import rest_shape, settle
-from seacage.dynamics._time._forcing import drawn_waves, ocean_of, wakes
+from seacage.dynamics._time._forcing import draw_waves, ocean_of, wakes
 from seacage.dynamics._time._history import History
-from seacage.dynamics._time._reduction import Reduction, stacked
+from seacage.dynamics._time._reduction import Reduction, stack
 from seacage.ocean import CurrentProfile, SeaState, Waves
 
 Mooring = Literal["springs", "catenary"]
@@ -134,17 +134,17 @@ def simulate(
     seas = [sea] if isinstance(sea, SeaState) else list(sea)
     _check(seas, law, twine_drag, workers)
     steps = _steps(duration, ramp, spin_up, time_step, sample_every)
-    assembly = _prepared(cage, mooring, hold_collar=hold_collar, collar_drag=collar_drag)
-    assembly, _ = steadied(assembly, steps.time_step)
+    assembly = _prepare(cage, mooring, hold_collar=hold_collar, collar_drag=collar_drag)
+    assembly, _ = scale_mass(assembly, steps.time_step)
     _check_room(steps, assembly)
     depth = cage.site.water_depth
-    ocean = ocean_of(seas, drawn_waves(seas, waves, seed, depth), current_profile, depth)
+    ocean = ocean_of(seas, draw_waves(seas, waves, seed, depth), current_profile, depth)
     lanes = simulation_lanes()
     blocks = [slice(i, min(i + lanes, len(seas))) for i in range(0, len(seas), lanes)]
     report = _Report(progress, (steps.spin_up + steps.counted) * len(seas))
     reduction = Reduction(
         cage=cage,
-        kept=_kept_nodes(cage, series_nodes),
+        kept=_series_nodes(cage, series_nodes),
         series=sample_every is not None,
         levels=_levels(quantile_levels),
         second_moment=second_moment,
@@ -165,7 +165,7 @@ def simulate(
 
     with ThreadPoolExecutor(workers) as pool:
         cases = [case for block in pool.map(run, blocks) for case in block]
-    return cases[0] if isinstance(sea, SeaState) else stacked(cases)
+    return cases[0] if isinstance(sea, SeaState) else stack(cases)
 
 
 def _check(
@@ -241,8 +241,14 @@ def _levels(levels: Sequence[float]) -> Float[np.ndarray, " quantile"]:
     return np.array(levels, dtype=np.float64)
 
 
-def _kept_nodes(cage: Cage | Structure, asked: Sequence[int] | None) -> Int[np.ndarray, " kept"]:
-    nodes = np.arange(cage.node_count) if asked is None else np.array(asked, dtype=np.int64)
+def _series_nodes(
+    cage: Cage | Structure, series_nodes: Sequence[int] | None
+) -> Int[np.ndarray, " kept"]:
+    nodes = (
+        np.arange(cage.node_count)
+        if series_nodes is None
+        else np.array(series_nodes, dtype=np.int64)
+    )
     if np.any((nodes < 0) | (nodes >= cage.node_count)):
         raise InputError(
             f"simulate: series_nodes = {nodes.tolist()} has a node that the net has not. "
@@ -251,7 +257,7 @@ def _kept_nodes(cage: Cage | Structure, asked: Sequence[int] | None) -> Int[np.n
     return nodes
 
 
-def _prepared(
+def _prepare(
     cage: Cage | Structure, mooring: Mooring, *, hold_collar: bool, collar_drag: bool
 ) -> Assembly:
     if mooring not in ("springs", "catenary"):
@@ -262,9 +268,9 @@ def _prepared(
                 f"simulate: mooring = {mooring!r}, but structure {cage.name} has lines and anchors "
                 "of its own. Leave it out."
             )
-        assembly = rigged(cage)
+        assembly = assemble_structure(cage)
     else:
-        assembly = anchored(cage) if mooring == "catenary" else assembled(cage)
+        assembly = anchor_assembly(cage) if mooring == "catenary" else assemble(cage)
     if hold_collar:
         fixed = assembly.fixed.copy()
         fixed[cage.ring_nodes(0)] = True
@@ -310,7 +316,7 @@ def _start(
 
 
 class _Report:
-    """Adds up what the threads have simulated, and tells it one at a time."""
+    """Adds up what the threads have simulated, and reports it, one thread at a time."""
 
     def __init__(self, progress: Progress | None, whole: int) -> None:
         self._progress, self._whole, self._done, self._lock = progress, whole, 0, Lock()

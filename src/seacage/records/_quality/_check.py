@@ -9,8 +9,8 @@ from jaxtyping import Int
 
 from seacage.conventions import Flag
 from seacage.records._quality._limits import DEFAULT_LIMITS, GROUPS, Limits
-from seacage.records._quality._prefilter import Columns, doubtful
-from seacage.records._quality._tests import ATTENUATED, Anchor, Finding, judged
+from seacage.records._quality._prefilter import Columns, candidate_rows
+from seacage.records._quality._tests import ATTENUATED, Anchor, Finding, evaluate
 from seacage.records._record import Record
 from seacage.records._sample import Sample
 from seacage.records._times import microseconds
@@ -55,7 +55,7 @@ class QualityState:
     anchors
         By group: the latest readings in range, to compare the next with.
     amended
-        What the last sample taught of an earlier one: that it was a spike.
+        What the last sample showed of an earlier one: that it was a spike.
     """
 
     anchors: Mapping[str, Anchor] = field(default_factory=dict[str, Anchor])
@@ -86,13 +86,13 @@ class Verdict:
 def check_sample(
     state: QualityState, sample: Sample, limits: Limits = DEFAULT_LIMITS
 ) -> tuple[QualityState, Sample]:
-    """Flag the values of one sample, given what its stream said before.
+    """Flag the values of one sample, given the samples of its stream before.
 
-    Presence, range and climatology are judged for each value alone; a sea too steep to stand
+    Presence, range and climatology are evaluated for each value alone; a sea too steep to stand
     fails its height and its period. Gap, rate of change, flat line and attenuated signal compare
     with the readings of the same instrument before, those that were in range. That a reading was
     a spike is known when the next has come: ``state.amended`` says it then. A late sample, older
-    than the latest reading, is judged alone and leaves the state as it was.
+    than the latest reading, is evaluated alone and leaves the state as it was.
 
     Parameters
     ----------
@@ -117,27 +117,27 @@ def check_sample(
     time = microseconds(sample.t)
     anchors = dict(state.anchors)
     findings: list[Finding] = []
-    taught: list[Amendment] = []
+    amendments: list[Amendment] = []
     for group, keys in GROUPS.items():
         values = {key: sample.values[key] for key in keys if key in sample.values}
         if values:
             before = anchors.get(group)
-            judgement = judged(group, before, time, values, limits)
-            findings += judgement.findings
+            evaluation = evaluate(group, before, time, values, limits)
+            findings += evaluation.findings
             if before is not None:
-                taught += _amendments(sample.stream, before, judgement.of_the_last)
-            if judgement.anchor is not None:
-                anchors[group] = judgement.anchor
+                amendments += _amendments(sample.stream, before, evaluation.of_the_last)
+            if evaluation.anchor is not None:
+                anchors[group] = evaluation.anchor
     flags = dict.fromkeys(sample.values, Flag.GOOD)
     for finding in findings:
         flags[finding.key] = max(flags[finding.key], finding.flag)
     remarks = tuple(_sentence(sample.stream, sample.values, finding) for finding in findings)
-    state = QualityState(anchors=anchors, amended=tuple(taught))
+    state = QualityState(anchors=anchors, amended=tuple(amendments))
     return state, replace(sample, flags=flags, remarks=remarks)
 
 
 def amended(sample: Sample, amendments: Iterable[Amendment]) -> Sample:
-    """Return a sample with what later ones taught of it, among other amendments."""
+    """Return a sample with those of the amendments that are about it."""
     for one in amendments:
         meant = (one.stream, one.t) == (sample.stream, sample.t)
         if meant and one.flag > sample.flags.get(one.key, one.flag):
@@ -234,12 +234,12 @@ def _findings(
 ) -> Iterator[tuple[int, Finding, Mapping[str, float]]]:
     if not columns:
         return
-    doubt = doubtful(group, time, columns, limits)
-    for rows in doubt.stretches:
+    candidates = candidate_rows(group, time, columns, limits)
+    for rows in candidates.stretches:
         times = time[rows].tolist()
         numbers = {key: column[rows].tolist() for key, column in columns.items()}
         for row, finding, values in _stretch_findings(group, times, numbers, limits):
-            if finding.test != ATTENUATED or doubt.faint[rows.start + row]:
+            if finding.test != ATTENUATED or candidates.faint[rows.start + row]:
                 yield rows.start + row, finding, values
 
 
@@ -251,7 +251,7 @@ def _stretch_findings(
     for row, numbers in enumerate(zip(*columns.values(), strict=True)):
         values = dict(zip(columns, numbers, strict=True))
         before = anchor
-        anchor, findings, of_the_last = judged(group, before, times[row], values, limits)
+        anchor, findings, of_the_last = evaluate(group, before, times[row], values, limits)
         for finding in findings:
             yield row, finding, values
         if before is not None:

@@ -59,12 +59,12 @@ def _part(table: Table, name: str, where: str) -> Table:
 def _ranges(table: Table, where: str) -> dict[str, Range]:
     check_names(table, DEFAULT_LIMITS.ranges, where=f"{where}, [ranges]")
     return {
-        key: parsed_range(table_of(table, key, where=where), DEFAULT_LIMITS.ranges[key], where)
+        key: parse_range(table_of(table, key, where=where), DEFAULT_LIMITS.ranges[key], where)
         for key in table
     }
 
 
-def parsed_range(table: Table, usual: Range, where: str) -> Range:
+def parse_range(table: Table, usual: Range, where: str) -> Range:
     """Bounds of a table; those that it leaves out stay the usual ones.
 
     Raises
@@ -112,7 +112,7 @@ def _climatology(table: Table, where: str) -> dict[str, tuple[Season, ...]]:
         seasons[key] = tuple(
             Season(
                 months=_months(one, inside),
-                range=parsed_range(
+                range=parse_range(
                     {name: bounds for name, bounds in one.items() if name != "months"},
                     everything,
                     inside,

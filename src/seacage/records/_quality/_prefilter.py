@@ -1,7 +1,7 @@
-"""Which rows of a record are worth judging one by one: all others are surely good.
+"""Which rows of a record need the tests one by one: all others are certainly good.
 
-Nothing is judged here. Whatever is in doubt, be it by a hair of rounding, goes to ``judged``,
-with the rows before it that its judgement hangs on.
+No flag is given here. A row that might fail a test, be it by a hair of rounding, goes to
+``evaluate``, with the rows before it that its evaluation depends on.
 """
 
 from collections.abc import Mapping
@@ -17,7 +17,7 @@ from seacage.records._quality._tests import (
     FLAT_FAIL_COUNT,
     FLAT_SUSPECT_COUNT,
     SECOND,
-    judged_alone,
+    evaluate_alone,
 )
 
 _HAIR = 1e-6  # far above what two ways of rounding differ by, as a share of the numbers
@@ -27,11 +27,11 @@ Rows = Int[np.ndarray, " row"]
 Columns = Mapping[str, Float[np.ndarray, " t"]]
 
 
-class Doubt(NamedTuple):
-    """What is worth judging of one group's readings."""
+class Candidates(NamedTuple):
+    """The rows of one group's readings that a test may flag."""
 
     stretches: list[slice]
-    """Rows, ascending. Each stretch may be judged as if nothing came before it."""
+    """Rows, ascending. Each stretch may be evaluated as if nothing came before it."""
     faint: Bool[np.ndarray, " t"]
     """Where the signal may be attenuated. A stretch that begins late might say so elsewhere."""
 
@@ -47,13 +47,15 @@ class _Chain(NamedTuple):
 
 
 class _Span(NamedTuple):
-    """Readings in doubt, and from which on a judgement must begin to know all it needs."""
+    """Readings that may be flagged, and the reading from which their evaluation must begin."""
 
     begin: Rows
     reading: Rows
 
 
-def doubtful(group: str, time: Int[np.ndarray, " t"], columns: Columns, limits: Limits) -> Doubt:
+def candidate_rows(
+    group: str, time: Int[np.ndarray, " t"], columns: Columns, limits: Limits
+) -> Candidates:
     """Where in one group's readings a test may find something.
 
     Parameters
@@ -65,12 +67,12 @@ def doubtful(group: str, time: Int[np.ndarray, " t"], columns: Columns, limits: 
     columns
         The group's values by door key, one at least.
     limits
-        To be judged with.
+        For the tests.
     """
     if not len(time):
-        return Doubt([], np.zeros(0, dtype=bool))
+        return Candidates([], np.zeros(0, dtype=bool))
     steadiness = limits.steadiness[group]
-    with np.errstate(over="ignore", invalid="ignore"):  # what is absurd is in doubt
+    with np.errstate(over="ignore", invalid="ignore"):  # absurd values are candidates
         alone = np.flatnonzero(~_surely_good_alone(columns, limits))
         chain = _chain(group, time, columns, limits, alone)
         faint = _faint(chain, steadiness)
@@ -79,10 +81,10 @@ def doubtful(group: str, time: Int[np.ndarray, " t"], columns: Columns, limits: 
     ends = np.concatenate([alone, *(chain.row[span.reading] for span in spans)]) + 1
     mask = np.zeros(len(time), dtype=bool)
     mask[chain.row[faint.reading]] = True
-    return Doubt(_joined(begins, ends, len(time)), mask)
+    return Candidates(_join(begins, ends, len(time)), mask)
 
 
-def _joined(begins: Rows, ends: Rows, length: int) -> list[slice]:
+def _join(begins: Rows, ends: Rows, length: int) -> list[slice]:
     """Stretches that cover all others, from each begin up to its end."""
     size = length + 1
     depth = np.cumsum(np.bincount(begins, minlength=size) - np.bincount(ends, minlength=size))
@@ -118,7 +120,7 @@ def _chain(
     compared = np.ones(len(time), dtype=bool)
     for row in alone.tolist():
         values = {key: float(column[row]) for key, column in columns.items()}
-        findings = judged_alone(group, int(time[row]), values, limits)
+        findings = evaluate_alone(group, int(time[row]), values, limits)
         compared[row] = all(finding.flag < Flag.FAIL for finding in findings)
     rows = np.flatnonzero(compared)
     kept = {key: column[rows] for key, column in columns.items()}
@@ -170,7 +172,7 @@ def _still(chain: _Chain, limits: Steadiness) -> _Span:
 def _faint(chain: _Chain, limits: Steadiness) -> _Span:
     """Readings in a bucket at whose beginning the window's range is small.
 
-    Within a bucket the range only grows: where it is large at first no reading is in doubt.
+    Within a bucket the range only grows: where it is large at first no reading may be flagged.
     """
     window = limits.attenuated_s * SECOND
     limit = max(limits.attenuated_suspect, limits.attenuated_fail)
@@ -185,11 +187,11 @@ def _faint(chain: _Chain, limits: Steadiness) -> _Span:
     oldest = np.searchsorted(chain.time[last], chain.time[opens] - window, side="right")
     oldest = np.maximum(oldest, np.searchsorted(opens, began))
     size = np.max(_range_over(chain.point, opens, oldest), axis=0)
-    doubt = ~(size >= limit + _HAIR) & (chain.time[last] - chain.time[began] >= window)
+    small = ~(size >= limit + _HAIR) & (chain.time[last] - chain.time[began] >= window)
     # One bucket more, so that the window is full where it is full for who judges all readings.
     begin = opens[np.maximum(oldest - 1, np.searchsorted(opens, began))]
-    reading = np.flatnonzero(np.repeat(doubt, last - opens + 1))
-    return _Span(np.repeat(begin[doubt], (last - opens + 1)[doubt]), reading)
+    reading = np.flatnonzero(np.repeat(small, last - opens + 1))
+    return _Span(np.repeat(begin[small], (last - opens + 1)[small]), reading)
 
 
 def _range_over(

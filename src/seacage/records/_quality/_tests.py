@@ -56,25 +56,25 @@ class Finding(NamedTuple):
     test: str
 
 
-class Judgement(NamedTuple):
-    """What one reading is worth, and what it taught of the one before."""
+class Evaluation(NamedTuple):
+    """What one reading is worth, and what it shows of the one before."""
 
     anchor: Anchor | None
     findings: list[Finding]
     of_the_last: Sequence[Finding] = ()  # of the reading that was the anchor
 
 
-def judged(
+def evaluate(
     group: str, anchor: Anchor | None, time: int, values: Mapping[str, float], limits: Limits
-) -> Judgement:
-    """Judge one reading of a group; only one in range, and not late, becomes the next anchor."""
-    findings = judged_alone(group, time, values, limits)
+) -> Evaluation:
+    """Evaluate one reading of a group; only one in range, and not late, becomes the next anchor."""
+    findings = evaluate_alone(group, time, values, limits)
     late = anchor is not None and time <= anchor.time
     if late or any(finding.flag >= Flag.FAIL for finding in findings):
-        return Judgement(anchor, findings)
+        return Evaluation(anchor, findings)
     steadiness = limits.steadiness[group]
-    moved = _moved(group, anchor, time, values, steadiness)
-    return Judgement(
+    moved = _next_anchor(group, anchor, time, values, steadiness)
+    return Evaluation(
         moved,
         findings
         + _steadiness_findings(group, anchor, moved, steadiness)
@@ -83,10 +83,10 @@ def judged(
     )
 
 
-def judged_alone(
+def evaluate_alone(
     group: str, time: int, values: Mapping[str, float], limits: Limits
 ) -> list[Finding]:
-    """Judge values by themselves, whatever came before."""
+    """Evaluate values by themselves, whatever came before."""
     findings = [
         finding
         for key, value in values.items()
@@ -144,14 +144,14 @@ def _point(group: str, values: Mapping[str, float]) -> Point:
     return (values[key] * math.sin(angle), values[key] * math.cos(angle))
 
 
-def _moved(
+def _next_anchor(
     group: str, anchor: Anchor | None, time: int, values: Mapping[str, float], limits: Steadiness
 ) -> Anchor:
     point = _point(group, values)
     gap = anchor is None or time - anchor.time > limits.gap_s * SECOND
     # A point of another kind (a current without its direction) is nothing to compare with.
     if anchor is None or gap or len(anchor.point) != len(point):
-        return Anchor(time, values, time, 1, point, None, _opened(time, point, limits))
+        return Anchor(time, values, time, 1, point, None, _open_spread(time, point, limits))
     spread = _spread(anchor.spread, anchor.time, time, point, limits)
     if values != anchor.values:
         return Anchor(time, values, time, 1, point, anchor.point, spread)
@@ -163,7 +163,7 @@ def _bucket(time: int, limits: Steadiness) -> int:
     return 0 if math.isinf(width) else int(time // width)
 
 
-def _opened(time: int, point: Point, limits: Steadiness) -> Spread:
+def _open_spread(time: int, point: Point, limits: Steadiness) -> Spread:
     return Spread(time, _bucket(time, limits), point, point, (), point, point)
 
 

@@ -18,9 +18,9 @@ from seacage.records._netcdf_check import NETCDF_TROUBLE, check_netcdf
 from seacage.records._readers._columns import (
     Column,
     check_components,
-    parsed_column,
-    parsed_origin,
-    parsed_zone,
+    parse_column,
+    parse_origin,
+    parse_zone,
     vectors_joined,
 )
 from seacage.records._readers._csv import in_order
@@ -96,10 +96,10 @@ class _Series(NamedTuple):
     where: str
 
 
-class ZoneDoubt(NamedTuple):
+class ZoneConflict(NamedTuple):
     """Why a file's times may not be UTC, and what can be declared."""
 
-    said: str
+    reason: str
     choices: str
 
 
@@ -141,7 +141,7 @@ class NetcdfMap:
 
     def __post_init__(self) -> None:
         if self.time_zone is not None:
-            parsed_zone(self.time_zone)
+            parse_zone(self.time_zone)
 
     @classmethod
     def from_toml(cls, text: str, *, where: str = "NetCDF map") -> Self:
@@ -162,12 +162,12 @@ class NetcdfMap:
         )
         return cls(
             title=text_of(table, "title", where=where, default="NetCDF file"),
-            origin=parsed_origin(text_of(table, "origin", where=where), where),
+            origin=parse_origin(text_of(table, "origin", where=where), where),
             time_zone=text_of(table, "time_zone", where=where) if "time_zone" in table else None,
             depth_m=number_of(table, "depth_m", where=where),
             range_m=number_of(table, "range_m", where=where),
             at={name: int(number_of(at, name, where=where) or 0) for name in at},
-            columns=tuple(parsed_column(columns, name, where) for name in columns),
+            columns=tuple(parse_column(columns, name, where) for name in columns),
         )
 
 
@@ -231,14 +231,14 @@ def _record(path: Path, dataset: "xarray.Dataset", choice: NetcdfMap, *, stream:
         for variable in dataset.variables
         for name, one in _series(path, dataset, variable, time_name, choice)
     }
-    columns = choice.columns or _recognised(path, series)
+    columns = choice.columns or _recognise(path, series)
     check_components((column.key for column in columns), where=str(path))
     values: dict[str, np.ndarray] = {}
     notes: list[str] = []
     for column in columns:
-        one = _found(path, series, column.name)
+        one = _find(path, series, column.name)
         _check_unit(path, one, column)
-        values[column.key] = column.converted(one.numbers)
+        values[column.key] = column.convert(one.numbers)
         sense = f", {column.sense}" if column.sense else ""
         notes.append(
             f"{column.quantity} is read from {column.name} [{column.unit}{sense}]{one.where}."
@@ -290,7 +290,7 @@ def _start(path: Path, text: str, zone: str) -> datetime:
     except ValueError as error:
         raise RecordError(f"{path}: its times count since {text!r}, which is no date.") from error
     if start.tzinfo is None:
-        start = start.replace(tzinfo=parsed_zone(zone) or UTC)
+        start = start.replace(tzinfo=parse_zone(zone) or UTC)
     return start.astimezone(UTC).replace(tzinfo=None)
 
 
@@ -298,22 +298,22 @@ def _zone(path: Path, dataset: "xarray.Dataset", choice: NetcdfMap) -> str:
     """UTC, as CF has it, unless a text in the file speaks of another zone: then declared."""
     if choice.time_zone is not None:
         return choice.time_zone
-    if doubt := zone_doubt(dataset):
+    if conflict := zone_conflict(dataset):
         raise RecordError(
-            f"{path}: {doubt.said}; the two are hours apart. "
-            f"Declare time_zone (--zone): {doubt.choices}."
+            f"{path}: {conflict.reason}; the two are hours apart. "
+            f"Declare time_zone (--zone): {conflict.choices}."
         )
     return "UTC"
 
 
-def zone_doubt(dataset: "xarray.Dataset") -> ZoneDoubt | None:
+def zone_conflict(dataset: "xarray.Dataset") -> ZoneConflict | None:
     """Find a global attribute that speaks of another zone than UTC, such as "times PDT"."""
     for name, text in dataset.attrs.items():
         if isinstance(text, str) and (spoken := _ZONED.search(text)):
             offset = _OFFSETS.get(spoken[2].upper(), "")
             local = f'"{offset}"' if offset else 'an offset such as "-07:00"'
-            return ZoneDoubt(
-                said=f"its attribute {name!r} says {spoken[0]!r}, and times in CF are UTC",
+            return ZoneConflict(
+                reason=f"its attribute {name!r} says {spoken[0]!r}, and times in CF are UTC",
                 choices=f'"UTC" if CF holds, {local} if the attribute does',
             )
     return None
@@ -339,9 +339,9 @@ def _series(
     where: list[str] = []
     for dim in array.dims:
         if dim != time and dim not in split:
-            index, said = _index(path, dataset, str(name), str(dim), choice)
+            index, label = _index(path, dataset, str(name), str(dim), choice)
             array = array.isel({dim: index})
-            where += [said] if said else []
+            where += [label] if label else []
     place = f", {', '.join(where)}" if where else ""
 
     def one(part: "xarray.DataArray", direction: str) -> _Series:
@@ -373,13 +373,13 @@ def _index(
     size = dataset.sizes[dim]
     kind = vertical_of(dataset, dim)
     if kind and dim not in choice.at:
-        asked = choice.depth_m if kind == "depth" else choice.range_m
+        wanted = choice.depth_m if kind == "depth" else choice.range_m
         places = np.asarray(dataset[dim].values, dtype=np.float64)
-        if asked is None and size == 1:
-            asked = float(places[0])
-        near = np.isclose(places, np.nan if asked is None else asked, atol=1e-3)
+        if wanted is None and size == 1:
+            wanted = float(places[0])
+        near = np.isclose(places, np.nan if wanted is None else wanted, atol=1e-3)
         if np.sum(near) != 1:
-            got = "none is chosen" if asked is None else f"{asked:g} m is none of them"
+            got = "none is chosen" if wanted is None else f"{wanted:g} m is none of them"
             raise RecordError(
                 f"{path}: {name} is a profile over {kind}s of "
                 f"{', '.join(f'{place:g}' for place in places)} m, and {got}. Declare {kind}_m "
@@ -403,14 +403,16 @@ def vertical_of(dataset: "xarray.Dataset", dim: str) -> str:
         return ""
     attributes = dataset[dim].attrs
     in_metres = _UNITS.get(str(attributes.get("units", ""))) == "m"
-    said = f"{dim} {attributes.get('long_name', '')}".lower()
+    description = f"{dim} {attributes.get('long_name', '')}".lower()
     down = attributes.get("positive") == "down"
-    if in_metres and (attributes.get("standard_name") == "depth" or ("depth" in said and down)):
+    if in_metres and (
+        attributes.get("standard_name") == "depth" or ("depth" in description and down)
+    ):
         return "depth"
-    return "range" if in_metres and "range" in said else ""
+    return "range" if in_metres and "range" in description else ""
 
 
-def _recognised(path: Path, series: Mapping[str, _Series]) -> tuple[Column, ...]:
+def _recognise(path: Path, series: Mapping[str, _Series]) -> tuple[Column, ...]:
     """A column for each quantity that a standard name or a compass component tells."""
     columns: dict[str, Column] = {}
     for name, one in series.items():
@@ -437,7 +439,7 @@ def _recognised(path: Path, series: Mapping[str, _Series]) -> tuple[Column, ...]
     return tuple(columns.values())
 
 
-def _found(path: Path, series: Mapping[str, _Series], name: str) -> _Series:
+def _find(path: Path, series: Mapping[str, _Series], name: str) -> _Series:
     if name not in series:
         raise RecordError(
             f"{path}: there is no variable {name!r} of numbers over time. "
@@ -447,8 +449,8 @@ def _found(path: Path, series: Mapping[str, _Series], name: str) -> _Series:
 
 
 def _check_unit(path: Path, one: _Series, column: Column) -> None:
-    said = _UNITS.get(one.units)
-    if said is not None and said != column.unit:
+    declared = _UNITS.get(one.units)
+    if declared is not None and declared != column.unit:
         raise RecordError(
             f"{path}: the map says that {column.name} is in {column.unit}, and the file says "
             f"{one.units!r}. Mend the one that is wrong."

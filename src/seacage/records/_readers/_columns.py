@@ -118,7 +118,7 @@ class Column:
         """The door key that the column becomes."""
         return _QUANTITIES[self.quantity].key
 
-    def converted(self, numbers: Float[np.ndarray, " t"]) -> Float[np.ndarray, " t"]:
+    def convert(self, numbers: Float[np.ndarray, " t"]) -> Float[np.ndarray, " t"]:
         """The file's numbers in the unit and the sense of the door key, NaN where missing.
 
         A direction outside [0, 360] is left as it is: turned round, it might look sound.
@@ -188,21 +188,21 @@ class ColumnMap:
     skip_lines: int = 0
 
     def __post_init__(self) -> None:
-        parsed_zone(self.time_zone)
+        parse_zone(self.time_zone)
         self._check_text()
         names = (*self.time_columns, *(column.name for column in self.columns), *self.ignored)
-        for what in (names, (column.key for column in self.taken)):
+        for what in (names, (column.key for column in self.read_columns)):
             twice = [one for one, count in Counter(what).items() if count > 1]
             if twice:
                 raise RecordError(
                     f"{self.title}: {twice[0]!r} is declared twice. Map one column to each "
                     "quantity and list the others as ignored."
                 )
-        if not self.taken:
+        if not self.read_columns:
             raise RecordError(
                 f"{self.title}: no column is read{self._depths()}. Map at least one quantity."
             )
-        check_components((column.key for column in self.taken), where=self.title)
+        check_components((column.key for column in self.read_columns), where=self.title)
 
     @classmethod
     def read(cls, path: Path | str) -> Self:
@@ -261,7 +261,7 @@ class ColumnMap:
         check_names(time, ("column", "format", "zone"), where=in_time)
         return cls(
             title=text_of(table, "title", where=where),
-            origin=parsed_origin(text_of(table, "origin", where=where), where),
+            origin=parse_origin(text_of(table, "origin", where=where), where),
             time_column=(
                 texts_of(time, "column", where=in_time)
                 if isinstance(time.get("column"), list)
@@ -269,7 +269,7 @@ class ColumnMap:
             ),
             time_format=text_of(time, "format", where=in_time),
             time_zone=text_of(time, "zone", where=in_time),
-            columns=tuple(parsed_column(columns, name, where) for name in columns),
+            columns=tuple(parse_column(columns, name, where) for name in columns),
             ignored=texts_of(table, "ignored", where=where),
             delimiter=text_of(table, "delimiter", where=where, default=","),
             depth_m=number_of(table, "depth_m", where=where),
@@ -310,7 +310,7 @@ class ColumnMap:
         return (self.time_column,) if isinstance(self.time_column, str) else self.time_column
 
     @property
-    def taken(self) -> tuple[Column, ...]:
+    def read_columns(self) -> tuple[Column, ...]:
         """The columns that are read: those of the chosen depth and those without one."""
         return tuple(c for c in self.columns if c.depth_m is None or c.depth_m == self.depth_m)
 
@@ -328,7 +328,7 @@ class ColumnMap:
             )
         return replace(self, depth_m=depth_m)
 
-    def parsed_time(self, text: str) -> datetime:
+    def parse_time(self, text: str) -> datetime:
         """The time that a cell says, in UTC.
 
         Raises
@@ -343,7 +343,7 @@ class ColumnMap:
         else:
             time = datetime.strptime(text.strip(), self.time_format)  # noqa: DTZ007
         if time.tzinfo is None:
-            zone = parsed_zone(self.time_zone)
+            zone = parse_zone(self.time_zone)
             if zone is None:
                 raise ValueError("it does not say its zone")
             time = time.replace(tzinfo=zone)
@@ -380,7 +380,7 @@ class ColumnMap:
         return f"; its profile has {', '.join(f'{depth:g}' for depth in depths)} m"
 
 
-def parsed_column(columns: Table, name: str, file: str) -> Column:
+def parse_column(columns: Table, name: str, file: str) -> Column:
     """A column as its table in a map declares it.
 
     Raises
@@ -404,7 +404,7 @@ def parsed_column(columns: Table, name: str, file: str) -> Column:
         raise RecordError(f"{file}: {error}") from error
 
 
-def parsed_origin(text: str, where: str) -> Origin:
+def parse_origin(text: str, where: str) -> Origin:
     """How numbers were made, as a map says it.
 
     Raises
@@ -419,7 +419,7 @@ def parsed_origin(text: str, where: str) -> Origin:
         raise RecordError(f"{where}: origin = {text!r} is unknown. Say one of {known}.") from error
 
 
-def parsed_zone(text: str) -> timezone | None:
+def parse_zone(text: str) -> timezone | None:
     """A zone of fixed offset; None for ``stated``.
 
     Raises

@@ -24,7 +24,7 @@ _NO_VALUE = frozenset({"", "nan", "na", "n/a", "null", "none", "mm", "-"})
 
 def read_csv(path: Path, columns: ColumnMap | None, *, stream: str) -> Record:
     """Read a table, unchecked but for what only its file shows; see ``read_record``."""
-    table, columns = understood(path, columns)
+    table, columns = split_table(path, columns)
     return record_in(table, columns, stream=stream)
 
 
@@ -32,9 +32,9 @@ def record_in(table: Table, columns: ColumnMap, *, stream: str) -> Record:
     """Read a table by its map, unchecked but for what only its file shows."""
     values: dict[str, np.ndarray] = {}
     notes: list[str] = []
-    for column in columns.taken:
+    for column in columns.read_columns:
         numbers, strange = _numbers(table, column, columns.decimal)
-        values[column.key] = column.converted(numbers)
+        values[column.key] = column.convert(numbers)
         notes += strange
     if columns.depth_m is not None:
         notes.append(f"{columns.title}: read at a depth of {columns.depth_m:g} m.")
@@ -47,7 +47,7 @@ def record_in(table: Table, columns: ColumnMap, *, stream: str) -> Record:
     return replace(record, notes=(*notes, *record.notes))
 
 
-def understood(path: Path, columns: ColumnMap | None) -> tuple[Table, ColumnMap]:
+def split_table(path: Path, columns: ColumnMap | None) -> tuple[Table, ColumnMap]:
     """Split a table into cells, with the map that was given or the one that it fits."""
     if columns is None and path.suffix.lower() in {".csv", ".txt", ".dat", ""}:
         text = read_text(path)
@@ -55,7 +55,7 @@ def understood(path: Path, columns: ColumnMap | None) -> tuple[Table, ColumnMap]
             return ndbc_table(path, text)
     table = read_table(path, columns)
     if columns is None:
-        return table, recognised(table)
+        return table, recognise(table)
     check_header(table, columns)
     return table, columns
 
@@ -97,7 +97,7 @@ def _last_row_doubted(record: Record, table: Table, columns: ColumnMap) -> Recor
     return replace(record, flags=doubted, notes=(*record.notes, note))
 
 
-def recognised(table: Table) -> ColumnMap:
+def recognise(table: Table) -> ColumnMap:
     """Return the one shipped map, or the house's own, that a table's header fits.
 
     Raises
@@ -160,7 +160,7 @@ def _times(table: Table, columns: ColumnMap) -> np.ndarray:
 def _time(row: tuple[str, ...], line: int, table: Table, columns: ColumnMap) -> int:
     text = " ".join(row[table.header.index(name)] for name in columns.time_columns)
     try:
-        time = columns.parsed_time(text)
+        time = columns.parse_time(text)
         if time.year not in _YEARS:
             raise ValueError(f"no record is from the year {time.year}")
         return microseconds(time)

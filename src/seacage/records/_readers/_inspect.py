@@ -13,7 +13,7 @@ import numpy as np
 
 from seacage.conventions import RecordError
 from seacage.records._readers._cf import is_netcdf
-from seacage.records._readers._csv import number_in, recognised
+from seacage.records._readers._csv import number_in, recognise
 from seacage.records._readers._inspect_netcdf import inspect_netcdf
 from seacage.records._readers._ndbc import is_ndbc
 from seacage.records._readers._table import WHITESPACE, Table, read_table, read_text, text_table
@@ -143,7 +143,7 @@ def inspect_file(path: Path | str) -> Inspection:
         if is_ndbc(text):
             return _ndbc(path)
         table = text_table(path, text, delimiter=layout.delimiter, skip_lines=layout.skip_lines)
-    return _inspected(table, layout)
+    return _inspect_table(table, layout)
 
 
 def _ndbc(path: Path) -> Inspection:
@@ -161,19 +161,19 @@ def _layout(path: Path) -> tuple[_Layout, str]:
     with path.open("rb") as file:
         mark = file.read(2)
     marked = mark in {b"\xff\xfe", b"\xfe\xff"}
-    encoding, text = _decoded(path, ("utf-16",) if marked else ("utf-8", "cp1252", "latin-1"))
+    encoding, text = _decode(path, ("utf-16",) if marked else ("utf-8", "cp1252", "latin-1"))
     lines = [line for line in text.splitlines()[:200] if line.strip()]
     counted = {d: _count(lines, d) for d in (";", "\t", ",", "|", WHITESPACE)}
     delimiter = next((one for one, count in counted.items() if count > 1), ",")
     width = counted[delimiter]
     first = next((at for at, line in enumerate(lines) if _width(line, delimiter) == width), 0)
-    cells = [cell for line in lines[first + 1 :] for cell in _parted(line, delimiter)]
+    cells = [cell for line in lines[first + 1 :] for cell in _split(line, delimiter)]
     comma = delimiter != "," and any(re.fullmatch(r"\s*-?\d+,\d+\s*", cell) for cell in cells)
     skip = text.splitlines().index(lines[first]) if lines else 0
     return _Layout(encoding, delimiter, "," if comma else ".", skip), text
 
 
-def _decoded(path: Path, encodings: tuple[str, ...]) -> tuple[str, str]:
+def _decode(path: Path, encodings: tuple[str, ...]) -> tuple[str, str]:
     """The first encoding that the bytes are text in, and the text."""
     for encoding in encodings[:-1]:
         with suppress(RecordError):
@@ -181,12 +181,12 @@ def _decoded(path: Path, encodings: tuple[str, ...]) -> tuple[str, str]:
     return encodings[-1], read_text(path, encodings[-1])
 
 
-def _parted(line: str, delimiter: str) -> list[str]:
+def _split(line: str, delimiter: str) -> list[str]:
     return line.split() if delimiter == WHITESPACE else line.split(delimiter)
 
 
 def _width(line: str, delimiter: str) -> int:
-    return len(_parted(line, delimiter))
+    return len(_split(line, delimiter))
 
 
 def _count(lines: Sequence[str], delimiter: str) -> int:
@@ -198,13 +198,13 @@ def _count(lines: Sequence[str], delimiter: str) -> int:
     return common if widths.count(common) > 0.8 * len(widths) else 0
 
 
-def _inspected(table: Table, layout: _Layout) -> Inspection:
+def _inspect_table(table: Table, layout: _Layout) -> Inspection:
     findings = [
         f"{table.path.name} is a table of {len(table.rows)} rows and {len(table.header)} columns.",
         f"Its cells are parted by {layout.delimiter!r}, its decimals by {layout.decimal!r}.",
     ]
     try:
-        findings.append(f"It fits a known map and needs none: {recognised(table).title}.")
+        findings.append(f"It fits a known map and needs none: {recognise(table).title}.")
     except RecordError:
         findings.append("No shipped map fits its columns.")
     time_names, format_line, zone_line, time_findings = _time(table)
@@ -227,15 +227,17 @@ def _time(table: Table) -> tuple[tuple[str, ...], str, str, list[str]]:
     """The time's columns, their lines in the map, and what was found."""
     best = _time_column(table)
     if best is None:
-        said = "No column reads as a time; name it, or the several that make it, under [time]."
-        return (), 'format = "?"', 'zone = "?"', [said]
+        finding = "No column reads as a time; name it, or the several that make it, under [time]."
+        return (), 'format = "?"', 'zone = "?"', [finding]
     name, formats = best
     cells = table.column(name)[:_ROWS]
-    stated = _parsed(cells[0], formats[0]).tzinfo is not None
+    stated = _parse(cells[0], formats[0]).tzinfo is not None
     zone = 'zone = "stated"  # each time says it' if stated else 'zone = "?"  # "UTC", "+01:00"'
-    form = f"format = {_quoted(formats[0])}"
-    told = "stated in each" if stated else "not said"
-    findings = [f"{name!r} is the time, in the format {' or '.join(formats)}; its zone is {told}."]
+    form = f"format = {_quote(formats[0])}"
+    stated_where = "stated in each" if stated else "not said"
+    findings = [
+        f"{name!r} is the time, in the format {' or '.join(formats)}; its zone is {stated_where}."
+    ]
     if len(formats) > 1:
         form = f'format = "?"  # {" or ".join(formats)}: the days do not tell'
         findings.append("Suspicious: day and month cannot be told apart in it.")
@@ -257,13 +259,13 @@ def _time_column(table: Table) -> tuple[str, list[str]] | None:
 
 def _fits(cell: str, form: str) -> bool:
     try:
-        _parsed(cell, form)
+        _parse(cell, form)
     except ValueError:
         return False
     return True
 
 
-def _parsed(cell: str, form: str) -> datetime:
+def _parse(cell: str, form: str) -> datetime:
     text = cell.strip()
     if form == "iso":
         return datetime.fromisoformat(text)
@@ -274,26 +276,28 @@ def _cadence(cells: Sequence[str], form: str) -> list[str]:
     times = np.array(
         [
             microseconds(t if t.tzinfo else t.replace(tzinfo=UTC))
-            for t in (_parsed(c, form) for c in cells)
+            for t in (_parse(c, form) for c in cells)
         ]
     )
     if times.size < 3:
         return []
     late = int(np.sum(times < np.maximum.accumulate(times)))
     steps = np.diff(np.unique(times)) / 60e6
-    said: list[str] = []
+    findings: list[str] = []
     if steps.size:
         usual = float(np.median(steps))
         gaps = steps[steps > 3.0 * usual]
-        said.append(
+        findings.append(
             f"A row comes every {usual:.3g} min (median; {steps.min():.3g} to {steps.max():.3g}); "
             f"{gaps.size} gaps are longer than three times that."
         )
     if late:
-        said.append(f"Suspicious: {late} rows are out of order; importing sorts them.")
+        findings.append(f"Suspicious: {late} rows are out of order; importing sorts them.")
     if twice := times.size - np.unique(times).size:
-        said.append(f"Suspicious: {twice} rows repeat a time; importing keeps the first of each.")
-    return said
+        findings.append(
+            f"Suspicious: {twice} rows repeat a time; importing keeps the first of each."
+        )
+    return findings
 
 
 def _guess(table: Table, name: str, decimal: str, seen: set[tuple[str, float | None]]) -> _Guess:
@@ -307,7 +311,7 @@ def _guess(table: Table, name: str, decimal: str, seen: set[tuple[str, float | N
     if not quantity:
         return _Guess(name, "", (), f"{name!r} is no quantity that is read; it is under ignored.")
     span = f"{known.min():g} to {known.max():g}"
-    lines = [f"quantity = {_quoted(quantity)}  # for its name; {span} in the file"]
+    lines = [f"quantity = {_quote(quantity)}  # for its name; {span} in the file"]
     lines.append(_unit_line(name, quantity, known))
     if quantity.endswith("direction"):
         lines.append(_sense_line(name, quantity))
@@ -336,7 +340,7 @@ def _quantity(name: str) -> str:
 def _unit_line(name: str, quantity: str, known: np.ndarray) -> str:
     for pattern, unit in _SPELLED:
         if re.search(pattern, name.lower()) and unit in _UNITS_OF[quantity]:
-            return f"unit = {_quoted(unit)}  # for its name"
+            return f"unit = {_quote(unit)}  # for its name"
     hint = " or ".join(_UNITS_OF[quantity])
     if quantity == "current_speed":
         hint += "; a sea current is mostly below 2 m/s"
@@ -344,10 +348,10 @@ def _unit_line(name: str, quantity: str, known: np.ndarray) -> str:
 
 
 def _sense_line(name: str, quantity: str) -> str:
-    said = name.lower()
-    if re.search(r"(^|_|\b)(to|towards)(_|\b|$)", said):
+    words = name.lower()
+    if re.search(r"(^|_|\b)(to|towards)(_|\b|$)", words):
         return 'sense = "towards"  # for its name'
-    if re.search(r"(^|_|\b)from(_|\b|$)", said):
+    if re.search(r"(^|_|\b)from(_|\b|$)", words):
         return 'sense = "from"  # for its name'
     usual = "waves are mostly from" if quantity == "wave_direction" else "files differ"
     return f'sense = "?"  # "towards" or "from": {usual}; the file\'s paper tells'
@@ -374,19 +378,19 @@ def _toml(
     zone_line: str,
     guesses: Sequence[_Guess],
 ) -> str:
-    ignored = ", ".join(_quoted(one.name) for one in guesses if not one.quantity)
+    ignored = ", ".join(_quote(one.name) for one in guesses if not one.quantity)
     depths = sorted({d for one in guesses if one.quantity and (d := _depth(one.name)) is not None})
     lines = [
         f"# Begun by `seacage field import --inspect` from {_comment(table.path.name)}. Fill in",
         '# every "?"; importing refuses the map until then. Comments say where a guess is from.',
-        f"title = {_quoted(table.path.stem)}",
+        f"title = {_quote(table.path.stem)}",
         'origin = "?"  # "measured" or "computed"',
         f"ignored = [{ignored}]",
     ]
     if depths:
         lines.append(f'depth_m = "?"  # which to read: {", ".join(f"{d:g}" for d in depths)}')
     lines += [
-        f"{name} = {_quoted(value)}"
+        f"{name} = {_quote(value)}"
         for name, value, usual in (
             ("delimiter", layout.delimiter, ","),
             ("decimal", layout.decimal, "."),
@@ -396,15 +400,15 @@ def _toml(
     ]
     if layout.skip_lines:
         lines.append(f"skip_lines = {layout.skip_lines}")
-    column = _quoted(time_names[0]) if time_names else '"?"'
+    column = _quote(time_names[0]) if time_names else '"?"'
     lines += ["", "[time]", f"column = {column}", format_line, zone_line]
     for one in guesses:
         if one.quantity:
-            lines += ["", f"[columns.{_quoted(one.name)}]", *one.lines]
+            lines += ["", f"[columns.{_quote(one.name)}]", *one.lines]
     return "\n".join(lines) + "\n"
 
 
-def _quoted(text: str) -> str:
+def _quote(text: str) -> str:
     """A TOML string; JSON's escapes are TOML's, but for the DEL that JSON leaves."""
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007F")
 

@@ -16,7 +16,7 @@ from seacage.records._readers._cf import (
     engine_of,
     is_compass,
     vertical_of,
-    zone_doubt,
+    zone_conflict,
 )
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def inspect_netcdf(path: Path) -> Found:
     try:
         check_netcdf(path, whole=False)
         with xarray.open_dataset(path, engine=engine_of(path), decode_times=False) as dataset:
-            return _found(path, dataset)
+            return _find(path, dataset)
     except RecordError:
         raise
     except NETCDF_TROUBLE as error:
@@ -55,7 +55,7 @@ def inspect_netcdf(path: Path) -> Found:
         ) from error
 
 
-def _found(path: Path, dataset: "xarray.Dataset") -> Found:
+def _find(path: Path, dataset: "xarray.Dataset") -> Found:
     sizes = ", ".join(f"{name} {size}" for name, size in dataset.sizes.items())
     findings = [f"{path.name} is a NetCDF file with the dimensions {sizes}."]
     lines = [
@@ -63,9 +63,9 @@ def _found(path: Path, dataset: "xarray.Dataset") -> Found:
         f"title = {json.dumps(path.stem, ensure_ascii=False)}",
         'origin = "?"  # "measured" or "computed"',
     ]
-    if doubt := zone_doubt(dataset):
-        findings.append(f"Suspicious: {doubt.said}.")
-        lines.append(f'time_zone = "?"  # {doubt.choices}')
+    if conflict := zone_conflict(dataset):
+        findings.append(f"Suspicious: {conflict.reason}.")
+        lines.append(f'time_zone = "?"  # {conflict.choices}')
     read = [name for name in map(str, dataset.data_vars) if _tells(dataset, name)]
     findings += [_sentence(dataset, name) for name in map(str, dataset.data_vars)]
     dims = {str(dim) for name in read for dim in dataset[name].dims}
@@ -101,7 +101,7 @@ def _tells(dataset: "xarray.Dataset", name: str) -> bool:
 
 def _sentence(dataset: "xarray.Dataset", name: str) -> str:
     attributes = dataset[name].attrs
-    said = attributes.get("standard_name") or attributes.get("long_name") or "no name"
+    meaning = attributes.get("standard_name") or attributes.get("long_name") or "no name"
     units = attributes.get("units", "no units")
     verdict = "is read" if _tells(dataset, name) else "is not read"
-    return f"{name!r} ({said}, {units}) {verdict}."
+    return f"{name!r} ({meaning}, {units}) {verdict}."

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from seacage.conventions import Origin, RecordError
 from seacage.records._readers._columns import Column, ColumnMap
-from seacage.records._readers._table import Table, checked_table
+from seacage.records._readers._table import Table, make_table
 
 _TIME = ("YY", "MM", "DD", "hh", "mm")
 _DOCUMENTED = re.compile(
@@ -69,7 +69,7 @@ def ndbc_table(path: Path, text: str) -> tuple[Table, ColumnMap]:
     units = dict(zip(header, numbered[1][1], strict=False)) if "\n#" in text[:2000] else None
     rows = [header, *(cells for _, cells in numbered[1 if units is None else 2 :])]
     lines = [1, *(number for number, _ in numbered[1 if units is None else 2 :])]
-    table = checked_table(path, rows, lines, cut=not text.endswith(("\n", "\r")))
+    table = make_table(path, rows, lines, cut=not text.endswith(("\n", "\r")))
     return table, _map(table, units)
 
 

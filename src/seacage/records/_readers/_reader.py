@@ -9,7 +9,7 @@ from seacage.conventions import Flag, RecordError
 from seacage.records._quality import DEFAULT_LIMITS, Limits, check_record
 from seacage.records._readers._cf import NetcdfMap, is_netcdf, read_cf
 from seacage.records._readers._columns import ColumnMap
-from seacage.records._readers._csv import read_csv, understood
+from seacage.records._readers._csv import read_csv, split_table
 from seacage.records._readers._netcdf import read_netcdf
 from seacage.records._record import Record
 
@@ -56,7 +56,7 @@ def read_record(
         return check_record(read_cf(path, columns, stream=stream), limits)
     if isinstance(columns, NetcdfMap):
         raise RecordError(f"{path}: a NetCDF file's map is no table's. Give a ColumnMap.")
-    return _checked(read_csv(path, columns, stream=stream), limits)
+    return _check(read_csv(path, columns, stream=stream), limits)
 
 
 def known_map(path: Path | str) -> ColumnMap | None:
@@ -68,10 +68,10 @@ def known_map(path: Path | str) -> ColumnMap | None:
         A table that cannot be split, or whose header no shipped map fits.
     """
     path = Path(path)
-    return None if is_netcdf(path) else understood(path, None)[1]
+    return None if is_netcdf(path) else split_table(path, None)[1]
 
 
-def _checked(record: Record, limits: Limits) -> Record:
+def _check(record: Record, limits: Limits) -> Record:
     """Check the values, and keep what the reader doubted by its file alone."""
     checked = check_record(record, limits)
     flags = {

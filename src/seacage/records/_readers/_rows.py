@@ -4,7 +4,7 @@ from pathlib import Path
 
 from seacage.conventions import RecordError
 from seacage.records._readers._columns import ColumnMap
-from seacage.records._readers._csv import check_header, recognised, record_in
+from seacage.records._readers._csv import check_header, recognise, record_in
 from seacage.records._readers._table import text_table
 from seacage.records._record import Record
 
@@ -43,7 +43,7 @@ def read_rows(
     """
     between = "\n" * max(1, first_line - 1)  # blank lines are skipped, and counted
     table = text_table(path, header.rstrip("\r\n") + between + rows, delimiter=_delimiter(columns))
-    return record_in(table, columns or recognised(table), stream=stream)
+    return record_in(table, columns or recognise(table), stream=stream)
 
 
 def check_rows(path: Path, header: str, *, columns: ColumnMap | None = None) -> None:
@@ -60,7 +60,7 @@ def check_rows(path: Path, header: str, *, columns: ColumnMap | None = None) -> 
     # A table needs a row to be one.
     table = text_table(path, f"{header.rstrip()}\n{header}", delimiter=_delimiter(columns))
     if columns is None:
-        recognised(table)
+        recognise(table)
     else:
         check_header(table, columns)
 

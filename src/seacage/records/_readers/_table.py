@@ -123,10 +123,10 @@ def text_table(path: Path, text: str, *, delimiter: str, skip_lines: int = 0) ->
     if not rows:
         raise RecordError(f"{path}: the file is empty. Give one with a header and rows.")
     cut = bool(rows[1:]) and not text.endswith(("\n", "\r"))
-    return checked_table(path, rows, lines, cut=cut)
+    return make_table(path, rows, lines, cut=cut)
 
 
-def checked_table(
+def make_table(
     path: Path, rows: Sequence[tuple[str, ...]], lines: Sequence[int], *, cut: bool = False
 ) -> Table:
     """Make a table of rows whose first is the header.
@@ -205,14 +205,14 @@ def _read_parquet(path: Path) -> Table:
         with parquet.ParquetFile(path, read_dictionary=texts) as file:
             content = file.read()
         names: list[str] = content.column_names
-        columns = [_listed(column) for column in content.columns]
+        columns = [_list(column) for column in content.columns]
     except (OSError, ValueError, TypeError, NotImplementedError, OverflowError) as error:
         raise RecordError(
             f"{path}: this is no Parquet file that can be read ({_one_line(error)}). "
             "Write it anew, or give the table as text."
         ) from error
     rows = [tuple(_cell(value) for value in row) for row in zip(*columns, strict=True)]
-    return checked_table(path, [tuple(names), *rows], range(len(rows) + 1))
+    return make_table(path, [tuple(names), *rows], range(len(rows) + 1))
 
 
 def _texts_in(metadata: Any) -> list[str]:
@@ -228,7 +228,7 @@ def _texts_in(metadata: Any) -> list[str]:
     return sorted({one.path_in_schema for one in parts if one.physical_type == "BYTE_ARRAY"})
 
 
-def _listed(column: Any) -> list[object]:
+def _list(column: Any) -> list[object]:
     """Values of an Arrow column, whose nanoseconds Python has no time for."""
     arrow: Any = importlib.import_module("pyarrow")
     if arrow.types.is_dictionary(column.type):  # each text once, however often it is repeated
@@ -264,7 +264,7 @@ def _coops_table(path: Path, text: str) -> Table:
         )
     header = tuple(_COOPS_NAMES.get(name, name) for name in names)
     rows = [tuple(str(value) for value in one.values()) for one in items]
-    return checked_table(path, [header, *rows], range(len(rows) + 1))
+    return make_table(path, [header, *rows], range(len(rows) + 1))
 
 
 def _is_table(value: object) -> bool:

@@ -11,7 +11,7 @@ from seacage.service._cli._console import Json, guarded, progress_bar, tell
 from seacage.service._cli._settle import CageName, read_cage
 
 if TYPE_CHECKING:
-    from seacage.campaigns import Event, Hidden
+    from seacage.campaigns import Event, TruthParameters
     from seacage.records import ColumnMap, FieldRecord, Limits, NetcdfMap, Record
 
 group = typer.Typer(help="Records of buoys and sensors: make, read and check them.")
@@ -99,9 +99,9 @@ def virtual(
         seacage field virtual field --record buoy.csv --waves nora10.csv --one-in 8
         seacage field virtual field --event "net-hole ring-3/spoke-24 2020-02-01T12:00Z"
     """
-    from seacage.campaigns import Hidden, Timetable, virtual_field, virtual_field_share
+    from seacage.campaigns import Timetable, TruthParameters, virtual_field, virtual_field_share
 
-    truth = Hidden.read(hidden)
+    truth = TruthParameters.read(hidden)
     buoy = _buoy(record, days=days, start=start, seed=seed, calm=calm)
     asked: dict[str, Any] = {"hidden": truth, "seed": seed, "workers": workers}
     if method == "simulate":
@@ -147,7 +147,9 @@ def _buoy(
     return replace(record, values=current)
 
 
-def _waves(path: Path | None, buoy: "Record", hidden: "Hidden", *, seed: int) -> "Record | None":
+def _waves(
+    path: Path | None, buoy: "Record", hidden: "TruthParameters", *, seed: int
+) -> "Record | None":
     """Waves from a file, brought to the site; None for the buoy's own; else generated."""
     from seacage.campaigns import generated_waves, waves_at_site
     from seacage.records import moment, read_record

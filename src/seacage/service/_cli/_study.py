@@ -169,7 +169,7 @@ def fidelity(
     Example:
         seacage study fidelity --field field --out fidelity
     """
-    from seacage.campaigns import Hidden
+    from seacage.campaigns import TruthParameters
     from seacage.service._cli._settle import read_cage
     from seacage.studies import fidelity_study
 
@@ -178,7 +178,7 @@ def fidelity(
             out,
             field=field,
             cage=None if cage is None else read_cage(cage),
-            hidden=Hidden.read(hidden),
+            hidden=TruthParameters.read(hidden),
             windows=windows,
             seed=seed,
             workers=workers,

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import timedelta
 
-from seacage.conventions import Progress, SeacageError, unheard
+from seacage.conventions import Progress, SeacageError, no_progress
 from seacage.records import Sample
 from seacage.service._mqtt._messages import Settled
 from seacage.service._publish._courier import Courier
@@ -89,7 +89,7 @@ class Publisher:
         retry_s: float = 60.0,
         keep_ahead: timedelta = timedelta(days=7),
         patience_s: float | None = None,
-        progress: Progress = unheard,
+        progress: Progress = no_progress,
     ) -> None:
         self._spool, self._courier = spool, courier
         self._retry_s, self._keep_ahead, self._retry_at = retry_s, keep_ahead, float("-inf")

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from seacage.conventions import InputError, Progress, unheard
+from seacage.conventions import InputError, Progress, no_progress
 from seacage.studies._benchmarks._methods import OURS, Method, own_methods, peer_methods
 from seacage.studies._benchmarks._problems import CAGE_SIZE, PROBLEMS, Problem
 from seacage.studies._benchmarks._report import BenchmarkReport
@@ -81,7 +81,7 @@ def benchmark_study(
     InputError
         No report seed among the seeds, or no environment of peers where one is named.
     """
-    out, notify = Path(out), progress or unheard
+    out, notify = Path(out), progress or no_progress
     tuning, report = _split_seeds(seeds, quick=quick)
     problems = PROBLEMS if quick else (*PROBLEMS, CAGE_SIZE)
     methods = (*own_methods(), *(peer_methods(peers) if peers is not None else ()))

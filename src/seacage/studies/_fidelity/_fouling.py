@@ -6,8 +6,8 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.cage import Cage
-from seacage.campaigns import Hidden, Plan
-from seacage.conventions import Progress, unheard
+from seacage.campaigns import Plan, TruthParameters
+from seacage.conventions import Progress, no_progress
 from seacage.dynamics import Law
 from seacage.studies._fidelity._windows import Windows, campaign_of_stage
 from seacage.studies._stages import Stages
@@ -76,7 +76,7 @@ class FoulingGap:
 
 def fouling_gap(
     windows: Windows,
-    hidden: Hidden,
+    hidden: TruthParameters,
     stages: Stages,
     *,
     begin: np.datetime64,
@@ -100,7 +100,7 @@ def fouling_gap(
 
     def settled(cage: Cage, law: Law) -> Float[np.ndarray, "speed sensor"]:
         record = campaign_of_stage(
-            "fouling", cage, plan, stages, law=law, workers=workers, progress=unheard
+            "fouling", cage, plan, stages, law=law, workers=workers, progress=no_progress
         )
         return sensors.responses_of(record.node_position, record.bridle_tension)
 

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from seacage.cage import Cage
-from seacage.campaigns import Hidden
-from seacage.conventions import InputError, Origin, Progress, unheard
+from seacage.campaigns import TruthParameters
+from seacage.conventions import InputError, Origin, Progress, no_progress
 from seacage.records import FieldRecord
 from seacage.studies._chain import Chain, Recipe
 from seacage.studies._claim import Claim
@@ -63,7 +63,7 @@ def fidelity_study(
     *,
     field: str | Path | None = None,
     cage: Cage | None = None,
-    hidden: Hidden | None = None,
+    hidden: TruthParameters | None = None,
     windows: int = 600,
     seed: int = 0,
     workers: int | None = None,
@@ -102,9 +102,9 @@ def fidelity_study(
     InputError
         The field is not virtual, was made with other hidden parameters, or is too short.
     """
-    out, report = Path(out), progress or unheard
+    out, report = Path(out), progress or no_progress
     stages = Stages(folder=out / "stages")
-    hidden = Hidden.read() if hidden is None else hidden
+    hidden = TruthParameters.read() if hidden is None else hidden
     record, truth, cage = _field(out, field, cage, seed, workers, report)
     _check(record, hidden, windows)
     sensors = Sensors.of(cage)
@@ -165,7 +165,7 @@ def _field(
     return chain.field, chain.truth, chain.cage
 
 
-def _check(record: FieldRecord, hidden: Hidden, windows: int) -> None:
+def _check(record: FieldRecord, hidden: TruthParameters, windows: int) -> None:
     if record.origin is not Origin.VIRTUAL_FIELD:
         raise InputError(
             f"study fidelity: the record's sensors are {record.origin}, and no truth is known of "

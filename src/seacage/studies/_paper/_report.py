@@ -8,14 +8,14 @@ import numpy as np
 from seacage.cage import Cage
 from seacage.conventions import Origin, Progress
 from seacage.figures import (
-    Lessons,
     ShapeView,
-    lessons_figure,
+    TrainingScores,
     net_figure,
     rows_figure,
     shape_cases_figure,
     shape_error_figure,
     shape_views_figure,
+    training_scores_figure,
 )
 from seacage.ocean import SeaState
 from seacage.studies._held_out import comparison, display_span
@@ -234,7 +234,7 @@ class PaperReport:
             return []
         first = self.scored.ways[0]
         low = np.array([one.minutes.low_mae for one in first.sensors])
-        figure = lessons_figure(
+        figure = training_scores_figure(
             [one.sensor for one in first.sensors],
             {way.name: _way_bars(way, low) for way in self.scored.ways},
             origin=first.sensors[0].origin,
@@ -454,9 +454,9 @@ def _shape_row(score: ShapeScore) -> tuple[str, ...]:
     )
 
 
-def _way_bars(way: WayScore, low: np.ndarray) -> Lessons:
+def _way_bars(way: WayScore, low: np.ndarray) -> TrainingScores:
     minutes = [one.minutes for one in way.sensors]
-    return Lessons(
+    return TrainingScores(
         error=np.array([one.multi_mae for one in minutes]) / low,
         crps=np.array([one.crps for one in minutes]) / low,
         coverage=np.array([one.coverage for one in minutes]),

@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.cage import Cage
-from seacage.conventions import InputError, NonsenseError, Origin, Progress, unheard
+from seacage.conventions import InputError, NonsenseError, Origin, Progress, no_progress
 from seacage.records import CampaignRecord, FieldRecord, moment
 from seacage.surrogates import (
     Domain,
@@ -117,7 +117,7 @@ def train(
         Inputs that the field's buoy or the campaign never had.
     """
     training = Training() if training is None else training
-    report: Progress = progress or unheard
+    report: Progress = progress or no_progress
     _check_inputs(campaign, field, training)
     base_twin = _start(cage, campaign, field, base, training, report)
     kept = base_twin.models.upper

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from seacage.cage import Cage
-from seacage.campaigns import Hidden
+from seacage.campaigns import TruthParameters
 from seacage.campaigns._virtual_field._events import Event, check_events, read_events
 from seacage.conventions import InputError, Origin
 from seacage.dynamics import Damage
@@ -101,13 +101,13 @@ def test_a_mistake_in_the_words_is_one_clear_sentence(text: str, says: str) -> N
 )
 def test_an_event_that_would_meet_nothing_is_refused(text: str, says: str) -> None:
     with pytest.raises(InputError, match=says):
-        check_events([Event.parse(text)], ACE, BUOY, Hidden.read())
+        check_events([Event.parse(text)], ACE, BUOY, TruthParameters.read())
 
 
 def test_events_that_meet_something_pass() -> None:
     awake = "stuck shackle-1 2020-01-22T23:00Z"  # a tenth of the 48 days is 22 January, 19:06
     words = ["bridle-cut bridle-12 2020-01-18T00:00Z", "silent depth-1 2020-03-05T00:00Z", awake]
-    check_events([Event.parse(text) for text in words], ACE, BUOY, Hidden.read())
+    check_events([Event.parse(text) for text in words], ACE, BUOY, TruthParameters.read())
 
 
 def test_only_what_breaks_the_cage_is_damage() -> None:
@@ -118,14 +118,14 @@ def test_only_what_breaks_the_cage_is_damage() -> None:
 
 
 def test_a_drift_grows_from_its_time_on() -> None:
-    drifted = event("drift", "depth-2", size=0.5).applied_to(DEPTH)
+    drifted = event("drift", "depth-2", size=0.5).apply_to(DEPTH)
     days = (DEPTH.time - instant(NOON)) / np.timedelta64(1, "D")
     exact = DEPTH.values["depth_m"] + 0.5 * np.maximum(days, 0.0)
     np.testing.assert_array_equal(drifted.values["depth_m"], exact)
 
 
 def test_what_is_stuck_says_one_thing_until_it_recovers() -> None:
-    said = event("stuck", "depth-2", until=NOON + timedelta(hours=6)).applied_to(DEPTH)
+    said = event("stuck", "depth-2", until=NOON + timedelta(hours=6)).apply_to(DEPTH)
     different = said.values["depth_m"] != DEPTH.values["depth_m"]
     at = int(np.searchsorted(DEPTH.time, instant(NOON)))
     np.testing.assert_array_equal(np.flatnonzero(different), np.arange(at + 1, at + 6))
@@ -133,15 +133,15 @@ def test_what_is_stuck_says_one_thing_until_it_recovers() -> None:
 
 
 def test_what_is_silent_says_nothing_until_it_recovers() -> None:
-    said = event("silent", "buoy-1", until=NOON + timedelta(hours=6)).applied_to(BUOY)
+    said = event("silent", "buoy-1", until=NOON + timedelta(hours=6)).apply_to(BUOY)
     missing = np.setdiff1d(BUOY.time, said.time)
     np.testing.assert_array_equal(missing, instant(NOON) + np.arange(6).astype("timedelta64[h]"))
-    assert len(event("silent", "buoy-1", START).applied_to(BUOY)) == 0
+    assert len(event("silent", "buoy-1", START).apply_to(BUOY)) == 0
 
 
 def test_an_event_leaves_other_streams_alone() -> None:
     for one in (event("silent", "buoy-1"), event("bridle-cut", "bridle-8")):
-        assert one.applied_to(DEPTH) is DEPTH
+        assert one.apply_to(DEPTH) is DEPTH
 
 
 def test_a_file_holds_events_in_any_order(tmp_path: Path) -> None:

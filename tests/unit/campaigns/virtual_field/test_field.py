@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from seacage.cage import Cage
-from seacage.campaigns import Hidden, VirtualField, generated_current, virtual_field
+from seacage.campaigns import TruthParameters, VirtualField, generated_current, virtual_field
 from seacage.conventions import Origin
 from stand_in import StandIn
 
-HIDDEN = Hidden.read()
+HIDDEN = TruthParameters.read()
 EXACT = replace(
     HIDDEN,
     buoy=replace(HIDDEN.buoy, speed_sd_m_s=0.0, direction_sd_deg=0.0),

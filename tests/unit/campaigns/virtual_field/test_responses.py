@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from seacage.cage import Cage
-from seacage.campaigns import Hidden
+from seacage.campaigns import TruthParameters
 from seacage.campaigns._virtual_field._responses import Responses, true_responses
 from seacage.conventions import SeacageError, towards
 from stand_in import StandIn
@@ -67,7 +67,7 @@ def test_currents_beyond_the_grid_count_as_its_largest() -> None:
 def test_the_grid_is_settled_once_and_kept(
     small_cage: Cage, stand_in: StandIn, tmp_path: Path
 ) -> None:
-    hidden = Hidden.read()
+    hidden = TruthParameters.read()
     told: list[tuple[str, int, int]] = []
     first, error = true_responses(
         small_cage, hidden, store=tmp_path, workers=1, progress=lambda *step: told.append(step)
@@ -86,10 +86,10 @@ def test_the_grid_is_settled_once_and_kept(
 def test_another_cage_is_settled_anew_beside_the_first(
     small_cage: Cage, stand_in: StandIn, tmp_path: Path
 ) -> None:
-    true_responses(small_cage, Hidden.read(), store=tmp_path, workers=1)
+    true_responses(small_cage, TruthParameters.read(), store=tmp_path, workers=1)
     settled = len(stand_in.settled)
     heavier = small_cage.altered(tip={"weight_n": 9800.0})
-    true_responses(heavier, Hidden.read(), store=tmp_path, workers=1)
+    true_responses(heavier, TruthParameters.read(), store=tmp_path, workers=1)
     assert len(stand_in.settled) == 2 * settled
 
 
@@ -98,4 +98,4 @@ def test_a_true_cage_that_cannot_be_settled_is_refused(
 ) -> None:
     stand_in.reach = 1.5
     with pytest.raises(SeacageError, match="cannot be settled"):
-        true_responses(small_cage, Hidden.read(), store=tmp_path, workers=1)
+        true_responses(small_cage, TruthParameters.read(), store=tmp_path, workers=1)

@@ -6,18 +6,18 @@ from datetime import UTC, datetime
 import numpy as np
 import pytest
 
-from seacage.campaigns import Hidden
+from seacage.campaigns import TruthParameters
 from seacage.campaigns._virtual_field._events import Event
 from seacage.campaigns._virtual_field._sensors import (
     air_pressure,
-    buoy_heard,
     radio_silence,
-    sensed,
+    receive_buoy,
+    sense,
 )
 from seacage.conventions import Flag, Origin
 from seacage.records import Record
 
-HIDDEN = Hidden.read()
+HIDDEN = TruthParameters.read()
 CALM = replace(
     HIDDEN,
     outages=replace(
@@ -53,7 +53,7 @@ def errors(said: Record, exact: Record) -> np.ndarray:
 
 
 def test_a_shackle_lives_in_its_two_windows() -> None:
-    said = sensed(TENSION, CALM, np.random.default_rng(1))
+    said = sense(TENSION, CALM, np.random.default_rng(1))
     (silence,) = np.flatnonzero(np.diff(said.time) > np.timedelta64(300, "s"))
     first, second = silence + 1, len(said) - silence - 1
     assert (first, second) == (12 * 12, 24 * 12)
@@ -74,11 +74,11 @@ def test_a_shackle_has_gain_bias_and_noise() -> None:
 
 
 def sensed_tension(seed: int) -> Record:
-    return sensed(TENSION, CALM, np.random.default_rng(seed))
+    return sense(TENSION, CALM, np.random.default_rng(seed))
 
 
 def test_a_depth_sensor_drifts_and_is_noisy_all_the_time() -> None:
-    said = sensed(DEPTH, CALM, np.random.default_rng(1))
+    said = sense(DEPTH, CALM, np.random.default_rng(1))
     assert len(said) == len(DEPTH)
     error = errors(said, DEPTH)
     slope, _ = np.polyfit(SECONDS / 604800.0, error, 1)
@@ -89,13 +89,13 @@ def test_a_depth_sensor_drifts_and_is_noisy_all_the_time() -> None:
 
 
 def test_a_calm_sensor_is_good_throughout() -> None:
-    for said in (sensed(DEPTH, CALM, np.random.default_rng(1)), sensed_tension(1)):
+    for said in (sense(DEPTH, CALM, np.random.default_rng(1)), sensed_tension(1)):
         (flags,) = said.flags.values()
         assert np.mean(flags == Flag.GOOD) > 0.995
 
 
 def test_readings_are_lost_one_by_one_and_in_gaps() -> None:
-    said = sensed(DEPTH, HIDDEN, np.random.default_rng(3))
+    said = sense(DEPTH, HIDDEN, np.random.default_rng(3))
     lost = 1.0 - len(said) / len(DEPTH)
     # Single losses are 0.3 %; a gap of two hours a week adds 1.2 % on average.
     assert 0.003 < lost < 0.08
@@ -103,7 +103,7 @@ def test_readings_are_lost_one_by_one_and_in_gaps() -> None:
 
 
 def test_quality_control_sees_most_spikes_and_long_flat_lines() -> None:
-    said = sensed(DEPTH, HIDDEN, np.random.default_rng(4))
+    said = sense(DEPTH, HIDDEN, np.random.default_rng(4))
     wrong = np.abs(errors(said, DEPTH)) > 2.0
     flagged = said.flags["depth_m"] != Flag.GOOD
     assert 5 < wrong.sum() < 300
@@ -120,8 +120,8 @@ def test_chance_is_the_generators_alone() -> None:
 def test_a_depth_sensor_takes_waves_and_weather_for_depth() -> None:
     head = 0.4 * np.sin(SECONDS / 7.0)
     pressure = air_pressure(HIDDEN, TIME, np.random.default_rng(5))
-    said = sensed(DEPTH, CALM, np.random.default_rng(1), wave_head=head, pressure=pressure)
-    plain = sensed(DEPTH, CALM, np.random.default_rng(1))
+    said = sense(DEPTH, CALM, np.random.default_rng(1), wave_head=head, pressure=pressure)
+    plain = sense(DEPTH, CALM, np.random.default_rng(1))
     np.testing.assert_allclose(
         errors(said, DEPTH) - errors(plain, DEPTH), head + 0.01 * pressure, atol=1e-12
     )  # rounding
@@ -143,7 +143,7 @@ def test_faults_come_at_the_same_times_whatever_the_step() -> None:
         values={"depth_m": DEPTH.values["depth_m"][::6]},
         origin=DEPTH.origin,
     )
-    fine, rare = (sensed(one, HIDDEN, np.random.default_rng(4)) for one in (DEPTH, coarse))
+    fine, rare = (sense(one, HIDDEN, np.random.default_rng(4)) for one in (DEPTH, coarse))
     gaps = [
         one.time[np.flatnonzero(np.diff(one.time) > np.timedelta64(65, "m"))]
         for one in (fine, rare)
@@ -158,15 +158,15 @@ def test_a_dead_radio_silences_sensors_and_buoy_at_once() -> None:
     dead = silence.cover(TIME)
     # Two losses of half an hour a week are 0.6 % of the time on average.
     assert 0.001 < dead.mean() < 0.03
-    depth = sensed(DEPTH, CALM, np.random.default_rng(1), silence=silence)
-    buoy = buoy_heard(BUOY, CALM, np.random.default_rng(1), silence=silence)
+    depth = sense(DEPTH, CALM, np.random.default_rng(1), silence=silence)
+    buoy = receive_buoy(BUOY, CALM, np.random.default_rng(1), silence=silence)
     for heard in (depth, buoy):
         np.testing.assert_array_equal(heard.time, TIME[~dead])
 
 
 def test_a_buoys_word_is_received_as_it_was_but_for_faults() -> None:
-    calm = buoy_heard(BUOY, CALM, np.random.default_rng(1))
-    rough = buoy_heard(BUOY, HIDDEN, np.random.default_rng(1))
+    calm = receive_buoy(BUOY, CALM, np.random.default_rng(1))
+    rough = receive_buoy(BUOY, HIDDEN, np.random.default_rng(1))
     np.testing.assert_array_equal(calm.time, BUOY.time)
     for key, column in BUOY.values.items():
         np.testing.assert_array_equal(calm.values[key], column)
@@ -181,7 +181,7 @@ def test_an_event_meets_its_stream_and_moves_no_other_fault() -> None:
     silent = Event(kind="silent", target="depth-1", at=at, until=until)
     drifting = Event(kind="drift", target="depth-1", at=at, size=0.5)
     calm, quiet, adrift = (
-        sensed(DEPTH, HIDDEN, np.random.default_rng(4), events=events)
+        sense(DEPTH, HIDDEN, np.random.default_rng(4), events=events)
         for events in ((), (silent,), (drifting,))
     )
     assert not len(quiet.between(at, until))

@@ -14,8 +14,8 @@ from follower import Follower
 from seacage.cage import Cage
 from seacage.campaigns import (
     Event,
-    Hidden,
     Timetable,
+    TruthParameters,
     VirtualField,
     generated_current,
     generated_waves,
@@ -26,7 +26,7 @@ from seacage.campaigns._virtual_field import _stretches
 from seacage.conventions import InputError, Origin, SeacageError
 from seacage.records import FieldRecord, Record, TrueMeans
 
-SHIPPED = Hidden.read()
+SHIPPED = TruthParameters.read()
 HIDDEN = replace(SHIPPED, shackle=replace(SHIPPED.shackle, windows=((0.05, 2.5), (0.72, 4.0))))
 START = datetime(2020, 1, 18, tzinfo=UTC)
 BUOY = generated_current(0, start=START, days=1.0)

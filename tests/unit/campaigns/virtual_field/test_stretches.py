@@ -9,14 +9,14 @@ import pytest
 
 from follower import Follower
 from seacage.cage import Cage
-from seacage.campaigns import Hidden, Timetable, generated_current
-from seacage.campaigns._virtual_field._stretches import Kept, TrueCage, simulate_stretches
+from seacage.campaigns import Timetable, TruthParameters, generated_current
+from seacage.campaigns._virtual_field._stretches import StretchStore, TrueCage, simulate_stretches
 from seacage.campaigns._virtual_field._timetable import Stretch, cut
 from seacage.campaigns._virtual_field._weather import Weather, true_weather
 from seacage.conventions import InputError, RecordError
 from seacage.dynamics import Damage, simulation_lanes
 
-HIDDEN = Hidden.read()
+HIDDEN = TruthParameters.read()
 HOUR = Timetable(stretch=3600.0, mean=1200.0)
 EVERY = 60.0
 NEVER = np.zeros(1440, bool)
@@ -44,7 +44,7 @@ def run(
     told: list[float] = []
     simulate_stretches(
         stretches,
-        Kept.opened(folder, IDENTITY),
+        StretchStore.opened(folder, IDENTITY),
         weather,
         cage=TrueCage.of(cage, HIDDEN),
         timetable=HOUR,
@@ -62,7 +62,7 @@ def contents(folder: Path) -> dict[str, bytes]:
 def test_the_true_cages_nodes_are_where_the_drawn_ones_are(small_cage: Cage) -> None:
     true = TrueCage.of(small_cage, HIDDEN)
     fine = Cage.from_toml(true.toml)
-    assert fine == HIDDEN.refined_cage(small_cage)
+    assert fine == HIDDEN.fine_cage(small_cage)
     # micrometres: sines of the same angle, computed in another way
     np.testing.assert_allclose(
         fine.design_position[list(true.drawn)], small_cage.design_position, atol=1e-6
@@ -127,16 +127,16 @@ def test_a_stretch_is_read_as_it_was_kept(
     small_cage: Cage, weather: Weather, follower: Follower, tmp_path: Path
 ) -> None:
     run(small_cage, weather, tmp_path, DAY[:1])
-    passed = Kept(folder=tmp_path).read(DAY[0])
-    assert not passed.lost
-    assert passed.watched_position.shape == (60, 3, 3)
-    assert passed.shape.shape == (3, small_cage.node_count, 3)
+    simulate_group = StretchStore(folder=tmp_path).read(DAY[0])
+    assert not simulate_group.lost
+    assert simulate_group.watched_position.shape == (60, 3, 3)
+    assert simulate_group.shape.shape == (3, small_cage.node_count, 3)
     current = weather.current(0.0)[0, 0]
     # single precision, of 1e4 N
-    np.testing.assert_allclose(passed.bridle_tension[10, 3], 1e4 + 3e3 * current, atol=1e-3)
-    lifted = passed.shape[0] - small_cage.design_position
+    np.testing.assert_allclose(simulate_group.bridle_tension[10, 3], 1e4 + 3e3 * current, atol=1e-3)
+    lifted = simulate_group.shape[0] - small_cage.design_position
     np.testing.assert_allclose(lifted, np.broadcast_to(lifted[0], lifted.shape), atol=1e-5)
-    np.testing.assert_array_equal(passed.wave_head, 0.0)  # a calm sea
+    np.testing.assert_array_equal(simulate_group.wave_head, 0.0)  # a calm sea
 
 
 def test_a_stretch_that_leaves_the_finite_numbers_is_kept_as_lost(
@@ -144,22 +144,22 @@ def test_a_stretch_that_leaves_the_finite_numbers_is_kept_as_lost(
 ) -> None:
     follower.loses = {3600.0}
     run(small_cage, weather, tmp_path, DAY[:3])
-    assert [Kept(folder=tmp_path).read(one).lost for one in DAY[:3]] == [False, True, False]
+    assert [StretchStore(folder=tmp_path).read(one).lost for one in DAY[:3]] == [False, True, False]
 
 
 def test_a_folder_of_another_field_is_refused_and_says_what_differs(tmp_path: Path) -> None:
-    Kept.opened(tmp_path / "s", IDENTITY)
-    Kept.opened(tmp_path / "s", IDENTITY)
+    StretchStore.opened(tmp_path / "s", IDENTITY)
+    StretchStore.opened(tmp_path / "s", IDENTITY)
     with pytest.raises(InputError, match=r"another seed and buoy record\. Give another"):
-        Kept.opened(tmp_path / "s", {**IDENTITY, "seed": 2, "buoy_record_sha256": "b"})
+        StretchStore.opened(tmp_path / "s", {**IDENTITY, "seed": 2, "buoy_record_sha256": "b"})
 
 
 @pytest.mark.parametrize("content", ["no JSON", "[1, 2]"])
 def test_a_damaged_manifest_is_refused(tmp_path: Path, content: str) -> None:
-    Kept.opened(tmp_path, IDENTITY)
+    StretchStore.opened(tmp_path, IDENTITY)
     (tmp_path / "manifest.json").write_text(content)
     with pytest.raises(RecordError, match="no manifest of stretches"):
-        Kept.opened(tmp_path, IDENTITY)
+        StretchStore.opened(tmp_path, IDENTITY)
 
 
 @pytest.mark.parametrize("content", [b"", b"half of a file"])
@@ -171,7 +171,7 @@ def test_a_damaged_stretch_is_refused_and_can_be_made_again(
     content: bytes,
 ) -> None:
     run(small_cage, weather, tmp_path, DAY[:1])
-    kept, (path,) = Kept(folder=tmp_path), tmp_path.glob("*.safetensors")
+    kept, (path,) = StretchStore(folder=tmp_path), tmp_path.glob("*.safetensors")
     path.write_bytes(content)
     with pytest.raises(RecordError, match="no finished stretch"):
         kept.read(DAY[0])
@@ -184,4 +184,4 @@ def test_a_stretch_cut_short_is_simulated_whole(
     small_cage: Cage, weather: Weather, follower: Follower, tmp_path: Path
 ) -> None:
     run(small_cage, weather, tmp_path, (replace(DAY[2], readings=7),))
-    assert Kept(folder=tmp_path).read(DAY[2]).bridle_tension.shape == (60, 12)
+    assert StretchStore(folder=tmp_path).read(DAY[2]).bridle_tension.shape == (60, 12)

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from seacage.cage import Cage
-from seacage.campaigns import Hidden, true_shapes
+from seacage.campaigns import TruthParameters, true_shapes
 from seacage.conventions import InputError
 from stand_in import StandIn
 
 SMALL = Cage.named("ace").altered(mesh={"spokes": 8})
-HIDDEN = Hidden.read()
+HIDDEN = TruthParameters.read()
 
 
 @pytest.fixture(autouse=True)

@@ -11,21 +11,21 @@ import pytest
 
 import seacage
 from seacage.cage import Cage
-from seacage.campaigns import Hidden
+from seacage.campaigns import TruthParameters
 from seacage.conventions import InputError
 
 TEXT = (resources.files("seacage.campaigns._virtual_field") / "hidden_ace.toml").read_text("utf-8")
 
 
 def test_the_file_that_comes_with_seacage_is_read_with_its_hash() -> None:
-    hidden = Hidden.read()
+    hidden = TruthParameters.read()
     assert hidden.sha256 == hashlib.sha256(TEXT.encode()).hexdigest()
     assert hidden.law == "loland"
 
 
 def test_one_changed_character_changes_the_hash(tmp_path: Path) -> None:
     (tmp_path / "mine.toml").write_text(TEXT + "\n")
-    assert Hidden.read(tmp_path / "mine.toml").sha256 != Hidden.read().sha256
+    assert TruthParameters.read(tmp_path / "mine.toml").sha256 != TruthParameters.read().sha256
 
 
 @pytest.mark.parametrize(
@@ -43,7 +43,7 @@ def test_one_changed_character_changes_the_hash(tmp_path: Path) -> None:
 def test_a_wrong_file_is_refused(tmp_path: Path, text: str, says: str) -> None:
     (tmp_path / "mine.toml").write_text(text)
     with pytest.raises(InputError, match=says):
-        Hidden.read(tmp_path / "mine.toml")
+        TruthParameters.read(tmp_path / "mine.toml")
 
 
 def test_no_room_that_learns_names_the_hidden_parameters() -> None:
@@ -52,13 +52,13 @@ def test_no_room_that_learns_names_the_hidden_parameters() -> None:
     assert learning
     for source in learning:
         text = source.read_text("utf-8")
-        assert "Hidden" not in text, source
+        assert "TruthParameters" not in text, source
         assert "hidden_ace" not in text, source
         assert "seacage.campaigns" not in text, source
 
 
 def test_fouling_grows_until_the_net_is_cleaned_and_again() -> None:
-    fouling = replace(Hidden.read().fouling, cleaned_days=(24.0, 36.0))
+    fouling = replace(TruthParameters.read().fouling, cleaned_days=(24.0, 36.0))
     day = np.linspace(0.0, 48.0, 481)
     grown = fouling.grown(day)
     for first, last in ((0.0, 24.0), (24.0, 36.0), (36.0, 48.0)):
@@ -71,16 +71,16 @@ def test_fouling_grows_until_the_net_is_cleaned_and_again() -> None:
 
 
 def test_growth_is_thicker_above_and_softer_than_a_net_as_solid() -> None:
-    fouling = Hidden.read().fouling
+    fouling = TruthParameters.read().fouling
     for growth, shallow, soft in ((0.0, 0.03, 1.0), (1.0, 0.10, 0.85)):
-        solidity, drag = fouling.added(growth, np.array([2.0, 20.0]))
+        solidity, drag = fouling.solidity_and_drag(growth, np.array([2.0, 20.0]))
         np.testing.assert_allclose(solidity, [shallow, 0.6 * shallow])
         np.testing.assert_allclose(drag, soft)
 
 
 def test_the_refined_cage_has_the_drawn_nodes_where_they_were() -> None:
-    hidden, drawn = Hidden.read(), Cage.named("ace")
-    fine = hidden.refined_cage(drawn)
+    hidden, drawn = TruthParameters.read(), Cage.named("ace")
+    fine = hidden.fine_cage(drawn)
     assert fine.node_count == 20 * 64 + 1
     ring, spoke = np.divmod(np.arange(drawn.node_count - 1), drawn.spokes)
     same = np.append(fine.spokes * 2 * ring + 2 * spoke, fine.bottom_node)
@@ -92,7 +92,7 @@ def test_the_refined_cage_has_the_drawn_nodes_where_they_were() -> None:
 
 
 def test_the_true_cage_is_grown_stiffer_and_uneven() -> None:
-    hidden, drawn = Hidden.read(), Cage.named("ace")
+    hidden, drawn = TruthParameters.read(), Cage.named("ace")
     clean, grown = hidden.true_cage(drawn, 0.0), hidden.true_cage(drawn, 1.0)
     assert clean.netting.fouling_shallow == pytest.approx(0.03)
     assert grown.netting.fouling_shallow == pytest.approx(0.10)

@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from seacage.campaigns import Hidden, generated_current
+from seacage.campaigns import TruthParameters, generated_current
 from seacage.campaigns._virtual_field._weather import Weather, current_at_cage, true_weather
 from seacage.campaigns._waves import generated_waves
 from seacage.conventions import Flag, InputError, Origin, compass
-from seacage.ocean import carried
+from seacage.ocean import on_current
 from seacage.records import Record
 
-HIDDEN = Hidden.read()
+HIDDEN = TruthParameters.read()
 EXACT = replace(
     HIDDEN,
     buoy=replace(HIDDEN.buoy, speed_sd_m_s=0.0, direction_sd_deg=0.0),
@@ -35,7 +35,7 @@ def steady(speed: float, to: float) -> Record:
     return Record(stream="buoy-1", time=time, values=values, origin=Origin.MEASURED)
 
 
-def at_cage(buoy: Record, seconds: np.ndarray, hidden: Hidden = EXACT) -> np.ndarray:
+def at_cage(buoy: Record, seconds: np.ndarray, hidden: TruthParameters = EXACT) -> np.ndarray:
     return current_at_cage(buoy, seconds, hidden=hidden, rng=np.random.default_rng(0))
 
 
@@ -91,7 +91,7 @@ def test_a_buoy_without_a_usable_current_is_refused() -> None:
         at_cage(silent, np.array([0.0, 60.0]))
 
 
-def weather(hidden: Hidden = HIDDEN, seed: int = 4, **others: Any) -> Weather:
+def weather(hidden: TruthParameters = HIDDEN, seed: int = 4, **others: Any) -> Weather:
     """Two days of tide and weather."""
     options = {"buoy": BUOY, "waves": WAVES, "depth": 60.0} | others
     return true_weather(**options, hidden=hidden, seed=seed)
@@ -202,7 +202,7 @@ def test_waves_from_the_south_pass_faster_on_a_current_to_the_north(
     sea = weather(CALM, waves=steady_sea(1.0, 6.0, 180.0), buoy=steady(0.5, current_to))
     waves, current = sea.waves(7200.0), sea.current(7200.0)[0]
     still = replace(waves, angular_frequency=waves.intrinsic_frequency)
-    passing = carried(still, current).angular_frequency
+    passing = on_current(still, current).angular_frequency
     np.testing.assert_allclose(waves.angular_frequency, passing, atol=1e-9)
     ahead = waves.direction[:, 1] > 0.5
     assert np.all((passing > still.angular_frequency)[ahead] == faster)
@@ -258,7 +258,7 @@ def test_growth_is_that_of_the_day() -> None:
     for day in (-1.0, 0.0, 15.0, 24.5):
         added, factor = weather_.netting(day * 86400.0, depth)
         growth = HIDDEN.fouling.grown(np.array([max(day, 0.0)]))[0]
-        expected = HIDDEN.fouling.added(growth, depth)
+        expected = HIDDEN.fouling.solidity_and_drag(growth, depth)
         np.testing.assert_array_equal(added, expected[0])
         np.testing.assert_array_equal(factor, expected[1])
 

@@ -10,7 +10,7 @@ from seacage.dynamics import LAWS, rest_shape
 from seacage.dynamics._equilibrium._newton import dense, hooke, nearer, tangent
 from seacage.dynamics._kernel._balance import Balance, Balancing
 from seacage.dynamics._kernel._library import kernel
-from seacage.dynamics._moored._pretension import assembled
+from seacage.dynamics._moored._pretension import assemble
 from seacage.dynamics._physics._flow import steady_flow
 from seacage.dynamics._physics._loads import nodal_force
 
@@ -19,7 +19,7 @@ COARSE = Cage.named("ace").altered(
     collar={"pipe_bending_stiffness_n_m2": 1e-6},  # its tangent leaves part of the bending out
     sinker_tube={"bending_stiffness_n_m2": 0.0},
 )
-PARTS = assembled(COARSE)
+PARTS = assemble(COARSE)
 FREE = np.ones(len(PARTS.position), dtype=bool)
 BALANCE = Balance(
     free=FREE, tolerance=1e-3, reach=1.5, least_barrier=1e-7, least_shift=0.1, most_shift=1e4
@@ -77,7 +77,7 @@ def test_a_pole_that_one_spring_holds_upright_is_known_to_be_unstable():
     defined = computed = upright
     for _ in range(10):
         defined = nearer(parts, water, defined, balance)
-    computed = kernel().balanced(parts, water, computed, balance, iterations=10)
+    computed = kernel().balance(parts, water, computed, balance, iterations=10)
     for state in (defined, computed):
         assert state.residual[0] <= BALANCE.tolerance
         # it may fall one way: the matrix has one negative root, as the spring holds the other
@@ -131,7 +131,7 @@ def dry(flow):
 def test_bars_meet_their_law_at_the_end_slack_ones_bearing_nothing():
     flow = steady_flow(PARTS, np.array([[0.6, 0.0]]), law="loland")
     state = begun(PARTS.position)
-    state = kernel().balanced(PARTS, flow, state, BALANCE, iterations=100)
+    state = kernel().balance(PARTS, flow, state, BALANCE, iterations=100)
     assert state.residual[0] <= BALANCE.tolerance
     _, tension = hooke(PARTS.bars, state.position[0])
     assert np.sum(tension == 0.0) > 10
@@ -157,7 +157,7 @@ def test_a_held_node_stays():
     held = replace(BALANCE, free=free)
     for moved in (
         nearer(PARTS, flow, begun(PARTS.position), held),
-        kernel().balanced(PARTS, flow, begun(PARTS.position), held, iterations=3),
+        kernel().balance(PARTS, flow, begun(PARTS.position), held, iterations=3),
     ):
         np.testing.assert_array_equal(moved.position[0, collar], PARTS.position[collar])
         assert np.abs(moved.position[0] - PARTS.position).max() > 1e-3
@@ -168,7 +168,7 @@ def test_the_kernel_takes_the_same_step():
     flow = steady_flow(PARTS, np.array([[0.7, -0.4]]), law="kristiansen-faltinsen")
     defined = begun(PARTS.position)
     for _ in range(8):
-        computed = kernel().balanced(PARTS, flow, defined, BALANCE, iterations=1)
+        computed = kernel().balance(PARTS, flow, defined, BALANCE, iterations=1)
         defined = nearer(PARTS, flow, defined, BALANCE)
         # LU in another order: 1e-13 of stiffnesses of 1e7 N/m against 1 N/m
         np.testing.assert_allclose(computed.position, defined.position, atol=1e-6)

@@ -7,23 +7,23 @@ import sys
 import pytest
 
 from seacage.conventions import SeacageError
-from seacage.dynamics._kernel._library import chosen, kernel
+from seacage.dynamics._kernel._library import choose, kernel
 
 ALL = ["x86-64-v4", "x86-64-v3", "x86-64-v2"]
 
 
 @pytest.mark.parametrize(("able", "best"), [(4, "x86-64-v4"), (3, "x86-64-v3"), (2, "x86-64-v2")])
 def test_the_best_that_the_processor_can_run_is_chosen(able: int, best: str) -> None:
-    assert chosen(ALL, able, "") == best
+    assert choose(ALL, able, "") == best
 
 
 def test_the_only_kernel_of_other_machines_is_chosen() -> None:
-    assert chosen(["native"], 0, "") == "native"
+    assert choose(["native"], 0, "") == "native"
 
 
 @pytest.mark.parametrize("name", ALL)
 def test_a_kernel_that_is_asked_for_is_chosen(name: str) -> None:
-    assert chosen(ALL, 4, name) == name
+    assert choose(ALL, 4, name) == name
 
 
 @pytest.mark.parametrize(
@@ -39,7 +39,7 @@ def test_an_impossible_kernel_is_refused(
     built: list[str], able: int, forced: str, why: str
 ) -> None:
     with pytest.raises(SeacageError, match=why):
-        chosen(built, able, forced)
+        choose(built, able, forced)
 
 
 def loaded(forced: str) -> subprocess.CompletedProcess[str]:

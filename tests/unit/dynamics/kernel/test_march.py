@@ -15,10 +15,10 @@ from seacage.dynamics._kernel._march_inputs import (
     _in_node_order,
     _wave_tables,
     body_of,
-    laned,
-    unlaned,
+    from_lanes,
+    to_lanes,
 )
-from seacage.dynamics._moored._mass_scaling import steadied
+from seacage.dynamics._moored._mass_scaling import scale_mass
 from seacage.dynamics._parts._assembly import Assembly
 from seacage.dynamics._physics._motion import NetLaw
 from seacage.ocean import SeaState, sample_waves, surface_elevation
@@ -33,7 +33,7 @@ CAGE = Cage.named("ace").altered(
 )
 SEA = SeaState(current_speed=0.3, current_to=40.0, hs=1.0, tp=6.0, wave_from=10.0)
 STEPS = Steps(time_step=0.002, each=50, hold=4, ramp=1.0, spin_up=3, counted=9, sample_every=2)
-ASSEMBLY, _ = steadied(Assembly.of(CAGE), STEPS.time_step)
+ASSEMBLY, _ = scale_mass(Assembly.of(CAGE), STEPS.time_step)
 LANES = simulation_lanes()
 
 
@@ -57,16 +57,16 @@ def march(cases=2, steps=STEPS, assembly=ASSEMBLY, start=None, seed=0, current=N
 
 def test_the_lanes_left_over_carry_the_first_case():
     values = np.arange(12.0).reshape(2, 3, 2)
-    spread = laned(values)
+    spread = to_lanes(values)
     assert spread.shape == (3, 2, LANES)
     assert spread.dtype == np.float32
-    np.testing.assert_array_equal(unlaned(spread)[:2], values)
-    np.testing.assert_array_equal(unlaned(spread)[2:], np.repeat(values[:1], LANES - 2, axis=0))
+    np.testing.assert_array_equal(from_lanes(spread)[:2], values)
+    np.testing.assert_array_equal(from_lanes(spread)[2:], np.repeat(values[:1], LANES - 2, axis=0))
 
 
 @pytest.mark.parametrize("shape", [(1,), (3,), (7, 3)])
 def test_what_the_kernel_reads_lies_on_whole_lines_of_the_cache(shape):
-    spread = laned(np.ones((2, *shape)))
+    spread = to_lanes(np.ones((2, *shape)))
     assert spread.ctypes.data % 64 == 0
     assert spread.flags.c_contiguous
     np.testing.assert_array_equal(spread, 1.0)
@@ -169,7 +169,7 @@ def test_the_first_sample_is_where_the_spin_up_ended():
     one.go(STEPS.spin_up)
     before = one.position
     one.go(1)
-    sampled = unlaned(one.samples["positions"][0])[:2]
+    sampled = from_lanes(one.samples["positions"][0])[:2]
     np.testing.assert_array_equal(sampled, before)
     waves = sample_waves(SEA, seed=1, depth=191.0)
     ramp = 0.5 - 0.5 * np.cos(np.pi * 0.3)
@@ -279,7 +279,7 @@ def test_the_bridles_bear_what_the_next_sample_says():
     one.go(6)
     tension = one.tension
     one.go(1)
-    sampled = unlaned(one.samples["tensions"][6 - STEPS.spin_up])[:2]
+    sampled = from_lanes(one.samples["tensions"][6 - STEPS.spin_up])[:2]
     # the bar's stretch, a difference of lengths, in single precision
     np.testing.assert_allclose(tension, sampled, rtol=1e-4, atol=5.0)
     assert tension.min() > 1000.0

@@ -6,13 +6,13 @@ import pytest
 from seacage.cage import Cage
 from seacage.conventions import InputError
 from seacage.dynamics import Damage
-from seacage.dynamics._moored._detailed import broken, detailed
-from seacage.dynamics._moored._mooring import anchored
+from seacage.dynamics._moored._detailed import broken, full_assembly
+from seacage.dynamics._moored._mooring import anchor_assembly
 from seacage.dynamics._physics._loads import bar_tension
 
 ACE = Cage.named("ace")
-PLAIN = anchored(ACE)
-DETAILED = detailed(ACE, stiffening=(0.01, 0.5))
+PLAIN = anchor_assembly(ACE)
+DETAILED = full_assembly(ACE, stiffening=(0.01, 0.5))
 TUBE = len(PLAIN.position) + np.arange(ACE.spokes)
 RING = ACE.ring_nodes(ACE.tube_ring)
 
@@ -106,4 +106,4 @@ def test_damage_to_what_is_not_there_is_refused(damage, sentence):
 
 def test_a_tube_that_hangs_on_nothing_is_refused():
     with pytest.raises(InputError, match="hung_below_m = 0 m"):
-        detailed(ACE.altered(sinker_tube={"hung_below_m": 0.0}), stiffening=(0.01, 0.5))
+        full_assembly(ACE.altered(sinker_tube={"hung_below_m": 0.0}), stiffening=(0.01, 0.5))

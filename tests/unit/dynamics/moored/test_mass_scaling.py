@@ -7,7 +7,12 @@ import pytest
 
 from seacage.cage import Cage
 from seacage.conventions import InputError
-from seacage.dynamics._moored._mass_scaling import MOST_ADDED, _fastest, _stiffness_along, steadied
+from seacage.dynamics._moored._mass_scaling import (
+    MOST_ADDED,
+    _fastest,
+    _stiffness_along,
+    scale_mass,
+)
 from seacage.dynamics._parts._assembly import Assembly
 
 ACE = Assembly.of(Cage.named("ace"))
@@ -30,7 +35,7 @@ def highest_frequency(assembly):
 @pytest.mark.slow
 @pytest.mark.parametrize("time_step", [0.001, 0.002, 0.004])
 def test_with_what_is_lent_no_mode_of_the_net_is_too_fast_for_the_step(time_step):
-    steady, _ = steadied(ACE, time_step)
+    steady, _ = scale_mass(ACE, time_step)
     ratio = np.sqrt(2.0) * ACE.bars.damping_ratio.max()
     # where the undamped step would end, less for damping that is taken at the old velocity
     limit = 2.0 / time_step * (np.sqrt(1.0 + ratio**2) - ratio)
@@ -39,13 +44,13 @@ def test_with_what_is_lent_no_mode_of_the_net_is_too_fast_for_the_step(time_step
 
 
 def test_a_step_short_enough_needs_no_mass():
-    steady, lent = steadied(ACE, 0.002)  # the default of `simulate`
+    steady, lent = scale_mass(ACE, 0.002)  # the default of `simulate`
     np.testing.assert_array_equal(lent, 0.0)
     np.testing.assert_array_equal(steady.mass, ACE.mass)
 
 
 def test_mass_is_lent_where_it_is_needed_and_nothing_else_changes():
-    steady, lent = steadied(ACE, 0.004)
+    steady, lent = scale_mass(ACE, 0.004)
     assert np.all(lent >= 0.0)
     assert np.all(lent <= MOST_ADDED * ACE.mass * (1.0 + 1e-12))  # a product rounded otherwise
     assert np.any(lent > 0.0)
@@ -56,26 +61,26 @@ def test_mass_is_lent_where_it_is_needed_and_nothing_else_changes():
 
 
 def test_a_longer_step_lends_more():
-    _, short = steadied(ACE, 0.003)
-    _, long = steadied(ACE, 0.004)
+    _, short = scale_mass(ACE, 0.003)
+    _, long = scale_mass(ACE, 0.004)
     assert np.all(long >= short * (1.0 - 1e-12))  # equal where neither needs any, but for rounding
     assert long.sum() > short.sum()
 
 
 def test_a_held_node_is_lent_nothing():
     fixed = np.arange(len(ACE.position)) < 32
-    _, lent = steadied(replace(ACE, fixed=fixed), 0.005)
+    _, lent = scale_mass(replace(ACE, fixed=fixed), 0.005)
     assert lent.sum() > 0.0
     np.testing.assert_array_equal(lent[fixed], 0.0)
 
 
 def test_a_step_too_long_is_refused_with_one_that_will_do():
     with pytest.raises(InputError, match=r"time_step = 0\.05 s is too long.*node \d+ .*kg") as why:
-        steadied(ACE, 0.05)
+        scale_mass(ACE, 0.05)
     longest = float(str(why.value).rsplit("at most", 1)[1].split()[0])
-    steadied(ACE, longest)
+    scale_mass(ACE, longest)
     with pytest.raises(InputError, match="too long"):
-        steadied(ACE, 1.2 * longest)
+        scale_mass(ACE, 1.2 * longest)
 
 
 def test_the_stiffness_along_a_chain_is_that_of_both_its_bars():

@@ -7,12 +7,12 @@ from seacage.cage import Cage
 from seacage.conventions import GRAVITY, InputError
 from seacage.dynamics import catenary, simulate
 from seacage.dynamics._moored._anchor_line import node_weight, resting_line, segments
-from seacage.dynamics._moored._mooring import anchored
+from seacage.dynamics._moored._mooring import anchor_assembly
 from seacage.dynamics._physics._loads import bar_force, bar_tension, float_force
 from seacage.ocean import SeaState
 
 ACE = Cage.named("ace")
-PARTS = anchored(ACE)
+PARTS = anchor_assembly(ACE)
 LINE = resting_line(ACE)
 CORNERS = ACE.node_count + np.arange(4)
 BED = ACE.site.water_depth - ACE.frame.depth
@@ -32,7 +32,7 @@ def test_the_segments_make_up_rope_and_chain():
 
 
 def test_a_line_may_be_all_rope():
-    parts = anchored(ACE.altered(anchor_lines={"chain_length_m": 0.0}))
+    parts = anchor_assembly(ACE.altered(anchor_lines={"chain_length_m": 0.0}))
     assert parts.weight[325:].sum() == 0.0
     assert parts.mass.min() > 0.0
 
@@ -69,7 +69,7 @@ def test_lines_run_on_from_the_frame_s_sides_to_the_sea_bed():
 
 
 def test_a_turned_cage_turns_its_mooring_with_it():
-    turned = anchored(ACE.rotated(30.0))
+    turned = anchor_assembly(ACE.rotated(30.0))
     c, s = np.cos(np.deg2rad(30.0)), np.sin(np.deg2rad(30.0))
     clockwise = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
     np.testing.assert_allclose(turned.position, PARTS.position @ clockwise, atol=1e-9)
@@ -79,7 +79,7 @@ def test_a_turned_cage_turns_its_mooring_with_it():
 
 @pytest.mark.parametrize("per_corner", [1, 3])
 def test_any_number_of_lines_holds_a_corner(per_corner):
-    parts = anchored(ACE.altered(anchor_lines={"per_corner": per_corner}))
+    parts = anchor_assembly(ACE.altered(anchor_lines={"per_corner": per_corner}))
     assert parts.fixed.sum() == 4 * per_corner
     frame = parts.bridles[-1] + 1 + np.arange(4)
     tension = bar_tension(parts.bars, parts.position[None])[0, frame]
@@ -120,7 +120,7 @@ def test_frame_ropes_bear_what_bridles_leave_of_the_lines_pull():
 
 
 def test_a_frame_cut_slack_bears_nothing_where_it_was_designed():
-    slack = anchored(ACE.altered(frame={"rope_slack_m": 2.98}))
+    slack = anchor_assembly(ACE.altered(frame={"rope_slack_m": 2.98}))
     frame = slack.bridles[-1] + 1 + np.arange(4)
     np.testing.assert_array_equal(bar_tension(slack.bars, slack.position[None])[0, frame], 0.0)
 
@@ -150,4 +150,4 @@ def test_it_rests_with_the_tensions_of_the_file_and_its_corners_in_place():
 )
 def test_a_mooring_that_cannot_be_is_refused_in_a_sentence(section, changes, says):
     with pytest.raises(InputError, match=says):
-        anchored(ACE.altered(**{section: changes}))
+        anchor_assembly(ACE.altered(**{section: changes}))

@@ -9,7 +9,7 @@ from seacage.cage import Anchor as AnchorPoint
 from seacage.cage import Line, Net, Point, Ring, Section, Site, Structure, Tie, Twine
 from seacage.conventions import GRAVITY, WATER_DENSITY, InputError
 from seacage.dynamics import simulate
-from seacage.dynamics._parts._structure import rigged, wet_share
+from seacage.dynamics._parts._structure import assemble_structure, wet_share
 from seacage.dynamics._physics._loads import bar_tension
 from seacage.dynamics._physics._motion import NetLaw, Water, moving_net_load
 from seacage.ocean import SeaState
@@ -47,7 +47,7 @@ DRUM = Structure(
         Line(name="back", section="rope", start="collar/4", end="west", segments=3),
     ),
 )
-PARTS = rigged(DRUM)
+PARTS = assemble_structure(DRUM)
 AROUND = 16.0 * 5.0 * np.sin(np.pi / 8.0)  # the octagon of a ring [m]
 AREA = AROUND * 6.0
 
@@ -106,8 +106,8 @@ def test_braces_stiffen_without_weighing():
     tie = Tie(name="posts", section="pipe", upper="rail", lower="collar", kind="struts")
     rail = Ring(name="rail", radius=5.0, depth=-1.0, section="rope")
     posts = replace(DRUM, ring=(*DRUM.ring, rail), tie=(tie,))
-    braced = rigged(replace(posts, tie=(replace(tie, kind="braces"),)))
-    plain = rigged(posts)
+    braced = assemble_structure(replace(posts, tie=(replace(tie, kind="braces"),)))
+    plain = assemble_structure(posts)
     assert len(braced.bars.length) == len(plain.bars.length) + 2 * 8
     np.testing.assert_allclose(braced.mass, plain.mass)
     np.testing.assert_allclose(braced.cylinders.drag_width, plain.cylinders.drag_width)
@@ -117,7 +117,7 @@ def test_a_net_in_folds_keeps_all_its_twine_and_bears_load_down_its_spokes_alone
     folded = replace(
         DRUM, net=(replace(DRUM.net[0], upper_width=2 * AROUND, lower_width=2 * AROUND),)
     )
-    parts = rigged(folded)
+    parts = assemble_structure(folded)
     np.testing.assert_allclose(parts.panels.area.sum(), 2.0 * AREA)
     assert np.all(parts.panels.solidity > PARTS.panels.solidity)
     net = parts.bars.ends[2 * 8 : -9]  # after the rings, before the lines
@@ -129,7 +129,7 @@ def test_a_net_in_folds_keeps_all_its_twine_and_bears_load_down_its_spokes_alone
 
 def test_a_roof_at_the_water_line_is_dry_and_heavy():
     roof = Net(name="roof", twine="nylon", upper="collar", rows=1)
-    roofed = rigged(replace(DRUM, net=(*DRUM.net, roof)))
+    roofed = assemble_structure(replace(DRUM, net=(*DRUM.net, roof)))
     assert len(roofed.panels.area) == len(PARTS.panels.area)
     mass = 2.0 / 0.02 * np.pi / 4.0 * 0.002**2 * 1140.0 * AROUND * 5.0 * np.cos(np.pi / 8.0) / 2.0
     # the centre's node comes after the side's
@@ -140,7 +140,7 @@ def test_a_roof_at_the_water_line_is_dry_and_heavy():
 def test_twines_across_the_flow_are_dragged_as_the_sum_of_their_lengths():
     # a flat floor in a flow from below: every twine lies across it
     floor = Net(name="floor", twine="nylon", upper="sinker", rows=2, height=5.0)
-    parts = rigged(replace(DRUM, net=(floor,)))
+    parts = assemble_structure(replace(DRUM, net=(floor,)))
     still = np.zeros((1, len(parts.position), 3))
     up = still.copy()
     up[..., 2] = 0.5
@@ -158,19 +158,19 @@ def test_twines_across_the_flow_are_dragged_as_the_sum_of_their_lengths():
 def test_what_cannot_float_is_refused_with_its_weight():
     lead = replace(PIPE, mass=200.0)
     with pytest.raises(InputError, match=r"drum: it cannot float.*kN"):
-        rigged(replace(DRUM, section=(lead, ROPE, HEAVY)))
+        assemble_structure(replace(DRUM, section=(lead, ROPE, HEAVY)))
 
 
 def test_a_line_much_shorter_than_its_span_is_refused_by_its_name():
     short = replace(DRUM.line[0], length=6.0)
     with pytest.raises(InputError, match=r"'bridle' spans 7 m as built, but its length_m = 6"):
-        rigged(replace(DRUM, line=(short, *DRUM.line[1:])))
+        assemble_structure(replace(DRUM, line=(short, *DRUM.line[1:])))
 
 
 def test_a_node_without_mass_is_refused_by_its_place():
     bare = Ring(name="bare", radius=3.0, depth=2.0)
     with pytest.raises(InputError, match=r"node 16 at .*has no mass"):
-        rigged(replace(DRUM, ring=(*DRUM.ring, bare)))
+        assemble_structure(replace(DRUM, ring=(*DRUM.ring, bare)))
 
 
 def test_in_still_water_a_rigged_structure_comes_to_rest_in_balance():

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from seacage.cage import Cage
-from seacage.dynamics._moored._pretension import assembled
+from seacage.dynamics._moored._pretension import assemble
 from seacage.dynamics._parts._assembly import Assembly
 from seacage.dynamics._physics._wake import wake_in_sight, wake_share
 
 ACE = Cage.named("ace")
-PANELS = assembled(ACE).panels
+PANELS = assemble(ACE).panels
 NORTH = np.array([[0.0, 1.0]])
 SHAPE = ACE.design_position[None]
 CENTRE = np.einsum("pcx,pc->px", ACE.design_position[PANELS.corners], PANELS.share)

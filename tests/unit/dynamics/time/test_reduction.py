@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from seacage.dynamics import History, Statistics
-from seacage.dynamics._time._reduction import _plain_statistics, _quantiles, _statistics, stacked
+from seacage.dynamics._time._reduction import _plain_statistics, _quantiles, _statistics, stack
 
 LEVELS = np.array([0.0, 0.05, 0.5, 0.95, 1.0])
 
@@ -73,7 +73,7 @@ def test_what_stands_still_has_no_spread_though_rounding_says_less_than_none():
 
 
 def test_cases_are_stacked_with_a_leading_axis_and_share_what_they_share():
-    both = stacked([history(1.0), history(2.0)])
+    both = stack([history(1.0), history(2.0)])
     assert both.time.shape == (3,)
     assert both.nodes.shape == (2,)
     assert both.quantile_levels.shape == (5,)
@@ -81,4 +81,4 @@ def test_cases_are_stacked_with_a_leading_axis_and_share_what_they_share():
     assert both.node.quantile.shape == (2, 5, 2, 3)
     assert both.volume.mean.shape == (2,)
     np.testing.assert_array_equal(both.volume_fraction, [1.0, 2.0])
-    assert stacked([replace(history(), result=np.asarray(2))]).result.shape == (1,)
+    assert stack([replace(history(), result=np.asarray(2))]).result.shape == (1,)

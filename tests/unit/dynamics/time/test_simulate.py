@@ -365,7 +365,7 @@ def storm(height):
 @pytest.mark.parametrize("height", [1e5, 1e37, np.nan])
 def test_a_case_that_leaves_the_finite_numbers_is_given_up_alone(height, monkeypatch):
     fine = [sample_waves(SEA, seed=seed, depth=DEPTH) for seed in (1, 2)]
-    monkeypatch.setattr(_forcing, "_checked_waves", lambda waves, _depth: waves)
+    monkeypatch.setattr(_forcing, "_check_waves", lambda waves, _depth: waves)
     history = quick([SEA] * 3, waves=[fine[0], storm(height), fine[1]], second_moment=True)
     np.testing.assert_array_equal(
         history.result, [Result.CONVERGED, Result.DIVERGED, Result.CONVERGED]
@@ -386,7 +386,7 @@ def test_a_case_that_leaves_the_finite_numbers_is_given_up_alone(height, monkeyp
 
 def test_a_series_ends_where_its_case_was_given_up(monkeypatch):
     """The wave reaches a height that no cage survives only after a while."""
-    monkeypatch.setattr(_forcing, "_checked_waves", lambda waves, _depth: waves)
+    monkeypatch.setattr(_forcing, "_check_waves", lambda waves, _depth: waves)
     options = {"spin_up": 20.0, "ramp": 20.0, "duration": 5.0, "sample_every": 0.1}
     history = quick(SEA, waves=storm(1e4), **options | {"spin_up": 20.0})
     assert history.result == Result.DIVERGED

@@ -17,7 +17,7 @@ from seacage.records import (
     instant,
     verdicts_on,
 )
-from seacage.records._quality._prefilter import Doubt, doubtful
+from seacage.records._quality._prefilter import Candidates, candidate_rows
 
 NOON = datetime(2018, 1, 26, 12, tzinfo=UTC)
 KEYS = {
@@ -90,10 +90,10 @@ def test_verdicts_are_those_of_judging_every_row(
     record, limits = rough(group, seed), impatient(group)
     skipping = said(record, limits)
 
-    def everything(_: str, time: np.ndarray, *__: object) -> Doubt:
-        return Doubt([slice(0, len(time))], np.ones(len(time), dtype=bool))
+    def everything(_: str, time: np.ndarray, *__: object) -> Candidates:
+        return Candidates([slice(0, len(time))], np.ones(len(time), dtype=bool))
 
-    monkeypatch.setattr("seacage.records._quality._check.doubtful", everything)
+    monkeypatch.setattr("seacage.records._quality._check.candidate_rows", everything)
     assert skipping == said(record, limits)
     tests = {test for _, test, *_ in skipping}
     assert {"missing value", "gap", "flat line", "attenuated signal"} <= tests
@@ -105,7 +105,7 @@ def test_of_a_healthy_record_hardly_a_row_is_judged() -> None:
     depth = 7.0 + 0.5 * np.sin(np.arange(50_000) / 3.0) + rng.normal(scale=0.03, size=50_000)
     depth[20_000] += 20.0
     time = np.arange(50_000) * 2_000_000
-    stretches = doubtful("depth", time, {"depth_m": depth}, DEFAULT_LIMITS).stretches
+    stretches = candidate_rows("depth", time, {"depth_m": depth}, DEFAULT_LIMITS).stretches
     assert sum(rows.stop - rows.start for rows in stretches) < 10
     assert any(rows.start <= 20_000 < rows.stop for rows in stretches)
 

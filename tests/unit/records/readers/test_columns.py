@@ -34,9 +34,12 @@ def test_a_map_is_read_from_toml(tmp_path):
     (tmp_path / "map.toml").write_text(TOML)
     columns = ColumnMap.read(tmp_path / "map.toml")
     assert columns.names == {"timestamp", "spd", "dir", "battery"}
-    assert [column.key for column in columns.taken] == ["current_speed_m_s", "current_to_deg"]
+    assert [column.key for column in columns.read_columns] == [
+        "current_speed_m_s",
+        "current_to_deg",
+    ]
     assert columns.origin is Origin.MEASURED
-    assert columns.parsed_time("26.01.2018 00:30").isoformat() == "2018-01-25T23:30:00+00:00"
+    assert columns.parse_time("26.01.2018 00:30").isoformat() == "2018-01-25T23:30:00+00:00"
 
 
 @pytest.mark.parametrize(
@@ -107,7 +110,7 @@ def test_a_map_that_is_not_there_is_refused(tmp_path):
 )
 def test_a_declared_unit_is_converted(quantity, unit, number, value):
     column = Column(name="x", quantity=quantity, unit=unit)
-    assert column.converted(np.array([number]))[0] == pytest.approx(value, rel=1e-5)
+    assert column.convert(np.array([number]))[0] == pytest.approx(value, rel=1e-5)
 
 
 def test_knots_and_kilonewtons_cannot_be_confused():
@@ -119,28 +122,28 @@ def test_knots_and_kilonewtons_cannot_be_confused():
 
 def test_a_current_that_comes_from_the_west_goes_to_the_east():
     column = Column(name="d", quantity="current_direction", unit="deg", sense="from")
-    turned = column.converted(np.array([270.0, 0.0, 360.0, 180.0, 412.0, -10.0]))
+    turned = column.convert(np.array([270.0, 0.0, 360.0, 180.0, 412.0, -10.0]))
     # what is no direction is not turned into one
     assert turned.tolist() == [90.0, 180.0, 180.0, 0.0, 412.0, -10.0]
 
 
 def test_waves_that_go_to_the_east_come_from_the_west():
     column = Column(name="d", quantity="wave_direction", unit="deg", sense="towards")
-    assert column.converted(np.array([90.0])).tolist() == [270.0]
+    assert column.convert(np.array([90.0])).tolist() == [270.0]
 
 
 def test_a_number_that_stands_for_no_value_is_missing():
     column = Column(name="h", quantity="hs", unit="m", missing=(99.0,))
-    assert np.isnan(column.converted(np.array([99.0, 1.0]))).tolist() == [True, False]
+    assert np.isnan(column.convert(np.array([99.0, 1.0]))).tolist() == [True, False]
 
 
 def test_a_profile_is_read_at_another_depth():
     profile = shipped_maps()["norkyst_current_profile"]
-    assert [column.name for column in profile.taken] == [
+    assert [column.name for column in profile.read_columns] == [
         "current_speed_5m",
         "current_direction_5m",
     ]
-    assert profile.taken_at(30.0).taken[0].name == "current_speed_30m"
+    assert profile.taken_at(30.0).read_columns[0].name == "current_speed_30m"
 
 
 def test_a_depth_that_the_profile_lacks_is_refused_with_those_it_has():

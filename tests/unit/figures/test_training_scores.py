@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from seacage.conventions import Origin
-from seacage.figures import Lessons, lessons_figure
+from seacage.figures import TrainingScores, training_scores_figure
 
 WAYS = {
-    "spread": Lessons(
+    "spread": TrainingScores(
         error=np.array([0.2, 0.4]), crps=np.array([0.1, 0.3]), coverage=np.array([0.95, 0.9])
     ),
-    "in a row": Lessons(
+    "in a row": TrainingScores(
         error=np.array([1.4, np.nan]), crps=np.array([1.2, np.nan]), coverage=np.array([0.3, 1.0])
     ),
 }
@@ -18,7 +18,7 @@ WAYS = {
 
 @pytest.fixture(scope="module")
 def figure():
-    return lessons_figure(["depth-1", "shackle-1"], WAYS, origin=Origin.VIRTUAL_FIELD)
+    return training_scores_figure(["depth-1", "shackle-1"], WAYS, origin=Origin.VIRTUAL_FIELD)
 
 
 def test_sensors_stand_from_top_to_bottom(figure):

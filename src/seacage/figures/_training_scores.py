@@ -1,4 +1,4 @@
-"""What different lessons make of the same sensors."""
+"""Scores of each sensor after training in different ways."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -21,8 +21,8 @@ _MOST = 2.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Lessons:
-    """How one way of teaching did at each sensor; NaN where it did not teach.
+class TrainingScores:
+    """Scores of one way of training at each sensor; NaN where it was not trained.
 
     Parameters
     ----------
@@ -38,10 +38,10 @@ class Lessons:
     coverage: Float[np.ndarray, " sensor"]
 
 
-def lessons_figure(
-    sensors: Sequence[str], ways: Mapping[str, Lessons], *, origin: Origin
+def training_scores_figure(
+    sensors: Sequence[str], ways: Mapping[str, TrainingScores], *, origin: Origin
 ) -> "Figure":
-    """Error, score and coverage of each sensor, one mark for each way of teaching.
+    """Error, score and coverage of each sensor, one mark for each way of training.
 
     Parameters
     ----------
