@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Self
 from seacage.conventions import InputError
 from seacage.twin._alarms import Alarm, Changed
 from seacage.twin._faults import FaultDetector
-from seacage.twin._saved_keys import saved_keys
+from seacage.twin._json_keys import json_keys
 
 if TYPE_CHECKING:
     from pydantic import TypeAdapter
@@ -38,7 +38,7 @@ class AlarmBook:
     detector: FaultDetector = field(default_factory=FaultDetector)
     format: str = FORMAT
 
-    __pydantic_config__ = saved_keys(detector="suspicion")
+    __pydantic_config__ = json_keys(detector="suspicion")
 
     @classmethod
     def new(cls) -> Self:

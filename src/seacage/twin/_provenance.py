@@ -6,7 +6,7 @@ from datetime import datetime
 from typing import Literal
 
 from seacage.conventions import Origin
-from seacage.twin._saved_keys import saved_keys
+from seacage.twin._json_keys import json_keys
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,4 +65,4 @@ class Provenance:
         default_factory=dict[str, TrainingWindow]
     )
 
-    __pydantic_config__ = saved_keys(training_windows="lessons")
+    __pydantic_config__ = json_keys(training_windows="lessons")

@@ -166,4 +166,4 @@ def test_a_cause_is_shown_while_it_lasts_and_names_stand_as_the_sentence_needs_t
     load = Alarm(name="load.bridle-7", active=True, value=0.85, worst=0.9)
     text = alarm_text(load, policy)
     assert text.title == "High load on bridle-7"
-    assert text.message.startswith("Bridle-7 bears 85 % of what it may bear, 90 % at worst")
+    assert text.message.startswith("Bridle-7 bears 85 % of its capacity, 90 % at worst")

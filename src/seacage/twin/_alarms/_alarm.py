@@ -6,7 +6,7 @@ from datetime import datetime
 from enum import StrEnum
 
 from seacage.conventions import InputError
-from seacage.twin._saved_keys import saved_keys
+from seacage.twin._json_keys import json_keys
 
 
 class Action(StrEnum):
@@ -168,7 +168,7 @@ class Alarm:
     comment: str = ""
     detail: str = ""
 
-    __pydantic_config__ = saved_keys(notified="said")
+    __pydantic_config__ = json_keys(notified="said")
 
     @property
     def kind(self) -> str:

@@ -54,10 +54,10 @@ class _Words:
 
 def _load(alarm: Alarm, limit: Limit) -> str:
     if alarm.value is None:
-        return "Its load is not known."
+        return "The load is not known."
     worst = f", {_share(alarm.worst)} at worst" if alarm.worst is not None and alarm.active else ""
     return (
-        f"{_capital(alarm.source)} bears {_share(alarm.value)} of what it may bear{worst}; the "
+        f"{_capital(alarm.source)} bears {_share(alarm.value)} of its capacity{worst}; the "
         f"alarm is raised at {_share(limit.raise_at)} and clears at {_share(limit.clear_at)}."
     )
 
@@ -73,11 +73,11 @@ def _volume(alarm: Alarm, limit: Limit) -> str:
 
 def _silent(alarm: Alarm, limit: Limit) -> str:
     if alarm.value is None:
-        return f"{_capital(alarm.source)} has never spoken."
+        return f"{_capital(alarm.source)} has not sent a sample yet."
     if not alarm.active:
-        return f"{_capital(alarm.source)} speaks; it last did {_time(alarm.value)} ago."
+        return f"{_capital(alarm.source)} sends samples, the last {_time(alarm.value)} ago."
     return (
-        f"{_capital(alarm.source)} has said nothing for {_time(alarm.value)}; "
+        f"{_capital(alarm.source)} has sent no sample for {_time(alarm.value)}; "
         f"{_time(limit.raise_at)} is the limit."
     )
 
@@ -119,20 +119,20 @@ _WORDS: Mapping[str, _Words] = {
     "input": _Words(
         title="No valid input from {source}",
         message=_either(
-            active="The twin has no valid input, so it gives no numbers.",
+            active="The twin has no valid input, so it predicts nothing.",
             calm="There is valid input.",
         ),
-        advice="Look at what the buoy says; clean or replace its sensor if its readings go on "
+        advice="Look at the buoy's readings; clean or replace its sensor if they go on "
         "failing their checks.",
     ),
     "domain": _Words(
-        title="Water beyond what the twin has learned",
+        title="Water outside the training domain",
         message=_either(
-            active="The water is beyond what the twin was trained on, so its numbers are "
-            "less sure.",
-            calm="The water is as the twin has learned it.",
+            active="The water is outside the twin's training domain, so its intervals are "
+            "wider and less reliable.",
+            calm="The water is in the training domain.",
         ),
-        advice="Trust measured loads more than computed ones. If such water is common, train "
+        advice="Rely on measured loads more than on computed ones. If such water is common, train "
         "the twin with a wider campaign.",
     ),
     "irregular": _Words(
@@ -147,13 +147,13 @@ _WORDS: Mapping[str, _Words] = {
     "bridle": _Words(
         title="{Source} has probably parted",
         message=_either(
-            active="{source} seems to bear nothing, and the other bridles of its corner bear "
+            active="{source} seems to bear no load, and the other bridles of its corner bear "
             "its share.",
             calm="{source} bears what is expected of it.",
         ),
         advice="Look at all lines of this corner at once, from a boat that keeps clear of it: "
-        "which of them it is, the sensors tell less surely than that it is one of them. The "
-        "others carry more until it is mended.",
+        "that it is one of them is more certain than which. The others carry more until it is "
+        "mended.",
     ),
     "net": _Words(
         title="The net may be torn",

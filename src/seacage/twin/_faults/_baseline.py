@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from seacage.twin._faults._residuals import ResidualBlock
 from seacage.twin._faults._student_t import kalman_update
-from seacage.twin._saved_keys import saved_keys
+from seacage.twin._json_keys import json_keys
 
 OFFSET_SD, DRAG_SD = 0.5, 0.1
 """Prior standard deviations of a sensor's offset, in its own ones, and of the relative change of
@@ -65,7 +65,7 @@ class Baseline:
     covariance: tuple[tuple[float, ...], ...] = ()
     mean_square: tuple[float, ...] = ()
 
-    __pydantic_config__ = saved_keys(mean_square="restless")
+    __pydantic_config__ = json_keys(mean_square="restless")
 
     def of(self, sensors: tuple[str, ...]) -> Self:
         """Return the same, or the prior of these sensors where it was estimated of others."""

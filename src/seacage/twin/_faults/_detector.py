@@ -18,7 +18,7 @@ from seacage.twin._faults._evidence import (
 from seacage.twin._faults._hypotheses import hypotheses
 from seacage.twin._faults._residuals import BlockSums, ResidualBlock, close_block
 from seacage.twin._faults._sensor import STUCK_S, SensorMonitor, new_samples
-from seacage.twin._saved_keys import saved_keys
+from seacage.twin._json_keys import json_keys
 from seacage.twin._state import TwinState
 from seacage.twin._twin import Twin
 
@@ -68,7 +68,7 @@ class FaultDetector:
     active: tuple[str, ...] = ()
     waited: int = 0
 
-    __pydantic_config__ = saved_keys(
+    __pydantic_config__ = json_keys(
         monitors="senses", sums="opened", baseline="usual", evidence="beliefs", active="told"
     )
 

@@ -11,7 +11,7 @@ from seacage.twin._faults._baseline import Baseline, Shift
 from seacage.twin._faults._hypotheses import Hypothesis
 from seacage.twin._faults._residuals import ResidualBlock
 from seacage.twin._faults._student_t import kalman_update, log_density
-from seacage.twin._saved_keys import saved_keys
+from seacage.twin._json_keys import json_keys
 
 BLOCK_WEIGHT = 0.6
 """Weight of a block's log-likelihood ratio, as residuals of neighbouring blocks are correlated."""
@@ -40,7 +40,7 @@ class Evidence:
     size: tuple[float, ...]
     covariance: tuple[tuple[float, ...], ...]
 
-    __pydantic_config__ = saved_keys(cusum="evidence")
+    __pydantic_config__ = json_keys(cusum="evidence")
 
     def reduced(self, by: float) -> Self:
         """Return a copy with a smaller sum."""

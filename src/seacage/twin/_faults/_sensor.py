@@ -8,8 +8,8 @@ from typing import Self
 
 from seacage.conventions import Flag
 from seacage.records import Sample
+from seacage.twin._json_keys import json_keys
 from seacage.twin._pairs import SI
-from seacage.twin._saved_keys import saved_keys
 from seacage.twin._state import Stream, latest_in
 
 STUCK_S = 1800.0
@@ -43,7 +43,7 @@ class SensorMonitor:
     count: int = 0
     error: float = 0.0
 
-    __pydantic_config__ = saved_keys(latest="heard")
+    __pydantic_config__ = json_keys(latest="heard")
 
     def interrupted(self) -> Self:
         """Return a copy without a newest reading."""

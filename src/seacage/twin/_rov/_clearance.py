@@ -29,7 +29,7 @@ class Clearance:
     position, normal
         The nearest point of the predicted net [m], and its normal out of the cage.
     expected
-        Distance of the point from the expected net, which is the predicted one less the twin's
+        Distance of the point from the expected net, the predicted one corrected by the twin's
         mean error; negative where that net lies beyond the point [m].
     sigma
         Standard deviation of that distance, across the net [m]. Where the twin has no discrepancy

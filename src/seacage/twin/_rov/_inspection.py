@@ -1,4 +1,4 @@
-"""A way along the net for a camera: rows or a spiral at a stand-off, facing the twines."""
+"""Inspection path of a camera along the net: rows or a spiral at a stand-off."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -14,15 +14,15 @@ from seacage.twin._rov._predicted_net import PredictedNet
 Side = Literal["inside", "outside"]
 Pattern = Literal["rows", "spiral"]
 
-MOST = 10_000
+MOST_WAYPOINTS = 10_000
 """Waypoints at most."""
 
 _ROUNDS = 8  # of moving waypoints to their stand-off; in a corner of the net each helps a little
 _TOO_NEAR = 0.9
-"""Of the stand-off: a waypoint that cannot be brought so far off is left out."""
+"""Least distance over the stand-off; a waypoint with less is left out."""
 
 _STRIDES = 3.0
-"""Steps, or rows, that two neighbours of a part lie apart at most."""
+"""Largest distance of two neighbours of a part, in steps or rows."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -38,12 +38,12 @@ class InspectionPath:
     row
         The row, or turn of the spiral, that it belongs to, from the top.
     part
-        Parts that the way falls into where waypoints were left out, or where the straight way
-        to the next would come nearer to the net than half the stand-off.
+        Number of its part: a new one begins where waypoints were left out, or where the straight
+        line to the next would come nearer to the net than half the stand-off.
     clearance
         Of each waypoint.
     left_out
-        Waypoints that no stand-off could be kept at: near the tip from inside, in a narrow
+        Number of waypoints without room for the stand-off: near the tip from inside, in a narrow
         fold, or at the surface.
     """
 
@@ -59,12 +59,12 @@ class InspectionPath:
 
     @property
     def heading(self) -> Float[np.ndarray, " waypoint"]:
-        """Where to look, clockwise from true north [deg]."""
+        """Heading of the camera, clockwise from true north [deg]."""
         return compass(self.facing[:, :2])
 
     @property
     def pitch(self) -> Float[np.ndarray, " waypoint"]:
-        """And how far upwards [deg]."""
+        """Pitch of the camera, upwards [deg]."""
         return np.rad2deg(np.arcsin(np.clip(self.facing[:, 2], -1.0, 1.0)))
 
 
@@ -79,11 +79,11 @@ def inspection_path(
     top: float = 1.0,
     below: float = 1.0,
 ) -> InspectionPath:
-    """Lay a way along a net, from its top to its tip.
+    """Plan an inspection path along a net, from its top to its tip.
 
-    It follows the net that is to be expected, the twin's known error taken off, and keeps the
-    stand-off to all of it; the clearance of each waypoint says how sure that is. Rows go round
-    and come back, each a little deeper; a spiral goes down as it goes round. The way between
+    It follows the expected net, the predicted one corrected by the twin's mean error, and keeps
+    the stand-off to all of it; each waypoint has the probability in its clearance. Rows go round
+    and come back, each a little deeper; a spiral goes down as it goes round. The path between
     two waypoints of a part is straight.
 
     Parameters
@@ -103,18 +103,20 @@ def inspection_path(
     top
         Depth of the first row, and of the shallowest waypoint [m].
     below
-        The distance that the waypoints' probability is about [m].
+        Distance of ``p_below`` in the clearance of the waypoints [m].
 
     Raises
     ------
     InputError
-        Sizes that are no sizes, more waypoints than can be laid, or none that keeps off.
+        A size that is not above 0, too many waypoints, or none with room for the stand-off.
     """
     _check(stand_off=stand_off, row_spacing=row_spacing, step=step)
     shape = net.expected_position
     turn, spoke, row = _course(net.cage, shape, pattern, row_spacing, step, top)
     sign = -1.0 if side == "inside" else 1.0
-    position = _kept_off(net.cage, shape, _on_net(net.cage, shape, turn, spoke), stand_off, sign)
+    position = _offset_points(
+        net.cage, shape, _on_net(net.cage, shape, turn, spoke), stand_off, sign
+    )
     near = net.cage.nearest(position, shape)
     keep = (_room(near, sign) > _TOO_NEAR * stand_off) & (position[:, 2] <= -0.5 * top)
     if not keep.any():
@@ -149,7 +151,7 @@ def _course(
 ) -> tuple[
     Float[np.ndarray, " waypoint"], Float[np.ndarray, " waypoint"], Int[np.ndarray, " waypoint"]
 ]:
-    """Place of each waypoint on the net, in rings down and spokes round, and its row."""
+    """Position of each waypoint on the net, in rings down and spokes round, and its row."""
     rings = _rings(cage, shape)
     middle = rings.mean(axis=1)
     down = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(rings, axis=0), axis=2).mean(axis=1)))
@@ -157,10 +159,10 @@ def _course(
     rows = max(2, 1 + round((down[-1] - start) / row_spacing))
     side = np.linalg.norm(rings - np.roll(rings, 1, axis=1), axis=2)
     around: Float[np.ndarray, " ring"] = side.sum(axis=1)
-    if rows * around.max() / step > MOST:
+    if rows * around.max() / step > MOST_WAYPOINTS:
         raise InputError(
-            f"inspection: {rows} rows with a waypoint every {step:g} m are more than {MOST} "
-            "waypoints. Ask for a longer step or wider rows."
+            f"inspection: {rows} rows with a waypoint every {step:g} m are more than "
+            f"{MOST_WAYPOINTS} waypoints. Ask for a longer step or wider rows."
         )
     at = start + (float(down[-1]) - start) * np.arange(rows) / (rows - 1)
     counts = np.maximum(np.ceil(np.interp(at, down, around) / step), 1).astype(int)
@@ -199,7 +201,7 @@ def _on_net(
     return above * (1.0 - down) + beneath * down
 
 
-def _kept_off(
+def _offset_points(
     cage: Cage,
     shape: Float[np.ndarray, "node 3"],
     base: Float[np.ndarray, "waypoint 3"],

@@ -18,14 +18,14 @@ from seacage.twin._rov._clearance import Clearance, PathClearance, sample_path
 from seacage.twin._twin import Twin
 
 PATCH_RINGS = 3
-"""Height of a patch of the net over which what the cases leave is one number."""
+"""Height of a patch of the net over which the scatter about the cases is one number."""
 
 POINTS_AT_ONCE = 2000
 """Points at once: each is compared with every case of the error."""
 
 
 class StaleError(SeacageError):
-    """The twin has no net to measure from, or only that of an old reading."""
+    """The twin has no valid net, or only that of an old reading."""
 
 
 # The expected net and its error's spread at some points, case by case.
@@ -92,9 +92,9 @@ class PredictedNet:
         twin, answered
             The twin and its answer.
         allow_stale
-            Take the last reading however old it is, as long as there was a sound one.
+            Accept the last sound reading however old it is.
         most_age_s
-            Refuse a reading older than this [s]; None for what the twin itself takes.
+            Refuse a reading older than this [s]; None for the twin's own timeout.
 
         Raises
         ------
@@ -124,7 +124,7 @@ class PredictedNet:
 
     @classmethod
     def under(cls, twin: Twin, water: SeaState | Metocean, *, t: datetime) -> Self:
-        """Take the net that a twin predicts under some water, as if it had just been read.
+        """Return the net that a twin predicts in some water, as if it had just been read.
 
         Parameters
         ----------
@@ -141,15 +141,15 @@ class PredictedNet:
 
     @property
     def expected_position(self) -> Float[np.ndarray, "node 3"]:
-        """Where the nodes are to be expected: as predicted, less the twin's known error [m]."""
+        """Expected positions of the nodes: as predicted, with the twin's mean error added [m]."""
         return self.node_position + self.error.shift
 
     def clearance(self, point: Float[np.ndarray, "point 3"], *, below: float = 1.0) -> Clearance:
-        """How far points are from the net.
+        """Clearance of points from the net.
 
         The distance is exact, to the predicted net as ``Cage.nearest`` has it. Probabilities
-        are about the expected net, displaced case by case along its normal: right to first
-        order in how far a case differs from what is expected.
+        are of the expected net, displaced case by case along its normal: exact to first order
+        in a case's difference from the expected net.
 
         Parameters
         ----------
@@ -163,7 +163,7 @@ class PredictedNet:
         return Clearance.joined([self._clearance(point[rows], below) for rows in blocks])
 
     def along(self, path: Float[np.ndarray, "corner 3"], *, below: float = 1.0) -> PathClearance:
-        """How far a path of straight lines is from the net, looked at all along.
+        """Clearance of a path of straight lines from the net, sampled all along.
 
         Parameters
         ----------

@@ -22,10 +22,10 @@ from seacage.surrogates import (
 )
 from seacage.twin._correction import Correction, Spread
 from seacage.twin._discrepancy import Discrepancy
+from seacage.twin._json_keys import json_keys
 from seacage.twin._metocean import Input
 from seacage.twin._models import Models
 from seacage.twin._provenance import Provenance
-from seacage.twin._saved_keys import saved_keys
 from seacage.twin._state import StreamTimeouts
 
 FORMAT = "seacage twin"
@@ -59,7 +59,7 @@ class Header:
     timeouts: StreamTimeouts
     provenance: Provenance
 
-    __pydantic_config__ = saved_keys(timeouts="watch")
+    __pydantic_config__ = json_keys(timeouts="watch")
 
 
 def to_parts(

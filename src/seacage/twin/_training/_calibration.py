@@ -112,7 +112,7 @@ def calibrate(model: Correction, training: CageTraining, sensor: str) -> Correct
     model = _with_white_noise(model, training, pairs)
     references = training.references(pairs) if span_s(pairs) < SHORT else []
     if references:
-        others = [_held_out_of_reference(training, name, pairs) for name in references]
+        others = [_reference_errors(training, name, pairs) for name in references]
         days = sum(_days_outside(training.sensors[name].pairs, pairs) for name in references)
         return replace(model, spread=spread_by_others(model, others, days))
     count = independent_count(pairs)
@@ -189,7 +189,7 @@ def _with_white_noise(model: Correction, training: CageTraining, pairs: Pairs) -
     return replace(model, spread=replace(model.spread, white=white_noise(error, rows.time)))
 
 
-def _held_out_of_reference(training: CageTraining, sensor: str, short: Pairs) -> HeldOut:
+def _reference_errors(training: CageTraining, sensor: str, short: Pairs) -> HeldOut:
     """Return held-out readings of a sensor, by a model fitted within a short window."""
     first, last = (
         round(one.astype("datetime64[s]").astype(int) / 3600) for one in short.time[[0, -1]]

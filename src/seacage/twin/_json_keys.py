@@ -1,7 +1,7 @@
 """Keys of saved JSON that differ from the names of the fields."""
 
 
-def saved_keys(**keys: str) -> dict[str, object]:
+def json_keys(**keys: str) -> dict[str, object]:
     """Return the ``__pydantic_config__`` of a dataclass whose fields are saved under other keys.
 
     Parameters
