@@ -47,7 +47,7 @@ TOGETHER = 30
 
 
 def learned(points: int = 200) -> Twin:
-    """A twin of the full cage, whose sensors amendments so many readings each."""
+    """A twin of the full cage, whose sensors were trained by so many readings each."""
     cage = Cage.named("ace")
     campaign = stand_in_campaign(cage, stand_in_seas(40 if ONCE else 300))
     points = min(points, 40) if ONCE else points
@@ -218,7 +218,7 @@ def sample_costs(twin: Twin, folder: Path) -> dict[str, float]:
 def tell_costs(twin: Twin) -> None:
     """Print what one tick and one sample cost."""
     with tempfile.TemporaryDirectory() as folder:
-        few = f"a tick, new water, sensors that amendments {FEW} readings"
+        few = f"a tick, new water, sensors trained by {FEW} readings"
         costs = {**tick(twin), few: tick(learned(FEW))["a tick, new water"]}
         costs |= sample_costs(twin, Path(folder))
     print("one cage of 321 nodes and 9 streams, time of the processor")

@@ -13,7 +13,7 @@ import numpy as np
 from seacage.cage import Cage
 from seacage.campaigns import Plan, TruthParameters, run_campaign, true_shapes
 from seacage.ocean import SeaState
-from seacage.studies import judged_points, learned_discrepancy
+from seacage.studies import learned_discrepancy, score_points
 from seacage.twin import PredictedNet, Training, inspection_path, train
 
 # A coarse net and few simulations, for quickness: some ten seconds on one core.
@@ -49,8 +49,8 @@ print(f"by {path.clearance.distance[path.closest]:.2f} m; nearer than 1 m with {
 way = inspection_path(net, stand_off=2.0, side="inside", row_spacing=3.0, step=2.0)
 print(f"inspection: {len(way)} waypoints, the first looking {way.heading[0]:.0f} degrees")
 
-# The probabilities judged on days that did not teach them.
-judged = judged_points(twin, true_shapes(cage, hidden=TruthParameters.read(), seeds=(9,), cases=20))
+# The probabilities scored on days that they were not trained on.
+scored = score_points(twin, true_shapes(cage, hidden=TruthParameters.read(), seeds=(9,), cases=20))
 print("virtual field: points, foretold, happened")
-for count, foretold, happened in judged.table(bins=5):
+for count, foretold, happened in scored.table(bins=5):
     print(f"{count:6d}  {foretold:.2f}  {happened:.2f}")

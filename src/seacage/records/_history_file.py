@@ -35,7 +35,7 @@ _CELL_METHODS = {
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Quantity:
+class _Variable:
     """What varies: its dimensions but time, its unit, and what it is."""
 
     dims: tuple[str, ...]
@@ -45,24 +45,24 @@ class _Quantity:
 
 
 _QUANTITIES = {
-    "node_position": _Quantity(
+    "node_position": _Variable(
         dims=("node", "axis"), units="m", long_name="position of the net's nodes"
     ),
-    "bridle_tension": _Quantity(dims=("bridle",), units="N", long_name="tension of the bridles"),
-    "net_force": _Quantity(dims=("axis",), units="N", long_name="load of the water on the netting"),
-    "volume": _Quantity(dims=(), units="m3", long_name="volume inside the net"),
+    "bridle_tension": _Variable(dims=("bridle",), units="N", long_name="tension of the bridles"),
+    "net_force": _Variable(dims=("axis",), units="N", long_name="load of the water on the netting"),
+    "volume": _Variable(dims=(), units="m3", long_name="volume inside the net"),
 }
 
 _SERIES = {
-    "node_position": _Quantity(
+    "node_position": _Variable(
         dims=("time", "kept_node", "axis"),
         units="m",
         long_name="position of the nodes that the series kept",
     ),
-    "bridle_tension": _Quantity(
+    "bridle_tension": _Variable(
         dims=("time", "bridle"), units="N", long_name="tension of the bridles"
     ),
-    "surface_elevation": _Quantity(
+    "surface_elevation": _Variable(
         dims=("time",),
         units="m",
         long_name="height of the water's surface at the cage's centre",
@@ -277,7 +277,7 @@ def _scalars(record: HistoryRecord) -> dict[str, Any]:
     return variables
 
 
-def _attributes(known: _Quantity) -> dict[str, str]:
+def _attributes(known: _Variable) -> dict[str, str]:
     attributes = {"units": known.units, "long_name": known.long_name}
     if known.standard_name:
         attributes["standard_name"] = known.standard_name
