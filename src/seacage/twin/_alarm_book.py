@@ -7,7 +7,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Self
 
 from seacage.conventions import InputError
-from seacage.twin._alarms import Alarm, Changed
+from seacage.twin._alarms import Alarm
 from seacage.twin._faults import FaultDetector
 from seacage.twin._json_keys import json_keys
 
@@ -78,10 +78,6 @@ class AlarmBook:
     def with_alarm(self, alarm: Alarm) -> Self:
         """Return a copy in which one alarm has changed."""
         return replace(self, alarms={**self.alarms, alarm.name: alarm})
-
-    def changed(self, changed: Changed) -> Self:
-        """Return a copy with an alarm as a person's action left it."""
-        return self.with_alarm(changed[0])
 
     def at(self, now: datetime, *, jump_s: float) -> Self:
         """Return the book for an assessment at this time.

@@ -96,7 +96,7 @@ class Metocean:
         return self.rows(first), place.ravel()
 
     def same(self, other: Self) -> bool:
-        """Whether the other holds the same numbers; what neither knows is the same."""
+        """Whether the other holds the same numbers; two unknown ones are the same."""
         return all(
             np.array_equal(mine, theirs, equal_nan=True)
             for mine, theirs in (

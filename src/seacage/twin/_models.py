@@ -59,7 +59,7 @@ class Models:
     Parameters
     ----------
     cage
-        As it was simulated; says where the sensors are.
+        As it was simulated, with the places of the sensors.
     inputs
         Inputs of the models.
     domain
@@ -200,7 +200,7 @@ class Models:
         shape = parts.pop("shape")
         numbers = {f"{name}_mean": one.mean for name, one in parts.items()}
         numbers |= {f"{name}_std": one.std for name, one in parts.items()}
-        # A rope never pushes, whatever a Gaussian says.
+        # A rope never pushes, though a Gaussian has negative values.
         for name in ("bridle_mean", "bridle_low_mean"):
             numbers[name] = np.maximum(numbers[name], 0.0)
         return numbers | {

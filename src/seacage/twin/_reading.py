@@ -37,7 +37,7 @@ def reading_at(
     """Return the buoy's newest value of each key, if it is sound and fresh.
 
     The newest reading governs: where it failed its checks there is no input until the next
-    good one, for an older value says nothing about the water that the buoy could not measure.
+    good one, as an older value is no measurement of the water since.
     One that is ahead of the clock does not govern yet.
 
     Parameters

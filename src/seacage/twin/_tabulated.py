@@ -152,7 +152,7 @@ class TabulatedTwin:
         return Loads(
             valid=valid,
             in_domain=inside,
-            # A rope never pushes, whatever a Gaussian says.
+            # A rope never pushes, though a Gaussian has negative values.
             bridle_tension=Prediction(mean=np.maximum(best, 0.0), std=best_std),
             bridle_low=np.maximum(low, 0.0),
             sensor=Prediction(mean=sensor, std=sensor_std),

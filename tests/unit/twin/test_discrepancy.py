@@ -90,5 +90,5 @@ def test_nothing_teaches_nothing():
 
 
 def test_a_net_with_a_discrepancy_differs_from_one_without():
-    assert net_in(erring_twin(cases=10), 0.4, 0.1).learned == "virtual field"
-    assert net_in(stand_in_twin(), 0.4, 0.1).learned is None
+    assert net_in(erring_twin(cases=10), 0.4, 0.1).error_origin == "virtual field"
+    assert net_in(stand_in_twin(), 0.4, 0.1).error_origin is None

@@ -122,14 +122,14 @@ def _about(net: PredictedNet, frame: FrameName, below: float) -> dict[str, Any]:
         "frame": frame,
         "in_domain": net.in_domain,
         "state_age_s": round(net.age_s, 3),
-        "shape_error": None if net.learned is None else str(net.learned),
+        "shape_error": None if net.error_origin is None else str(net.error_origin),
         "below_m": below,
     }
 
 
 def _known(net: PredictedNet, values: Float[np.ndarray, " point"]) -> list[Any]:
     """Say what rests on the shape's error; nothing where that is not known."""
-    return [None] * len(values) if net.learned is None else _rounded(values)
+    return [None] * len(values) if net.error_origin is None else _rounded(values)
 
 
 def _rounded(values: Float[np.ndarray, "point *rest"]) -> list[Any]:

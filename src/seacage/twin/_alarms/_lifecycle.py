@@ -62,7 +62,7 @@ def remark(alarm: Alarm, *, who: str, now: datetime, why: str) -> Changed:
     InputError
         The comment is empty.
     """
-    _demand(alarm, why, "a comment without words says nothing")
+    _demand(alarm, why, "a comment without words is refused")
     alarm = replace(alarm, comment=why)
     return alarm, (alarm.line(Action.COMMENTED, now, who=who, why=why),)
 

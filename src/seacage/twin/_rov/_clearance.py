@@ -33,7 +33,7 @@ class Clearance:
         mean error; negative where that net lies beyond the point [m].
     sigma
         Standard deviation of that distance, across the net [m]. Where the twin has no discrepancy
-        (``PredictedNet.learned`` is None) it is the emulator's own, about the simulations, and
+        (``PredictedNet.error_origin`` is None) it is the emulator's own, about the simulations, and
         the probabilities below are no statement about the true net.
     below
         Distance of ``p_below`` [m].

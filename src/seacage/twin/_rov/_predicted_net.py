@@ -59,7 +59,7 @@ class PredictedNet:
         Standard deviation of the surrogate [m].
     error
         Distribution of the prediction's error, beyond the surrogate's.
-    learned
+    error_origin
         Origin of the true shapes behind ``error``; None where there are none.
     t, age_s
         The time of the prediction, and the age of the reading it rests on [s].
@@ -71,7 +71,7 @@ class PredictedNet:
     node_position: Float[np.ndarray, "node 3"]
     node_sigma: Float[np.ndarray, " node"]
     error: ShapeError
-    learned: Origin | None
+    error_origin: Origin | None
     t: datetime
     age_s: float
     in_domain: bool
@@ -116,7 +116,7 @@ class PredictedNet:
             node_position=answer.node_position[0],
             node_sigma=answer.node_sigma[0],
             error=known.at(twin.cage, velocity) if known else ShapeError.none(twin.cage),
-            learned=known.origin if known else None,
+            error_origin=known.origin if known else None,
             t=answered.t,
             age_s=age_s,
             in_domain=bool(answer.in_domain[0]),

@@ -63,7 +63,7 @@ def write_folder(
 def read_folder(
     folder: Path, *, key: bytes | None = None
 ) -> tuple[dict[str, object], dict[str, np.ndarray]]:
-    """Read settings and arrays, once every byte is what the manifest says.
+    """Read settings and arrays, once every byte agrees with the manifest.
 
     With a key the manifest must be signed by it; without one a signature is passed by.
 

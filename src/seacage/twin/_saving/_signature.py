@@ -1,4 +1,4 @@
-"""Signatures of twins: who holds the key of a site can say which twins it may serve."""
+"""Signatures of twins: the holder of a site's key decides which twins it may serve."""
 
 import hashlib
 import hmac
@@ -38,5 +38,5 @@ def signature(key: bytes, manifest: bytes) -> bytes:
 
 
 def is_signed(key: bytes, manifest: bytes, signed: bytes) -> bool:
-    """Whether a signature is that of a manifest, in a time that tells nothing of where it fails."""
+    """Whether a signature is that of a manifest, compared in constant time."""
     return hmac.compare_digest(signature(key, manifest), signed)
