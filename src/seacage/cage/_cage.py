@@ -242,12 +242,12 @@ class Cage:
     def nearest(
         self, point: Float[np.ndarray, "point 3"], node_position: Float[np.ndarray, "node 3"]
     ) -> Nearest:
-        """Where a shape of the net is nearest to each point [m]."""
+        """Nearest place to each point on a shape of the net [m]."""
         return nearest_on_net(point, node_position, self.panels)
 
     @property
     def plane(self) -> TangentPlane:
-        """Where the cage lies on the Earth; refused where its file does not say."""
+        """Latitude and longitude of the cage; refused where its file does not say."""
         if self.site.latitude is None or self.site.longitude is None:
             raise InputError(
                 f"Cage {self.name}: its file does not say where it lies. Add latitude_deg and "
@@ -274,7 +274,7 @@ class Cage:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What is not as the file has it: bridles that were moved to the nearest spoke."""
+        """Differences from the file: bridles that were moved to the nearest spoke."""
         held = (90.0 - 360.0 * self.bridle_nodes / self.spokes) % 360.0
         moved = [
             f"{name} from {bearing:g}° to {now:g}°"

@@ -39,7 +39,7 @@ class Named:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Section(Named):
-    """What a ring, a tie or a line is made of: its cross-section."""
+    """Cross-section of a ring, a tie or a line."""
 
     name: str = _name("what rings, ties and lines call it")
     kind: str = _choice("'pipe': bears a push, floats at the surface; 'rope': neither", ROPE)
@@ -79,7 +79,7 @@ class Section(Named):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Twine(Named):
-    """What a net is knitted of: square mesh without knots."""
+    """Twine and mesh of a net: square mesh without knots."""
 
     name: str = _name("what nets call it")
     diameter: float = quantity("m", "of a twine", above=True)

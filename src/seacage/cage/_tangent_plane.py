@@ -1,4 +1,4 @@
-"""Where a cage lies on the Earth: latitude and longitude against its own east and north."""
+"""Tangent plane of a cage: latitude and longitude against its own east and north."""
 
 import math
 from dataclasses import dataclass

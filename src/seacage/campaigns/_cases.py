@@ -1,4 +1,4 @@
-"""How the cases of a campaign are answered, and the work of one block of them."""
+"""Simulator of a campaign's cases, and the work of one block of them."""
 
 import time
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ _BLOCK = {"simulate": 16, "settle": 32}
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Simulator:
-    """What answers the cases of a campaign: all that their numbers depend on beside cage and sea.
+    """Simulator of a campaign's cases: all that their numbers depend on beside cage and sea.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ class CaseBlock:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Answers:
-    """What a worker sends back: variables of the store, and what they cost.
+    """Results of a block: variables of the store, and their cost.
 
     Attributes
     ----------

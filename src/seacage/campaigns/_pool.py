@@ -50,7 +50,7 @@ def map_tasks(
     workers
         Processes at most.
     progress
-        Called now and then, while an answer is waited for, with the sum of what the tasks say
+        Called now and then, while an answer is waited for, with the sum that the tasks report
         by ``report_progress``.
     """
     workers = min(workers, len(tasks))
@@ -91,7 +91,7 @@ def map_tasks(
 
 
 def report_progress(amount: float) -> None:
-    """Say, from within a task, how much of it is done, in whatever whoever listens counts."""
+    """Report, from within a task, how much of it is done, in the unit that the caller sums."""
     _PLACE.report_progress(amount)
 
 

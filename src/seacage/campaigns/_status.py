@@ -1,4 +1,4 @@
-"""How far a campaign is, what failed in it, and what it cost."""
+"""Progress of a campaign, its failed cases and its cost."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ from seacage.records import (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CampaignStatus:
-    """How far a campaign is.
+    """Progress of a campaign.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ class CampaignStatus:
 
 
 def campaign_status(out: str | Path) -> CampaignStatus:
-    """How far the campaign in a folder is, whether it is running or was stopped.
+    """Progress of the campaign in a folder, whether it is running or was stopped.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""How long work tells its caller where it is."""
+"""Progress of long work, reported to its caller."""
 
 from collections.abc import Callable
 
@@ -7,4 +7,4 @@ Progress = Callable[[str, int, int], None]
 
 
 def no_progress(stage: str, done: int, total: int) -> None:
-    """Where nobody asked for progress."""
+    """Ignore progress, where no callback is given."""

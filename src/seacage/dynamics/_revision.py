@@ -1,4 +1,4 @@
-"""Which physics this is: what was computed with another revision is not gone on with."""
+"""Revision of the physics; a campaign is not continued under another revision."""
 
 PHYSICS = 2
 """Revision of the physics: raised by every change to a number (``changes/*.physics.md``)."""

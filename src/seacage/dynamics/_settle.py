@@ -18,7 +18,7 @@ from seacage.ocean import SeaState, wave_velocity_variance
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Response:
-    """How a cage answers: one case without the leading axis, or several with it.
+    """Response of a cage to a current: one case without the leading axis, or several with it.
 
     Attributes
     ----------
@@ -36,13 +36,13 @@ class Response:
         Of ``seacage.conventions.Result``: a case that did not converge carries its last
         shape, one that diverged NaN.
     equilibria
-        How many different ones were found from the starts that were asked for.
+        Number of different equilibria that were found from the given number of starts.
     equilibrium_spread
         How far a node's places in two of them are apart at most; 0 where there is one [m].
     unstable
         Whether the cage would creep away from this equilibrium on its own, proved by the
         sign of the stiffness matrix's determinant. False proves nothing: a net may still
-        sway about it, and only ``simulate`` tells.
+        sway about it, which only ``simulate`` shows.
     """
 
     node_position: Float[np.ndarray, "*case node 3"]

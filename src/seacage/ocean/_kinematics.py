@@ -18,7 +18,7 @@ the motion below the first metre."""
 def wavenumber(
     angular_frequency: Float[np.ndarray, "*n"], *, depth: float
 ) -> Float[np.ndarray, "*n"]:
-    """Of a linear wave: the root k of omega^2 = g k tanh(k depth) [1/m].
+    """Wave number of a linear wave: the root k of omega^2 = g k tanh(k depth) [1/m].
 
     Parameters
     ----------
@@ -239,7 +239,7 @@ def _angle(
 def pressure_head(
     waves: Waves, position: Float[np.ndarray, "*#n 3"], time: Float[np.ndarray, "*#n"]
 ) -> Float[np.ndarray, "*n"]:
-    """What the waves add to the pressure in the water, as metres of it [m].
+    """Wave pressure in the water, as metres of water [m].
 
     Below still water as in linear theory, above it as at still water.
 
@@ -275,7 +275,7 @@ def _stretch(
 def _decay(
     k: Float[np.ndarray, " wave"], z: Float[np.ndarray, "*n"], depth: float
 ) -> tuple[Float[np.ndarray, "*n wave"], Float[np.ndarray, "*n wave"]]:
-    """How velocities fade: cosh k(z+h) / sinh kh and sinh k(z+h) / sinh kh, z in [-h, 0] [-].
+    """Decay of velocities: cosh k(z+h) / sinh kh and sinh k(z+h) / sinh kh, z in [-h, 0] [-].
 
     Written with decaying exponentials: cosh itself overflows in deep water.
     """

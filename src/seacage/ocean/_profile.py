@@ -1,4 +1,4 @@
-"""How a current changes with depth."""
+"""Current profile over depth."""
 
 from dataclasses import dataclass
 from itertools import pairwise

@@ -1,4 +1,4 @@
-"""How the energy of a sea is spread over frequency: JONSWAP and Pierson-Moskowitz."""
+"""Energy of a sea over frequency: JONSWAP and Pierson-Moskowitz."""
 
 import math
 

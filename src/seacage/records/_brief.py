@@ -1,4 +1,4 @@
-"""How a record prints itself: names and sizes, and none of its numbers."""
+"""Short text of a record: names and sizes, and none of its numbers."""
 
 from collections.abc import Mapping
 from dataclasses import fields

@@ -1,4 +1,4 @@
-"""What a NetCDF file asks for by its own description, before any of its values are read."""
+"""Check of the memory that a NetCDF file declares, before any of its values are read."""
 
 import importlib
 import math
@@ -19,7 +19,7 @@ NETCDF_TROUBLE = (
     MemoryError,
     NotImplementedError,
 )
-"""What the libraries raise at a damaged file."""
+"""Errors that the libraries raise at a damaged file."""
 
 _FILE_BYTES = 4 << 30
 _DECLARED_BYTES = 2 << 30

@@ -19,7 +19,7 @@ _USABLE = (Flag.GOOD, Flag.NOT_EVALUATED, Flag.SUSPECT)
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Record:
-    """What one stream said, in house units, at the times it said it.
+    """Values of one stream over time, in house units.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ class Record:
     __repr__ = brief
 
     def __len__(self) -> int:
-        """How many times the stream spoke."""
+        """Number of times."""
         return len(self.time)
 
     @property

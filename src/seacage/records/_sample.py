@@ -13,7 +13,7 @@ _STREAM = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,63}")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sample:
-    """What one stream said at one time, in house units.
+    """Values of one stream at one time, in house units.
 
     Parameters
     ----------

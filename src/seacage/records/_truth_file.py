@@ -1,4 +1,4 @@
-"""What no sensor of a virtual field sees, as three CF-NetCDF files beside its truth."""
+"""True means of a virtual field, as three CF-NetCDF files beside its truth."""
 
 # xarray leaves parts of its signatures untyped.
 # pyright: reportUnknownMemberType=false

@@ -1,4 +1,4 @@
-"""What goes wrong at a chosen time, so that alarms can be tried."""
+"""Events: faults at a chosen time, so that alarms can be tried."""
 
 import math
 import re
@@ -36,7 +36,7 @@ class Event:
     net-hole    ring-3/spoke-8  the netting from there on is gone, ``size`` panels wide
                                 and high; ring 0 is the collar, spoke 0 points east
     drift       depth-2         the depth sensor drifts by ``size`` metres a day
-    stuck       shackle-1       the sensor, or the buoy, repeats what it said
+    stuck       shackle-1       the sensor, or the buoy, repeats its last reading
     silent      buoy-1          the buoy, or the sensor, says nothing
     ==========  ==============  ========================================================
 
@@ -127,7 +127,7 @@ class Event:
         return cls(**_arguments(table | dict(word.split("=", 1) for word in words[3:]), text))
 
     def damage(self, cage: Cage) -> Damage | None:
-        """What breaks on the cage; None for an event of a sensor or of the buoy.
+        """Damage to the cage; None for an event of a sensor or of the buoy.
 
         Raises
         ------
@@ -140,7 +140,7 @@ class Event:
         return Damage(hole=_hole(self, cage)) if self.kind == "net-hole" else None
 
     def apply_to(self, record: Record) -> Record:
-        """What a stream says when this has met it; another's stream stays as it is.
+        """Apply the event to a stream's record; the record of another stream stays as it is.
 
         What a sensor says of damage to the cage comes from the simulation, so that changes no
         stream here.
@@ -233,7 +233,7 @@ def _are_tables(entries: object) -> bool:
 
 
 def _arguments(table: Mapping[str, object], where: str) -> dict[str, Any]:
-    """What ``Event`` takes, from the keys that a file or a shell has for it."""
+    """Arguments of ``Event``, from the keys that a file or a shell has for it."""
     kind = str(table.get("kind"))
     size_key, _ = _USUAL_SIZE.get(kind, ("size", 0.0))
     known = ("kind", "target", "at", size_key, "until")

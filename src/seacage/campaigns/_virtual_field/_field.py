@@ -38,7 +38,7 @@ FieldMethod = Literal["simulate", "settle"]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class VirtualField:
-    """What the virtual sensors said, and what was true.
+    """Readings of the virtual sensors, and the truth behind them.
 
     Parameters
     ----------

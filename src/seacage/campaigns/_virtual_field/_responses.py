@@ -25,7 +25,7 @@ _WRAP = 4
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Responses:
-    """What every sensor of a cage would read without error, over currents and growths.
+    """Error-free readings of every sensor of a cage, over currents and growths.
 
     Parameters
     ----------

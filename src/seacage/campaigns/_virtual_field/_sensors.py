@@ -1,4 +1,4 @@
-"""Virtual sensors and the radio: what is true, as imperfect instruments tell it."""
+"""Virtual sensors and the radio: the truth as imperfect instruments report it."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -25,7 +25,7 @@ Values = Float[np.ndarray, " t"]
 
 
 def radio_silence(hidden: TruthParameters, time: Times, rng: np.random.Generator) -> Spells:
-    """When no stream is received, between the first and the last of some times."""
+    """Spells in which no stream is received, between the first and the last of some times."""
     outages = hidden.outages
     return Spells.by_chance(
         time, rng, per_week=outages.radio_losses_per_week, mean_h=outages.radio_loss_mean_h
@@ -56,7 +56,7 @@ def sense(
     silence: Spells | None = None,
     events: Sequence[Event] = (),
 ) -> Record:
-    """What a sensor made of the truth, quality flags included.
+    """Record of a sensor made from the truth, quality flags included.
 
     A shackle has a gain, a bias and noise, and lives in its windows. A depth sensor takes
     waves and weather for depth, has noise and drifts. Both get stuck, spike, lose single
@@ -104,10 +104,10 @@ def receive_buoy(
     silence: Spells | None = None,
     events: Sequence[Event] = (),
 ) -> Record:
-    """A buoy's record as it is received: its word, but for what goes wrong on the way.
+    """A buoy's record as it is received, with the faults of its way.
 
     It gets stuck, its speed spikes, single readings are lost, and it falls silent. It adds no
-    noise: the buoy's own is in its word.
+    noise: the buoy's own is in its record.
 
     Parameters
     ----------
@@ -152,7 +152,7 @@ def _receive(
     silence: Spells | None,
     alive: Spells | None = None,
 ) -> Record:
-    """What arrives of a stream, with the flags it deserves.
+    """Record of a stream as it arrives, with its quality flags.
 
     Spells are drawn over all its times, not those that an event left, so that an event that
     silences it moves no other fault.

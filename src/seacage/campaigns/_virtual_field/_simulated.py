@@ -85,7 +85,7 @@ class FieldRequest:
 
     @cached_property
     def weather(self) -> Weather:
-        """What the cage meets."""
+        """True weather at the cage."""
         return true_weather(
             self.buoy,
             self.waves,
@@ -97,7 +97,7 @@ class FieldRequest:
 
     @cached_property
     def stretches(self) -> tuple[Stretch, ...]:
-        """Those to simulate."""
+        """Stretches to simulate."""
         each, _ = self.timetable.readings(self.every)
         damages = [(event, event.damage(self.cage)) for event in self.events]
         return cut(
@@ -114,7 +114,7 @@ class FieldRequest:
 
     @property
     def identity(self) -> dict[str, object]:
-        """What no two fields with other stretches share. Which are simulated is none of it."""
+        """Identity of the field's stretches, whichever of them are simulated."""
         cutting = {key: value for key, value in asdict(self.timetable).items() if key != "one_in"}
         return {
             "cage": self.cage.to_toml(),
@@ -129,7 +129,7 @@ class FieldRequest:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Truth:
-    """What was true along a whole record; NaN where nothing was simulated.
+    """Truth along a whole record; NaN where nothing was simulated.
 
     Attributes
     ----------
@@ -153,11 +153,11 @@ class Truth:
 
     @property
     def available(self) -> Bool[np.ndarray, " reading"]:
-        """Where something is known."""
+        """Mask of the readings that were simulated."""
         return np.isfinite(self.bridle_tension[:, 0])
 
     def readings(self, cage: Cage) -> Float[np.ndarray, "reading sensor"]:
-        """What each sensor of the cage would say without error [m or kN]."""
+        """Error-free readings of each sensor of the cage [m or kN]."""
         bridles = [shackle.bridle for shackle in cage.shackles]
         tension = self.bridle_tension[:, bridles].astype(np.float64) / 1e3
         return np.hstack([-self.depth_position[..., 2].astype(np.float64), tension])

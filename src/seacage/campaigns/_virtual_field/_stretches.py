@@ -49,7 +49,7 @@ class TrueCage:
 
     @classmethod
     def of(cls, cage: Cage, hidden: TruthParameters) -> Self:
-        """What a drawn cage truly is."""
+        """True cage behind a drawn one."""
         true, times = hidden.fine_cage(cage), hidden.netting.refined
         rings, spokes = np.divmod(np.arange(cage.node_count - 1), cage.spokes)
         drawn = np.append(true.spokes * times * rings + times * spokes, true.bottom_node)
@@ -76,7 +76,7 @@ class Group:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Passed:
-    """What was seen of the cage along one stretch, in single precision.
+    """Samples of the cage along one stretch, in single precision.
 
     Attributes
     ----------
@@ -268,7 +268,7 @@ def simulate_group(group: Group) -> list[Passed]:
 
 
 def _weather_of(weather: Weather, stretch: Stretch, timetable: Timetable, every: float) -> Weather:
-    """What a stretch meets, its spin-up included."""
+    """Weather of a stretch, its spin-up included."""
     start = stretch.first * every
     return weather.between(start - timetable.spin_up, start + timetable.stretch)
 

@@ -1,4 +1,4 @@
-"""How the time of a virtual field is cut into stretches, and which of them are simulated."""
+"""Timetable of a virtual field: its stretches of time, and those that are simulated."""
 
 import math
 from collections.abc import Sequence
@@ -16,7 +16,7 @@ from seacage.records import Record
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Timetable:
-    """How a virtual field is simulated: in stretches of time, many side by side.
+    """Stretches of time in which a virtual field is simulated, many side by side.
 
     Parameters
     ----------

@@ -17,7 +17,7 @@ from seacage.dynamics import Law
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NettingTruth:
-    """How the true net differs."""
+    """Differences of the true net from the drawn one."""
 
     elastic_modulus_pa: float
     refined: int
@@ -25,7 +25,7 @@ class NettingTruth:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FoulingTruth:
-    """How growth adds solidity."""
+    """Growth of the net and the solidity that it adds."""
 
     shallow_least: float
     shallow_most: float
@@ -54,7 +54,7 @@ class FoulingTruth:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BridlesTruth:
-    """How uneven the lines are."""
+    """Scatter of the bridles' lengths."""
 
     length_sd_m: float
     seed: int
@@ -62,7 +62,7 @@ class BridlesTruth:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LinesTruth:
-    """How ropes stiffen under load."""
+    """Stiffening of ropes under load."""
 
     stiffer_from_strain: float
     stiffer_share: float
@@ -70,7 +70,7 @@ class LinesTruth:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProfileTruth:
-    """How the current changes with depth, and how that wanders."""
+    """Profile of the current over depth, and its slow random change."""
 
     depth_m: tuple[float, ...]
     factor: tuple[float, ...]
@@ -82,7 +82,7 @@ class ProfileTruth:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WavesTruth:
-    """What the waves at the cage are like."""
+    """Waves at the cage."""
 
     components: int
     spreading: float
@@ -92,7 +92,7 @@ class WavesTruth:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CurrentTruth:
-    """What happens to the current between the buoy and the cage."""
+    """Change of the current between the buoy and the cage."""
 
     factor_least: float
     factor_most: float
@@ -108,7 +108,7 @@ class CurrentTruth:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BuoyTruth:
-    """How far the buoy's numbers are off, and a reading that is wrong."""
+    """Errors of the buoy's readings."""
 
     speed_sd_m_s: float
     direction_sd_deg: float
@@ -140,7 +140,7 @@ class DepthTruth:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OutagesTruth:
-    """What goes wrong with every sensor now and then."""
+    """Faults that every sensor has now and then."""
 
     lost_share: float
     gaps_per_week: float

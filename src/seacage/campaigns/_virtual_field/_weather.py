@@ -81,7 +81,7 @@ class TrueWaves:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Weather(AbstractWeather):
-    """What truly passes the cage, in seconds since the buoy's first time.
+    """True weather at the cage, in seconds since the buoy's first time.
 
     Before that time and after the buoy's last, current and sea are as they are there.
 
@@ -136,7 +136,7 @@ class Weather(AbstractWeather):
     def pressure_head(
         self, second: Float[np.ndarray, " t"], position: Float[np.ndarray, "t *sensor 3"]
     ) -> Float[np.ndarray, "t *sensor"]:
-        """What the waves add to the pressure at places that move, as metres of water [m].
+        """Wave pressure at places that move, as metres of water [m].
 
         Parameters
         ----------

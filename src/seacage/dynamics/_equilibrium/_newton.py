@@ -144,7 +144,7 @@ def tangent(
     rate: Float[np.ndarray, " bar"],
     tension: Float[np.ndarray, " bar"],
 ) -> list[Entries]:
-    """How the forces give way as the nodes move, −df/dx, in blocks of two nodes [N/m]."""
+    """Tangent stiffness −df/dx, in blocks of two nodes [N/m]."""
     return [
         *_bars(assembly.bars, position, rate, tension),
         *_bends(assembly.bends, position),
@@ -201,7 +201,7 @@ def _bends(bends: Bends, position: Float[np.ndarray, "node 3"]) -> list[Entries]
 def _panels(
     assembly: Assembly, flow: SteadyFlow, position: Float[np.ndarray, "node 3"]
 ) -> list[Entries]:
-    """How a panel's load F = q A ((C_D − L c) u + L n) turns with its corners."""
+    """Stiffness of a panel's load F = q A ((C_D − L c) u + L n) as its corners move."""
     panels = assembly.panels
     a, b, c, d = panels.corners.T
     first, second = position[c] - position[a], position[d] - position[b]

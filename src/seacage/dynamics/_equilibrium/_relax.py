@@ -57,7 +57,7 @@ def relax(
 def relaxation_of(
     cage: Cage, assembly: Assembly, *, free: Bool[np.ndarray, " node"], tolerance: float
 ) -> Relaxation:
-    """How to bring a cage to rest."""
+    """Settings of the relaxation that brings a cage to rest."""
     soft = _soft_rates(cage, assembly)
     return Relaxation(
         inverse_mass=np.where(free, 1.0 / _fictitious_mass(assembly, soft), 0.0),

@@ -33,7 +33,7 @@ STRETCH, MOST_ITERATIONS = 6, 240
 """Newton iterations before the unfinished regroup, and in all."""
 
 ATTEMPTS = 4
-"""How often relaxation and Newton's method take turns on a case that the latter did not finish."""
+"""Times that relaxation and Newton's method take turns on a case that the latter did not finish."""
 
 FLAT, ASIDE, GOLDEN = np.deg2rad([80.0, 45.0, 137.507764])
 """Swings of first shapes: much faster water's, other water's, and how far on the next is [rad]."""
@@ -41,7 +41,7 @@ FLAT, ASIDE, GOLDEN = np.deg2rad([80.0, 45.0, 137.507764])
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Equilibria:
-    """Of each case one equilibrium, and what is known of others.
+    """One equilibrium of each case, with the number and the distance of others.
 
     ``Response`` says what ``result``, ``number``, ``spread`` and ``unstable`` mean.
     """
@@ -212,7 +212,7 @@ def _near(
 
 
 def _choose(cage: Cage, state: Balancing, starts: int) -> Equilibria:
-    """Of each case's problems the one to answer with, and how many differ."""
+    """The equilibrium to report of each case's problems, and the number of different ones."""
     shapes = state.position.reshape(-1, starts, *state.position.shape[1:])
     residual = state.residual.reshape(-1, starts)
     unstable = state.sign.reshape(-1, starts) < 0.0
@@ -239,7 +239,7 @@ def _distinct(
     shapes: Float[np.ndarray, "case start node 3"],
     residual: Float[np.ndarray, "case start"],
 ) -> tuple[Int[np.ndarray, " case"], Float[np.ndarray, " case"]]:
-    """How many of the sharp shapes differ, and by how much at most [m].
+    """Number of different shapes among the converged, and their largest distance [m].
 
     Where half a newton is left, slack netting may still lie decimetres from its place.
     """

@@ -1,4 +1,4 @@
-"""How equilibria are sought by Newton's method, and cases on their way there."""
+"""Settings and state of Newton's method for equilibria."""
 
 from dataclasses import dataclass
 
@@ -8,7 +8,7 @@ from jaxtyping import Bool, Float, Int
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Balance:
-    """How equilibria are sought; ``nearer`` says what is done with it.
+    """Settings of Newton's method for equilibria; ``nearer`` defines the iteration.
 
     Attributes
     ----------
@@ -47,7 +47,7 @@ class Balancing:
     shift
         Added to the tangent's diagonal [N/m].
     moved
-        The farthest step that the last iteration asked for, along an axis [m].
+        Largest step of the last iteration along an axis, before it was shortened [m].
     sign
         Of the tangent's determinant, of a case that is done where it ended [-].
     iterations

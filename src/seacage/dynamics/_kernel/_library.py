@@ -91,7 +91,7 @@ class _Bench(Struct):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Relaxation:
-    """How cases are brought to rest; ``seacage_relax`` in the kernel says what it does.
+    """Settings of dynamic relaxation; ``seacage_relax`` in the kernel defines the method.
 
     Attributes
     ----------
@@ -347,7 +347,7 @@ def kernel() -> Kernel:
 
 
 def library_of(name: str) -> Path:
-    """Where the build puts the kernel of this name."""
+    """Path at which the build puts the kernel of this name."""
     return Path(__file__).with_name(f"_kernel_{name}{SUFFIX}")
 
 
@@ -379,12 +379,12 @@ def choose(built: Sequence[str], able: int, forced: str) -> str:
     able
         The highest level that the processor can run, of `LEVELS`.
     forced
-        The kernel that is asked for; empty for the best.
+        Name of the kernel to force; empty for the best.
 
     Raises
     ------
     SeacageError
-        Where the kernel that is asked for is unknown, was not built or cannot be run.
+        Where the forced kernel is unknown, was not built or cannot be run.
     """
     runs = [name for name in built if LEVELS[name] <= able]
     if not forced or forced in runs:

@@ -62,7 +62,7 @@ class _Record(Struct):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Steps:
-    """How time is cut.
+    """Time steps, refreshes and samples of a march.
 
     Attributes
     ----------
@@ -90,7 +90,7 @@ class Steps:
 
     @property
     def samples(self) -> int:
-        """How many there will be."""
+        """Number of samples in the whole march."""
         return -(-self.counted // self.sample_every) if self.sample_every else 0
 
 
@@ -194,16 +194,16 @@ class March:
 
     @property
     def position(self) -> Float[np.ndarray, "case node 3"]:
-        """Where the nodes are now [m]."""
+        """Present positions of the nodes [m]."""
         return from_lanes(self._motion.arrays["position"])[: self.cases].astype(np.float64)
 
     @property
     def velocity(self) -> Float[np.ndarray, "case node 3"]:
-        """How the nodes move now [m/s]."""
+        """Present velocities of the nodes [m/s]."""
         return from_lanes(self._motion.arrays["velocity"])[: self.cases].astype(np.float64)
 
     def position_of(self, nodes: Int[np.ndarray, " kept"]) -> Float[np.ndarray, "case kept 3"]:
-        """Where some nodes are now [m]."""
+        """Present positions of some nodes [m]."""
         return self._of("position", nodes)
 
     def node_sum(self, nodes: Int[np.ndarray, " kept"]) -> Float[np.ndarray, "case kept 3"]:
@@ -213,7 +213,7 @@ class March:
 
     @property
     def tension(self) -> Float[np.ndarray, "case bridle"]:
-        """Of the bridles now [N]."""
+        """Present tension of the bridles [N]."""
         assembly = self._assembly
         some = {n: getattr(assembly.bars, n)[assembly.bridles] for n in Bars.__slots__}
         nodes, ends = np.unique(some["ends"], return_inverse=True)

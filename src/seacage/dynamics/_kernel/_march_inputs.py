@@ -25,7 +25,7 @@ _SCREEN, _REYNOLDS_SCREEN, _TWINES = range(3)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ocean:
-    """What the water does, for each case of a block.
+    """Waves and currents of each case of a block.
 
     Attributes
     ----------
@@ -217,7 +217,7 @@ def _law(
 
 
 def _panel_mass(assembly: Assembly) -> Float[np.ndarray, " panel"]:
-    """Of its lightest corner, over the netting there, times its own [kg]."""
+    """Mass of the lightest corner over its share of netting, times the panel's area [kg]."""
     panels = assembly.panels
     netting = np.zeros(len(assembly.position))
     np.add.at(netting, panels.corners, panels.area[:, None] * panels.share)
@@ -234,7 +234,7 @@ def _cylinder_series() -> Float[np.ndarray, " power"]:
 
 
 def sea_tables(ocean: Ocean, *, now: float = 0.0) -> SeaTables:
-    """Of waves whose time 0 is ``now`` [s]."""
+    """Tables of the kernel's sea, for waves whose time 0 is ``now`` [s]."""
     tables = _wave_tables(ocean.waves)
     tables["turns"] += now * tables["turns_per_second"]
     components = len(tables["turns"])

@@ -1,4 +1,4 @@
-"""Where the entries of a cage's tangent lie, and those of its LU factors."""
+"""Sparsity pattern of a cage's tangent stiffness and of its LU factors."""
 
 from dataclasses import dataclass
 from functools import lru_cache

@@ -50,7 +50,7 @@ def segments(parts: AnchorLines) -> tuple[Float[np.ndarray, " s"], Float[np.ndar
 
 
 def is_rope(parts: AnchorLines) -> Bool[np.ndarray, " s"]:
-    """Which segments are not chain."""
+    """Mask of the segments that are rope, not chain."""
     return np.arange(len(segments(parts)[0])) < len(ROPE_SHARES)
 
 

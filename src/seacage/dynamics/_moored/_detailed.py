@@ -16,7 +16,7 @@ from seacage.dynamics._parts import Assembly, Bars, join_bars
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Damage:
-    """What breaks on a cage: a bridle, a piece of netting, or both.
+    """Damage of a cage: a parted bridle, a hole in the netting, or both.
 
     Parameters
     ----------

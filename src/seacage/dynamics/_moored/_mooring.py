@@ -116,7 +116,7 @@ def _lines(cage: Cage, shape: LineShape) -> _Lines:
 
 
 def _directions(cage: Cage) -> tuple[Float[np.ndarray, "line 2"], Int[np.ndarray, " line"]]:
-    """Where the lines run to, on from the frame's sides, and the corners they hold."""
+    """Horizontal directions of the anchor lines, and the frame corners that they hold."""
     per_corner = cage.anchor_lines.per_corner
     if per_corner < 1:
         raise InputError(
@@ -130,7 +130,7 @@ def _directions(cage: Cage) -> tuple[Float[np.ndarray, "line 2"], Int[np.ndarray
 
 
 def _bridle_pull(cage: Cage, base: Assembly) -> Float[np.ndarray, "corner 3"]:
-    """Of the bridles on the corners in still water [N]."""
+    """Pull of the bridles on the corners in still water [N]."""
     ends = base.bars.ends[base.bridles]
     along = base.position[ends[:, 1]] - base.position[ends[:, 0]]
     along /= np.linalg.norm(along, axis=1, keepdims=True)
@@ -142,7 +142,7 @@ def _bridle_pull(cage: Cage, base: Assembly) -> Float[np.ndarray, "corner 3"]:
 def _buoy_load(
     cage: Cage, shape: LineShape, bridles: Float[np.ndarray, "corner 3"]
 ) -> Float[np.ndarray, " corner"]:
-    """What each buoy carries in still water [N]."""
+    """Load on each corner buoy in still water [N]."""
     steep = -(shape.position[1, 1] / np.linalg.norm(shape.position[1]))
     down = cage.anchor_lines.per_corner * shape.tension[0] * steep
     lift = down - bridles[:, 2]

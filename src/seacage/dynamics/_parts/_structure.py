@@ -20,7 +20,7 @@ from seacage.dynamics._parts._assembly import (
 )
 
 SINKING = 0.01
-"""How far a line's node sinks into the sea bed under its own weight [m]."""
+"""Depth to which a line's node sinks into the sea bed under its own weight [m]."""
 
 MOST_STRAIN = 0.1
 """Of a tie or a line as built: beyond, the start would be an explosion [-]."""
@@ -266,7 +266,7 @@ def _outlines(
 
 
 class _Lumps:
-    """What is lumped into the nodes, as it is added up."""
+    """Sums of weight and mass lumped into the nodes."""
 
     def __init__(self, position: Float[np.ndarray, "node 3"]) -> None:
         self.height = position[:, 2]

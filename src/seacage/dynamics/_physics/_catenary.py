@@ -74,7 +74,7 @@ def catenary(
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Line:
-    """What ``catenary`` was asked."""
+    """Arguments of ``catenary``, checked."""
 
     x_span: float
     z_span: float
@@ -122,7 +122,7 @@ def _solve(line: _Line) -> tuple[float, float]:
 
 
 def _across(line: _Line, horizontal: float, vertical: float) -> float:
-    """How far B comes to lie beside A under given tensions there [m]."""
+    """Horizontal distance of B from A under given tensions there [m]."""
     h, weight, stiffness = horizontal, line.weight, line.stiffness
     stretch = h * line.length / stiffness
     lying = _lying(line, vertical)
@@ -141,7 +141,7 @@ def _across(line: _Line, horizontal: float, vertical: float) -> float:
 
 
 def _up(line: _Line, horizontal: float, vertical: float) -> float:
-    """How far B comes to lie above A under given tensions there [m]."""
+    """Height of B above A under given tensions there [m]."""
     h, v, weight, stiffness = horizontal, vertical, line.weight, line.stiffness
     if _lying(line, v) > 0.0:
         return v**2 / weight * (1.0 / (h + math.hypot(h, v)) + 0.5 / stiffness)

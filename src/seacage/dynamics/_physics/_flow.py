@@ -18,7 +18,7 @@ def steady_flow(
     pipe_drag: bool = True,
     wave_variance: Float[np.ndarray, "case panel"] | None = None,
 ) -> SteadyFlow:
-    """What a uniform current (and, if given, waves) does to each panel.
+    """Steady flow on each panel in a uniform current and, if given, waves.
 
     Parameters
     ----------

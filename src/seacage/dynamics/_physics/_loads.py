@@ -28,7 +28,7 @@ DYNAMIC = 0.5 * WATER_DENSITY
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SteadyFlow:
-    """What steady water does to each panel and pipe, ready for the loads.
+    """Flow and coefficients of each panel and pipe in steady water, ready for the loads.
 
     A net at rest in a steady current meets each panel with one fixed speed, so the
     law's dependence on speed is settled once for a case:

@@ -47,7 +47,7 @@ class Water:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NetLaw:
-    """How the netting is loaded.
+    """Law of the loads on the netting, with the wake and the growth that it meets.
 
     Attributes
     ----------
@@ -198,7 +198,7 @@ def twine_load(
 
 
 def bar_damping(bars: Bars, mass: Float[np.ndarray, " node"]) -> Float[np.ndarray, " bar"]:
-    """Of the rate of stretch: a share of what would be critical for the pair of ends [N s/m]."""
+    """Damping coefficient of each bar: a share of the critical one of its two ends [N s/m]."""
     i, j = bars.ends.T
     pair = mass[i] * mass[j] / (mass[i] + mass[j])
     return 2.0 * bars.damping_ratio * np.sqrt(bars.stiffness / bars.length * pair)

@@ -117,7 +117,7 @@ def _flow_left(
     seen: Float[np.ndarray, "panel 2"],
     root: Float[np.ndarray, " panel"],
 ) -> Float[np.ndarray, " panel"]:
-    """What the panels before leave to those behind, by momentum."""
+    """Share of the current that panels leave to those behind them, by momentum."""
     from scipy.spatial import KDTree
 
     share = np.ones(len(facing))

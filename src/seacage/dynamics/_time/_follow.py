@@ -124,7 +124,7 @@ def follow(
 
 
 class _Seen:
-    """What has been seen of some segments so far."""
+    """Samples of some segments so far."""
 
     def __init__(
         self,
@@ -209,7 +209,7 @@ def _course(
 
 
 def _times(whole: float, part: float, name: str, *, least: int = 1) -> int:
-    """How often one time fits in another, to the last bit of a step."""
+    """Number of times that one time fits in another, to the last bit of a step."""
     count = round(whole / part) if math.isfinite(whole) else -1
     if count < least or not math.isclose(count * part, whole, rel_tol=1e-9, abs_tol=1e-9):
         raise InputError(

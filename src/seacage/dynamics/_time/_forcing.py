@@ -1,4 +1,4 @@
-"""What drives a simulation: the waves and currents of each case, checked."""
+"""Forcing of a simulation: the waves and currents of each case, checked."""
 
 import math
 from collections.abc import Sequence
@@ -13,7 +13,7 @@ from seacage.dynamics._physics import MovingLaw, wake_share
 from seacage.ocean import CurrentProfile, SeaState, Waves, sample_waves
 
 MOST_COMPONENTS = 1000
-"""Of the waves of a case: the kernel keeps their phases on a thread's stack."""
+"""Components of the waves of a case at most: the kernel keeps their phases on a thread's stack."""
 
 
 def draw_waves(
@@ -44,7 +44,7 @@ def draw_waves(
 
 
 def _check_waves(waves: list[Waves], depth: float) -> list[Waves]:
-    """Those that the kernel can march through."""
+    """The same waves, refused where the kernel cannot march through them."""
     for case, one in enumerate(waves):
         numbers = {name: getattr(one, name) for name in Waves.__slots__ if name != "depth"}
         for name, values in numbers.items():

@@ -1,4 +1,4 @@
-"""What a simulation in time returns: series, and their statistics."""
+"""Result of a simulation in time: series, and their statistics."""
 
 from dataclasses import dataclass
 
@@ -8,7 +8,7 @@ from jaxtyping import Float, Int
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Statistics:
-    """Of a quantity over the simulated time that counts.
+    """Statistics of a quantity over the simulated time that counts.
 
     Attributes
     ----------
@@ -34,7 +34,7 @@ class History:
     Attributes
     ----------
     time
-        Of the series, from the end of the spin-up; empty where none was asked for [s].
+        Of the series, from the end of the spin-up; empty where no series was requested [s].
     nodes
         The nodes of ``node_position``.
     node_position
@@ -54,7 +54,7 @@ class History:
         Between 0 and 1 [-].
     second_moment
         Mean over time of the products of all coordinates, as displacements from the design
-        shape: (node and axis) × (node and axis) [m2]; of no rows where not asked for.
+        shape: (node and axis) × (node and axis) [m2]; of no rows unless requested.
     result
         Of ``seacage.conventions.Result``.
     diverged_at

@@ -18,7 +18,7 @@ VOLUMES = 360
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reduction:
-    """What is to be made of each case.
+    """Series and statistics to make of each case.
 
     Attributes
     ----------

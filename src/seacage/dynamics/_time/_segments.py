@@ -31,7 +31,7 @@ WAKE_EVERY = 30.0
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Course:
-    """How a stretch is cut.
+    """Samples, refreshes and steps of a stretch.
 
     Attributes
     ----------
@@ -130,12 +130,12 @@ class SegmentBatch:
         self.march.go(self._course.refreshes)
 
     def position(self, nodes: Int[np.ndarray, " n"]) -> Float[np.ndarray, "stretch n 3"]:
-        """Where some nodes are [m]."""
+        """Present positions of some nodes [m]."""
         return self.march.position_of(nodes)
 
     @property
     def bridle_tension(self) -> Float[np.ndarray, "stretch bridle"]:
-        """Of each bridle, its two ropes together [N]."""
+        """Tension of each bridle, its two ropes together [N]."""
         both = self.march.tension
         return both.reshape(len(both), 2, -1).sum(axis=1)
 

@@ -34,7 +34,7 @@ MOST_ROOM = 16.0
 """For the samples of the cases that travel together [GB]."""
 
 STATISTICS_EVERY = 1.0
-"""Between samples for quantiles and moments where no series is asked for [s]."""
+"""Between samples for quantiles and moments where no series is requested [s]."""
 
 
 def simulate(

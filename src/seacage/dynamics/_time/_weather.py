@@ -1,4 +1,4 @@
-"""What a cage meets as time goes on."""
+"""Interface of the weather that a cage is followed through."""
 
 from abc import ABC, abstractmethod
 
@@ -9,12 +9,12 @@ from seacage.ocean import Waves
 
 
 class AbstractWeather(ABC):
-    """What one cage meets as time goes on, in seconds from a time of its own."""
+    """Current, waves and growth at one cage over time, in seconds from a time of its own."""
 
     @property
     @abstractmethod
     def level_depth(self) -> tuple[float, ...]:
-        """Of the current's levels, from the surface down; the same for all stretches [m]."""
+        """Depths of the current's levels, from the surface down; the same for all stretches [m]."""
 
     @abstractmethod
     def current(self, second: float) -> Float[np.ndarray, "level 2"]:

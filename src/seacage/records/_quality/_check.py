@@ -48,7 +48,7 @@ class Amendment:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class QualityState:
-    """What the checks remember of one stream; the first state is ``QualityState()``.
+    """State of the checks of one stream; the first state is ``QualityState()``.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ class QualityState:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Verdict:
-    """What one test found in one quantity of a record.
+    """Findings of one test in one quantity of a record.
 
     Parameters
     ----------
@@ -147,7 +147,7 @@ def amended(sample: Sample, amendments: Iterable[Amendment]) -> Sample:
 
 
 AHEAD = "ahead of the clock"
-"""What the remark of a sample says that was withdrawn, and no other remark."""
+"""Text in the remark of a withdrawn sample, and in no other remark."""
 
 
 def withdrawn(sample: Sample, *, clock: datetime) -> Sample:

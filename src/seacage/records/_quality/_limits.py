@@ -1,4 +1,4 @@
-"""What the quality checks compare with: limits per quantity, and per group of them.
+"""Limits of the quality checks: limits per quantity, and per group of them.
 
 The kinds of test and their flags follow the QARTOD manuals of IOOS for real-time quality
 control of in-situ currents, of surface waves and of water levels: gross range (fail, suspect),
@@ -168,7 +168,7 @@ def _steadiness() -> dict[str, Steadiness]:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limits:
-    """What a stream is checked against; ``Limits()`` suits a moored cage and its buoy.
+    """Limits that a stream is checked against; ``Limits()`` suits a moored cage and its buoy.
 
     Parameters
     ----------

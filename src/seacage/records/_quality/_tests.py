@@ -1,4 +1,4 @@
-"""The tests of quality: what one instrument's reading is worth, given its last good one."""
+"""Quality tests of one reading of an instrument, given its last good one."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -20,7 +20,7 @@ Point = tuple[float, ...]
 
 
 class Spread(NamedTuple):
-    """How far a group has spread, over a window kept as buckets and not as readings.
+    """Range of a group's readings, over a window kept as buckets and not as readings.
 
     A bucket leaves with the reading that opens a new one, so a window is at most one bucket
     too long, and exact where each bucket holds one reading.
@@ -57,7 +57,7 @@ class Finding(NamedTuple):
 
 
 class Evaluation(NamedTuple):
-    """What one reading is worth, and what it shows of the one before."""
+    """Findings about one reading, and about the one before."""
 
     anchor: Anchor | None
     findings: list[Finding]

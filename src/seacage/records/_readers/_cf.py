@@ -105,7 +105,7 @@ class ZoneConflict(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NetcdfMap:
-    """What a foreign NetCDF file does not say of itself.
+    """Declarations about a foreign NetCDF file that the file itself lacks.
 
     Parameters
     ----------

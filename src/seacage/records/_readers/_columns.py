@@ -134,7 +134,7 @@ class Column:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ColumnMap:
-    """What all columns of a foreign file mean.
+    """Meaning of all columns of a foreign file.
 
     A file must have all the columns that its map names, and no other: a column that nobody
     expected is more often a shifted table than a bonus.

@@ -1,4 +1,4 @@
-"""What a foreign NetCDF file holds, and what it leaves open."""
+"""Inspection of a foreign NetCDF file: its variables, and the declarations that it lacks."""
 
 # xarray leaves parts of its signatures untyped.
 # pyright: reportUnknownMemberType=false

@@ -72,11 +72,11 @@ def known_map(path: Path | str) -> ColumnMap | None:
 
 
 def _check(record: Record, limits: Limits) -> Record:
-    """Check the values, and keep what the reader doubted by its file alone."""
+    """Check the values, and keep the reader's own flags where they are worse."""
     checked = check_record(record, limits)
     flags = {
-        key: np.where(doubts == Flag.NOT_EVALUATED, flags, np.maximum(flags, doubts))
-        for key, doubts in record.flags.items()
+        key: np.where(own == Flag.NOT_EVALUATED, flags, np.maximum(flags, own))
+        for key, own in record.flags.items()
         for flags in (checked.flags[key],)
     }
     return replace(checked, flags=flags)
