@@ -2,7 +2,4 @@
 
 from seacage.studies._benchmarks._study import BenchmarkStudy, benchmark_study
 
-__all__ = [
-    "BenchmarkStudy",
-    "benchmark_study",
-]
+__all__ = ["BenchmarkStudy", "benchmark_study"]

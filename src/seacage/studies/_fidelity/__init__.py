@@ -2,7 +2,4 @@
 
 from seacage.studies._fidelity._study import FidelityStudy, fidelity_study
 
-__all__ = [
-    "FidelityStudy",
-    "fidelity_study",
-]
+__all__ = ["FidelityStudy", "fidelity_study"]

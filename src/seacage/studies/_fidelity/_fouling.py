@@ -98,17 +98,17 @@ def fouling_gap(
     to = sensors.cage.site.current_to
     plan = Plan.grid(current_speed=SPEEDS, current_to=(to,), name="fouling")
 
-    def settled(cage: Cage, law: Law) -> Float[np.ndarray, "speed sensor"]:
+    def answers_of(cage: Cage, law: Law) -> Float[np.ndarray, "speed sensor"]:
         record = campaign_of_stage(
             "fouling", cage, plan, stages, law=law, workers=workers, progress=no_progress
         )
         return sensors.responses_of(record.node_position, record.bridle_tension)
 
-    low = settled(sensors.cage, "kristiansen-faltinsen")
+    low = answers_of(sensors.cage, "kristiansen-faltinsen")
     gaps: list[Float[np.ndarray, "speed sensor"]] = []
     for growth in GROWTHS:
         progress("fouling", len(gaps), len(GROWTHS))
-        gaps.append(settled(hidden.true_cage(sensors.cage, growth), hidden.law) - low)
+        gaps.append(answers_of(hidden.true_cage(sensors.cage, growth), hidden.law) - low)
     progress("fouling", len(gaps), len(gaps))
     growth = hidden.fouling.grown((windows.end - begin) / _DAY)
     return FoulingGap(
@@ -118,11 +118,11 @@ def fouling_gap(
         growth=np.array(GROWTHS),
         speed=np.array(SPEEDS),
         gap=np.stack(gaps),
-        met=_met_gaps(windows, growth),
+        met=_gaps_by_growth(windows, growth),
     )
 
 
-def _met_gaps(windows: Windows, growth: Float[np.ndarray, " window"]) -> tuple[MetGap, ...]:
+def _gaps_by_growth(windows: Windows, growth: Float[np.ndarray, " window"]) -> tuple[MetGap, ...]:
     """Equal shares of the growth that the record has, each with enough windows."""
     edges = np.linspace(growth.min(), growth.max(), _BINS + 1)
     share = np.clip(np.searchsorted(edges, growth, side="right") - 1, 0, _BINS - 1)

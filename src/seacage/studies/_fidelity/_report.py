@@ -7,13 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.conventions import Origin
-from seacage.figures import (
-    Panel,
-    fouling_figure,
-    gain_figure,
-    left_figure,
-    sector_figure,
-)
+from seacage.figures import Panel, fouling_figure, gain_figure, left_figure, sector_figure
 from seacage.studies._claim import Claim
 from seacage.studies._fidelity._claims import THOUSANDTH, ends
 from seacage.studies._fidelity._fouling import FoulingGap

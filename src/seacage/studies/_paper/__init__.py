@@ -6,11 +6,4 @@ from seacage.studies._paper._shape_scores import ShapeScore
 from seacage.studies._paper._study import PaperStudy, paper_study
 from seacage.studies._paper._ways import WayScore
 
-__all__ = [
-    "LevelOneScore",
-    "PaperClaim",
-    "PaperStudy",
-    "ShapeScore",
-    "WayScore",
-    "paper_study",
-]
+__all__ = ["LevelOneScore", "PaperClaim", "PaperStudy", "ShapeScore", "WayScore", "paper_study"]

@@ -23,12 +23,7 @@ from seacage.studies._page import Html, bar, claims, facts, page, picture, table
 from seacage.studies._paper._claims import INCONSISTENT, UNJUDGED, PaperClaim, paper_claims
 from seacage.studies._paper._discussion import NOMINAL, findings
 from seacage.studies._paper._level_one import LevelOneScore
-from seacage.studies._paper._shape_models import (
-    GCN_OURS,
-    GCN_PAPER,
-    PCA_PAPER,
-    SHAPE_CURRENT,
-)
+from seacage.studies._paper._shape_models import GCN_OURS, GCN_PAPER, PCA_PAPER, SHAPE_CURRENT
 from seacage.studies._paper._shape_scores import ShapeScore
 from seacage.studies._paper._shape_study import ShapeCase, ShapeStudy
 from seacage.studies._paper._ways import ScoredWays, WayScore

@@ -2,7 +2,4 @@
 
 from seacage.surrogates._gcn._gcn import GCN, FittedGCN
 
-__all__ = [
-    "GCN",
-    "FittedGCN",
-]
+__all__ = ["GCN", "FittedGCN"]

@@ -3,9 +3,4 @@
 from seacage.surrogates._multifidelity._batch import BatchedLevels
 from seacage.surrogates._multifidelity._nargp import AR1, NARGP, FittedNARGP
 
-__all__ = [
-    "AR1",
-    "NARGP",
-    "BatchedLevels",
-    "FittedNARGP",
-]
+__all__ = ["AR1", "NARGP", "BatchedLevels", "FittedNARGP"]

@@ -10,14 +10,7 @@ from jaxtyping import Float
 from numpy.typing import ArrayLike
 
 from seacage.conventions import InputError, ModelError
-from seacage.surrogates._arrays import (
-    Arrays,
-    Settings,
-    join,
-    setting,
-    sub_settings,
-    within,
-)
+from seacage.surrogates._arrays import Arrays, Settings, join, setting, sub_settings, within
 from seacage.surrogates._gp import (
     AbstractKernel,
     Ensemble,

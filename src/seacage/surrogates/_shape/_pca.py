@@ -8,15 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.conventions import InputError
-from seacage.surrogates._arrays import (
-    Arrays,
-    Settings,
-    array,
-    join,
-    setting,
-    sub_settings,
-    within,
-)
+from seacage.surrogates._arrays import Arrays, Settings, array, join, setting, sub_settings, within
 from seacage.surrogates._gp import (
     FittedGaussianProcess,
     KernelName,

@@ -8,15 +8,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.conventions import InputError, ModelError
-from seacage.surrogates._arrays import (
-    Arrays,
-    Settings,
-    array,
-    join,
-    setting,
-    sub_settings,
-    within,
-)
+from seacage.surrogates._arrays import Arrays, Settings, array, join, setting, sub_settings, within
 from seacage.surrogates._features import check_turnable
 from seacage.surrogates._gp import (
     FittedGaussianProcess,
@@ -133,7 +125,7 @@ class ShapeGP:
             features=x.shape[1],
             symmetry=self.symmetry,
         )
-        missed = shape - fitted.rendered(scores)
+        missed = shape - fitted.render(scores)
         fitted = replace(fitted, left_out=np.sqrt(np.mean(missed**2, axis=0)))
         return replace(fitted, scale=_interval_scale(fitted, x, shape))
 
@@ -264,7 +256,7 @@ class FittedShapeGP:
             )
         return FittedCoordinate(shape=self, node=node, axis=axis)
 
-    def rendered(self, score: Float[np.ndarray, "row mode"]) -> Float[np.ndarray, "row node 3"]:
+    def render(self, score: Float[np.ndarray, "row mode"]) -> Float[np.ndarray, "row node 3"]:
         """Shapes of scores [m], at home in the sector of the symmetry, if there is one."""
         return self._mean(score, EVERY)
 
@@ -460,7 +452,7 @@ def _interval_scale(
     """
     left_out = fitted.scores.leave_one_out()
     rows = (len(x), fitted.modes)
-    missed = np.abs(shape - fitted.rendered(left_out.mean.reshape(rows)))
+    missed = np.abs(shape - fitted.render(left_out.mean.reshape(rows)))
     moments = fitted.variance(left_out.std.reshape(rows), EVERY)
     std = np.sqrt(np.swapaxes(moments[:, :3], 1, 2))
     ratio = np.divide(missed, std, out=np.full_like(missed, DEVIATIONS), where=std > 0.0)

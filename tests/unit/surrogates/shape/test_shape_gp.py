@@ -206,7 +206,7 @@ def test_a_turned_shape_is_saved_exactly(turnable: FittedShapeGP) -> None:
 def test_intervals_are_calibrated_on_cases_left_out(fitted: FittedShapeGP) -> None:
     _, shapes = net(150, seed=0)
     left_out = fitted.scores.leave_one_out()
-    missed = np.abs(shapes - fitted.rendered(left_out.mean))
+    missed = np.abs(shapes - fitted.render(left_out.mean))
     moments = fitted.variance(left_out.std, slice(None))
     inside = missed <= 1.96 * np.sqrt(np.swapaxes(moments[:, :3], 1, 2))
     # 144 of 150 at each coordinate; the upper ring hardly moves, and one case more may be inside.
