@@ -14,7 +14,7 @@ from seacage.twin._json_keys import json_keys
 if TYPE_CHECKING:
     from pydantic import TypeAdapter
 
-FORMAT = "seacage alarms 1"
+BOOK_FORMAT = "seacage alarms 1"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,7 +36,7 @@ class AlarmBook:
     alarms: Mapping[str, Alarm] = field(default_factory=dict[str, Alarm])
     t: datetime | None = None
     detector: FaultDetector = field(default_factory=FaultDetector)
-    format: str = FORMAT
+    format: str = BOOK_FORMAT
 
     __pydantic_config__ = json_keys(detector="suspicion")
 
@@ -64,10 +64,10 @@ class AlarmBook:
             raise InputError(
                 f"AlarmBook.from_json: {where}: {first['msg']}. Begin with AlarmBook.new()."
             ) from error
-        if book.format != FORMAT:
+        if book.format != BOOK_FORMAT:
             raise InputError(
-                f"AlarmBook.from_json: this is {book.format!r}, and this seacage reads {FORMAT!r}. "
-                "Begin with AlarmBook.new()."
+                f"AlarmBook.from_json: this is {book.format!r}, and this seacage reads "
+                f"{BOOK_FORMAT!r}. Begin with AlarmBook.new()."
             )
         return book
 

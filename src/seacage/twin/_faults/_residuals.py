@@ -23,7 +23,7 @@ WATER_SD = 0.1
 """Standard deviation of each component of the current at the cage about the buoy's current, over
 half an hour [m/s]. Too large a value does little harm: the sensors then find the current."""
 
-STRIDE = 0.03
+CURRENT_STEP = 0.03
 """Step of the central difference over the current, to either side [m/s]."""
 
 OWN_SHARE, CARRIED_SHARE = 0.5, 1.0
@@ -131,7 +131,7 @@ def close_block(
     if np.count_nonzero(received) < LEAST_SENSORS or sums.ticks == 0 or answered.metocean is None:
         return None
     current = np.array([sums.east, sums.north]) / sums.ticks
-    around = STRIDE * np.array([[0.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
+    around = CURRENT_STEP * np.array([[0.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
     same = answered.metocean.rows(np.zeros(len(around), dtype=int))
     answer = twin.predict(
         Metocean(current_velocity=current + around, hs=same.hs, wave_direction=same.wave_direction)
@@ -148,7 +148,7 @@ def close_block(
         received=received,
         residual=np.array([one.error / max(one.count, 1) for one in each]) * received,
         own_sd=answer.sensor.std[0, columns] * share,
-        gradient=np.column_stack([east - west, north - south]) / (2.0 * STRIDE),
+        gradient=np.column_stack([east - west, north - south]) / (2.0 * CURRENT_STEP),
         current=current,
         tension=answer.bridle_tension.mean[0],
     )

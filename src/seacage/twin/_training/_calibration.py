@@ -26,7 +26,7 @@ from seacage.twin._training._held_out import (
 SHORT = 2.0 * DAY
 """A training window shorter than this is calibrated by other sensors [s]."""
 
-LEAST_PAIRS = 20
+LEAST_REFERENCE_PAIRS = 20
 """Readings of another sensor within a short training window."""
 
 
@@ -91,7 +91,7 @@ class CageTraining:
             for name, one in self.sensors.items()
             if one.calibrates
             and span_s(one.pairs) >= SHORT
-            and len(_within(one.pairs, short)) >= LEAST_PAIRS
+            and len(_within(one.pairs, short)) >= LEAST_REFERENCE_PAIRS
             and _days_outside(one.pairs, short) >= 1.0
         ]
 
