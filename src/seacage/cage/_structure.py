@@ -10,17 +10,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.cage._parts import Site, check_bounds, quantity
-from seacage.cage._structure_parts import (
-    Anchor,
-    Line,
-    Named,
-    Net,
-    Point,
-    Ring,
-    Section,
-    Tie,
-    Twine,
-)
+from seacage.cage._structure_parts import Anchor, Line, Named, Net, Point, Ring, Section, Tie, Twine
 from seacage.cage._toml import parse, to_text
 from seacage.cage._volume import enclosed_volume
 from seacage.conventions import InputError, read_text

@@ -9,12 +9,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.conventions import Result
-from seacage.records import (
-    NOT_RUN,
-    campaign_results,
-    campaign_unsummed,
-    campaign_variable,
-)
+from seacage.records import NOT_RUN, campaign_results, campaign_unsummed, campaign_variable
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

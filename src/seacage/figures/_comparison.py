@@ -8,17 +8,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Shaped
 
 from seacage.conventions import InputError, Origin
-from seacage.figures._style import (
-    COUNTS,
-    FIT,
-    INK,
-    LOW,
-    MULTI,
-    SENSOR,
-    blank_figure,
-    head,
-    style,
-)
+from seacage.figures._style import COUNTS, FIT, INK, LOW, MULTI, SENSOR, blank_figure, head, style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,17 +7,7 @@ from jaxtyping import Float
 
 from seacage.cage import Cage
 from seacage.conventions import Origin, towards
-from seacage.figures._style import (
-    AMOUNT,
-    FIT,
-    INK,
-    LOW,
-    MULTI,
-    MUTED,
-    blank_figure,
-    head,
-    style,
-)
+from seacage.figures._style import AMOUNT, FIT, INK, LOW, MULTI, MUTED, blank_figure, head, style
 from seacage.ocean import SeaState
 
 if TYPE_CHECKING:

@@ -12,12 +12,7 @@ from seacage.records._campaign_store import (
     write_cases,
 )
 from seacage.records._field import FieldRecord
-from seacage.records._history_file import (
-    STATISTICS,
-    HistoryRecord,
-    read_history,
-    write_history,
-)
+from seacage.records._history_file import STATISTICS, HistoryRecord, read_history, write_history
 from seacage.records._keys import KEYS, Key
 from seacage.records._quality import (
     AHEAD,

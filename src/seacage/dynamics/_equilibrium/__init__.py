@@ -2,7 +2,4 @@
 
 from seacage.dynamics._equilibrium._search import Equilibria, equilibria
 
-__all__ = [
-    "Equilibria",
-    "equilibria",
-]
+__all__ = ["Equilibria", "equilibria"]

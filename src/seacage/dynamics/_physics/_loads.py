@@ -10,15 +10,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.conventions import WATER_DENSITY
-from seacage.dynamics._parts import (
-    Assembly,
-    Bars,
-    Bends,
-    Cylinders,
-    Floats,
-    Panels,
-    Springs,
-)
+from seacage.dynamics._parts import Assembly, Bars, Bends, Cylinders, Floats, Panels, Springs
 
 Nodal = Float[np.ndarray, "case node 3"]
 

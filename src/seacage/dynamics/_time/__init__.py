@@ -5,12 +5,4 @@ from seacage.dynamics._time._history import History, Statistics
 from seacage.dynamics._time._simulate import Mooring, simulate
 from seacage.dynamics._time._weather import AbstractWeather
 
-__all__ = [
-    "AbstractWeather",
-    "Followed",
-    "History",
-    "Mooring",
-    "Statistics",
-    "follow",
-    "simulate",
-]
+__all__ = ["AbstractWeather", "Followed", "History", "Mooring", "Statistics", "follow", "simulate"]

@@ -6,14 +6,7 @@ from pathlib import Path
 
 from seacage.conventions import RecordError, parse_toml, read_text
 from seacage.records._quality._limits import DEFAULT_LIMITS, Limits, Range, Season, Steadiness
-from seacage.records._toml import (
-    Table,
-    check_names,
-    number_of,
-    numbers_of,
-    table_of,
-    tables_of,
-)
+from seacage.records._toml import Table, check_names, number_of, numbers_of, table_of, tables_of
 
 
 def read_limits(path: Path | str) -> Limits:
