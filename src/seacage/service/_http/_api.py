@@ -22,7 +22,6 @@ from seacage.service._http._alarm_routes import alarms
 from seacage.service._http._cage_routes import around, cages
 from seacage.service._http._clearance_routes import rov
 from seacage.service._http._download_routes import NETCDF, downloads
-from seacage.service._http._examples import with_examples
 from seacage.service._http._page_files import PAGE, PageFiles
 from seacage.service._http._sensorthings._routes import things
 from seacage.service._http._session_routes import sessions
@@ -32,6 +31,7 @@ from seacage.service._live._cage import LiveCage
 from seacage.service._live._frame import MEDIA_TYPE
 from seacage.service._live._metrics import Metrics
 from seacage.service._rov._files import MCAP
+from seacage.service._schemas._base import with_nulls
 from seacage.service._store._store import Store, StoreError
 
 _FAULTS = 5  # of a request, as many as anyone reads
@@ -138,7 +138,7 @@ def create_app(service: Service) -> FastAPI:
     for router in (around, sessions, cages, alarms, what_if, downloads, rov, things, sockets):
         app.include_router(router)
     described = app.openapi
-    app.openapi = lambda: with_examples(described())
+    app.openapi = lambda: with_nulls(described())
     if PAGE.is_dir():
         app.mount("/page", PageFiles(directory=PAGE), name="page")
     app.add_api_route("/", _page, include_in_schema=False)

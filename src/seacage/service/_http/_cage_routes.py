@@ -30,20 +30,19 @@ from seacage.service._http._history import history_between
 from seacage.service._live._answers import sample_of, shape_of, summary_of
 from seacage.service._live._frame import MEDIA_TYPE, Flags, frame_of
 from seacage.service._live._past import state_at
-from seacage.service._schemas._cages import (
+from seacage.service._schemas._cages import Cages, Topology
+from seacage.service._schemas._history import History
+from seacage.service._schemas._samples import (
     AggregateOut,
     AggregatesOut,
-    Cages,
-    Health,
-    History,
     Receipt,
     SamplesIn,
     SamplesOut,
-    Shape,
-    State,
-    Topology,
+    read_samples,
+    time_of,
 )
-from seacage.service._schemas._samples import read_samples, time_of
+from seacage.service._schemas._service import Health
+from seacage.service._schemas._state import Shape, State
 
 _TOGETHER = 500  # samples that are written at once
 _HEALTH = {**REFUSED, 503: {"model": Health, "description": "The service cannot do its work."}}
@@ -54,6 +53,8 @@ FRAME: Responses = {
     }
 }
 """How a call documents a frame."""
+
+_METRICS = 'seacage_samples_total{cage="ace",outcome="accepted"} 42.0\n'
 
 around = APIRouter(dependencies=[Depends(Permit("read", open_to_loopback=True))], tags=["service"])
 cages = APIRouter(prefix="/api/v1/cages", tags=["cages"])
@@ -79,7 +80,13 @@ async def readyz(request: Request) -> Response:
 @around.get(
     "/metrics",
     response_class=Response,
-    responses={**REFUSED, 200: {"content": {"text/plain": {}}, "description": "For Prometheus."}},
+    responses={
+        **REFUSED,
+        200: {
+            "content": {"text/plain": {"example": _METRICS}},
+            "description": "For Prometheus.",
+        },
+    },
 )
 async def metrics(request: Request) -> Response:
     """Tell Prometheus what happened."""

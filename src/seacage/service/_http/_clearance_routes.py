@@ -32,12 +32,18 @@ Stale = Annotated[
 ]
 
 _STALE = refusal(409, "The net is not known, or not now.", "The net is not known now.")
+_LINE = {"type": "LineString", "coordinates": [[8.63, 63.61], [8.64, 63.61]]}
+_MAP = {
+    "type": "FeatureCollection",
+    "features": [{"type": "Feature", "geometry": _LINE, "properties": {}}],
+}
 _NO_MCAP = refusal(501, "MCAP cannot be written here.", "Install seacage[ros].")
 
 
 def _file(media_type: str) -> Responses:
-    schema = {"type": "object"} if media_type == GEOJSON else {"type": "string", "format": "binary"}
-    return {200: {"content": {media_type: {"schema": schema}}, "description": "The file."}}
+    binary = {"schema": {"type": "string", "format": "binary"}}
+    content = {"schema": {"type": "object"}, "example": _MAP} if media_type == GEOJSON else binary
+    return {200: {"content": {media_type: content}, "description": "The file."}}
 
 
 @rov.post("/{cage}/clearance", responses={**WRITE, **_STALE})

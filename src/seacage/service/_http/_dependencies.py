@@ -7,7 +7,8 @@ from fastapi import Depends, HTTPException, Path, Query, Request
 from seacage.service._auth._guard import Permit, gate_of
 from seacage.service._auth._tokens import Grant
 from seacage.service._live._cage import LiveCage
-from seacage.service._schemas._cages import Problem, Reach
+from seacage.service._schemas._base import Reach
+from seacage.service._schemas._service import Problem
 
 Responses = dict[int | str, dict[str, Any]]
 

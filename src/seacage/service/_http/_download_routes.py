@@ -29,6 +29,7 @@ from seacage.service._http._dependencies import (
 )
 from seacage.service._live._cage import LiveCage
 from seacage.service._live._past import readings_between
+from seacage.service._schemas._base import EXAMPLE_T
 
 _PIECE = 1 << 16  # of a file, sent at once [bytes]
 _COLUMNS = ("t", "stream", "seq", "quantity", "value", "flag")
@@ -39,8 +40,9 @@ downloads = APIRouter(prefix="/api/v1/cages", tags=["downloads"])
 _Part = TypeVar("_Part")
 
 
-def _file(kind: str, description: str) -> Responses:
-    return {**READ, 200: {"content": {kind: {}}, "description": description}}
+def _file(kind: str, description: str, example: str | None = None) -> Responses:
+    content = {kind: {} if example is None else {"example": example}}
+    return {**READ, 200: {"content": content, "description": description}}
 
 
 _NO_NETCDF = refusal(501, "NetCDF is not installed.", "NetCDF needs seacage[sim]. Ask for CSV.")
@@ -50,7 +52,11 @@ _NO_NETCDF = refusal(501, "NetCDF is not installed.", "NetCDF needs seacage[sim]
     "/{cage}/samples.csv",
     dependencies=may_read_rows,
     response_class=StreamingResponse,
-    responses=_file(_CSV, "A row per value, with its flag."),
+    responses=_file(
+        _CSV,
+        "A row per value, with its flag.",
+        f"t,stream,seq,quantity,value,flag\n{EXAMPLE_T},depth-1,7,depth_m,14.2,1\n",
+    ),
 )
 def download_samples(
     live: Live, stream: Stream = None, start: From = None, end: To = None
@@ -64,7 +70,11 @@ def download_samples(
     "/{cage}/history.csv",
     dependencies=may_read_rows,
     response_class=StreamingResponse,
-    responses=_file(_CSV, "A row per reading of the buoy."),
+    responses=_file(
+        _CSV,
+        "A row per reading of the buoy.",
+        f"time,valid,bridle-1_kn\n{EXAMPLE_T},True,41.2\n",
+    ),
 )
 def download_history(
     live: Live, start: From = None, end: To = None, limit: Limit = 1000

@@ -13,7 +13,7 @@ from seacage.records import Sample
 from seacage.service._export import joined, replayed_in_blocks
 from seacage.service._live._answers import history_of, usable_value
 from seacage.service._live._past import record_of
-from seacage.service._schemas._cages import History, Measured
+from seacage.service._schemas._history import History, Measured
 from seacage.service._schemas._samples import BUOY_KEYS
 from seacage.service._store._aggregates import WIDTHS_S, Aggregate
 from seacage.service._store._store import Store

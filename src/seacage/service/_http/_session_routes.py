@@ -10,7 +10,7 @@ from seacage.service._auth._guard import COOKIE, Cookie, check_csrf, gate_of, so
 from seacage.service._auth._sessions import Session
 from seacage.service._auth._tokens import Grant
 from seacage.service._http._dependencies import BODY, REFUSED
-from seacage.service._schemas._cages import SessionOut, SignIn
+from seacage.service._schemas._service import SessionOut, SignIn
 
 sessions = APIRouter(prefix="/session", tags=["session"])
 

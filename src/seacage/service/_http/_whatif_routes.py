@@ -7,7 +7,8 @@ from seacage.service._http._cage_routes import FRAME
 from seacage.service._http._dependencies import READ, WRITE, Live, may_read
 from seacage.service._live._answers import state_of
 from seacage.service._live._frame import MEDIA_TYPE, Flags, frame_of
-from seacage.service._schemas._cages import Learned, LearnedInput, Water, WhatIf
+from seacage.service._schemas._cages import Learned, LearnedInput, WhatIf
+from seacage.service._schemas._state import Water
 from seacage.twin import Answered, Metocean, Twin
 
 _KEYS = {

@@ -12,7 +12,7 @@ from types import MappingProxyType
 import structlog
 
 from seacage.conventions import InputError
-from seacage.service._schemas._cages import AlarmBrief
+from seacage.service._schemas._state import AlarmBrief
 from seacage.service._store._store import Store, StoreError
 from seacage.twin import (
     Action,

@@ -12,22 +12,17 @@ from seacage.cage import Cage
 from seacage.conventions import Flag, compass
 from seacage.ocean import SeaState
 from seacage.records import Amendment, Record, Sample
-from seacage.service._schemas._cages import (
+from seacage.service._schemas._cages import CageSummary, Position, ShacklePlace, Topology
+from seacage.service._schemas._history import History, Measured, Series
+from seacage.service._schemas._samples import SampleOut
+from seacage.service._schemas._state import (
     Amended,
     BridleState,
-    CageSummary,
-    History,
     Interval,
-    Measured,
-    Position,
-    SampleOut,
     SensorState,
-    Series,
-    ShacklePlace,
     Shape,
     ShapeState,
     State,
-    Topology,
     Water,
 )
 from seacage.surrogates import Prediction

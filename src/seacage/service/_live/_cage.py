@@ -25,8 +25,9 @@ from seacage.service._live._live_twin import LiveTwin
 from seacage.service._live._mailbox import Mailbox
 from seacage.service._live._metrics import Metrics
 from seacage.service._live._past import streams_of
-from seacage.service._schemas._cages import AlarmBrief, State, Topology
+from seacage.service._schemas._cages import Topology
 from seacage.service._schemas._samples import BUOY_KEYS
+from seacage.service._schemas._state import AlarmBrief, State
 from seacage.service._store._samples import Stored
 from seacage.service._store._store import Store
 from seacage.twin import (

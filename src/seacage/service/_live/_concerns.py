@@ -5,7 +5,7 @@ from datetime import timedelta
 from typing import Literal
 
 from seacage.service._live._answers import known_loads, usable_value
-from seacage.service._schemas._cages import Concern, State
+from seacage.service._schemas._state import Concern, State
 from seacage.twin import ADAPTATION_BLOCK, AlarmPolicy, TwinState
 
 

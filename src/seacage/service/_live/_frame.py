@@ -6,7 +6,7 @@ from enum import IntFlag
 import numpy as np
 from jaxtyping import Float
 
-from seacage.service._schemas._cages import State
+from seacage.service._schemas._state import State
 from seacage.twin import Answered
 
 MEDIA_TYPE = "application/vnd.seacage.frame"

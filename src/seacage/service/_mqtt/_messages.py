@@ -10,8 +10,8 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from seacage.conventions import InputError
 from seacage.records import Sample
-from seacage.service._schemas._cages import BATCH_LIMIT, SampleIn, Time
-from seacage.service._schemas._samples import read_samples
+from seacage.service._schemas._base import Time
+from seacage.service._schemas._samples import BATCH_LIMIT, SampleIn, read_samples
 
 LARGEST = 1 << 18
 """Of a message [bytes]; a longer one is not read."""

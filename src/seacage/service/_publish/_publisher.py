@@ -13,7 +13,7 @@ from seacage.service._mqtt._messages import Settled
 from seacage.service._publish._courier import Courier
 from seacage.service._publish._sender import SendError
 from seacage.service._publish._spool import Spool
-from seacage.service._schemas._cages import BATCH_LIMIT
+from seacage.service._schemas._samples import BATCH_LIMIT
 
 _LOOK_S = 0.2
 _REASONS = 20

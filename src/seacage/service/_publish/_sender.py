@@ -9,7 +9,7 @@ from seacage.conventions import InputError, SeacageError
 from seacage.records import Sample
 from seacage.service._mqtt._messages import said
 from seacage.service._publish._post import POST_FAILED, AbstractCaller
-from seacage.service._schemas._cages import BATCH_LIMIT, Receipt
+from seacage.service._schemas._samples import BATCH_LIMIT, Receipt
 
 _LATER = (429, 503)
 

@@ -11,8 +11,7 @@ from pydantic import ValidationError
 from seacage.conventions import InputError
 from seacage.records import KEYS, Record, Sample
 from seacage.service._publish._publisher import Batch
-from seacage.service._schemas._cages import BATCH_LIMIT, SampleIn
-from seacage.service._schemas._samples import read_samples
+from seacage.service._schemas._samples import BATCH_LIMIT, SampleIn, read_samples
 from seacage.service._tail import Refuse, Tail
 
 _SECOND = timedelta(seconds=1)

@@ -3,22 +3,38 @@
 from datetime import datetime
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
+from seacage.service._schemas._base import EXAMPLE_T, AbstractAnswer, AbstractRequest, example
+from seacage.service._schemas._state import EXAMPLE_ALARM_BRIEF
 from seacage.twin import Alarm, AlarmEvent, AlarmKpi, AlarmPolicy, alarm_text
 
 LONGEST_WORDS = 500
 """Of a reason or a comment [characters]."""
 
+_ALARM = EXAMPLE_ALARM_BRIEF | {
+    "kind": "load",
+    "source": "bridle-3",
+    "advice": "Look at the mooring before the next tide.",
+    "unit": "%",
+    "value": 82.0,
+    "worst": 84.5,
+    "raise_at": 80.0,
+    "clear_at": 75.0,
+    "shelved_until": None,
+    "in_service": True,
+    "comment": "",
+}
 
-class AlarmState(BaseModel):
+
+class AlarmState(AbstractAnswer):
     """One alarm: what it is about, how it stands and by which limits it is judged.
 
     ``value``, ``worst``, ``raise_at`` and ``clear_at`` are in ``unit``; ``severity`` runs from 1
     to 1000, critical from 800 on.
     """
 
-    model_config = ConfigDict(frozen=True)
+    model_config = example(_ALARM)
 
     id: str
     kind: str
@@ -41,18 +57,18 @@ class AlarmState(BaseModel):
     comment: str
 
 
-class Alarms(BaseModel):
+class Alarms(AbstractAnswer):
     """All alarms of a cage that were ever judged, the worst first."""
 
-    model_config = ConfigDict(frozen=True)
+    model_config = example({"alarms": [_ALARM]})
 
     alarms: list[AlarmState]
 
 
-class Handling(BaseModel):
+class Handling(AbstractRequest):
     """Why somebody does something with an alarm, and for how long it is to be shelved."""
 
-    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
+    model_config = example({"why": "Seen; the boat is on its way."})
 
     why: Annotated[str, Field(max_length=LONGEST_WORDS)] = ""
     seconds: Annotated[
@@ -66,10 +82,8 @@ class Handling(BaseModel):
     ] = None
 
 
-class JournalLine(BaseModel):
+class JournalLine(AbstractAnswer):
     """What happened to an alarm, when, and by whom where a person acted."""
-
-    model_config = ConfigDict(frozen=True)
 
     alarm: str
     action: str
@@ -80,15 +94,29 @@ class JournalLine(BaseModel):
     quiet: bool
 
 
-class Journal(BaseModel):
+class Journal(AbstractAnswer):
     """Lines in time order."""
 
-    model_config = ConfigDict(frozen=True)
+    model_config = example(
+        {
+            "lines": [
+                {
+                    "alarm": "load.bridle-3",
+                    "action": "acknowledged",
+                    "t": EXAMPLE_T,
+                    "value": 82.0,
+                    "who": "Night shift",
+                    "why": "Seen; the boat is on its way.",
+                    "quiet": False,
+                }
+            ]
+        }
+    )
 
     lines: list[JournalLine]
 
 
-class Kpi(BaseModel):
+class Kpi(AbstractAnswer):
     """How well the alarms served their watch over a span of time.
 
     Alarms that were shelved or out of service count in ``raised`` and in no other rate: they
@@ -96,7 +124,20 @@ class Kpi(BaseModel):
     more within an hour; ``to_acknowledge_s`` is the median.
     """
 
-    model_config = ConfigDict(frozen=True, from_attributes=True)
+    model_config = example(
+        {
+            "start": "2018-01-19T23:08:00Z",
+            "end": EXAMPLE_T,
+            "raised": {"load.bridle-3": 2},
+            "per_day": 0.29,
+            "most_in_an_hour": 1,
+            "standing": {},
+            "longest_s": {"load.bridle-3": 1440.0},
+            "chattering": [],
+            "to_acknowledge_s": 95.0,
+            "unacknowledged": 0,
+        }
+    )
 
     start: datetime
     end: datetime
@@ -151,4 +192,4 @@ def journal_line(happened: AlarmEvent) -> JournalLine:
 
 def kpi_of(kpi: AlarmKpi) -> Kpi:
     """Say what was counted."""
-    return Kpi.model_validate(kpi)
+    return Kpi.model_validate(kpi, from_attributes=True)

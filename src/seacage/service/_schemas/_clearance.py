@@ -3,7 +3,9 @@
 from datetime import datetime
 from typing import Annotated, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
+
+from seacage.service._schemas._base import EXAMPLE_T, AbstractAnswer, AbstractRequest, example
 
 POINT_LIMIT = 10_000
 """Points in one request."""
@@ -19,15 +21,7 @@ MaxAge = Annotated[
 ]
 
 
-class _Asked(BaseModel):
-    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
-
-
-class _Answered(BaseModel):
-    model_config = ConfigDict(frozen=True)
-
-
-class Place(_Asked):
+class Place(AbstractRequest):
     """A place on the Earth, WGS84, and how far below the water."""
 
     latitude_deg: Annotated[float, Field(ge=-90.0, le=90.0)]
@@ -35,12 +29,51 @@ class Place(_Asked):
     depth_m: Metres
 
 
-class ClearanceAsked(_Asked):
+_NET = {
+    "t": EXAMPLE_T,
+    "frame": "enu",
+    "in_domain": True,
+    "state_age_s": 12.0,
+    "shape_error": "virtual field",
+    "below_m": 1.5,
+}
+
+_CLEAR = {
+    "distance_m": 4.82,
+    "inside": True,
+    "nearest_m": [24.8, 0.1, -5.3],
+    "nearest_place": None,
+    "normal": [0.99, 0.0, -0.06],
+    "expected_m": 4.6,
+    "sigma_m": 0.31,
+    "p_below_1m": 0.0,
+    "p_below": 0.0,
+    "p_through": 0.0,
+    "state_age_s": 12.0,
+}
+
+_WAYPOINT = {
+    "position_m": [22.9, 0.1, -1.0],
+    "place": None,
+    "heading_deg": 90.0,
+    "pitch_deg": 0.0,
+    "row": 0,
+    "part": 0,
+    "distance_m": 2.0,
+    "expected_m": 1.9,
+    "sigma_m": 0.12,
+    "p_below": 0.0004,
+}
+
+
+class ClearanceAsked(AbstractRequest):
     """Points, or the corners of a path, in one of three frames.
 
     ``points_m`` goes with ``"enu"`` and ``"ned"``, ``places`` with ``"wgs84"``, which needs a
     cage whose file says where it lies.
     """
+
+    model_config = example({"frame": "enu", "points_m": [[20.0, 0.0, -5.0]], "below_m": 1.5})
 
     frame: FrameName = "enu"
     points_m: Annotated[list[Triple] | None, Field(min_length=1, max_length=POINT_LIMIT)] = None
@@ -59,7 +92,7 @@ class ClearanceAsked(_Asked):
         return self
 
 
-class PointClearance(_Answered):
+class PointClearance(AbstractAnswer):
     """How far one point is from the net.
 
     ``distance_m`` is to the predicted net, on either side, and ``nearest_m`` the point of it,
@@ -84,7 +117,7 @@ class PointClearance(_Answered):
     state_age_s: float
 
 
-class PathAnswer(_Answered):
+class PathAnswer(AbstractAnswer):
     """A path as a whole.
 
     ``closest`` is where it comes nearest to the predicted net, ``at_m`` and ``at_place`` where
@@ -104,7 +137,7 @@ class PathAnswer(_Answered):
     p_most: float | None
 
 
-class _NetAnswer(_Answered):
+class _NetAnswer(AbstractAnswer):
     t: datetime
     frame: FrameName
     in_domain: bool
@@ -122,12 +155,16 @@ class _NetAnswer(_Answered):
 class ClearanceAnswer(_NetAnswer):
     """Clearances in the order of the points, and of the path where one was asked for."""
 
+    model_config = example(_NET | {"points": [_CLEAR], "path": None})
+
     points: list[PointClearance]
     path: PathAnswer | None
 
 
-class InspectionAsked(_Asked):
+class InspectionAsked(AbstractRequest):
     """A way along the net."""
+
+    model_config = example({"stand_off_m": 2.0, "side": "inside", "pattern": "rows"})
 
     frame: FrameName = "enu"
     stand_off_m: Annotated[float, Field(ge=0.1, le=50.0)] = 2.0
@@ -141,7 +178,7 @@ class InspectionAsked(_Asked):
     max_age_s: MaxAge = None
 
 
-class Waypoint(_Answered):
+class Waypoint(AbstractAnswer):
     """Where to be, and where to look: clockwise from true north, and upwards."""
 
     position_m: list[float]
@@ -158,6 +195,8 @@ class Waypoint(_Answered):
 
 class InspectionAnswer(_NetAnswer):
     """Waypoints from the top down; between two of a part the way is straight and free."""
+
+    model_config = example(_NET | {"waypoints": [_WAYPOINT], "parts": 1, "left_out": 0})
 
     waypoints: list[Waypoint]
     parts: int

@@ -3,12 +3,22 @@
 import math
 from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
+from typing import Annotated
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import Field, JsonValue, TypeAdapter, ValidationError
+from pydantic.config import JsonDict
 
 from seacage.conventions import InputError
 from seacage.records import Sample
-from seacage.service._schemas._cages import Rejection, SampleIn, Time
+from seacage.service._schemas._base import (
+    EXAMPLE_T,
+    EXAMPLE_WATER,
+    AbstractAnswer,
+    AbstractRequest,
+    Name,
+    Time,
+    example,
+)
 
 _LARGEST = 1.7e308
 _EARLIEST = datetime(1970, 1, 1, tzinfo=UTC)
@@ -16,6 +26,113 @@ _EARLIEST = datetime(1970, 1, 1, tzinfo=UTC)
 _TIME = TypeAdapter[datetime](Time)
 
 BUOY_KEYS = ("current_speed_m_s", "current_to_deg", "hs_m", "tp_s", "wave_from_deg")
+
+BATCH_LIMIT = 1000
+"""Samples in one request."""
+
+_T: JsonDict = {"anyOf": [{"type": "string", "format": "date-time"}, {}]}
+
+
+class SampleIn(AbstractRequest):
+    """One reading of one stream.
+
+    ``values`` are numbers by quantity, or null where the source has none. A number that cannot
+    be true is stored with its flag; anything but a number, or a time that is none, has the sample
+    rejected, and the others of the request stored.
+    """
+
+    stream: Name
+    t: Annotated[JsonValue, Field(description="Of the source, UTC, as text.", json_schema_extra=_T)]
+    seq: Annotated[int | None, Field(ge=0, lt=2**63)] = None
+    values: Annotated[dict[str, JsonValue], Field(min_length=1, max_length=16)]
+
+
+_SAMPLE = {"stream": "buoy-1", "t": EXAMPLE_T, "seq": 1, "values": EXAMPLE_WATER}
+
+
+class SamplesIn(AbstractRequest):
+    """Readings of one cage, in any order."""
+
+    model_config = example({"samples": [_SAMPLE]})
+
+    samples: Annotated[list[SampleIn], Field(min_length=1, max_length=BATCH_LIMIT)]
+
+
+class Rejection(AbstractAnswer):
+    """A sample that was not stored, by its place in the request.
+
+    ``retry`` says that the same sample may be taken later: its time is ahead of the clock.
+    """
+
+    index: int
+    reason: str
+    retry: bool = False
+
+
+class Receipt(AbstractAnswer):
+    """What became of the samples; those accepted are on disk."""
+
+    model_config = example(
+        {
+            "accepted": 1,
+            "duplicates": 0,
+            "rejected": [
+                {"index": 1, "reason": "No stream is called 'buoy-9'.", "retry": False},
+            ],
+        }
+    )
+
+    accepted: int
+    duplicates: int
+    rejected: list[Rejection]
+
+
+class SampleOut(AbstractAnswer):
+    """A stored sample; flags are 1 good, 2 not evaluated, 3 suspect, 4 fail, 9 missing."""
+
+    stream: str
+    t: datetime
+    seq: int | None
+    values: dict[str, float | None]
+    flags: dict[str, int]
+
+
+class SamplesOut(AbstractAnswer):
+    """Stored samples in time order."""
+
+    model_config = example({"samples": [_SAMPLE | {"flags": dict.fromkeys(EXAMPLE_WATER, 1)}]})
+
+    samples: list[SampleOut]
+
+
+class AggregateOut(AbstractAnswer):
+    """The usable readings of one span, in the unit of the quantity's name; ``t`` is its start."""
+
+    t: datetime
+    count: int
+    mean: float
+    least: float
+    most: float
+
+
+class AggregatesOut(AbstractAnswer):
+    """The spans that had readings, in time order."""
+
+    model_config = example(
+        {
+            "stream": "depth-1",
+            "key": "depth_m",
+            "width_s": 600,
+            "aggregates": [
+                {"t": EXAMPLE_T, "count": 300, "mean": 14.1, "least": 13.6, "most": 14.5}
+            ],
+        }
+    )
+
+    stream: str
+    key: str
+    width_s: int
+    aggregates: list[AggregateOut]
 
 
 def read_samples(

@@ -8,7 +8,7 @@ from framed import decoded
 from seacage.ocean import SeaState
 from seacage.service._live._answers import summary_of
 from seacage.service._live._frame import Flags
-from seacage.service._schemas._cages import AlarmBrief
+from seacage.service._schemas._state import AlarmBrief
 from serviced import Running, at, buoy, depth, eventually
 
 JSON = {"Content-Type": "application/json"}

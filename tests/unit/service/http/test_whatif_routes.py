@@ -5,7 +5,7 @@ import pytest
 from framed import decoded
 from seacage.ocean import SeaState
 from seacage.service._http._whatif_routes import counted, learned_of
-from seacage.service._schemas._cages import Water
+from seacage.service._schemas._state import Water
 from seacage.testing import stand_in_twin
 from serviced import Running
 

@@ -7,7 +7,7 @@ from seacage.conventions import Flag
 from seacage.records import Sample
 from seacage.service._live._answers import state_of, summary_of
 from seacage.service._live._concerns import concerns_of
-from seacage.service._schemas._cages import AlarmBrief
+from seacage.service._schemas._state import AlarmBrief
 from seacage.testing import stand_in_twin
 from seacage.twin import AlarmPolicy, Answered
 from serviced import NOON

@@ -8,7 +8,7 @@ from datetime import datetime, timedelta
 from pydantic import TypeAdapter, ValidationError
 
 from seacage.conventions import InputError
-from seacage.service._schemas._cages import Reach
+from seacage.service._schemas._base import Reach
 
 MOST = 1000
 FARTHEST = 10_000

@@ -6,11 +6,11 @@ from typing import Annotated, Any
 from urllib.parse import quote, urlencode
 
 from fastapi import APIRouter, Depends, Path, Query, Request
-from pydantic import BaseModel, Field
+from pydantic import Field
 
 from seacage.conventions import InputError
 from seacage.records import Sample
-from seacage.service._http._dependencies import READ, REFUSED, cages_of, may_read
+from seacage.service._http._dependencies import READ, REFUSED, Responses, cages_of, may_read
 from seacage.service._http._sensorthings._entities import (
     OBSERVATIONS,
     OBSERVED,
@@ -30,6 +30,7 @@ from seacage.service._http._sensorthings._query import (
     from_or_until,
     written,
 )
+from seacage.service._schemas._base import AbstractAnswer, example
 
 _AT_ONCE = 30_000
 """Entities told and samples looked at, in one answer: expansions multiply."""
@@ -79,16 +80,47 @@ Filter = Annotated[
 Id = Annotated[str, Path(max_length=200, examples=["ace:buoy-1:current_speed_m_s"])]
 
 
-class Entities(BaseModel):
+_ADDRESS = f"http://127.0.0.1:8000{ROOT}"
+_ENTITY: Entity = {
+    "@iot.id": "ace",
+    "@iot.selfLink": f"{_ADDRESS}/Things('ace')",
+    "name": "ace",
+    "description": "Net cage ace.",
+    "properties": {},
+}
+
+
+def _one_of(name: str) -> Responses:
+    """Document the answer of a call that gives one entity."""
+    entity = _ENTITY | {"@iot.selfLink": f"{_ADDRESS}/{name}('ace')"}
+    return {**READ, 200: {"content": {"application/json": {"example": entity}}}}
+
+
+class Entities(AbstractAnswer):
     """A set of entities, as SensorThings says it; the links and the count where they belong."""
+
+    model_config = example(
+        {
+            "value": [_ENTITY],
+            "@iot.count": 2,
+            "@iot.nextLink": f"{_ADDRESS}/Things?$top=1&$skip=1",
+        }
+    )
 
     value: list[Entity]
     count: int = Field(default=0, alias="@iot.count")
     next_link: str = Field(default="", alias="@iot.nextLink")
 
 
-class Root(BaseModel):
+class Root(AbstractAnswer):
     """The sets there are, and what of the standard is kept."""
+
+    model_config = example(
+        {
+            "value": [{"name": "Things", "url": "/sta/v1.1/Things"}],
+            "serverSettings": {"conformance": []},
+        }
+    )
 
     value: list[dict[str, str]]
     serverSettings: dict[str, Any]  # noqa: N815 (the standard's word)
@@ -279,13 +311,13 @@ for _name in SETS:
     things.get(f"/{_name}", responses=REFUSED, operation_id=f"sta_{_name}", **_PAGED)(
         _listed(_name)
     )
-    things.get(f"/{_name}('{{id}}')", responses=READ, operation_id=f"sta_one_of_{_name}")(
+    things.get(f"/{_name}('{{id}}')", responses=_one_of(_name), operation_id=f"sta_one_of_{_name}")(
         _single(_name)
     )
     for _relation, _to in RELATIONS[_name].items():
         things.get(
             f"/{_name}('{{id}}')/{_relation}",
-            responses=READ,
+            responses=READ if _to.many else _one_of(_name),
             operation_id=f"sta_{_relation}_of_{_name}",
             **(_PAGED if _to.many else {}),
         )(_leading(_name, _relation))

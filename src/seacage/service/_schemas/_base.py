@@ -1,0 +1,89 @@
+"""What the JSON bodies share: names, times, and how strictly a body is read."""
+
+from datetime import UTC, datetime
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
+
+Name = Annotated[str, Field(min_length=1, max_length=64)]
+"""Of a cage, a stream, a sensor."""
+
+_YEARS = range(1900, 2200)
+
+
+def _spelled(t: object) -> object:
+    # A bare number, also as text, would be taken for seconds since 1970.
+    if not isinstance(t, datetime) and not (isinstance(t, str) and t[4:5] == "-"):
+        raise ValueError("a time is written in ISO 8601, as 2018-01-26T23:08:00Z, not as a number")
+    return t
+
+
+def _with_zone(t: datetime) -> datetime:
+    if t.tzinfo is None:
+        raise ValueError("a time says its zone, as in 2018-01-26T23:08:00Z")
+    return t
+
+
+def _of_our_time(t: datetime) -> datetime:
+    if t.year not in _YEARS:  # at the ends of the calendar, another zone's time does not exist
+        raise ValueError(f"no time here is from the year {t.year}; check the source's clock")
+    return t
+
+
+Time = Annotated[
+    datetime,
+    BeforeValidator(_spelled),
+    AfterValidator(_with_zone),
+    AfterValidator(_of_our_time),
+]
+"""With its zone."""
+
+
+_FIRST, _LAST = datetime(1900, 1, 1, tzinfo=UTC), datetime(2200, 1, 1, tzinfo=UTC)
+
+
+def _reachable(t: datetime) -> datetime:
+    return min(max(_with_zone(t), _FIRST), _LAST)
+
+
+Reach = Annotated[datetime, BeforeValidator(_spelled), AfterValidator(_reachable)]
+"""A time that something is asked of: far away from all that is stored, one is as good as any."""
+
+
+class AbstractRequest(BaseModel):
+    """A body that is sent: nothing is converted, and nothing unknown is let pass."""
+
+    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
+
+
+class AbstractAnswer(BaseModel):
+    """A body that is answered."""
+
+    model_config = ConfigDict(frozen=True)
+
+
+EXAMPLE_T = "2018-01-26T23:08:00Z"
+EXAMPLE_WATER = {
+    "current_speed_m_s": 0.5,
+    "current_to_deg": 90.0,
+    "hs_m": 1.2,
+    "tp_s": 5.5,
+    "wave_from_deg": 270.0,
+}
+
+
+def example(body: dict[str, Any]) -> ConfigDict:
+    """Give the description of a body an example."""
+    return ConfigDict(json_schema_extra={"examples": [body]})
+
+
+def with_nulls(described: dict[str, Any]) -> dict[str, Any]:
+    """Put the nulls of the examples back into a description, as FastAPI leaves them out."""
+    bodies = described["components"]["schemas"]
+    models = [AbstractRequest, AbstractAnswer]
+    for model in models:
+        models += model.__subclasses__()
+        extra = model.model_config.get("json_schema_extra")
+        if model.__name__ in bodies and isinstance(extra, dict):
+            bodies[model.__name__] |= extra
+    return described

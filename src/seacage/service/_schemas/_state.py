@@ -1,0 +1,229 @@
+"""The JSON of a cage at one time: its loads, sensors, shape and alarms."""
+
+from datetime import datetime
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from seacage.service._schemas._base import (
+    EXAMPLE_T,
+    EXAMPLE_WATER,
+    AbstractAnswer,
+    example,
+)
+from seacage.twin import interval_reason
+
+
+class Interval(AbstractAnswer):
+    """Mean and 95 % interval; null without valid input, the interval also without level 2."""
+
+    mean: float | None
+    lower: float | None
+    upper: float | None
+
+
+class BridleState(AbstractAnswer):
+    """A bridle's load now.
+
+    ``level`` is the fidelity of the answer: 2 where a shackle has taught it, else 1, and
+    ``in_domain`` is of that level. Level 1 has no interval, and ``interval_reason`` says why;
+    it is null where there is one. ``utilisation`` is the mean over the line's capacity.
+    ``measured_kn`` is what its shackle measured, as the load's alarm takes it: the last minute's
+    mean, else the newest in time.
+    """
+
+    name: str
+    level: int
+    in_domain: bool
+    tension_kn: Interval
+    interval_reason: str | None
+    low_fidelity_kn: float | None
+    utilisation: float | None
+    measured_kn: float | None = None
+    measured_utilisation: float | None = None
+    measured_by: str | None = None
+
+
+class SensorState(AbstractAnswer):
+    """What a sensor should read now, by simulation alone and as taught, and what it does read.
+
+    ``level``, ``in_domain`` and ``interval_reason`` are as for a bridle.
+    """
+
+    name: str
+    unit: str
+    level: int
+    in_domain: bool
+    low_fidelity: float | None
+    mean: float | None
+    lower: float | None
+    upper: float | None
+    interval_reason: str | None
+    measured: float | None
+    measured_age_s: float | None
+
+
+class ShapeState(AbstractAnswer):
+    """What answers for the shape, and why its standard deviation is not known; null if it is."""
+
+    level: int
+    in_domain: bool
+    interval_reason: str | None
+
+
+class Water(AbstractAnswer):
+    """The reading that the answer rests on; null where the source said nothing."""
+
+    current_speed_m_s: float | None
+    current_to_deg: float | None
+    hs_m: float | None
+    tp_s: float | None
+    wave_from_deg: float | None
+
+
+class Amended(AbstractAnswer):
+    """A reading whose flag became worse after it came: what was shown of it, take back.
+
+    ``was`` is the flag before; null where that is not known.
+    """
+
+    stream: str
+    t: datetime
+    quantity: str
+    was: int | None
+    flag: int
+    reason: str
+
+
+class AlarmBrief(AbstractAnswer):
+    """An alarm that is active or not acknowledged; from severity 800 on it is critical."""
+
+    id: str
+    severity: Annotated[int, Field(ge=1, le=1000)]
+    title: str
+    message: str
+    active: bool
+    acknowledged: bool
+    shelved: bool
+    since: datetime | None
+
+
+class Concern(AbstractAnswer):
+    """Why a cage is not called well, though no alarm may be active: what, and by which limit."""
+
+    kind: Literal["load", "volume", "measured"]
+    title: str
+    message: str
+
+
+_NO_INTERVAL = interval_reason(1)
+_INTERVAL = {"mean": 41.2, "lower": 36.9, "upper": 45.5}
+
+EXAMPLE_ALARM_BRIEF = {
+    "id": "load.bridle-3",
+    "severity": 800,
+    "title": "Bridle 3 is heavily loaded",
+    "message": "Bridle 3 carries 131 kN of its 160 kN.",
+    "active": True,
+    "acknowledged": False,
+    "shelved": False,
+    "since": EXAMPLE_T,
+}
+
+
+class State(AbstractAnswer):
+    """A cage at one time.
+
+    Without valid input ``valid`` is false, ``reason`` says why, and every computed number is
+    null. ``in_domain`` false means extrapolating beyond what level 1 was trained on.
+    ``age_s`` is the age of the input. ``origin`` says how the sensors' numbers were made.
+    ``amended`` holds the readings of the last minutes whose flags grew worse after they came.
+    """
+
+    model_config = example(
+        {
+            "cage": "ace",
+            "t": EXAMPLE_T,
+            "age_s": 12.0,
+            "valid": True,
+            "in_domain": True,
+            "reason": "",
+            "origin": "virtual field",
+            "water": EXAMPLE_WATER,
+            "bridles": [
+                {
+                    "name": "bridle-7",
+                    "level": 2,
+                    "in_domain": True,
+                    "tension_kn": _INTERVAL,
+                    "interval_reason": None,
+                    "low_fidelity_kn": 38.7,
+                    "utilisation": 0.2575,
+                }
+            ],
+            "sensors": [
+                {
+                    "name": "depth-1",
+                    "unit": "m",
+                    "level": 2,
+                    "in_domain": True,
+                    "low_fidelity": 14.4,
+                    "mean": 14.1,
+                    "lower": 13.8,
+                    "upper": 14.4,
+                    "interval_reason": None,
+                    "measured": 14.2,
+                    "measured_age_s": 2.0,
+                }
+            ],
+            "shape_level": 1,
+            "shape": {"level": 1, "in_domain": True, "interval_reason": _NO_INTERVAL},
+            "volume_fraction": 0.87,
+            "silent": [],
+            "amended": [],
+            "alarms": [EXAMPLE_ALARM_BRIEF],
+            "concerns": [],
+        }
+    )
+
+    cage: str
+    t: datetime
+    age_s: float | None
+    valid: bool
+    in_domain: bool
+    reason: str
+    origin: str
+    water: Water | None
+    bridles: list[BridleState]
+    sensors: list[SensorState]
+    shape_level: int
+    shape: ShapeState
+    volume_fraction: float | None
+    silent: list[str]
+    amended: list[Amended]
+    alarms: list[AlarmBrief] = Field(default=[])
+    concerns: list[Concern] = Field(default=[])
+
+
+class Shape(ShapeState):
+    """The net at one time: x east, y north, z up; empty without valid input.
+
+    ``sigma_m`` is null where no standard deviation is known, and ``interval_reason`` says why.
+    """
+
+    model_config = example(
+        {
+            "t": EXAMPLE_T,
+            "valid": True,
+            "level": 1,
+            "in_domain": True,
+            "node_position_m": [[25.4, 0.1, 0.0]],
+            "sigma_m": None,
+            "interval_reason": _NO_INTERVAL,
+        }
+    )
+
+    t: datetime
+    valid: bool
+    node_position_m: list[list[float]]
+    sigma_m: list[float] | None
