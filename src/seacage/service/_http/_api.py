@@ -4,13 +4,16 @@ import asyncio
 from collections.abc import AsyncGenerator, Callable, Coroutine, Mapping, Sequence
 from contextlib import asynccontextmanager
 from importlib.metadata import version
+from pathlib import Path
 
 import structlog
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse, PlainTextResponse, Response
+from fastapi.staticfiles import StaticFiles
 from starlette.middleware.gzip import DEFAULT_EXCLUDED_CONTENT_TYPES, GZipMiddleware
 from starlette.routing import Match, Mount
+from starlette.types import Scope
 
 from seacage.conventions import InputError
 from seacage.service._auth._audit import Audit
@@ -22,7 +25,6 @@ from seacage.service._http._alarm_routes import alarms
 from seacage.service._http._cage_routes import around, cages
 from seacage.service._http._clearance_routes import rov
 from seacage.service._http._download_routes import NETCDF, downloads
-from seacage.service._http._page_files import PAGE, PageFiles
 from seacage.service._http._sensorthings._routes import things
 from seacage.service._http._session_routes import sessions
 from seacage.service._http._websocket import sockets
@@ -44,6 +46,11 @@ _UNPACKED = (
     MCAP,
 )  # packed, or short and often
 _log = structlog.get_logger(__name__)
+
+PAGE = Path(__file__).parents[1] / "page"
+"""Where the build puts them; it is not there where no page was built."""
+
+_FOR_EVER = "public, max-age=31536000, immutable"
 
 
 class Service:
@@ -106,6 +113,19 @@ class Service:
 def _mourn(task: asyncio.Task[None]) -> None:
     if not task.cancelled() and (error := task.exception()):
         _log.error("stopped", task=task.get_name(), exc_info=error)
+
+
+class PageFiles(StaticFiles):
+    """Files of the page: those whose names hold a hash of their content never change."""
+
+    async def get_response(self, path: str, scope: Scope) -> Response:
+        """Answer with a file."""
+        answer = await super().get_response(path, scope)
+        if "etag" in answer.headers:  # weak, as a compressed file is not the same bytes
+            answer.headers["etag"] = f"W/{answer.headers['etag'].removeprefix('W/')}"
+        if path.startswith("assets/") and answer.status_code == 200:
+            answer.headers["cache-control"] = _FOR_EVER
+        return answer
 
 
 def create_app(service: Service) -> FastAPI:

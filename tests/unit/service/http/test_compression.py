@@ -2,7 +2,7 @@
 
 import pytest
 
-from seacage.service._http._page_files import PAGE
+from seacage.service._http._api import PAGE
 from serviced import Running, buoy, depth, eventually
 
 
