@@ -28,7 +28,7 @@ from seacage.service._http._api import Service, create_app
 from seacage.service._live._cage import LiveCage
 from seacage.service._live._clock import WallClock
 from seacage.service._live._metrics import Metrics
-from seacage.service._mqtt._messages import observed_text, read_observed
+from seacage.service._mqtt._messages import read_observed, samples_text
 from seacage.service._store._store import Store
 from seacage.testing import stand_in_campaign, stand_in_field, stand_in_seas
 from seacage.twin import Training, Twin, train
@@ -188,7 +188,7 @@ def sample_costs(twin: Twin, folder: Path) -> dict[str, float]:
         Sample(stream=sensor, t=now + timedelta(seconds=k / 1000), values={key: 10.0 + k % 7 / 10})
         for k in range(TOGETHER * STEPS // 10)
     ]
-    messages = [observed_text([one]) for one in samples]
+    messages = [samples_text([one]) for one in samples]
     with closing(Store(folder / "samples.sqlite")) as store:
         cage = LiveCage(
             name="ace", twin=twin, store=store, clock=WallClock(), metrics=Metrics(), tick_s=TICK_S

@@ -59,7 +59,7 @@ class StandingClock:
         """Where it stands."""
         return self.at
 
-    def elapsed_s(self) -> float:
+    def monotonic_s(self) -> float:
         """What has passed, which agrees with it: nobody set this clock."""
         return (self.at - self.start).total_seconds()
 

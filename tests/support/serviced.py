@@ -48,7 +48,7 @@ class HandClock:
     def now(self) -> datetime:
         return self._at
 
-    def elapsed_s(self) -> float:
+    def monotonic_s(self) -> float:
         return self._elapsed_s
 
 

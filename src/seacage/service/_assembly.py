@@ -19,7 +19,7 @@ from seacage.service._live._clock import Clock, FollowingClock, ReplayClock, Wal
 from seacage.service._live._metrics import Metrics
 from seacage.service._live._replay import Replay
 from seacage.service._live._retention import Retention
-from seacage.service._publish._webhooks import Herald, Webhook
+from seacage.service._publish._webhooks import Webhook, WebhookNotifier
 from seacage.service._quarantine import Quarantine
 from seacage.service._settings import CageSection, Settings
 from seacage.service._store._store import Store, open_store
@@ -46,11 +46,11 @@ def read_twins(settings: Settings) -> dict[str, Twin]:
     """
     key = read_key(settings.twin_key) if settings.twin_key else None
     sections = own_cages(settings)
-    twins = [(one.name, _accepted(one, settings.data / "twins", key)) for one in sections]
+    twins = [(one.name, _read_twin_or_last(one, settings.data / "twins", key)) for one in sections]
     return {name or twin.cage.name: twin for name, twin in twins}
 
 
-def _accepted(section: CageSection, folder: Path, key: bytes | None) -> Twin:
+def _read_twin_or_last(section: CageSection, folder: Path, key: bytes | None) -> Twin:
     """A cage's twin; with a key, where it is refused, the one that was served last."""
     last = folder / (section.name or "twin")
     try:
@@ -98,7 +98,7 @@ def store_place(settings: Settings, *, replayed: bool = False) -> Path | str:
     return settings.store.url if "://" in settings.store.url else Path(settings.store.url)
 
 
-def assembled(
+def assemble(
     settings: Settings,
     twins: Mapping[str, Twin],
     *,
@@ -132,13 +132,13 @@ def assembled(
         archive=settings.store.archive if replay is None else None,
     )
     try:
-        return _served_from(store, settings, twins, policies, replay=replay, speed=speed)
+        return _serve_from(store, settings, twins, policies, replay=replay, speed=speed)
     except BaseException:
         store.close()
         raise
 
 
-def _served_from(
+def _serve_from(
     store: Store,
     settings: Settings,
     twins: Mapping[str, Twin],
@@ -166,7 +166,7 @@ def _served_from(
         feeds.append(Retention(store, clocks=dict.fromkeys(cages, clock), keep_days=keep_days).run)
     if replay is not None and isinstance(clock, ReplayClock):
         feeds.append(partial(replay.feed, next(iter(cages.values())), clock))
-    return _guarded(settings, cages, store, metrics, feeds)
+    return _service(settings, cages, store, metrics, feeds)
 
 
 def server(service: Service, settings: Settings) -> "uvicorn.Server":
@@ -215,7 +215,7 @@ def _clock(
 def _feeds(settings: Settings, cages: Mapping[str, LiveCage], metrics: Metrics) -> list[Feed]:
     feeds, hooks = list[Feed](), [Webhook(**hook.model_dump()) for hook in settings.webhooks]
     if hooks:
-        feeds.append(Herald(hooks, cages).run)
+        feeds.append(WebhookNotifier(hooks, cages).run)
     quarantine = Quarantine(settings.data / "quarantine.jsonl")
     metrics.quarantined.set_function(lambda: float(quarantine.count))
     feeds += _tails(settings, cages, quarantine)
@@ -248,7 +248,7 @@ def _tails(settings: Settings, cages: Mapping[str, LiveCage], quarantine: Quaran
     return feeds
 
 
-def _guarded(
+def _service(
     settings: Settings,
     cages: Mapping[str, LiveCage],
     store: Store,

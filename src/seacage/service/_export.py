@@ -78,7 +78,7 @@ def check_form(path: Path) -> None:
         raise InputError(f"{path} ends in no form that is known. End it in {', '.join(_FORMS)}.")
 
 
-def replayed_in_blocks(twin: Twin, buoy: Record) -> Iterator[Replayed]:
+def replay_in_blocks(twin: Twin, buoy: Record) -> Iterator[Replayed]:
     """Answer a buoy's record block by block; at least one, which may be empty."""
     for first in range(0, max(len(buoy), 1), BLOCK):
         rows = slice(first, first + BLOCK)
@@ -92,7 +92,7 @@ def replayed_in_blocks(twin: Twin, buoy: Record) -> Iterator[Replayed]:
         yield Replayed(buoy=some, answer=answer, cage=twin.cage, origin=str(twin.origin))
 
 
-def joined(answers: list[Answer]) -> Answer:
+def join_answers(answers: list[Answer]) -> Answer:
     """Put the rows of several answers of one twin, at least one, into one answer."""
     first = answers[0]
 
@@ -138,7 +138,7 @@ def _columns(replayed: Replayed) -> Iterator[tuple[str, Column]]:
     yield "reason", list(answer.reason)
     yield "origin", [replayed.origin] * len(buoy)
     for key, values in buoy.values.items():
-        yield key, _known(values)
+        yield key, _known_or_none(values)
         yield f"{key}_flag", buoy.flags[key].tolist()
     sensor, bridle = answer.sensor_interval(), answer.bridle_interval()
     for k, name in enumerate(answer.sensor_names):
@@ -162,7 +162,7 @@ def _columns(replayed: Replayed) -> Iterator[tuple[str, Column]]:
     depth = -answer.node_position[:, replayed.cage.bottom_node, 2]
     yield from _interval_columns("shape_bottom_depth", "m", depth)
     yield "shape_largest_sigma_m", [None] * len(buoy)
-    yield "volume_fraction", _known(answer.volume_fraction)
+    yield "volume_fraction", _known_or_none(answer.volume_fraction)
 
 
 def _interval_columns(
@@ -172,12 +172,12 @@ def _interval_columns(
     lower: Float[np.ndarray, " t"] | None = None,
     upper: Float[np.ndarray, " t"] | None = None,
 ) -> Iterator[tuple[str, Column]]:
-    yield f"{name}_{unit}", _known(mean)
+    yield f"{name}_{unit}", _known_or_none(mean)
     for side, end in (("lower", lower), ("upper", upper)):
-        yield f"{name}_{side}_{unit}", [None] * len(mean) if end is None else _known(end)
+        yield f"{name}_{side}_{unit}", [None] * len(mean) if end is None else _known_or_none(end)
 
 
-def _known(values: Float[np.ndarray, " t"]) -> Column:
+def _known_or_none(values: Float[np.ndarray, " t"]) -> Column:
     return [round(v, 6) if math.isfinite(v) else None for v in values.tolist()]
 
 
@@ -237,11 +237,15 @@ def _dataset(replayed: Replayed) -> "xarray.Dataset":
     low, low_of_bridle = answer.sensor_low.mean, np.asarray(answer.bridle_low)
     best, best_of_bridle = answer.sensor.mean, answer.bridle_tension.mean
     variables: dict[str, tuple[tuple[str, ...], Any, dict[str, Any]]] = {
-        "valid": (("time",), answer.valid.astype(np.int8), _said("1", "input passed its checks")),
+        "valid": (
+            ("time",),
+            answer.valid.astype(np.int8),
+            _label("1", "input passed its checks"),
+        ),
         "in_domain": (
             ("time",),
             answer.in_domain.astype(np.int8),
-            _said("1", "inside what was learned; 0 is extrapolating"),
+            _label("1", "inside what was learned; 0 is extrapolating"),
         ),
         "reason": (("time",), np.array(answer.reason, dtype=object), {}),
         **_buoy_variables(replayed.buoy),
@@ -254,20 +258,32 @@ def _dataset(replayed: Replayed) -> "xarray.Dataset":
         "depth_in_domain": _flags("depth_sensor", answer.sensor_in_domain[:, sensors["m"]]),
         "shackle_in_domain": _flags("shackle", answer.sensor_in_domain[:, sensors["N"]]),
         "bridle_in_domain": _flags("bridle", answer.bridle_in_domain),
-        "depth_level": (("depth_sensor",), answer.sensor_level[sensors["m"]], _said("1", "level")),
-        "shackle_level": (("shackle",), answer.sensor_level[sensors["N"]], _said("1", "level")),
-        "bridle_level": (("bridle",), answer.bridle_level, _said("1", "level")),
+        "depth_level": (
+            ("depth_sensor",),
+            answer.sensor_level[sensors["m"]],
+            _label("1", "level"),
+        ),
+        "shackle_level": (
+            ("shackle",),
+            answer.sensor_level[sensors["N"]],
+            _label("1", "level"),
+        ),
+        "bridle_level": (("bridle",), answer.bridle_level, _label("1", "level")),
         "node_position": (
             ("time", "node", "axis"),
             answer.node_position.astype(np.float32),
-            _said("m", "position of the net's nodes, level 1"),
+            _label("m", "position of the net's nodes, level 1"),
         ),
         "node_sigma": (
             ("time", "node"),
             np.full(answer.node_sigma.shape, np.nan, dtype=np.float32),
-            _said("m", "standard deviation; not a number where none is known"),
+            _label("m", "standard deviation; not a number where none is known"),
         ),
-        "volume_fraction": (("time",), answer.volume_fraction, _said("1", "of still water")),
+        "volume_fraction": (
+            ("time",),
+            answer.volume_fraction,
+            _label("1", "of still water"),
+        ),
     }
     names = np.array(answer.sensor_names, dtype=object)
     return xarray.Dataset(
@@ -307,14 +323,20 @@ def _interval_variables(
     lower, upper = interval or (np.full_like(mean, np.nan),) * 2
     kinds = {"": (mean, "mean"), "_lower": (lower, "95 %, lower"), "_upper": (upper, "95 %, upper")}
     return {
-        f"{name}{end}": (("time", dim), scale * values[:, columns], _said(unit, long_name))
+        f"{name}{end}": (
+            ("time", dim),
+            scale * values[:, columns],
+            _label(unit, long_name),
+        )
         for end, (values, long_name) in kinds.items()
     }
 
 
 def _flags(dim: str, inside: Bool[np.ndarray, "t output"]) -> Any:
-    said = _said("1", "inside what the level that answers was trained on; 0 is extrapolating")
-    return ("time", dim), inside.astype(np.int8), said
+    attributes = _label(
+        "1", "inside what the level that answers was trained on; 0 is extrapolating"
+    )
+    return ("time", dim), inside.astype(np.int8), attributes
 
 
 def write_response(path: Path, cage: Cage, sea: SeaState, law: str, response: "Response") -> None:
@@ -323,18 +345,46 @@ def write_response(path: Path, cage: Cage, sea: SeaState, law: str, response: "R
 
     dataset = xarray.Dataset(
         {
-            "node_position": (("node", "axis"), response.node_position, _said("m", "position")),
+            "node_position": (
+                ("node", "axis"),
+                response.node_position,
+                _label("m", "position"),
+            ),
             "node_displacement": (
                 ("node", "axis"),
                 response.node_displacement,
-                _said("m", "displacement from still water"),
+                _label("m", "displacement from still water"),
             ),
-            "bridle_tension": (("bridle",), response.bridle_tension, _said("N", "tension")),
-            "net_force": (("axis",), response.net_force, _said("N", "load of the water")),
-            "volume": ((), float(response.volume), _said("m3", "volume inside the net")),
-            "volume_fraction": ((), float(response.volume_fraction), _said("1", "of still water")),
-            "residual": ((), float(response.residual), _said("N", "largest unbalanced force")),
-            "result": ((), int(response.result), _said("1", "0 converged, 1 not, 2 diverged")),
+            "bridle_tension": (
+                ("bridle",),
+                response.bridle_tension,
+                _label("N", "tension"),
+            ),
+            "net_force": (
+                ("axis",),
+                response.net_force,
+                _label("N", "load of the water"),
+            ),
+            "volume": (
+                (),
+                float(response.volume),
+                _label("m3", "volume inside the net"),
+            ),
+            "volume_fraction": (
+                (),
+                float(response.volume_fraction),
+                _label("1", "of still water"),
+            ),
+            "residual": (
+                (),
+                float(response.residual),
+                _label("N", "largest unbalanced force"),
+            ),
+            "result": (
+                (),
+                int(response.result),
+                _label("1", "0 converged, 1 not, 2 diverged"),
+            ),
         },
         coords={
             "bridle": np.array(cage.bridle_names, dtype=object),
@@ -354,7 +404,7 @@ def write_response(path: Path, cage: Cage, sea: SeaState, law: str, response: "R
     dataset.to_netcdf(path, engine="h5netcdf")  # pyright: ignore[reportUnknownMemberType]
 
 
-def _said(units: str, long_name: str) -> dict[str, Any]:
+def _label(units: str, long_name: str) -> dict[str, Any]:
     return {"units": units, "long_name": long_name}
 
 

@@ -266,10 +266,10 @@ def read_settings(file: Path | None = None, **given: object) -> Settings:
     except ValidationError as error:
         first = error.errors()[0]
         name = ".".join(map(str, first["loc"])) or "the settings"
-        said = f" = {first['input']!r}" if _may_be_shown(name, first["input"]) else ""
+        value = f" = {first['input']!r}" if _may_be_shown(name, first["input"]) else ""
         where = f"{file}, the option" if file else "the option"
         raise InputError(
-            f"serve: {name}{said} does not do: {first['msg'].removeprefix('Value error, ')}. "
+            f"serve: {name}{value} does not do: {first['msg'].removeprefix('Value error, ')}. "
             f"Mend {where} or its variable SEACAGE_…"
         ) from error
 

@@ -91,14 +91,14 @@ class Tail:
         RecordError
             Its header is not that of its map, so no row can be read.
         """
-        if self._file is None and not self._opened():
+        if self._file is None and not self._open():
             return ()
         file = self._file
         assert file is not None
         if self._rewritten(file):
             self._begin(file)
         samples = self._rows(file)
-        if not samples and self._replaced(file):
+        if not samples and self._is_replaced(file):
             self._leave(file)
             return self.poll()
         return samples
@@ -109,7 +109,7 @@ class Tail:
             self._file.close()
             self._file = None
 
-    def _opened(self) -> bool:
+    def _open(self) -> bool:
         if self.path.exists():  # a pipe would hold the opening for ever
             check_file(self.path, most=sys.maxsize, refusal=RecordError)
         try:
@@ -123,20 +123,20 @@ class Tail:
     def _read_header(self, file: BinaryIO) -> None:
         """Read the header again, to go on below it."""
         file.seek(0)
-        lines = [file.readline() for _ in range(self._skipped + 1)]
+        lines = [file.readline() for _ in range(self._skip_lines + 1)]
         self._header = self._text(lines[-1])
 
     def _rewritten(self, file: BinaryIO) -> bool:
         if os.fstat(file.fileno()).st_size < self.place.offset:
             return True
-        return self.place.head != self._hashed(file, self.place.offset)
+        return self.place.head != self._hash(file, self.place.offset)
 
     def _begin(self, file: BinaryIO) -> None:
         _log.info("file begins anew", path=str(self.path))
         self.place, self._header = Place(), ""
         file.seek(0)
 
-    def _replaced(self, file: BinaryIO) -> bool:
+    def _is_replaced(self, file: BinaryIO) -> bool:
         mine = os.fstat(file.fileno())
         try:
             its = self.path.stat()
@@ -165,8 +165,8 @@ class Tail:
         # At line feeds alone: a carriage return before one belongs to its line.
         lines = [line + b"\n" for line in whole.split(b"\n")[:-1]]
         offset = self.place.offset + len(whole)
-        after = Place(offset=offset, line=first + len(lines), head=self._hashed(file, offset))
-        above = max(0, self._skipped + 1 - first)  # lines up to the header's
+        after = Place(offset=offset, line=first + len(lines), head=self._hash(file, offset))
+        above = max(0, self._skip_lines + 1 - first)  # lines up to the header's
         if 0 < above <= len(lines):
             self._header = self._text(lines[above - 1])
             check_rows(self.path, self._header, columns=self.columns)
@@ -201,7 +201,7 @@ class Tail:
         return tuple(record.samples())
 
     @property
-    def _skipped(self) -> int:
+    def _skip_lines(self) -> int:
         return 0 if self.columns is None else self.columns.skip_lines
 
     def _text(self, content: bytes) -> str:
@@ -214,7 +214,7 @@ class Tail:
             raise RecordError(f"{self.path}: there is a NUL character, so this is no text.")
         return text
 
-    def _hashed(self, file: BinaryIO, offset: int) -> str:
+    def _hash(self, file: BinaryIO, offset: int) -> str:
         if not offset:
             return ""
         file.seek(0)

@@ -6,7 +6,7 @@ import pytest
 
 from seacage.conventions import InputError, ModelError
 from seacage.records import Sample
-from seacage.service._assembly import assembled, read_twins, store_place
+from seacage.service._assembly import assemble, read_twins, store_place
 from seacage.service._live._replay import replay_of
 from seacage.service._settings import Settings
 from seacage.service._store._store import StoreError
@@ -31,7 +31,7 @@ def test_cages_share_a_store_and_have_limits_of_their_own(tmp_path, ended):
     north = {"name": "north", "twin": tmp_path / "twin"}
     south = {"name": "south", "twin": tmp_path / "twin", "alarms": {"load": {"raise_at": 0.9}}}
     settings = told(tmp_path, cages=[north, south], alarms={"load": {"raise_at": 0.75}})
-    service = assembled(settings, read_twins(settings))
+    service = assemble(settings, read_twins(settings))
     ended.append(service)
     assert list(service.cages) == ["north", "south"]
     limits = [cage.desk.policy.limit("load.bridle-1").raise_at for cage in service.cages.values()]
@@ -98,25 +98,25 @@ def test_a_key_that_others_can_read_stops_the_start(tmp_path, keyed):
 def test_a_folder_is_served_by_one_process(tmp_path, ended, monkeypatch):
     monkeypatch.setattr("seacage.service._store._store._PATIENCE_S", 0.3)
     settings = told(tmp_path)
-    ended.append(assembled(settings, {"ace": stand_in_twin()}))
+    ended.append(assemble(settings, {"ace": stand_in_twin()}))
     reserve = tmp_path / "data" / "samples.sqlite-reserve"
     for _ in range(2):
         with pytest.raises(StoreError, match="a folder of its own"):
-            assembled(settings, {"ace": stand_in_twin()})
+            assemble(settings, {"ace": stand_in_twin()})
         assert reserve.exists(), "who was refused leaves what is the other's alone"
 
 
 def test_a_group_takes_a_store_that_its_processes_share(tmp_path):
     settings = told(tmp_path, mqtt={"url": "mqtt://127.0.0.1", "group": "twins"})
     with pytest.raises(InputError, match=r"one PostgreSQL as store\.url"):
-        assembled(settings, {"ace": stand_in_twin()})
+        assemble(settings, {"ace": stand_in_twin()})
 
 
 def test_a_clock_that_follows_goes_on_where_the_store_ends(tmp_path, ended):
     then = datetime(2018, 1, 26, tzinfo=UTC)
     settings = told(tmp_path, clock="samples", speed=100.0)
     for speaks in (True, False):
-        service = assembled(settings, {"ace": stand_in_twin()})
+        service = assemble(settings, {"ace": stand_in_twin()})
         cage = service.cages["ace"]
         if speaks:
             water = {"current_speed_m_s": 0.5, "current_to_deg": 90.0}
@@ -131,7 +131,7 @@ def test_a_table_that_grows_feeds_its_cage(tmp_path, ended):
     stand_in_twin().write(tmp_path / "twin")
     tail = {"path": tmp_path / "buoy.csv"}
     settings = told(tmp_path, cages=[{"twin": tmp_path / "twin", "tail": [tail]}])
-    service = assembled(settings, read_twins(settings))
+    service = assemble(settings, read_twins(settings))
     ended.append(service)
     (tmp_path / "buoy.csv").write_text(
         "time,current_speed_m_s,current_to_deg\n2020-02-01T12:00:00Z,0.5,90\n"
@@ -159,4 +159,4 @@ def test_a_record_is_not_replayed_into_several_cages(tmp_path):
     twin = stand_in_twin()
     buoy = stand_in_field(twin.cage, days=0.25).buoy
     with pytest.raises(InputError, match="there are 2"):
-        assembled(told(tmp_path), {"a": twin, "b": twin}, replay=replay_of(buoy))
+        assemble(told(tmp_path), {"a": twin, "b": twin}, replay=replay_of(buoy))

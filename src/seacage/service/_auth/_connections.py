@@ -39,12 +39,12 @@ class Connections:
         self.left(one)
         self._strangers[one] = address
         if address:
-            self._bound(self._strangers, address, self._limits.connections_per_address)
+            self._limit(self._strangers, address, self._limits.connections_per_address)
         if 2 * len(self._strangers) > self._most:
             self.drop(next(iter(self._strangers)), "too many strangers")
         elif len(self._strangers) + len(self._known) > self._most:
             ((token, count),) = Counter(self._known.values()).most_common(1)
-            self._bound(self._known, token, count - 1)
+            self._limit(self._known, token, count - 1)
 
     def asks(self, connection: HTTPConnection, source: str) -> None:
         """Count a connection that a proxy has brought as of the address that it names."""
@@ -58,7 +58,7 @@ class Connections:
         one = connection.scope.get("state", {}).get("connection")
         if self._strangers.pop(one, None) is not None:
             self._known[one] = token
-            self._bound(self._known, token, self._limits.connections_per_token)
+            self._limit(self._known, token, self._limits.connections_per_token)
 
     def left(self, one: Any) -> None:
         """Forget a connection that has ended."""
@@ -72,7 +72,7 @@ class Connections:
         _log.warning("connection dropped", why=why, address=one.client and one.client[0])
         one.transport.abort()
 
-    def _bound(self, held: dict[Any, str], asker: str, most: int) -> None:
+    def _limit(self, held: dict[Any, str], asker: str, most: int) -> None:
         own = [one for one, of in held.items() if of == asker]
         for one in own[: max(0, len(own) - most)]:
             self.drop(one, "too many of one asker")

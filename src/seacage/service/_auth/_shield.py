@@ -51,7 +51,7 @@ class Shield:
         limit = _SIGN_IN_BYTES if signs_in else gate.limits.body_bytes
         known = signs_in or scope["method"] in _READING
 
-        async def counted() -> Message:
+        async def count_body() -> Message:
             nonlocal known, received
             known = known or bool(gate.admit(connection))
             message = await receive()
@@ -60,22 +60,22 @@ class Shield:
                 raise HTTPException(413, f"A request may have {limit} bytes. Send less at once.")
             return message
 
-        async def ruled(message: Message) -> None:
+        async def add_headers(message: Message) -> None:
             if message["type"] == "http.response.start":
                 headers = MutableHeaders(scope=message)
                 for name, value in _HEADERS.items():
                     headers.setdefault(name, value)
-                _written(gate, scope, source, message["status"])
+                _audit(gate, scope, source, message["status"])
             await send(message)
 
         try:
-            await self._app(scope, counted, ruled)
+            await self._app(scope, count_body, add_headers)
         finally:
             if (reading := scope.get("state", {}).get("reading")) is not None:
                 gate.reads.give_back(*reading)
 
 
-def _written(gate: Gate, scope: Scope, source: str, status: int) -> None:
+def _audit(gate: Gate, scope: Scope, source: str, status: int) -> None:
     state = scope.get("state", {})
     deed = scope["method"] not in _READING and state.get("action", "read") not in _PLAIN
     if deed or status in _REFUSALS:

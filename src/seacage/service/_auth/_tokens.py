@@ -101,8 +101,8 @@ class Tokens:
         token = secrets.token_urlsafe(32)
         grant = Grant(
             sha256=digest(token),
-            scopes=checked_scopes(scopes),
-            name=self._checked_name(name),
+            scopes=check_scopes(scopes),
+            name=self._check_name(name),
             made=datetime.now(UTC).isoformat(timespec="seconds") if keep else "",
         )
         if keep:
@@ -174,7 +174,7 @@ class Tokens:
         self._append({"revoked": found[0].sha256})
         return found[0]
 
-    def _checked_name(self, name: str) -> str:
+    def _check_name(self, name: str) -> str:
         if name and _NAME.fullmatch(name) is None:
             raise InputError(
                 f"{name!r} is no name for a token. Give letters, digits, blanks and . _ @ -, at "
@@ -210,7 +210,7 @@ class Tokens:
         self._kept = [grant for grant in grants.values() if grant.sha256 not in revoked]
 
 
-def checked_scopes(scopes: Iterable[str]) -> tuple[str, ...]:
+def check_scopes(scopes: Iterable[str]) -> tuple[str, ...]:
     """Refuse a scope that does not exist.
 
     Raises
@@ -238,7 +238,7 @@ def digest(token: str) -> str:
 def _grant(entry: Mapping[str, Any]) -> Grant:
     return Grant(
         sha256=str(entry["sha256"]),
-        scopes=checked_scopes(entry["scopes"]),
+        scopes=check_scopes(entry["scopes"]),
         name=str(entry.get("name", "")),
         made=str(entry.get("made", "")),
     )

@@ -39,13 +39,13 @@ app = typer.Typer(
 )
 
 
-def _print_version(asked: bool) -> bool:  # noqa: FBT001
-    if asked:
+def _print_version(requested: bool) -> bool:  # noqa: FBT001
+    if requested:
         from seacage import __version__
 
         typer.echo(f"seacage {__version__}")
         raise typer.Exit
-    return asked
+    return requested
 
 
 @app.callback()

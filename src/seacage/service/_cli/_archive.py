@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from seacage.service._cli._console import Exit, Json, guarded, progress_bar, stopped, tell
+from seacage.service._cli._console import Exit, Json, exit_with, guard, progress_bar, report
 
 group = typer.Typer(help="Whole days of samples as Parquet files: write, read and check them.")
 
@@ -17,7 +17,7 @@ Day = Annotated[
 
 
 @group.command()
-@guarded
+@guard
 def write(
     folder: Folder,
     *,
@@ -57,7 +57,7 @@ def write(
             archive.write(name, stream, moment_of(day).date(), samples)
             count += len(samples)
             progress("archive", done, len(days))
-    tell(
+    report(
         {"folder": str(folder), "files": len(days), "samples": count},
         as_json=as_json,
         rows=[("Archive", str(folder)), ("Files", str(len(days))), ("Samples", str(count))],
@@ -65,7 +65,7 @@ def write(
 
 
 @group.command()
-@guarded
+@guard
 def read(
     folder: Folder,
     *,
@@ -85,7 +85,7 @@ def read(
     from seacage.conventions import InputError
     from seacage.service._cli._console import without_nan
     from seacage.service._store._archive import Archive
-    from seacage.service._store._archive_reads import archived_between
+    from seacage.service._store._archive_reads import read_archive_between
 
     archive = Archive(folder)
     if cage not in archive.cages():
@@ -101,17 +101,17 @@ def read(
             "flags": {key: int(flag) for key, flag in one.flags.items()},
             "remarks": list(one.remarks),
         }
-        for one in archived_between(archive, cage, stream=stream, **bounds)
+        for one in read_archive_between(archive, cage, stream=stream, **bounds)
     )
     if as_json:
-        tell({"samples": list(said)}, as_json=True)
+        report({"samples": list(said)}, as_json=True)
         return
     for line in said:
         typer.echo(json.dumps(line))
 
 
 @group.command()
-@guarded
+@guard
 def check(folder: Folder, *, as_json: Json = False) -> None:
     """Read every file and compare it with what was written; ends with 3 at any fault.
 
@@ -125,10 +125,10 @@ def check(folder: Folder, *, as_json: Json = False) -> None:
         raise InputError(f"{folder} is no folder. Name the folder of the archive.")
     looked = list(Archive(folder).faults())
     faults = [fault for _, fault in looked if fault]
-    tell(
+    report(
         {"folder": str(folder), "files": len(looked), "faults": faults},
         as_json=as_json,
         rows=[("Files", str(len(looked))), *(("Fault", fault) for fault in faults)],
     )
     if faults:
-        raise stopped(f"{len(faults)} of {len(looked)} files are at fault.", Exit.FAILED)
+        raise exit_with(f"{len(faults)} of {len(looked)} files are at fault.", Exit.FAILED)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 
 from seacage.service._cli import _plans as plans
-from seacage.service._cli._console import Exit, Json, guarded, progress_bar, stopped, tell
+from seacage.service._cli._console import Exit, Json, exit_with, guard, progress_bar, report
 from seacage.service._cli._settle import CageName, read_cage
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ exec {command} --share "$SLURM_ARRAY_TASK_ID/{tasks}"
 
 
 @group.command()
-@guarded
+@guard
 def run(
     store: Store,
     *,
@@ -95,7 +95,7 @@ def run(
     """
     from seacage.campaigns import Simulator, run_share
 
-    asked = plans.asked_plan(
+    chosen = plans.plan_of(
         plan=plan,
         ranges=ranges,
         grid=grid,
@@ -116,7 +116,7 @@ def run(
     with progress_bar() as progress:
         run_share(
             read_cage(cage),
-            asked,
+            chosen,
             store,
             by=by,
             share=read_share(share),
@@ -128,7 +128,7 @@ def run(
 
 
 @group.command()
-@guarded
+@guard
 def status(store: Store, *, as_json: Json = False) -> None:
     """Say how far a campaign is, what failed in it and why, and how quick it is.
 
@@ -143,7 +143,7 @@ def status(store: Store, *, as_json: Json = False) -> None:
 
 
 @group.command()
-@guarded
+@guard
 def finish(store: Store, *, as_json: Json = False) -> None:
     """Sum up a campaign whose cases have all been run, in shares perhaps.
 
@@ -158,7 +158,7 @@ def finish(store: Store, *, as_json: Json = False) -> None:
     finish_campaign(store)
     reached = campaign_status(store)
     if not reached.finished:
-        raise stopped(
+        raise exit_with(
             f"campaign finish: {reached.total - reached.done} of {reached.total} cases have not "
             "been run. Run them first.",
             Exit.REFUSED,
@@ -167,7 +167,7 @@ def finish(store: Store, *, as_json: Json = False) -> None:
 
 
 @group.command()
-@guarded
+@guard
 def export(
     store: Store,
     out: Annotated[Path, typer.Argument(dir_okay=False, help="The CF-NetCDF file to write.")],
@@ -182,11 +182,11 @@ def export(
     from seacage.records import export_campaign
 
     export_campaign(store, out)
-    tell({"written": str(out)}, as_json=as_json, rows=[("Written", str(out))])
+    report({"written": str(out)}, as_json=as_json, rows=[("Written", str(out))])
 
 
 @group.command(context_settings={"ignore_unknown_options": True})
-@guarded
+@guard
 def slurm(
     words: Annotated[
         list[str], typer.Argument(metavar="STORE [OPTIONS]", help="As of `campaign run`.")
@@ -204,18 +204,18 @@ def slurm(
     """
     from seacage.campaigns import Simulator
 
-    given = _understood(words)
+    given = _parse_options(words)
     if given["share"] or given["cluster"]:
-        raise stopped(
+        raise exit_with(
             "campaign slurm: it makes the shares. Leave --share and --cluster out.", Exit.USAGE
         )
     names = ("plan", "ranges", "grid", "listed", "cases", "duration", "seed")
-    asked = plans.asked_plan(**{name: given[name] for name in names})
+    chosen = plans.plan_of(**{name: given[name] for name in names})
     read_cage(given["cage"])
-    blocks = -(-len(asked) // Simulator(method=given["method"]).block)
+    blocks = -(-len(chosen) // Simulator(method=given["method"]).block)
     alone = [] if given["workers"] else ["--workers", "1"]
     script = _SCRIPT.format(
-        cases=len(asked),
+        cases=len(chosen),
         tasks=min(tasks, blocks),
         last=min(tasks, blocks) - 1,
         workers=given["workers"] or 1,
@@ -223,16 +223,16 @@ def slurm(
         command=shlex.join(["seacage", "campaign", "run", *words, *alone]),
     )
     if as_json:
-        tell({"script": script}, as_json=True)
+        report({"script": script}, as_json=True)
     else:
         typer.echo(script, nl=False)
 
 
-def _understood(words: list[str]) -> dict[str, Any]:
+def _parse_options(words: list[str]) -> dict[str, Any]:
     """The options that `campaign run` would get of the words meant for it."""
     command: Any = typer.main.get_command(group)
-    with command.commands["run"].make_context("seacage campaign run", [*words]) as asked:
-        return dict(asked.params)
+    with command.commands["run"].make_context("seacage campaign run", [*words]) as context:
+        return dict(context.params)
 
 
 def read_share(text: str | None) -> tuple[int, int]:
@@ -251,7 +251,7 @@ def _tell_end(store: Path, *, as_json: bool) -> None:
     reached = campaign_status(store)
     _tell(store, reached, as_json=as_json)
     if reached.finished and not reached.converged:
-        raise stopped("campaign run: no case converged. Check the cage's file.", Exit.FAILED)
+        raise exit_with("campaign run: no case converged. Check the cage's file.", Exit.FAILED)
 
 
 def _tell(store: Path, reached: "CampaignStatus", *, as_json: bool) -> None:
@@ -260,7 +260,7 @@ def _tell(store: Path, reached: "CampaignStatus", *, as_json: bool) -> None:
         "not_converged": reached.not_converged,
         "diverged": reached.diverged,
     }
-    tell(
+    report(
         {"store": str(store), "plan": reached.plan, "method": reached.method, "law": reached.law}
         | {"origin": "computed", "total": reached.total, "done": reached.done, **counts}
         | {"finished": reached.finished, "failures": _failures(reached)}
@@ -269,7 +269,7 @@ def _tell(store: Path, reached: "CampaignStatus", *, as_json: bool) -> None:
         as_json=as_json,
         rows=[
             ("Campaign", f"{store}: plan {reached.plan}, {reached.method}, {reached.law}"),
-            ("Done", f"{reached.done} of {reached.total}{_unsummed(reached)}"),
+            ("Done", f"{reached.done} of {reached.total}{_pending_checksums(reached)}"),
             *((name.replace("_", " "), str(count)) for name, count in counts.items()),
             *_pace(reached),
             *_failure_rows(reached),
@@ -277,7 +277,7 @@ def _tell(store: Path, reached: "CampaignStatus", *, as_json: bool) -> None:
     )
 
 
-def _unsummed(reached: "CampaignStatus") -> str:
+def _pending_checksums(reached: "CampaignStatus") -> str:
     waiting = reached.done == reached.total and not reached.finished
     return ", not summed: say `seacage campaign finish`" if waiting else ""
 

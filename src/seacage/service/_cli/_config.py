@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
-from seacage.service._cli._console import Exit, Finding, Json, guarded, tell, tell_findings
+from seacage.service._cli._console import Exit, Finding, Json, guard, report, report_findings
 
 if TYPE_CHECKING:
     from seacage.service._settings import Settings
@@ -21,7 +21,7 @@ Config = Annotated[
 
 
 @group.command()
-@guarded
+@guard
 def check(
     *,
     config: Config = None,
@@ -41,11 +41,11 @@ def check(
     from seacage.service._settings import read_settings
 
     findings = list(_findings(read_settings(config), reach=reach))
-    tell_findings("config", findings, code=Exit.REFUSED, as_json=as_json)
+    report_findings("config", findings, code=Exit.REFUSED, as_json=as_json)
 
 
 @group.command()
-@guarded
+@guard
 def show(*, config: Config = None, as_json: Json = False) -> None:
     """Show all settings as a service would take them: file, environment and defaults together.
 
@@ -57,7 +57,7 @@ def show(*, config: Config = None, as_json: Json = False) -> None:
     from seacage.service._settings import read_settings
 
     settled = dict(_flat("", read_settings(config).model_dump(mode="json")))
-    tell(settled, as_json=as_json, rows=[(name, str(value)) for name, value in settled.items()])
+    report(settled, as_json=as_json, rows=[(name, str(value)) for name, value in settled.items()])
 
 
 def _flat(prefix: str, value: object) -> Iterator[tuple[str, object]]:
@@ -82,25 +82,25 @@ def _hidden(name: str, value: object) -> object:
 
 
 def _findings(settings: "Settings", *, reach: bool) -> Iterator[Finding]:
-    yield _tried("address", lambda: _listens(settings))
+    yield _try("address", lambda: _listens(settings))
     if settings.certificate and settings.key:
-        yield _tried("certificate", lambda: _certified(settings))
-    yield _tried("data", lambda: _writable(settings.data))
+        yield _try("certificate", lambda: _check_certificate(settings))
+    yield _try("data", lambda: _writable(settings.data))
     for section in settings.cages:
-        yield _tried(
+        yield _try(
             f"cage {section.name or section.twin}",
-            lambda one=section: _caged(settings, one.twin, one.name),
+            lambda one=section: _check_cage(settings, one.twin, one.name),
         )
     if not settings.cages:
         yield Finding(what="cages", state="absent", said="none: the demonstration is served")
-    yield _tried("store", lambda: _stored(settings, reach=reach))
+    yield _try("store", lambda: _check_store(settings, reach=reach))
     if settings.mqtt:
-        yield _tried("mqtt", lambda: _brokered(settings, reach=reach))
+        yield _try("mqtt", lambda: _check_broker(settings, reach=reach))
     for hook in settings.webhooks:
-        yield _tried("webhook", lambda one=hook: _hooked(settings, one.cages))
+        yield _try("webhook", lambda one=hook: _check_webhooks(settings, one.cages))
 
 
-def _tried(what: str, attempt: Callable[[], str]) -> Finding:
+def _try(what: str, attempt: Callable[[], str]) -> Finding:
     from seacage.conventions import SeacageError
 
     try:
@@ -114,7 +114,7 @@ def _listens(settings: "Settings") -> str:
     return f"{settings.host}:{settings.port}, {'HTTPS' if settings.certificate else 'HTTP'}"
 
 
-def _certified(settings: "Settings") -> str:
+def _check_certificate(settings: "Settings") -> str:
     from seacage.conventions import InputError
 
     assert settings.certificate
@@ -141,7 +141,7 @@ def _writable(folder: Path) -> str:
     return f"{folder} can be written"
 
 
-def _caged(settings: "Settings", folder: Path, name: str | None) -> str:
+def _check_cage(settings: "Settings", folder: Path, name: str | None) -> str:
     from seacage.service._assembly import policy_of
     from seacage.twin import Twin, read_key
 
@@ -151,7 +151,7 @@ def _caged(settings: "Settings", folder: Path, name: str | None) -> str:
     return f"{folder} is whole: {twin.cage.node_count} nodes, {len(twin.sensor_names)} sensors"
 
 
-def _stored(settings: "Settings", *, reach: bool) -> str:
+def _check_store(settings: "Settings", *, reach: bool) -> str:
     from seacage.conventions import InputError
     from seacage.service._assembly import store_place
     from seacage.service._settings import without_password
@@ -169,7 +169,7 @@ def _stored(settings: "Settings", *, reach: bool) -> str:
     return f"{without_password(str(place))}{' opens' if reach else ''}"
 
 
-def _brokered(settings: "Settings", *, reach: bool) -> str:
+def _check_broker(settings: "Settings", *, reach: bool) -> str:
     import socket
 
     from seacage.service._mqtt._broker import Broker
@@ -184,7 +184,7 @@ def _brokered(settings: "Settings", *, reach: bool) -> str:
     return f"{broker}{' answers' if reach else ''}"
 
 
-def _hooked(settings: "Settings", cages: tuple[str, ...]) -> str:
+def _check_webhooks(settings: "Settings", cages: tuple[str, ...]) -> str:
     from seacage.conventions import InputError
 
     served = {cage.name for cage in settings.cages}

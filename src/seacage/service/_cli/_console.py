@@ -47,7 +47,7 @@ EXIT_CODES = (
 )
 
 
-def guarded(command: Callable[P, R]) -> Callable[P, R]:
+def guard(command: Callable[P, R]) -> Callable[P, R]:
     """Let a command end with one sentence on stderr and an exit code, never a traceback."""
 
     @functools.wraps(command)
@@ -57,19 +57,19 @@ def guarded(command: Callable[P, R]) -> Callable[P, R]:
         try:
             return command(*args, **kwargs)
         except NonsenseError as error:
-            raise stopped(str(error), Exit.USAGE) from error
+            raise exit_with(str(error), Exit.USAGE) from error
         except (InputError, ModelError) as error:
-            raise stopped(str(error), Exit.REFUSED) from error
+            raise exit_with(str(error), Exit.REFUSED) from error
         except BrokenPipeError as error:
             # As after `seacage … | head`: nobody is left to tell, also not when Python ends.
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             raise typer.Exit(Exit.UNHEARD) from error
         except ModuleNotFoundError as error:
-            raise stopped(_of_an_extra(error), Exit.FAILED) from error
+            raise exit_with(_of_an_extra(error), Exit.FAILED) from error
         except (SeacageError, OSError) as error:
-            raise stopped(str(error), Exit.FAILED) from error
+            raise exit_with(str(error), Exit.FAILED) from error
         except KeyboardInterrupt as error:
-            raise stopped("Interrupted; run it again to go on.", Exit.INTERRUPTED) from error
+            raise exit_with("Interrupted; run it again to go on.", Exit.INTERRUPTED) from error
 
     run.__doc__ = _with_examples_kept(command.__doc__ or "")
     return run
@@ -93,13 +93,13 @@ def _with_examples_kept(text: str) -> str:
     return re.sub(r"\n( *)Example", "\n\\1\b\n\\1Example", text, count=1)
 
 
-def stopped(sentence: str, code: Exit) -> typer.Exit:
+def exit_with(sentence: str, code: Exit) -> typer.Exit:
     """Say a sentence on stderr and return the exit to raise."""
     typer.echo(f"seacage: {sentence}", err=True)
     return typer.Exit(code)
 
 
-def tell(
+def report(
     answer: Mapping[str, object], *, as_json: bool, rows: Sequence[tuple[str, str]] = ()
 ) -> None:
     """Print a command's answer.
@@ -183,7 +183,9 @@ class Finding:
     said: str
 
 
-def tell_findings(command: str, findings: Sequence[Finding], *, code: Exit, as_json: bool) -> None:
+def report_findings(
+    command: str, findings: Sequence[Finding], *, code: Exit, as_json: bool
+) -> None:
     """Print what was found, and end with a code where something is wrong.
 
     Parameters
@@ -198,11 +200,11 @@ def tell_findings(command: str, findings: Sequence[Finding], *, code: Exit, as_j
         Whether ``--json`` was given.
     """
     wrong = [one for one in findings if one.state == "wrong"]
-    tell(
+    report(
         {"ok": not wrong}
         | {"findings": [{"what": f.what, "state": f.state, "said": f.said} for f in findings]},
         as_json=as_json,
         rows=[(f"{one.state:<6}  {one.what}", one.said) for one in findings],
     )
     if wrong:
-        raise stopped(f"{command}: {len(wrong)} of {len(findings)} are wrong.", code)
+        raise exit_with(f"{command}: {len(wrong)} of {len(findings)} are wrong.", code)

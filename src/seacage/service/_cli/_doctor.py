@@ -11,7 +11,7 @@ from typing import Annotated
 
 import typer
 
-from seacage.service._cli._console import Exit, Finding, Json, guarded, tell_findings
+from seacage.service._cli._console import Exit, Finding, Json, guard, report_findings
 
 _LOOK_S = 20.0
 _EXTRAS = {
@@ -23,7 +23,7 @@ _EXTRAS = {
 }
 
 
-@guarded
+@guard
 def doctor(
     *,
     data: Annotated[Path, typer.Option(file_okay=False, help="The service's data folder.")] = Path(
@@ -54,7 +54,7 @@ def doctor(
         lambda: _demonstration(data),
     )
     findings = [check() for check in checks] + [_extra(name) for name in _EXTRAS]
-    tell_findings("doctor", findings, code=Exit.FAILED, as_json=as_json)
+    report_findings("doctor", findings, code=Exit.FAILED, as_json=as_json)
 
 
 def _python() -> Finding:
@@ -90,14 +90,14 @@ def _store() -> Finding:
 
 def _rows(place: str) -> Finding:
     """Verify the stored rows, as many as can be in some seconds."""
-    from seacage.service._store._integrity._verify import verified
+    from seacage.service._store._integrity._verify import verify_for
     from seacage.service._store._store import StoreError, look_into
 
     if "://" not in place and not Path(place).exists():
         return Finding(what="Stored rows", state="absent", said=f"no store in {place}")
     try:
         with look_into(place) as session:
-            said, wrong = verified(session, seconds=_LOOK_S), session.damage.said
+            said, wrong = verify_for(session, seconds=_LOOK_S), session.damage.said
             if session.checksums is not None:
                 said += f"; data_checksums of the server are {session.checksums}"
     except StoreError as error:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 
 from seacage.service._cli._campaign import read_share
-from seacage.service._cli._console import Json, guarded, progress_bar, tell
+from seacage.service._cli._console import Json, guard, progress_bar, report
 from seacage.service._cli._settle import CageName, read_cage
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ LimitsFile = Annotated[
 
 
 @group.command()
-@guarded
+@guard
 def virtual(
     out: Annotated[Path, typer.Argument(file_okay=False, help="Folder of the field record.")],
     *,
@@ -103,25 +103,25 @@ def virtual(
 
     truth = TruthParameters.read(hidden)
     buoy = _buoy(record, days=days, start=start, seed=seed, calm=calm)
-    asked: dict[str, Any] = {"hidden": truth, "seed": seed, "workers": workers}
+    options: dict[str, Any] = {"hidden": truth, "seed": seed, "workers": workers}
     if method == "simulate":
-        asked |= {
+        options |= {
             "kept": out / "stretches",
             "waves": None if calm else _waves(waves, buoy, truth, seed=seed),
             "timetable": Timetable.over(buoy, one_in=one_in),
         }
     else:
-        asked |= {"method": method, "kept": out / "responses"}
+        options |= {"method": method, "kept": out / "responses"}
         _check_settled(waves=waves, calm=calm, one_in=one_in, share=share)
-    asked |= {"events": _events(event, events)}
+    options |= {"events": _events(event, events)}
     with progress_bar() as progress:
         if share is not None:
             virtual_field_share(
-                read_cage(cage), buoy, share=read_share(share), progress=progress, **asked
+                read_cage(cage), buoy, share=read_share(share), progress=progress, **options
             )
-            tell({"share": share}, as_json=as_json, rows=[("Simulated", f"share {share}")])
+            report({"share": share}, as_json=as_json, rows=[("Simulated", f"share {share}")])
             return
-        made = virtual_field(read_cage(cage), buoy, progress=progress, **asked)
+        made = virtual_field(read_cage(cage), buoy, progress=progress, **options)
     made.write(out)
     _tell_field(made.record, out, as_json=as_json)
 
@@ -182,7 +182,7 @@ def _check_settled(*, waves: Path | None, calm: bool, one_in: int, share: str | 
 
 def _tell_field(record: "FieldRecord", out: Path, *, as_json: bool) -> None:
     streams = [record.buoy, *record.sensors.values()]
-    tell(
+    report(
         {
             "written": str(out),
             "origin": str(record.origin),
@@ -199,7 +199,7 @@ def _tell_field(record: "FieldRecord", out: Path, *, as_json: bool) -> None:
 
 
 @group.command("import")
-@guarded
+@guard
 def import_(
     path: Annotated[
         Path,
@@ -263,7 +263,7 @@ def _inspect(path: Path, out: Path, *, as_json: bool) -> None:
     if found.map_text:
         out.write_text(found.map_text, encoding="utf-8")
     written = str(out) if found.map_text else None
-    tell(
+    report(
         {"findings": found.findings, "written": written, "to_fill_in": found.open_questions},
         as_json=as_json,
         rows=[
@@ -311,7 +311,7 @@ def _limits(path: Path | None) -> "Limits":
 
 
 @group.command()
-@guarded
+@guard
 def check(
     path: Annotated[
         Path, typer.Argument(exists=True, help="A record's file, or a field record's folder.")
@@ -353,9 +353,9 @@ def _tell(records: "list[Record]", *, as_json: bool, written: Path | None = None
     rows: list[tuple[str, str]] = [("Written", str(written))] if written else []
     for record in records:
         rows.append((record.stream, _span(record)))
-        rows += [(f"  {key}", _counted(flags)) for key, flags in _flags(record).items()]
+        rows += [(f"  {key}", _flag_counts(flags)) for key, flags in _flags(record).items()]
         rows += [("  note", note) for note in record.notes]
-    tell(
+    report(
         {
             "written": None if written is None else str(written),
             "streams": {
@@ -391,5 +391,5 @@ def _flags(record: "Record") -> dict[str, dict[str, int]]:
     }
 
 
-def _counted(flags: dict[str, int]) -> str:
+def _flag_counts(flags: dict[str, int]) -> str:
     return ", ".join(f"{count} {word}" for word, count in flags.items())

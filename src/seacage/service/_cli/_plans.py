@@ -65,7 +65,7 @@ Seed = Annotated[
 ]
 
 
-def asked_plan(
+def plan_of(
     *,
     plan: str,
     ranges: Iterable[str] | None,
@@ -88,11 +88,11 @@ def asked_plan(
     _check_alone(written=written, ranges=ranges, grid=grid, listed=listed, cases=cases)
     lasting = 1800.0 if duration is None else duration
     if written is not None:
-        return _changed(Plan.read(written), duration, seed)
+        return _with_changes(Plan.read(written), duration, seed)
     if listed is not None:
         return Plan.table(listed, duration=lasting, seed=seed or 0)
     if grid:
-        return _gridded(_pairs("--grid", grid), lasting, seed or 0)
+        return _grid_plan(_pairs("--grid", grid), lasting, seed or 0)
     own = {
         _AXES[key]: _least_and_most(key, values)
         for key, values in _pairs("--range", ranges or ()).items()
@@ -120,7 +120,7 @@ def _check_alone(
         )
 
 
-def _changed(plan: "Plan", duration: float | None, seed: int | None) -> "Plan":
+def _with_changes(plan: "Plan", duration: float | None, seed: int | None) -> "Plan":
     return replace(
         plan,
         duration=plan.duration if duration is None else duration,
@@ -153,7 +153,7 @@ def _least_and_most(key: str, values: str) -> tuple[float, float]:
     return numbers[0], numbers[1]
 
 
-def _gridded(pairs: dict[str, str], duration: float, seed: int) -> "Plan":
+def _grid_plan(pairs: dict[str, str], duration: float, seed: int) -> "Plan":
     from seacage.campaigns import Plan
     from seacage.conventions import InputError
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from seacage.service._cli._console import Exit, Json, guarded, progress_bar, stopped, tell
+from seacage.service._cli._console import Exit, Json, exit_with, guard, progress_bar, report
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from seacage.service._publish._spool import Spool
 
 
-@guarded
+@guard
 def publish(
     source: Annotated[
         str,
@@ -116,9 +116,9 @@ def publish(
     _tell(done, refused, as_json=as_json)
     if refused.count or done.rejected or done.quarantined:
         count = refused.count + done.rejected + done.quarantined
-        raise stopped(f"{count} samples were refused; see the summary.", Exit.REFUSED)
+        raise exit_with(f"{count} samples were refused; see the summary.", Exit.REFUSED)
     if done.ahead:
-        raise stopped(
+        raise exit_with(
             f"{done.ahead} samples are ahead of the service's clock and wait in {spool}. Check "
             "the clocks of source and service, and run this again with the same spool.",
             Exit.FAILED,
@@ -213,7 +213,7 @@ def _courier(to: str, cage: str, site: str, token: str, ca: Path | None) -> "Gen
 
 def _tell(done: "Published", refused: _Refused, *, as_json: bool) -> None:
     reasons = [*refused.reasons, *done.reasons]
-    tell(
+    report(
         {
             "read": done.read,
             "acknowledged": done.acknowledged,

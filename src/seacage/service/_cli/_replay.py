@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from seacage.service._cli._console import Json, guarded, progress_bar, tell
+from seacage.service._cli._console import Json, guard, progress_bar, report
 
 if TYPE_CHECKING:
     from seacage.conventions import Progress
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from seacage.twin import Answer, Twin
 
 
-@guarded
+@guard
 def replay(
     record: Annotated[
         Path, typer.Argument(exists=True, help="A buoy's record, or a field record's folder.")
@@ -77,14 +77,14 @@ def _answer(record: Path, folder: Path, out: list[Path], *, batched: bool, as_js
     twin = Twin.read(folder)
     with progress_bar() as progress:
         began = time.perf_counter()
-        answer = twin.predict_record(buoy) if batched else _stepped(twin, buoy, progress)
+        answer = twin.predict_record(buoy) if batched else _step_through(twin, buoy, progress)
         rate = len(buoy) / (time.perf_counter() - began)
     replayed = Replayed(buoy=buoy, answer=answer, cage=twin.cage, origin=str(twin.origin))
     for path in out:
         replayed.write(path)
     valid = int(answer.valid.sum())
     extrapolating = int((answer.valid & ~answer.in_domain).sum())
-    tell(
+    report(
         {"rows": len(buoy), "valid": valid, "extrapolating": extrapolating}
         | {"ticks_per_second": round(rate, 1), "batched": batched, "origin": str(twin.origin)}
         | {"written": [str(path) for path in out]},
@@ -98,30 +98,30 @@ def _answer(record: Path, folder: Path, out: list[Path], *, batched: bool, as_js
     )
 
 
-def _stepped(twin: "Twin", buoy: "Record", progress: "Progress") -> "Answer":
+def _step_through(twin: "Twin", buoy: "Record", progress: "Progress") -> "Answer":
     """Step through a record as a live service would; the same answers as in blocks."""
     from dataclasses import replace
 
-    from seacage.service._export import joined
-    from seacage.service._live._past import answered_in
+    from seacage.service._export import join_answers
+    from seacage.service._live._past import answer_in
 
     state, answers = twin.start(), list["Answer"]()
     for done, sample in enumerate(buoy.samples(), start=1):
         heard = replace(sample, stream=twin.buoy)
         state, events = twin.step(state, heard, sample.t)
-        answered = answered_in(events)
+        answered = answer_in(events)
         assert answered is not None  # each of a record's times is new, so each is answered
         answers.append(answered.answer)
         if done % 50 == 0 or done == len(buoy):
             progress("replay", done, len(buoy))
-    return joined(answers)
+    return join_answers(answers)
 
 
 def _send(
     record: Path, to: str, cage: str, token: str, speed: float | None, *, as_json: bool
 ) -> None:
     from seacage.service._publish._sender import Sender
-    from seacage.service._publish._sources import paced
+    from seacage.service._publish._sources import pace
 
     streams = _streams(record)
     total = sum(len(one) for one in streams)
@@ -129,7 +129,7 @@ def _send(
     accepted, duplicates, rejected = 0, 0, list[str]()
     began = time.perf_counter()
     with progress_bar() as progress:
-        for batch in paced(streams, speed=speed):
+        for batch in pace(streams, speed=speed):
             receipt = sender.send(batch)
             sent += len(batch)
             accepted += receipt.accepted
@@ -137,7 +137,7 @@ def _send(
             rejected += [one.reason for one in receipt.rejected]
             progress("send", sent, total)
     rate = total / (time.perf_counter() - began)
-    tell(
+    report(
         {"sent": sent, "accepted": accepted, "duplicates": duplicates}
         | {"rejected": rejected[:20], "rejected_count": len(rejected)}
         | {"samples_per_second": round(rate, 1)},

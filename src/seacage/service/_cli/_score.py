@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from seacage.service._cli._console import Json, guarded, tell
+from seacage.service._cli._console import Json, guard, report
 
 if TYPE_CHECKING:
     from seacage.studies import SensorScore
 
 
-@guarded
+@guard
 def score(
     *,
     twin: Annotated[Path, typer.Option(exists=True, file_okay=False, help="Folder of the twin.")],
@@ -40,7 +40,7 @@ def score(
 
     scores = score_record(Twin.read(twin), FieldRecord.read(field), out=out, seed=seed)
     rows = error_rows(scores)
-    tell(
+    report(
         {"sensors": error_table(scores), "written": None if out is None else str(out)},
         as_json=as_json,
         rows=rows if out is None else [*rows, ("Written", str(out))],

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from seacage.service._cli._console import Json, guarded, progress_bar, tell
+from seacage.service._cli._console import Json, guard, progress_bar, report
 
 if TYPE_CHECKING:
     from seacage.service._http._api import Service
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from seacage.twin import Twin
 
 
-@guarded
+@guard
 def serve(
     *,
     config: Annotated[
@@ -107,7 +107,7 @@ def serve(
         seacage serve --config seacage.toml
     """
     from seacage.conventions import InputError
-    from seacage.service._assembly import assembled, server
+    from seacage.service._assembly import assemble, server
     from seacage.service._logs import begin_logs
     from seacage.service._settings import read_settings
 
@@ -133,13 +133,13 @@ def serve(
     os.umask(0o077)  # what a service writes is its owner's alone
     # The port first: minutes of preparation should not end at a port that is taken.
     with _listening(settings.host, settings.port) as listener:
-        twins, replay = _prepared(settings, demo=demo, record=record)
+        twins, replay = _prepare(settings, demo=demo, record=record)
         if cage and not settings.cages:
             twins = dict.fromkeys([cage], next(iter(twins.values())))
         pace = 60.0 if speed is None else speed
-        service = assembled(settings, twins, replay=replay, speed=pace)
+        service = assemble(settings, twins, replay=replay, speed=pace)
         greeting = _greeting(settings, service, listener, pace if replay else None)
-        tell(greeting.said, as_json=as_json, rows=greeting.rows)
+        report(greeting.said, as_json=as_json, rows=greeting.rows)
         with suppress(KeyboardInterrupt):  # Ctrl-C is how a service is stopped
             server(service, settings).run(sockets=[listener])
 
@@ -155,7 +155,7 @@ def _listening(host: str, port: int) -> socket.socket:
         ) from error
 
 
-def _prepared(
+def _prepare(
     settings: "Settings", *, demo: bool, record: Path | None
 ) -> tuple[dict[str, "Twin"], "Replay | None"]:
     """Read or make the twins, and what feeds them."""

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from seacage.service._cli._console import Exit, Json, guarded, stopped, tell
+from seacage.service._cli._console import Exit, Json, exit_with, guard, report
 
 if TYPE_CHECKING:
     from seacage.cage import Cage
@@ -30,7 +30,7 @@ def read_cage(name: str) -> "Cage":
     return cage
 
 
-@guarded
+@guard
 def settle(
     *,
     current_speed: Annotated[float, typer.Option(help="m/s")],
@@ -75,10 +75,10 @@ def settle(
 
         write_response(out, subject, sea, law, response)
         answer["written"] = str(out)
-    tell(answer, as_json=as_json, rows=_rows(subject, response))
+    report(answer, as_json=as_json, rows=_rows(subject, response))
     result = Result(int(response.result))
     if result is not Result.CONVERGED:
-        raise stopped(f"settle: {result.name.lower()}: {RESULTS[result]}.", Exit.FAILED)
+        raise exit_with(f"settle: {result.name.lower()}: {RESULTS[result]}.", Exit.FAILED)
 
 
 def _answer(cage: "Cage", response: "Response") -> dict[str, object]:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from seacage.service._cli._console import Exit, Json, guarded, progress_bar, stopped, tell
+from seacage.service._cli._console import Exit, Json, exit_with, guard, progress_bar, report
 from seacage.service._cli._settle import CageName, read_cage
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ _SMOOTH = 0.5
 """Between samples that an animation can follow waves by [s]."""
 
 
-@guarded
+@guard
 def simulate(
     *,
     current_speed: Annotated[float, typer.Option(help="m/s")],
@@ -115,7 +115,7 @@ def simulate(
         with progress_bar() as progress:
             write_animation(animation, subject, motion, progress=progress)
         answer["animation"] = str(animation)
-    tell(answer, as_json=as_json, rows=_rows(subject, history))
+    report(answer, as_json=as_json, rows=_rows(subject, history))
 
 
 def _check_file(path: Path | None, ending: str) -> None:
@@ -135,7 +135,7 @@ def _refuse_failure(history: "History") -> None:
 
     result = Result(int(history.result))
     if result is Result.DIVERGED:
-        raise stopped(
+        raise exit_with(
             f"simulate: {result.name.lower()} after {float(history.diverged_at):.1f} s: "
             f"{RESULTS[result]}. Look at the cage's file and the sea state.",
             Exit.FAILED,
@@ -151,19 +151,20 @@ def _answer(
         "warnings": list(cage.warnings),
         "result": int(history.result),
         **settings,
-        "net_force_kn": _said(history.net_force, 1e-3),
-        "volume_m3": _said(history.volume, 1.0),
+        "net_force_kn": _statistics(history.net_force, 1e-3),
+        "volume_m3": _statistics(history.volume, 1.0),
         "volume_fraction": round(float(history.volume_fraction), 4),
         "bridle_tension_kn": {
-            name: _said(history.bridle, 1e-3, index) for index, name in enumerate(cage.bridle_names)
+            name: _statistics(history.bridle, 1e-3, index)
+            for index, name in enumerate(cage.bridle_names)
         },
         "depth_m": {
-            one.name: _said(history.node, -1.0, (one.node, 2)) for one in cage.depth_sensors
+            one.name: _statistics(history.node, -1.0, (one.node, 2)) for one in cage.depth_sensors
         },
     }
 
 
-def _said(
+def _statistics(
     statistics: "Statistics", scale: float, place: int | tuple[int, ...] = ()
 ) -> dict[str, object]:
     """Mean, standard deviation and range of one quantity; a negative scale swaps the ends."""
@@ -197,7 +198,7 @@ def _rows(cage: "Cage", history: "History") -> list[tuple[str, str]]:
 
 
 def _line(statistics: "Statistics", scale: float, place: int | tuple[int, ...]) -> str:
-    said = _said(statistics, scale, place)
+    said = _statistics(statistics, scale, place)
     least_to_most = f"{said['minimum']:7.1f} {said['maximum']:7.1f}"
     return f"{said['mean']:6.1f} ± {said['std']:5.2f}  {least_to_most}"
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from seacage.service._cli._console import Json, guarded, progress_bar, tell
+from seacage.service._cli._console import Json, guard, progress_bar, report
 from seacage.service._cli._score import error_rows, error_table
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ group = typer.Typer(help="Whole experiments, from simulations to one HTML report
 
 
 @group.command()
-@guarded
+@guard
 def paper(
     *,
     out: Annotated[Path, typer.Option(file_okay=False, help="Folder of the report.")] = Path(
@@ -86,7 +86,7 @@ def paper(
             workers=workers,
             progress=progress,
         )
-    tell(
+    report(
         {
             "report": str(study.report),
             "scores": str(study.scores),
@@ -127,7 +127,7 @@ def _shape_line(score: "ShapeScore") -> str:
 
 
 @group.command()
-@guarded
+@guard
 def fidelity(
     *,
     out: Annotated[Path, typer.Option(file_okay=False, help="Folder of the report.")] = Path(
@@ -184,7 +184,7 @@ def fidelity(
             workers=workers,
             progress=progress,
         )
-    tell(
+    report(
         {
             "report": str(study.report),
             "scores": str(study.scores),
@@ -200,7 +200,7 @@ def fidelity(
 
 
 @group.command()
-@guarded
+@guard
 def benchmarks(
     *,
     out: Annotated[Path, typer.Option(file_okay=False, help="Folder of the report.")] = Path(
@@ -250,7 +250,7 @@ def benchmarks(
             kept=kept,
             progress=progress,
         )
-    tell(
+    report(
         {
             "report": str(study.report),
             "scores": str(study.scores),

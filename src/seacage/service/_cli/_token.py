@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from seacage.service._cli._console import Json, guarded, tell
+from seacage.service._cli._console import Json, guard, report
 
 if TYPE_CHECKING:
     from seacage.service._auth._tokens import Grant
@@ -16,7 +16,7 @@ Data = Annotated[Path, typer.Option(file_okay=False, help="The service's data fo
 
 
 @group.command()
-@guarded
+@guard
 def new(
     *,
     data: Data = Path("var"),
@@ -45,13 +45,13 @@ def new(
 
     tokens, scopes = Tokens(data), scope.split(",")
     token = tokens.mint(scopes, keep=True, name=name)
-    _audited(data, "token new", tokens.grant(token))
+    _audit(data, "token new", tokens.grant(token))
     typer.echo(f"Keep it safe; it opens {scope} and cannot be shown again.", err=True)
     typer.echo(json.dumps({"token": token, "scope": scopes, "name": name}) if as_json else token)
 
 
 @group.command("list")
-@guarded
+@guard
 def show(*, data: Data = Path("var"), as_json: Json = False) -> None:
     """List the tokens: their ids, names, scopes and when they were made.
 
@@ -61,7 +61,7 @@ def show(*, data: Data = Path("var"), as_json: Json = False) -> None:
     from seacage.service._auth._tokens import Tokens
 
     grants = Tokens(data).all()
-    tell(
+    report(
         {
             "tokens": [
                 {"id": one.id, "name": one.name, "scope": list(one.scopes), "made": one.made}
@@ -74,7 +74,7 @@ def show(*, data: Data = Path("var"), as_json: Json = False) -> None:
 
 
 @group.command()
-@guarded
+@guard
 def revoke(
     *,
     data: Data = Path("var"),
@@ -89,11 +89,11 @@ def revoke(
     from seacage.service._auth._tokens import Tokens
 
     revoked = Tokens(data).revoke(token)
-    _audited(data, "token revoke", revoked)
-    tell({"revoked": revoked.id}, as_json=as_json, rows=[("Revoked", revoked.who)])
+    _audit(data, "token revoke", revoked)
+    report({"revoked": revoked.id}, as_json=as_json, rows=[("Revoked", revoked.who)])
 
 
-def _audited(data: Path, did: str, grant: "Grant | None") -> None:
+def _audit(data: Path, did: str, grant: "Grant | None") -> None:
     from seacage.service._auth._audit import Audit
 
     about = "" if grant is None else grant.id

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from seacage.service._cli._console import Json, guarded, progress_bar, tell
+from seacage.service._cli._console import Json, guard, progress_bar, report
 from seacage.service._cli._settle import read_cage
 
 if TYPE_CHECKING:
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from seacage.twin import Twin
 
 
-@guarded
+@guard
 def train(
     *,
     campaign: Annotated[
@@ -98,7 +98,7 @@ def train(
     lessons = twin.provenance.training_windows
     levels = {name: 2 if name in lessons else 1 for name in twin.sensor_names}
     taught = {name: lessons[name].points if name in lessons else 0 for name in levels}
-    tell(
+    report(
         {"written": str(out), "origin": str(twin.origin), "cases": twin.provenance.cases}
         | {"level": levels, "points": taught}
         | {"calibrated": {name: lesson.calibrated for name, lesson in lessons.items()}},

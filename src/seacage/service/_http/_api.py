@@ -152,8 +152,8 @@ def create_app(service: Service) -> FastAPI:
     )
     app.add_middleware(Shield)
     app.add_exception_handler(StoreError, _unavailable)
-    app.add_exception_handler(InputError, _refused)
-    app.add_exception_handler(RequestValidationError, _malformed)
+    app.add_exception_handler(InputError, _input_error)
+    app.add_exception_handler(RequestValidationError, _validation_error)
     app.add_exception_handler(405, _other_methods)
     for router in (around, sessions, cages, alarms, what_if, downloads, rov, things, sockets):
         app.include_router(router)
@@ -179,7 +179,7 @@ def _unavailable(_: Request, error: Exception) -> JSONResponse:
     return JSONResponse({"detail": str(error)}, status_code=503, headers={"Retry-After": "5"})
 
 
-def _refused(_: Request, error: Exception) -> JSONResponse:
+def _input_error(_: Request, error: Exception) -> JSONResponse:
     return JSONResponse({"detail": str(error)}, status_code=422)
 
 
@@ -194,7 +194,7 @@ def _other_methods(request: Request, _: Exception) -> JSONResponse:
     return JSONResponse({"detail": detail}, 405, {"Allow": ", ".join(methods or ["GET"])})
 
 
-def _malformed(_: Request, error: Exception) -> JSONResponse:
+def _validation_error(_: Request, error: Exception) -> JSONResponse:
     assert isinstance(error, RequestValidationError)
     faults = [
         f"{'.'.join(map(str, fault['loc'][1:])) or 'body'}: {fault['msg']}."

@@ -121,7 +121,7 @@ async def post_samples(request: Request, body: SamplesIn, live: Live) -> Receipt
         live.refuse_ahead(ahead.stream, time_of(ahead))
     new = await live.take(samples)
     receipt = Receipt(accepted=sum(new), duplicates=len(new) - sum(new), rejected=rejected)
-    _counted(request, live.name, receipt)
+    _count_samples(request, live.name, receipt)
     return receipt
 
 
@@ -236,7 +236,7 @@ def _history_text(history: History) -> Iterator[str]:
     yield "}"
 
 
-def _counted(request: Request, cage: str, receipt: Receipt) -> None:
+def _count_samples(request: Request, cage: str, receipt: Receipt) -> None:
     samples = request.app.state.service.metrics.samples
     samples.labels(cage, "accepted").inc(receipt.accepted)
     samples.labels(cage, "duplicate").inc(receipt.duplicates)

@@ -19,9 +19,9 @@ from seacage.service._rov._files import (
 from seacage.service._rov._ros_messages import NoRosbagsError
 from seacage.service._schemas._clearance import (
     ClearanceAnswer,
-    ClearanceAsked,
+    ClearanceQuery,
     InspectionAnswer,
-    InspectionAsked,
+    InspectionQuery,
 )
 from seacage.twin import PredictedNet, StaleError
 
@@ -47,7 +47,7 @@ def _file(media_type: str) -> Responses:
 
 
 @rov.post("/{cage}/clearance", responses={**WRITE, **_STALE})
-def ask_clearance(live: Live, body: ClearanceAsked, at: At = None) -> ClearanceAnswer:
+def ask_clearance(live: Live, body: ClearanceQuery, at: At = None) -> ClearanceAnswer:
     """Say how far points, or a path, are from the net, and how surely.
 
     Distances are to the net as the shape's call gives it, two triangles to a panel. The
@@ -60,9 +60,9 @@ def ask_clearance(live: Live, body: ClearanceAsked, at: At = None) -> ClearanceA
 
 
 @rov.post("/{cage}/inspection", responses={**WRITE, **_STALE})
-def ask_inspection(live: Live, body: InspectionAsked, at: At = None) -> InspectionAnswer:
+def ask_inspection(live: Live, body: InspectionQuery, at: At = None) -> InspectionAnswer:
     """Lay a way along the net at a stand-off, facing it, from the top to the tip."""
-    return inspection_answer(_inspected(live, body, at), body)
+    return inspection_answer(_inspection_net(live, body, at), body)
 
 
 @rov.post(
@@ -70,9 +70,9 @@ def ask_inspection(live: Live, body: InspectionAsked, at: At = None) -> Inspecti
     response_class=Response,
     responses={**WRITE, **_STALE, **_NO_MCAP, **_file(MCAP)},
 )
-def ask_inspection_mcap(live: Live, body: InspectionAsked, at: At = None) -> Response:
+def ask_inspection_mcap(live: Live, body: InspectionQuery, at: At = None) -> Response:
     """Give the same way as a nav_msgs/Path in an MCAP file, with the net it follows."""
-    net = _inspected(live, body, at)
+    net = _inspection_net(live, body, at)
     return _mcap(lambda: inspection_mcap(net, inspection_of(net, body)))
 
 
@@ -81,9 +81,9 @@ def ask_inspection_mcap(live: Live, body: InspectionAsked, at: At = None) -> Res
     response_class=Response,
     responses={**WRITE, **_STALE, **_file(GEOJSON)},
 )
-def ask_inspection_geojson(live: Live, body: InspectionAsked, at: At = None) -> Response:
+def ask_inspection_geojson(live: Live, body: InspectionQuery, at: At = None) -> Response:
     """Give the same way as lines by latitude and longitude."""
-    net = _inspected(live, body, at)
+    net = _inspection_net(live, body, at)
     return Response(inspection_geojson(net, inspection_of(net, body)), media_type=GEOJSON)
 
 
@@ -109,7 +109,7 @@ def get_shape_geojson(live: Live, at: At = None, *, allow_stale: Stale = False) 
     return Response(net_geojson(net), media_type=GEOJSON)
 
 
-def _inspected(live: Live, body: InspectionAsked, at: At) -> PredictedNet:
+def _inspection_net(live: Live, body: InspectionQuery, at: At) -> PredictedNet:
     return _net(live, at, allow_stale=body.allow_stale, most_age_s=body.max_age_s)
 
 

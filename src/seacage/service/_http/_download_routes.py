@@ -14,7 +14,7 @@ from fastapi import APIRouter, HTTPException
 from fastapi.responses import StreamingResponse
 
 from seacage.records import Sample
-from seacage.service._export import Replayed, csv_text, replayed_in_blocks, write_netcdf
+from seacage.service._export import Replayed, csv_text, replay_in_blocks, write_netcdf
 from seacage.service._http._dependencies import (
     PAGE,
     READ,
@@ -62,8 +62,8 @@ def download_samples(
     live: Live, stream: Stream = None, start: From = None, end: To = None
 ) -> StreamingResponse:
     """Give all stored samples of a span, in time order, however many there are."""
-    text = _table(_begun(_pages(live, stream, start, end)))
-    return StreamingResponse(text, media_type=_CSV, headers=_named(live, "samples.csv"))
+    text = _table(_begin(_pages(live, stream, start, end)))
+    return StreamingResponse(text, media_type=_CSV, headers=_attachment(live, "samples.csv"))
 
 
 @downloads.get(
@@ -81,7 +81,7 @@ def download_history(
 ) -> StreamingResponse:
     """Give the answers to the last of the buoy's readings in a span, with intervals, as a table."""
     text = csv_text(_history(live, start, end, limit))
-    return StreamingResponse(text, media_type=_CSV, headers=_named(live, "history.csv"))
+    return StreamingResponse(text, media_type=_CSV, headers=_attachment(live, "history.csv"))
 
 
 @downloads.get(
@@ -98,8 +98,8 @@ def download_netcdf(
         raise HTTPException(
             501, "NetCDF needs seacage[sim], which this service lacks. Ask for CSV."
         )
-    file, size = _written(_history(live, start, end, limit))
-    headers = _named(live, "history.nc") | {"Content-Length": str(size)}
+    file, size = _write_blocks(_history(live, start, end, limit))
+    headers = _attachment(live, "history.nc") | {"Content-Length": str(size)}
     return StreamingResponse(_pieces(file), media_type=NETCDF, headers=headers)
 
 
@@ -108,15 +108,15 @@ def _history(
 ) -> Iterator[Replayed]:
     twin = live.twin
     buoy = readings_between(twin, live.store, live.name, start=start, end=end, limit=limit)
-    return _begun(replayed_in_blocks(twin, buoy))
+    return _begin(replay_in_blocks(twin, buoy))
 
 
-def _begun(parts: Iterator[_Part]) -> Iterator[_Part]:
+def _begin(parts: Iterator[_Part]) -> Iterator[_Part]:
     """Make the first part now, so that what cannot be made is said before the answer begins."""
     return chain([next(parts)], parts)
 
 
-def _written(blocks: Iterator[Replayed]) -> tuple[BinaryIO, int]:
+def _write_blocks(blocks: Iterator[Replayed]) -> tuple[BinaryIO, int]:
     """Write blocks into a file that has no name any more: it goes with whoever reads it."""
     with tempfile.TemporaryDirectory(prefix="seacage-") as folder:
         path = Path(folder, "history.nc")
@@ -130,7 +130,7 @@ def _pieces(file: BinaryIO) -> Iterator[bytes]:
             yield piece
 
 
-def _named(live: LiveCage, name: str) -> dict[str, str]:
+def _attachment(live: LiveCage, name: str) -> dict[str, str]:
     return {"Content-Disposition": f'attachment; filename="{live.name}-{name}"'}
 
 

@@ -10,7 +10,7 @@ from jaxtyping import Float
 
 from seacage.conventions import Flag
 from seacage.records import Sample
-from seacage.service._export import joined, replayed_in_blocks
+from seacage.service._export import join_answers, replay_in_blocks
 from seacage.service._live._answers import history_of, usable_value
 from seacage.service._live._past import record_of
 from seacage.service._schemas._history import History, Measured
@@ -54,11 +54,11 @@ def history_between(
         thinned = len(few) < len(once)
     buoy = record_of(twin.buoy, few, keys=BUOY_KEYS, origin=twin.origin)
     measured = {
-        sensor: measured_between(store, cage, sensor, start=start, end=end, limit=limit)
+        sensor: measurements_between(store, cage, sensor, start=start, end=end, limit=limit)
         for sensor in twin.sensor_names
     }
-    answers = [_without_nodes(one.answer) for one in replayed_in_blocks(twin, buoy)]
-    return history_of(buoy, joined(answers), measured, thinned=thinned)
+    answers = [_without_nodes(one.answer) for one in replay_in_blocks(twin, buoy)]
+    return history_of(buoy, join_answers(answers), measured, thinned=thinned)
 
 
 def _without_nodes(answer: Answer) -> Answer:
@@ -67,7 +67,7 @@ def _without_nodes(answer: Answer) -> Answer:
     return replace(answer, node_position=np.empty((rows, 0, 3)), node_sigma=np.empty((rows, 0)))
 
 
-def measured_between(
+def measurements_between(
     store: Store,
     cage: str,
     sensor: str,

@@ -35,7 +35,7 @@ async def sign_in(request: Request, response: Response, body: SignIn) -> Session
     await asyncio.to_thread(gate.sessions.end, request.cookies.get(COOKIE, ""))
     cookie, session = await asyncio.to_thread(gate.sessions.begin, grant, datetime.now(UTC))
     _hand_over(request, response, cookie)
-    return _said(grant, session)
+    return _session_out(grant, session)
 
 
 @sessions.get("", responses=REFUSED)
@@ -46,7 +46,7 @@ async def who_am_i(request: Request, response: Response, cookie: Cookie) -> Sess
     renew = gate_of(request).sessions.renew
     session = await asyncio.to_thread(renew, cookie, datetime.now(UTC)) or session
     _hand_over(request, response, cookie)
-    return _said(grant, session)
+    return _session_out(grant, session)
 
 
 @sessions.delete("", status_code=204, responses=REFUSED)
@@ -84,7 +84,7 @@ def _remember(request: Request, grant: Grant) -> None:
     state.who, state.token, state.action = grant.who, grant.id, "session"
 
 
-def _said(grant: Grant, session: Session) -> SessionOut:
+def _session_out(grant: Grant, session: Session) -> SessionOut:
     return SessionOut(
         who=grant.who, scopes=list(grant.scopes), csrf=session.csrf, expires=session.expires
     )

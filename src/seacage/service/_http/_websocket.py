@@ -34,7 +34,7 @@ async def live(socket: WebSocket, cage: str) -> None:
         return
     try:
         await socket.accept()
-        token, grant = await _admitted(socket, cage)
+        token, grant = await _admit(socket, cage)
         await _serve(socket, token, grant, cage)
     except WebSocketDisconnect:
         pass
@@ -96,7 +96,7 @@ async def _send(socket: WebSocket, one: LiveCage, token: str | None) -> None:
                 shown.observe(time.monotonic() - snapshot.made)
 
 
-async def _admitted(socket: WebSocket, cage: str) -> tuple[str | None, Grant]:
+async def _admit(socket: WebSocket, cage: str) -> tuple[str | None, Grant]:
     """Read the token, None where the session's cookie stands for it, and find what it may do.
 
     Raises

@@ -21,9 +21,9 @@ what_if = APIRouter(prefix="/api/v1/cages", tags=["cages"])
 
 
 @what_if.get("/{cage}/whatif", dependencies=may_read, responses=READ)
-async def get_what_can_be_asked(live: Live) -> Learned:
+async def get_training_domain(live: Live) -> Learned:
     """Say what a what-if can ask: the inputs that the twin was taught with, and how far."""
-    return learned_of(live.twin)
+    return training_domain_of(live.twin)
 
 
 @what_if.post(
@@ -51,12 +51,12 @@ def ask_what_if(live: Live, body: WhatIf) -> Response:
     )
     state = state_of(live.name, twin, answered, twin.start())
     if state.water:
-        state = state.model_copy(update={"water": counted(state.water, sea, twin)})
+        state = state.model_copy(update={"water": effective_water(state.water, sea, twin)})
     frame = frame_of(state, answered, live.rest_position, about=Flags.WHAT_IF)
     return Response(frame, media_type=MEDIA_TYPE)
 
 
-def learned_of(twin: Twin) -> Learned:
+def training_domain_of(twin: Twin) -> Learned:
     """Say which inputs a twin was taught with, and up to where."""
     edges = dict(zip(_KEYS, twin.models.edge, strict=True))
     taught = list[LearnedInput]()
@@ -70,7 +70,7 @@ def learned_of(twin: Twin) -> Learned:
     return Learned(inputs=taught, unknown=sorted(WhatIf.model_fields.keys() - known))
 
 
-def counted(water: Water, sea: SeaState, twin: Twin) -> Water:
+def effective_water(water: Water, sea: SeaState, twin: Twin) -> Water:
     """Leave of imagined water what the answer rests on; the period is that of the height."""
     if "waves" not in twin.models.inputs:
         return water.model_copy(update={"hs_m": None, "tp_s": None, "wave_from_deg": None})

@@ -67,12 +67,12 @@ class FileTail:
         try:
             while True:
                 before = self._tail.place
-                if not await self._looked() or self._tail.place == before:
+                if not await self._look() or self._tail.place == before:
                     await asyncio.sleep(self._every_s)
         finally:
             self._tail.close()
 
-    async def _looked(self) -> bool:
+    async def _look(self) -> bool:
         """Read and store what is new; False where that failed."""
         before = self._tail.place
         try:

@@ -12,13 +12,13 @@ from pathlib import Path
 import structlog
 
 from seacage.records import Sample
-from seacage.service._live._alarm_desk import Announcement, announced_json
+from seacage.service._live._alarm_desk import Announcement, announcement_json
 from seacage.service._live._cage import LiveCage
 from seacage.service._live._metrics import Metrics
 from seacage.service._mqtt._broker import Broker
-from seacage.service._mqtt._link import Heard, Link, Will
-from seacage.service._mqtt._messages import LARGEST, Settled, read_observed, settled_text
-from seacage.service._mqtt._topics import Topics, shared
+from seacage.service._mqtt._link import Link, Received, Will
+from seacage.service._mqtt._messages import LARGEST, Settled, acknowledgement_text, read_observed
+from seacage.service._mqtt._topics import Topics, share
 from seacage.service._quarantine import Quarantine
 from seacage.service._store._store import StoreError
 
@@ -39,7 +39,7 @@ _log = structlog.get_logger(__name__)
 class _Taken:
     """What a message became: samples to store, and what its sender is then told."""
 
-    heard: Heard
+    heard: Received
     cage: str
     stream: str
     samples: tuple[Sample, ...]
@@ -108,7 +108,7 @@ class MqttFeed:
     ) -> None:
         self._topics, self._cages, self._metrics = Topics(site), dict(cages), metrics
         self._quarantine, self._state_every_s = quarantine, state_every_s
-        self._queue, self._bytes = deque[Heard](), 0
+        self._queue, self._bytes = deque[Received](), 0
         self._behind = asyncio.Event()
         self._behind_at = 0.0
         self._filled, self._empty = asyncio.Event(), asyncio.Event()
@@ -128,7 +128,7 @@ class MqttFeed:
         self._link = Link(
             broker,
             client_id=client_id,
-            filters=[shared(self._topics.observed(cage), group) for cage in cages],
+            filters=[share(self._topics.observed(cage), group) for cage in cages],
             listener=self,
             receive_maximum=_AHEAD,
             session_s=_SESSION_S,
@@ -148,7 +148,7 @@ class MqttFeed:
         """Listen, store and tell for ever."""
         self._loop = asyncio.get_running_loop()
         for cage in self._cages.values():
-            cage.desk.tell(self._announced)
+            cage.desk.tell(self._queue_announcement)
         async with asyncio.TaskGroup() as work:
             work.create_task(self._link.run())
             work.create_task(self._store())
@@ -162,17 +162,17 @@ class MqttFeed:
         self._alarms.extend((topic, line.encode()) for line in lines)
         self._say_alarms()
 
-    def _announced(self, told: Announcement) -> None:
+    def _queue_announcement(self, told: Announcement) -> None:
         # Called in the thread that stepped the twin, and the link is the loop's.
-        self._loop.call_soon_threadsafe(self.tell, told.cage, [announced_json(told)])
+        self._loop.call_soon_threadsafe(self.tell, told.cage, [announcement_json(told)])
 
-    def hear(self, heard: Heard) -> None:
+    def hear(self, heard: Received) -> None:
         """Queue a message; one that nobody waits for is dropped where the queue is full."""
         self._messages.inc()
         if len(self._queue) < _AHEAD or heard.sure:
             self._queue.append(heard)
             self._bytes += len(heard.payload)
-            if self._filled_by(1.0):
+            if self._is_filled(1.0):
                 self._link.pause(paused=True)
                 self._fall_behind()
             self._empty.clear()
@@ -192,16 +192,16 @@ class MqttFeed:
                 self._filled.clear()
                 self._empty.set()
 
-    def _next(self) -> list[Heard]:
-        batch, left = list[Heard](), self._bytes - _BATCH_BYTES
+    def _next(self) -> list[Received]:
+        batch, left = list[Received](), self._bytes - _BATCH_BYTES
         while self._queue and len(batch) < _BATCH and self._bytes > left:
             batch.append(self._queue.popleft())
             self._bytes -= len(batch[-1].payload)
-        if not self._filled_by(0.5):
+        if not self._is_filled(0.5):
             self._link.pause(paused=False)
         return batch
 
-    def _filled_by(self, part: float) -> bool:
+    def _is_filled(self, part: float) -> bool:
         return len(self._queue) >= part * _AHEAD or self._bytes >= part * _AHEAD_BYTES
 
     def _fall_behind(self) -> None:
@@ -226,14 +226,14 @@ class MqttFeed:
         while True:
             await self._keep(await self._newest.take())
 
-    async def _keep(self, batch: Sequence[Heard]) -> None:
+    async def _keep(self, batch: Sequence[Received]) -> None:
         by_cage: dict[str, list[_Taken]] = {}
         for heard in batch:
             if (one := self._read(heard)) is not None:
                 by_cage.setdefault(one.cage, []).append(one)
-        await asyncio.gather(*(self._kept(cage, of) for cage, of in by_cage.items()))
+        await asyncio.gather(*(self._keep_samples(cage, of) for cage, of in by_cage.items()))
 
-    def _read(self, heard: Heard) -> _Taken | None:
+    def _read(self, heard: Received) -> _Taken | None:
         address = self._topics.address(heard.topic)
         cage = self._cages.get(address.cage) if address else None
         if address is None or cage is None:
@@ -252,16 +252,16 @@ class MqttFeed:
             self._fall_behind()
         return _Taken(heard, cage.name, address.stream, read.samples, read.refused)
 
-    def _set_aside(self, heard: Heard, reason: str) -> None:
+    def _set_aside(self, heard: Received, reason: str) -> None:
         now = next(iter(self._cages.values())).clock.now()
         self._quarantine.put(heard.topic, heard.payload[:LARGEST], reason, now=now)
         self._metrics.samples.labels(self._cage_of(heard), "quarantined").inc()
         heard.acknowledge()
 
-    async def _kept(self, name: str, taken: Sequence[_Taken]) -> None:
+    async def _keep_samples(self, name: str, taken: Sequence[_Taken]) -> None:
         """Store the samples of one cage, however long it takes, then acknowledge them."""
         samples = [sample for one in taken for sample in one.samples]
-        new = await self._stored(self._cages[name], samples)
+        new = await self._store_samples(self._cages[name], samples)
         counter = self._metrics.samples
         counter.labels(name, "accepted").inc(sum(new))
         counter.labels(name, "duplicate").inc(len(new) - sum(new))
@@ -274,9 +274,11 @@ class MqttFeed:
             topic = self._topics.acknowledged(name, stream)
             for first in range(0, len(settled), _BATCH):
                 # A lost one has the sender send again; more is not needed.
-                self._link.publish(topic, settled_text(settled[first : first + _BATCH]), qos=0)
+                self._link.publish(
+                    topic, acknowledgement_text(settled[first : first + _BATCH]), qos=0
+                )
 
-    async def _stored(self, cage: LiveCage, samples: Sequence[Sample]) -> tuple[bool, ...]:
+    async def _store_samples(self, cage: LiveCage, samples: Sequence[Sample]) -> tuple[bool, ...]:
         said = False
         while samples:
             try:
@@ -300,10 +302,10 @@ class MqttFeed:
 
     def _say_alarms(self) -> None:
         # Where nothing is read, nobody sees that an alarm was received.
-        while self._alarms and not self._filled_by(1.0) and self._link.publish(*self._alarms[0]):
+        while self._alarms and not self._is_filled(1.0) and self._link.publish(*self._alarms[0]):
             self._alarms.popleft()
 
-    def _cage_of(self, heard: Heard) -> str:
+    def _cage_of(self, heard: Received) -> str:
         """For a counter, which strangers must not fill with names."""
         address = self._topics.address(heard.topic)
         return address.cage if address and address.cage in self._cages else ""
@@ -313,10 +315,10 @@ class _Newest:
     """Listens for the newest message of each stream; what came before it is gone."""
 
     def __init__(self) -> None:
-        self._latest: dict[str, Heard] = {}
+        self._latest: dict[str, Received] = {}
         self._filled = asyncio.Event()
 
-    def hear(self, heard: Heard) -> None:
+    def hear(self, heard: Received) -> None:
         """See ``Listener``."""
         if heard.topic in self._latest or len(self._latest) < _STREAMS:
             self._latest[heard.topic] = heard
@@ -325,7 +327,7 @@ class _Newest:
     async def settled(self) -> None:
         """See ``Listener``."""
 
-    async def take(self) -> list[Heard]:
+    async def take(self) -> list[Received]:
         """Wait for messages and take them."""
         await self._filled.wait()
         self._filled.clear()

@@ -87,7 +87,7 @@ class AlarmDesk:
         self._cage, self._twin, self._store = cage, twin, store
         self.policy = policy
         self._lost = ""
-        self._book = self._opened()
+        self._book = self._open_book()
         self._kept_at: datetime | None = None
         self._unkept: deque[AlarmEvent] = deque(maxlen=_WAITING)
         self._failing = False
@@ -110,7 +110,7 @@ class AlarmDesk:
     def standing(self) -> list[Announcement]:
         """Those that are active and heard, and that nobody has acknowledged, as when raised."""
         return [
-            self._said(
+            self._announcement(
                 one, AlarmEvent(alarm=one.name, action=Action.RAISED, t=one.since, value=one.worst)
             )
             for one in self.alarms.values()
@@ -192,7 +192,7 @@ class AlarmDesk:
         self._announce(happened)
         return alarm, kept
 
-    def _opened(self) -> AlarmBook:
+    def _open_book(self) -> AlarmBook:
         kept = self._store.alarm_book(self._cage)
         if kept is None:
             return AlarmBook.new()
@@ -227,11 +227,11 @@ class AlarmDesk:
 
     def _announce(self, happened: Sequence[AlarmEvent]) -> None:
         for one in happened:
-            told = self._said(self.alarms[one.alarm], one)
+            announcement = self._announcement(self.alarms[one.alarm], one)
             for listener in self._listeners:
-                listener(told)
+                listener(announcement)
 
-    def _said(self, alarm: Alarm, happened: AlarmEvent) -> Announcement:
+    def _announcement(self, alarm: Alarm, happened: AlarmEvent) -> Announcement:
         return Announcement(
             cage=self._cage,
             happened=happened,
@@ -254,24 +254,24 @@ class AlarmDesk:
         )
 
 
-def announced_json(told: Announcement, *, action: str | None = None) -> str:
+def announcement_json(announcement: Announcement, *, action: str | None = None) -> str:
     """Write an announcement as other systems get it; ``action`` in place of what happened."""
-    happened = told.happened
+    happened = announcement.happened
     return json.dumps(
         {
-            "cage": told.cage,
-            "alarm": told.alarm.name,
+            "cage": announcement.cage,
+            "alarm": announcement.alarm.name,
             "action": action or happened.action.value,
             "t": happened.t.isoformat(),
-            "severity": told.severity,
-            "title": told.text.title,
-            "message": told.text.message,
-            "advice": told.text.advice,
-            "value": told.alarm.value,
-            "unit": told.text.unit,
-            "active": told.alarm.active,
-            "acknowledged": told.alarm.acknowledged,
-            "since": told.alarm.since and told.alarm.since.isoformat(),
+            "severity": announcement.severity,
+            "title": announcement.text.title,
+            "message": announcement.text.message,
+            "advice": announcement.text.advice,
+            "value": announcement.alarm.value,
+            "unit": announcement.text.unit,
+            "active": announcement.alarm.active,
+            "acknowledged": announcement.alarm.acknowledged,
+            "since": announcement.alarm.since and announcement.alarm.since.isoformat(),
             "who": happened.who,
             "why": happened.why,
         }

@@ -73,11 +73,11 @@ def state_of(name: str, twin: Twin, answered: Answered, memory: TwinState) -> St
         shape=_shape_state(answer),
         volume_fraction=_number(answer.volume_fraction[0], 4),
         silent=sorted(memory.silent),
-        amended=[_amended(one) for one in memory.amended],
+        amended=[_amendment(one) for one in memory.amended],
     )
 
 
-def known_loads(state: State) -> Iterator[tuple[float, str, str]]:
+def loads_of(state: State) -> Iterator[tuple[float, str, str]]:
     """Each bridle's loads as far as they are known: share of capacity [-], bridle and source."""
     distrusted = {one.id for one in state.alarms if one.active}
     for one in state.bridles:
@@ -100,7 +100,7 @@ def summary_of(name: str, state: State) -> CageSummary:
         t=state.t,
         age_s=state.age_s,
         reason=state.reason,
-        max_utilisation=max((share for share, _, _ in known_loads(state)), default=None),
+        max_utilisation=max((share for share, _, _ in loads_of(state)), default=None),
         volume_fraction=state.volume_fraction,
         current_speed_m_s=state.water.current_speed_m_s if state.water else None,
         current_to_deg=state.water.current_to_deg if state.water else None,
@@ -164,7 +164,7 @@ def _sensors(
     return states
 
 
-def _amended(one: Amendment) -> Amended:
+def _amendment(one: Amendment) -> Amended:
     was = None if one.was is None else int(one.was)
     return Amended(
         stream=one.stream,

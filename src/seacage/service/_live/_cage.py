@@ -120,7 +120,7 @@ class LiveCage:
         self.live = LiveTwin(
             name=name, twin=twin, store=store, clock=clock, desk=self.desk, tick_s=tick_s
         )
-        self.snapshot = self._shown(self.live.answered)
+        self.snapshot = self._snapshot_of(self.live.answered)
 
     @property
     def streams(self) -> Mapping[str, tuple[str, ...]]:
@@ -171,7 +171,7 @@ class LiveCage:
             for sample in samples:
                 self.clock.hear(sample.t)
         with self._metrics.commits.labels(self.name).time():
-            stored = await self._stored(samples)
+            stored = await self._store_samples(samples)
         return stored.new
 
     async def begin(self, backlog: Sequence[Sample]) -> None:
@@ -179,9 +179,9 @@ class LiveCage:
         async with self._stepping:
             await asyncio.to_thread(self.store.forget, self.name)
             self.desk.begin_anew()
-            self._emptied()
-            await self._stored(backlog)
-            self._emptied()
+            self._take_pending()
+            await self._store_samples(backlog)
+            self._take_pending()
             self._publish(await asyncio.to_thread(self.live.begin))
 
     async def run(self) -> None:
@@ -195,7 +195,7 @@ class LiveCage:
             self._arrived.clear()
             async with self._stepping:
                 answered, events = await asyncio.to_thread(
-                    self._stepped, self._emptied(), ticked=ticked
+                    self._step, self._take_pending(), ticked=ticked
                 )
                 self._note(events)
                 self._publish(answered)
@@ -240,23 +240,23 @@ class LiveCage:
             self._mailboxes.discard(mailbox)
             self._metrics.clients.labels(self.name).dec()
 
-    async def _stored(self, samples: Sequence[Sample]) -> Stored:
-        asked = self.store.append(
+    async def _store_samples(self, samples: Sequence[Sample]) -> Stored:
+        commit = self.store.append(
             self.name, samples, ingested=self.clock.now(), limits=DEFAULT_LIMITS
         )
         loop = asyncio.get_running_loop()
 
         def queue(_: "Future[Stored]") -> None:
             with suppress(RuntimeError):  # the loop has ended; the next start finds the samples
-                loop.call_soon_threadsafe(self._queue, asked)
+                loop.call_soon_threadsafe(self._queue, commit)
 
-        asked.add_done_callback(queue)  # what is on disk counts, whoever still waits
-        return await asyncio.wrap_future(asked)
+        commit.add_done_callback(queue)  # what is on disk counts, whoever still waits
+        return await asyncio.wrap_future(commit)
 
-    def _queue(self, asked: "Future[Stored]") -> None:
-        if asked.exception() is not None:
+    def _queue(self, commit: "Future[Stored]") -> None:
+        if commit.exception() is not None:
             return
-        stored = asked.result()
+        stored = commit.result()
         if any(stored.new) or stored.amendments:
             self._pending.append(stored)
             self._waiting += sum(stored.new)
@@ -264,7 +264,7 @@ class LiveCage:
             self._room.clear()
         self._arrived.set()
 
-    def _emptied(self) -> list[Stored]:
+    def _take_pending(self) -> list[Stored]:
         """Take all that waits to be stepped through."""
         arrived = list(self._pending)
         self._pending.clear()
@@ -272,7 +272,7 @@ class LiveCage:
         self._room.set()
         return arrived
 
-    def _stepped(
+    def _step(
         self, arrived: Sequence[Stored], *, ticked: bool
     ) -> tuple[Answered, tuple[Event, ...]]:
         """Step through samples at once, and tick: the answer is as old as this call."""
@@ -295,7 +295,7 @@ class LiveCage:
                     assert_never(event)
 
     def _publish(self, answered: Answered) -> None:
-        self.snapshot = self._shown(answered)
+        self.snapshot = self._snapshot_of(answered)
         severities = (alarm.severity for alarm in self.snapshot.state.alarms)
         self._metrics.count_alarms(self.name, severities)
         self._metrics.valid.labels(self.name).set(float(self.snapshot.state.valid))
@@ -303,7 +303,7 @@ class LiveCage:
         for mailbox in self._mailboxes:
             mailbox.put(self.snapshot)
 
-    def _shown(self, answered: Answered) -> Snapshot:
+    def _snapshot_of(self, answered: Answered) -> Snapshot:
         state = self.state_of(answered, self.live.state, alarms=self.desk.waiting())
         return Snapshot(answered=answered, state=state, rest_position=self.rest_position)
 

@@ -22,7 +22,7 @@ class Clock(Protocol):
         """Return the time at the cage, UTC."""
         ...
 
-    def elapsed_s(self) -> float:
+    def monotonic_s(self) -> float:
         """Return a time that never steps, from any origin [s at the cage].
 
         ``now`` and this one go on alike, unless somebody sets the clock.
@@ -40,7 +40,7 @@ class WallClock:
         """Return the time of this machine, UTC."""
         return datetime.now(UTC)
 
-    def elapsed_s(self) -> float:
+    def monotonic_s(self) -> float:
         """Return the machine's monotonic time [s]."""
         return time.monotonic()
 
@@ -62,17 +62,17 @@ class FollowingClock:
 
     def __init__(self, *, speed: float = 1.0, newest: datetime | None = None) -> None:
         self.speed = speed
-        self._at, self._heard = newest, time.monotonic()
+        self._at, self._received = newest, time.monotonic()
 
     def now(self) -> datetime:
         """Return the time at the cage, UTC."""
         wall = datetime.now(UTC)
         if self._at is None:
             return wall
-        run_s = (time.monotonic() - self._heard) * self.speed
+        run_s = (time.monotonic() - self._received) * self.speed
         return min(self._at + timedelta(seconds=run_s), self.latest_allowed())
 
-    def elapsed_s(self) -> float:
+    def monotonic_s(self) -> float:
         """Return the clock's own time: that it follows its samples is no step [s]."""
         return self.now().timestamp()
 
@@ -83,7 +83,7 @@ class FollowingClock:
     def hear(self, t: datetime) -> None:
         """Stand at a sample's time, if that is later."""
         if self._at is None or t > self.now():
-            self._at, self._heard = t, time.monotonic()
+            self._at, self._received = t, time.monotonic()
 
 
 class ReplayClock:
@@ -106,7 +106,7 @@ class ReplayClock:
         """Return the replay's time, UTC."""
         return self._start + timedelta(seconds=(time.monotonic() - self._began) * self.speed)
 
-    def elapsed_s(self) -> float:
+    def monotonic_s(self) -> float:
         """Return the replay's own time: that it begins again is no step [s]."""
         return self.now().timestamp()
 

@@ -43,13 +43,13 @@ class ClockWatch:
 
     def __init__(self, clock: Clock, *, streams: int) -> None:
         self._clock, self._streams = clock, streams
-        self._last = clock.now(), clock.elapsed_s()
+        self._last = clock.now(), clock.monotonic_s()
         self._step: tuple[Step, float] | None = None
         self._ahead: dict[str, tuple[float, float]] = {}
 
     def look(self) -> Step | None:
         """Look at the clock once more; how it stepped since the last look, if it did."""
-        (before, since), now, elapsed = self._last, self._clock.now(), self._clock.elapsed_s()
+        (before, since), now, elapsed = self._last, self._clock.now(), self._clock.monotonic_s()
         self._last = now, elapsed
         step = Step(expected=before + timedelta(seconds=elapsed - since), now=now)
         if abs(step.by_s) < STEP_S:
@@ -61,7 +61,7 @@ class ClockWatch:
     def refused(self, stream: str, t: datetime) -> None:
         """Note that a sample was refused as ahead of the clock."""
         ahead_s = (t - self._clock.now()).total_seconds()
-        self._ahead[stream] = ahead_s, self._clock.elapsed_s()
+        self._ahead[stream] = ahead_s, self._clock.monotonic_s()
 
     def accepted(self, stream: str) -> None:
         """Note that a sample was taken, so that its stream's clock is right again."""
@@ -69,7 +69,7 @@ class ClockWatch:
 
     def faults(self) -> dict[str, str]:
         """Name the alarms that stand, each with a sentence."""
-        now = self._clock.elapsed_s()
+        now = self._clock.monotonic_s()
         marked = self._ahead.copy().items()  # doors add to it while the twin is stepped
         ahead = {name: by for name, (by, at) in marked if now - at < _LASTS_S}
         faults = {

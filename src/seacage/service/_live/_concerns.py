@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from datetime import timedelta
 from typing import Literal
 
-from seacage.service._live._answers import known_loads, usable_value
+from seacage.service._live._answers import loads_of, usable_value
 from seacage.service._schemas._state import Concern, State
 from seacage.twin import ADAPTATION_BLOCK, AlarmPolicy, TwinState
 
@@ -14,7 +14,7 @@ def concerns_of(
 ) -> Iterator[Concern]:
     """Say what of a cage is beyond its limits, or not measured; the gravest comes first."""
     limits = {one.name: policy.limit(f"load.{one.name}").raise_at for one in state.bridles}
-    shares = [(share - limits[name], share, name, by) for share, name, by in known_loads(state)]
+    shares = [(share - limits[name], share, name, by) for share, name, by in loads_of(state)]
     over, share, bridle, source = max(shares, default=(-1.0, 0.0, "", ""))
     if over >= 0.0:
         words = f"{bridle} bears {_percent(share)} of its capacity, {source}"

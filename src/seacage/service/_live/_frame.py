@@ -75,7 +75,7 @@ def frame_of(
         moved_by,
         spread_by,
     )
-    return b"".join((header, _padded(moved), _padded(spread), words))
+    return b"".join((header, _pad(moved), _pad(spread), words))
 
 
 def _in_units(metres: np.ndarray, kind: np.dtype[np.integer]) -> tuple[float, bytes]:
@@ -85,5 +85,5 @@ def _in_units(metres: np.ndarray, kind: np.dtype[np.integer]) -> tuple[float, by
     return unit, np.rint(metres / unit).astype(kind).tobytes()
 
 
-def _padded(section: bytes) -> bytes:
+def _pad(section: bytes) -> bytes:
     return section + bytes(-len(section) % _ALIGNED)

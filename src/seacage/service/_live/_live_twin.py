@@ -13,7 +13,7 @@ from seacage.service._live._clock_watch import ClockWatch, Step
 from seacage.service._live._past import (
     adaptations,
     amendments_at,
-    answered_in,
+    answer_in,
     state_at,
     streams_of,
 )
@@ -120,7 +120,7 @@ class LiveTwin:
         self._adapt_anew(now)
         self._look(now, ticked=ticked)
         self._state, events = self._twin.step(self._state, None, now)
-        answered = answered_in(events)
+        answered = answer_in(events)
         assert answered is not None  # a tick is always answered
         self._answered = answered
         events = tuple(one for one in events if not isinstance(one, Answered))
@@ -139,7 +139,7 @@ class LiveTwin:
 
     def _assess(self, at: datetime) -> None:
         self._state, events = self._twin.step(self._state, None, at)
-        answered = answered_in(events)
+        answered = answer_in(events)
         assert answered is not None
         self._desk.look(self._state, answered, faults=self.clocks.faults())
 

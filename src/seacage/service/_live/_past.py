@@ -33,7 +33,7 @@ def streams_of(twin: Twin) -> tuple[str, ...]:
     return (twin.buoy, *twin.sensor_names)
 
 
-def answered_in(events: Sequence[Event]) -> Answered | None:
+def answer_in(events: Sequence[Event]) -> Answered | None:
     """The last answer among the events of a step."""
     return next((event for event in reversed(events) if isinstance(event, Answered)), None)
 
@@ -54,14 +54,14 @@ def state_at(
         How far the intervals were adapted; None where the store has it.
     """
     kept = kept or store.adaptation(cage, at=at)
-    state = remembered(twin, store, cage, at, kept=kept, until=block_begin(at))
+    state = memory_at(twin, store, cage, at, kept=kept, until=block_begin(at))
     state, events = twin.step(state, None, at)
-    answered = answered_in(events)
+    answered = answer_in(events)
     assert answered is not None  # a tick is always answered
     return state, answered
 
 
-def remembered(
+def memory_at(
     twin: Twin, store: Store, cage: str, at: datetime, *, kept: Adaptation | None, until: datetime
 ) -> TwinState:
     """Put together what a twin remembers at a time, from what is stored.
@@ -78,7 +78,7 @@ def remembered(
     begin = until - ADAPTATION_BLOCK
     # With those that are a little ahead: they are there already, and govern when their time comes.
     end = at + timedelta(seconds=twin.timeouts.future_s) + _INSTANT
-    state = _started(twin, cage, kept, until)
+    state = _start_state(twin, cage, kept, until)
     samples = list[Sample]()
     for stream in streams_of(twin):
         one = partial(store.samples, cage, stream=stream, newest=True, withdrawn=False, known_at=at)
@@ -130,7 +130,7 @@ def adaptations(
         if (due := adapted_at(following)) > at:
             at = due  # nothing changes before
             continue
-        state = remembered(twin, store, cage, at, kept=kept, until=at - ADAPTATION_BLOCK)
+        state = memory_at(twin, store, cage, at, kept=kept, until=at - ADAPTATION_BLOCK)
         kept = Adaptation(t=at, factors=state.adapted)
         yield kept
         at += ADAPTATION_BLOCK
@@ -144,7 +144,7 @@ def _first_since(twin: Twin, store: Store, cage: str, start: datetime) -> dateti
     return min((samples[0].t for samples in found if samples), default=None)
 
 
-def _started(twin: Twin, cage: str, kept: Adaptation | None, until: datetime) -> TwinState:
+def _start_state(twin: Twin, cage: str, kept: Adaptation | None, until: datetime) -> TwinState:
     try:
         return twin.start(kept.factors if kept else None, until=until)
     except InputError as error:
@@ -162,8 +162,8 @@ def readings_between(
     limit: int,
 ) -> Record:
     """Read the last of a buoy's readings in a span."""
-    said = store.samples(cage, stream=twin.buoy, start=start, end=end, limit=limit, newest=True)
-    return record_of(twin.buoy, said, keys=BUOY_KEYS, origin=twin.origin)
+    samples = store.samples(cage, stream=twin.buoy, start=start, end=end, limit=limit, newest=True)
+    return record_of(twin.buoy, samples, keys=BUOY_KEYS, origin=twin.origin)
 
 
 def record_of(

@@ -39,13 +39,13 @@ class Replay:
         """Feed the samples when their time has come; begin anew at the end, for ever."""
         while True:
             clock.restart(self.start)
-            backlog = self._merged(self.start - self.lead, self.start)
+            backlog = self._merge(self.start - self.lead, self.start)
             await cage.begin(list(backlog))
-            await self._fed(cage, clock)
+            await self._feed(cage, clock)
 
-    async def _fed(self, cage: LiveCage, clock: ReplayClock) -> None:
+    async def _feed(self, cage: LiveCage, clock: ReplayClock) -> None:
         due: list[Sample] = []
-        for sample in self._merged(self.start, _last(self.records)):
+        for sample in self._merge(self.start, _last(self.records)):
             while clock.wait_s(sample.t) > 0.0:
                 if due:
                     await cage.take(due)
@@ -54,7 +54,7 @@ class Replay:
             due.append(sample)
         await cage.take(due)
 
-    def _merged(self, start: datetime, end: datetime) -> Iterator[Sample]:
+    def _merge(self, start: datetime, end: datetime) -> Iterator[Sample]:
         parts = [record.between(start, end).samples() for record in self.records]
         return heapq.merge(*parts, key=lambda sample: sample.t)
 

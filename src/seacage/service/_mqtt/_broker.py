@@ -134,11 +134,11 @@ def connecting(*, receive_maximum: int, session_s: int) -> Properties:
     session_s
         It keeps what comes for the client so long after the connection ended [s].
     """
-    asked = Properties(PacketTypes.CONNECT)
-    asked.ReceiveMaximum = receive_maximum
-    asked.SessionExpiryInterval = session_s
-    asked.MaximumPacketSize = _LARGEST_PACKET
-    return asked
+    properties = Properties(PacketTypes.CONNECT)
+    properties.ReceiveMaximum = receive_maximum
+    properties.SessionExpiryInterval = session_s
+    properties.MaximumPacketSize = _LARGEST_PACKET
+    return properties
 
 
 def _hidden(url: str) -> str:

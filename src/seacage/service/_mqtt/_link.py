@@ -25,7 +25,7 @@ _log = structlog.get_logger(__name__)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Heard:
+class Received:
     """A message that came.
 
     Parameters
@@ -62,7 +62,7 @@ class _Ended(Exception):  # noqa: N818
 class Listener(Protocol):
     """Who hears what comes."""
 
-    def hear(self, heard: Heard) -> None:
+    def hear(self, heard: Received) -> None:
         """Take a message; must not take long."""
         ...
 
@@ -139,7 +139,7 @@ class Link:
         while True:
             began = time.monotonic()
             try:
-                await self._connected()
+                await self._hold_connection()
             except (OSError, ValueError, _Ended) as error:
                 # A broker that greets and at once hangs up is no better than one away.
                 lasted = self._fault is None and time.monotonic() - began > _LASTED_S
@@ -152,7 +152,7 @@ class Link:
             # Not all at once, where a farm's clients lost the broker together.
             await asyncio.sleep(wait_s * random.uniform(0.7, 1.3))
 
-    async def _connected(self) -> None:
+    async def _hold_connection(self) -> None:
         """Be connected until it ends, and raise why."""
         connection = _Connection(self._broker.client(self._client_id, manual_ack=True))
         self._connection = connection
@@ -186,7 +186,7 @@ class Link:
             topic = ""
         mid, sure = message.mid, message.qos == 1
         self._listener.hear(
-            Heard(
+            Received(
                 topic=topic,
                 payload=bytes(message.payload),
                 acknowledge=lambda: client.ack(mid, 1) if sure else None,

@@ -85,8 +85,8 @@ def read_observed(
     except ValidationError as error:
         return Observed(fault=_first(error))
     # Pydantic has just looked at t, seq and values; the stream is the topic's, however odd.
-    asked = [SampleIn.model_construct(stream=stream, **dict(one)) for one in read]
-    samples, rejected = read_samples(asked, streams, until=until)
+    received = [SampleIn.model_construct(stream=stream, **dict(one)) for one in read]
+    samples, rejected = read_samples(received, streams, until=until)
     refused = tuple(
         Settled(stream=stream, t=one.t, seq=one.seq, rejected=why.reason, retry=why.retry)
         for why in rejected
@@ -95,19 +95,19 @@ def read_observed(
     return Observed(samples=tuple(samples), refused=refused)
 
 
-def observed_text(samples: Sequence[Sample]) -> bytes:
+def samples_text(samples: Sequence[Sample]) -> bytes:
     """Write samples of one stream as a message."""
-    return _compact([said(sample) for sample in samples])
+    return _compact([sample_fields(sample) for sample in samples])
 
 
-def said(sample: Sample) -> dict[str, object]:
+def sample_fields(sample: Sample) -> dict[str, object]:
     """Say a sample as a message or a request does, but for its stream; null for NaN."""
     values = {key: v if abs(v) < float("inf") else None for key, v in sample.values.items()}
     written: dict[str, object] = {"t": sample.t.isoformat(), "values": values}
     return written if sample.seq is None else written | {"seq": sample.seq}
 
 
-def settled_text(settled: Sequence[Settled]) -> bytes:
+def acknowledgement_text(settled: Sequence[Settled]) -> bytes:
     """Write acknowledgements of samples of one stream: an object for one, a list for more."""
     lines = [
         {"t": one.t.isoformat(), "seq": one.seq}

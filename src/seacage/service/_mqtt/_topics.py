@@ -63,6 +63,6 @@ class Topics:
         return None if found is None or found[1] != self.site else Address(found[2], found[3])
 
 
-def shared(topic: str, group: str | None) -> str:
+def share(topic: str, group: str | None) -> str:
     """The filter that shares a topic among the clients of a group; without one, the topic."""
     return topic if group is None else f"$share/{group}/{topic}"

@@ -14,7 +14,7 @@ from paho.mqtt.reasoncodes import ReasonCode
 from seacage.conventions import InputError
 from seacage.records import Sample
 from seacage.service._mqtt._broker import KEEPALIVE_S, Broker, connecting
-from seacage.service._mqtt._messages import Settled, observed_text, read_settled
+from seacage.service._mqtt._messages import Settled, read_settled, samples_text
 from seacage.service._mqtt._topics import Topics
 from seacage.service._publish._sender import Sender, SendError
 
@@ -118,7 +118,7 @@ class MqttCourier:
             if self._refused:
                 raise InputError(f"The broker refuses this client: {self._refused}.")
             if not self._listening:
-                return self._heard()
+                return self._take_settled()
         waiting = {(one.stream, one.t, one.seq) for one in samples}
         by_stream: dict[str, list[Sample]] = {}
         for one in samples:
@@ -126,15 +126,15 @@ class MqttCourier:
         for stream, of in by_stream.items():
             topic = self._topics.observed(self._cage, stream)
             for first in range(0, len(of), _TOGETHER):
-                self._client.publish(topic, observed_text(of[first : first + _TOGETHER]), qos=1)
-        return self._awaited(waiting)
+                self._client.publish(topic, samples_text(of[first : first + _TOGETHER]), qos=1)
+        return self._await_outcomes(waiting)
 
     def close(self) -> None:
         """See ``Courier``."""
         self._client.disconnect()
         self._client.loop_stop()
 
-    def _awaited(self, waiting: set[tuple[str, datetime, int | None]]) -> list[Settled]:
+    def _await_outcomes(self, waiting: set[tuple[str, datetime, int | None]]) -> list[Settled]:
         """Collect what is said until nothing is missing, or nothing more comes."""
         found: list[Settled] = []
         with self._changed:
@@ -143,15 +143,15 @@ class MqttCourier:
                     lambda: self._settled or not self._listening, self._answer_s
                 ):
                     break
-                heard = self._heard()
-                found += heard
-                waiting -= {(one.stream, one.t, one.seq) for one in heard}
+                settled = self._take_settled()
+                found += settled
+                waiting -= {(one.stream, one.t, one.seq) for one in settled}
         return found
 
-    def _heard(self) -> list[Settled]:
-        heard = list(self._settled)
+    def _take_settled(self) -> list[Settled]:
+        settled = list(self._settled)
         self._settled.clear()
-        return heard
+        return settled
 
     def _on_connect(
         self, client: Client, _: object, __: object, code: ReasonCode, *___: Any

@@ -123,7 +123,7 @@ class Publisher:
             Nobody acknowledged anything for too long; what was read waits in the spool.
         """
         with self._reading(source) as reader:
-            heard_at, live_after, silent = time.monotonic(), self._spool.newest, False
+            acknowledged_at, live_after, silent = time.monotonic(), self._spool.newest, False
             while True:
                 ended = not reader.is_alive()
                 batch = self._next(live_after, silent=silent)
@@ -132,14 +132,14 @@ class Publisher:
                         break
                     self._arrived.wait(_LOOK_S)
                     self._arrived.clear()
-                    heard_at = time.monotonic()  # nobody was asked anything
+                    acknowledged_at = time.monotonic()  # nobody was asked anything
                     continue
-                if self._sent(batch):
+                if self._send(batch):
                     live_after = self._spool.newest if silent else live_after
-                    heard_at, silent = time.monotonic(), False
+                    acknowledged_at, silent = time.monotonic(), False
                 else:
                     silent = True
-                    self._check_patience(time.monotonic() - heard_at)
+                    self._check_patience(time.monotonic() - acknowledged_at)
         if self._fault is not None:
             raise self._fault
         return self.published
@@ -153,7 +153,7 @@ class Publisher:
             self._tried = self._spool.next_ahead(limit - len(batch))
         return batch + self._tried
 
-    def _sent(self, batch: list[Sample]) -> bool:
+    def _send(self, batch: list[Sample]) -> bool:
         """Send a batch; whether anybody acknowledged anything."""
         answers = self._courier.send(batch)
         self._hold([one for one in answers if one.retry], answered=bool(answers))
@@ -188,14 +188,16 @@ class Publisher:
     @contextmanager
     def _reading(self, source: Iterable[Batch]) -> Generator[threading.Thread]:
         # A daemon, for a source may wait for ever for a line that does not come.
-        reader = threading.Thread(target=self._spooled, args=(source,), daemon=True, name="source")
+        reader = threading.Thread(
+            target=self._fill_spool, args=(source,), daemon=True, name="source"
+        )
         reader.start()
         try:
             yield reader
         finally:
             self._stopped.set()
 
-    def _spooled(self, source: Iterable[Batch]) -> None:
+    def _fill_spool(self, source: Iterable[Batch]) -> None:
         try:
             for batch in source:
                 while not self._spool.put(batch.samples, source=batch.source, place=batch.place):

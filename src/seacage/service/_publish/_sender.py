@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from seacage.conventions import InputError, SeacageError
 from seacage.records import Sample
-from seacage.service._mqtt._messages import said
+from seacage.service._mqtt._messages import sample_fields
 from seacage.service._publish._post import POST_FAILED, AbstractCaller
 from seacage.service._schemas._samples import BATCH_LIMIT, Receipt
 
@@ -43,7 +43,7 @@ class Sender(AbstractCaller):
             Nobody answers.
         """
         parts = [
-            self._sent(samples[first : first + BATCH_LIMIT])
+            self._send_once(samples[first : first + BATCH_LIMIT])
             for first in range(0, len(samples), BATCH_LIMIT)
         ]
         return Receipt(
@@ -52,8 +52,10 @@ class Sender(AbstractCaller):
             rejected=[one for part in parts for one in part.rejected],
         )
 
-    def _sent(self, samples: Sequence[Sample]) -> Receipt:
-        body = json.dumps({"samples": [{"stream": one.stream} | said(one) for one in samples]})
+    def _send_once(self, samples: Sequence[Sample]) -> Receipt:
+        body = json.dumps(
+            {"samples": [{"stream": one.stream} | sample_fields(one) for one in samples]}
+        )
         answer = ""
         for patience_s in (*self.patience_s, None):
             try:

@@ -18,7 +18,7 @@ _SECOND = timedelta(seconds=1)
 _ALWAYS = datetime.max.replace(tzinfo=UTC)
 
 
-def paced(
+def pace(
     records: Sequence[Record], *, speed: float | None, since: datetime | None = None
 ) -> Iterator[list[Sample]]:
     """Give out samples in time order, in batches: those that are due, or as many as go at once.
@@ -55,7 +55,7 @@ def record_batches(
 ) -> Iterator[Batch]:
     """Read a record from where a publisher stopped; its place is the time of the last sample."""
     since = None if place is None else datetime.fromisoformat(place)
-    for samples in paced(records, speed=speed, since=since):
+    for samples in pace(records, speed=speed, since=since):
         yield Batch(samples=tuple(samples), source=source, place=samples[-1].t.isoformat())
 
 
@@ -117,11 +117,11 @@ def _read(line: bytes) -> Sequence[Sample]:
     if not line.strip():
         return ()
     try:
-        asked = SampleIn.model_validate_json(line)
+        incoming = SampleIn.model_validate_json(line)
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         raise InputError(f"{'.'.join(map(str, first['loc']))}: {first['msg']}.") from error
-    samples, rejected = read_samples([asked], {asked.stream: tuple(KEYS)}, until=_ALWAYS)
+    samples, rejected = read_samples([incoming], {incoming.stream: tuple(KEYS)}, until=_ALWAYS)
     if rejected:
         raise InputError(rejected[0].reason)
     return samples

@@ -13,7 +13,7 @@ from typing import Any
 
 from seacage.conventions import InputError, SeacageError
 from seacage.records import Sample
-from seacage.service._mqtt._messages import Settled, said
+from seacage.service._mqtt._messages import Settled, sample_fields
 from seacage.service._quarantine import Quarantine
 from seacage.service._small_files import keep_private
 
@@ -111,7 +111,7 @@ class Spool:
         self.dropped = 0
         try:
             keep_private(path)
-            self._connection = _opened(path)
+            self._connection = _open(path)
             self._count: int = self._all("SELECT count(*) FROM sample")[0][0]
             self._ahead: int = self._all("SELECT count(*) FROM ahead")[0][0]
         except (sqlite3.Error, OSError) as error:
@@ -159,10 +159,10 @@ class Spool:
         with self._lock, self._transaction():
             if self._count + len(samples) > self._most and self._count and not self._drop_oldest:
                 return False
-            self._count += self._changed(_INSERT, [_row(sample) for sample in samples])
-            self._changed(_PLACE, [(source, place)])
+            self._count += self._execute(_INSERT, [_row(sample) for sample in samples])
+            self._execute(_PLACE, [(source, place)])
             if self._drop_oldest and self._count > self._most:
-                gone = self._changed(_OLDEST, [(self._count - self._most,)])
+                gone = self._execute(_OLDEST, [(self._count - self._most,)])
                 self._count -= gone
                 self.dropped += gone
             return True
@@ -199,8 +199,8 @@ class Spool:
         since, keys = _microseconds(self._now()), [_key(one) for one in settled]
         rows = [(*_key(one), since, one.rejected or "") for one in settled]
         with self._lock, self._transaction():
-            self._ahead += self._changed(_HOLD, rows)
-            self._count -= self._changed(_SETTLE, keys)
+            self._ahead += self._execute(_HOLD, rows)
+            self._count -= self._execute(_SETTLE, keys)
 
     def expire(self, age: timedelta) -> None:
         """Set samples aside that have been held for so long, or that there is no room for."""
@@ -216,7 +216,7 @@ class Spool:
 
     def _forget(self, keys: Sequence[tuple[object, ...]]) -> int:
         with self._lock, self._transaction():
-            gone, ahead = self._changed(_SETTLE, keys), self._changed(_SETTLE_AHEAD, keys)
+            gone, ahead = self._execute(_SETTLE, keys), self._execute(_SETTLE_AHEAD, keys)
             self._count -= gone
             self._ahead -= ahead
             return gone + ahead
@@ -260,7 +260,7 @@ class Spool:
             self._count, self._ahead = counts
             raise SpoolError(f"{self._path} takes nothing ({error}). Free the disk.") from error
 
-    def _changed(self, statement: str, rows: Sequence[tuple[object, ...]]) -> int:
+    def _execute(self, statement: str, rows: Sequence[tuple[object, ...]]) -> int:
         return max(0, self._connection.executemany(statement, rows).rowcount)
 
     def _all(self, query: str, *values: object) -> list[Any]:
@@ -270,7 +270,7 @@ class Spool:
             raise SpoolError(f"{self._path} cannot be read ({error}).") from error
 
 
-def _opened(path: Path) -> sqlite3.Connection:
+def _open(path: Path) -> sqlite3.Connection:
     log = path.with_name(f"{path.name}-wal")
     os.close(os.open(path, os.O_RDWR | os.O_CREAT, 0o600))
     for one in (path, log):  # those of 0.1.0 could be read by all
@@ -295,7 +295,7 @@ def _text(content: bytes) -> str:
 
 def _row(sample: Sample) -> tuple[object, ...]:
     key = (sample.stream, _microseconds(sample.t), _NO_SEQ if sample.seq is None else sample.seq)
-    return (*key, json.dumps(said(sample)))
+    return (*key, json.dumps(sample_fields(sample)))
 
 
 def _key(one: Settled) -> tuple[object, ...]:

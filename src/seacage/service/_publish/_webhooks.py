@@ -13,12 +13,12 @@ from urllib.parse import urlsplit
 import structlog
 
 from seacage.conventions import InputError
-from seacage.service._live._alarm_desk import AlarmDesk, Announcement, announced_json
+from seacage.service._live._alarm_desk import AlarmDesk, Announcement, announcement_json
 from seacage.service._live._clock import Clock
 from seacage.service._publish._post import POST_FAILED, post
 from seacage.twin import Action
 
-_TOLD = {Action.RAISED, Action.REPEATED, Action.CLEARED, Action.ACKNOWLEDGED}
+_ANNOUNCED = {Action.RAISED, Action.REPEATED, Action.CLEARED, Action.ACKNOWLEDGED}
 _PATIENCE_S = (1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 60.0, 60.0, 60.0)
 _LOOK_S = 0.5
 _WAITING = 1000  # messages to one hook; the oldest is dropped, for the newest say how it stands
@@ -87,7 +87,7 @@ class Alarmed(Protocol):
         ...
 
 
-class Herald:
+class WebhookNotifier:
     """Tells webhooks what happens to the alarms of all cages.
 
     Each hook has its own queue, so that one that does not answer holds nobody up; a message is
@@ -105,7 +105,7 @@ class Herald:
         # Since when each alarm stood that was escalated last: as many as there are alarms.
         self._escalated: dict[tuple[Webhook, str, str], datetime] = {}
         for cage in cages.values():
-            cage.desk.tell(self._heard)
+            cage.desk.tell(self._take)
 
     async def run(self) -> None:
         """Tell for ever."""
@@ -114,13 +114,13 @@ class Herald:
             for hook in self._queues:
                 tasks.create_task(self._deliver(hook))
 
-    def _heard(self, told: Announcement) -> None:
+    def _take(self, announcement: Announcement) -> None:
         # Called in the thread that stepped the twin; a deque takes this without a lock.
-        if told.happened.quiet or told.happened.action not in _TOLD:
+        if announcement.happened.quiet or announcement.happened.action not in _ANNOUNCED:
             return
         for hook, queue in self._queues.items():
-            if hook.after_s == 0.0 and hook.wants(told.cage, told.severity):
-                queue.append(announced_json(told))
+            if hook.after_s == 0.0 and hook.wants(announcement.cage, announcement.severity):
+                queue.append(announcement_json(announcement))
 
     async def _escalate(self) -> None:
         while True:
@@ -132,13 +132,13 @@ class Herald:
     def _overdue(self, hook: Webhook) -> None:
         for name, cage in self._cages.items():
             due = cage.clock.now() - timedelta(seconds=hook.after_s)
-            for told in cage.desk.standing():
-                key, since = (hook, name, told.alarm.name), told.alarm.since
+            for announcement in cage.desk.standing():
+                key, since = (hook, name, announcement.alarm.name), announcement.alarm.since
                 if since is None or since > due or self._escalated.get(key) == since:
                     continue
-                if hook.wants(name, told.severity):
+                if hook.wants(name, announcement.severity):
                     self._escalated[key] = since
-                    self._queues[hook].append(announced_json(told, action="escalated"))
+                    self._queues[hook].append(announcement_json(announcement, action="escalated"))
 
     async def _deliver(self, hook: Webhook) -> None:
         queue = self._queues[hook]
@@ -148,7 +148,7 @@ class Herald:
                 continue
             body = queue.popleft()
             for patience_s in (*_PATIENCE_S, None):
-                problem = await asyncio.to_thread(_posted, hook, body)
+                problem = await asyncio.to_thread(_post_once, hook, body)
                 if problem is None:
                     break
                 if patience_s is None:
@@ -157,7 +157,7 @@ class Herald:
                     await asyncio.sleep(patience_s)
 
 
-def _posted(hook: Webhook, body: str) -> str | None:
+def _post_once(hook: Webhook, body: str) -> str | None:
     """Post once; why it failed, or None."""
     headers = dict[str, str]()
     if hook.secret:

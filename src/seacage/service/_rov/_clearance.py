@@ -8,10 +8,10 @@ from jaxtyping import Float
 from seacage.service._rov._frames import Points, in_frame, local_points, places_of
 from seacage.service._schemas._clearance import (
     ClearanceAnswer,
-    ClearanceAsked,
+    ClearanceQuery,
     FrameName,
     InspectionAnswer,
-    InspectionAsked,
+    InspectionQuery,
     PathAnswer,
     PointClearance,
     Waypoint,
@@ -22,51 +22,51 @@ _STATED = 1.0  # the distance that every answer is about [m]
 _DECIMALS = 4  # of metres and probabilities: a tenth of a millimetre
 
 
-def clearance_answer(net: PredictedNet, asked: ClearanceAsked) -> ClearanceAnswer:
+def clearance_answer(net: PredictedNet, query: ClearanceQuery) -> ClearanceAnswer:
     """Say how far points, and a path, are from a net."""
-    point = local_points(net.cage, asked)
+    point = local_points(net.cage, query)
     stated = net.clearance(point, below=_STATED)
-    other = stated if asked.below_m == _STATED else net.clearance(point, below=asked.below_m)
+    other = stated if query.below_m == _STATED else net.clearance(point, below=query.below_m)
     return ClearanceAnswer(
-        **_about(net, asked.frame, asked.below_m),
-        points=_points(net, asked.frame, stated, other),
-        path=_path(net, asked, point) if asked.as_path else None,
+        **_about(net, query.frame, query.below_m),
+        points=_points(net, query.frame, stated, other),
+        path=_path(net, query, point) if query.as_path else None,
     )
 
 
-def inspection_of(net: PredictedNet, asked: InspectionAsked) -> InspectionPath:
+def inspection_of(net: PredictedNet, query: InspectionQuery) -> InspectionPath:
     """Lay the way that was asked for."""
     return inspection_path(
         net,
-        stand_off=asked.stand_off_m,
-        side=asked.side,
-        pattern=asked.pattern,
-        row_spacing=asked.row_spacing_m,
-        step=asked.step_m,
-        top=asked.top_m,
-        below=asked.below_m,
+        stand_off=query.stand_off_m,
+        side=query.side,
+        pattern=query.pattern,
+        row_spacing=query.row_spacing_m,
+        step=query.step_m,
+        top=query.top_m,
+        below=query.below_m,
     )
 
 
-def inspection_answer(net: PredictedNet, asked: InspectionAsked) -> InspectionAnswer:
+def inspection_answer(net: PredictedNet, query: InspectionQuery) -> InspectionAnswer:
     """Say where to swim along a net, and where to look."""
-    way = inspection_of(net, asked)
+    way = inspection_of(net, query)
     columns = zip(
-        _rounded(in_frame(asked.frame, way.position)),
-        places_of(net.cage, asked.frame, way.position),
+        _round(in_frame(query.frame, way.position)),
+        places_of(net.cage, query.frame, way.position),
         way.heading.round(2).tolist(),
         way.pitch.round(2).tolist(),
         way.row.tolist(),
         way.part.tolist(),
-        _rounded(way.clearance.distance),
-        _rounded(way.clearance.expected),
-        _known(net, way.clearance.sigma),
-        _known(net, way.clearance.p_below),
+        _round(way.clearance.distance),
+        _round(way.clearance.expected),
+        _known_or_none(net, way.clearance.sigma),
+        _known_or_none(net, way.clearance.p_below),
         strict=True,
     )
     names = list(Waypoint.model_fields)
     return InspectionAnswer(
-        **_about(net, asked.frame, asked.below_m),
+        **_about(net, query.frame, query.below_m),
         waypoints=[Waypoint(**dict(zip(names, row, strict=True))) for row in columns],
         parts=int(way.part[-1]) + 1,
         left_out=way.left_out,
@@ -77,16 +77,16 @@ def _points(
     net: PredictedNet, frame: FrameName, stated: Clearance, other: Clearance
 ) -> list[PointClearance]:
     columns = zip(
-        _rounded(stated.distance),
+        _round(stated.distance),
         stated.inside.tolist(),
-        _rounded(in_frame(frame, stated.position)),
+        _round(in_frame(frame, stated.position)),
         places_of(net.cage, frame, stated.position),
-        _rounded(in_frame(frame, stated.normal)),
-        _rounded(stated.expected),
-        _known(net, stated.sigma),
-        _known(net, stated.p_below),
-        _known(net, other.p_below),
-        _known(net, stated.p_through),
+        _round(in_frame(frame, stated.normal)),
+        _round(stated.expected),
+        _known_or_none(net, stated.sigma),
+        _known_or_none(net, stated.p_below),
+        _known_or_none(net, other.p_below),
+        _known_or_none(net, stated.p_through),
         strict=True,
     )
     names = [name for name in PointClearance.model_fields if name != "state_age_s"]
@@ -96,13 +96,13 @@ def _points(
     ]
 
 
-def _path(net: PredictedNet, asked: ClearanceAsked, point: Points) -> PathAnswer:
+def _path(net: PredictedNet, query: ClearanceQuery, point: Points) -> PathAnswer:
     stated = net.along(point, below=_STATED)
-    other = stated if asked.below_m == _STATED else net.along(point, below=asked.below_m)
+    other = stated if query.below_m == _STATED else net.along(point, below=query.below_m)
     here = np.array([stated.closest])
-    (closest,) = _points(net, asked.frame, stated.clearance.rows(here), other.clearance.rows(here))
-    (at_m,) = _rounded(in_frame(asked.frame, stated.point[here]))
-    (at_place,) = places_of(net.cage, asked.frame, stated.point[here])
+    (closest,) = _points(net, query.frame, stated.clearance.rows(here), other.clearance.rows(here))
+    (at_m,) = _round(in_frame(query.frame, stated.point[here]))
+    (at_place,) = places_of(net.cage, query.frame, stated.point[here])
     p = np.array([stated.p_below, other.p_below, other.p_least, other.p_most])
     names = ("p_below_1m", "p_below", "p_least", "p_most")
     return PathAnswer(
@@ -112,7 +112,7 @@ def _path(net: PredictedNet, asked: ClearanceAsked, point: Points) -> PathAnswer
         at_m=at_m,
         at_place=at_place,
         closest=closest,
-        **dict(zip(names, _known(net, p), strict=True)),
+        **dict(zip(names, _known_or_none(net, p), strict=True)),
     )
 
 
@@ -127,10 +127,10 @@ def _about(net: PredictedNet, frame: FrameName, below: float) -> dict[str, Any]:
     }
 
 
-def _known(net: PredictedNet, values: Float[np.ndarray, " point"]) -> list[Any]:
+def _known_or_none(net: PredictedNet, values: Float[np.ndarray, " point"]) -> list[Any]:
     """Say what rests on the shape's error; nothing where that is not known."""
-    return [None] * len(values) if net.error_origin is None else _rounded(values)
+    return [None] * len(values) if net.error_origin is None else _round(values)
 
 
-def _rounded(values: Float[np.ndarray, "point *rest"]) -> list[Any]:
+def _round(values: Float[np.ndarray, "point *rest"]) -> list[Any]:
     return values.round(_DECIMALS).tolist()

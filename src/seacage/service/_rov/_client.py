@@ -8,9 +8,9 @@ from seacage.conventions import InputError, SeacageError
 from seacage.service._publish._post import POST_FAILED, AbstractCaller
 from seacage.service._schemas._clearance import (
     ClearanceAnswer,
-    ClearanceAsked,
+    ClearanceQuery,
     InspectionAnswer,
-    InspectionAsked,
+    InspectionQuery,
 )
 from seacage.twin import StaleError
 
@@ -23,14 +23,14 @@ class AskError(SeacageError):
 class Asker(AbstractCaller):
     """Asks about one cage of one service; its token has the scope read."""
 
-    def clearance(self, asked: ClearanceAsked) -> ClearanceAnswer:
+    def clearance(self, query: ClearanceQuery) -> ClearanceAnswer:
         """Ask how far points are from the net."""
-        answer = self.ask("clearance", asked.model_dump_json(exclude_none=True))
+        answer = self.ask("clearance", query.model_dump_json(exclude_none=True))
         return ClearanceAnswer.model_validate_json(answer)
 
-    def inspection(self, asked: InspectionAsked) -> InspectionAnswer:
+    def inspection(self, query: InspectionQuery) -> InspectionAnswer:
         """Ask for a way along the net."""
-        answer = self.ask("inspection", asked.model_dump_json(exclude_none=True))
+        answer = self.ask("inspection", query.model_dump_json(exclude_none=True))
         return InspectionAnswer.model_validate_json(answer)
 
     def ask(self, call: str, body: str) -> bytes:

@@ -6,12 +6,12 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.cage import Cage
-from seacage.service._schemas._clearance import ClearanceAsked, FrameName, Place
+from seacage.service._schemas._clearance import ClearanceQuery, FrameName, Place
 
 Points = Float[np.ndarray, "point 3"]
 
 
-def local_points(cage: Cage, asked: ClearanceAsked) -> Points:
+def local_points(cage: Cage, query: ClearanceQuery) -> Points:
     """East, north and up of the cage's centre [m].
 
     Raises
@@ -19,11 +19,11 @@ def local_points(cage: Cage, asked: ClearanceAsked) -> Points:
     InputError
         Latitudes for a cage that does not say where it lies.
     """
-    if asked.places is not None:
-        rows = [[one.latitude_deg, one.longitude_deg, one.depth_m] for one in asked.places]
+    if query.places is not None:
+        rows = [[one.latitude_deg, one.longitude_deg, one.depth_m] for one in query.places]
         latitude, longitude, depth = np.array(rows, dtype=float).T
         return cage.plane.local(latitude, longitude, depth)
-    return in_frame(asked.frame, np.array(asked.points_m, dtype=float).reshape(-1, 3))
+    return in_frame(query.frame, np.array(query.points_m, dtype=float).reshape(-1, 3))
 
 
 def in_frame(frame: FrameName, vector: Points) -> Points:

@@ -58,13 +58,13 @@ class RosMessages:
         """Nodes with their sigma."""
         names, values = ("x", "y", "z", "sigma"), np.column_stack([position, sigma])
         packed = np.ascontiguousarray(values, dtype="<f4").view(np.uint8).ravel()
-        return self._made(
+        return self._message(
             "sensor_msgs/msg/PointCloud2",
             header=self._header(),
             height=1,
             width=len(position),
             fields=[
-                self._made(
+                self._message(
                     "sensor_msgs/msg/PointField",
                     name=name,
                     offset=4 * number,
@@ -83,14 +83,14 @@ class RosMessages:
     def mesh(self, position: Points, triangles: Int[np.ndarray, "triangle 3"]) -> Any:
         """Triangles, counter-clockwise seen from outside the net."""
         corners = position[triangles].reshape(-1, 3)
-        colour = self._made("std_msgs/msg/ColorRGBA", **_COLOUR)
-        return self._made(
+        colour = self._message("std_msgs/msg/ColorRGBA", **_COLOUR)
+        return self._message(
             "visualization_msgs/msg/Marker",
             header=self._header(),
             ns="net",
             type=TRIANGLE_LIST,
             pose=self._pose(np.zeros(3), np.array([1.0, 0.0, 0.0])),
-            scale=self._made("geometry_msgs/msg/Vector3", x=1.0, y=1.0, z=1.0),
+            scale=self._message("geometry_msgs/msg/Vector3", x=1.0, y=1.0, z=1.0),
             color=colour,
             points=[self._point(one) for one in corners],
         )
@@ -98,12 +98,12 @@ class RosMessages:
     def path(self, position: Points, facing: Points) -> Any:
         """Poses whose x axis looks along a direction."""
         poses = [
-            self._made(
+            self._message(
                 "geometry_msgs/msg/PoseStamped", header=self._header(), pose=self._pose(at, along)
             )
             for at, along in zip(position, facing, strict=True)
         ]
-        return self._made("nav_msgs/msg/Path", header=self._header(), poses=poses)
+        return self._message("nav_msgs/msg/Path", header=self._header(), poses=poses)
 
     def written(self, messages: Mapping[str, Any]) -> bytes:
         """Return the MCAP file that holds these messages by topic."""
@@ -119,7 +119,7 @@ class RosMessages:
             (file,) = bag.glob("*.mcap")
             return file.read_bytes()
 
-    def _made(self, kind: str, **values: Any) -> Any:
+    def _message(self, kind: str, **values: Any) -> Any:
         """A message; what is not given is empty, as ROS has it."""
         made = self._store.types[kind]
         return made(**{**self._empty(kind), **values})
@@ -131,7 +131,7 @@ class RosMessages:
         from rosbags.interfaces import Nodetype
 
         if node == Nodetype.NAME:
-            return self._made(what)
+            return self._message(what)
         if node == Nodetype.BASE:
             kind = what[0]
             return "" if kind == "string" else False if kind == "bool" else 0
@@ -140,20 +140,20 @@ class RosMessages:
 
     def _header(self) -> Any:
         seconds, rest = divmod(self._ns, 10**9)
-        stamp = self._made("builtin_interfaces/msg/Time", sec=seconds, nanosec=rest)
-        return self._made("std_msgs/msg/Header", stamp=stamp, frame_id=FRAME_ID)
+        stamp = self._message("builtin_interfaces/msg/Time", sec=seconds, nanosec=rest)
+        return self._message("std_msgs/msg/Header", stamp=stamp, frame_id=FRAME_ID)
 
     def _point(self, at: Float[np.ndarray, " 3"]) -> Any:
         x, y, z = at.tolist()
-        return self._made("geometry_msgs/msg/Point", x=x, y=y, z=z)
+        return self._message("geometry_msgs/msg/Point", x=x, y=y, z=z)
 
     def _pose(self, at: Float[np.ndarray, " 3"], along: Float[np.ndarray, " 3"]) -> Any:
-        x, y, z, w = _turned_along(along)
-        turn = self._made("geometry_msgs/msg/Quaternion", x=x, y=y, z=z, w=w)
-        return self._made("geometry_msgs/msg/Pose", position=self._point(at), orientation=turn)
+        x, y, z, w = _orientation_along(along)
+        turn = self._message("geometry_msgs/msg/Quaternion", x=x, y=y, z=z, w=w)
+        return self._message("geometry_msgs/msg/Pose", position=self._point(at), orientation=turn)
 
 
-def _turned_along(along: Float[np.ndarray, " 3"]) -> Sequence[float]:
+def _orientation_along(along: Float[np.ndarray, " 3"]) -> Sequence[float]:
     """Quaternion (x, y, z, w) that turns the x axis along a direction, without roll."""
     yaw = np.arctan2(along[1], along[0]) / 2.0
     pitch = -np.arctan2(along[2], np.hypot(along[0], along[1])) / 2.0

@@ -8,7 +8,7 @@ from pathlib import Path
 from seacage.conventions import TABLE_BYTES, InputError, read_text
 from seacage.service._schemas._clearance import (
     ClearanceAnswer,
-    ClearanceAsked,
+    ClearanceQuery,
     FrameName,
     InspectionAnswer,
     Place,
@@ -48,7 +48,7 @@ def read_points(path: Path) -> tuple[FrameName, list[Row]]:
     return frame, rows
 
 
-def asked_of(
+def query_of(
     frame: FrameName,
     rows: Sequence[Row],
     *,
@@ -56,7 +56,7 @@ def asked_of(
     below_m: float,
     allow_stale: bool,
     max_age_s: float | None,
-) -> ClearanceAsked:
+) -> ClearanceQuery:
     """Ask about points of a frame.
 
     Raises
@@ -73,7 +73,7 @@ def asked_of(
     points = {"places": geographic} if frame == "wgs84" else {"points_m": [[*row] for row in rows]}
     options = {"as_path": as_path, "below_m": below_m, "allow_stale": allow_stale}
     try:
-        return ClearanceAsked.model_validate(
+        return ClearanceQuery.model_validate(
             {"frame": frame, "max_age_s": max_age_s, **options, **points}
         )
     except ValidationError as error:

@@ -11,7 +11,7 @@ Name = Annotated[str, Field(min_length=1, max_length=64)]
 _YEARS = range(1900, 2200)
 
 
-def _spelled(t: object) -> object:
+def _require_text(t: object) -> object:
     # A bare number, also as text, would be taken for seconds since 1970.
     if not isinstance(t, datetime) and not (isinstance(t, str) and t[4:5] == "-"):
         raise ValueError("a time is written in ISO 8601, as 2018-01-26T23:08:00Z, not as a number")
@@ -32,7 +32,7 @@ def _of_our_time(t: datetime) -> datetime:
 
 Time = Annotated[
     datetime,
-    BeforeValidator(_spelled),
+    BeforeValidator(_require_text),
     AfterValidator(_with_zone),
     AfterValidator(_of_our_time),
 ]
@@ -46,7 +46,7 @@ def _reachable(t: datetime) -> datetime:
     return min(max(_with_zone(t), _FIRST), _LAST)
 
 
-Reach = Annotated[datetime, BeforeValidator(_spelled), AfterValidator(_reachable)]
+Reach = Annotated[datetime, BeforeValidator(_require_text), AfterValidator(_reachable)]
 """A time that something is asked of: far away from all that is stored, one is as good as any."""
 
 

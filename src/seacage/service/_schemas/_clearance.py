@@ -66,7 +66,7 @@ _WAYPOINT = {
 }
 
 
-class ClearanceAsked(AbstractRequest):
+class ClearanceQuery(AbstractRequest):
     """Points, or the corners of a path, in one of three frames.
 
     ``points_m`` goes with ``"enu"`` and ``"ned"``, ``places`` with ``"wgs84"``, which needs a
@@ -161,7 +161,7 @@ class ClearanceAnswer(_NetAnswer):
     path: PathAnswer | None
 
 
-class InspectionAsked(AbstractRequest):
+class InspectionQuery(AbstractRequest):
     """A way along the net."""
 
     model_config = example({"stand_off_m": 2.0, "side": "inside", "pattern": "rows"})

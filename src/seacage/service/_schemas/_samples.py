@@ -136,7 +136,7 @@ class AggregatesOut(AbstractAnswer):
 
 
 def read_samples(
-    asked: Sequence[SampleIn], streams: Mapping[str, tuple[str, ...]], *, until: datetime
+    received: Sequence[SampleIn], streams: Mapping[str, tuple[str, ...]], *, until: datetime
 ) -> tuple[list[Sample], list[Rejection]]:
     """Read samples one by one; a bad one does not take the others with it.
 
@@ -155,7 +155,7 @@ def read_samples(
         Those that can be stored, and the rest; ``retry`` is true of those after ``until``.
     """
     samples, rejected = list[Sample](), list[Rejection]()
-    for index, one in enumerate(asked):
+    for index, one in enumerate(received):
         try:
             samples.append(_sample(one, streams, until))
         except InputError as error:

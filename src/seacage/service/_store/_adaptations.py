@@ -89,7 +89,7 @@ def refold_of(session: AbstractSession, cage: str) -> Refold | None:
 
 def ask_refold(session: AbstractSession, cage: str, refold: Refold) -> None:
     """Have intervals adapted anew from a time on, or from the earlier one that was asked for."""
-    asked = refold_of(session, cage)
-    t = refold.t if asked is None else min(asked.t, refold.t)
+    pending = refold_of(session, cage)
+    t = refold.t if pending is None else min(pending.t, refold.t)
     row = (cage, microseconds(t), microseconds(refold.touched))
     session.rows(_KEEP_REFOLD, with_checksum("refold", *row))

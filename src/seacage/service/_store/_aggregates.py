@@ -159,7 +159,7 @@ def renew_rested(session: AbstractSession, *, now_us: int) -> int:
 
 def renew_between(session: AbstractSession, cage: str, stream: str, start: int, end: int) -> None:
     """Sum up every marked span of a stream in start <= t < end [µs]."""
-    _renew(session, [(cage, stream, t) for t in _marked(session, cage, stream, start, end)])
+    _renew(session, [(cage, stream, t) for t in _marks(session, cage, stream, start, end)])
 
 
 def aggregates_between(
@@ -177,7 +177,7 @@ def aggregates_between(
     first = -(2**62) if start is None else microseconds(start)
     last = 2**62 if end is None else microseconds(end)
     of = (cage, stream)
-    marked = _marked(session, *of, first - first % WIDEST_US, last)
+    marked = _marks(session, *of, first - first % WIDEST_US, last)
     # A marked span may turn out empty, so as many more are read as could fall away.
     enough = limit + len(marked) * WIDTHS_S[-1] // width_s
     spans: dict[int, list[Sequence[float]]] = {t: [] for t in marked}
@@ -189,7 +189,7 @@ def aggregates_between(
         found += (
             [
                 row
-                for quantity, width, *row in _summed(session, (*of, t))
+                for quantity, width, *row in _sum_up(session, (*of, t))
                 if (quantity, width) == (key, width_s) and first <= row[0] < last
             ]
             if t in marked
@@ -200,7 +200,7 @@ def aggregates_between(
     return [_aggregate(row) for row in found[:limit]]
 
 
-def _marked(session: AbstractSession, cage: str, stream: str, start: int, end: int) -> set[int]:
+def _marks(session: AbstractSession, cage: str, stream: str, start: int, end: int) -> set[int]:
     """Where the marked spans of a stream begin, but for those of sealed days."""
     between = (cage, stream, start, end)
     of = (cage, stream)
@@ -215,9 +215,9 @@ def _renew(session: AbstractSession, spans: Sequence[Span]) -> None:
     live = [
         (cage, stream, t)
         for cage, stream, t in spans
-        if t in _marked(session, cage, stream, t, t + 1)
+        if t in _marks(session, cage, stream, t, t + 1)
     ]
-    fresh = [(*span[:2], *summary) for span in live for summary in _summed(session, span)]
+    fresh = [(*span[:2], *summary) for span in live for summary in _sum_up(session, span)]
     session.each(_CLEAR, [(*span, span[2] + WIDEST_US) for span in live])
     session.each(_KEEP, [with_checksum("aggregate", *row) for row in fresh])
     days = {(cage, stream, t - t % DAY_US) for cage, stream, t in live}
@@ -225,7 +225,7 @@ def _renew(session: AbstractSession, spans: Sequence[Span]) -> None:
     session.each(_UNMARK, spans)
 
 
-def _summed(session: AbstractSession, span: Span) -> list[Summary]:
+def _sum_up(session: AbstractSession, span: Span) -> list[Summary]:
     rows = session.intact("sample", _SAMPLES, (*span, span[2] + WIDEST_US), span[:1])
     return summaries((row[1], row[3]) for row in rows)
 

@@ -53,7 +53,7 @@ def journal_between(
     last = 2**62 if end is None else microseconds(end)
     between = (cage, first, last)
     rows = session.intact("journal", _LINES + _ORDERS[newest], between, (cage,), limit=limit)
-    return [_happened(t, line) for t, line in (reversed(rows) if newest else rows)]
+    return [_event(t, line) for t, line in (reversed(rows) if newest else rows)]
 
 
 def _line(one: AlarmEvent) -> str:
@@ -69,7 +69,7 @@ def _line(one: AlarmEvent) -> str:
     )
 
 
-def _happened(t: int, line: str) -> AlarmEvent:
+def _event(t: int, line: str) -> AlarmEvent:
     parts = json.loads(line)
     parts["action"] = Action(parts["action"])
     return AlarmEvent(t=moment_of(t), **parts)

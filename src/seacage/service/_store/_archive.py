@@ -52,11 +52,13 @@ class Archive:
             The disk does not take them, or pyarrow is not installed.
         """
         folder = self._folder(cage, stream)
-        with _told(folder, "cannot be written"), _locked(folder):
+        with _translate_errors(folder, "cannot be written"), _lock(folder):
             manifest = self._manifest(folder)
             there = self._read(folder, stream, day, manifest[day]) if day in manifest else []
             both = {key_of(one): one for one in (*there, *samples)}
-            content = packed(cage, stream, [both[key] for key in sorted(both, key=order_of)])
+            content = encode_parquet(
+                cage, stream, [both[key] for key in sorted(both, key=order_of)]
+            )
             digest = hashlib.sha256(content).hexdigest()
             name = f"{day.isoformat()}-{digest[:12]}.parquet"
             entry = {"file": name, "sha256": digest, "samples": len(both)}
@@ -122,11 +124,11 @@ class Archive:
 
     def cages(self) -> list[str]:
         """The cages that it has days of."""
-        return _named(self.folder)
+        return _folder_names(self.folder)
 
     def streams(self, cage: str) -> list[str]:
         """The streams of a cage that it has days of."""
-        return _named(self.folder / _quoted(cage))
+        return _folder_names(self.folder / _quote_name(cage))
 
     def faults(self) -> Iterator[tuple[str, str | None]]:
         """Look at every file: its path, and what is wrong with it, or None."""
@@ -166,7 +168,7 @@ class Archive:
         newest: bool = False,
     ) -> list[Sample]:
         path = folder / entry["file"]
-        with _told(path, f"cannot be read, so {stream} has no samples of {day}"):
+        with _translate_errors(path, f"cannot be read, so {stream} has no samples of {day}"):
             content = path.read_bytes()
             if hashlib.sha256(content).hexdigest() != entry["sha256"]:
                 raise ArchiveError(
@@ -174,11 +176,11 @@ class Archive:
                     "Restore it from a copy."
                 )
             start, end = bounds
-            return unpacked(content, stream, start=start, end=end, limit=limit, newest=newest)
+            return decode_parquet(content, stream, start=start, end=end, limit=limit, newest=newest)
 
     def _manifest(self, folder: Path) -> Manifest:
         path = folder / _MANIFEST
-        with _told(path, "cannot be read"):
+        with _translate_errors(path, "cannot be read"):
             try:
                 state = path.stat()
             except FileNotFoundError:
@@ -191,7 +193,7 @@ class Archive:
             return self._known[folder][1]
 
     def _folder(self, cage: str, stream: str) -> Path:
-        return self.folder / _quoted(cage) / _quoted(stream)
+        return self.folder / _quote_name(cage) / _quote_name(stream)
 
 
 def key_of(sample: Sample) -> SampleKey:
@@ -205,19 +207,19 @@ def order_of(key: SampleKey) -> tuple[datetime, str, int]:
     return (t, stream, seq)
 
 
-def _quoted(name: str) -> str:
+def _quote_name(name: str) -> str:
     quoted = quote(name, safe="")
     return quoted.replace(".", "%2E", 1) if quoted.startswith(".") else quoted
 
 
-def _named(folder: Path) -> list[str]:
+def _folder_names(folder: Path) -> list[str]:
     if not folder.is_dir():
         return []
     return sorted(unquote(one.name) for one in folder.iterdir() if one.is_dir())
 
 
 @contextmanager
-def _locked(folder: Path) -> Generator[None]:
+def _lock(folder: Path) -> Generator[None]:
     """Let one process at a time change the days of a stream."""
     folder.mkdir(parents=True, exist_ok=True)
     with (folder / ".lock").open("w") as file:
@@ -226,7 +228,7 @@ def _locked(folder: Path) -> Generator[None]:
 
 
 @contextmanager
-def _told(path: Path, what: str) -> Generator[None]:
+def _translate_errors(path: Path, what: str) -> Generator[None]:
     try:
         yield
     except ArchiveError:
@@ -241,7 +243,7 @@ class ArchiveError(StoreError):
     """The archive cannot be written or read."""
 
 
-def packed(cage: str, stream: str, samples: Sequence[Sample]) -> bytes:
+def encode_parquet(cage: str, stream: str, samples: Sequence[Sample]) -> bytes:
     """Write samples as the bytes of a Parquet file.
 
     Beside t, seq and remarks there are a column and its flags for each quantity. A quantity
@@ -267,7 +269,7 @@ def packed(cage: str, stream: str, samples: Sequence[Sample]) -> bytes:
     return sink.getvalue().to_pybytes()
 
 
-def unpacked(
+def decode_parquet(
     content: bytes, stream: str, *, start: int, end: int, limit: int, newest: bool
 ) -> list[Sample]:
     """Read the samples of a Parquet file in start <= t < end [µs], the first or the last."""

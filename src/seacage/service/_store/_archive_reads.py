@@ -10,7 +10,7 @@ from seacage.service._store._archive import Archive, key_of, order_of
 _MICROSECOND = timedelta(microseconds=1)
 
 
-def completed(
+def with_archive(
     found: Sequence[Sample],
     archive: Archive,
     cage: str,
@@ -47,14 +47,14 @@ def latest_of(
     newest = dict(latest)
     for stream in archive.streams(cage):
         found = [latest[stream]] if stream in latest else []
-        both = completed(
+        both = with_archive(
             found, archive, cage, stream=stream, start=None, end=end, limit=1, newest=True
         )
         newest |= {one.stream: one for one in both}
     return newest
 
 
-def archived_between(
+def read_archive_between(
     archive: Archive,
     cage: str,
     *,

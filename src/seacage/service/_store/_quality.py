@@ -189,9 +189,9 @@ class QualityControl:
         limits
             To check with.
         """
-        end = self._remembered(session, of, limits)
+        end = self._memory_of(session, of, limits)
         doubtful = [key for key in samples if key <= end.at or of in self._beyond]
-        known = _known(session, of, doubtful)
+        known = _find_stored(session, of, doubtful)
         again = {key for key, (_, one) in known.items() if is_withdrawn(one)}
         fresh = deque(sorted(key for key in samples if key not in known or key in again))
         checked = Checked(again=again)
@@ -226,15 +226,15 @@ class QualityControl:
         ]
         _write(session, of, gone, checked)
         # What they had shown of the samples before them is taken back.
-        walk = _Walk(session, of, _recalled(session, of, limits, until=after), limits, checked)
+        walk = _Walk(session, of, _recall(session, of, limits, until=after), limits, checked)
         walk.open_again()
         walk.finish()
         self._memory.pop(of, None)
         return checked
 
-    def _remembered(self, session: AbstractSession, of: Of, limits: Limits) -> Memory:
+    def _memory_of(self, session: AbstractSession, of: Of, limits: Limits) -> Memory:
         if of not in self._memory:
-            memory = _recalled(session, of, limits)
+            memory = _recall(session, of, limits)
             if memory.since >= EVERY:
                 memory = _keep(session, of, memory)
             self._memory[of] = memory
@@ -251,7 +251,7 @@ def newest_keys(session: AbstractSession, of: Of, at: int) -> set[Key]:
         rows = reversed(_rows(session, _LAST, (*of, at), limit=4 * EVERY))
         found = ((row, sample) for row, sample in readable(rows) if not is_withdrawn(sample))
     else:
-        found = _stored(session, of, root.at, until=(at, _END[1]))
+        found = _read_stored(session, of, root.at, until=(at, _END[1]))
     newest = dict[str, Key]() if root is None else dict(root.newest)
     for row, sample in found:
         newest |= dict.fromkeys(sample.values, _key(row))
@@ -379,7 +379,7 @@ def _check_again(
     kept = _checkpoint(walk.session, walk.of, _BEHIND, fresh[0])
     same_from: Key | None = None
     began = False
-    for row, sample in _stored(walk.session, walk.of, walk.memory.at, until=end.at):
+    for row, sample in _read_stored(walk.session, walk.of, walk.memory.at, until=end.at):
         key = _key(row)
         while fresh and fresh[0] < key:
             if not began:
@@ -408,19 +408,19 @@ def _check_again(
 def _root(session: AbstractSession, of: Of, key: Key, limits: Limits) -> Memory:
     """What was remembered a little before a sample."""
     kept = _checkpoint(session, of, _BEFORE, key)
-    return kept or _begun(session, of, key[0], limits)
+    return kept or _first_memory(session, of, key[0], limits)
 
 
-def _recalled(session: AbstractSession, of: Of, limits: Limits, *, until: int = _END[0]) -> Memory:
+def _recall(session: AbstractSession, of: Of, limits: Limits, *, until: int = _END[0]) -> Memory:
     """What is remembered after the last sample until a time [us], from the last checkpoint on."""
     kept = _checkpoint(session, of, _BEFORE, (until, _END[1]))
-    memory = kept or _begun(session, of, until, limits)
-    for row, sample in _stored(session, of, memory.at, until=(until, _END[1])):
+    memory = kept or _first_memory(session, of, until, limits)
+    for row, sample in _read_stored(session, of, memory.at, until=(until, _END[1])):
         memory, _, _ = memory.after(_key(row), sample, limits)
     return memory
 
 
-def _begun(session: AbstractSession, of: Of, t: int, limits: Limits) -> Memory:
+def _first_memory(session: AbstractSession, of: Of, t: int, limits: Limits) -> Memory:
     """Where to begin without a checkpoint: at the first sample, or as far back as the tests look.
 
     Only stores of 0.1.0 have more samples before their first checkpoint than are looked at here.
@@ -438,7 +438,7 @@ def _begun(session: AbstractSession, of: Of, t: int, limits: Limits) -> Memory:
     return Memory(at=(min(microseconds(last[-1].t), microseconds(last[0].t) - reach), -2))
 
 
-def _stored(
+def _read_stored(
     session: AbstractSession, of: Of, after: Key, *, until: Key
 ) -> Iterator[tuple[SampleRow, Sample]]:
     """Read the samples of a stream in order, but for those that are withdrawn."""
@@ -453,7 +453,7 @@ def _stored(
         after = _key(rows[-1])
 
 
-def _known(
+def _find_stored(
     session: AbstractSession, of: Of, keys: Sequence[Key]
 ) -> dict[Key, tuple[SampleRow, Sample]]:
     """Find which of some samples are stored."""

@@ -81,15 +81,15 @@ def _next_day(session: AbstractSession, cage: str, stream: str, start: int) -> i
     return None if t is None else t - t % DAY_US
 
 
-def retired(
+def retire_days(
     read: Read[Any], writer: Writer, archive: Archive | None, cage: str, before: int
 ) -> int:
     """Delete samples of days before a time [µs], archived first; how many."""
     days = read("sample", lambda session: list(days_before(session, cage, before)))
-    return sum(_retired_day(read, writer, archive, (cage, stream, day)) for stream, day in days)
+    return sum(_retire_day(read, writer, archive, (cage, stream, day)) for stream, day in days)
 
 
-def _retired_day(
+def _retire_day(
     read: Read[Any], writer: Writer, archive: Archive | None, of: tuple[str, str, int]
 ) -> int:
     cage, stream, day = of

@@ -121,7 +121,7 @@ def append_all(
 ) -> list[Stored]:
     """Store the samples of many who asked at once."""
     streams = _by_stream(works)
-    checked = {of: _checked(session, control, of, one) for of, one in sorted(streams.items())}
+    checked = {of: _check(session, control, of, one) for of, one in sorted(streams.items())}
     rows = list[Row]()
     for of, result in checked.items():
         ingested = streams[of].ingested
@@ -141,9 +141,9 @@ def append_all(
     for of, result in checked.items():
         for key in [key for key in result.fresh if not inserted.get((*of, *key), True)]:
             del result.fresh[key]
-    mark(session, _changed(checked), touched)
+    mark(session, _times_changed(checked), touched)
     late = _mark_refold(session, streams, checked)
-    return [_stored(work, checked, late=work.cage in late) for work in works]
+    return [_outcome(work, checked, late=work.cage in late) for work in works]
 
 
 @dataclass(slots=True)
@@ -166,7 +166,7 @@ def _by_stream(works: Sequence[Append]) -> dict[Of, _Incoming]:
     return streams
 
 
-def _checked(
+def _check(
     session: AbstractSession, control: QualityControl, of: Of, incoming: _Incoming
 ) -> Checked:
     if incoming.limits is not None:
@@ -175,7 +175,7 @@ def _checked(
     return Checked(fresh=dict(incoming.samples))
 
 
-def _changed(checked: Mapping[Of, Checked]) -> set[tuple[str, str, int]]:
+def _times_changed(checked: Mapping[Of, Checked]) -> set[tuple[str, str, int]]:
     return {
         (*of, t)
         for of, one in checked.items()
@@ -183,7 +183,7 @@ def _changed(checked: Mapping[Of, Checked]) -> set[tuple[str, str, int]]:
     }
 
 
-def _stored(work: Append, checked: Mapping[Of, Checked], *, late: bool) -> Stored:
+def _outcome(work: Append, checked: Mapping[Of, Checked], *, late: bool) -> Stored:
     new, samples, streams = list[bool](), list[Sample](), dict[tuple[str, str], None]()
     for sample in work.samples:
         of = work.cage, sample.stream
@@ -231,7 +231,7 @@ def withdraw_samples(
 ) -> int:
     """Withdraw samples of a stream after a time, as ``Store.withdraw`` says; how many."""
     checked = control.withdraw(session, of, clock=clock, after=microseconds(after), limits=limits)
-    changed = _changed({of: checked})
+    changed = _times_changed({of: checked})
     mark(session, changed, microseconds(clock))
     return len(changed)
 
@@ -253,7 +253,7 @@ def reinstate_samples(
         for key, sample in checked[of].fresh.items()
     ]
     _replace(session, rows)
-    mark(session, _changed(checked), microseconds(until))
+    mark(session, _times_changed(checked), microseconds(until))
     incoming = _Incoming(limits, samples, dict.fromkeys(samples, until))
     _mark_refold(session, {of: incoming}, checked)
     return len(rows)

@@ -25,14 +25,14 @@ from seacage.service._store._aggregates import (
 )
 from seacage.service._store._alarms import alarm_book, journal_between, keep_alarms
 from seacage.service._store._archive import Archive
-from seacage.service._store._archive_reads import completed, latest_of
+from seacage.service._store._archive_reads import latest_of, with_archive
 from seacage.service._store._caretaker import Caretaker
 from seacage.service._store._database._checksum import Damage
 from seacage.service._store._database._open import database_at, look_into
 from seacage.service._store._database._rows import check_seq, microseconds
 from seacage.service._store._database._session import AbstractSession, DamageError, StoreError
 from seacage.service._store._quality import newest_keys
-from seacage.service._store._retention import retired
+from seacage.service._store._retention import retire_days
 from seacage.service._store._samples import (
     Append,
     Stored,
@@ -267,7 +267,7 @@ class Store:
         )
         if self._archive is None:
             return found
-        return completed(
+        return with_archive(
             found,
             self._archive,
             cage,
@@ -451,7 +451,7 @@ class Store:
             The archive or the database does not take it; then nothing is deleted that is not
             archived.
         """
-        return retired(self._read, self._writer, self._archive, cage, microseconds(before))
+        return retire_days(self._read, self._writer, self._archive, cage, microseconds(before))
 
     def forget(self, cage: str) -> None:
         """Delete all that is kept of a cage; only a replay does so, before it begins anew."""
@@ -495,11 +495,11 @@ class Store:
             return ask(session)
 
     def _renew(self, begun: int, error: DamageError) -> None:
-        def renewed(_: AbstractSession) -> None:
+        def renew(_: AbstractSession) -> None:
             if self._database.round == begun:
                 raise error  # which has the writer begin anew, and then do this again
 
-        self._writer.ask(renewed, vital=True).result()
+        self._writer.ask(renew, vital=True).result()
         self._care.begin()
 
     def _look(self) -> None:

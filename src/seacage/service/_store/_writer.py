@@ -30,7 +30,7 @@ _TRIAL = "INSERT INTO trial VALUES (1, ?) ON CONFLICT (id) DO UPDATE SET t = exc
 
 
 @dataclass(frozen=True, slots=True)
-class _Asked:
+class _Job:
     work: Work
     done: "Future[Any]"
     vital: bool
@@ -59,7 +59,7 @@ class Writer:
         self._database, self._chore = database, chore
         self.control = QualityControl()  # to be used in a transaction alone
         self._next_chore = time.monotonic() + _CHORE_S
-        self._queue: queue.SimpleQueue[_Asked | None] = queue.SimpleQueue()
+        self._queue: queue.SimpleQueue[_Job | None] = queue.SimpleQueue()
         self._closing = threading.Lock()
         self._closed = False
         self._full = False
@@ -78,11 +78,11 @@ class Writer:
     def claim(self, cage: str) -> "Future[bool]":
         """Be the one process that serves a cage; False where another is."""
 
-        def claimed(session: AbstractSession) -> bool:
+        def claim_cage(session: AbstractSession) -> bool:
             self._next_chore = 0.0  # from here on there is a reserve to hold, before anything else
             return self._database.claim(session, cage)
 
-        return self._ask(claimed, vital=True)
+        return self._ask(claim_cage, vital=True)
 
     def close(self) -> None:
         """Finish what was asked, and take nothing more."""
@@ -94,13 +94,13 @@ class Writer:
         self._thread.join()
 
     def _ask(self, work: Work, *, vital: bool) -> "Future[Any]":
-        asked = _Asked(work, Future(), vital)
-        asked.done.set_running_or_notify_cancel()  # what was asked is done, whoever still waits
+        job = _Job(work, Future(), vital)
+        job.done.set_running_or_notify_cancel()  # what was asked is done, whoever still waits
         with self._closing:
             if self._closed:
                 raise StoreError("The store is closed; nothing more can be written to it.")
-            self._queue.put(asked)
-        return asked.done
+            self._queue.put(job)
+        return job.done
 
     def _run(self) -> None:
         try:
@@ -109,38 +109,38 @@ class Writer:
             with self._closing:
                 self._closed = True
             while not self._queue.empty():
-                if asked := self._queue.get():
-                    asked.done.set_exception(StoreError("The store's writer has stopped."))
+                if job := self._queue.get():
+                    job.done.set_exception(StoreError("The store's writer has stopped."))
 
     def _serve(self) -> None:
         going = True
         while going:
-            batch, going = self._queued()
+            batch, going = self._take_queue()
             if batch:
                 self._answer(batch)
             if going and time.monotonic() >= self._next_chore:
                 self._see_to_chore()
                 self._next_chore = time.monotonic() + _CHORE_S
 
-    def _queued(self) -> tuple[list[_Asked], bool]:
+    def _take_queue(self) -> tuple[list[_Job], bool]:
         """Wait a while for work, then take all there is; False when asked to end."""
-        batch: list[_Asked] = []
+        batch: list[_Job] = []
         try:
-            asked = self._queue.get(timeout=_CHORE_S)
-            while asked is not None:
-                batch.append(asked)
-                asked = self._queue.get_nowait()
+            job = self._queue.get(timeout=_CHORE_S)
+            while job is not None:
+                batch.append(job)
+                job = self._queue.get_nowait()
         except queue.Empty:
             return batch, True
         return batch, False
 
-    def _answer(self, batch: Sequence[_Asked]) -> None:
+    def _answer(self, batch: Sequence[_Job]) -> None:
         if self._full:
             batch = self._vital(batch)
         if not batch:
             return
         try:
-            answers = self._committed([asked.work for asked in batch])
+            answers = self._commit([job.work for job in batch])
         except BaseException as error:
             self.control.forget()
             was_full = self._full
@@ -148,21 +148,21 @@ class Writer:
             if self._full and not was_full:
                 self._answer(batch)  # now what is vital alone, in the reserve
                 return
-            for asked in batch:
-                asked.done.set_exception(error)
+            for job in batch:
+                job.done.set_exception(error)
             if not isinstance(error, StoreError):
                 raise
         else:
             self.fault = self.fault if self._full else None
-            for asked, answer in zip(batch, answers, strict=True):
-                asked.done.set_result(answer)
+            for job, answer in zip(batch, answers, strict=True):
+                job.done.set_result(answer)
 
-    def _vital(self, batch: Sequence[_Asked]) -> list[_Asked]:
+    def _vital(self, batch: Sequence[_Job]) -> list[_Job]:
         """What the reserve is for; the rest is refused."""
-        for asked in batch:
-            if not asked.vital:
-                asked.done.set_exception(FullError(self.fault))
-        return [asked for asked in batch if asked.vital]
+        for job in batch:
+            if not job.vital:
+                job.done.set_exception(FullError(self.fault))
+        return [job for job in batch if job.vital]
 
     def _note(self, error: BaseException) -> None:
         self.fault = str(error)
@@ -172,16 +172,16 @@ class Writer:
                 self._full = True
                 _log.error("no samples are taken, and alarms from the reserve", reason=str(error))
 
-    def _committed(self, works: Sequence[Work]) -> list[Any]:
+    def _commit(self, works: Sequence[Work]) -> list[Any]:
         try:
-            return self._written(works)
+            return self._write(works)
         except DamageError as error:
             self.control.forget()
             if not self._database.renew(error):
                 raise
-            return self._written(works)
+            return self._write(works)
 
-    def _written(self, works: Sequence[Work]) -> list[Any]:
+    def _write(self, works: Sequence[Work]) -> list[Any]:
         answers: list[Any] = []
         with self._database.writing() as session:
             # Samples that came one by one are inserted together.

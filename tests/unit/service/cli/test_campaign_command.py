@@ -9,13 +9,13 @@ from typer.testing import CliRunner
 
 from seacage.campaigns import CampaignStatus, Plan
 from seacage.service._cli._app import app
-from seacage.service._cli._plans import asked_plan
+from seacage.service._cli._plans import plan_of
 
 NOTHING = dict.fromkeys(("ranges", "grid", "listed", "cases", "duration", "seed"))
 
 
 def asked(**given):
-    return asked_plan(**{"plan": "default", **NOTHING, **given})
+    return plan_of(**{"plan": "default", **NOTHING, **given})
 
 
 def run(*words):

@@ -6,7 +6,7 @@ import pytest
 import typer
 
 from seacage.conventions import InputError, ModelError, NonsenseError, SeacageError
-from seacage.service._cli._console import Exit, guarded, progress_bar, without_nan
+from seacage.service._cli._console import Exit, guard, progress_bar, without_nan
 
 
 @pytest.mark.parametrize(
@@ -22,7 +22,7 @@ from seacage.service._cli._console import Exit, guarded, progress_bar, without_n
     ids=lambda one: type(one).__name__,
 )
 def test_an_error_becomes_one_sentence_and_a_code(error, code, capsys):
-    @guarded
+    @guard
     def command():
         raise error
 
@@ -33,7 +33,7 @@ def test_an_error_becomes_one_sentence_and_a_code(error, code, capsys):
 
 
 def test_a_fault_of_our_own_is_not_hidden():
-    @guarded
+    @guard
     def command():
         raise ZeroDivisionError
 

@@ -27,7 +27,7 @@ def test_the_link_of_a_demonstration_may_acknowledge_and_that_of_a_cage_may_not(
     rows = [f"{t},0.5,90" for t in times]
     table.write_text("\n".join(["time,current_speed_m_s,current_to_deg", *rows, ""]))
     replay = replay_of(read_record(table)) if options else None
-    monkeypatch.setattr(_serve, "_prepared", lambda *_, **__: ({"ace": stand_in_twin()}, replay))
+    monkeypatch.setattr(_serve, "_prepare", lambda *_, **__: ({"ace": stand_in_twin()}, replay))
     monkeypatch.setattr(
         _assembly, "server", lambda service, _: services.append(service) or Stopped()
     )

@@ -4,7 +4,7 @@ import pytest
 
 from framed import decoded
 from seacage.ocean import SeaState
-from seacage.service._http._whatif_routes import counted, learned_of
+from seacage.service._http._whatif_routes import effective_water, training_domain_of
 from seacage.service._schemas._state import Water
 from seacage.testing import stand_in_twin
 from serviced import Running
@@ -41,7 +41,7 @@ def test_beyond_what_a_twin_names_it_extrapolates_whichever_way_the_water_runs(i
 
 
 def test_a_twin_that_was_taught_with_waves_names_them(of_waves):
-    learned = learned_of(of_waves)
+    learned = training_domain_of(of_waves)
     assert [(one.key, one.most) for one in learned.inputs if one.most] == [
         ("current_speed_m_s", 1.1),
         ("hs_m", 2.5),
@@ -65,6 +65,6 @@ def test_the_period_that_goes_with_the_height_is_said(of_waves):
         current_speed_m_s=0.5, current_to_deg=90.0, hs_m=1.0, tp_s=None, wave_from_deg=270.0
     )
     sea = SeaState(current_speed=0.5, current_to=90.0, hs=1.0, tp=None, wave_from=270.0)
-    assert counted(water, sea, of_waves).tp_s == 5.0
+    assert effective_water(water, sea, of_waves).tp_s == 5.0
     calm = water.model_copy(update={"hs_m": 0.0})
-    assert counted(calm, replace(sea, hs=0.0), of_waves) == calm
+    assert effective_water(calm, replace(sea, hs=0.0), of_waves) == calm

@@ -10,7 +10,7 @@ from garbled import SEEDS, mutated
 from seacage.service._ingest._mqtt_feed import MqttFeed
 from seacage.service._live._cage import LiveCage
 from seacage.service._live._metrics import Metrics
-from seacage.service._mqtt._link import Heard
+from seacage.service._mqtt._link import Received
 from seacage.service._quarantine import Quarantine
 from seacage.service._store._store import StoreError, open_store
 from seacage.testing import stand_in_twin
@@ -72,7 +72,7 @@ def say(one, payload, topic=OBS, *, sure=True):
         one.acknowledged[number] = True
 
     content = payload if isinstance(payload, bytes) else json.dumps(payload).encode()
-    one.feed.hear(Heard(topic=topic, payload=content, acknowledge=acknowledge, sure=sure))
+    one.feed.hear(Received(topic=topic, payload=content, acknowledge=acknowledge, sure=sure))
 
 
 def settled(one, *, within_s=20.0):
@@ -239,7 +239,7 @@ def test_large_messages_pause_the_reading_earlier(one):
 def newest(one, minute):
     """Have the second connection bring a reading."""
     content = json.dumps(reading(minute)).encode()
-    one.feed._newest.hear(Heard(topic=OBS, payload=content, acknowledge=list, sure=False))
+    one.feed._newest.hear(Received(topic=OBS, payload=content, acknowledge=list, sure=False))
 
 
 async def until(done):

@@ -4,7 +4,7 @@ from datetime import timedelta
 import pytest
 
 from seacage.conventions import InputError
-from seacage.service._assembly import assembled
+from seacage.service._assembly import assemble
 from seacage.service._live._retention import Retention, midnight
 from seacage.service._settings import Settings
 from seacage.service._store._store import look_into, open_store
@@ -20,7 +20,7 @@ class NoonClock:
     def now(self):
         return NOON
 
-    def elapsed_s(self):
+    def monotonic_s(self):
         return 0.0
 
 
@@ -78,7 +78,7 @@ def test_midnight_is_that_of_utc():
 
 def test_a_service_that_is_told_to_archives_and_lets_go(tmp_path):
     kept = {"keep_days": 30.0, "archive": tmp_path / "archive"}
-    service = assembled(Settings(data=tmp_path, store=kept), {"ace": stand_in_twin()})
+    service = assemble(Settings(data=tmp_path, store=kept), {"ace": stand_in_twin()})
     put(service.store, sample(), sample(60 * 24))
 
     def left():

@@ -12,10 +12,10 @@ from seacage.records import Sample
 from seacage.service._mqtt._messages import (
     LARGEST,
     Settled,
-    observed_text,
+    acknowledgement_text,
     read_observed,
     read_settled,
-    settled_text,
+    samples_text,
 )
 from sized import sized
 
@@ -41,7 +41,7 @@ def test_one_sample_or_a_list_of_them_are_read():
 
 def test_what_is_written_is_read_again():
     written = [sample(1.0, math.nan, seq=2), sample(2.0)]
-    back = read(observed_text(written)).samples
+    back = read(samples_text(written)).samples
     assert [(s.t, s.seq) for s in back] == [(s.t, s.seq) for s in written]
     assert math.isnan(back[0].values["current_speed_m_s"])
 
@@ -91,9 +91,9 @@ def test_acknowledgements_come_back_as_they_went():
         Settled(stream="buoy-1", t=NOON, seq=3, rejected="No."),
         Settled(stream="buoy-1", t=NOON, seq=4, rejected="Not yet.", retry=True),
     )
-    assert json.loads(settled_text(settled[:1])) == {"t": NOON.isoformat(), "seq": None}
-    assert read_settled("buoy-1", settled_text(settled[:1])) == settled[:1]
-    assert read_settled("buoy-1", settled_text(settled)) == settled
+    assert json.loads(acknowledgement_text(settled[:1])) == {"t": NOON.isoformat(), "seq": None}
+    assert read_settled("buoy-1", acknowledgement_text(settled[:1])) == settled[:1]
+    assert read_settled("buoy-1", acknowledgement_text(settled)) == settled
 
 
 def test_an_acknowledgement_that_is_none_is_said():

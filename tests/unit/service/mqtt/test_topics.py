@@ -1,7 +1,7 @@
 import pytest
 
 from seacage.conventions import InputError
-from seacage.service._mqtt._topics import Topics, shared
+from seacage.service._mqtt._topics import Topics, share
 
 
 def test_a_topic_leads_back_to_its_cage_and_stream():
@@ -33,5 +33,5 @@ def test_a_site_is_one_level(site):
 
 
 def test_a_group_shares_a_topic():
-    assert shared("a/b", None) == "a/b"
-    assert shared("a/b", "twins") == "$share/twins/a/b"
+    assert share("a/b", None) == "a/b"
+    assert share("a/b", "twins") == "$share/twins/a/b"

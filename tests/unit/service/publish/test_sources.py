@@ -12,7 +12,7 @@ from seacage.records import Record
 from seacage.service._publish._sources import (
     arriving,
     line_batches,
-    paced,
+    pace,
     record_batches,
     tail_batches,
 )
@@ -35,13 +35,13 @@ def seconds(samples):
 
 
 def test_streams_are_merged_in_time_order():
-    (batch,) = paced(RECORDS, speed=None)
+    (batch,) = pace(RECORDS, speed=None)
     assert seconds(batch) == [0, 5, 10, 10, 15, 20]
 
 
 def test_a_record_goes_at_a_multiple_of_real_time():
     began = time.monotonic()
-    batches = list(paced(RECORDS, speed=100.0))
+    batches = list(pace(RECORDS, speed=100.0))
     # The last sample is due after 20 s / 100; a busy machine may only be later.
     assert time.monotonic() - began >= 0.2
     assert sum(map(len, batches)) == 6

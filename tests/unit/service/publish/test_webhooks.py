@@ -15,7 +15,7 @@ import pytest
 from seacage.conventions import InputError
 from seacage.service._live._alarm_desk import Announcement
 from seacage.service._publish import _webhooks
-from seacage.service._publish._webhooks import Herald, Webhook
+from seacage.service._publish._webhooks import Webhook, WebhookNotifier
 from seacage.twin import Action, Alarm, AlarmEvent, AlarmText
 
 NOON = datetime(2020, 2, 1, 12, tzinfo=UTC)
@@ -78,7 +78,7 @@ def told(hook: Webhook, heard: list, *announced: Announcement, now=NOON, standin
     cage = SimpleNamespace(desk=desk, clock=SimpleNamespace(now=lambda: now))
 
     async def work():
-        herald = Herald([hook], {"ace": cage})
+        herald = WebhookNotifier([hook], {"ace": cage})
         running = asyncio.create_task(herald.run())
         for one in announced:
             desk.listeners[0](one)
@@ -140,7 +140,7 @@ def test_an_alarm_that_comes_again_and_again_is_told_each_time_and_remembered_on
     hook, desk = Webhook(url="http://x", after_s=600.0), Desk()
     now = [NOON]
     cage = SimpleNamespace(desk=desk, clock=SimpleNamespace(now=lambda: now[0]))
-    herald = Herald([hook], {"ace": cage})
+    herald = WebhookNotifier([hook], {"ace": cage})
     for times in range(1, 51):
         raised = said()
         desk.open = [replace(raised, alarm=replace(raised.alarm, since=now[0]))]

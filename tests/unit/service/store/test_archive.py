@@ -14,7 +14,13 @@ from typer.testing import CliRunner
 from seacage.conventions import Flag
 from seacage.records import KEYS, Sample
 from seacage.service._cli._app import app
-from seacage.service._store._archive import Archive, ArchiveError, key_of, packed, unpacked
+from seacage.service._store._archive import (
+    Archive,
+    ArchiveError,
+    decode_parquet,
+    encode_parquet,
+    key_of,
+)
 from seacage.service._store._store import StoreError, open_store
 from stores import NOON, put, sample
 
@@ -59,9 +65,9 @@ def test_what_is_read_back_equals_what_was_written(drawn):
         )
         for us, seq, said, remarks in sorted(drawn, key=lambda one: one[0])
     ]
-    assert list(map(told, unpacked(packed("ace", "buoy-1", samples), "buoy-1", **WHOLE))) == list(
-        map(told, samples)
-    )
+    assert list(
+        map(told, decode_parquet(encode_parquet("ace", "buoy-1", samples), "buoy-1", **WHOLE))
+    ) == list(map(told, samples))
 
 
 def told(one):

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from seacage.service._cli._console import Exit, Json, guarded, stopped, tell
+from seacage.service._cli._console import Exit, Json, exit_with, guard, report
 from seacage.service._cli._rov._options import (
     AllowStale,
     Below,
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     )
 
 
-@guarded
+@guard
 def clearance(
     points: Annotated[
         Path | None,
@@ -84,10 +84,10 @@ def clearance(
     """
     from seacage.conventions import InputError
     from seacage.service._rov._clearance import clearance_answer
-    from seacage.service._rov._table import asked_of, write_clearances
+    from seacage.service._rov._table import query_of, write_clearances
 
     frame, rows = _points(points, point or [])
-    asked = asked_of(
+    query = query_of(
         frame,
         rows,
         as_path=path,
@@ -97,13 +97,13 @@ def clearance(
     )
     net = net_of(twin, to, current_speed, current_to, hs, wave_from)
     answer = (
-        asker_of(to, cage, token).clearance(asked) if net is None else clearance_answer(net, asked)
+        asker_of(to, cage, token).clearance(query) if net is None else clearance_answer(net, query)
     )
     if out is not None:
         write_clearances(out, rows, answer)
     known = [one.p_below for one in answer.points if one.p_below is not None]
     p = answer.path.p_below if answer.path else max(known, default=None)
-    tell(answer.model_dump(mode="json"), as_json=as_json, rows=_clearance_rows(answer, out))
+    report(answer.model_dump(mode="json"), as_json=as_json, rows=_clearance_rows(answer, out))
     if most is not None and p is None:
         raise InputError(
             f"clearance: whether the net is nearer than {below:g} m cannot be held against --most "
@@ -111,7 +111,7 @@ def clearance(
             "distance."
         )
     if most is not None and p is not None and p > most:
-        raise stopped(
+        raise exit_with(
             f"clearance: the net is nearer than {below:g} m with probability {p:.3f}, which is "
             f"more than {most:g}.",
             Exit.EXCEEDED,

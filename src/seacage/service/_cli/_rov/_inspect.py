@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from seacage.service._cli._console import Json, guarded, tell
+from seacage.service._cli._console import Json, guard, report
 from seacage.service._cli._rov._options import (
     AllowStale,
     Below,
@@ -25,11 +25,11 @@ from seacage.service._cli._rov._options import (
 
 if TYPE_CHECKING:
     from seacage.service._rov._client import Asker
-    from seacage.service._schemas._clearance import InspectionAnswer, InspectionAsked
+    from seacage.service._schemas._clearance import InspectionAnswer, InspectionQuery
     from seacage.twin import PredictedNet
 
 
-@guarded
+@guard
 def inspect_path(
     *,
     stand_off: Annotated[float, typer.Option(min=0.1, help="Distance to keep, m.")] = 2.0,
@@ -70,9 +70,9 @@ def inspect_path(
         seacage inspect-path --twin twin --current-speed 0.4 --current-to 90 --out way.mcap
     """
     from seacage.service._rov._clearance import inspection_answer
-    from seacage.service._schemas._clearance import InspectionAsked
+    from seacage.service._schemas._clearance import InspectionQuery
 
-    asked = InspectionAsked(
+    query = InspectionQuery(
         frame=frame,
         stand_off_m=stand_off,
         side=side,
@@ -86,10 +86,10 @@ def inspect_path(
     )
     net = net_of(twin, to, current_speed, current_to, hs, wave_from)
     asker = asker_of(to, cage, token) if net is None else None
-    answer = asker.inspection(asked) if asker else inspection_answer(_here(net), asked)
+    answer = asker.inspection(query) if asker else inspection_answer(_here(net), query)
     if out is not None:
-        _write_way(out, asked, answer, net, asker)
-    tell(answer.model_dump(mode="json"), as_json=as_json, rows=_inspection_rows(answer, out))
+        _write_way(out, query, answer, net, asker)
+    report(answer.model_dump(mode="json"), as_json=as_json, rows=_inspection_rows(answer, out))
 
 
 def _here(net: "PredictedNet | None") -> "PredictedNet":
@@ -99,7 +99,7 @@ def _here(net: "PredictedNet | None") -> "PredictedNet":
 
 def _write_way(
     out: Path,
-    asked: "InspectionAsked",
+    query: "InspectionQuery",
     answer: "InspectionAnswer",
     net: "PredictedNet | None",
     asker: "Asker | None",
@@ -115,10 +115,10 @@ def _write_way(
     elif form not in {".mcap", ".geojson"}:
         raise InputError(f"{out}: a way is written as .csv, .mcap or .geojson.")
     elif asker is not None:
-        out.write_bytes(asker.ask(f"inspection{form}", asked.model_dump_json(exclude_none=True)))
+        out.write_bytes(asker.ask(f"inspection{form}", query.model_dump_json(exclude_none=True)))
     else:
         write = inspection_mcap if form == ".mcap" else inspection_geojson
-        out.write_bytes(write(_here(net), inspection_of(_here(net), asked)))
+        out.write_bytes(write(_here(net), inspection_of(_here(net), query)))
 
 
 def _inspection_rows(answer: "InspectionAnswer", out: Path | None) -> list[tuple[str, str]]:

@@ -117,7 +117,7 @@ def _ends(whole: str, part: str) -> bool:
     return whole.endswith(f":{part}")
 
 
-def _turned(joins: Callable[[str, str], bool]) -> Callable[[str, str], bool]:
+def _reverse(joins: Callable[[str, str], bool]) -> Callable[[str, str], bool]:
     return lambda one, other: joins(other, one)
 
 
@@ -125,12 +125,12 @@ def _turned(joins: Callable[[str, str], bool]) -> Callable[[str, str], bool]:
 RELATIONS: Mapping[str, Mapping[str, Relation]] = {
     "Things": {
         "Locations": Relation(to="Locations", many=True, joins=_same),
-        "Datastreams": Relation(to="Datastreams", many=True, joins=_turned(_begins)),
+        "Datastreams": Relation(to="Datastreams", many=True, joins=_reverse(_begins)),
     },
     "Locations": {"Things": Relation(to="Things", many=True, joins=_same)},
-    "Sensors": {"Datastreams": Relation(to="Datastreams", many=True, joins=_turned(_begins))},
+    "Sensors": {"Datastreams": Relation(to="Datastreams", many=True, joins=_reverse(_begins))},
     "ObservedProperties": {
-        "Datastreams": Relation(to="Datastreams", many=True, joins=_turned(_ends))
+        "Datastreams": Relation(to="Datastreams", many=True, joins=_reverse(_ends))
     },
     "Datastreams": {
         "Thing": Relation(to="Things", many=False, joins=_begins),
@@ -197,7 +197,7 @@ class Catalogue:
         return {"@iot.id": entity["@iot.id"], "@iot.selfLink": link} | entity | leading
 
 
-def observed(datastream: str, sample: Sample) -> Entity:
+def observation(datastream: str, sample: Sample) -> Entity:
     """Say one reading of a Datastream's quantity, raw; null where it was not a number."""
     key = datastream.rpartition(":")[2]
     t, value = sample.t.isoformat().replace("+00:00", "Z"), sample.values[key]

@@ -26,7 +26,7 @@ Span = tuple[datetime | None, datetime | None]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Asked:
+class QueryOptions:
     """The options of a question, or of one relation that it expands.
 
     Parameters
@@ -54,10 +54,10 @@ class Asked:
     select: tuple[str, ...]
     order: tuple[str, bool] | None
     within: Span | None
-    expand: Mapping[str, "Asked"]
+    expand: Mapping[str, "QueryOptions"]
 
 
-def asked(texts: Mapping[str, str], *, depth: int = 0) -> Asked:
+def read_query(texts: Mapping[str, str], *, depth: int = 0) -> QueryOptions:
     """Read options.
 
     Raises
@@ -70,7 +70,7 @@ def asked(texts: Mapping[str, str], *, depth: int = 0) -> Asked:
     for name in texts:
         if name not in _OPTIONS:
             raise InputError(f"{name} is not offered. There are {', '.join(_OPTIONS)}.")
-    return Asked(
+    return QueryOptions(
         texts=texts,
         top=_whole("$top", texts.get("$top", _USUAL), 1, MOST),
         skip=_whole("$skip", texts.get("$skip", "0"), 0, FARTHEST),
@@ -79,19 +79,19 @@ def asked(texts: Mapping[str, str], *, depth: int = 0) -> Asked:
         order=_order(texts["$orderby"]) if "$orderby" in texts else None,
         within=_span(texts["$filter"]) if "$filter" in texts else None,
         expand={
-            name: asked(inner, depth=depth + 1)
-            for name, inner in _expanded(texts.get("$expand", "")).items()
+            name: read_query(inner, depth=depth + 1)
+            for name, inner in _read_expand(texts.get("$expand", "")).items()
         },
     )
 
 
-def written(span: Span) -> str:
+def filter_text(span: Span) -> str:
     """Write a span of time as ``$filter`` has it."""
     ends = (("ge", span[0]), ("lt", span[1]))
-    return " and ".join(f"phenomenonTime {how} {said(t)}" for how, t in ends if t is not None)
+    return " and ".join(f"phenomenonTime {how} {time_text(t)}" for how, t in ends if t is not None)
 
 
-def said(t: datetime) -> str:
+def time_text(t: datetime) -> str:
     """Write a time."""
     return t.isoformat().replace("+00:00", "Z")
 
@@ -101,7 +101,7 @@ def from_or_until(span: Span, t: datetime, *, newest: bool) -> Span:
     return (span[0], t + _TICK) if newest else (t, span[1])
 
 
-def _expanded(text: str) -> dict[str, dict[str, str]]:
+def _read_expand(text: str) -> dict[str, dict[str, str]]:
     """Read ``A/B,C($top=1;$expand=D)`` as what is asked of A and of C."""
     found: dict[str, dict[str, str]] = {}
     for item in _split(text, ","):

@@ -19,16 +19,16 @@ from seacage.service._http._sensorthings._entities import (
     SETS,
     Catalogue,
     Entity,
-    observed,
+    observation,
 )
 from seacage.service._http._sensorthings._query import (
     FARTHEST,
     MOST,
-    Asked,
+    QueryOptions,
     Span,
-    asked,
+    filter_text,
     from_or_until,
-    written,
+    read_query,
 )
 from seacage.service._schemas._base import AbstractAnswer, example
 
@@ -135,25 +135,25 @@ def _all_options(
     expand: Expand = None,
     order: Order = None,
     within: Filter = None,
-) -> Asked:
+) -> QueryOptions:
     texts = {"$top": str(top), "$skip": str(skip), "$count": str(count).lower()}
-    return _asked(request, texts, select=select, expand=expand, orderby=order, filter=within)
+    return _read_options(request, texts, select=select, expand=expand, orderby=order, filter=within)
 
 
-def _options_of_one(request: Request, select: Select = None, expand: Expand = None) -> Asked:
-    return _asked(request, {}, select=select, expand=expand)
+def _options_of_one(request: Request, select: Select = None, expand: Expand = None) -> QueryOptions:
+    return _read_options(request, {}, select=select, expand=expand)
 
 
-def _asked(request: Request, texts: dict[str, str], **others: str | None) -> Asked:
+def _read_options(request: Request, texts: dict[str, str], **others: str | None) -> QueryOptions:
     texts |= {f"${name}": text for name, text in others.items() if text is not None}
     foreign = [name for name in request.query_params if name.startswith("$") and name not in texts]
     if foreign:
         raise InputError(f"{foreign[0]} is not offered here.")
-    return asked(texts)
+    return read_query(texts)
 
 
-Listing = Annotated[Asked, Depends(_all_options)]
-Telling = Annotated[Asked, Depends(_options_of_one)]
+Listing = Annotated[QueryOptions, Depends(_all_options)]
+Telling = Annotated[QueryOptions, Depends(_options_of_one)]
 
 
 class _Answer:
@@ -169,57 +169,57 @@ class _Answer:
         self._catalogue = catalogue
         self._left = _AT_ONCE
 
-    def page(self, of: str, found: list[Entity], asked: Asked, address: str) -> Entity:
+    def page(self, of: str, found: list[Entity], query: QueryOptions, address: str) -> Entity:
         """Tell some of the entities that were found, and where the rest is."""
-        if asked.within is not None:
+        if query.within is not None:
             raise InputError("$filter: only Observations can be filtered, by their time.")
-        ordered = _ordered(of, found, asked)
-        rest = asked.skip + asked.top
-        said: Entity = {"value": [self.one(of, one, asked) for one in ordered[asked.skip : rest]]}
-        if asked.count:
+        ordered = _order(of, found, query)
+        rest = query.skip + query.top
+        said: Entity = {"value": [self.one(of, one, query) for one in ordered[query.skip : rest]]}
+        if query.count:
             said["@iot.count"] = len(found)
         if rest < len(found):
-            said["@iot.nextLink"] = _address(address, {**asked.texts, "$skip": str(rest)})
+            said["@iot.nextLink"] = _address(address, {**query.texts, "$skip": str(rest)})
         return said
 
-    def one(self, of: str, entity: Entity, asked: Asked) -> Entity:
+    def one(self, of: str, entity: Entity, query: QueryOptions) -> Entity:
         """Tell an entity with what is selected of it and what it is expanded by."""
         self._spend(1)
-        said = _selected(of, entity, asked)
-        for name, inner in asked.expand.items():
-            told = self._expanded(of, entity, name, inner)
+        said = _select(of, entity, query)
+        for name, inner in query.expand.items():
+            told = self._expand(of, entity, name, inner)
             said.pop(f"{name}@iot.navigationLink", None)
             said |= told
         return said
 
-    def observations(self, datastream: str, asked: Asked, address: str) -> Entity:
+    def observations(self, datastream: str, query: QueryOptions, address: str) -> Entity:
         """Tell readings of a Datastream's quantity in the order of their times."""
-        if asked.expand:
+        if query.expand:
             raise InputError("$expand: Observations lead to nothing more.")
-        _selected(OBSERVATIONS, dict.fromkeys(OBSERVED), asked)  # refused where there are none too
-        newest = _newest_first(asked)
-        span, reach = asked.within or (None, None), asked.skip + asked.top
+        _select(OBSERVATIONS, dict.fromkeys(OBSERVED), query)  # refused where there are none too
+        newest = _newest_first(query)
+        span, reach = query.within or (None, None), query.skip + query.top
         read = self._samples(datastream, span, limit=reach + 1, newest=newest)
-        told = self._observed(datastream, read[asked.skip : reach])
-        said: Entity = {"value": [_selected(OBSERVATIONS, one, asked) for one in told]}
-        if asked.count:
+        told = self._observations(datastream, read[query.skip : reach])
+        said: Entity = {"value": [_select(OBSERVATIONS, one, query) for one in told]}
+        if query.count:
             said["@iot.count"] = self._count(datastream, span)
         if len(read) > reach:
-            said["@iot.nextLink"] = _address(address, _onward(asked, read[:reach], newest=newest))
+            said["@iot.nextLink"] = _address(address, _onward(query, read[:reach], newest=newest))
         return said
 
-    def _expanded(self, of: str, entity: Entity, name: str, asked: Asked) -> Entity:
+    def _expand(self, of: str, entity: Entity, name: str, query: QueryOptions) -> Entity:
         id, address = entity["@iot.id"], f"{entity['@iot.selfLink']}/{name}"  # noqa: A001
         if (of, name) == ("Datastreams", OBSERVATIONS):
-            page = self.observations(id, asked, address)
+            page = self.observations(id, query, address)
         elif name not in RELATIONS[of]:
             raise InputError(f"$expand: {of} lead to no {name!r}. {_there(of)}")
         else:
             relation = RELATIONS[of][name]
             found = self._catalogue.related(of, id, name)
             if not relation.many:
-                return {name: self.one(relation.to, found[0], asked)}
-            page = self.page(relation.to, found, asked, address)
+                return {name: self.one(relation.to, found[0], query)}
+            page = self.page(relation.to, found, query, address)
         value = page.pop("value")
         return {name: value} | {f"{name}{key}": one for key, one in page.items()}
 
@@ -229,7 +229,7 @@ class _Answer:
             raise InputError(
                 f"$count: there are more than {FARTHEST} samples. Name a shorter time by $filter."
             )
-        return len(self._observed(datastream, read))
+        return len(self._observations(datastream, read))
 
     def _samples(self, datastream: str, span: Span, *, limit: int, newest: bool) -> list[Sample]:
         """Read a stream's samples in the order that is asked for."""
@@ -248,9 +248,9 @@ class _Answer:
                 "or $skip, or expand less."
             )
 
-    def _observed(self, datastream: str, samples: list[Sample]) -> list[Entity]:
+    def _observations(self, datastream: str, samples: list[Sample]) -> list[Entity]:
         key = datastream.rpartition(":")[2]
-        return [observed(datastream, one) for one in samples if key in one.values]
+        return [observation(datastream, one) for one in samples if key in one.values]
 
 
 @things.get("", responses=REFUSED)
@@ -266,14 +266,14 @@ async def get_root() -> Root:
     )
 
 
-def _listed(name: str) -> Callable[..., Entity]:
-    def listed(request: Request, options: Listing) -> Entity:
+def _list_call(name: str) -> Callable[..., Entity]:
+    def list_all(request: Request, options: Listing) -> Entity:
         catalogue = _catalogue(request)
         address = f"{catalogue.address}{ROOT}/{name}"
         return _Answer(catalogue).page(name, catalogue.all(name), options, address)
 
-    listed.__doc__ = f"List the {name} of all cages that the token may read."
-    return listed
+    list_all.__doc__ = f"List the {name} of all cages that the token may read."
+    return list_all
 
 
 def _single(name: str) -> Callable[..., Entity]:
@@ -309,7 +309,7 @@ _PAGED: dict[str, Any] = {"response_model": Entities, "response_model_exclude_un
 
 for _name in SETS:
     things.get(f"/{_name}", responses=REFUSED, operation_id=f"sta_{_name}", **_PAGED)(
-        _listed(_name)
+        _list_call(_name)
     )
     things.get(f"/{_name}('{{id}}')", responses=_one_of(_name), operation_id=f"sta_one_of_{_name}")(
         _single(_name)
@@ -339,27 +339,27 @@ def _catalogue(request: Request) -> Catalogue:
     return Catalogue(cages=cages_of(request), address=str(request.base_url).rstrip("/"))
 
 
-def _ordered(of: str, found: list[Entity], asked: Asked) -> list[Entity]:
-    if asked.order is None:
+def _order(of: str, found: list[Entity], query: QueryOptions) -> list[Entity]:
+    if query.order is None:
         return found
-    name, descending = asked.order
+    name, descending = query.order
     key = _property(name)
     if any(not isinstance(one.get(key), str) for one in found):
         raise InputError(f"$orderby: {of} are ordered by a property that is text, not {name!r}.")
     return sorted(found, key=lambda one: one[key], reverse=descending)
 
 
-def _newest_first(asked: Asked) -> bool:
-    name, descending = asked.order or (_TIMES[0], False)
+def _newest_first(query: QueryOptions) -> bool:
+    name, descending = query.order or (_TIMES[0], False)
     if name not in _TIMES:
         raise InputError(f"$orderby: Observations are ordered by {' or '.join(_TIMES)}.")
     return descending
 
 
-def _selected(of: str, entity: Entity, asked: Asked) -> Entity:
-    if not asked.select:
+def _select(of: str, entity: Entity, query: QueryOptions) -> Entity:
+    if not query.select:
         return dict(entity)
-    wanted = {_property(name) for name in asked.select}
+    wanted = {_property(name) for name in query.select}
     names = wanted | {f"{name}@iot.navigationLink" for name in wanted}
     said = {name: one for name, one in entity.items() if name in names}
     strange = wanted - said.keys() - {name.partition("@")[0] for name in said}
@@ -377,15 +377,15 @@ def _there(of: str) -> str:
     return f"There are {', '.join(names)}."
 
 
-def _onward(asked: Asked, read: list[Sample], *, newest: bool) -> dict[str, str]:
+def _onward(query: QueryOptions, read: list[Sample], *, newest: bool) -> dict[str, str]:
     """Ask on from the time of the last that was read: so a page far on costs no more than another.
 
     Of several samples of that time those that were read are left out.
     """
     last: datetime = read[-1].t
-    span = from_or_until(asked.within or (None, None), last, newest=newest)
+    span = from_or_until(query.within or (None, None), last, newest=newest)
     known = sum(one.t == last for one in read)
-    return {**asked.texts, "$filter": written(span), "$skip": str(known)}
+    return {**query.texts, "$filter": filter_text(span), "$skip": str(known)}
 
 
 def _address(path: str, texts: dict[str, str]) -> str:

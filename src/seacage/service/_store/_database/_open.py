@@ -10,7 +10,7 @@ from seacage.service._store._database._sqlite import SqliteDatabase, sqlite_look
 
 def database_at(place: Path | str) -> AbstractDatabase:
     """Open a database to write in, made where there is none."""
-    if _served(place):
+    if _is_server(place):
         from seacage.service._store._database._postgres import PostgresDatabase
 
         return PostgresDatabase(str(place))
@@ -31,7 +31,7 @@ def look_into(place: Path | str) -> Generator[AbstractSession]:
     StoreError
         It cannot be read.
     """
-    if _served(place):
+    if _is_server(place):
         with closing(database_at(place)) as database, database.reading() as session:
             yield session
     else:
@@ -39,5 +39,5 @@ def look_into(place: Path | str) -> Generator[AbstractSession]:
             yield session
 
 
-def _served(place: Path | str) -> bool:
+def _is_server(place: Path | str) -> bool:
     return isinstance(place, str) and place.startswith(("postgresql://", "postgres://"))

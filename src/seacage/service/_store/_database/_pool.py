@@ -36,7 +36,7 @@ class Pool(Generic[C]):
     def lent(self) -> Generator[C]:
         """Lend a connection; where its block fails all are closed, as all may be broken."""
         with self._places:
-            begun, one = self._round, self._taken() or self._opened()
+            begun, one = self._round, self._take() or self._opened()
             try:
                 yield one
             except BaseException:
@@ -51,10 +51,10 @@ class Pool(Generic[C]):
     def close(self) -> None:
         """Close all that are idle, and the others when they come back."""
         self._round += 1
-        while one := self._taken():
+        while one := self._take():
             one.close()
 
-    def _taken(self) -> C | None:
+    def _take(self) -> C | None:
         try:
             return self._idle.pop()
         except IndexError:

@@ -139,21 +139,21 @@ class PostgresDatabase(AbstractDatabase):
             ) from error
         self._psycopg, self._url, self.damage = psycopg, url, Damage()
         self.damaged = []
-        with self._said("does not open as the store of samples"):
+        with self._translate_errors("does not open as the store of samples"):
             # A URL may hold a password, and an error is read by many.
             told = conninfo_to_dict(url)
             self._place = f"{told.get('dbname', 'its database')} on {told.get('host', 'localhost')}"
             self._claimed: set[str] = set()
-            self._writer = self._opened()
-            with self._closed_unless_well(self._writer):
-                self._partitions = self._made()
+            self._writer = self._connect()
+            with self._close_on_error(self._writer):
+                self._partitions = self._make_tables()
         self._readers = Pool(self._reader)
         self._tried = 0.0
 
     @contextmanager
     def writing(self) -> Generator[AbstractSession]:
         """Write; the block's end is the commit."""
-        with self._said("takes no samples"):
+        with self._translate_errors("takes no samples"):
             if self._writer.closed:
                 self._reach()
             with self._writer.transaction():
@@ -163,7 +163,7 @@ class PostgresDatabase(AbstractDatabase):
     def reading(self) -> Generator[AbstractSession]:
         """Read one moment of the database."""
         with (
-            self._said("cannot be read"),
+            self._translate_errors("cannot be read"),
             self._readers.lent() as connection,
             connection.transaction(),
         ):
@@ -193,7 +193,7 @@ class PostgresDatabase(AbstractDatabase):
         missing = sorted(wanted.keys() - self._partitions)
         if missing:
             # By a connection of its own: it is committed whether or not the samples are.
-            with self._opened() as connection, connection.transaction():
+            with self._connect() as connection, connection.transaction():
                 connection.execute(_LOCK)
                 there = {name for (name,) in connection.execute(_PARTITIONS).fetchall()}
                 for name in missing:
@@ -204,13 +204,13 @@ class PostgresDatabase(AbstractDatabase):
                         )
             self._partitions |= wanted.keys()
 
-    def _made(self) -> set[str]:
+    def _make_tables(self) -> set[str]:
         with self._writer.transaction():
             self._writer.execute(_LOCK)
             there = {name for (name,) in self._writer.execute(_THERE).fetchall()}
             for statement in (*tables(_WORDS), _BRIN):
                 # Even "if not exists" locks a table that is there, against all that write into it.
-                if _made_by(statement) not in there:
+                if _object_name(statement) not in there:
                     self._writer.execute(statement.encode())
             checked = {name for (name,) in self._writer.execute(_WITH_CHECKSUM).fetchall()}
             for statement in upgrade(_WORDS, there - checked):
@@ -221,8 +221,8 @@ class PostgresDatabase(AbstractDatabase):
         """Connect again, but do not knock without pause."""
         time.sleep(max(0.0, self._tried + _AGAIN_S - time.monotonic()))
         self._tried = time.monotonic()
-        connection = self._opened()
-        with self._closed_unless_well(connection):
+        connection = self._connect()
+        with self._close_on_error(connection):
             session = PostgresSession(connection, self.damage)
             gone = [cage for cage in sorted(self._claimed) if not self.claim(session, cage)]
             if gone:
@@ -232,18 +232,18 @@ class PostgresDatabase(AbstractDatabase):
                 )
         self._writer = connection
 
-    def _opened(self) -> "Connection[tuple[Any, ...]]":
+    def _connect(self) -> "Connection[tuple[Any, ...]]":
         connection = self._psycopg.connect(
             self._url, autocommit=True, connect_timeout=_PATIENCE_S, application_name="seacage"
         )
-        with self._closed_unless_well(connection):
+        with self._close_on_error(connection):
             # Whatever the server's default: an acknowledged sample is on disk.
             connection.execute("SET synchronous_commit = on")
             connection.execute(_KEEPALIVE)
         return connection
 
     @contextmanager
-    def _closed_unless_well(self, connection: "Connection[tuple[Any, ...]]") -> Generator[None]:
+    def _close_on_error(self, connection: "Connection[tuple[Any, ...]]") -> Generator[None]:
         try:
             yield
         except BaseException:
@@ -251,13 +251,13 @@ class PostgresDatabase(AbstractDatabase):
             raise
 
     def _reader(self) -> "Connection[tuple[Any, ...]]":
-        connection = self._opened()
+        connection = self._connect()
         connection.isolation_level = self._psycopg.IsolationLevel.REPEATABLE_READ
         connection.read_only = True
         return connection
 
     @contextmanager
-    def _said(self, what: str) -> Generator[None]:
+    def _translate_errors(self, what: str) -> Generator[None]:
         """Turn a fault of the server or of the way to it into one of the store."""
         try:
             yield
@@ -294,7 +294,7 @@ def _month(t: int) -> datetime:
     return datetime(when.year, when.month, 1, tzinfo=UTC)
 
 
-def _made_by(statement: str) -> str:
+def _object_name(statement: str) -> str:
     """Name what "CREATE TABLE IF NOT EXISTS name" and its like would make."""
     return statement.split()[5]
 

@@ -161,8 +161,8 @@ class SqliteDatabase(AbstractDatabase):
             if not one.with_name(one.name + ".copied").exists()
         ]
         try:
-            with _said(path, "does not open as the store of samples"):
-                self._writer = _opened(path)
+            with _translate_errors(path, "does not open as the store of samples"):
+                self._writer = _open(path)
         except DamageError as error:
             self._begin_anew(error)
 
@@ -170,7 +170,7 @@ class SqliteDatabase(AbstractDatabase):
     def writing(self) -> Generator[AbstractSession]:
         """Write; the block's end is the commit, which has reached the disk."""
         connection = self._writer
-        with _said(self._path, "takes no samples"):
+        with _translate_errors(self._path, "takes no samples"):
             connection.execute("BEGIN IMMEDIATE")
             try:
                 yield SqliteSession(connection, self.damage)
@@ -183,7 +183,7 @@ class SqliteDatabase(AbstractDatabase):
     @contextmanager
     def reading(self) -> Generator[AbstractSession]:
         """Read one moment of the file."""
-        with _said(self._path, "cannot be read"), self._readers.lent() as connection:
+        with _translate_errors(self._path, "cannot be read"), self._readers.lent() as connection:
             connection.execute("BEGIN")
             yield SqliteSession(connection, self.damage)
             connection.execute("COMMIT")
@@ -198,7 +198,7 @@ class SqliteDatabase(AbstractDatabase):
     def claim(self, session: AbstractSession, cage: str) -> bool:
         """Claim the whole file: it has one writer."""
         del session, cage
-        with _said(self._path, "cannot be locked"):
+        with _translate_errors(self._path, "cannot be locked"):
             return self._claim.take()
 
     def hold_reserve(self) -> None:
@@ -219,9 +219,9 @@ class SqliteDatabase(AbstractDatabase):
         self._claim.release()
 
     def _begin_anew(self, error: DamageError) -> None:
-        aside = _moved_aside(self._path)
-        with _said(self._path, "does not open as the store of samples"):
-            self._writer = _opened(self._path)
+        aside = _move_aside(self._path)
+        with _translate_errors(self._path, "does not open as the store of samples"):
+            self._writer = _open(self._path)
         self.round += 1
         self.damage.clear()
         self.damaged.append(aside)
@@ -237,7 +237,7 @@ class SqliteDatabase(AbstractDatabase):
 @contextmanager
 def sqlite_look(path: Path) -> Generator[AbstractSession]:
     """Read one moment of a file that another process may be writing."""
-    with _said(path, "cannot be read"), closing(_reading(path)) as connection:
+    with _translate_errors(path, "cannot be read"), closing(_reading(path)) as connection:
         _complete(connection)
         connection.execute("BEGIN")
         yield SqliteSession(connection, Damage())
@@ -265,7 +265,7 @@ def _reading(path: Path) -> sqlite3.Connection:
     return connection
 
 
-def _opened(path: Path) -> sqlite3.Connection:
+def _open(path: Path) -> sqlite3.Connection:
     keep_private(path)
     _check_header(path)
     connection = sqlite3.connect(path, isolation_level=None, check_same_thread=False)
@@ -354,7 +354,7 @@ def _version(connection: sqlite3.Connection, path: Path) -> int:
     return version
 
 
-def _moved_aside(path: Path) -> Path:
+def _move_aside(path: Path) -> Path:
     stamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%S%fZ")
     aside = path.with_name(f"{path.name}.damaged-{stamp}")
     try:
@@ -371,7 +371,7 @@ def _moved_aside(path: Path) -> Path:
 
 
 @contextmanager
-def _said(path: Path, what: str) -> Generator[None]:
+def _translate_errors(path: Path, what: str) -> Generator[None]:
     """Turn a fault of SQLite or of the disk into one of the store."""
     try:
         yield

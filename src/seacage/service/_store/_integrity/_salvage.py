@@ -29,7 +29,7 @@ def intact_rows(path: Path) -> Iterator[Found]:
     """Read every intact row of a file, and of its log, in the order of the pages."""
     log = path.with_name(path.name + "-wal")
     with path.open("rb") as file, (log if log.exists() else path).open("rb") as frames:
-        newer = _committed(frames) if log.exists() else {}
+        newer = _page_offsets(frames) if log.exists() else {}
 
         def page(number: int) -> bytes:
             source, at = (frames, newer[number]) if number in newer else (file, -1)
@@ -41,11 +41,11 @@ def intact_rows(path: Path) -> Iterator[Found]:
         count = max(path.stat().st_size // PAGE, *newer, 0)
         for number in range(1, count + 1):
             for record in _records(page, number):
-                if found := _found(record, old=old):
+                if found := _recognise(record, old=old):
                     yield found
 
 
-def _committed(frames: BinaryIO) -> dict[int, int]:
+def _page_offsets(frames: BinaryIO) -> dict[int, int]:
     """Where in the log the newest content of a page begins, as far as it was committed."""
     head, found, newer = frames.read(32), dict[int, int](), dict[int, int]()
     while len(frame := frames.read(_FRAME + PAGE)) == _FRAME + PAGE and frame[8:16] == head[16:24]:
@@ -68,7 +68,7 @@ def _records(page: Callable[[int], bytes], number: int) -> Iterator[tuple[Any, .
             (at,) = unpack_from(">H", content, pointers + 2 * k)
             size, at = _varint(content, at + 4 if kind == 2 else at)
             at = _varint(content, at)[1] if kind == 13 else at
-            yield _decoded(_payload(page, content, at, size, PAGE - 35 if kind == 13 else None))
+            yield _decode(_payload(page, content, at, size, PAGE - 35 if kind == 13 else None))
         except (IndexError, ValueError, KeyError, StructError):
             continue
 
@@ -92,7 +92,7 @@ def _payload(
     return b"".join(parts)
 
 
-def _decoded(payload: bytes) -> tuple[Any, ...]:
+def _decode(payload: bytes) -> tuple[Any, ...]:
     """Read the columns of a record."""
     end, at = _varint(payload, 0)
     body, row = end, list[Any]()
@@ -125,7 +125,7 @@ def _varint(content: bytes, at: int) -> tuple[int, int]:
     return value << 8 | content[at + 8], at + 9
 
 
-def _found(record: Sequence[Any], *, old: bool) -> Found | None:
+def _recognise(record: Sequence[Any], *, old: bool) -> Found | None:
     for table in CHECKED:
         row = tuple(record[1:] if table == "journal" else record)
         if table == "aggregate" and len(row) == 10:

@@ -48,7 +48,7 @@ def verify(read: Read[Answer], cages: Sequence[str] = ()) -> Iterator[tuple[int,
             yield len(after), sum(crc == UNVERIFIED for *_, crc in after)
 
 
-def verified(session: AbstractSession, *, seconds: float) -> str:
+def verify_for(session: AbstractSession, *, seconds: float) -> str:
     """Verify as many rows as can be in a time [s]; how many, in words."""
     end, rows, unverified = time.monotonic() + seconds, 0, 0
     for count, bare in verify(lambda _, ask: ask(session)):
