@@ -90,7 +90,7 @@ async def speaking(cage: LiveCage, every_s: float, end: float, soaked: Soaked) -
 async def watching(cage: LiveCage, soaked: Soaked) -> None:
     """Time each reading of a cage's first sensor from its birth until it is in a snapshot."""
     last = None
-    with cage.watched() as mailbox:
+    with cage.subscribe() as mailbox:
         while True:
             snapshot = await mailbox.take()
             latest = cage.live.state.latest(cage.twin.sensor_names[0])

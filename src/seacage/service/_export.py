@@ -44,7 +44,7 @@ class Replayed:
     buoy, answer
         Row by row.
     cage, origin
-        Whose answers, and how the data of the sensors that taught were made.
+        Whose answers, and how the data of the training sensors were made.
     """
 
     buoy: Record

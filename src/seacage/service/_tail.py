@@ -24,7 +24,7 @@ Refuse = Callable[[str, bytes, str], None]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Place:
+class TailPosition:
     """How far a file was read.
 
     Parameters
@@ -77,7 +77,7 @@ class Tail:
     columns: ColumnMap | None = None
     stream: str = "buoy-1"
     refuse: Refuse
-    place: Place = field(default_factory=Place)
+    place: TailPosition = field(default_factory=TailPosition)
     _file: BinaryIO | None = None
     _header: str = ""
 
@@ -133,7 +133,7 @@ class Tail:
 
     def _begin(self, file: BinaryIO) -> None:
         _log.info("file begins anew", path=str(self.path))
-        self.place, self._header = Place(), ""
+        self.place, self._header = TailPosition(), ""
         file.seek(0)
 
     def _is_replaced(self, file: BinaryIO) -> bool:
@@ -151,7 +151,7 @@ class Tail:
             where = f"{self.path}, line {self.place.line + 1}"
             self.refuse(where, rest, "The file ended inside this row, so a number may be cut.")
         self.close()
-        self.place, self._header = Place(), ""
+        self.place, self._header = TailPosition(), ""
 
     def _rows(self, file: BinaryIO) -> tuple[Sample, ...]:
         file.seek(self.place.offset)
@@ -165,7 +165,7 @@ class Tail:
         # At line feeds alone: a carriage return before one belongs to its line.
         lines = [line + b"\n" for line in whole.split(b"\n")[:-1]]
         offset = self.place.offset + len(whole)
-        after = Place(offset=offset, line=first + len(lines), head=self._hash(file, offset))
+        after = TailPosition(offset=offset, line=first + len(lines), head=self._hash(file, offset))
         above = max(0, self._skip_lines + 1 - first)  # lines up to the header's
         if 0 < above <= len(lines):
             self._header = self._text(lines[above - 1])

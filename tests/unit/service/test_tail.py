@@ -12,7 +12,7 @@ from seacage.service._live._cage import LiveCage
 from seacage.service._live._metrics import Metrics
 from seacage.service._quarantine import Quarantine
 from seacage.service._store._store import StoreError, open_store
-from seacage.service._tail import Place, Tail
+from seacage.service._tail import Tail, TailPosition
 from seacage.testing import stand_in_twin
 from serviced import HandClock
 
@@ -120,7 +120,7 @@ def test_a_header_that_nobody_knows_stops_the_tail_and_loses_no_row(logger):
     logger.write("when,what\n" + row(0))
     with pytest.raises(RecordError, match="no shipped column map"):
         tail.poll()
-    assert tail.place == Place()
+    assert tail.place == TailPosition()
     assert not logger.refused
 
 
@@ -159,14 +159,14 @@ def test_after_a_restart_it_reads_on_where_it_was(logger):
     first = logger.tail()
     first.poll()
     logger.write(row(2))
-    second = logger.tail(place=Place.parse(str(first.place)))
+    second = logger.tail(place=TailPosition.parse(str(first.place)))
     assert minutes(second.poll()) == [2]
     assert second.poll() == ()
 
 
 @pytest.mark.parametrize("text", ["", "7", "{}", '{"offset": 3, "nonsense": 1}', "\0"])
 def test_a_place_that_cannot_be_read_is_the_beginning(text):
-    assert Place.parse(text) == Place()
+    assert TailPosition.parse(text) == TailPosition()
 
 
 def test_a_map_says_what_the_columns_mean(logger):

@@ -36,7 +36,7 @@ class Connections:
 
     def came(self, one: Any, address: str) -> None:
         """Count uvicorn's protocol as an address's; an empty one is a proxy's, for many others."""
-        self.left(one)
+        self.forget(one)
         self._strangers[one] = address
         if address:
             self._limit(self._strangers, address, self._limits.connections_per_address)
@@ -60,14 +60,14 @@ class Connections:
             self._known[one] = token
             self._limit(self._known, token, self._limits.connections_per_token)
 
-    def left(self, one: Any) -> None:
+    def forget(self, one: Any) -> None:
         """Forget a connection that has ended."""
         self._strangers.pop(one, None)
         self._known.pop(one, None)
 
     def drop(self, one: Any, why: str) -> None:
         """End a connection at once."""
-        self.left(one)
+        self.forget(one)
         self._dropped.labels(why).inc()
         _log.warning("connection dropped", why=why, address=one.client and one.client[0])
         one.transport.abort()

@@ -192,8 +192,8 @@ def check_csrf(request: Request, session: Session) -> None:
     HTTPException
         403 where another page asks, or the header is missing or wrong.
     """
-    said = request.headers.get(CSRF_HEADER, "")
-    same = hmac.compare_digest(said.encode(), session.csrf.encode())
+    sent = request.headers.get(CSRF_HEADER, "")
+    same = hmac.compare_digest(sent.encode(), session.csrf.encode())
     if not same or not gate_of(request).from_our_page(request):
         raise HTTPException(
             403, "A write by cookie repeats the session's `csrf` in the header X-CSRF-Token."

@@ -38,7 +38,7 @@ class LimitedHttp(H11Protocol):
         self._await("headers")
 
     def connection_lost(self, exc: Exception | None) -> None:
-        _gate(self).connections.left(self)
+        _gate(self).connections.forget(self)
         self._await("")
         super().connection_lost(exc)
 
@@ -54,7 +54,7 @@ class LimitedHttp(H11Protocol):
             self._await("headers" * (their is h11.IDLE) or "body" * (their is h11.SEND_BODY))
 
     def handle_websocket_upgrade(self, event: h11.Request) -> None:
-        _gate(self).connections.left(self)
+        _gate(self).connections.forget(self)
         self._await("upgraded")
         super().handle_websocket_upgrade(event)
 
@@ -84,7 +84,7 @@ class LimitedSocket(WebSocketsSansIOProtocol):
         _came(self)
 
     def connection_lost(self, exc: Exception | None) -> None:
-        _gate(self).connections.left(self)
+        _gate(self).connections.forget(self)
         super().connection_lost(exc)
 
     def handle_connect(self, event: Request) -> None:

@@ -59,12 +59,12 @@ class Sessions:
     def begin(self, grant: Grant, now: datetime) -> tuple[str, Session]:
         """Open a session; only the hash of its cookie is kept."""
         cookie = secrets.token_urlsafe(32)
-        return cookie, self._opened(cookie, grant.sha256, now)
+        return cookie, self._session_of(cookie, grant.sha256, now)
 
     def renew(self, cookie: str, now: datetime) -> Session | None:
         """Let a session last anew; None where it or its token has ended."""
         found = self.find(cookie, now)
-        return None if found is None else self._opened(cookie, found[0].token_sha256, now)
+        return None if found is None else self._session_of(cookie, found[0].token_sha256, now)
 
     def find(self, cookie: str, now: datetime) -> tuple[Session, Grant] | None:
         """Find who a cookie stands for; None where it or its token has ended."""
@@ -78,7 +78,7 @@ class Sessions:
             if self._open.pop(digest(cookie), None):
                 self._write()
 
-    def _opened(self, cookie: str, token_sha256: str, now: datetime) -> Session:
+    def _session_of(self, cookie: str, token_sha256: str, now: datetime) -> Session:
         expires = now + self._lasting
         with self._lock:
             for old in [one for one, (_, end) in self._open.items() if end <= now]:

@@ -218,15 +218,15 @@ def check_scopes(scopes: Iterable[str]) -> tuple[str, ...]:
     InputError
         At the first unknown scope, or where there is none.
     """
-    asked = tuple(scope.strip() for scope in scopes if scope.strip())
-    unknown = [scope for scope in asked if _SCOPE.fullmatch(scope) is None]
-    if unknown or not asked:
+    chosen = tuple(scope.strip() for scope in scopes if scope.strip())
+    unknown = [scope for scope in chosen if _SCOPE.fullmatch(scope) is None]
+    if unknown or not chosen:
         what = f"No scope is called {unknown[0]!r}." if unknown else "A token needs a scope."
         raise InputError(
             f"{what} The scopes are read, ingest and ack, each for all cages or for one as "
             "'ingest:ace', and admin."
         )
-    return asked
+    return chosen
 
 
 def digest(token: str) -> str:

@@ -92,7 +92,7 @@ def read(
         there = ", ".join(archive.cages()) or "none"
         raise InputError(f"{folder} has no samples of cage {cage!r}. It has: {there}.")
     bounds = {"start": start and start.replace(tzinfo=UTC), "end": end and end.replace(tzinfo=UTC)}
-    said = (
+    rows = (
         {
             "stream": one.stream,
             "t": one.t.isoformat(),
@@ -104,9 +104,9 @@ def read(
         for one in read_archive_between(archive, cage, stream=stream, **bounds)
     )
     if as_json:
-        report({"samples": list(said)}, as_json=True)
+        report({"samples": list(rows)}, as_json=True)
         return
-    for line in said:
+    for line in rows:
         typer.echo(json.dumps(line))
 
 

@@ -124,7 +124,7 @@ def run(
             cluster=cluster,
             progress=progress,
         )
-    _tell_end(store, as_json=as_json)
+    _report_end(store, as_json=as_json)
 
 
 @group.command()
@@ -139,7 +139,7 @@ def status(store: Store, *, as_json: Json = False) -> None:
     """
     from seacage.campaigns import campaign_status
 
-    _tell(store, campaign_status(store), as_json=as_json)
+    _report_status(store, campaign_status(store), as_json=as_json)
 
 
 @group.command()
@@ -163,7 +163,7 @@ def finish(store: Store, *, as_json: Json = False) -> None:
             "been run. Run them first.",
             Exit.REFUSED,
         )
-    _tell(store, reached, as_json=as_json)
+    _report_status(store, reached, as_json=as_json)
 
 
 @group.command()
@@ -245,16 +245,16 @@ def read_share(text: str | None) -> tuple[int, int]:
     return int(which), int(shares)
 
 
-def _tell_end(store: Path, *, as_json: bool) -> None:
+def _report_end(store: Path, *, as_json: bool) -> None:
     from seacage.campaigns import campaign_status
 
     reached = campaign_status(store)
-    _tell(store, reached, as_json=as_json)
+    _report_status(store, reached, as_json=as_json)
     if reached.finished and not reached.converged:
         raise exit_with("campaign run: no case converged. Check the cage's file.", Exit.FAILED)
 
 
-def _tell(store: Path, reached: "CampaignStatus", *, as_json: bool) -> None:
+def _report_status(store: Path, reached: "CampaignStatus", *, as_json: bool) -> None:
     counts = {
         "converged": reached.converged,
         "not_converged": reached.not_converged,

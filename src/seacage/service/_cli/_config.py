@@ -92,7 +92,7 @@ def _findings(settings: "Settings", *, reach: bool) -> Iterator[Finding]:
             lambda one=section: _check_cage(settings, one.twin, one.name),
         )
     if not settings.cages:
-        yield Finding(what="cages", state="absent", said="none: the demonstration is served")
+        yield Finding(what="cages", state="absent", message="none: the demonstration is served")
     yield _try("store", lambda: _check_store(settings, reach=reach))
     if settings.mqtt:
         yield _try("mqtt", lambda: _check_broker(settings, reach=reach))
@@ -104,9 +104,9 @@ def _try(what: str, attempt: Callable[[], str]) -> Finding:
     from seacage.conventions import SeacageError
 
     try:
-        return Finding(what=what, state="ok", said=attempt())
+        return Finding(what=what, state="ok", message=attempt())
     except (SeacageError, OSError) as error:
-        return Finding(what=what, state="wrong", said=str(error))
+        return Finding(what=what, state="wrong", message=str(error))
 
 
 def _listens(settings: "Settings") -> str:

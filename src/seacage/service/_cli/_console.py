@@ -36,7 +36,7 @@ class Exit(IntEnum):
     FAILED = 3
     EXCEEDED = 4
     INTERRUPTED = 130
-    UNHEARD = 141
+    PIPE_CLOSED = 141
 
 
 EXIT_CODES = (
@@ -63,7 +63,7 @@ def guard(command: Callable[P, R]) -> Callable[P, R]:
         except BrokenPipeError as error:
             # As after `seacage … | head`: nobody is left to tell, also not when Python ends.
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-            raise typer.Exit(Exit.UNHEARD) from error
+            raise typer.Exit(Exit.PIPE_CLOSED) from error
         except ModuleNotFoundError as error:
             raise exit_with(_of_an_extra(error), Exit.FAILED) from error
         except (SeacageError, OSError) as error:
@@ -180,7 +180,7 @@ class Finding:
 
     what: str
     state: Literal["ok", "absent", "wrong"]
-    said: str
+    message: str
 
 
 def report_findings(
@@ -202,9 +202,9 @@ def report_findings(
     wrong = [one for one in findings if one.state == "wrong"]
     report(
         {"ok": not wrong}
-        | {"findings": [{"what": f.what, "state": f.state, "said": f.said} for f in findings]},
+        | {"findings": [{"what": f.what, "state": f.state, "said": f.message} for f in findings]},
         as_json=as_json,
-        rows=[(f"{one.state:<6}  {one.what}", one.said) for one in findings],
+        rows=[(f"{one.state:<6}  {one.what}", one.message) for one in findings],
     )
     if wrong:
         raise exit_with(f"{command}: {len(wrong)} of {len(findings)} are wrong.", code)

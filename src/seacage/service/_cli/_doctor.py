@@ -59,8 +59,8 @@ def doctor(
 
 def _python() -> Finding:
     fine = sys.version_info >= (3, 11)
-    said = f"{platform.python_version()} on {platform.system()} {platform.machine()}"
-    return Finding(what="Python", state="ok" if fine else "wrong", said=said)
+    message = f"{platform.python_version()} on {platform.system()} {platform.machine()}"
+    return Finding(what="Python", state="ok" if fine else "wrong", message=message)
 
 
 def _physics() -> Finding:
@@ -74,18 +74,20 @@ def _physics() -> Finding:
     try:
         response = settle(cage, SeaState(current_speed=0.5, current_to=0.0))
     except (SeacageError, OSError) as error:
-        return Finding(what="Physics kernel", state="wrong", said=f"{error} Install seacage anew.")
+        return Finding(
+            what="Physics kernel", state="wrong", message=f"{error} Install seacage anew."
+        )
     fine = int(response.result) == 0
-    said = f"a small cage settles to {float(response.residual):.2g} N"
-    return Finding(what="Physics kernel", state="ok" if fine else "wrong", said=said)
+    message = f"a small cage settles to {float(response.residual):.2g} N"
+    return Finding(what="Physics kernel", state="ok" if fine else "wrong", message=message)
 
 
 def _store() -> Finding:
     import sqlite3
 
     fine = sqlite3.sqlite_version_info >= (3, 37)
-    said = f"SQLite {sqlite3.sqlite_version}" + ("" if fine else "; 3.37 or later is needed")
-    return Finding(what="Store", state="ok" if fine else "wrong", said=said)
+    message = f"SQLite {sqlite3.sqlite_version}" + ("" if fine else "; 3.37 or later is needed")
+    return Finding(what="Store", state="ok" if fine else "wrong", message=message)
 
 
 def _rows(place: str) -> Finding:
@@ -94,22 +96,22 @@ def _rows(place: str) -> Finding:
     from seacage.service._store._store import StoreError, look_into
 
     if "://" not in place and not Path(place).exists():
-        return Finding(what="Stored rows", state="absent", said=f"no store in {place}")
+        return Finding(what="Stored rows", state="absent", message=f"no store in {place}")
     try:
         with look_into(place) as session:
-            said, wrong = verify_for(session, seconds=_LOOK_S), session.damage.said
+            message, wrong = verify_for(session, seconds=_LOOK_S), session.damage.message
             if session.checksums is not None:
-                said += f"; data_checksums of the server are {session.checksums}"
+                message += f"; data_checksums of the server are {session.checksums}"
     except StoreError as error:
-        return Finding(what="Stored rows", state="wrong", said=str(error))
-    return Finding(what="Stored rows", state="wrong" if wrong else "ok", said=wrong or said)
+        return Finding(what="Stored rows", state="wrong", message=str(error))
+    return Finding(what="Stored rows", state="wrong" if wrong else "ok", message=wrong or message)
 
 
 def _disk(data: Path) -> Finding:
     place = next(one for one in (data, *data.resolve().parents) if one.exists())
     free = shutil.disk_usage(place).free / 1e9
-    said = f"{free:.0f} GB free for {data}" + ("; free some" if free < 1.0 else "")
-    return Finding(what="Disk", state="wrong" if free < 1.0 else "ok", said=said)
+    message = f"{free:.0f} GB free for {data}" + ("; free some" if free < 1.0 else "")
+    return Finding(what="Disk", state="wrong" if free < 1.0 else "ok", message=message)
 
 
 def _tokens(data: Path) -> Finding:
@@ -117,30 +119,32 @@ def _tokens(data: Path) -> Finding:
 
     tokens = Tokens(data)
     count = len(tokens.all())
-    said = tokens.damage or f"{count} in {data}"
-    return Finding(what="Tokens", state="wrong" if tokens.damage else "ok", said=said)
+    message = tokens.damage or f"{count} in {data}"
+    return Finding(what="Tokens", state="wrong" if tokens.damage else "ok", message=message)
 
 
 def _port(port: int) -> Finding:
     with socket.socket() as probe:
         taken = probe.connect_ex(("127.0.0.1", port)) == 0
-    said = "something listens there: a service, or choose another with --port" if taken else "free"
-    return Finding(what=f"Port {port}", state="ok", said=said)
+    message = (
+        "something listens there: a service, or choose another with --port" if taken else "free"
+    )
+    return Finding(what=f"Port {port}", state="ok", message=message)
 
 
 def _demonstration(data: Path) -> Finding:
     there = (data / "demonstration").is_dir()
-    said = f"in {data}" if there else f"none in {data}; `seacage serve --demo` makes one"
-    return Finding(what="Demonstration", state="ok" if there else "absent", said=said)
+    message = f"in {data}" if there else f"none in {data}; `seacage serve --demo` makes one"
+    return Finding(what="Demonstration", state="ok" if there else "absent", message=message)
 
 
 def _extra(name: str) -> Finding:
     missing = [one for one in _EXTRAS[name] if importlib.util.find_spec(one) is None]
     if missing:
-        said = f"without {', '.join(missing)}: pip install 'seacage[{name}]'"
-        return Finding(what=f"Extra {name}", state="absent", said=said)
-    said = ", ".join(f"{one} {_version(one)}" for one in _EXTRAS[name])
-    return Finding(what=f"Extra {name}", state="ok", said=said)
+        message = f"without {', '.join(missing)}: pip install 'seacage[{name}]'"
+        return Finding(what=f"Extra {name}", state="absent", message=message)
+    message = ", ".join(f"{one} {_version(one)}" for one in _EXTRAS[name])
+    return Finding(what=f"Extra {name}", state="ok", message=message)
 
 
 def _version(package: str) -> str:

@@ -123,7 +123,7 @@ def virtual(
             return
         made = virtual_field(read_cage(cage), buoy, progress=progress, **options)
     made.write(out)
-    _tell_field(made.record, out, as_json=as_json)
+    _report_field(made.record, out, as_json=as_json)
 
 
 def _buoy(
@@ -180,7 +180,7 @@ def _check_settled(*, waves: Path | None, calm: bool, one_in: int, share: str | 
         )
 
 
-def _tell_field(record: "FieldRecord", out: Path, *, as_json: bool) -> None:
+def _report_field(record: "FieldRecord", out: Path, *, as_json: bool) -> None:
     streams = [record.buoy, *record.sensors.values()]
     report(
         {
@@ -222,7 +222,8 @@ def import_(
         str | None, typer.Option(help="Of a foreign NetCDF file: measured or computed.")
     ] = None,
     zone: Annotated[
-        str | None, typer.Option(help="Of a foreign NetCDF file's times, where it is in doubt.")
+        str | None,
+        typer.Option(help="Of a foreign NetCDF file's times, where it names none."),
     ] = None,
     depth_m: Annotated[float | None, typer.Option(help="Which depth of a profile.")] = None,
     range_m: Annotated[
@@ -250,7 +251,7 @@ def import_(
     choice = _choice(path, columns, origin=origin, zone=zone, depth_m=depth_m, range_m=range_m)
     record = read_record(path, columns=choice, stream=stream, limits=_limits(limits))
     write_record(record, out)
-    _tell([record], as_json=as_json, written=out)
+    _report_flags([record], as_json=as_json, written=out)
 
 
 def _inspect(path: Path, out: Path, *, as_json: bool) -> None:
@@ -288,8 +289,8 @@ def _choice(
     from seacage.conventions import InputError, Origin
     from seacage.records import NetcdfMap, known_map, read_map
 
-    said: dict[str, Any] = {"time_zone": zone, "depth_m": depth_m, "range_m": range_m}
-    given = {name: value for name, value in said.items() if value is not None}
+    options: dict[str, Any] = {"time_zone": zone, "depth_m": depth_m, "range_m": range_m}
+    given = {name: value for name, value in options.items() if value is not None}
     if origin is not None:
         if origin not in {str(Origin.MEASURED), str(Origin.COMPUTED)}:
             raise InputError(f"--origin {origin!r} is unknown. Say measured or computed.")
@@ -346,10 +347,10 @@ def check(
         from seacage.studies import quality_page
 
         report.write_text(quality_page(records, used), encoding="utf-8")
-    _tell(records, as_json=as_json, written=report)
+    _report_flags(records, as_json=as_json, written=report)
 
 
-def _tell(records: "list[Record]", *, as_json: bool, written: Path | None = None) -> None:
+def _report_flags(records: "list[Record]", *, as_json: bool, written: Path | None = None) -> None:
     rows: list[tuple[str, str]] = [("Written", str(written))] if written else []
     for record in records:
         rows.append((record.stream, _span(record)))

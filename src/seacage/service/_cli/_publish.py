@@ -113,7 +113,7 @@ def publish(
             patience_s=patience_s,
             progress=progress,
         ).run(batches)
-    _tell(done, refused, as_json=as_json)
+    _report_outcome(done, refused, as_json=as_json)
     if refused.count or done.rejected or done.quarantined:
         count = refused.count + done.rejected + done.quarantined
         raise exit_with(f"{count} samples were refused; see the summary.", Exit.REFUSED)
@@ -156,7 +156,7 @@ def _batches(
         record_batches,
         tail_batches,
     )
-    from seacage.service._tail import Place, Tail
+    from seacage.service._tail import Tail, TailPosition
 
     if source == "-":
         return line_batches(arriving(sys.stdin.fileno()), refuse=refused)
@@ -169,7 +169,7 @@ def _batches(
     if follow:
         if choice is not None and not isinstance(choice, ColumnMap):
             raise InputError("publish: only tables can be followed, and this map is of NetCDF.")
-        at = Place() if place is None else Place.parse(place)
+        at = TailPosition() if place is None else TailPosition.parse(place)
         tail = Tail(path=path, columns=choice, stream=stream, refuse=refused, place=at)
         return tail_batches(tail, source=name)
     if path.is_dir():
@@ -211,7 +211,7 @@ def _courier(to: str, cage: str, site: str, token: str, ca: Path | None) -> "Gen
         made.close()
 
 
-def _tell(done: "Published", refused: _Refused, *, as_json: bool) -> None:
+def _report_outcome(done: "Published", refused: _Refused, *, as_json: bool) -> None:
     reasons = [*refused.reasons, *done.reasons]
     report(
         {

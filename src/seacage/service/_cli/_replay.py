@@ -107,8 +107,8 @@ def _step_through(twin: "Twin", buoy: "Record", progress: "Progress") -> "Answer
 
     state, answers = twin.start(), list["Answer"]()
     for done, sample in enumerate(buoy.samples(), start=1):
-        heard = replace(sample, stream=twin.buoy)
-        state, events = twin.step(state, heard, sample.t)
+        received = replace(sample, stream=twin.buoy)
+        state, events = twin.step(state, received, sample.t)
         answered = answer_in(events)
         assert answered is not None  # each of a record's times is new, so each is answered
         answers.append(answered.answer)

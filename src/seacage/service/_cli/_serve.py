@@ -139,7 +139,7 @@ def serve(
         pace = 60.0 if speed is None else speed
         service = assemble(settings, twins, replay=replay, speed=pace)
         greeting = _greeting(settings, service, listener, pace if replay else None)
-        report(greeting.said, as_json=as_json, rows=greeting.rows)
+        report(greeting.body, as_json=as_json, rows=greeting.rows)
         with suppress(KeyboardInterrupt):  # Ctrl-C is how a service is stopped
             server(service, settings).run(sockets=[listener])
 
@@ -179,16 +179,16 @@ def _prepare(
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Greeting:
+class _Welcome:
     """What a start tells a program, and what it tells a person."""
 
-    said: dict[str, object]
+    body: dict[str, object]
     rows: list[tuple[str, str]]
 
 
 def _greeting(
     settings: "Settings", service: "Service", listener: socket.socket, speed: float | None
-) -> _Greeting:
+) -> _Welcome:
     scheme = "https" if settings.certificate else "http"
     host = f"[{settings.host}]" if ":" in settings.host else settings.host
     address = f"{scheme}://{host}:{listener.getsockname()[1]}/"
@@ -196,7 +196,7 @@ def _greeting(
     scopes = ["read"] if speed is None else ["read", "ack"]
     token, cages = service.tokens.mint(scopes, keep=False, name="this start"), list(service.cages)
     came = _sources(settings) if speed is None else f"a replay at {speed:g} × real time"
-    said: dict[str, object] = {"address": address, "token": token, "cage": cages[0], "cages": cages}
+    body: dict[str, object] = {"address": address, "token": token, "cage": cages[0], "cages": cages}
     rows = [
         ("Cage" if len(cages) == 1 else "Cages", f"{', '.join(cages)}, fed by {came}"),
         ("Page", f"{address}#token={token}"),
@@ -204,9 +204,9 @@ def _greeting(
     ]
     if service.tokens.lacks_admin:
         admin = service.tokens.mint(["admin"], keep=True, name="first start")
-        said["admin_token"] = admin
+        body["admin_token"] = admin
         rows.append(("Admin", f"{admin}  (opens everything; keep it, it is shown this once)"))
-    return _Greeting(said=said, rows=[*rows, ("Stop", "Ctrl-C")])
+    return _Welcome(body=body, rows=[*rows, ("Stop", "Ctrl-C")])
 
 
 def _sources(settings: "Settings") -> str:

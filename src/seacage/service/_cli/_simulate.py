@@ -198,9 +198,9 @@ def _rows(cage: "Cage", history: "History") -> list[tuple[str, str]]:
 
 
 def _line(statistics: "Statistics", scale: float, place: int | tuple[int, ...]) -> str:
-    said = _statistics(statistics, scale, place)
-    least_to_most = f"{said['minimum']:7.1f} {said['maximum']:7.1f}"
-    return f"{said['mean']:6.1f} ± {said['std']:5.2f}  {least_to_most}"
+    values = _statistics(statistics, scale, place)
+    least_to_most = f"{values['minimum']:7.1f} {values['maximum']:7.1f}"
+    return f"{values['mean']:6.1f} ± {values['std']:5.2f}  {least_to_most}"
 
 
 def _write(

@@ -63,9 +63,9 @@ def paper(
 ) -> None:
     """Repeat the paper's study with a virtual field.
 
-    It ends in one HTML report: the paper's figures of loads, depths and shapes on days and
-    simulations that did not teach, what else may teach and be heard, and which of the paper's
-    statements these numbers repeat. Stopped, the same command goes on where it was.
+    It ends in one HTML report: the paper's figures of loads, depths and shapes on held-out days
+    and simulations, what else the twin may be trained with, and which of the paper's statements
+    these numbers repeat. Stopped, the same command goes on where it was.
 
     Example:
         seacage study paper --quick --out study

@@ -27,7 +27,7 @@ def train(
             exists=True,
             file_okay=False,
             help="A twin whose level 1 is taken, instead of --campaign: only sensors that moved, "
-            "or are new, are taught.",
+            "or are new, are trained at level 2.",
         ),
     ] = None,
     field: Annotated[
@@ -95,18 +95,18 @@ def train(
         given = " with ".join(str(path) for path in (field, campaign or base) if path)
         raise NonsenseError(f"{given}: {error}") from error
     twin.write(out, key=key)
-    lessons = twin.provenance.training_windows
-    levels = {name: 2 if name in lessons else 1 for name in twin.sensor_names}
-    taught = {name: lessons[name].points if name in lessons else 0 for name in levels}
+    windows = twin.provenance.training_windows
+    levels = {name: 2 if name in windows else 1 for name in twin.sensor_names}
+    counts = {name: windows[name].points if name in windows else 0 for name in levels}
     report(
         {"written": str(out), "origin": str(twin.origin), "cases": twin.provenance.cases}
-        | {"level": levels, "points": taught}
-        | {"calibrated": {name: lesson.calibrated for name, lesson in lessons.items()}},
+        | {"level": levels, "points": counts}
+        | {"calibrated": {name: window.calibrated for name, window in windows.items()}},
         as_json=as_json,
         rows=[
             ("Written", f"{out} ({twin.origin})"),
             ("Level 1", f"{twin.provenance.cases} simulations, {twin.provenance.law}"),
-            *((name, f"level {level}, {taught[name]} readings") for name, level in levels.items()),
+            *((name, f"level {level}, {counts[name]} readings") for name, level in levels.items()),
         ],
     )
 

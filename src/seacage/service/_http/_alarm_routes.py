@@ -63,7 +63,7 @@ async def handle_alarm(live: Live, id: Id, how: How, body: Handling, who: Who) -
     as the alarm stands is refused with 422.
     """
     if id not in live.desk.alarms:
-        raise HTTPException(404, f"No alarm is called {id!r} here, or it was never judged.")
+        raise HTTPException(404, f"No alarm is called {id!r} here, or it was never assessed.")
     alarm = await live.handle(id, how, who=who, why=body.why, seconds=body.seconds)
     return alarm_state(alarm, live.desk.policy)
 

@@ -186,9 +186,9 @@ def _input_error(_: Request, error: Exception) -> JSONResponse:
 def _other_methods(request: Request, _: Exception) -> JSONResponse:
     """Name the methods of all calls of a path, of which each is a route of its own."""
     calls = [one for one in request.app.routes if not isinstance(one, Mount)]  # of files
-    asked = {name: {**request.scope, "method": name} for name in _METHODS}
+    scope = {name: {**request.scope, "method": name} for name in _METHODS}
     methods = [
-        name for name in _METHODS if any(one.matches(asked[name])[0] == Match.FULL for one in calls)
+        name for name in _METHODS if any(one.matches(scope[name])[0] == Match.FULL for one in calls)
     ]
     detail = f"This path does not take {request.method}."
     return JSONResponse({"detail": detail}, 405, {"Allow": ", ".join(methods or ["GET"])})

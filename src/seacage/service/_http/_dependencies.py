@@ -102,8 +102,8 @@ PAGE = 2000
 
 async def _costs(request: Request) -> None:
     reads, token = gate_of(request).reads, request.state.token
-    asked = request.query_params.get("limit", "")[:6]
-    rows = min(max(PAGE, int(asked) if asked.isdecimal() else 0), MOST_ROWS)
+    limit = request.query_params.get("limit", "")[:6]
+    rows = min(max(PAGE, int(limit) if limit.isdecimal() else 0), MOST_ROWS)
     await reads.take(token, rows)
     request.state.reading = token, rows  # given back by the shield
 

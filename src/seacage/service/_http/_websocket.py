@@ -79,7 +79,7 @@ async def _text(socket: WebSocket) -> str:
 async def _send(socket: WebSocket, one: LiveCage, token: str | None) -> None:
     known = ""
     shown = socket.app.state.service.metrics.shown.labels(one.name)
-    with one.watched() as mailbox:
+    with one.subscribe() as mailbox:
         while True:
             snapshot = await mailbox.take()
             if _grant(socket, token) is None:  # revoked, or signed out, since

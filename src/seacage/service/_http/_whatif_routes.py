@@ -22,7 +22,7 @@ what_if = APIRouter(prefix="/api/v1/cages", tags=["cages"])
 
 @what_if.get("/{cage}/whatif", dependencies=may_read, responses=READ)
 async def get_training_domain(live: Live) -> Learned:
-    """Say what a what-if can ask: the inputs that the twin was taught with, and how far."""
+    """Say what a what-if can ask: the inputs that the twin was trained with, and how far."""
     return training_domain_of(live.twin)
 
 
@@ -57,17 +57,17 @@ def ask_what_if(live: Live, body: WhatIf) -> Response:
 
 
 def training_domain_of(twin: Twin) -> Learned:
-    """Say which inputs a twin was taught with, and up to where."""
+    """Return which inputs a twin was trained with, and up to where."""
     edges = dict(zip(_KEYS, twin.models.edge, strict=True))
-    taught = list[LearnedInput]()
+    inputs = list[LearnedInput]()
     for name in twin.models.inputs:
         strength, direction = _KEYS[name]
-        taught += [
+        inputs += [
             LearnedInput(key=strength, most=edges[name]),
             LearnedInput(key=direction, most=None),
         ]
-    known = {one.key for one in taught}
-    return Learned(inputs=taught, unknown=sorted(WhatIf.model_fields.keys() - known))
+    known = {one.key for one in inputs}
+    return Learned(inputs=inputs, unknown=sorted(WhatIf.model_fields.keys() - known))
 
 
 def effective_water(water: Water, sea: SeaState, twin: Twin) -> Water:

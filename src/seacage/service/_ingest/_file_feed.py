@@ -11,7 +11,7 @@ from seacage.service._live._cage import LiveCage
 from seacage.service._quarantine import Quarantine
 from seacage.service._small_files import write_small
 from seacage.service._store._store import StoreError
-from seacage.service._tail import Place, Tail
+from seacage.service._tail import Tail, TailPosition
 
 _log = structlog.get_logger(__name__)
 
@@ -48,9 +48,9 @@ class FileTail:
         every_s: float = 1.0,
     ) -> None:
         self._cage, self._quarantine, self._kept, self._every_s = cage, quarantine, kept, every_s
-        said = kept.read_text("utf-8", "replace") if kept and kept.exists() else str(Place())
-        place = Place.parse(said)
-        if str(place) != said:
+        text = kept.read_text("utf-8", "replace") if kept and kept.exists() else str(TailPosition())
+        place = TailPosition.parse(text)
+        if str(place) != text:
             _log.warning("place cannot be read, so the file is read anew", path=str(kept))
         self._tail = Tail(
             path=path, columns=columns, stream=stream, refuse=self._refuse, place=place

@@ -37,9 +37,9 @@ _log = structlog.get_logger(__name__)
 
 @dataclass(frozen=True, slots=True)
 class _Taken:
-    """What a message became: samples to store, and what its sender is then told."""
+    """What a message became: samples to store, and what its sender then gets."""
 
-    heard: Received
+    message: Received
     cage: str
     stream: str
     samples: tuple[Sample, ...]
@@ -61,7 +61,7 @@ class MqttFeed:
     is set aside with its reason, acknowledged and forgotten.
 
     While the queue is full or old samples come, there is a second connection, on which the
-    broker sends what is said from now on: the newest message of each stream goes before what
+    broker sends what is published from now on: the newest message of each stream goes before what
     waits, so that answers are those of now. It comes again in its turn, as a duplicate.
 
     Parameters
@@ -85,7 +85,7 @@ class MqttFeed:
     ca
         File of the authority that signed the broker's certificate.
     state_every_s
-        How often a cage's state is said at most [s].
+        How often a cage's state is published at most [s].
 
     Raises
     ------
@@ -119,7 +119,7 @@ class MqttFeed:
         self._live = Link(
             broker,
             client_id=f"{client_id}-live",
-            filters=[self._topics.observed(cage) for cage in cages],
+            filters=[self._topics.samples(cage) for cage in cages],
             listener=self._newest,
             receive_maximum=_AHEAD,
             session_s=0,
@@ -128,7 +128,7 @@ class MqttFeed:
         self._link = Link(
             broker,
             client_id=client_id,
-            filters=[share(self._topics.observed(cage), group) for cage in cages],
+            filters=[share(self._topics.samples(cage), group) for cage in cages],
             listener=self,
             receive_maximum=_AHEAD,
             session_s=_SESSION_S,
@@ -148,37 +148,38 @@ class MqttFeed:
         """Listen, store and tell for ever."""
         self._loop = asyncio.get_running_loop()
         for cage in self._cages.values():
-            cage.desk.tell(self._queue_announcement)
+            cage.desk.subscribe(self._queue_announcement)
         async with asyncio.TaskGroup() as work:
             work.create_task(self._link.run())
             work.create_task(self._store())
             work.create_task(self._show_newest())
             for cage in self._cages.values():
-                work.create_task(self._tell_states(cage))
+                work.create_task(self._publish_states(cage))
 
-    def tell(self, cage: str, lines: Sequence[str]) -> None:
-        """Say lines of a cage's journal, each as its JSON; kept while the broker is away."""
-        topic = self._topics.said(cage, "alarms")
+    def publish_alarms(self, cage: str, lines: Sequence[str]) -> None:
+        """Publish lines of a cage's journal, each as its JSON; kept while the broker is away."""
+        topic = self._topics.outgoing(cage, "alarms")
         self._alarms.extend((topic, line.encode()) for line in lines)
         self._say_alarms()
 
-    def _queue_announcement(self, told: Announcement) -> None:
+    def _queue_announcement(self, event: Announcement) -> None:
         # Called in the thread that stepped the twin, and the link is the loop's.
-        self._loop.call_soon_threadsafe(self.tell, told.cage, [announcement_json(told)])
+        lines = [announcement_json(event)]
+        self._loop.call_soon_threadsafe(self.publish_alarms, event.cage, lines)
 
-    def hear(self, heard: Received) -> None:
+    def hear(self, message: Received) -> None:
         """Queue a message; one that nobody waits for is dropped where the queue is full."""
         self._messages.inc()
-        if len(self._queue) < _AHEAD or heard.sure:
-            self._queue.append(heard)
-            self._bytes += len(heard.payload)
+        if len(self._queue) < _AHEAD or message.sure:
+            self._queue.append(message)
+            self._bytes += len(message.payload)
             if self._is_filled(1.0):
                 self._link.pause(paused=True)
                 self._fall_behind()
             self._empty.clear()
             self._filled.set()
         else:
-            self._metrics.samples.labels(self._cage_of(heard), "dropped").inc()
+            self._metrics.samples.labels(self._cage_of(message), "dropped").inc()
 
     async def settled(self) -> None:
         """Wait until everything that was queued is on disk or set aside."""
@@ -228,35 +229,37 @@ class MqttFeed:
 
     async def _keep(self, batch: Sequence[Received]) -> None:
         by_cage: dict[str, list[_Taken]] = {}
-        for heard in batch:
-            if (one := self._read(heard)) is not None:
+        for message in batch:
+            if (one := self._read(message)) is not None:
                 by_cage.setdefault(one.cage, []).append(one)
         await asyncio.gather(*(self._keep_samples(cage, of) for cage, of in by_cage.items()))
 
-    def _read(self, heard: Received) -> _Taken | None:
-        address = self._topics.address(heard.topic)
+    def _read(self, message: Received) -> _Taken | None:
+        address = self._topics.address(message.topic)
         cage = self._cages.get(address.cage) if address else None
         if address is None or cage is None:
-            return self._set_aside(heard, "No cage of this service is meant by the topic.")
-        read = read_observed(address.stream, heard.payload, cage.streams, until=cage.latest_allowed)
+            return self._set_aside(message, "No cage of this service is meant by the topic.")
+        read = read_observed(
+            address.stream, message.payload, cage.streams, until=cage.latest_allowed
+        )
         if read.fault:
-            return self._set_aside(heard, read.fault)
+            return self._set_aside(message, read.fault)
         for one in read.refused:
             if one.retry:  # its sender keeps it and tries again and again
                 cage.refuse_ahead(one.stream, one.t)
                 continue
             self._quarantine.put(
-                heard.topic, heard.payload, one.rejected or "", now=cage.clock.now()
+                message.topic, message.payload, one.rejected or "", now=cage.clock.now()
             )
         if read.samples and cage.clock.now() - read.samples[-1].t > _OLD:
             self._fall_behind()
-        return _Taken(heard, cage.name, address.stream, read.samples, read.refused)
+        return _Taken(message, cage.name, address.stream, read.samples, read.refused)
 
-    def _set_aside(self, heard: Received, reason: str) -> None:
+    def _set_aside(self, message: Received, reason: str) -> None:
         now = next(iter(self._cages.values())).clock.now()
-        self._quarantine.put(heard.topic, heard.payload[:LARGEST], reason, now=now)
-        self._metrics.samples.labels(self._cage_of(heard), "quarantined").inc()
-        heard.acknowledge()
+        self._quarantine.put(message.topic, message.payload[:LARGEST], reason, now=now)
+        self._metrics.samples.labels(self._cage_of(message), "quarantined").inc()
+        message.acknowledge()
 
     async def _keep_samples(self, name: str, taken: Sequence[_Taken]) -> None:
         """Store the samples of one cage, however long it takes, then acknowledge them."""
@@ -268,10 +271,10 @@ class MqttFeed:
         counter.labels(name, "rejected").inc(sum(len(one.refused) for one in taken))
         by_stream: dict[str, list[Settled]] = {}
         for one in taken:
-            one.heard.acknowledge()
+            one.message.acknowledge()
             by_stream.setdefault(one.stream, []).extend(one.settled)
         for stream, settled in by_stream.items():
-            topic = self._topics.acknowledged(name, stream)
+            topic = self._topics.acknowledgements(name, stream)
             for first in range(0, len(settled), _BATCH):
                 # A lost one has the sender send again; more is not needed.
                 self._link.publish(
@@ -279,20 +282,20 @@ class MqttFeed:
                 )
 
     async def _store_samples(self, cage: LiveCage, samples: Sequence[Sample]) -> tuple[bool, ...]:
-        said = False
+        logged = False
         while samples:
             try:
                 return await cage.take(samples)
             except StoreError as error:
-                if not said:
+                if not logged:
                     _log.error("samples wait", cage=cage.name, reason=str(error))
-                said = True
+                logged = True
                 await asyncio.sleep(_RETRY_S)
         return ()
 
-    async def _tell_states(self, cage: LiveCage) -> None:
-        topic = self._topics.said(cage.name, "state")
-        with cage.watched() as mailbox:
+    async def _publish_states(self, cage: LiveCage) -> None:
+        topic = self._topics.outgoing(cage.name, "state")
+        with cage.subscribe() as mailbox:
             while True:
                 snapshot = await mailbox.take()
                 text = snapshot.state.model_dump_json().encode()
@@ -305,9 +308,9 @@ class MqttFeed:
         while self._alarms and not self._is_filled(1.0) and self._link.publish(*self._alarms[0]):
             self._alarms.popleft()
 
-    def _cage_of(self, heard: Received) -> str:
+    def _cage_of(self, message: Received) -> str:
         """For a counter, which strangers must not fill with names."""
-        address = self._topics.address(heard.topic)
+        address = self._topics.address(message.topic)
         return address.cage if address and address.cage in self._cages else ""
 
 
@@ -318,10 +321,10 @@ class _Newest:
         self._latest: dict[str, Received] = {}
         self._filled = asyncio.Event()
 
-    def hear(self, heard: Received) -> None:
+    def hear(self, message: Received) -> None:
         """See ``Listener``."""
-        if heard.topic in self._latest or len(self._latest) < _STREAMS:
-            self._latest[heard.topic] = heard
+        if message.topic in self._latest or len(self._latest) < _STREAMS:
+            self._latest[message.topic] = message
             self._filled.set()
 
     async def settled(self) -> None:

@@ -1,4 +1,4 @@
-"""The alarms of one cage: judged at every tick, handled by people, kept on disk."""
+"""The alarms of one cage: assessed at every tick, handled by people, kept on disk."""
 
 import json
 from collections import deque
@@ -59,7 +59,7 @@ HANDLES: Mapping[str, Handle] = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Announcement:
-    """What happened to an alarm of a cage, in the words for those who are told."""
+    """What happened to an alarm of a cage, in words for those who are notified."""
 
     cage: str
     happened: AlarmEvent
@@ -69,10 +69,10 @@ class Announcement:
 
 
 class AlarmDesk:
-    """Where a cage's alarms are judged, and where people handle them.
+    """Where a cage's alarms are assessed, and where people handle them.
 
     The book and the journal's lines go to the store in one transaction, so that after a crash
-    every alarm stands as it was last said to stand. Lines that the disk did not take are written
+    every alarm stands as it was last announced. Lines that the disk did not take are written
     with those that come after them.
 
     Parameters
@@ -80,7 +80,7 @@ class AlarmDesk:
     cage
         Its name in the service.
     twin, store, policy
-        Whose answers are judged, where it is kept, and by which limits.
+        Whose answers are assessed, where it is kept, and by which limits.
     """
 
     def __init__(self, *, cage: str, twin: Twin, store: Store, policy: AlarmPolicy) -> None:
@@ -95,7 +95,7 @@ class AlarmDesk:
 
     @property
     def alarms(self) -> Mapping[str, Alarm]:
-        """All that were ever judged, by name."""
+        """All that were ever assessed, by name."""
         return self._book.alarms
 
     def waiting(self) -> list[AlarmBrief]:
@@ -108,7 +108,7 @@ class AlarmDesk:
         return sorted((self._brief(one) for one in open_), key=lambda one: -one.severity)
 
     def standing(self) -> list[Announcement]:
-        """Those that are active and heard, and that nobody has acknowledged, as when raised."""
+        """Those that are active, not suppressed and not acknowledged, as when raised."""
         return [
             self._announcement(
                 one, AlarmEvent(alarm=one.name, action=Action.RAISED, t=one.since, value=one.worst)
@@ -117,8 +117,8 @@ class AlarmDesk:
             if one.active and not one.acknowledged and not one.quiet and one.since
         ]
 
-    def tell(self, listener: Callable[[Announcement], None]) -> None:
-        """Have whatever happens from now on told to a listener, in the thread that finds it."""
+    def subscribe(self, listener: Callable[[Announcement], None]) -> None:
+        """Call a listener with each event from now on, in the thread that finds it."""
         self._listeners.append(listener)
 
     def begin_anew(self) -> None:
@@ -127,7 +127,7 @@ class AlarmDesk:
         self._unkept.clear()
 
     @property
-    def looked_at(self) -> datetime | None:
+    def last_look(self) -> datetime | None:
         """The time of the last look that the book holds; None before the first."""
         return self._book.t
 
@@ -185,7 +185,7 @@ class AlarmDesk:
             There is no such alarm, or the action makes no sense with it.
         """
         if name not in self.alarms:
-            raise InputError(f"No alarm is called {name!r} here, or it was never judged.")
+            raise InputError(f"No alarm is called {name!r} here, or it was never assessed.")
         alarm, happened = HANDLES[how](self.alarms[name], who, now, why, seconds)
         self._book = self._book.with_alarm(alarm)
         kept = self._keep(happened)
@@ -204,8 +204,8 @@ class AlarmDesk:
             return AlarmBook.new()
 
     def _trouble(self) -> dict[str, str]:
-        said = self._store.fault or self._store.lost or self._lost
-        return {"history.store": said} if said else {}
+        fault = self._store.fault or self._store.lost or self._lost
+        return {"history.store": fault} if fault else {}
 
     def _keep(self, happened: Sequence[AlarmEvent]) -> Future[None]:
         lines = list[AlarmEvent]()

@@ -148,7 +148,7 @@ class LiveCage:
 
     def refuse_ahead(self, stream: str, t: datetime) -> None:
         """Note that a sample was refused as later than ``latest_allowed``."""
-        self.live.clocks.refused(stream, t)
+        self.live.clocks.note_refusal(stream, t)
 
     async def take(self, samples: Sequence[Sample]) -> tuple[bool, ...]:
         """Check, store and queue samples; returns after the commit.
@@ -228,7 +228,7 @@ class LiveCage:
         return after
 
     @contextmanager
-    def watched(self) -> Generator[Mailbox[Snapshot]]:
+    def subscribe(self) -> Generator[Mailbox[Snapshot]]:
         """Lend a mailbox that gets every snapshot, the present one first."""
         mailbox = Mailbox[Snapshot]()
         mailbox.put(self.snapshot)

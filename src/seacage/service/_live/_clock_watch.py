@@ -58,12 +58,12 @@ class ClockWatch:
         self._ahead.clear()
         return step
 
-    def refused(self, stream: str, t: datetime) -> None:
+    def note_refusal(self, stream: str, t: datetime) -> None:
         """Note that a sample was refused as ahead of the clock."""
         ahead_s = (t - self._clock.now()).total_seconds()
         self._ahead[stream] = ahead_s, self._clock.monotonic_s()
 
-    def accepted(self, stream: str) -> None:
+    def note_acceptance(self, stream: str) -> None:
         """Note that a sample was taken, so that its stream's clock is right again."""
         self._ahead.pop(stream, None)
 

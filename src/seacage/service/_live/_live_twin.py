@@ -108,7 +108,7 @@ class LiveTwin:
         amendments = [one for stored in arrived for one in stored.amendments]
         samples = [sample for stored in arrived for sample in stored.fresh]
         for sample in samples:
-            self.clocks.accepted(sample.stream)
+            self.clocks.note_acceptance(sample.stream)
         self._settle_clock(now)
         self._state, noticed = self._twin.receive(self._state, samples, now, amendments=amendments)
         if amendments or any(stored.again for stored in arrived):
@@ -145,7 +145,7 @@ class LiveTwin:
 
     def _catch_up(self) -> None:
         """Assess the alarms at the ticks since the book was kept, as who was killed would have."""
-        now, last = self._clock.now(), self._desk.looked_at
+        now, last = self._clock.now(), self._desk.last_look
         if last is None or last >= now:
             return
         end = min(now, last + _CAUGHT_UP)

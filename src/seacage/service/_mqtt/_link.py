@@ -31,7 +31,7 @@ class Received:
     Parameters
     ----------
     topic, payload
-        What was said, and where; the topic is empty where its bytes are no text.
+        The message, and its topic; the topic is empty where its bytes are no text.
     acknowledge
         Tells the broker that it need not send the message again. After the connection that
         brought it has ended this does nothing, for the message will come again.
@@ -60,14 +60,14 @@ class _Ended(Exception):  # noqa: N818
 
 @runtime_checkable
 class Listener(Protocol):
-    """Who hears what comes."""
+    """Takes the messages that come."""
 
-    def hear(self, heard: Received) -> None:
+    def hear(self, message: Received) -> None:
         """Take a message; must not take long."""
         ...
 
     async def settled(self) -> None:
-        """Wait until all that was heard is dealt with."""
+        """Wait until all messages that came are dealt with."""
         ...
 
 
@@ -94,7 +94,7 @@ class Link:
     will
         What the broker says when this client is lost.
     qos
-        0 to hear only what is said from now on, of which the broker keeps nothing.
+        0 to get only what is published from now on, of which the broker keeps nothing.
     """
 
     def __init__(

@@ -41,15 +41,15 @@ class Topics:
                 "the first a letter or a digit."
             )
 
-    def observed(self, cage: str, stream: str = "+") -> str:
+    def samples(self, cage: str, stream: str = "+") -> str:
         """Where samples come in; those of all streams where none is named."""
         return f"seacage/v1/{self.site}/{cage}/{stream}/obs"
 
-    def acknowledged(self, cage: str, stream: str = "+") -> str:
+    def acknowledgements(self, cage: str, stream: str = "+") -> str:
         """Where the service says which samples it has."""
         return f"seacage/v1/{self.site}/{cage}/{stream}/ack"
 
-    def said(self, cage: str, what: Literal["state", "alarms"]) -> str:
+    def outgoing(self, cage: str, what: Literal["state", "alarms"]) -> str:
         """Where a cage's state or its alarms go out."""
         return f"seacage/v1/{self.site}/{cage}/{what}"
 

@@ -83,7 +83,7 @@ class MqttCourier:
     broker, site, cage
         Where to.
     answer_s
-        Samples of which nothing is heard for so long count as lost [s].
+        Samples that nobody acknowledges for so long count as lost [s].
     """
 
     def __init__(self, broker: Broker, *, site: str, cage: str, answer_s: float = 5.0) -> None:
@@ -124,7 +124,7 @@ class MqttCourier:
         for one in samples:
             by_stream.setdefault(one.stream, []).append(one)
         for stream, of in by_stream.items():
-            topic = self._topics.observed(self._cage, stream)
+            topic = self._topics.samples(self._cage, stream)
             for first in range(0, len(of), _TOGETHER):
                 self._client.publish(topic, samples_text(of[first : first + _TOGETHER]), qos=1)
         return self._await_outcomes(waiting)
@@ -135,7 +135,7 @@ class MqttCourier:
         self._client.loop_stop()
 
     def _await_outcomes(self, waiting: set[tuple[str, datetime, int | None]]) -> list[Settled]:
-        """Collect what is said until nothing is missing, or nothing more comes."""
+        """Collect acknowledgements until nothing is missing, or nothing more comes."""
         found: list[Settled] = []
         with self._changed:
             while waiting and self._listening:
@@ -159,7 +159,7 @@ class MqttCourier:
         if code.is_failure:
             self._say(refused=str(code))
         else:
-            client.subscribe(self._topics.acknowledged(self._cage), qos=1)
+            client.subscribe(self._topics.acknowledgements(self._cage), qos=1)
 
     def _on_subscribe(
         self, _: Client, __: object, ___: int, codes: Sequence[ReasonCode], *____: Any

@@ -1,4 +1,4 @@
-"""Alarms told to other systems by webhook, at once or when nobody has acknowledged them."""
+"""Alarms posted to other systems by webhook, at once or when nobody has acknowledged them."""
 
 import asyncio
 import hashlib
@@ -36,7 +36,7 @@ class Webhook:
     url
         http or https.
     severity
-        The least that is told, 1 to 1000.
+        The least that is posted, 1 to 1000.
     after_s
         0 tells at once whatever is raised, repeated, cleared or acknowledged. More tells only
         of an alarm that is still active and not acknowledged so long after it was raised [s],
@@ -68,17 +68,17 @@ class Webhook:
             raise InputError(f"webhook: after_s = {self.after_s:g} s is not within 0 to 86400 s.")
 
     def wants(self, cage: str, severity: int) -> bool:
-        """Whether an alarm of this severity is told here."""
+        """Whether an alarm of this severity is posted here."""
         return severity >= self.severity and (not self.cages or cage in self.cages)
 
 
 @runtime_checkable
 class Alarmed(Protocol):
-    """Whose alarms are told: a live cage."""
+    """Whose alarms are posted: a live cage."""
 
     @property
     def desk(self) -> AlarmDesk:
-        """Where its alarms are judged."""
+        """Where its alarms are assessed."""
         ...
 
     @property
@@ -96,7 +96,7 @@ class WebhookNotifier:
     Parameters
     ----------
     hooks, cages
-        Who is told, and of whose alarms.
+        Where to, and whose alarms.
     """
 
     def __init__(self, hooks: Sequence[Webhook], cages: Mapping[str, Alarmed]) -> None:
@@ -105,7 +105,7 @@ class WebhookNotifier:
         # Since when each alarm stood that was escalated last: as many as there are alarms.
         self._escalated: dict[tuple[Webhook, str, str], datetime] = {}
         for cage in cages.values():
-            cage.desk.tell(self._take)
+            cage.desk.subscribe(self._take)
 
     async def run(self) -> None:
         """Tell for ever."""

@@ -26,7 +26,7 @@ def net_mcap(net: PredictedNet) -> bytes:
     """
     ros = RosMessages(net.t)
     collar = net.node_position[[*net.cage.ring_nodes(0), 0]]
-    return ros.written(
+    return ros.write(
         {
             "/seacage/net/nodes": ros.cloud(
                 net.node_position, np.full_like(net.node_sigma, np.nan)
@@ -40,7 +40,7 @@ def net_mcap(net: PredictedNet) -> bytes:
 def inspection_mcap(net: PredictedNet, way: InspectionPath) -> bytes:
     """Write a way along the net, each pose facing it, and the net besides."""
     ros = RosMessages(net.t)
-    return ros.written(
+    return ros.write(
         {
             "/seacage/net/mesh": ros.mesh(net.expected_position, _triangles(net.cage.panels)),
             "/seacage/inspection": ros.path(way.position, way.facing),

@@ -105,7 +105,7 @@ class RosMessages:
         ]
         return self._message("nav_msgs/msg/Path", header=self._header(), poses=poses)
 
-    def written(self, messages: Mapping[str, Any]) -> bytes:
+    def write(self, messages: Mapping[str, Any]) -> bytes:
         """Return the MCAP file that holds these messages by topic."""
         from rosbags.rosbag2 import StoragePlugin, Writer
 

@@ -28,7 +28,7 @@ _ALARM = EXAMPLE_ALARM_BRIEF | {
 
 
 class AlarmState(AbstractAnswer):
-    """One alarm: what it is about, how it stands and by which limits it is judged.
+    """One alarm: what it is about, how it stands and by which limits it is assessed.
 
     ``value``, ``worst``, ``raise_at`` and ``clear_at`` are in ``unit``; ``severity`` runs from 1
     to 1000, critical from 800 on.
@@ -58,7 +58,7 @@ class AlarmState(AbstractAnswer):
 
 
 class Alarms(AbstractAnswer):
-    """All alarms of a cage that were ever judged, the worst first."""
+    """All alarms of a cage that were ever assessed, the worst first."""
 
     model_config = example({"alarms": [_ALARM]})
 

@@ -149,7 +149,7 @@ class LearnedInput(AbstractAnswer):
 
 
 class Learned(AbstractAnswer):
-    """What a cage's twin can be asked: the inputs that it was taught with, and how far.
+    """What a cage's twin can be asked: the inputs that it was trained with, and how far.
 
     ``unknown`` are the keys of a what-if that change nothing, for the twin knows nothing of them.
     """

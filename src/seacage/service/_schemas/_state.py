@@ -25,7 +25,7 @@ class Interval(AbstractAnswer):
 class BridleState(AbstractAnswer):
     """A bridle's load now.
 
-    ``level`` is the fidelity of the answer: 2 where a shackle has taught it, else 1, and
+    ``level`` is the fidelity of the answer: 2 where it is trained with a shackle, else 1, and
     ``in_domain`` is of that level. Level 1 has no interval, and ``interval_reason`` says why;
     it is null where there is one. ``utilisation`` is the mean over the line's capacity.
     ``measured_kn`` is what its shackle measured, as the load's alarm takes it: the last minute's
@@ -45,7 +45,7 @@ class BridleState(AbstractAnswer):
 
 
 class SensorState(AbstractAnswer):
-    """What a sensor should read now, by simulation alone and as taught, and what it does read.
+    """What a sensor should read now, by simulation alone and as trained, and what it does read.
 
     ``level``, ``in_domain`` and ``interval_reason`` are as for a bridle.
     """
@@ -72,7 +72,7 @@ class ShapeState(AbstractAnswer):
 
 
 class Water(AbstractAnswer):
-    """The reading that the answer rests on; null where the source said nothing."""
+    """The reading that the answer rests on; null where the source gave none."""
 
     current_speed_m_s: float | None
     current_to_deg: float | None

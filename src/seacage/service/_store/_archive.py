@@ -63,8 +63,8 @@ class Archive:
             name = f"{day.isoformat()}-{digest[:12]}.parquet"
             entry = {"file": name, "sha256": digest, "samples": len(both)}
             write_small(folder / name, content, mode=0o644)
-            said = {kept.isoformat(): one for kept, one in {**manifest, day: entry}.items()}
-            text = json.dumps(said, indent=1, sort_keys=True).encode()
+            entries = {kept.isoformat(): one for kept, one in {**manifest, day: entry}.items()}
+            text = json.dumps(entries, indent=1, sort_keys=True).encode()
             write_small(folder / _MANIFEST, text, mode=0o644)
             for left in folder.glob(f"{day.isoformat()}-*"):
                 if left.name != name:
@@ -187,8 +187,8 @@ class Archive:
                 return {}
             stamp = (state.st_mtime_ns, state.st_ino)
             if folder not in self._known or self._known[folder][0] != stamp:
-                said = json.loads(path.read_bytes())
-                read = {date.fromisoformat(day): entry for day, entry in said.items()}
+                entries = json.loads(path.read_bytes())
+                read = {date.fromisoformat(day): entry for day, entry in entries.items()}
                 self._known[folder] = (stamp, read)
             return self._known[folder][1]
 

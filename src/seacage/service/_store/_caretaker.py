@@ -63,7 +63,7 @@ class Caretaker:
         self._cages = set[str]()
         self._stop = threading.Event()
         self._thread: threading.Thread | None = None
-        self.said = ""
+        self.report = ""
 
     def begin(self, cage: str | None = None) -> None:
         """Look after a cage's rows too; of a file after all of them."""
@@ -116,13 +116,13 @@ class Caretaker:
                 began = time.monotonic()
                 self._writer.ask(partial(put_back, found=some)).result()
                 copied += len(some)
-                self.said = f"So far {copied} intact rows were copied from it."
+                self.report = f"So far {copied} intact rows were copied from it."
                 if self._stop.wait(time.monotonic() - began):
                     return
         self._writer.ask(lambda _: self._writer.control.forget()).result()
         path.with_name(path.name + ".copied").write_text(f"{copied} rows\n", "utf-8")
         self._database.damaged.remove(path)
-        self.said = f"Its {copied} intact rows were copied."
+        self.report = f"Its {copied} intact rows were copied."
         _log.info("salvaged", file=str(path), rows=copied)
 
 

@@ -118,8 +118,8 @@ class Store:
     @property
     def lost(self) -> str | None:
         """What history was moved aside or is damaged; None where nothing is."""
-        said = (self._database.lost, self._care.said, self._database.damage.said)
-        return " ".join(filter(None, said)) or None
+        messages = (self._database.lost, self._care.report, self._database.damage.message)
+        return " ".join(filter(None, messages)) or None
 
     @property
     def damage(self) -> Damage:

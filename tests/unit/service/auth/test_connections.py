@@ -91,7 +91,7 @@ def test_one_token_holds_no_more_connections_than_it_may():
 def test_a_connection_that_has_left_counts_no_more():
     connections = book(connections_per_address=1)
     (first,) = came(connections, "a")
-    connections.left(first)
+    connections.forget(first)
     (second,) = came(connections, "a")
     assert not first.ended
     assert not second.ended

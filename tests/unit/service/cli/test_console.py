@@ -77,4 +77,4 @@ def test_a_reader_who_stops_reading_is_told_nothing():
         process.stdout.readline()
         process.stdout.close()
         assert process.stderr.read() == b""
-    assert process.returncode == Exit.UNHEARD
+    assert process.returncode == Exit.PIPE_CLOSED

@@ -42,7 +42,7 @@ def test_alarms_that_cannot_be_read_back_are_an_alarm_themselves(store: Store):
 def test_what_happens_is_told_to_who_listens(store: Store):
     store.keep_alarms("ace", book="none", journal=()).result()
     desk, told = desk_of(store), []
-    desk.tell(told.append)
+    desk.subscribe(told.append)
     looked(desk)
     assert [(one.cage, one.alarm.name, one.happened.action) for one in told] == [
         ("ace", "history.store", "raised")

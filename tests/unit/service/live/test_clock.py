@@ -83,18 +83,18 @@ def test_a_clock_that_is_set_is_noticed_and_named_for_ten_minutes(set_s):
 def test_a_stream_ahead_of_the_clock_is_named_until_it_is_right_again():
     clock = HandClock()
     watch = ClockWatch(clock, streams=2)
-    watch.refused("buoy-1", NOON + timedelta(hours=3))
+    watch.note_refusal("buoy-1", NOON + timedelta(hours=3))
     assert watch.faults() == {
         "clock.buoy-1": "The last sample of buoy-1 was 3.0 h ahead of the service's clock; such "
         "samples wait until their time has come."
     }
-    watch.accepted("buoy-1")
+    watch.note_acceptance("buoy-1")
     assert watch.faults() == {}
 
 
 def test_where_all_streams_are_ahead_it_is_the_services_clock_that_is_named():
     watch = ClockWatch(HandClock(), streams=2)
     for stream in ("buoy-1", "depth-1"):
-        watch.refused(stream, NOON + timedelta(hours=1))
+        watch.note_refusal(stream, NOON + timedelta(hours=1))
     assert watch.faults().keys() == {"clock.service"}
     assert "likely to be behind" in watch.faults()["clock.service"]

@@ -68,7 +68,7 @@ def test_what_was_before_the_start_is_there_from_the_beginning(field, tmp_path):
     cage = LiveCage(
         name="ace", twin=stand_in_twin(), store=store, clock=clock, metrics=Metrics(), tick_s=0.1
     )
-    backlog = list(replay._merged(replay.start - timedelta(hours=2), replay.start))
+    backlog = list(replay._merge(replay.start - timedelta(hours=2), replay.start))
     assert not cage.snapshot.state.valid
     asyncio.run(cage.begin(backlog))
     assert cage.snapshot.state.valid

@@ -6,8 +6,8 @@ from seacage.service._mqtt._topics import Topics, share
 
 def test_a_topic_leads_back_to_its_cage_and_stream():
     topics = Topics("south")
-    assert topics.address(topics.observed("ace", "buoy-1")) == ("ace", "buoy-1")
-    assert topics.address(topics.acknowledged("ace", "buoy-1")) == ("ace", "buoy-1")
+    assert topics.address(topics.samples("ace", "buoy-1")) == ("ace", "buoy-1")
+    assert topics.address(topics.acknowledgements("ace", "buoy-1")) == ("ace", "buoy-1")
 
 
 @pytest.mark.parametrize(

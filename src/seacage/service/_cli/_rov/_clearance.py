@@ -154,22 +154,22 @@ def _clearance_rows(answer: "ClearanceAnswer", out: Path | None) -> list[tuple[s
 
 
 def _point_row(point: "PointClearance", below_m: float) -> str:
-    said = f"{point.distance_m:.2f} m {'inside' if point.inside else 'outside'}"
+    text = f"{point.distance_m:.2f} m {'inside' if point.inside else 'outside'}"
     if point.p_below is None:
-        return said
+        return text
     return (
-        f"{said}; expected {point.expected_m:.2f} m ± {point.sigma_m:.2f} m; nearer than "
+        f"{text}; expected {point.expected_m:.2f} m ± {point.sigma_m:.2f} m; nearer than "
         f"{below_m:g} m with probability {point.p_below:.3f}"
     )
 
 
 def _path_row(path: "PathAnswer", below_m: float) -> str:
-    said = (
+    text = (
         f"{path.length_m:.1f} m; closest {path.closest.distance_m:.2f} m after {path.along_m:.1f} m"
     )
     if path.p_below is None:
-        return said
+        return text
     return (
-        f"{said}; nearer than {below_m:g} m somewhere with probability "
+        f"{text}; nearer than {below_m:g} m somewhere with probability "
         f"{path.p_below:.3f} ({path.p_least:.3f} to {path.p_most:.3f})"
     )

@@ -159,7 +159,7 @@ class Catalogue:
 
     def all(self, of: str) -> list[Entity]:
         """List a set, each entity with the links that lead on from it."""
-        return [self._linked(of, entity) for entity in self._plain(of)]
+        return [self._with_links(of, entity) for entity in self._plain(of)]
 
     def one(self, of: str, id: str) -> Entity:  # noqa: A002 (the standard's word)
         """Find an entity.
@@ -171,14 +171,14 @@ class Catalogue:
         """
         for entity in self._plain(of):
             if entity["@iot.id"] == id:
-                return self._linked(of, entity)
+                return self._with_links(of, entity)
         raise HTTPException(404, f"No {of} are called {id!r}.")
 
-    def related(self, of: str, id: str, name: str) -> list[Entity]:  # noqa: A002
+    def list_related(self, of: str, id: str, name: str) -> list[Entity]:  # noqa: A002
         """List what an entity leads to by a relation."""
         relation = RELATIONS[of][name]
         found = (one for one in self._plain(relation.to) if relation.joins(id, one["@iot.id"]))
-        return [self._linked(relation.to, one) for one in found]
+        return [self._with_links(relation.to, one) for one in found]
 
     def link(self, of: str, id: str) -> str:  # noqa: A002
         """Say where an entity is."""
@@ -190,7 +190,7 @@ class Catalogue:
             self._made[of] = list(SETS[of](self.cages))
         return self._made[of]
 
-    def _linked(self, of: str, entity: Entity) -> Entity:
+    def _with_links(self, of: str, entity: Entity) -> Entity:
         link = self.link(of, entity["@iot.id"])
         names = [*RELATIONS[of], *([OBSERVATIONS] if of == "Datastreams" else [])]
         leading = {f"{name}@iot.navigationLink": f"{link}/{name}" for name in names}
@@ -203,5 +203,5 @@ def observation(datastream: str, sample: Sample) -> Entity:
     t, value = sample.t.isoformat().replace("+00:00", "Z"), sample.values[key]
     number = "" if sample.seq is None else f".{sample.seq}"
     result = value if abs(value) < float("inf") else None
-    told = (f"{datastream}@{t}{number}", t, t, result, int(sample.flags[key]))
-    return dict(zip(OBSERVED, told, strict=True))
+    values = (f"{datastream}@{t}{number}", t, t, result, int(sample.flags[key]))
+    return dict(zip(OBSERVED, values, strict=True))

@@ -175,22 +175,22 @@ class _Answer:
             raise InputError("$filter: only Observations can be filtered, by their time.")
         ordered = _order(of, found, query)
         rest = query.skip + query.top
-        said: Entity = {"value": [self.one(of, one, query) for one in ordered[query.skip : rest]]}
+        body: Entity = {"value": [self.one(of, one, query) for one in ordered[query.skip : rest]]}
         if query.count:
-            said["@iot.count"] = len(found)
+            body["@iot.count"] = len(found)
         if rest < len(found):
-            said["@iot.nextLink"] = _address(address, {**query.texts, "$skip": str(rest)})
-        return said
+            body["@iot.nextLink"] = _address(address, {**query.texts, "$skip": str(rest)})
+        return body
 
     def one(self, of: str, entity: Entity, query: QueryOptions) -> Entity:
         """Tell an entity with what is selected of it and what it is expanded by."""
         self._spend(1)
-        said = _select(of, entity, query)
+        body = _select(of, entity, query)
         for name, inner in query.expand.items():
-            told = self._expand(of, entity, name, inner)
-            said.pop(f"{name}@iot.navigationLink", None)
-            said |= told
-        return said
+            entities = self._expand(of, entity, name, inner)
+            body.pop(f"{name}@iot.navigationLink", None)
+            body |= entities
+        return body
 
     def observations(self, datastream: str, query: QueryOptions, address: str) -> Entity:
         """Tell readings of a Datastream's quantity in the order of their times."""
@@ -200,13 +200,13 @@ class _Answer:
         newest = _newest_first(query)
         span, reach = query.within or (None, None), query.skip + query.top
         read = self._samples(datastream, span, limit=reach + 1, newest=newest)
-        told = self._observations(datastream, read[query.skip : reach])
-        said: Entity = {"value": [_select(OBSERVATIONS, one, query) for one in told]}
+        entities = self._observations(datastream, read[query.skip : reach])
+        body: Entity = {"value": [_select(OBSERVATIONS, one, query) for one in entities]}
         if query.count:
-            said["@iot.count"] = self._count(datastream, span)
+            body["@iot.count"] = self._count(datastream, span)
         if len(read) > reach:
-            said["@iot.nextLink"] = _address(address, _onward(query, read[:reach], newest=newest))
-        return said
+            body["@iot.nextLink"] = _address(address, _onward(query, read[:reach], newest=newest))
+        return body
 
     def _expand(self, of: str, entity: Entity, name: str, query: QueryOptions) -> Entity:
         id, address = entity["@iot.id"], f"{entity['@iot.selfLink']}/{name}"  # noqa: A001
@@ -216,7 +216,7 @@ class _Answer:
             raise InputError(f"$expand: {of} lead to no {name!r}. {_there(of)}")
         else:
             relation = RELATIONS[of][name]
-            found = self._catalogue.related(of, id, name)
+            found = self._catalogue.list_related(of, id, name)
             if not relation.many:
                 return {name: self.one(relation.to, found[0], query)}
             page = self.page(relation.to, found, query, address)
@@ -291,13 +291,13 @@ def _leading(name: str, relation: str) -> Callable[..., Entity]:
     def many(request: Request, id: Id, options: Listing) -> Entity:  # noqa: A002
         catalogue = _catalogue(request)
         address = f"{catalogue.one(name, id)['@iot.selfLink']}/{relation}"
-        found = catalogue.related(name, id, relation)
+        found = catalogue.list_related(name, id, relation)
         return _Answer(catalogue).page(to.to, found, options, address)
 
     def single(request: Request, id: Id, options: Telling) -> Entity:  # noqa: A002
         catalogue = _catalogue(request)
         catalogue.one(name, id)
-        found = catalogue.related(name, id, relation)
+        found = catalogue.list_related(name, id, relation)
         return _Answer(catalogue).one(to.to, found[0], options)
 
     leading = many if to.many else single
@@ -361,11 +361,11 @@ def _select(of: str, entity: Entity, query: QueryOptions) -> Entity:
         return dict(entity)
     wanted = {_property(name) for name in query.select}
     names = wanted | {f"{name}@iot.navigationLink" for name in wanted}
-    said = {name: one for name, one in entity.items() if name in names}
-    strange = wanted - said.keys() - {name.partition("@")[0] for name in said}
+    body = {name: one for name, one in entity.items() if name in names}
+    strange = wanted - body.keys() - {name.partition("@")[0] for name in body}
     if strange:
         raise InputError(f"$select: {of} have no {min(strange)!r}.")
-    return said
+    return body
 
 
 def _property(name: str) -> str:

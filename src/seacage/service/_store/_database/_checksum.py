@@ -74,7 +74,7 @@ class Damage:
         return len(self._rows) + sum(list(self._missing.values()))
 
     @property
-    def said(self) -> str | None:
+    def message(self) -> str | None:
         """The same as a sentence; None where there are none."""
         if not self.count:
             return None

@@ -33,7 +33,7 @@ class Pool(Generic[C]):
         self._round = 0
 
     @contextmanager
-    def lent(self) -> Generator[C]:
+    def lend(self) -> Generator[C]:
         """Lend a connection; where its block fails all are closed, as all may be broken."""
         with self._places:
             begun, one = self._round, self._take() or self._opened()

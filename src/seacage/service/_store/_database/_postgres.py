@@ -107,11 +107,11 @@ class PostgresSession(AbstractSession):
         written = [(*row, checksum("sample", row)) for row in rows]
         columns = [list(column) for column in zip(*written, strict=True)]
         new = set(self.rows(_INSERT, columns))
-        told: list[bool] = []
+        parts: list[bool] = []
         for row in rows:
-            told.append(row[:4] in new)
+            parts.append(row[:4] in new)
             new.discard(row[:4])
-        return tuple(told)
+        return tuple(parts)
 
 
 class PostgresDatabase(AbstractDatabase):
@@ -141,8 +141,10 @@ class PostgresDatabase(AbstractDatabase):
         self.damaged = []
         with self._translate_errors("does not open as the store of samples"):
             # A URL may hold a password, and an error is read by many.
-            told = conninfo_to_dict(url)
-            self._place = f"{told.get('dbname', 'its database')} on {told.get('host', 'localhost')}"
+            parts = conninfo_to_dict(url)
+            self._place = (
+                f"{parts.get('dbname', 'its database')} on {parts.get('host', 'localhost')}"
+            )
             self._claimed: set[str] = set()
             self._writer = self._connect()
             with self._close_on_error(self._writer):
@@ -164,7 +166,7 @@ class PostgresDatabase(AbstractDatabase):
         """Read one moment of the database."""
         with (
             self._translate_errors("cannot be read"),
-            self._readers.lent() as connection,
+            self._readers.lend() as connection,
             connection.transaction(),
         ):
             yield PostgresSession(connection, self.damage)

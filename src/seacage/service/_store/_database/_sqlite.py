@@ -183,7 +183,7 @@ class SqliteDatabase(AbstractDatabase):
     @contextmanager
     def reading(self) -> Generator[AbstractSession]:
         """Read one moment of the file."""
-        with _translate_errors(self._path, "cannot be read"), self._readers.lent() as connection:
+        with _translate_errors(self._path, "cannot be read"), self._readers.lend() as connection:
             connection.execute("BEGIN")
             yield SqliteSession(connection, self.damage)
             connection.execute("COMMIT")
