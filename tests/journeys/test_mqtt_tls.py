@@ -21,7 +21,7 @@ class Ears:
         self.heard.append(heard.payload)
         heard.acknowledge()
 
-    async def settled(self):
+    async def drain(self):
         pass
 
 

@@ -138,7 +138,7 @@ def _columns(replayed: Replayed) -> Iterator[tuple[str, Column]]:
     yield "reason", list(answer.reason)
     yield "origin", [replayed.origin] * len(buoy)
     for key, values in buoy.values.items():
-        yield key, _known_or_none(values)
+        yield key, _without_nan(values)
         yield f"{key}_flag", buoy.flags[key].tolist()
     sensor, bridle = answer.sensor_interval(), answer.bridle_interval()
     for k, name in enumerate(answer.sensor_names):
@@ -162,7 +162,7 @@ def _columns(replayed: Replayed) -> Iterator[tuple[str, Column]]:
     depth = -answer.node_position[:, replayed.cage.bottom_node, 2]
     yield from _interval_columns("shape_bottom_depth", "m", depth)
     yield "shape_largest_sigma_m", [None] * len(buoy)
-    yield "volume_fraction", _known_or_none(answer.volume_fraction)
+    yield "volume_fraction", _without_nan(answer.volume_fraction)
 
 
 def _interval_columns(
@@ -172,12 +172,12 @@ def _interval_columns(
     lower: Float[np.ndarray, " t"] | None = None,
     upper: Float[np.ndarray, " t"] | None = None,
 ) -> Iterator[tuple[str, Column]]:
-    yield f"{name}_{unit}", _known_or_none(mean)
+    yield f"{name}_{unit}", _without_nan(mean)
     for side, end in (("lower", lower), ("upper", upper)):
-        yield f"{name}_{side}_{unit}", [None] * len(mean) if end is None else _known_or_none(end)
+        yield f"{name}_{side}_{unit}", [None] * len(mean) if end is None else _without_nan(end)
 
 
-def _known_or_none(values: Float[np.ndarray, " t"]) -> Column:
+def _without_nan(values: Float[np.ndarray, " t"]) -> Column:
     return [round(v, 6) if math.isfinite(v) else None for v in values.tolist()]
 
 

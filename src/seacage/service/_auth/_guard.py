@@ -74,7 +74,9 @@ class Gate:
         self._asked = Rates(per_s=some.requests_per_s, burst=some.burst)
         self._refused = Rates(per_s=some.refusals_per_s, burst=some.refusal_burst)
 
-    def known(self, token: str | None, cookie: str | None) -> tuple[Grant, Session | None] | None:
+    def identify(
+        self, token: str | None, cookie: str | None
+    ) -> tuple[Grant, Session | None] | None:
         """Find who asks, by token, else by the cookie of a session."""
         if token is not None:
             grant = self.tokens.grant(token)
@@ -93,7 +95,7 @@ class Gate:
         scheme, sent = get_authorization_scheme_param(connection.headers.get("authorization"))
         token = sent if sent and scheme.lower() == "bearer" else None
         cookie = connection.cookies.get(COOKIE)
-        found = self.known(token, cookie)
+        found = self.identify(token, cookie)
         if found is None:
             self.refuse(source_of(connection), sent=bool(token or cookie))
         self.connections.knows(connection, found[0].id)

@@ -69,7 +69,7 @@ class Sessions:
     def find(self, cookie: str, now: datetime) -> tuple[Session, Grant] | None:
         """Find who a cookie stands for; None where it or its token has ended."""
         token_sha256, expires = self._open.get(digest(cookie), ("", now))
-        grant = self._tokens.kept(token_sha256) if expires > now else None
+        grant = self._tokens.grant_of(token_sha256) if expires > now else None
         return None if grant is None else (_session(cookie, token_sha256, expires), grant)
 
     def end(self, cookie: str) -> None:

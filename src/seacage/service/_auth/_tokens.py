@@ -113,9 +113,9 @@ class Tokens:
 
     def grant(self, token: str) -> Grant | None:
         """Find what a token may do; the time taken does not tell how near a guess came."""
-        return self.kept(digest(token))
+        return self.grant_of(digest(token))
 
-    def kept(self, sha256: str) -> Grant | None:
+    def grant_of(self, sha256: str) -> Grant | None:
         """Find what the token of a hash may do."""
         found = None
         for grant in (*self._passing, *self.all()):

@@ -72,7 +72,7 @@ def _hand_over(request: Request, response: Response, cookie: str) -> None:
 
 def _session(request: Request, cookie: str | None) -> tuple[Session, Grant]:
     gate = gate_of(request)
-    found = gate.known(None, cookie)
+    found = gate.identify(None, cookie)
     if found is None or found[1] is None:
         gate.refuse(source_of(request), sent=bool(cookie))
     gate.pace(found[0])

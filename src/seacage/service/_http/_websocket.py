@@ -122,7 +122,7 @@ async def _admit(socket: WebSocket, cage: str) -> tuple[str | None, Grant]:
 
 
 def _grant(socket: WebSocket, token: str | None) -> Grant | None:
-    found = gate_of(socket).known(token, socket.cookies.get(COOKIE))
+    found = gate_of(socket).identify(token, socket.cookies.get(COOKIE))
     return found and found[0]
 
 

@@ -46,7 +46,7 @@ class _Taken:
     refused: tuple[Settled, ...]
 
     @property
-    def settled(self) -> list[Settled]:
+    def outcomes(self) -> list[Settled]:
         """Of each sample."""
         had = [Settled(stream=self.stream, t=one.t, seq=one.seq) for one in self.samples]
         return [*had, *self.refused]
@@ -181,7 +181,7 @@ class MqttFeed:
         else:
             self._metrics.samples.labels(self._cage_of(message), "dropped").inc()
 
-    async def settled(self) -> None:
+    async def drain(self) -> None:
         """Wait until everything that was queued is on disk or set aside."""
         await self._empty.wait()
 
@@ -272,7 +272,7 @@ class MqttFeed:
         by_stream: dict[str, list[Settled]] = {}
         for one in taken:
             one.message.acknowledge()
-            by_stream.setdefault(one.stream, []).extend(one.settled)
+            by_stream.setdefault(one.stream, []).extend(one.outcomes)
         for stream, settled in by_stream.items():
             topic = self._topics.acknowledgements(name, stream)
             for first in range(0, len(settled), _BATCH):
@@ -327,7 +327,7 @@ class _Newest:
             self._latest[message.topic] = message
             self._filled.set()
 
-    async def settled(self) -> None:
+    async def drain(self) -> None:
         """See ``Listener``."""
 
     async def take(self) -> list[Received]:

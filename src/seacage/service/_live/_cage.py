@@ -120,7 +120,7 @@ class LiveCage:
         self.live = LiveTwin(
             name=name, twin=twin, store=store, clock=clock, desk=self.desk, tick_s=tick_s
         )
-        self.snapshot = self._snapshot_of(self.live.answered)
+        self.snapshot = self._snapshot_of(self.live.last_answer)
 
     @property
     def streams(self) -> Mapping[str, tuple[str, ...]]:

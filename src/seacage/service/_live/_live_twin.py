@@ -70,7 +70,7 @@ class LiveTwin:
         self._catch_up()
 
     @property
-    def answered(self) -> Answered:
+    def last_answer(self) -> Answered:
         """The answer of the last step."""
         return self._answered
 

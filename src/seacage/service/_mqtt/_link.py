@@ -66,7 +66,7 @@ class Listener(Protocol):
         """Take a message; must not take long."""
         ...
 
-    async def settled(self) -> None:
+    async def drain(self) -> None:
         """Wait until all messages that came are dealt with."""
         ...
 
@@ -147,7 +147,7 @@ class Link:
                 if failures <= 1:  # then it is known, until it is well again
                     _log.warning("broker lost", broker=str(self._broker), reason=str(error))
                 self._fault = f"{self._broker} is away ({error})."
-            await self._listener.settled()
+            await self._listener.drain()
             wait_s = _PATIENCE_S[min(failures, len(_PATIENCE_S) - 1)]
             # Not all at once, where a farm's clients lost the broker together.
             await asyncio.sleep(wait_s * random.uniform(0.7, 1.3))

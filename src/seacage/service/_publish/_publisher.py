@@ -101,7 +101,7 @@ class Publisher:
         self._arrived, self._stopped = threading.Event(), threading.Event()
 
     @property
-    def published(self) -> Published:
+    def outcome(self) -> Published:
         """What was done so far."""
         return Published(
             read=self._read,
@@ -142,7 +142,7 @@ class Publisher:
                     self._check_patience(time.monotonic() - acknowledged_at)
         if self._fault is not None:
             raise self._fault
-        return self.published
+        return self.outcome
 
     def _next(self, live_after: int, *, silent: bool) -> list[Sample]:
         limit = 1 if silent else BATCH_LIMIT

@@ -60,8 +60,8 @@ def inspection_answer(net: PredictedNet, query: InspectionQuery) -> InspectionAn
         way.part.tolist(),
         _round(way.clearance.distance),
         _round(way.clearance.expected),
-        _known_or_none(net, way.clearance.sigma),
-        _known_or_none(net, way.clearance.p_below),
+        _none_where_unknown(net, way.clearance.sigma),
+        _none_where_unknown(net, way.clearance.p_below),
         strict=True,
     )
     names = list(Waypoint.model_fields)
@@ -83,10 +83,10 @@ def _points(
         places_of(net.cage, frame, stated.position),
         _round(in_frame(frame, stated.normal)),
         _round(stated.expected),
-        _known_or_none(net, stated.sigma),
-        _known_or_none(net, stated.p_below),
-        _known_or_none(net, other.p_below),
-        _known_or_none(net, stated.p_through),
+        _none_where_unknown(net, stated.sigma),
+        _none_where_unknown(net, stated.p_below),
+        _none_where_unknown(net, other.p_below),
+        _none_where_unknown(net, stated.p_through),
         strict=True,
     )
     names = [name for name in PointClearance.model_fields if name != "state_age_s"]
@@ -112,7 +112,7 @@ def _path(net: PredictedNet, query: ClearanceQuery, point: Points) -> PathAnswer
         at_m=at_m,
         at_place=at_place,
         closest=closest,
-        **dict(zip(names, _known_or_none(net, p), strict=True)),
+        **dict(zip(names, _none_where_unknown(net, p), strict=True)),
     )
 
 
@@ -127,7 +127,7 @@ def _about(net: PredictedNet, frame: FrameName, below: float) -> dict[str, Any]:
     }
 
 
-def _known_or_none(net: PredictedNet, values: Float[np.ndarray, " point"]) -> list[Any]:
+def _none_where_unknown(net: PredictedNet, values: Float[np.ndarray, " point"]) -> list[Any]:
     """Say what rests on the shape's error; nothing where that is not known."""
     return [None] * len(values) if net.error_origin is None else _round(values)
 

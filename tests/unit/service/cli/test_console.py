@@ -58,9 +58,9 @@ def test_a_log_gets_the_first_and_the_last_line_of_a_stage(capsys):
 
 def test_a_reader_who_stops_reading_is_told_nothing():
     script = (
-        "from seacage.service._cli._console import guarded\n"
+        "from seacage.service._cli._console import guard\n"
         "import typer\n"
-        "@guarded\n"
+        "@guard\n"
         "def many():\n"
         "    for line in range(100_000):\n"
         "        typer.echo(line)\n"

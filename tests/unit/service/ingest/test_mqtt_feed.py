@@ -80,7 +80,7 @@ def settled(one, *, within_s=20.0):
 
     async def work():
         task = asyncio.create_task(one.feed._store())
-        await asyncio.wait_for(one.feed.settled(), within_s)
+        await asyncio.wait_for(one.feed.drain(), within_s)
         task.cancel()
 
     asyncio.run(work())
@@ -289,7 +289,7 @@ def test_while_a_backlog_drains_the_newest_of_each_stream_is_kept_before_it(one,
             await until(one.kept)
             live = [sample.t.isoformat() for sample in one.kept()]
             stuck.set()
-            await one.feed.settled()
+            await one.feed.drain()
             await until(lambda: not one.feed._behind.is_set())
         return live
 
@@ -305,7 +305,7 @@ def test_while_old_samples_come_there_is_a_second_connection_and_then_no_more(on
     async def work():
         with working(one.feed._store(), one.feed._show_newest()):
             say(one, reading(0))
-            await one.feed.settled()
+            await one.feed.drain()
             assert not one.feed._behind.is_set()
             say(one, reading(-30))
             await until(lambda: connections.made)

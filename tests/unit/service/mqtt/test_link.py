@@ -23,7 +23,7 @@ class Ears:
         if len(self.heard) > self._keep:
             heard.acknowledge()
 
-    async def settled(self):
+    async def drain(self):
         pass
 
 

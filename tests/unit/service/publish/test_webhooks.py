@@ -27,7 +27,7 @@ class Desk:
     def __init__(self):
         self.listeners, self.open = [], []
 
-    def tell(self, listener):
+    def subscribe(self, listener):
         self.listeners.append(listener)
 
     def standing(self):

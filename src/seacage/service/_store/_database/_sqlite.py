@@ -76,7 +76,7 @@ class FileClaim:
         self._file: TextIO | None = None
 
     @property
-    def taken(self) -> bool:
+    def is_held(self) -> bool:
         """Whether this process has it."""
         return self._file is not None
 
@@ -203,12 +203,12 @@ class SqliteDatabase(AbstractDatabase):
 
     def hold_reserve(self) -> None:
         """Hold room beside the file, if this process is the one that serves from it."""
-        if self._claim.taken:
+        if self._claim.is_held:
             self._reserve.hold()
 
     def give_up_reserve(self) -> None:
         """Leave that room to the file and its log."""
-        if self._claim.taken:
+        if self._claim.is_held:
             self._reserve.give_up()
 
     def close(self) -> None:
