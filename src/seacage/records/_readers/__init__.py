@@ -1,9 +1,9 @@
 """Readers of files: column maps, tables, NetCDF, and the wizard that inspects foreign ones."""
 
 from seacage.records._readers._cf import NetcdfMap
-from seacage.records._readers._columns import Column, ColumnMap
+from seacage.records._readers._column_map import Column, ColumnMap
 from seacage.records._readers._inspect import Inspection, inspect_file
-from seacage.records._readers._maps import read_map
+from seacage.records._readers._map_files import read_map
 from seacage.records._readers._netcdf import read_netcdf, write_record
 from seacage.records._readers._reader import known_map, read_record
 from seacage.records._readers._rows import check_rows, read_rows

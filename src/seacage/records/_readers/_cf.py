@@ -15,7 +15,7 @@ from jaxtyping import Float, Shaped
 
 from seacage.conventions import Origin, RecordError, parse_toml
 from seacage.records._netcdf_check import NETCDF_TROUBLE, check_netcdf
-from seacage.records._readers._columns import (
+from seacage.records._readers._column_map import (
     Column,
     check_components,
     parse_column,

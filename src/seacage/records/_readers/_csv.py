@@ -9,7 +9,7 @@ import numpy as np
 
 from seacage.conventions import Flag, Origin, RecordError
 from seacage.records._keys import KEYS
-from seacage.records._readers._columns import Column, ColumnMap, vectors_joined
+from seacage.records._readers._column_map import Column, ColumnMap, vectors_joined
 from seacage.records._readers._ndbc import is_ndbc, ndbc_table
 from seacage.records._readers._shipped import shipped_maps
 from seacage.records._readers._table import Table, read_table, read_text

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from seacage.conventions import Origin, RecordError
-from seacage.records._readers._columns import Column, ColumnMap
+from seacage.records._readers._column_map import Column, ColumnMap
 from seacage.records._readers._table import Table, make_table
 
 _TIME = ("YY", "MM", "DD", "hh", "mm")

@@ -8,7 +8,7 @@ import numpy as np
 from seacage.conventions import Flag, RecordError
 from seacage.records._quality import DEFAULT_LIMITS, Limits, check_record
 from seacage.records._readers._cf import NetcdfMap, is_netcdf, read_cf
-from seacage.records._readers._columns import ColumnMap
+from seacage.records._readers._column_map import ColumnMap
 from seacage.records._readers._csv import read_csv, split_table
 from seacage.records._readers._netcdf import read_netcdf
 from seacage.records._record import Record

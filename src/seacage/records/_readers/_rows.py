@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from seacage.conventions import RecordError
-from seacage.records._readers._columns import ColumnMap
+from seacage.records._readers._column_map import ColumnMap
 from seacage.records._readers._csv import check_header, recognise, record_in
 from seacage.records._readers._table import text_table
 from seacage.records._record import Record

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from functools import cache
 from importlib.resources import files
 
-from seacage.records._readers._columns import ColumnMap
+from seacage.records._readers._column_map import ColumnMap
 
 
 @cache

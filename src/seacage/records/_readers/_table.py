@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, cast
 from seacage.conventions import TABLE_BYTES, RecordError, check_file, parse_json, read_bytes
 
 if TYPE_CHECKING:
-    from seacage.records._readers._columns import ColumnMap
+    from seacage.records._readers._column_map import ColumnMap
 
 WHITESPACE = "whitespace"
 """The delimiter of tables whose cells any number of blanks part."""

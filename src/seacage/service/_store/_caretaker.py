@@ -21,7 +21,7 @@ from seacage.service._store._integrity._salvage import Found, intact_rows
 from seacage.service._store._integrity._tally import recount
 from seacage.service._store._integrity._verify import AT_ONCE, Read, verify
 from seacage.service._store._samples import mark
-from seacage.service._store._writer import Writer
+from seacage.service._store._write_queue import Writer
 
 _ROWS_S = 2000.0  # at least so many rows are verified in a second,
 _ALL_S = 60_000.0  # and all of them in so long, of the 24 h that are promised

@@ -11,7 +11,7 @@ from seacage.service._store._database._session import AbstractSession
 from seacage.service._store._integrity._tally import recount
 from seacage.service._store._integrity._verify import Read
 from seacage.service._store._quality import retire_memory
-from seacage.service._store._writer import Writer
+from seacage.service._store._write_queue import Writer
 
 # Down the index from name to name; a DISTINCT would read every sample.
 _CAGES = """

@@ -43,7 +43,7 @@ from seacage.service._store._samples import (
     samples_between,
     withdraw_samples,
 )
-from seacage.service._store._writer import Writer
+from seacage.service._store._write_queue import Writer
 from seacage.twin import AlarmEvent
 
 __all__ = ["Store", "StoreError", "look_into", "open_store"]

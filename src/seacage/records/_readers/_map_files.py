@@ -5,7 +5,7 @@ from pathlib import Path
 
 from seacage.conventions import RecordError, read_text
 from seacage.records._readers._cf import NetcdfMap
-from seacage.records._readers._columns import ColumnMap
+from seacage.records._readers._column_map import ColumnMap
 from seacage.records._readers._shipped import shipped_maps
 
 _NETCDF = re.compile(r'^\s*kind\s*=\s*"netcdf"', re.MULTILINE)
