@@ -15,13 +15,13 @@ SRC, WEB = (Path(__file__).parents[1] / name for name in ("src/seacage", "web/sr
 NO_CODE = {COMMENT, DEDENT, ENDMARKER, INDENT, NEWLINE, NL}
 MODULES = {"twin": 20, "surrogates": 11, "studies": 15, "dynamics": 4, "service/_store": 16}
 CEILINGS = {
-    "names with a word of our own": 406,
-    "prose with a word of our own": 247,
-    "functions named by a participle": 526,
-    "classes of the rename table": 25,
-    "classes twice in a room": 7,
-    "modules too many in a folder": 136,
-    "lines of code": 40_500,
+    "names with a word of our own": 0,
+    "prose with a word of our own": 0,
+    "functions named by a participle": 36,
+    "classes of the rename table": 0,
+    "classes twice in a room": 0,
+    "modules too many in a folder": 0,
+    "lines of code": 40_650,
 }
 OWN = "said|told|tell|unsaid|heard|unheard|lessons?|taught|judged|doubt|asked"
 PROSE = re.compile(r"\b(lessons?|taught|judged|heard|doubt)\b", re.IGNORECASE)
@@ -52,7 +52,7 @@ def count_node(node: ast.AST, owner: ast.AST, where: str, found: Found) -> None:
         name = node.id
     if name and not isinstance(node, ast.alias | ast.keyword) and has_own_word(name):
         found["names with a word of our own"].append(f"{where} {name}")
-    if isinstance(node, ast.Constant) and isinstance(node.value, str):
+    if isinstance(node, ast.Constant) and isinstance(node.value, str) and " " in node.value:
         found["prose with a word of our own"] += [f"{where} {w}" for w in PROSE.findall(node.value)]
     elif isinstance(node, ast.ClassDef) and RENAMED.fullmatch(node.name):
         found["classes of the rename table"].append(f"{where} {node.name}")

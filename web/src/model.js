@@ -63,7 +63,7 @@ export class Model {
     try {
       await this.#lookRound();
     } catch (error) {
-      if (error.status === 401) return this.#asked(WHY_NOT.cookie);
+      if (error.status === 401) return this.#askForToken(WHY_NOT.cookie);
       return this.#notBegun(error);
     }
     this.#repeat();
@@ -73,7 +73,7 @@ export class Model {
   }
 
   #notBegun(error) {
-    if (error.status >= 400 && error.status < 500) return this.#asked(error.message);
+    if (error.status >= 400 && error.status < 500) return this.#askForToken(error.message);
     this.#connected("lost", "The service does not answer; trying again.");
     return setTimeout(() => this.open(), 3000);
   }
@@ -200,7 +200,7 @@ export class Model {
     try {
       return await call(method, path.replace(/^\//, ""), body);
     } catch (error) {
-      if (error instanceof Refusal && error.status === 401) this.#asked(WHY_NOT.session);
+      if (error instanceof Refusal && error.status === 401) this.#askForToken(WHY_NOT.session);
       throw error;
     }
   }
@@ -220,7 +220,7 @@ export class Model {
   }
 
   #refused(why) {
-    if (why === "unknown") return this.#asked(WHY_NOT.session);
+    if (why === "unknown") return this.#askForToken(WHY_NOT.session);
     this.#part();
     if (why === "cage") return this.#connected("refused", "No cage has this name any more.");
     return this.#connected("refused", "This token may not read this cage. Take one with the " +
@@ -228,7 +228,7 @@ export class Model {
   }
 
   /** Ask the reader for a token. */
-  #asked(why) {
+  #askForToken(why) {
     this.#part();
     forget();
     return this.#connected("asking", why);

@@ -22,8 +22,8 @@ export async function request(method, address, { body, headers = {} } = {}) {
   }
   if (!answer.ok) throw new Refusal(answer.status, await reason(answer));
   if (answer.status === 204) return null;
-  const said = answer.headers.get("Content-Type") ?? "";
-  return said.includes("json") ? answer.json() : answer.arrayBuffer();
+  const contentType = answer.headers.get("Content-Type") ?? "";
+  return contentType.includes("json") ? answer.json() : answer.arrayBuffer();
 }
 
 /** Why, in words; a list of faults, as for a malformed body, becomes one sentence. */

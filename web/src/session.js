@@ -40,7 +40,7 @@ export const resume = () => kept(request("GET", "session"), WHY_NOT.session);
 
 /** End the session. */
 export async function signOut() {
-  await askedAs("DELETE", "session");
+  await requestSignedIn("DELETE", "session");
   forget();
 }
 
@@ -51,9 +51,9 @@ export function forget() {
 }
 
 /** Ask for a path under /api/v1 as who is signed in. Rejects with a Refusal. */
-export const call = (method, path, body) => askedAs(method, `api/v1/${path}`, body);
+export const call = (method, path, body) => requestSignedIn(method, `api/v1/${path}`, body);
 
-async function askedAs(method, address, body) {
+async function requestSignedIn(method, address, body) {
   if (!session) throw new Refusal(UNKNOWN, "Nobody is signed in.");
   const ask = () => request(method, address, { body, headers: method === "GET" ? {} : repeated() });
   try {
@@ -76,9 +76,9 @@ async function changed() {
   return (await resume()).csrf !== before;
 }
 
-async function kept(asked, why) {
+async function kept(answer, why) {
   try {
-    session = await asked;
+    session = await answer;
   } catch (error) {
     if (error.status !== UNKNOWN) throw error;
     hideToken();

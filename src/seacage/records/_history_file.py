@@ -35,7 +35,7 @@ _CELL_METHODS = {
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Variable:
+class _HistoryVariable:
     """What varies: its dimensions but time, its unit, and what it is."""
 
     dims: tuple[str, ...]
@@ -45,24 +45,28 @@ class _Variable:
 
 
 _QUANTITIES = {
-    "node_position": _Variable(
+    "node_position": _HistoryVariable(
         dims=("node", "axis"), units="m", long_name="position of the net's nodes"
     ),
-    "bridle_tension": _Variable(dims=("bridle",), units="N", long_name="tension of the bridles"),
-    "net_force": _Variable(dims=("axis",), units="N", long_name="load of the water on the netting"),
-    "volume": _Variable(dims=(), units="m3", long_name="volume inside the net"),
+    "bridle_tension": _HistoryVariable(
+        dims=("bridle",), units="N", long_name="tension of the bridles"
+    ),
+    "net_force": _HistoryVariable(
+        dims=("axis",), units="N", long_name="load of the water on the netting"
+    ),
+    "volume": _HistoryVariable(dims=(), units="m3", long_name="volume inside the net"),
 }
 
 _SERIES = {
-    "node_position": _Variable(
+    "node_position": _HistoryVariable(
         dims=("time", "kept_node", "axis"),
         units="m",
         long_name="position of the nodes that the series kept",
     ),
-    "bridle_tension": _Variable(
+    "bridle_tension": _HistoryVariable(
         dims=("time", "bridle"), units="N", long_name="tension of the bridles"
     ),
-    "surface_elevation": _Variable(
+    "surface_elevation": _HistoryVariable(
         dims=("time",),
         units="m",
         long_name="height of the water's surface at the cage's centre",
@@ -277,7 +281,7 @@ def _scalars(record: HistoryRecord) -> dict[str, Any]:
     return variables
 
 
-def _attributes(known: _Variable) -> dict[str, str]:
+def _attributes(known: _HistoryVariable) -> dict[str, str]:
     attributes = {"units": known.units, "long_name": known.long_name}
     if known.standard_name:
         attributes["standard_name"] = known.standard_name

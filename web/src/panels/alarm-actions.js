@@ -14,11 +14,11 @@ export const ACTIONS = {
   },
   shelve: {
     word: "Shelve", title: "Shelve this alarm",
-    explain: "It makes nobody look until the time is over. It is judged and written down all the same.",
+    explain: "It makes nobody look until the time is over. It is evaluated and recorded all the same.",
     demand: true,
   },
   unshelve: {
-    word: "Unshelve", title: "Unshelve this alarm", explain: "It is heard again from now on.",
+    word: "Unshelve", title: "Unshelve this alarm", explain: "It is announced again from now on.",
     demand: false,
   },
   "out-of-service": {
@@ -27,7 +27,7 @@ export const ACTIONS = {
   },
   "in-service": {
     word: "Back in service", title: "Put this alarm back in service",
-    explain: "It is heard again from now on.", demand: true,
+    explain: "It is announced again from now on.", demand: true,
   },
 };
 

@@ -29,11 +29,11 @@ export class AlarmList {
     if (seen === this.seen) return;
     this.seen = seen;
     this.denied.hidden = !denied;
-    const told = (alarms ?? []).filter((alarm) =>
+    const listed = (alarms ?? []).filter((alarm) =>
       alarm.active || !alarm.acknowledged || alarm.shelved || alarm.in_service === false);
-    this.none.replaceChildren(...nothing(alarms, told, fault));
+    this.none.replaceChildren(...nothing(alarms, listed, fault));
     const kept = document.activeElement?.dataset?.act;
-    this.list.replaceChildren(...grouped(ordered(told)).map((group) => this.group(group)));
+    this.list.replaceChildren(...grouped(ordered(listed)).map((group) => this.group(group)));
     // The list is made anew; whoever stood on a button still stands there.
     if (kept) this.list.querySelector(`[data-act="${CSS.escape(kept)}"]`)?.focus();
   }
@@ -125,10 +125,10 @@ function facts(alarm) {
   return `${standing(alarm)}${until}${since}${number && ` · ${number}`}`;
 }
 
-function nothing(alarms, told, fault) {
+function nothing(alarms, listed, fault) {
   if (fault) return [empty("The alarms did not come", fault)];
   if (!alarms) return [empty("Looking", "Asking the service for the alarms.")];
-  if (told.length) return [];
+  if (listed.length) return [];
   const calm = empty("No alarms", "Nothing is active, shelved or waiting to be seen.");
   calm.prepend(icon("well"));
   return [calm];

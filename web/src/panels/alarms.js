@@ -17,7 +17,7 @@ export class Alarms {
     const tabs = new Tabs(holder, views, { label: "Alarms", seen: () => this.refresh() });
     tabs.list.classList.add("minor");
     const dialog = new AlarmDialog(desk);
-    new AlarmList(tabs.panel("alarm-list"), model, desk, { ask: (...asked) => dialog.ask(...asked) });
+    new AlarmList(tabs.panel("alarm-list"), model, desk, { ask: (...question) => dialog.ask(...question) });
     tabs.panel("alarm-list").append(make("p", { className: "aside sound-line" }, soundSwitch()));
     this.parts = {
       journal: new Journal(tabs.panel("journal"), model, desk, past),

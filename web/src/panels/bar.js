@@ -6,7 +6,7 @@ import { day, span, time } from "./format.js";
 import { icon } from "./icons.js";
 import { rank, waits } from "./ranks.js";
 import { themeSwitch } from "./theme-switch.js";
-import { judged } from "./verdict.js";
+import { verdict } from "./verdict.js";
 import { Who } from "./who.js";
 
 const LINKS = {
@@ -61,7 +61,7 @@ export class Bar {
 
   show() {
     const { live, connection, why } = this.model;
-    this.judge(judged({ connection, why, live }));
+    this.judge(verdict({ connection, why, live }));
     this.link.dataset.connection = connection;
     write(this.link, LINKS[connection] ?? connection);
     if (!live) return;

@@ -59,7 +59,7 @@ export class Chart {
         { label: "simulation alone", stroke: () => styled("--low"), width: 1.3, dash: [5, 4], points: { show: false } },
         { label: `twin [${unit}]`, stroke: () => styled("--mean"), width: 1.8, points: { show: false } }],
       bands: [{ series: [UPPER, LOWER], fill: () => styled("--band") }],
-      hooks: { setCursor: [() => this.said()], draw: [(plot) => this.mark(plot)] },
+      hooks: { setCursor: [() => this.report()], draw: [(plot) => this.mark(plot)] },
     };
   }
 
@@ -69,7 +69,7 @@ export class Chart {
     this.at = at;
     this.rows = joined(rows, gap);
     this.plot.setData(this.rows);
-    this.said();
+    this.report();
   }
 
   /** Take the colours of the theme. */
@@ -100,7 +100,7 @@ export class Chart {
   }
 
   /** Say what the curves say at the cursor, or where it is not, at the end. */
-  said() {
+  report() {
     if (!this.rows) return;
     const pointed = this.plot.cursor.left >= 0;
     const at = pointed ? this.plot.posToVal(this.plot.cursor.left, "x") : this.at ?? this.window[1];

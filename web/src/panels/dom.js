@@ -9,12 +9,12 @@ export function write(element, text) {
 
 /** Wrap a function so that it runs at most once between two pictures of the screen. */
 export function painted(paint) {
-  let asked = false;
+  let requested = false;
   return () => {
-    if (asked) return;
-    asked = true;
+    if (requested) return;
+    requested = true;
     requestAnimationFrame(() => {
-      asked = false;
+      requested = false;
       paint();
     });
   };

@@ -12,7 +12,7 @@ const KEYS = [
 const WORDS = [
   ["Twin", "what the digital twin predicts, with its 95 % interval where one is known."],
   ["Largest load", "the largest that is known, predicted or measured, and who says so; the alarms take the same."],
-  ["Level", "2 where a sensor on the cage has taught the twin, and its interval is for what the sensor reads. " +
+  ["Level", "2 where a sensor on the cage has trained the twin, and its interval is for what the sensor reads. " +
     "1 where it is simulation alone, whose error at sea is not known: it has no interval."],
   ["±2σ", "the envelope that the net is in with a chance of 95 %, where that is known."],
   ["Extrapolating", "the sea is beyond what the twin has learned; its intervals are wider, and it may err more."],

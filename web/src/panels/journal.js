@@ -5,7 +5,7 @@ import { empty } from "./dom.js";
 import { moment } from "./format.js";
 import { worth } from "./worth.js";
 
-const ASKED = 5000;
+const MOST_LINES = 5000;
 const SHOWN = 500; // lines; more nobody reads, and the browser would feel them
 
 export class Journal {
@@ -37,7 +37,7 @@ export async function linesOf(desk, past) {
   if (past.end === undefined) return [];
   const [from, to] = [past.start, past.end + 1].map((t) => encodeURIComponent(new Date(t).toISOString()));
   const { lines } = await desk.model.call("GET",
-    desk.path(`journal?from=${from}&to=${to}&limit=${ASKED}`));
+    desk.path(`journal?from=${from}&to=${to}&limit=${MOST_LINES}`));
   return [...lines].sort((a, b) => Date.parse(a.t) - Date.parse(b.t));
 }
 

@@ -44,7 +44,7 @@ export class Loads {
     const limits = topology.bridle_capacity_kn;
     const [low, high] = [Math.min(...limits), Math.max(...limits)];
     this.capacity = `Capacity ${low === high ? "" : `${fixed(low, 0)} to `}${fixed(high, 0)} kN each; ` +
-      "tensions in kN. Level 2 is taught by a shackle, level 1 is simulation alone.";
+      "tensions in kN. Level 2 is trained by a shackle, level 1 is simulation alone.";
     this.show();
     this.select();
   }
@@ -93,7 +93,7 @@ function fill({ row, level, cells, fill: bar, share }, load, end) {
   const [twin, low, measured] = cells;
   write(level, `${load.level}${load.within ? "" : " outside"}`);
   level.classList.toggle("outside", !load.within);
-  level.title = (load.level > 1 ? `level ${load.level}: taught by ${load.shackle ?? "a shackle"}`
+  level.title = (load.level > 1 ? `level ${load.level}: trained by ${load.shackle ?? "a shackle"}`
     : "level 1: simulation alone")
     + (load.within ? "" : ", and outside the training domain of this level");
   twin.replaceChildren(make("b", {}, fixed(load.kn)),

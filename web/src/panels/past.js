@@ -13,7 +13,7 @@ const AGAIN_MS = 10_000; // of the wall: a fast replay misses all the time
 
 export class Past {
   #listeners = new Set();
-  #asked = 0;
+  #requests = 0;
   #askedAt = -Infinity;
 
   constructor(model) {
@@ -36,7 +36,7 @@ export class Past {
 
   forget() {
     Object.assign(this, { columns: null, fault: null, end: undefined });
-    this.#asked += 1;
+    this.#requests += 1;
     this.#askedAt = -Infinity;
     this.#tell();
   }
@@ -67,16 +67,16 @@ export class Past {
 
   /** Ask the service for the span anew. */
   async load() {
-    const turn = ++this.#asked;
+    const turn = ++this.#requests;
     this.#askedAt = performance.now();
     const from = encodeURIComponent(new Date(this.start).toISOString());
     const path = `cages/${encodeURIComponent(this.model.cageName)}/history`;
     try {
       const history = await this.model.call("GET", `${path}?from=${from}&limit=${POINTS}`);
-      if (turn !== this.#asked) return;
+      if (turn !== this.#requests) return;
       Object.assign(this, { columns: columnsOf(history), fault: null });
     } catch (error) {
-      if (turn !== this.#asked) return;
+      if (turn !== this.#requests) return;
       this.fault = error.message;
     }
     this.#tell();

@@ -35,9 +35,9 @@ export function rowsOf(columns, { key, name, sensor }) {
   const series = key === "water:speed" ? alone(columns.speed)
     : key === "cage:volume" ? alone(columns.volume.map((share) => (share === null ? null : 100 * share)))
     : columns[key.startsWith("bridle:") ? "bridles" : "sensors"][name] ?? alone(nothing);
-  const taught = series.level > 1 ? {} : { lower: nothing, upper: nothing };
+  const interval = series.level > 1 ? {} : { lower: nothing, upper: nothing };
   const measured = columns.measured[sensor] ?? { t: [], value: [] };
-  return { t: columns.t, ...series, ...taught, measured };
+  return { t: columns.t, ...series, ...interval, measured };
 }
 
 /**

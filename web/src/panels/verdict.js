@@ -10,19 +10,19 @@ import { rank, waits, worst } from "./ranks.js";
  * Worst first: no connection, then no valid input, then alarms, then what the service is concerned
  * about and an answer beyond what was learned. Nothing is well without an input that says so.
  */
-export function judged({ connection, why = "", live }) {
+export function verdict({ connection, why = "", live }) {
   const state = live?.state;
   if (connection === "lost") {
     const shown = state ? `What is shown is of ${moment(live.t)}.` : why || "Nothing has come yet.";
-    return said("lost", "lost", "Connection lost", shown);
+    return result("lost", "lost", "Connection lost", shown);
   }
-  if (connection === "asking") return said("none", "wait", "Waiting for a token", "");
-  if (connection === "refused") return said("lost", "none", "Not admitted", why);
+  if (connection === "asking") return result("none", "wait", "Waiting for a token", "");
+  if (connection === "refused") return result("lost", "none", "Not admitted", why);
   if (!state || connection === "connecting") {
-    return said("none", "wait", "Connecting", "Asking for the newest state.");
+    return result("none", "wait", "Connecting", "Asking for the newest state.");
   }
   if (live.stale && state.valid) {
-    return said("lost", "lost", "Input too old", `The newest reading is ${span(live.ageS)} old.`);
+    return result("lost", "lost", "Input too old", `The newest reading is ${span(live.ageS)} old.`);
   }
   return state.valid ? ofLoads(state) : withoutInput(state);
 }
@@ -36,11 +36,11 @@ function ofLoads(state) {
     const others = alarms.length - group.length;
     const more = others ? ` and ${others} more` : "";
     const over = first.active ? "" : ", over by now";
-    const told = state.in_domain || first.id.startsWith("domain.");
-    const extra = told ? "" : " The twin is extrapolating.";
-    return said(kind, kind, counted(alarms.length, "alarm"), `${titleOf(group)}${over}${more}.${extra}`);
+    const named = state.in_domain || first.id.startsWith("domain.");
+    const extra = named ? "" : " The twin is extrapolating.";
+    return result(kind, kind, counted(alarms.length, "alarm"), `${titleOf(group)}${over}${more}.${extra}`);
   }
-  return concerned(state) ?? said("well", "well", "All well", "Loads and net within their limits.");
+  return concerned(state) ?? result("well", "well", "All well", "Loads and net within their limits.");
 }
 
 /** What keeps a cage without alarms from being well; null where nothing does. */
@@ -48,11 +48,11 @@ export function concerned({ in_domain: within, reason, concerns = [], silent = [
   const [load] = concerns.filter(({ kind }) => kind === "load");
   const messages = concerns.map(({ message }) => titled(message));
   // A load at its limit has the colour of the alarm that it will raise.
-  if (load) return said("warning", "warning", load.title, messages.join(" "));
-  if (!within) return said("beyond", "beyond", "Extrapolating", [beyond(reason), ...messages].join(" "));
-  if (messages.length) return said("caution", "caution", concerns[0].title, messages.join(" "));
+  if (load) return result("warning", "warning", load.title, messages.join(" "));
+  if (!within) return result("beyond", "beyond", "Extrapolating", [beyond(reason), ...messages].join(" "));
+  if (messages.length) return result("caution", "caution", concerns[0].title, messages.join(" "));
   if (silent.length) {
-    return said("caution", "caution", "Partly measured", `Silent: ${silent.map(plain).join(", ")}.`);
+    return result("caution", "caution", "Partly measured", `Silent: ${silent.map(plain).join(", ")}.`);
   }
   return null;
 }
@@ -61,14 +61,14 @@ function withoutInput(state) {
   const alarms = (state.alarms ?? []).filter(waits);
   const also = alarms.length ? ` ${counted(alarms.length, "alarm")}.` : "";
   if (state.age_s === null) {
-    return said("none", "wait", "Waiting for a first reading", `Nothing is predicted.${also}`);
+    return result("none", "wait", "Waiting for a first reading", `Nothing is predicted.${also}`);
   }
   const first = worst(alarms);
   const load = (state.concerns ?? []).find(({ kind }) => kind === "load");
   const kind = first ? rank(first.severity) : load ? "warning" : "none";
   const measured = load ? `${titled(load.message)} ` : "";
-  return said(kind, "none", "No valid input",
+  return result(kind, "none", "No valid input",
     `${measured}${state.reason || "The newest reading is not usable."} Nothing is predicted.${also}`);
 }
 
-const said = (kind, icon, headline, detail) => ({ kind, icon, headline, detail });
+const result = (kind, icon, headline, detail) => ({ kind, icon, headline, detail });

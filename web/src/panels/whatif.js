@@ -90,12 +90,12 @@ export class WhatIf {
     this.sea = { ...this.sea, ...changed };
     this.begun = true;
     this.fill();
-    const asked = this.sea;
+    const query = this.sea;
     try {
-      await this.model.whatIf(asked);
+      await this.model.whatIf(query);
       this.say("");
     } catch (error) {
-      if (asked === this.sea) this.say(error.message);
+      if (query === this.sea) this.say(error.message);
     }
   }
 

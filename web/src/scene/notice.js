@@ -11,7 +11,7 @@ export function noticeFor({ connection, why, view }) {
   }
   if (connection === "lost") {
     return { kind: "lost", title: "No connection", words: view
-      ? `${why} What you see is the last that was heard.` : why, retry: true };
+      ? `${why} What you see is the last that was received.` : why, retry: true };
   }
   if (!view) return { kind: "connecting", title: "Connecting", words: "Asking for the cage’s shape." };
   if (!view.state.valid) {

@@ -25,8 +25,8 @@ export class Overlay {
     const halfView = Math.tan((view.camera.fov * Math.PI) / 360);
     this.compass.turn((azimuth * 180) / Math.PI);
     this.scale.show(view.canvas.clientHeight / (2 * distance * halfView));
-    const told = view.pointed ?? view.model.selection;
-    this.tip.show(wordsFor(told, view.topology, view.shown), told && view.screen.of(told));
+    const target = view.pointed ?? view.model.selection;
+    this.tip.show(wordsFor(target, view.topology, view.shown), target && view.screen.of(target));
   }
 
   #names({ sea, screen }) {

@@ -172,8 +172,8 @@ export class View3d {
 
   /** Draw soon. */
   wake() {
-    this.asked ??= requestAnimationFrame((now) => {
-      this.asked = undefined;
+    this.requested ??= requestAnimationFrame((now) => {
+      this.requested = undefined;
       this.step(now);
     });
   }

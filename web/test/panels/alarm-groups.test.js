@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { grouped, titleOf, unseen } from "../../src/panels/alarm-groups.js";
-import { judged } from "../../src/panels/verdict.js";
+import { verdict } from "../../src/panels/verdict.js";
 
 const minute = (m) => new Date(Date.UTC(2026, 0, 1, 0, m)).toISOString();
 const alarm = (id, since, changes = {}) => ({
@@ -43,7 +43,7 @@ test("those of a group that are acknowledged already are not acknowledged again"
 test("the verdict names the cause once and counts what else there is", () => {
   const alarms = [alarm("load.bridle-3", 0), alarm("load.bridle-4", 1), alarm("clock.service", 2, { severity: 400 })];
   const state = { valid: true, in_domain: true, reason: "", age_s: 1, silent: [], alarms };
-  const { headline, detail } = judged({ connection: "live", live: { t: 0, stale: false, ageS: 1, state } });
+  const { headline, detail } = verdict({ connection: "live", live: { t: 0, stale: false, ageS: 1, state } });
   assert.equal(headline, "3 alarms");
   assert.equal(detail, "High load on 2 bridles and 1 more.");
 });

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { judged } from "../../src/panels/verdict.js";
+import { verdict } from "../../src/panels/verdict.js";
 
 const state = (changes = {}) => ({
   valid: true, in_domain: true, reason: "", age_s: 30, alarms: [], silent: [], ...changes,
@@ -10,7 +10,7 @@ const alarm = (changes = {}) => ({
   id: "load.bridle-3", severity: 850, title: "Load on bridle-3", active: true, acknowledged: false,
   shelved: false, ...changes,
 });
-const now = (changes) => judged({
+const now = (changes) => verdict({
   connection: "live", live: { t: 0, stale: false, ageS: 30, state: state(changes) },
 });
 
@@ -98,7 +98,7 @@ test("an alarm that went and waits to be seen is not told as if it were still so
 });
 
 test("a lost connection is never well, whatever came last", () => {
-  const { kind, detail } = judged({
+  const { kind, detail } = verdict({
     connection: "lost", live: { t: Date.UTC(2026, 0, 2, 3, 4), stale: true, ageS: 1, state: state() },
   });
   assert.equal(kind, "lost");
@@ -107,5 +107,5 @@ test("a lost connection is never well, whatever came last", () => {
 
 test("an input that has grown too old on the page is not well", () => {
   const live = { t: 0, stale: true, ageS: 7200, state: state() };
-  assert.equal(judged({ connection: "live", live }).headline, "Input too old");
+  assert.equal(verdict({ connection: "live", live }).headline, "Input too old");
 });
