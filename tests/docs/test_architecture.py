@@ -65,3 +65,16 @@ def test_every_path_on_it_exists() -> None:
     assert len(paths) > 8
     for path in paths:
         assert any((root / path).exists() for root in (SRC, ROOT)), path
+
+
+def test_the_tree_of_errors_is_the_tree_of_classes() -> None:
+    listed, above = dict[str, str](), list[str]()
+    for indent, name in re.findall(r"^( *)- `(\w+Error)`", TEXT, re.MULTILINE):
+        above = [*above[: len(indent) // 2], name]
+        listed[name] = above[-2] if len(above) > 1 else "Exception"
+    found = dict[str, str]()
+    for path in SRC.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.ClassDef) and re.fullmatch(r"[A-Z]\w*Error", node.name):
+                found[node.name] = ast.unparse(node.bases[0])
+    assert listed == found
