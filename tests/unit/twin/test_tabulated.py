@@ -97,5 +97,5 @@ def test_no_rows_are_answered_with_none(tabulated):
 
 def test_a_twin_that_asks_for_waves_is_refused():
     asking = replace(twin(), models=replace(twin().models, inputs=("current", "waves")))
-    with pytest.raises(InputError, match="asks for current and waves; a table holds the current"):
+    with pytest.raises(InputError, match="are current and waves; a table holds the current"):
         TabulatedTwin.of(asking)

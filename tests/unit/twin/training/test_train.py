@@ -177,7 +177,7 @@ def test_a_base_of_another_cage_is_refused():
 
 
 def test_a_base_that_asks_for_other_inputs_is_refused():
-    with pytest.raises(InputError, match="asked with current, not with current and waves"):
+    with pytest.raises(InputError, match="inputs of the base are current, not current and waves"):
         train(
             coarse(),
             None,
