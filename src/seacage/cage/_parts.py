@@ -54,7 +54,7 @@ class _Part:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Mesh(_Part):
-    """Mesh of the net: rings × spokes of nodes and a tip."""
+    """How the net is cut into nodes: rings × spokes and a tip."""
 
     spokes: int = quantity("", "spokes round the cage, the first one east", low=3)
     ring_depths: tuple[float, ...] = quantity("m", "depth of each ring, the collar first")

@@ -221,3 +221,9 @@ def test_a_file_that_goes_deep_is_refused(tmp_path):
     path.write_text("a = " + "[" * 100_000)
     with pytest.raises(InputError, match=r"mine\.toml: this is not TOML \(its parts lie more than"):
         Cage.read(path)
+
+
+def test_a_cage_is_the_same_cage_as_in_version_0_1():
+    # Comments count: campaigns and fields of that version go on only with the same text.
+    known = "df814a7d1366bea6c5fe9087ec906517ea8b63224150e49c513310dd4fd8ecdd"
+    assert Cage.named("ace").sha256 == known
