@@ -114,8 +114,8 @@ def truth_coverage(
     for column, name in enumerate(twin.sensor_names):
         if name not in twin.models.upper:
             continue
-        noise = twin.models.upper[name].noise
-        said = Prediction(
+        noise = twin.models.upper[name].spread.white
+        predicted = Prediction(
             mean=answer.sensor.mean[:, column],
             std=np.sqrt(np.maximum(answer.sensor.std[:, column] ** 2 - noise, 0.0)),
         )
@@ -126,8 +126,8 @@ def truth_coverage(
             _scored(
                 name,
                 twin,
-                said.mean[rows],
-                said.std[rows],
+                predicted.mean[rows],
+                predicted.std[rows],
                 answer.sensor_low.mean[rows, column],
                 true[kept],
                 _alone(NARGP(restarts=training.restarts), twin, field, name, training, water, rows),
@@ -237,8 +237,8 @@ def _read(field: FieldRecord, sensor: str, time: Shaped[np.ndarray, " t"]) -> Se
 
 
 def _held_alone(true: Series, alone: tuple[Prediction, float], *, noisy: bool) -> Held:
-    said, noise = alone
-    return held(true, said.mean, np.sqrt(said.std**2 + noisy * noise))
+    outcome, noise = alone
+    return held(true, outcome.mean, np.sqrt(outcome.std**2 + noisy * noise))
 
 
 def _alone(
@@ -251,13 +251,15 @@ def _alone(
     rows: Int[np.ndarray, " t"],
 ) -> tuple[Prediction, float]:
     """What a NARGP alone says, taught by the same points; and the noise that it found."""
-    lesson, inputs = twin.provenance.training_windows[sensor], twin.models.inputs
-    pairs = align(field, sensor, start=lesson.start, end=lesson.end, mean_s=training.mean_s)
+    window, inputs = twin.provenance.training_windows[sensor], twin.models.inputs
+    pairs = align(field, sensor, start=window.start, end=window.end, mean_s=training.mean_s)
     chosen = spread_out(pairs, training.high_fidelity_points, seed=training.seed)
     fitted = model.fit(
         [(chosen.metocean.features(inputs), chosen.value)],
         seed=training.seed,
         lower=twin.models.lower(sensor),
     )
-    said = fitted.predict(water.features(inputs))
-    return Prediction(mean=said.mean[rows], std=said.std[rows]), float(fitted.upper[-1].noise[0])
+    predicted = fitted.predict(water.features(inputs))
+    return Prediction(mean=predicted.mean[rows], std=predicted.std[rows]), float(
+        fitted.upper[-1].noise[0]
+    )

@@ -72,9 +72,9 @@ def service(words: Sequence[object]) -> Generator[dict[str, str]]:
     command = [*SEACAGE, "serve", "--port", "0", "--json", *map(str, words)]
     with _running(command, stdout=subprocess.PIPE) as process:
         assert process.stdout is not None
-        said = process.stdout.readline()
-        assert said, "the service did not start"
-        yield json.loads(said) | {"pid": str(process.pid)}
+        text = process.stdout.readline()
+        assert text, "the service did not start"
+        yield json.loads(text) | {"pid": str(process.pid)}
 
 
 @contextmanager

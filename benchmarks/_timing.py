@@ -15,7 +15,7 @@ def seconds(work: Callable[[], object], *, rounds: int = 5) -> float:
     return min(_once(work) for _ in range(1 if ONCE else rounds))
 
 
-def tell(title: str, measured: Mapping[str, float]) -> None:
+def print_times(title: str, measured: Mapping[str, float]) -> None:
     """One table: each time, and how many times the first one it is."""
     print(title)
     first = next(iter(measured.values()))

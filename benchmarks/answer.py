@@ -6,18 +6,17 @@ systems in it alone, which is what no arrangement of the calls can save.
 """
 
 from collections.abc import Callable
-from dataclasses import replace
 from itertools import islice
 
 import numpy as np
-from _timing import ONCE, seconds, tell
+from _timing import ONCE, print_times, seconds
 
 from seacage.cage import Cage
 from seacage.dynamics import settle
 from seacage.ocean import SeaState
 from seacage.surrogates import Prediction
 from seacage.testing import stand_in_campaign, stand_in_field, stand_in_seas
-from seacage.twin import FixedPrediction, Metocean, Models, Training, replay, train
+from seacage.twin import Metocean, Models, Training, replay, train
 
 TIMES = 1 if ONCE else 200
 """That a short work is done for one measurement."""
@@ -43,18 +42,17 @@ def level_two(models: Models) -> dict[str, float]:
     level, x = models.together.rest, Metocean.of(sea).features(models.inputs)
     names = twin.sensor_names
     columns = [column for column, name in enumerate(names) if name in models.upper]
-    said = twin.predict(sea).sensor_low
-    low = Prediction(mean=said.mean[:, columns], std=said.std[:, columns])
+    predicted = twin.predict(sea).sensor_low
+    low = Prediction(mean=predicted.mean[:, columns], std=predicted.std[:, columns])
     alone = [
-        replace(
-            models.upper[names[column]].rest,
-            lent=FixedPrediction(prediction=Prediction(mean=m, std=s)),
-        )
+        (models.upper[names[column]].rest, Prediction(mean=m, std=s))
         for column, m, s in zip(columns, low.mean.T, low.std.T, strict=True)
     ]
     systems = [(one.factor, np.ones((3, len(one.x)))) for one in level.members]
     return {
-        "one sensor after another": each(lambda: [one.predict(x) for one in alone]),
+        "one sensor after another": each(
+            lambda: [one.predict(x, below=below) for one, below in alone]
+        ),
         "all together": each(lambda: level.predict(x, low)),
         "their triangular systems alone": each(
             lambda: [factor.variance_reduction(right) for factor, right in systems]
@@ -62,7 +60,7 @@ def level_two(models: Models) -> dict[str, float]:
     }
 
 
-tell(
+print_times(
     "answer, per sea state",
     {
         "twin, one at a time": each(lambda: twin.predict(sea)),
@@ -72,4 +70,4 @@ tell(
         "simulator, one at a time": seconds(lambda: settle(cage, sea)),
     },
 )
-tell("level 2 of eight sensors, per sea state", level_two(twin.models))
+print_times("level 2 of eight sensors, per sea state", level_two(twin.models))

@@ -46,11 +46,11 @@ def processor_s(pid: int) -> float:
 
 def newest(said: dict[str, str]) -> int:
     """The newest sample's number that is on disk."""
-    asked = urllib.request.Request(
+    query = urllib.request.Request(
         f"{said['address']}api/v1/cages/ace/latest",
         headers={"Authorization": f"Bearer {said['token']}"},
     )
-    with urllib.request.urlopen(asked) as answer:
+    with urllib.request.urlopen(query) as answer:
         return max((one["seq"] for one in json.load(answer)["samples"]), default=-1)
 
 
@@ -64,20 +64,20 @@ def measured(name: str, place: Path, store: str) -> None:
     """Send all messages as fast as the broker takes them, and print what they cost."""
     words = ["--data", place / "data", "--twin", place / "twin", "--store", store]
     ready = messages(COUNT + 1)
-    with broker() as mqtt, service([*words, "--mqtt", mqtt]) as said:
+    with broker() as mqtt, service([*words, "--mqtt", mqtt]) as reply:
         client = Client(CallbackAPIVersion.VERSION2)
         client.max_inflight_messages_set(1000)
         client.connect("127.0.0.1", int(mqtt.rpartition(":")[2]))
         client.loop_start()
-        while newest(said) < 0:  # until the service listens, the broker keeps nothing for it
+        while newest(reply) < 0:  # until the service listens, the broker keeps nothing for it
             client.publish(*ready[0], qos=1)
             time.sleep(0.5)
-        cpu, began = processor_s(int(said["pid"])), time.monotonic()
+        cpu, began = processor_s(int(reply["pid"])), time.monotonic()
         for topic, payload in ready[1:]:
             client.publish(topic, payload, qos=1)
-        until(said, COUNT)
+        until(reply, COUNT)
         took = time.monotonic() - began
-        cpu = processor_s(int(said["pid"])) - cpu
+        cpu = processor_s(int(reply["pid"])) - cpu
         client.disconnect()
         client.loop_stop()
     each = f"{1e3 * cpu / COUNT:.3f} ms of the processor a sample"
@@ -89,8 +89,8 @@ def main() -> None:
     asks = argparse.ArgumentParser(description=__doc__)
     asks.add_argument("--postgres", metavar="URL")
     asks.add_argument("--once", action="store_true")
-    asked = asks.parse_args()
-    why = lacking(asked.postgres) if asked.postgres else lacking_broker()
+    arguments = asks.parse_args()
+    why = lacking(arguments.postgres) if arguments.postgres else lacking_broker()
     if why or not Path("/proc/self/stat").exists():
         print(f"arrival: not measured, for {why or 'the system has no /proc'}.")
         return
@@ -99,8 +99,8 @@ def main() -> None:
         place = Path(folder)
         stand_in_twin().write(place / "twin")
         measured("SQLite", place, str(place / "samples.sqlite"))
-        if asked.postgres:
-            with database(asked.postgres) as store:
+        if arguments.postgres:
+            with database(arguments.postgres) as store:
                 measured("PostgreSQL", place, store)
 
 

@@ -5,7 +5,7 @@ and one to each panel of the cone's last ring; half of the points lie within a f
 """
 
 import numpy as np
-from _timing import ONCE, seconds, tell
+from _timing import ONCE, print_times, seconds
 
 from seacage.cage import Cage
 from seacage.cage._nearest import _Surface, _Touch, _triangles
@@ -35,7 +35,7 @@ def _least(part: np.ndarray) -> np.ndarray:
 
 
 assert np.allclose(brute(), cage.nearest(points, shape).distance, atol=1e-6)
-tell(
+print_times(
     f"clearance, {count} points and {len(every)} triangles",
     {
         "pruned, many points together": seconds(lambda: cage.nearest(points, shape)),

@@ -24,13 +24,13 @@ from seacage.studies._split import split
 from seacage.testing import stand_in_twin
 from seacage.twin import Training, Twin, train
 
-asked = argparse.ArgumentParser()
-asked.add_argument("--once", action="store_true")
-asked.add_argument("--seeds", type=int, nargs="+", default=[0])
-asked.add_argument("--restarts", type=int, default=3)
-asked.add_argument("--out", type=Path)
-asked.add_argument("--fields", type=Path, help="folder of made fields, field-<seed>, else made")
-arguments = asked.parse_args()
+query = argparse.ArgumentParser()
+query.add_argument("--once", action="store_true")
+query.add_argument("--seeds", type=int, nargs="+", default=[0])
+query.add_argument("--restarts", type=int, default=3)
+query.add_argument("--out", type=Path)
+query.add_argument("--fields", type=Path, help="folder of made fields, field-<seed>, else made")
+arguments = query.parse_args()
 
 
 def measured(seed: int, base: Twin, out: Path) -> dict:
@@ -91,7 +91,7 @@ def pooled(results: list[dict], sensors: str, kind: str) -> str:
     return text
 
 
-def tell(results: list[dict]) -> None:
+def print_table(results: list[dict]) -> None:
     """Print the table."""
     print(f"95 % intervals against the truth, virtual field, {len(results)} seeds")
     kinds = {
@@ -134,7 +134,7 @@ def main() -> None:
                 path.write_text(json.dumps(measured(seed, base, out)) + "\n")
             results.append(json.loads(path.read_text()))
             print(f"seed {seed} done", flush=True)
-        tell(results)
+        print_table(results)
 
 
 def once() -> None:
@@ -145,7 +145,7 @@ def once() -> None:
     field = stand_in_field(twin.cage)
     training = Training(high_fidelity_points=60, days=2.0, restarts=0)
     scores = truth_coverage(twin, field, field, training=training, since_day=2.0)
-    tell([{"seed": 0, "sensors": [asdict(score) for score in scores]}])
+    print_table([{"seed": 0, "sensors": [asdict(score) for score in scores]}])
 
 
 once() if arguments.once else main()

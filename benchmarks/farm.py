@@ -23,7 +23,7 @@ from _timing import ONCE
 
 from seacage.cage import Cage
 from seacage.records import Sample
-from seacage.service._auth._tokens import Tokens
+from seacage.service._auth._token_store import Tokens
 from seacage.service._http._api import Service, create_app
 from seacage.service._live._cage import LiveCage
 from seacage.service._live._clock import WallClock
@@ -101,8 +101,8 @@ async def watching(address: str, token: str, *, deaf: bool, came: Came) -> None:
             frame = await line.recv()
             assert isinstance(frame, bytes)
             length = int.from_bytes(frame[20:24], "little")
-            said = json.loads(frame[-length:])
-            late = datetime.now(UTC) - datetime.fromisoformat(said["t"])
+            answer = json.loads(frame[-length:])
+            late = datetime.now(UTC) - datetime.fromisoformat(answer["t"])
             came.ages.append(late.total_seconds())
             came.sizes.append(len(frame))
 
@@ -215,7 +215,7 @@ def sample_costs(twin: Twin, folder: Path) -> dict[str, float]:
         return {what: cpu_ms(work) / len(samples) for what, work in works.items()}
 
 
-def tell_costs(twin: Twin) -> None:
+def print_costs(twin: Twin) -> None:
     """Print what one tick and one sample cost."""
     with tempfile.TemporaryDirectory() as folder:
         few = f"a tick, new water, sensors trained by {FEW} readings"
@@ -226,7 +226,7 @@ def tell_costs(twin: Twin) -> None:
         print(f"  {what:<56}{cost:9.3f} ms")
 
 
-def tell_farm(name: str, share: float, came: Came) -> None:
+def print_farm(name: str, share: float, came: Came) -> None:
     """Print what a farm costs, and what its clients get."""
     print(f"  {name:<56}{100.0 * share:7.1f} % of a core")
     if came.ages:
@@ -241,7 +241,7 @@ def tell_farm(name: str, share: float, came: Came) -> None:
 def main() -> None:
     """Print the tables."""
     twin = learned()
-    tell_costs(twin)
+    print_costs(twin)
     print(f"farm: {CAGES} cages at {TICK_S:g} s, one process")
     for name, speaks, clients in (
         ("cages alone, no new water", False, 0),
@@ -250,7 +250,7 @@ def main() -> None:
     ):
         with tempfile.TemporaryDirectory() as folder:
             share, came = asyncio.run(measured(Path(folder), twin, clients=clients, speaks=speaks))
-        tell_farm(name, share, came)
+        print_farm(name, share, came)
 
 
 main()

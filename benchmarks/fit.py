@@ -1,7 +1,7 @@
 """Learning: a Gaussian process, and the two-level NARGP that stands on it."""
 
 import numpy as np
-from _timing import ONCE, seconds, tell
+from _timing import ONCE, print_times, seconds
 
 from seacage.surrogates import NARGP, GaussianProcess
 
@@ -11,7 +11,7 @@ x = random.uniform(-1.0, 1.0, (many, 3))
 low = np.sin(3.0 * x[:, 0]) * x[:, 1]
 high = low[:few] ** 2 + 0.1 * x[:few, 2]
 
-tell(
+print_times(
     f"fit, {many} points of level 1 and {few} of level 2",
     {
         "GaussianProcess, level 1": seconds(lambda: GaussianProcess().fit(x, low), rounds=1),

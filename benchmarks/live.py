@@ -148,7 +148,7 @@ def delays(samples: Sequence[Sample], since: dict[Key, float], first: First) -> 
     return sorted(max(0.0, at - since[key]) for key in keys if (at := first(key)) is not None)
 
 
-def tell(what: str, heard: Overheard, samples: Sequence[Sample], first: First) -> None:
+def print_delays(what: str, heard: Overheard, samples: Sequence[Sample], first: First) -> None:
     """Both ends between which the truth lies."""
     for name, since in (("passing the broker", heard.said), ("knowing its commit", heard.kept)):
         found = delays(samples, since, first)
@@ -178,7 +178,7 @@ def measured(url: str, *, minutes: float, page: bool) -> None:
     twin, days = stand_in_twin(), minutes * 60.0 * SPEED / 86_400.0
     record = stand_in_field(twin.cage, days=days, buoy_s=BUOY_S, sensor_s=SENSOR_S)
     samples = [one for of in records(record) for one in of.samples()]
-    heard, watched, seen = Overheard(), Watched(), []
+    received, watched, seen = Overheard(), Watched(), []
     with ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
         twin.write(folder / "twin")
@@ -187,12 +187,12 @@ def measured(url: str, *, minutes: float, page: bool) -> None:
         words = ["--data", folder / "var", "--twin", folder / "twin", "--store", store]
         words += ["--mqtt", mqtt, "--clock", "samples", "--speed", f"{SPEED:g}"]
         said = stack.enter_context(service(words))
-        stack.enter_context(listening(mqtt, heard))
+        stack.enter_context(listening(mqtt, received))
         if page:
             seen = stack.enter_context(opened_page(f"{said['address']}#token={said['token']}"))
         watch = lambda end: asyncio.run(watching(said, watched, record.buoy.stream, end))  # noqa: E731
         with beside(watch):
-            told = published(mqtt, folder)
+            report = published(mqtt, folder)
             last = [list(of.samples())[-1] for of in records(record)]
             patient = time.monotonic() + PATIENCE_S  # what was stored last is yet to be shown
             while not watched.has_shown(last) and time.monotonic() < patient:
@@ -201,13 +201,16 @@ def measured(url: str, *, minutes: float, page: bool) -> None:
     sent = Counter((one.stream, one.t) for one in samples)
     print(f"live: {len(samples)} samples of {len(records(record))} streams in {minutes:g} min")
     print(
-        f"  acknowledged {told['acknowledged']}, stored {found.total()}, "
+        f"  acknowledged {report['acknowledged']}, stored {found.total()}, "
         f"each once: {'yes' if found == sent else 'no'}; {watched.frames} frames"
     )
-    tell("shown by a frame", heard, samples, watched.first)
+    print_delays("shown by a frame", received, samples, watched.first)
     if page:
-        tell(
-            "shown by the page", heard, samples, shown_at(seen, twin.cage, samples, heard.said).get
+        print_delays(
+            "shown by the page",
+            received,
+            samples,
+            shown_at(seen, twin.cage, samples, received.said).get,
         )
     assert found == sent, "a sample was lost, or is there twice"
 
@@ -223,11 +226,11 @@ def main() -> None:
     asks.add_argument("--minutes", type=float, default=0.05 if ONCE else 5.0)
     asks.add_argument("--page", action="store_true")
     asks.add_argument("--once", action="store_true")
-    asked = asks.parse_args()
-    if why := lacking(asked.postgres):
+    arguments = asks.parse_args()
+    if why := lacking(arguments.postgres):
         print(f"live: not measured, for {why}.")
         return
-    measured(asked.postgres, minutes=asked.minutes, page=asked.page)
+    measured(arguments.postgres, minutes=arguments.minutes, page=arguments.page)
 
 
 main()

@@ -24,7 +24,7 @@ import httpx
 import numpy as np
 from _timing import ONCE
 
-from seacage.service._auth._tokens import Tokens
+from seacage.service._auth._token_store import Tokens
 from seacage.testing import stand_in_twin
 from seacage.twin import Twin
 
@@ -99,7 +99,7 @@ def loaded(pid: int, logger: httpx.Client, reader: httpx.Client, sensors: tuple[
         alone = pool.submit(sending, logger, sensors, over)
         time.sleep(ALONE_S)
         over.set()
-        told("alone", alone.result())
+        print_times("alone", alone.result())
         over.clear()
         before, began = megabytes(pid), time.monotonic()
         beside, memory = pool.submit(sending, logger, sensors, over), pool.submit(remember)
@@ -108,13 +108,13 @@ def loaded(pid: int, logger: httpx.Client, reader: httpx.Client, sensors: tuple[
             one.result()
         took = time.monotonic() - began
         over.set()
-        told("beside the reads", beside.result())
+        print_times("beside the reads", beside.result())
         memory.result()
     print(f"  answers        {dict(seen)} in {took:.0f} s")
     print(f"  memory         {before:.0f} MB before, {max(remembered) - before:+.0f} MB at most")
 
 
-def told(what: str, seconds: list[float]) -> None:
+def print_times(what: str, seconds: list[float]) -> None:
     """Print what requests took."""
     half, late, worst = 1e3 * np.quantile(seconds, (0.5, 0.99, 1.0))
     print(f"  {what:<16} {half:.0f} ms half, {late:.0f} ms p99, {worst:.0f} ms at most")

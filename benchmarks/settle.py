@@ -3,7 +3,7 @@
 import time
 
 import numpy as np
-from _timing import ONCE, seconds, tell
+from _timing import ONCE, print_times, seconds
 
 from seacage.cage import Cage
 from seacage.conventions import Result
@@ -28,7 +28,7 @@ def company(cases: int) -> None:
     seas = random_currents(cases)
     together = seconds(lambda: settle(CAGE, seas), rounds=2) / cases
     alone = seconds(lambda: [settle(CAGE, sea) for sea in seas], rounds=2) / cases
-    tell(f"settle, per case of {cases}", {"all together": together, "one by one": alone})
+    print_times(f"settle, per case of {cases}", {"all together": together, "one by one": alone})
 
 
 def reliability(cases: int, starts: int) -> None:
@@ -50,14 +50,14 @@ def iteration() -> None:
     cases = compiled.lanes
     velocity = np.array([sea.current_velocity for sea in random_currents(cases)])
     flow = steady_flow(assembly, velocity, law="kristiansen-faltinsen")
-    balance = _balance(CAGE, np.ones(len(assembly.position), dtype=bool))
-    state = _start(CAGE, _first_shapes(assembly, flow, 1), assembly)
+    balance = _balance(assembly)
+    state = _start(assembly, _first_shapes(assembly, flow, 1))
     many, few = (
         seconds(lambda n=n: compiled.balance(assembly, flow, state, balance, iterations=n))
         for n in (7, 2)
     )
     one = np.zeros(1, dtype=np.int64)
-    alone, water = state.cases(one), flow.cases(one)
+    alone, water = state.rows(one), flow.rows(one)
     defined = seconds(lambda: nearer(assembly, water, alone, balance))
     computed = (many - few) / (5 * cases)
     print(f"one Newton iteration of {CAGE.node_count} nodes, per case of {cases}")

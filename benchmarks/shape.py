@@ -39,12 +39,12 @@ PEERS = Path(__file__).parent / "peers" / "shapes.py"
 
 def main() -> None:
     """Compare them all and print one table."""
-    asked = argparse.ArgumentParser(description=__doc__)
-    asked.add_argument("--once", action="store_true")
-    asked.add_argument("--campaign", type=Path)
-    asked.add_argument("--again", type=int, default=0)
-    asked.add_argument("--peers", type=Path)
-    options = asked.parse_args()
+    arguments = argparse.ArgumentParser(description=__doc__)
+    arguments.add_argument("--once", action="store_true")
+    arguments.add_argument("--campaign", type=Path)
+    arguments.add_argument("--again", type=int, default=0)
+    arguments.add_argument("--peers", type=Path)
+    options = arguments.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         scratch = Path(folder)
         campaign = _campaign(options.campaign, scratch)
@@ -53,7 +53,7 @@ def main() -> None:
         held = max(len(good) // 10, 2)
         print(f"{len(good) - held} cases teach, {held} judge; {campaign.law}, computed")
         if options.again:
-            _tell_floor(campaign, good[-held:][: options.again], scratch)
+            _print_floor(campaign, good[-held:][: options.again], scratch)
         race = Race(x, y, held)
         _ours(race, campaign, good)
         if options.peers:
@@ -96,9 +96,9 @@ class Race:
         fit_s = time.process_time() - began
         answer = fitted.predict(x[-self.held :], noisy=True)
         ticks = [_spent(lambda row=row: fitted.predict(row)) for row in x[-50:, None, :]]
-        self.tell(name, answer, fit_s=fit_s, tick_s=float(np.median(ticks)))
+        self.print_line(name, answer, fit_s=fit_s, tick_s=float(np.median(ticks)))
 
-    def tell(self, name: str, answer: Prediction, *, fit_s: float, tick_s: float) -> None:
+    def print_line(self, name: str, answer: Prediction, *, fit_s: float, tick_s: float) -> None:
         """Print one line; the first model's error is what all others are held against."""
         truth = self.y[-self.held :]
         missed = np.abs(answer.mean - truth)
@@ -167,8 +167,8 @@ def _peers(race: Race, environment: Path, scratch: Path) -> None:
     for columns in (6, 7):
         # Six columns are those without the period: heights in place of speeds.
         x = race.x if columns == 7 else _without_period(race.x)
-        teach, judge = slice(-race.held), slice(-race.held, None)
-        np.savez(scratch / "in.npz", x_train=x[teach], y_train=race.y[teach], x_test=x[judge])
+        teach, score = slice(-race.held), slice(-race.held, None)
+        np.savez(scratch / "in.npz", x_train=x[teach], y_train=race.y[teach], x_test=x[score])
         for method in ("ezyrb-rbf", "ezyrb-gpr"):
             name = f"{method}, current and waves, {columns} features"
             python = environment / "bin" / "python"
@@ -184,7 +184,7 @@ def _peers(race: Race, environment: Path, scratch: Path) -> None:
             mean = np.load(scratch / "out.npz")["mean"]
             spent = json.loads((scratch / "out.npz.json").read_text("utf-8"))
             unknown = np.full_like(mean, np.nan)
-            race.tell(
+            race.print_line(
                 name,
                 Prediction(mean=mean, std=unknown),
                 fit_s=spent["fit_s"],
@@ -197,7 +197,7 @@ def _without_period(x: np.ndarray) -> np.ndarray:
     return np.column_stack([x[:, :3], x[:, 6], x[:, 6:] * x[:, 4:6] / speed])
 
 
-def _tell_floor(campaign: CampaignRecord, cases: np.ndarray, scratch: Path) -> None:
+def _print_floor(campaign: CampaignRecord, cases: np.ndarray, scratch: Path) -> None:
     """Two half hours of the same sea differ by the noise of both."""
     seas = [campaign.seas[case] for case in cases]
     plan = Plan.listed(seas, seed=campaign.seed + 777, name="again")

@@ -37,14 +37,14 @@ WATCHED = 2 if ONCE else 5
 LOOK_S = 0.5 if ONCE else 2.0
 
 
-def asked(word: str, otherwise: float) -> float:
+def option(word: str, otherwise: float) -> float:
     """What the command line says after a word."""
     return float(sys.argv[sys.argv.index(word) + 1]) if word in sys.argv else otherwise
 
 
-RATE = asked("--rate", 100.0 if ONCE else 1500.0)
-MINUTES = asked("--minutes", 0.05 if ONCE else 60.0)
-JUDGED_S = 40.0 * MINUTES
+RATE = option("--rate", 100.0 if ONCE else 1500.0)
+MINUTES = option("--minutes", 0.05 if ONCE else 60.0)
+STEADY_S = 40.0 * MINUTES
 
 
 @dataclass
@@ -129,7 +129,7 @@ async def soak(place: Path) -> Soaked:
 
 def slope(memory: Sequence[tuple[float, float]]) -> tuple[float, float]:
     """Growth over the time that is judged, and its standard error [MB/h]; NaN of few looks."""
-    later = [one for one in memory if one[0] > memory[-1][0] - JUDGED_S]
+    later = [one for one in memory if one[0] > memory[-1][0] - STEADY_S]
     if len(later) < 4:
         return float("nan"), float("nan")
     parts = np.array_split(np.array(later), min(40, len(later)))
@@ -138,7 +138,7 @@ def slope(memory: Sequence[tuple[float, float]]) -> tuple[float, float]:
     return float(rate), float(np.sqrt(covariance[0, 0]))
 
 
-def told(soaked: Soaked, stored: int) -> None:
+def print_soak(soaked: Soaked, stored: int) -> None:
     """Print what was seen."""
     rate, error = slope(soaked.memory)
     print(f"{CAGES} cages, {MINUTES:g} minutes")
@@ -149,7 +149,7 @@ def told(soaked: Soaked, stored: int) -> None:
         print(f"  {what:<14} {half:.0f} ms half, {late:.0f} ms p99, {worst:.0f} ms at most")
     print(f"  memory         {soaked.memory[-1][1]:.0f} MB at the end")
     print(
-        f"  slope          {rate:+.1f} ± {error:.1f} MB/h over the last {JUDGED_S / 60:.0f} minutes"
+        f"  slope          {rate:+.1f} ± {error:.1f} MB/h over the last {STEADY_S / 60:.0f} minutes"
     )
 
 
@@ -158,4 +158,4 @@ with tempfile.TemporaryDirectory() as folder:
     result = asyncio.run(soak(file))
     with look_into(file) as session:
         ((kept,),) = session.rows("SELECT count(*) FROM sample")
-    told(result, kept)
+    print_soak(result, kept)

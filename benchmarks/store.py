@@ -11,7 +11,7 @@ from contextlib import closing, contextmanager, nullcontext
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
-from _timing import ONCE, seconds, tell
+from _timing import ONCE, print_times, seconds
 
 from seacage.records import Sample
 from seacage.service._store import _samples
@@ -51,7 +51,7 @@ def taken(place: str) -> None:
             ready = [fresh(count) for _ in range(ROUNDS + 1)]
             took = seconds(lambda r=ready, n=size: offer(store, r.pop(), n), rounds=ROUNDS)
             each[f"in batches of {size}"] = took / count
-    tell("append until the commit, per sample", each)
+    print_times("append until the commit, per sample", each)
 
 
 def checked(place: str) -> None:
@@ -69,7 +69,7 @@ def checked(place: str) -> None:
                         samples, start = fresh(COUNT), time.process_time()
                         offer(store, samples, size)
                     each.setdefault(what, []).append((time.process_time() - start) / COUNT)
-            tell(
+            print_times(
                 f"append by {size}, processor time per sample", {k: min(v) for k, v in each.items()}
             )
 
@@ -99,7 +99,7 @@ def inserted(place: str) -> None:
             ready = [[row_of("ice", one, NOON) for one in fresh(COUNT)] for _ in range(ROUNDS + 1)]
             took = seconds(lambda r=ready, n=size: insert(database, r.pop(), n), rounds=ROUNDS)
             per_row[what] = took / COUNT
-    tell("insert in one transaction, per row", per_row)
+    print_times("insert in one transaction, per row", per_row)
 
 
 def insert(database: AbstractDatabase, rows: list[Row], size: int) -> None:
@@ -130,7 +130,7 @@ def summed_up(place: str) -> None:
         of = {"stream": "depth-1", "key": "depth_m", "width_s": 600, "limit": 100_000}
         kept = seconds(lambda: store.aggregates("old", **of), rounds=3) / YEAR
         made = seconds(lambda: store.aggregates("new", **of, end=start + day), rounds=3) / 144
-    tell("aggregates, per ten minutes asked for", {"kept": kept, "from samples": made})
+    print_times("aggregates, per ten minutes asked for", {"kept": kept, "from samples": made})
     print(f"  a year of {YEAR:,} spans, kept: {kept * YEAR:.2f} s")
 
 
@@ -139,17 +139,19 @@ def read(place: str) -> None:
     with closing(open_store(place)) as store:
         store.append("ace", fresh(3000), ingested=NOON).result()
         four = {"limit": 4, "newest": True}
-        asked = {
+        body = {
             "the newest of 30 streams, one query": lambda: store.latest("ace"),
             "four of each of 30 streams, 30 queries": lambda: [
                 store.samples("ace", stream=name, **four) for name in STREAMS
             ],
         }
-        tell("read", {what: seconds(ask) for what, ask in asked.items()})
+        print_times("read", {what: seconds(ask) for what, ask in body.items()})
         pooled = seconds(lambda: store.alarm_book("ace"))
         if not place.startswith("postgres"):
             opened = seconds(lambda: look(Path(place)))
-            tell("the smallest question", {"connection kept": pooled, "opened for it": opened})
+            print_times(
+                "the smallest question", {"connection kept": pooled, "opened for it": opened}
+            )
 
 
 def look(path: Path) -> None:

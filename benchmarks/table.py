@@ -15,7 +15,7 @@ from _timing import ONCE
 from seacage.surrogates import NARGP, Disc, Table
 
 TICKS = 20_000 if ONCE else 2_000_000
-ASKED = 200 if ONCE else 20_000
+QUERIES = 200 if ONCE else 20_000
 FLOPS = 2 * 12 + 16 + 2 * 16 * 3
 """Of one tick: two axes' weights, their products, three sums of sixteen."""
 
@@ -58,11 +58,11 @@ made = time.process_time() - start
 
 x = currents(TICKS, random)
 
-exact, quick = fitted.predict(x[:ASKED]), table.predict(x[:ASKED])
+exact, quick = fitted.predict(x[:QUERIES]), table.predict(x[:QUERIES])
 error = float(np.max(np.abs(quick.mean - exact.mean) / exact.std))
 std_error = float(np.max(np.abs(quick.std / exact.std - 1.0)))
 
-by_model = spent(lambda: fitted.predict(x[:ASKED]), rounds=1) * TICKS / ASKED
+by_model = spent(lambda: fitted.predict(x[:QUERIES]), rounds=1) * TICKS / QUERIES
 by_table = spent(lambda: table.predict(x))
 noisy = spent(lambda: table.predict(x, noisy=True))
 
@@ -75,7 +75,7 @@ limit = max(moved, TICKS * FLOPS / flop_rate)
 
 print(f"table of a NARGP, {TICKS:,} ticks, CPU time on one core")
 rows = {
-    f"the model itself (from {ASKED:,} ticks)": by_model,
+    f"the model itself (from {QUERIES:,} ticks)": by_model,
     "the table": by_table,
     "the table, of a new observation": noisy,
     "making the table": made,

@@ -13,7 +13,7 @@ from seacage.testing import stand_in_twin
 from seacage.twin import Metocean, TabulatedTwin
 
 DAYS, ROWS = (2, 1000) if ONCE else (46, 43_200)
-ASKED = 100 if ONCE else 2000
+QUERIES = 100 if ONCE else 2000
 
 
 def day(index: int) -> Metocean:
@@ -40,13 +40,13 @@ for index in range(DAYS):
     by_table += time.process_time() - start
 
 start = time.process_time()
-twin.predict(day(0).rows(np.arange(ASKED)))
-by_twin = (time.process_time() - start) * DAYS * ROWS / ASKED
+twin.predict(day(0).rows(np.arange(QUERIES)))
+by_twin = (time.process_time() - start) * DAYS * ROWS / QUERIES
 
 table = tabulated.table
 print(f"a winter of {DAYS * ROWS:,} ticks, CPU time on one core")
 for name, taken in (
-    (f"the twin itself (from {ASKED:,} ticks)", by_twin),
+    (f"the twin itself (from {QUERIES:,} ticks)", by_twin),
     ("its table", by_table),
     ("making the table", made),
 ):

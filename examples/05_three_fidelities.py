@@ -49,8 +49,8 @@ print(f"Its slope errs by {rmse(exact, fitted.jacobian(x)):.3f}, of {np.std(exac
 
 # Ten more readings, taken in without learning anything below them anew.
 more = random.uniform(-1.0, 1.0, (10, 2))
-said = measured(more) + noise * random.standard_normal(len(more))
-updated = fitted.updated(more, said)
+outcome = measured(more) + noise * random.standard_normal(len(more))
+updated = fitted.updated(more, outcome)
 assert updated.own[:2] == fitted.own[:2]
 before, after = (rmse(measured(x), model.predict(x).mean) for model in (fitted, updated))
 print(f"Ten more readings bring the RMSE from {before:.4f} to {after:.4f}.")

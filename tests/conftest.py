@@ -26,7 +26,7 @@ checking.install("seacage")
 import hypothesis  # noqa: E402
 import pytest  # noqa: E402
 
-from collected import MARKS, shuffle  # noqa: E402
+from collection import MARKS, shuffle  # noqa: E402
 from outside import PROGRAMS, program, serving, wait_for  # noqa: E402
 
 hypothesis.settings.register_profile("seacage", deadline=None)

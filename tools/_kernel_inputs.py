@@ -6,12 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from seacage.dynamics._kernel import _library as k
-from seacage.dynamics._kernel import _march as m
-from seacage.dynamics._kernel import _march_inputs as c
-from seacage.dynamics._kernel._balance import Balancing
+from seacage.dynamics._kernel import _structs as c
+from seacage.dynamics._kernel import kernel
+from seacage.dynamics._kernel._march_inputs import WAVE_KINDS
 from seacage.dynamics._kernel._sparsity import Pattern, _pattern
-from seacage.dynamics._kernel._struct import pointer
+from seacage.dynamics._kernel._structs import by_name, pointer
 
 GRAPHS = 200
 """So many structures, each met with many numbers: to plan an elimination takes long."""
@@ -39,7 +38,7 @@ def march(library: ctypes.CDLL, rng: np.random.Generator) -> None:
     net = a_netting(rng, parts["panels"], lanes)
     sea = a_sea(rng, lanes)
     refreshes, every = int(rng.integers(0, 4)), int(rng.integers(0, 3))
-    schedule = m._Schedule.filled(
+    schedule = c.ScheduleStruct.filled(
         time_step=float(rng.choice([0.002, 0.1, 0.0, 1e30, np.nan])),
         ramp=float(rng.choice([0.0, 0.1, 60.0])),
         first=0,
@@ -85,7 +84,7 @@ def a_body(rng: np.random.Generator, nodes: int) -> tuple[Any, dict[str, int]]:
         "ground_stiffness": (parts["grounds"],),
         "cylinder_series": (8,),
     }
-    body = c.Body.filled(
+    body = c.BodyStruct.filled(
         nodes=nodes,
         bar_ends=indices(rng, nodes, parts["bars"], 2),
         bend_nodes=indices(rng, nodes, parts["bends"], 3),
@@ -105,7 +104,7 @@ def a_body(rng: np.random.Generator, nodes: int) -> tuple[Any, dict[str, int]]:
 
 def a_netting(rng: np.random.Generator, panels: int, lanes: int) -> Any:
     """Under any law, and any growth."""
-    return c.Netting.filled(
+    return c.NettingStruct.filled(
         kind=int(rng.integers(0, 3)),
         law=numbers(rng, panels, 3, lanes),
         drag_factor=numbers(rng, panels, lanes),
@@ -117,27 +116,27 @@ def a_netting(rng: np.random.Generator, panels: int, lanes: int) -> Any:
 def a_sea(rng: np.random.Generator, lanes: int) -> Any:
     """Waves and currents of any size."""
     components, levels = int(rng.integers(0, 5)), int(rng.integers(1, 4))
-    return c.SeaTables.filled(
+    return c.SeaStruct.filled(
         components=components,
         levels=levels,
         depth=float(numbers(rng)),
         level_z=numbers(rng, levels),
         current=numbers(rng, levels, 2, lanes),
-        **{name: numbers(rng, components, lanes, kind=k) for name, k in c._WAVE_KINDS.items()},
+        **{name: numbers(rng, components, lanes, kind=k) for name, k in WAVE_KINDS.items()},
     )
 
 
 def a_state(rng: np.random.Generator, nodes: int, parts: dict[str, int], lanes: int) -> Any:
     """Anywhere, at any speed."""
     shapes = {
-        **dict.fromkeys((name for name, _ in m._State._fields_), (nodes, 3)),
+        **dict.fromkeys((name for name, _ in c.StateStruct._fields_), (nodes, 3)),
         "drag": (nodes,),
         **dict.fromkeys(("elevation", "rise"), (parts["floats"],)),
         "panel_current": (parts["panels"], 3),
         **dict.fromkeys(("panel_drag", "panel_lift"), (parts["panels"],)),
         "lost_at": (),
     }
-    return m._State.filled(**{n: numbers(rng, *shape, lanes) for n, shape in shapes.items()})
+    return c.StateStruct.filled(**{n: numbers(rng, *shape, lanes) for n, shape in shapes.items()})
 
 
 def a_record(nodes: int, bridles: int, lanes: int, samples: int) -> Any:
@@ -150,7 +149,7 @@ def a_record(nodes: int, bridles: int, lanes: int, samples: int) -> Any:
         for how, kind in kinds.items()
     }
     shapes = {"positions": (nodes, 3), "tensions": (bridles,), "elevations": (), "loads": (3,)}
-    return m._Record.filled(
+    return c.RecordStruct.filled(
         **account,
         counted=np.zeros(1, np.int64),
         sampled=np.zeros(1, np.int64),
@@ -160,6 +159,16 @@ def a_record(nodes: int, bridles: int, lanes: int, samples: int) -> Any:
 
 PARTS = {"bars": 2, "bends": 3, "panels": 4, "cylinders": 2, "floats": 1, "springs": 1}
 """Nodes of each."""
+
+NODES = {
+    "bars": "bar_ends",
+    "bends": "bend_nodes",
+    "panels": "panel_corners",
+    "cylinders": "cylinder_ends",
+    "floats": "float_nodes",
+    "springs": "spring_nodes",
+}
+"""C's names of them."""
 
 
 @lru_cache(maxsize=GRAPHS)
@@ -180,39 +189,53 @@ def settle(library: ctypes.CDLL, rng: np.random.Generator) -> None:
     nodes, graph, pattern = a_graph(int(rng.integers(GRAPHS)))
     structure = a_structure(rng, nodes, graph)
     panels, bars = len(graph["panels"]), len(graph["bars"])
-    flow = k._Flow.filled(
-        *(doubles(rng, *shape, lanes) for shape in ((3,), (panels, 6), ())),
+    flow = c.FlowStruct.filled(
+        direction=doubles(rng, 3, lanes),
+        panel=doubles(rng, panels, 6, lanes),
+        pipe_pressure=doubles(rng, lanes),
     )
-    relaxation = k._Relaxation.filled(
-        *(doubles(rng, size) for size in (nodes, bars, bars)),
-        *(0.5, 0.8, 0.9, *(int(n) for n in rng.integers((1, 0, 0), (3, 4, 4)))),
+    patience, steps, rounds = (int(n) for n in rng.integers((1, 0, 0), (3, 4, 4)))
+    relaxation = c.RelaxationStruct.filled(
+        inverse_mass=doubles(rng, nodes),
+        soft_rate=doubles(rng, bars),
+        true_rate=doubles(rng, bars),
+        tolerance=0.5,
+        progress=0.8,
+        most_damping=0.9,
+        patience=patience,
+        steps=steps,
+        rounds=rounds,
     )
-    position, velocity = doubles(rng, nodes, 3, lanes), doubles(rng, nodes, 3, lanes)
-    relaxing = k._Relaxing.filled(
-        *(position, velocity, doubles(rng, bars, lanes)),
-        *(doubles(rng, lanes) for _ in range(4)),
-        an_open(rng, lanes),
-    )
+    shapes = dict.fromkeys(("position", "velocity"), (nodes, 3))
+    shapes |= dict.fromkeys(("carried", "tension"), (bars,))
+    relaxing = a_case(rng, c.RelaxingStruct, shapes, lanes)
     library.seacage_relax(
         *map(ctypes.byref, (structure, flow, relaxation, relaxing)),
         *(pointer(room) for room in (np.empty((bars, lanes)), np.empty((nodes, 3, lanes)))),
     )
-    balance = k._Balance.filled(
-        *(rng.choice([0.0, 1.0], nodes), doubles(rng, bars), 0.5, 1.0, 1e-6, 1e-3, 1e6),
-        int(rng.integers(0, 4)),
+    balance = c.BalanceStruct.filled(
+        free=rng.choice([0.0, 1.0], nodes),
+        true_rate=doubles(rng, bars),
+        tolerance=0.5,
+        reach=1.0,
+        least_barrier=1e-6,
+        least_shift=1e-3,
+        most_shift=1e6,
+        iterations=int(rng.integers(0, 4)),
     )
-    shapes = {"position": (nodes, 3), "tension": (bars,)}
-    balancing = k._Balancing.filled(
-        *(
-            an_open(rng, lanes)
-            if name == "residual"
-            else doubles(rng, *shapes.get(name, ()), lanes)
-            for name in Balancing.__slots__
-        )
-    )
-    plan = k._Pattern.filled(*(getattr(pattern, name) for name in Pattern.__slots__))
-    bench = k.kernel()._bench(nodes, bars, pattern)
+    balancing = a_case(rng, c.BalancingStruct, shapes, lanes)
+    plan = c.PatternStruct.filled(**by_name(pattern))
+    bench = kernel().bench(nodes, bars, pattern)
     library.seacage_balance(*map(ctypes.byref, (structure, flow, plan, balance, balancing, bench)))
+
+
+def a_case(
+    rng: np.random.Generator, kind: Any, shapes: dict[str, tuple[int, ...]], lanes: int
+) -> Any:
+    """Cases anywhere on their way, most of them with something left to do."""
+    names = [name for name, _ in kind._fields_]
+    arrays = {name: doubles(rng, *shapes.get(name, ()), lanes) for name in names}
+    return kind.filled(**arrays | {"residual": an_open(rng, lanes)})
 
 
 def doubles(rng: np.random.Generator, *shape: int) -> np.ndarray:
@@ -227,17 +250,20 @@ def an_open(rng: np.random.Generator, lanes: int) -> np.ndarray:
 
 def a_structure(rng: np.random.Generator, nodes: int, graph: dict[str, np.ndarray]) -> Any:
     """What the kernel of the equilibria needs to know."""
-
-    def of(part: str, *shape: int) -> np.ndarray:
-        return doubles(rng, len(graph[part]), *shape)
-
-    return k._Assembly.filled(
-        nodes,
-        *(len(part) for part in graph.values()),
-        *graph.values(),
-        doubles(rng, nodes),
-        *(of("bars"), of("bars"), rng.choice([0.0, -np.inf], len(graph["bars"]))),
-        *(of("bends"), of("panels", 4), of("cylinders")),
-        *(of("floats") for _ in range(3)),
-        *(of("springs", 3) for _ in range(3)),
+    shapes = {
+        "weight": (nodes,),
+        **dict.fromkeys(("bar_length", "bar_stiffness"), (len(graph["bars"]),)),
+        "bend_stiffness": (len(graph["bends"]),),
+        "panel_share": (len(graph["panels"]), 4),
+        "cylinder_width": (len(graph["cylinders"]),),
+    }
+    floats, springs = len(graph["floats"]), len(graph["springs"])
+    shapes |= dict.fromkeys(("float_stiffness", "float_draft", "float_height"), (floats,))
+    shapes |= dict.fromkeys(("spring_place", "spring_stiffness", "spring_preload"), (springs, 3))
+    return c.AssemblyStruct.filled(
+        nodes=nodes,
+        **{name: len(part) for name, part in graph.items()},
+        **{NODES[name]: part for name, part in graph.items()},
+        bar_least=rng.choice([0.0, -np.inf], len(graph["bars"])),
+        **{name: doubles(rng, *shape) for name, shape in shapes.items()},
     )

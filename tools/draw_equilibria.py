@@ -26,8 +26,8 @@ SHOWN = 1.3
 def followed(speeds, shape, law):
     """Shapes in currents towards the north: the first as settle seeks, then from the one before."""
     assembly = assemble(CAGE)
-    balance = _balance(CAGE, ~assembly.fixed)
-    shapes, state = [], _start(CAGE, shape[None].copy(), assembly)
+    balance = _balance(assembly)
+    shapes, state = [], _start(assembly, shape[None].copy())
     with ThreadPoolExecutor(1) as pool:
         for speed in speeds:
             flow = steady_flow(assembly, np.array([[0.0, speed]]), law=law)

@@ -26,7 +26,7 @@ from PIL import Image
 from playwright.sync_api import Page, sync_playwright
 
 from seacage.records import Sample
-from seacage.service._auth._tokens import Tokens
+from seacage.service._auth._token_store import Tokens
 from seacage.service._http._api import Service, create_app
 from seacage.service._live._cage import LiveCage
 from seacage.service._live._metrics import Metrics
@@ -119,10 +119,10 @@ def lived(made: Demonstration, end: datetime, names: tuple[str, ...]) -> Iterato
             while clock.at < end:
                 start, clock.at = clock.at, min(clock.at + STEP, end)
                 for name, cage in cages.items():
-                    heard_until = min(clock.at, end - FARM[name].silent)
-                    heard = samples_of(replay, FARM[name], start, heard_until)
-                    if heard_until > start and heard:
-                        asyncio.run_coroutine_threadsafe(cage.take(heard), loop).result()
+                    received_until = min(clock.at, end - FARM[name].silent)
+                    received = samples_of(replay, FARM[name], start, received_until)
+                    if received_until > start and received:
+                        asyncio.run_coroutine_threadsafe(cage.take(received), loop).result()
                 while any(cage.snapshot.state.t < clock.at for cage in cages.values()):
                     time.sleep(0.02)
             seen(cages.values(), loop)
@@ -220,12 +220,12 @@ def main() -> None:
     ask = argparse.ArgumentParser(description=__doc__)
     ask.add_argument("--data", type=Path, default=Path("var"), help="where `make run` keeps things")
     ask.add_argument("--only", choices=("calm", "peak"))
-    asked = ask.parse_args()
-    made = prepare_demonstration(asked.data / "demonstration")
-    if asked.only != "peak":
+    arguments = ask.parse_args()
+    made = prepare_demonstration(arguments.data / "demonstration")
+    if arguments.only != "peak":
         with lived(made, CALM, ("ace",)) as shown:
             draw_calm(shown)
-    if asked.only != "calm":
+    if arguments.only != "calm":
         with lived(made, PEAK, tuple(FARM)) as shown:
             draw_peak(shown)
 

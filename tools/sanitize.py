@@ -33,13 +33,13 @@ COMPILERS = (("gcc", "libasan.so"), ("clang", "libclang_rt.asan-x86_64.so"))
 
 def main() -> int:
     """Build, then run tests and inputs in processes that the sanitizers watch."""
-    asked = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    asked.add_argument("--inputs", type=int, default=3000, help="random ones (%(default)s)")
-    asked.add_argument("--seed", type=int, default=0, help="of the first (%(default)s)")
-    asked.add_argument("--library", type=Path, help=argparse.SUPPRESS)
-    asked.add_argument("--tests", action="store_true", help=argparse.SUPPRESS)
-    asked.add_argument("--at", type=Path, help=argparse.SUPPRESS)
-    options = asked.parse_args()
+    arguments = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    arguments.add_argument("--inputs", type=int, default=3000, help="random ones (%(default)s)")
+    arguments.add_argument("--seed", type=int, default=0, help="of the first (%(default)s)")
+    arguments.add_argument("--library", type=Path, help=argparse.SUPPRESS)
+    arguments.add_argument("--tests", action="store_true", help=argparse.SUPPRESS)
+    arguments.add_argument("--at", type=Path, help=argparse.SUPPRESS)
+    options = arguments.parse_args()
     if options.library is None:
         return watch(sys.argv[1:])
     if options.tests:
@@ -83,16 +83,16 @@ def built(library: Path) -> tuple[Path, Path] | None:
     """The library and the runtime that must be loaded before it, by the first compiler able."""
     for compiler, runtime in COMPILERS:
         command = [compiler, *FLAGS, *sorted(KERNEL.glob("*.c")), "-o", library, "-lm"]
-        asked = [compiler, f"-print-file-name={runtime}"]
+        query = [compiler, f"-print-file-name={runtime}"]
         try:
             subprocess.run(command, check=True, capture_output=True)
-            told = subprocess.run(asked, check=True, capture_output=True, text=True)
+            result = subprocess.run(query, check=True, capture_output=True, text=True)
         except (OSError, subprocess.CalledProcessError) as reason:
             words = getattr(reason, "stderr", None) or str(reason).encode()
             sys.stderr.write(f"{compiler}: {words.decode()}\n")
             continue
-        if Path(told.stdout.strip()).is_absolute():
-            return library, Path(told.stdout.strip()).resolve()
+        if Path(result.stdout.strip()).is_absolute():
+            return library, Path(result.stdout.strip()).resolve()
     return None
 
 

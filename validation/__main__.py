@@ -24,7 +24,7 @@ def main() -> int:
 def _compute(asked: argparse.Namespace) -> int:
     jobs = chosen(quick=asked.quick, only=asked.only)
     whole = not (asked.quick or asked.only)
-    table = computed(jobs, workers=asked.workers, told=_tell)
+    table = computed(jobs, workers=asked.workers, report=_print_progress)
     page = asked.table or (ROOT / "docs" if whole else ROOT / "var") / "validation.md"
     _write(page, markdown(table))
     for path, written in ((asked.json, as_json), (asked.csv, as_csv)):
@@ -55,7 +55,7 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _tell(title: str, done: int, total: int) -> None:
+def _print_progress(title: str, done: int, total: int) -> None:
     print(f"{done}/{total} {title}", flush=True)
 
 

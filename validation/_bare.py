@@ -16,6 +16,7 @@ from seacage.dynamics._parts._assembly import (
     Floats,
     Ground,
     Panels,
+    Scales,
     Springs,
 )
 from seacage.dynamics._physics._motion import NetLaw
@@ -56,6 +57,8 @@ def chain(
     bars = count if axial_stiffness else 0
     return Assembly(
         cage_nodes=count + 1,
+        scales=Scales(length=1.0, mesh=1.0, force=1.0),
+        collar=NO_INDEX,
         position=position,
         weight=np.zeros(count + 1) + weight,
         mass=mass,

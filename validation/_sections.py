@@ -24,7 +24,7 @@ MODULES = (
 )
 """Modules of this folder, each with a tuple ``SECTIONS``."""
 
-Told = Callable[[str, int, int], None]
+Report = Callable[[str, int, int], None]
 """Called after each section with its title, how many are done and how many there are."""
 
 
@@ -51,7 +51,7 @@ def rows_of(module: str, index: int) -> list[Row]:
     return list(sections_of(module)[index].rows())
 
 
-def computed(jobs: Sequence[tuple[str, int]], *, workers: int = 1, told: Told) -> Table:
+def computed(jobs: Sequence[tuple[str, int]], *, workers: int = 1, report: Report) -> Table:
     """The table of some sections, shared among processes."""
     found: dict[tuple[str, int], list[Row]] = {}
     with ProcessPoolExecutor(workers) as pool:
@@ -61,7 +61,7 @@ def computed(jobs: Sequence[tuple[str, int]], *, workers: int = 1, told: Told) -
         for done, future in enumerate(as_completed(running), 1):
             module, index = job = running[future]
             found[job] = future.result()
-            told(sections_of(module)[index].title, done, len(jobs))
+            report(sections_of(module)[index].title, done, len(jobs))
     table: dict[str, tuple[Section, list[Row]]] = {}
     for module, index in jobs:
         section = sections_of(module)[index]

@@ -73,8 +73,8 @@ def _section(section: Section, rows: Sequence[Row]) -> str:
     lines = [f"## {section.title}", "", section.about, ""]
     lines += [_line(COLUMNS), _line(["---"] * len(COLUMNS))]
     lines += [_line(_cells(row, notes)) for row in rows]
-    told = [f"{number}. {note}" for number, note in enumerate(notes, 1)]
-    return "\n".join([*lines, "", *told, ""] if notes else [*lines, ""])
+    numbered = [f"{number}. {note}" for number, note in enumerate(notes, 1)]
+    return "\n".join([*lines, "", *numbered, ""] if notes else [*lines, ""])
 
 
 def _cells(row: Row, notes: Sequence[str]) -> list[str]:

@@ -157,41 +157,41 @@ def _compared(what: str, ours: History, other: History, *, std: float) -> Iterat
     load = np.linalg.norm(other.net_force.mean, axis=1)
     drag = np.linalg.norm(ours.net_force.mean - other.net_force.mean, axis=1)
     moved = np.linalg.norm(ours.node.mean - other.node.mean, axis=-1)
-    asked = "as asked of the simulator"
+    text = "as asked of the simulator"
     yield _row(
         f"{what}: largest change of a bridle's mean tension",
         "%",
         100.0 * float(mean.max()),
         1.0,
-        f"1 %, {asked}; of at least 1 kN",
+        f"1 %, {text}; of at least 1 kN",
     )
     yield _row(
         f"{what}: largest change of the standard deviation of a bridle's tension",
         "%",
         100.0 * float(spread.max()),
         std,
-        f"{std:g} %, {asked}; of at least a twentieth of the case's largest",
+        f"{std:g} %, {text}; of at least a twentieth of the case's largest",
     )
     yield _row(
         f"{what}: largest change of the net's mean load",
         "%",
         100.0 * float((drag / np.maximum(load, floor)).max()),
         1.0,
-        f"1 %, {asked}; of at least 1 kN",
+        f"1 %, {text}; of at least 1 kN",
     )
     yield _row(
         f"{what}: change of mean position that 99 of 100 nodes stay below",
         "cm",
         100.0 * float(np.quantile(moved, 0.99)),
         2.0,
-        f"2 cm, {asked}",
+        f"2 cm, {text}",
     )
     yield _row(
         f"{what}: largest change of a node's mean position",
         "cm",
         100.0 * float(moved.max()),
         2.0,
-        f"2 cm, {asked}",
+        f"2 cm, {text}",
         must_hold=False,
         note=FLUTTER,
     )
@@ -225,7 +225,7 @@ def _finer_mesh() -> Iterator[Row]:
         1.0,
         "1 %: panels that average the flow's angle",
     )
-    told = f"{short.sum()} of the seas"
+    text = f"{short.sum()} of the seas"
     yield _row(
         f"{what}: change of the standard deviation of a bridle's tension, of the case's largest, "
         f"mean over the seas of Tp above {SHORT_PERIOD:g} s",
@@ -235,7 +235,7 @@ def _finer_mesh() -> Iterator[Row]:
         "10 %: the tails of their spectra hold the waves of the next row",
     )
     yield _row(
-        f"{what}: the same for seas of shorter waves ({told})",
+        f"{what}: the same for seas of shorter waves ({text})",
         "%",
         float(spread[short].max()) if short.any() else 0.0,
         10.0,

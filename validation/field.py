@@ -156,7 +156,7 @@ def _inside() -> Iterator[Row]:
         for solidity in (0.16, 0.21, 0.25, 0.30)
     }
     every = [value for several in reductions.values() for value in several]
-    told = "; ".join(
+    message = "; ".join(
         f"solidity {solidity:g}: {min(several):.0f} to {max(several):.0f}"
         for solidity, several in reductions.items()
     )
@@ -174,7 +174,7 @@ def _inside() -> Iterator[Row]:
             tolerance=1.0,
             reason="1 %: the probe's place is not printed",
             must_hold=False,
-            detail=told,
+            detail=message,
             note="Løland's wake by the drag of three laws at 0.5 m/s; the solidity of the measured "
             "cages is not in the stored text. The reference cage, at 0.21, loses less.",
         )

@@ -31,7 +31,7 @@ def rows_of_case(case: Case) -> Iterator[Row]:
 
 def _found(case: Case) -> Found:
     found: Found = {}
-    for law, seas in _asked(case).items():
+    for law, seas in _seas_by_law(case).items():
         for number, subject in enumerate(case.subjects):
             if isinstance(subject, Panel):
                 several: list[Any] = [PANEL_LAWS[law]] * len(seas)
@@ -41,13 +41,13 @@ def _found(case: Case) -> Found:
     return found
 
 
-def _asked(case: Case) -> dict[MovingLaw, list[SeaState]]:
-    asked: dict[MovingLaw, list[SeaState]] = {}
+def _seas_by_law(case: Case) -> dict[MovingLaw, list[SeaState]]:
+    requests: dict[MovingLaw, list[SeaState]] = {}
     for measured in case.measured:
         for law in _laws(case, measured):
-            if measured.at.sea not in asked.setdefault(law, []):
-                asked[law].append(measured.at.sea)
-    return asked
+            if measured.at.sea not in requests.setdefault(law, []):
+                requests[law].append(measured.at.sea)
+    return requests
 
 
 def _laws(case: Case, measured: Measured) -> list[MovingLaw]:
@@ -96,7 +96,7 @@ def _span(numbers: list[float]) -> Span:
 
 
 def _section(case: Case) -> Section:
-    laws = _asked(case)
+    laws = _seas_by_law(case)
     simulated = any(law not in LAWS or any(sea.hs for sea in laws[law]) for law in laws)
     of_panel = isinstance(case.subjects[0], Panel)
     slow = simulated or isinstance(case.subjects[0], Structure)

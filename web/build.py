@@ -46,8 +46,8 @@ def system_node() -> str | None:
     node = shutil.which("node")
     if node is None or shutil.which("npm") is None:
         return None
-    told = subprocess.run([node, "--version"], capture_output=True, text=True, check=False)
-    version = told.stdout.strip().lstrip("v").split(".")[0]
+    done = subprocess.run([node, "--version"], capture_output=True, text=True, check=False)
+    version = done.stdout.strip().lstrip("v").split(".")[0]
     return node if version.isdigit() and int(version) >= _LEAST_NODE else None
 
 
@@ -95,8 +95,8 @@ def _run(name: str, command: list[str | Path]) -> None:
         command, cwd=WEB, env=os.environ | quiet, capture_output=True, text=True, check=False
     )
     if done.returncode:
-        told = (done.stderr or done.stdout).strip().splitlines()
-        words = " ".join(line.removeprefix("npm error").strip() for line in told[:_WORDS])
+        lines = (done.stderr or done.stdout).strip().splitlines()
+        words = " ".join(line.removeprefix("npm error").strip() for line in lines[:_WORDS])
         raise PageError(f"{name} failed: {words or done.returncode}. Mend it, then `make page`.")
 
 

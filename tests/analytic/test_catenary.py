@@ -185,7 +185,7 @@ def test_any_line_has_its_catenary_unless_it_lies_loose(
 
 
 @pytest.mark.parametrize(
-    ("line", "friction", "said"),
+    ("line", "friction", "message"),
     [
         ((0.0, 5.0, 9.0, 1e6, 3.0), None, "x_span (m) = 0 must be above 0"),
         ((4.0, 5.0, -9.0, 1e6, 3.0), None, "length (m) = -9 must be above 0"),
@@ -197,7 +197,7 @@ def test_any_line_has_its_catenary_unless_it_lies_loose(
         ((4.0, 5.0, 9.1, 1e6, 3.0), 0.5, "9.1 m of line across 4 m and up 5 m hangs plumb"),
     ],
 )
-def test_a_line_that_cannot_be_is_refused(line, friction, said):
+def test_a_line_that_cannot_be_is_refused(line, friction, message):
     with pytest.raises(InputError) as caught:
         catenary(*line, seabed_friction=friction)
-    assert said in str(caught.value)
+    assert message in str(caught.value)

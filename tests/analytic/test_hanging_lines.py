@@ -17,6 +17,7 @@ from seacage.dynamics._parts._assembly import (
     Floats,
     Ground,
     Panels,
+    Scales,
     Springs,
 )
 from seacage.dynamics._physics._loads import SteadyFlow, bar_tension, nodal_force
@@ -38,6 +39,8 @@ def chain(position, *, length, axial_stiffness, weight):
     nodal[[0, -1]] /= 2.0
     return Assembly(
         cage_nodes=count + 1,
+        scales=Scales(length=1.0, mesh=1.0, force=1.0),
+        collar=NO_INDEX,
         position=position,
         weight=nodal,
         mass=-nodal / GRAVITY,

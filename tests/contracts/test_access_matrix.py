@@ -11,9 +11,9 @@ from fastapi import APIRouter
 from websockets.exceptions import ConnectionClosedError
 from websockets.sync.client import connect
 
+from running_service import buoy, eventually, running
 from seacage.service._auth._limits import Limits
 from seacage.service._http import _api
-from serviced import buoy, eventually, running
 
 MINE, OTHER = "quebec", "zulu"
 PLENTY = Limits(requests_per_s=1e6, burst=1e6, refusals_per_s=1e6, refusal_burst=1e6)
@@ -118,7 +118,7 @@ def done(service):
 
 
 @pytest.mark.parametrize(("call", "asker"), TRIED)
-def test_whoever_may_not_is_told_nothing_and_changes_nothing(service, askers, call, asker):
+def test_whoever_may_not_learns_nothing_and_changes_nothing(service, askers, call, asker):
     method, path, query, body = request_of(call)
     if call == "post /session":
         body = {"token": "guess"}

@@ -5,9 +5,9 @@ import hypothesis
 import jsonschema
 import pytest
 
+from running_service import buoy, depth, running
 from seacage.service._auth._limits import Limits
-from serviced import buoy, depth, running
-from sized import sized
+from sizes import pick_size
 
 # Schemathesis does what Hypothesis warns of.
 pytestmark = pytest.mark.filterwarnings("ignore:Do not use the `random` module")
@@ -91,9 +91,9 @@ def can(operation, mode):
 
 @pytest.mark.slow
 @pytest.mark.long
-@pytest.mark.timeout(sized(400, 7200))
+@pytest.mark.timeout(pick_size(400, 7200))
 def test_calls_made_well_and_badly_are_answered_as_documented(service, operations):
-    least = sized(150, 10_000)
+    least = pick_size(150, 10_000)
     # A few more each: some calls have few ways to differ.
     each = 1 + least * 21 // (20 * len(ways(operations)))
     assert fuzzed(service, operations, each) >= least
@@ -153,8 +153,8 @@ def test_every_example_is_what_its_call_takes_or_gives_with_all_that_belongs_the
                 {"$ref": f"#/components/schemas/{name}"} | described
             )
             assert [error.message for error in checker.iter_errors(example)] == [], name
-            asked = schema.get("additionalProperties") is False
-            assert asked or schema["properties"].keys() == example.keys(), name
+            query = schema.get("additionalProperties") is False
+            assert query or schema["properties"].keys() == example.keys(), name
 
 
 def test_the_example_of_a_sample_is_taken(service):

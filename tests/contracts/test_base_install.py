@@ -10,7 +10,7 @@ from seacage.cage import Cage
 
 EXTRA = {
     "xarray", "pandas", "zarr", "h5netcdf", "h5py", "dask", "distributed", "threadpoolctl",
-    "matplotlib", "jax", "optax", "psycopg", "pyarrow", "rosbags",
+    "matplotlib", "jinja2", "jax", "optax", "psycopg", "pyarrow", "rosbags",
 }  # fmt: skip
 BARE = f"""
 import sys
@@ -49,6 +49,7 @@ RECORD = "time,current_speed_m_s,current_to_deg\n2020-03-01T00:00:00Z,0.4,80\n"
         ("serve", "--demo", "--data", "var", "--port", 0),
         ("field", "import", "buoy.csv", "buoy.nc"),
         ("train", "--campaign", ".", "--out", "twin"),
+        ("study", "paper", "--campaign", ".", "--out", "study"),
     ],
     ids=lambda words: words[0],
 )

@@ -7,6 +7,8 @@ HEAVY = {"fastapi", "numpy", "pydantic", "rich", "scipy", "structlog", "uvicorn"
 
 
 def test_the_command_line_loads_nothing_that_computes() -> None:
-    tell = "import sys, seacage.service; print(*sys.modules)"
-    told = subprocess.run([sys.executable, "-c", tell], check=True, capture_output=True, text=True)
-    assert not HEAVY & set(told.stdout.split())
+    script = "import sys, seacage.service; print(*sys.modules)"
+    result = subprocess.run(
+        [sys.executable, "-c", script], check=True, capture_output=True, text=True
+    )
+    assert not HEAVY & set(result.stdout.split())

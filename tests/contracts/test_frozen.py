@@ -14,22 +14,22 @@ import numpy as np
 import pytest
 
 from outside import program
+from running_service import HandClock
 from seacage.cage import Cage
 from seacage.campaigns import Plan, run_campaign
 from seacage.conventions import InputError
 from seacage.ocean import SeaState
 from seacage.records import FieldRecord, Sample, read_campaign
 from seacage.service._auth._sessions import Sessions
-from seacage.service._auth._tokens import Tokens
+from seacage.service._auth._token_store import Tokens
 from seacage.service._live._answers import sample_of, state_of
 from seacage.service._live._cage import LiveCage
 from seacage.service._live._metrics import Metrics
-from seacage.service._live._past import state_at
+from seacage.service._live._past import Past
 from seacage.service._publish._spool import Spool
 from seacage.service._settings import read_settings
 from seacage.service._store._store import open_store
 from seacage.twin import AlarmBook, Twin
-from serviced import HandClock
 
 FROZEN = Path(__file__).parents[1] / "frozen" / "0.1.0"
 EXPECTED = json.loads((FROZEN / "expected.json").read_text("utf-8"))
@@ -50,17 +50,19 @@ def store(frozen):
 
 def test_the_twin_gives_the_same_means():
     twin = Twin.read(FROZEN / "twin")
-    for said in EXPECTED["twin"]:
-        sea = SeaState(current_speed=said["current_speed_m_s"], current_to=said["current_to_deg"])
+    for outcome in EXPECTED["twin"]:
+        sea = SeaState(
+            current_speed=outcome["current_speed_m_s"], current_to=outcome["current_to_deg"]
+        )
         answer = twin.predict(sea)
         # Other processors sum in other orders: loads to a millinewton, depths to a nanometre.
         near = {"rtol": 1e-7, "atol": 1e-6}
-        assert bool(answer.in_domain[0]) == said["in_domain"]
-        np.testing.assert_allclose(answer.bridle_tension.mean[0], said["bridle_n"], **near)
-        np.testing.assert_allclose(answer.sensor.mean[0], said["sensor"], **near)
-        np.testing.assert_allclose(answer.sensor_low.mean[0], said["sensor_low"], **near)
-        np.testing.assert_allclose(answer.node_position[0, -1], said["bottom_m"], **near)
-        assert answer.volume_fraction[0] == pytest.approx(said["volume_fraction"], rel=1e-7)
+        assert bool(answer.in_domain[0]) == outcome["in_domain"]
+        np.testing.assert_allclose(answer.bridle_tension.mean[0], outcome["bridle_n"], **near)
+        np.testing.assert_allclose(answer.sensor.mean[0], outcome["sensor"], **near)
+        np.testing.assert_allclose(answer.sensor_low.mean[0], outcome["sensor_low"], **near)
+        np.testing.assert_allclose(answer.node_position[0, -1], outcome["bottom_m"], **near)
+        assert answer.volume_fraction[0] == pytest.approx(outcome["volume_fraction"], rel=1e-7)
 
 
 def test_the_twin_knows_in_which_water_its_sensors_trained_it():
@@ -82,7 +84,7 @@ def test_the_store_has_the_same_samples_and_flags(store):
 def test_the_past_of_the_store_is_what_was_live_then(store):
     twin = Twin.read(FROZEN / "twin")
     for look, live in EXPECTED["store"]["shown"].items():
-        state, answered = state_at(twin, store, "ace", datetime.fromisoformat(look))
+        state, answered = Past(twin, store, "ace").state_at(datetime.fromisoformat(look))
         found = state_of("ace", twin, answered, state).model_dump(mode="json")
         # 0.1.0 forgot at a restart that the buoy had stood still for hours.
         assert found["valid"] == live["valid"]
@@ -143,9 +145,9 @@ def test_a_dump_of_postgresql_has_the_same_samples(postgres):
     store = open_store(place)
     try:
         found = store.samples("ace", limit=10_000)
-        said = EXPECTED["postgres"]
-        assert [sample_of(one).model_dump(mode="json") for one in found] == said["samples"]
-        check_aggregates(store, said["aggregates"])
+        expected = EXPECTED["postgres"]
+        assert [sample_of(one).model_dump(mode="json") for one in found] == expected["samples"]
+        check_aggregates(store, expected["aggregates"])
     finally:
         store.close()
 
@@ -166,9 +168,9 @@ def test_the_cage_is_the_same():
 
 def test_the_campaign_opens_for_reading_and_is_not_gone_on_with():
     record = read_campaign(FROZEN / "campaign.zarr")
-    said = EXPECTED["campaign"]
-    np.testing.assert_array_equal(record.bridle_tension, said["bridle_n"])
-    np.testing.assert_array_equal(np.asarray(record.node_position)[:, -1], said["bottom_m"])
+    expected = EXPECTED["campaign"]
+    np.testing.assert_array_equal(record.bridle_tension, expected["bridle_n"])
+    np.testing.assert_array_equal(np.asarray(record.node_position)[:, -1], expected["bottom_m"])
     plan, cage = Plan.read(FROZEN / "plan.json"), Cage.named("ace").altered(mesh={"spokes": 8})
     assert len(plan) == len(record)
     with pytest.raises(InputError, match="it can be read, but not gone on with"):
@@ -181,31 +183,34 @@ def test_the_field_record_is_the_same():
     record = FieldRecord.read(FROZEN / "field")
     streams = {one.stream: one for one in (record.buoy, *record.sensors.values())}
     assert streams.keys() == EXPECTED["field"].keys()
-    for name, said in EXPECTED["field"].items():
+    for name, outcome in EXPECTED["field"].items():
         one = streams[name]
-        assert len(one) == said["count"]
-        assert [str(t) for t in one.time[:3]] == said["times"]
-        for key, first in said["first"].items():
+        assert len(one) == outcome["count"]
+        assert [str(t) for t in one.time[:3]] == outcome["times"]
+        for key, first in outcome["first"].items():
             np.testing.assert_array_equal(one.values[key][:3], np.array(first, dtype=float))
 
 
 def test_tokens_and_sessions_open_what_they_opened(frozen):
-    tokens, said = Tokens(frozen / "access"), EXPECTED["tokens"]
-    assert {one.name: list(one.scopes) for one in tokens.all()} == said["scopes"]
-    assert tokens.grant(said["tokens"]["night"]).who == "night"
-    assert tokens.grant(said["tokens"]["gone"]) is None
-    sessions, until = Sessions(tokens, lasting_s=60.0), datetime.fromisoformat(said["cookie_until"])
-    assert sessions.find(said["cookie"], until.replace(day=1)) is not None
-    assert sessions.find(said["cookie"], until) is None
+    tokens, outcome = Tokens(frozen / "access"), EXPECTED["tokens"]
+    assert {one.name: list(one.scopes) for one in tokens.all()} == outcome["scopes"]
+    assert tokens.grant(outcome["tokens"]["night"]).who == "night"
+    assert tokens.grant(outcome["tokens"]["gone"]) is None
+    sessions, until = (
+        Sessions(tokens, lasting_s=60.0),
+        datetime.fromisoformat(outcome["cookie_until"]),
+    )
+    assert sessions.find(outcome["cookie"], until.replace(day=1)) is not None
+    assert sessions.find(outcome["cookie"], until) is None
 
 
 def test_the_spool_still_holds_what_waits(frozen):
-    said = EXPECTED["spool"]
-    spool = Spool(frozen / "spool.sqlite", to=said["to"])
+    expected = EXPECTED["spool"]
+    spool = Spool(frozen / "spool.sqlite", to=expected["to"])
     try:
-        assert spool.place("buoy.csv") == said["place"]
+        assert spool.place("buoy.csv") == expected["place"]
         waiting = spool.next(100, live_after=0)
-        for one, other in zip(waiting, said["waiting"], strict=True):
+        for one, other in zip(waiting, expected["waiting"], strict=True):
             assert (one.stream, one.t.isoformat().replace("+00:00", "Z"), one.seq) == (
                 other["stream"],
                 other["t"],

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from safetensors.numpy import load, save
 
-from mutated import cut, flipped
+from broken_files import cut, flipped
 from seacage.conventions import ModelError
 from seacage.testing import stand_in_twin
 from seacage.twin import Twin

@@ -7,6 +7,8 @@ HEAVY = {"dask", "h5py", "jax", "matplotlib", "pandas", "pyarrow", "xarray", "za
 
 
 def test_the_service_and_the_twin_load_nothing_that_a_barge_lacks() -> None:
-    tell = "import sys, seacage.service, seacage.twin; print(*sys.modules)"
-    told = subprocess.run([sys.executable, "-c", tell], check=True, capture_output=True, text=True)
-    assert not HEAVY & set(told.stdout.split())
+    script = "import sys, seacage.service, seacage.twin; print(*sys.modules)"
+    result = subprocess.run(
+        [sys.executable, "-c", script], check=True, capture_output=True, text=True
+    )
+    assert not HEAVY & set(result.stdout.split())

@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from running_service import HandClock
 from seacage.conventions import Flag, Origin
 from seacage.records import Record, check_record, instant, moment, read_record
 from seacage.service._live._cage import LiveCage
 from seacage.service._live._metrics import Metrics
 from seacage.service._store._store import Store
 from seacage.testing import stand_in_twin
-from serviced import HandClock
 
 NOON = datetime(2020, 2, 1, 12, tzinfo=UTC)
 

@@ -5,7 +5,7 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from mutated import MAPS, MUTATIONS, TABLES, WHOLE, cut, flipped, stored_streams
+from broken_files import MAPS, MUTATIONS, TABLES, WHOLE, cut, flipped, stored_streams
 from seacage.conventions import Flag, SeacageError
 from seacage.records import read_record
 
@@ -58,18 +58,18 @@ def broken_tables(folder, seeds):
         path = folder / name
         path.write_bytes(content)
         try:
-            said = outcome(good[name], path, MAPS.get(name), whole=mutation in WHOLE)
+            output = outcome(good[name], path, MAPS.get(name), whole=mutation in WHOLE)
         except Exception as error:
             error.add_note(f"seed {seed}: {mutation.__name__} of {name}:\n{content[:600]!r}")
             raise
-        tally[mutation.__name__, said] += 1
+        tally[mutation.__name__, output] += 1
     return tally
 
 
 def test_hundreds_of_broken_tables_are_refused_or_flagged(tmp_path):
     tally = broken_tables(tmp_path, range(BLOCK))
     assert {name for name, _ in tally} == {mutation.__name__ for mutation in MUTATIONS}
-    assert {said for _, said in tally} == {"refused", "flagged", "as it was"}
+    assert {output for _, output in tally} == {"refused", "flagged", "as it was"}
 
 
 @pytest.mark.slow

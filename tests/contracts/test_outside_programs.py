@@ -22,6 +22,6 @@ def test_the_broker_delivers_what_was_published(mosquitto: int) -> None:
 
 
 def test_the_database_server_is_new_enough_for_the_farm_store(postgres: str) -> None:
-    asked = ["psql", postgres, "--tuples-only", "--command", "show server_version_num"]
-    answer = subprocess.run(asked, check=True, capture_output=True, text=True)
+    words = ["psql", postgres, "--tuples-only", "--command", "show server_version_num"]
+    answer = subprocess.run(words, check=True, capture_output=True, text=True)
     assert int(answer.stdout) >= 150000

@@ -10,10 +10,10 @@ def test_the_tests_of_the_pages_scripts_pass(node: Path, pytestconfig: pytest.Co
     web = pytestconfig.rootpath / "web"
     tests = sorted(web.glob("test/**/*.test.js"))
     assert tests
-    told = subprocess.run(
+    result = subprocess.run(
         [node, "--test", *tests], cwd=web, capture_output=True, text=True, check=False
     )
-    assert not told.returncode, told.stdout[-4000:]
+    assert not result.returncode, result.stdout[-4000:]
 
 
 def test_node_reads_every_script_of_the_page(node: Path, pytestconfig: pytest.Config) -> None:
@@ -21,5 +21,5 @@ def test_node_reads_every_script_of_the_page(node: Path, pytestconfig: pytest.Co
     assert scripts
     for script in scripts:
         read = [node, "--input-type=module", "--check"]
-        told = subprocess.run(read, input=script.read_bytes(), capture_output=True, check=False)
-        assert not told.returncode, f"{script.name}: {told.stderr.decode()}"
+        result = subprocess.run(read, input=script.read_bytes(), capture_output=True, check=False)
+        assert not result.returncode, f"{script.name}: {result.stderr.decode()}"

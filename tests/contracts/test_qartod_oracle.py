@@ -172,9 +172,9 @@ def test_attenuated_signals_agree_where_each_bucket_holds_one_reading(series):
         )
     )
     # Ours waits until a whole window has passed; theirs says nothing where readings are few.
-    said = (seconds - seconds[0] >= period) & (theirs != Flag.NOT_EVALUATED)
-    np.testing.assert_array_equal(flags[said], theirs[said])
-    assert np.all(flags[~said] == Flag.GOOD)
+    checked = (seconds - seconds[0] >= period) & (theirs != Flag.NOT_EVALUATED)
+    np.testing.assert_array_equal(flags[checked], theirs[checked])
+    assert np.all(flags[~checked] == Flag.GOOD)
     assert Flag.SUSPECT in flags or Flag.FAIL in flags
 
 

@@ -29,7 +29,7 @@ def test_the_winter_of_2018_is_read_whole_and_good(shared):
     assert np.max(record.values["current_to_deg"]) < 360.0
 
 
-def test_the_gaps_of_2016_are_said(shared):
+def test_the_gaps_of_2016_are_reported(shared):
     record = read_record(shared / "data" / "buoy_current_s08010_2016.csv")
     # of 429 rows the first after each of the 40 silences of more than 3 h
     assert counted(record, "current_speed_m_s") == {"GOOD": 389, "SUSPECT": 40}
@@ -65,15 +65,15 @@ def test_a_profilers_bin_is_read_once_its_zone_is_declared(shared):
     pytest.importorskip("xarray")
     path = shared / "data" / "adcp_awac_snippet.nc"
     found = inspect_file(path)
-    said = "Suspicious: its attribute 'comments' says 'times PDT', and times in CF are UTC."
-    assert said in found.findings
+    finding = "Suspicious: its attribute 'comments' says 'times PDT', and times in CF are UTC."
+    assert finding in found.findings
     assert 'time_zone = "?"  # "UTC" if CF holds, "-07:00" if the attribute' in found.map_text
     assert found.open_questions == 3
     for question in ("origin", "time_zone", "range_m"):
         assert f'{question} = "?"' in found.map_text
     # Its header says PDT, CF says UTC: 7 h, half a tide and more, that nobody guesses.
-    doubt = re.escape("its attribute 'comments' says 'times PDT', and times in CF are UTC")
-    with pytest.raises(RecordError, match=doubt):
+    message = re.escape("its attribute 'comments' says 'times PDT', and times in CF are UTC")
+    with pytest.raises(RecordError, match=message):
         read_record(path, columns=NetcdfMap(origin=Origin.MEASURED, range_m=5.4))
     choice = NetcdfMap(origin=Origin.MEASURED, range_m=5.4, time_zone="-07:00")
     record = read_record(path, columns=choice)

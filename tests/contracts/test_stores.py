@@ -18,8 +18,8 @@ from seacage.service._store._adaptations import Adaptation, Refold
 from seacage.service._store._aggregates import renew_rested
 from seacage.service._store._database._checksum import with_checksum
 from seacage.service._store._database._rows import DAY_US, microseconds
+from seacage.service._store._days import delete, rows_of_day
 from seacage.service._store._integrity._verify import verify
-from seacage.service._store._retention import delete, rows_of_day
 from seacage.service._store._store import StoreError, open_store
 from seacage.twin import Action, AlarmEvent
 from stores import NOON, put, sample, schema
@@ -139,8 +139,8 @@ def test_what_a_transaction_lost_is_not_compared_with_when_it_comes_again(store,
         failing.setattr(_samples, "mark", fail)
         with pytest.raises(StoreError):
             put(store, sample(2, 24.0), limits=DEFAULT_LIMITS)
-    asked = store.append("ace", [sample(3, 24.0)], ingested=NOON, limits=DEFAULT_LIMITS)
-    (jump,) = asked.result(timeout=20).samples
+    future = store.append("ace", [sample(3, 24.0)], ingested=NOON, limits=DEFAULT_LIMITS)
+    (jump,) = future.result(timeout=20).samples
     assert jump.flags == {"depth_m": Flag.SUSPECT}
 
 
@@ -237,7 +237,7 @@ def test_a_late_sample_for_a_day_that_has_left_is_checked_alone(store):
 
 def withdraw(store, clock_minutes):
     clock, count = NOON + timedelta(minutes=clock_minutes), 0
-    span = {"clock": clock, "now": clock, "limits": DEFAULT_LIMITS}
+    span = {"clock": clock, "now": clock}
     while changed := store.withdraw("ace", "depth-1", **span).result(timeout=20):
         count += changed
     return count
@@ -256,8 +256,8 @@ def test_what_is_withdrawn_is_kept_and_counts_no_more_until_it_is_sent_again(sto
     renewed(store)
     assert [one.count for one in aggregates(store, width_s=600)] == [2]
     # Nothing is compared with them, and what is sent again takes their place.
-    asked = store.append("ace", [sample(2, 14.1)], ingested=NOON, limits=DEFAULT_LIMITS)
-    assert asked.result(timeout=20).samples[0].flags == {"depth_m": Flag.GOOD}
+    future = store.append("ace", [sample(2, 14.1)], ingested=NOON, limits=DEFAULT_LIMITS)
+    assert future.result(timeout=20).samples[0].flags == {"depth_m": Flag.GOOD}
     assert put(store, sample(180, 14.2), limits=DEFAULT_LIMITS) == (True,)
     assert put(store, sample(180, 14.2), limits=DEFAULT_LIMITS) == (False,)
     again = store.samples("ace", limit=9)[3]
@@ -283,7 +283,7 @@ def test_what_was_withdrawn_by_a_clock_that_was_wrong_itself_comes_back(store):
     assert {int(one.flags["depth_m"]) for one in store.samples("ace", limit=9)} == {4}
     assert store.latest("ace") == {}
     clock, now = NOON - timedelta(days=365 * 20), NOON + timedelta(minutes=181)
-    span = {"clock": clock, "now": now, "limits": DEFAULT_LIMITS}
+    span = {"clock": clock, "now": now}
     assert store.reinstate("ace", "depth-1", **span).result(timeout=20) == 6
     assert store.reinstate("ace", "depth-1", **span).result(timeout=20) == 0
     renewed(store)
@@ -335,10 +335,10 @@ def test_samples_of_all_ages_find_a_place(store):
     assert store.samples("ace", limit=9) == ages
 
 
-def test_many_who_ask_at_once_are_each_told_of_their_own(store):
-    asked = [store.append("ace", [sample(k % 10)], ingested=NOON) for k in range(30)]
-    told = [one.result(timeout=20).new for one in asked]
-    assert told == [(k < 10,) for k in range(30)]
+def test_many_who_ask_at_once_each_get_their_own(store):
+    futures = [store.append("ace", [sample(k % 10)], ingested=NOON) for k in range(30)]
+    report = [one.result(timeout=20).new for one in futures]
+    assert report == [(k < 10,) for k in range(30)]
 
 
 def test_readers_do_not_wait_for_the_writer(store):
@@ -455,8 +455,8 @@ def check_aggregates(store):
     for key in ("current_speed_m_s", "current_east_m_s", "current_north_m_s"):
         for width_s in (60, 600):
             read = aggregates(store, key=key, width_s=width_s, stream="buoy-1")
-            told = [(a.t.timestamp(), a.count, a.mean, a.least, a.most) for a in read]
-            assert told == expected(stored, key, width_s)
+            rows = [(a.t.timestamp(), a.count, a.mean, a.least, a.most) for a in read]
+            assert rows == expected(stored, key, width_s)
             few = aggregates(store, key=key, width_s=width_s, stream="buoy-1", limit=2)
             assert few == read[:2]
 
@@ -482,13 +482,15 @@ def test_a_direction_has_no_mean_and_the_refusal_says_what_has(store):
         aggregates(store, key="current_to_deg", stream="buoy-1")
 
 
-@pytest.mark.parametrize(("asked", "said"), [({"key": "salt"}, "salt"), ({"width_s": 61}, "61 s")])
-def test_what_is_not_aggregated_is_refused(store, asked, said):
-    with pytest.raises(InputError, match=said):
-        aggregates(store, **asked)
+@pytest.mark.parametrize(
+    ("query", "message"), [({"key": "salt"}, "salt"), ({"width_s": 61}, "61 s")]
+)
+def test_what_is_not_aggregated_is_refused(store, query, message):
+    with pytest.raises(InputError, match=message):
+        aggregates(store, **query)
 
 
-def test_the_spans_asked_for_begin_within_the_bounds(store):
+def test_the_spans_requested_begin_within_the_bounds(store):
     put(store, *map(sample, range(40)))
     span = {"start": NOON + timedelta(minutes=15), "end": NOON + timedelta(minutes=30)}
     for _ in range(2):
@@ -707,8 +709,8 @@ def test_a_closed_store_takes_nothing_and_says_so(store):
 
 
 def test_a_sample_that_nobody_waits_for_any_more_is_stored_all_the_same(store):
-    asked = store.append("ace", [sample()], ingested=NOON)
-    asked.cancel()
+    future = store.append("ace", [sample()], ingested=NOON)
+    future.cancel()
     put(store, sample(1))
     assert len(store.samples("ace", limit=9)) == 2
 

@@ -34,7 +34,7 @@ from seacage.campaigns import (
 from seacage.ocean import SeaState
 from seacage.records import Sample
 from seacage.service._auth._sessions import Sessions
-from seacage.service._auth._tokens import Tokens
+from seacage.service._auth._token_store import Tokens
 from seacage.service._live._answers import sample_of, state_of
 from seacage.service._live._cage import LiveCage
 from seacage.service._live._metrics import Metrics

@@ -12,9 +12,9 @@ def certificate(tmp_path_factory):
         pytest.skip("needs openssl, to make a certificate")
     folder = tmp_path_factory.mktemp("certificate")
     made, key = folder / "certificate.pem", folder / "key.pem"
-    asked = ["req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256", "-nodes"]
+    command = ["req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256", "-nodes"]
     named = ["-days", "2", "-subj", "/CN=localhost", "-addext", "subjectAltName=IP:127.0.0.1"]
     subprocess.run(
-        [openssl, *asked, *named, "-out", made, "-keyout", key], check=True, capture_output=True
+        [openssl, *command, *named, "-out", made, "-keyout", key], check=True, capture_output=True
     )
     return made, key

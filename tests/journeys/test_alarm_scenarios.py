@@ -16,18 +16,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from assessed import Assessed
 from damaged import ACE, DAMAGES, damaged_field, kept_answers, settled_answers
 from seacage.campaigns import Event, Plan, TruthParameters, run_campaign
 from seacage.ocean import SeaState
 from seacage.records import CampaignRecord, FieldRecord, Record, Sample
 from seacage.twin import Action, AlarmEvent, Training, alarm_text, train
+from twin_harness import TwinHarness
 
 pytestmark = pytest.mark.timeout(600)
 
 COARSE = ACE.altered(mesh={"ring_depths_m": [0.0, 7.0, 15.0, 23.0], "spokes": 16})
 START = datetime(2020, 1, 18, tzinfo=UTC)
-TAUGHT, KNOWN, QUIET = 20.0, 22.5, 27.0
+TRAINED, KNOWN, QUIET = 20.0, 22.5, 27.0
 """Days that teach the twin, by which its usual errors are known, and after a quiet week."""
 
 TICK = timedelta(minutes=15)
@@ -40,7 +40,7 @@ class Sea:
     hidden: TruthParameters
     campaign: CampaignRecord
     whole: FieldRecord
-    known: Assessed
+    known: TwinHarness
 
     def damaged(self, damage: str) -> FieldRecord:
         """What the same sensors would have said of a damaged cage."""
@@ -57,12 +57,12 @@ def sea(tmp_path_factory: pytest.TempPathFactory) -> Sea:
     return Sea(hidden, campaign, whole, _known(campaign, whole))
 
 
-def _known(campaign: CampaignRecord, whole: FieldRecord) -> Assessed:
+def _known(campaign: CampaignRecord, whole: FieldRecord) -> TwinHarness:
     """A twin taught by a field, after some quiet days of it."""
-    taught = _cut(whole, START, _at(TAUGHT))
-    training = Training(high_fidelity_points=60, days=TAUGHT, restarts=0, mean_s=600.0)
-    known = Assessed(train(COARSE, campaign, taught, training=training))
-    _play(known, whole, TAUGHT, KNOWN)
+    trained = _cut(whole, START, _at(TRAINED))
+    training = Training(high_fidelity_points=60, days=TRAINED, restarts=0, mean_s=600.0)
+    known = TwinHarness(train(COARSE, campaign, trained, training=training))
+    _play(known, whole, TRAINED, KNOWN)
     return known
 
 
@@ -105,12 +105,12 @@ def _samples(field: FieldRecord, start: float, end: float) -> Iterator[Sample]:
     return merge(*(one.samples() for one in streams), key=lambda sample: sample.t)
 
 
-def _play(watch: Assessed, field: FieldRecord, start: float, end: float) -> None:
+def _play(watch: TwinHarness, field: FieldRecord, start: float, end: float) -> None:
     count = round((_at(end) - _at(start)) / TICK)
     watch.play(_samples(field, start, end), (_at(start) + n * TICK for n in range(count)))
 
 
-def _gone_on(known: Assessed, field: FieldRecord, days: float) -> Assessed:
+def _gone_on(known: TwinHarness, field: FieldRecord, days: float) -> TwinHarness:
     """From the quiet days on, in another field."""
     watch = copy(known)
     watch.journal = []
@@ -118,12 +118,12 @@ def _gone_on(known: Assessed, field: FieldRecord, days: float) -> Assessed:
     return watch
 
 
-def _told(watch: Assessed) -> list[str]:
+def _raised_by_fault(watch: TwinHarness) -> list[str]:
     """The alarms that were raised, but for those that a spring tide raises by itself."""
     return [name for name in watch.raised if name not in ("volume.net", "domain.input")]
 
 
-def _delay(watch: Assessed, alarm: str) -> timedelta:
+def _delay(watch: TwinHarness, alarm: str) -> timedelta:
     (raised,) = (line for line in watch.journal if line.alarm == alarm and _new(line))
     return raised.t - _at(KNOWN)
 
@@ -154,8 +154,8 @@ def test_the_kept_answers_are_those_of_the_damaged_cage(damage: str) -> None:
 @pytest.mark.slow
 def test_a_quiet_week_raises_nothing(sea: Sea) -> None:
     watch = _gone_on(sea.known, sea.whole, QUIET - KNOWN)
-    assert _told(sea.known) + _told(watch) == []
-    assert QUIET - TAUGHT >= 7.0
+    assert _raised_by_fault(sea.known) + _raised_by_fault(watch) == []
+    assert QUIET - TRAINED >= 7.0
 
 
 @pytest.mark.slow
@@ -173,7 +173,7 @@ def test_a_sensor_that_fails_raises_its_alarm_and_no_other(
     sea: Sea, words: str, days: float, alarm: str
 ) -> None:
     watch = _gone_on(sea.known, _with(sea.whole, words), days)
-    assert _told(watch) == [alarm]
+    assert _raised_by_fault(watch) == [alarm]
     assert watch.book.alarms[alarm].active
     assert alarm_text(watch.book.alarms[alarm], watch.policy).title
 
@@ -181,12 +181,12 @@ def test_a_sensor_that_fails_raises_its_alarm_and_no_other(
 @pytest.mark.slow
 def test_a_parted_bridle_raises_its_alarm_and_no_other_within_a_tide(sea: Sea) -> None:
     watch = _gone_on(sea.known, sea.damaged("parted"), 1.0)
-    assert _told(watch) == ["bridle.bridle-8"]
+    assert _raised_by_fault(watch) == ["bridle.bridle-8"]
     assert _delay(watch, "bridle.bridle-8") < timedelta(hours=13)
 
 
 @pytest.mark.slow
 def test_a_large_hole_raises_the_net_s_alarm_and_no_other_within_days(sea: Sea) -> None:
     watch = _gone_on(sea.known, sea.damaged("torn"), 2.0)
-    assert _told(watch) == ["net.net"]
+    assert _raised_by_fault(watch) == ["net.net"]
     assert _delay(watch, "net.net") < timedelta(days=2)

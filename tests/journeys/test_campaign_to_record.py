@@ -227,14 +227,14 @@ def test_a_job_array_gives_the_same_bytes_as_one_run(whole: Path, tmp_path: Path
     seacage = Path(sys.executable).with_name("seacage")
     words = ["campaign", "--plan", "plan.json", "--cage", "cage.toml"]
     words += ["--ramp", "5", "--spin-up", "10"]
-    told = subprocess.run(
+    result = subprocess.run(
         [seacage, "campaign", "slurm", "--tasks", "2", *words],
         cwd=tmp_path,
         capture_output=True,
         text=True,
         check=True,
     )
-    (tmp_path / "job.sh").write_text(told.stdout)
+    (tmp_path / "job.sh").write_text(result.stdout)
     path = f"{seacage.parent}{os.pathsep}{os.environ['PATH']}"
     for task in ("1", "0"):
         environment = {**os.environ, "PATH": path, "SLURM_ARRAY_TASK_ID": task}
@@ -281,6 +281,6 @@ def test_the_low_fidelity_underestimates_what_the_virtual_field_shows(
     low = run_campaign(SIXTEEN, Plan.listed(seas), tmp_path / "low", workers=2, method="settle")
     rest = rest_shape(SIXTEEN)
     for sensor in SIXTEEN.depth_sensors:
-        said = field.record.sensors[sensor.name].values["depth_m"]
+        reading = field.record.sensors[sensor.name].values["depth_m"]
         lifted = low.node_position[:, sensor.node, 2] - rest[sensor.node, 2]
-        assert 0.0 < lifted.mean() < np.mean(-said - rest[sensor.node, 2])
+        assert 0.0 < lifted.mean() < np.mean(-reading - rest[sensor.node, 2])

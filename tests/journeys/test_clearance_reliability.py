@@ -32,27 +32,27 @@ def unseen():
     )
 
 
-def brier(judged: Reliability) -> float:
-    return float(np.mean((judged.p - judged.happened) ** 2))
+def brier(reliability: Reliability) -> float:
+    return float(np.mean((reliability.p - reliability.happened) ** 2))
 
 
 @pytest.mark.slow
 @pytest.mark.timeout(600)
 def test_of_a_hundred_points_foretold_to_be_too_near_so_many_are(twin, unseen):
-    judged = score_points(twin, unseen)
-    for count, foretold, happened in judged.table(bins=5):
+    scores = score_points(twin, unseen)
+    for count, foretold, happened in scores.table(bins=5):
         # Points of one shape err together, so fewer than a hundred say little.
         if count >= 100:
             assert happened == pytest.approx(foretold, abs=0.1)
-    assert judged.happened.mean() == pytest.approx(judged.p.mean(), abs=0.03)
+    assert scores.happened.mean() == pytest.approx(scores.p.mean(), abs=0.03)
 
 
 @pytest.mark.slow
 @pytest.mark.timeout(600)
 def test_of_a_hundred_paths_foretold_to_come_too_near_so_many_do(twin, unseen):
-    judged = score_paths(twin, unseen)
-    assert judged.happened.mean() == pytest.approx(judged.p.mean(), abs=0.05)
-    for count, foretold, happened in judged.table(bins=3):
+    scores = score_paths(twin, unseen)
+    assert scores.happened.mean() == pytest.approx(scores.p.mean(), abs=0.05)
+    for count, foretold, happened in scores.table(bins=3):
         if count >= 60:
             assert happened == pytest.approx(foretold, abs=0.15)
 

@@ -43,28 +43,28 @@ def served(settings, certificate):
     command = [*SEACAGE, "serve", "--config", settings, "--json"]
     with subprocess.Popen([str(word) for word in command], stdout=subprocess.PIPE) as process:
         try:
-            said = json.loads(process.stdout.readline())
+            answer = json.loads(process.stdout.readline())
             trust = ssl.create_default_context(cafile=certificate[0])
-            with httpx.Client(base_url=said["address"], verify=trust) as client:
+            with httpx.Client(base_url=answer["address"], verify=trust) as client:
                 wait_for(lambda: client.get("/readyz").raise_for_status())
-                yield said, client
+                yield answer, client
         finally:
             process.kill()
 
 
 @pytest.mark.slow
 def test_a_farm_is_served_as_its_file_says(settings, certificate, tmp_path):
-    with served(settings, certificate) as (said, client):
-        assert said["address"].startswith("https://")
-        assert said["cages"] == ["north", "south"]
-        admin = {"Authorization": f"Bearer {said['admin_token']}"}
+    with served(settings, certificate) as (outcome, client):
+        assert outcome["address"].startswith("https://")
+        assert outcome["cages"] == ["north", "south"]
+        admin = {"Authorization": f"Bearer {outcome['admin_token']}"}
         cages = client.get("/api/v1/cages", headers=admin).json()["cages"]
         assert [cage["name"] for cage in cages] == ["north", "south"]
-        answer = client.post("/session", json={"token": said["admin_token"]})
+        answer = client.post("/session", json={"token": outcome["admin_token"]})
         assert "Secure" in answer.headers["set-cookie"]
         assert client.get("/api/v1/cages/south/state").is_success
     kept = (tmp_path / "data" / "tokens.jsonl").read_text()
-    assert said["admin_token"] not in kept
+    assert outcome["admin_token"] not in kept
     assert '"who": "first start"' in (tmp_path / "data" / "audit.jsonl").read_text()
     with served(settings, certificate) as (again, client):
         assert "admin_token" not in again, "it is shown once"

@@ -21,7 +21,7 @@ SMALL = replace(COARSE, shackle=COARSE.shackle[:1], depth_sensor=COARSE.depth_se
 pytestmark = pytest.mark.slow
 
 
-def unheard(stage, done, total):
+def refuse_again(stage, done, total):
     assert stage in {"rescaling", "null case", "fouling"}, f"{stage} was made again"
 
 
@@ -84,7 +84,7 @@ def test_the_numbers_behind_the_page_can_be_read_by_a_program(study):
 
 def test_a_second_study_simulates_nothing_again_and_says_the_same(study, folder):
     page = study.report.read_bytes()
-    again = fidelity_study(folder, windows=120, seed=3, workers=1, progress=unheard)
+    again = fidelity_study(folder, windows=120, seed=3, workers=1, progress=refuse_again)
     assert again.report.read_bytes() == page
 
 
@@ -97,9 +97,9 @@ def test_the_shell_studies_a_field_that_is_there(study, field, tmp_path):
         patch.setattr("seacage.service._logs.begin_logs", lambda _: None)
         result = CliRunner().invoke(app, [str(word) for word in words], catch_exceptions=False)
     assert result.exit_code == 0, result.stderr
-    told = json.loads(result.stdout)
-    assert told["origin"] == "virtual field"
-    assert [one["finding"] for one in told["claims"]] == [one.finding for one in study.claims]
+    answer = json.loads(result.stdout)
+    assert answer["origin"] == "virtual field"
+    assert [one["finding"] for one in answer["claims"]] == [one.finding for one in study.claims]
 
 
 def test_a_field_that_is_not_virtual_or_of_other_hidden_parameters_is_refused(field, tmp_path):

@@ -13,7 +13,7 @@ from datetime import datetime, timedelta
 import pytest
 from websockets.sync.client import connect
 
-from brokered import broker, talking
+from mqtt_broker import broker, talking
 from seacage.service._store._store import open_store
 from seacage.testing import stand_in_field, stand_in_twin
 from stores import schema
@@ -82,9 +82,9 @@ def committed(talker, count):
     """When the commit of each sample was known, until all are."""
     at = {}
     while len(at) < count:
-        topic, told = talker.hears(seconds=60)
+        topic, report = talker.hears(seconds=60)
         now, stream = time.monotonic(), topic.split("/")[-2]
-        for one in told if isinstance(told, list) else [told]:
+        for one in report if isinstance(report, list) else [report]:
             at.setdefault((stream, datetime.fromisoformat(one["t"])), now)
     return at
 
@@ -109,14 +109,14 @@ def test_a_published_record_is_in_postgresql_once_and_on_the_page_within_a_secon
         ) as service,
     ):
         talker.listen("seacage/v1/site/ace/+/ack")
-        said = json.loads(service.stdout.readline())
+        answer = json.loads(service.stdout.readline())
         spool = ("--to", mosquitto.url, "--spool", tmp_path / "spool")
         with (
-            watching(said) as watcher,
+            watching(answer) as watcher,
             started("publish", tmp_path / "field", *spool, *SPEED) as publisher,
         ):
             at = committed(talker, sent.total())
-            told = json.loads(publisher.stdout.read())
+            summary = json.loads(publisher.stdout.read())
             end = time.monotonic() + 30.0
             while None in (seen := [watcher.first(*key) for key in at]):
                 assert time.monotonic() < end, "a sample was never shown"
@@ -124,7 +124,7 @@ def test_a_published_record_is_in_postgresql_once_and_on_the_page_within_a_secon
         store = open_store(place)
         stored = Counter((one.stream, one.t) for one in store.samples("ace", limit=10_000))
         store.close()
-    assert told["acknowledged"] == sent.total()
+    assert summary["acknowledged"] == sent.total()
     assert stored == sent
     late = sorted(shown - known for shown, known in zip(seen, at.values(), strict=True))
     # Of nine in ten, as a machine that runs other tests beside may stall now and then; the

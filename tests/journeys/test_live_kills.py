@@ -11,13 +11,13 @@ from datetime import UTC, datetime, timedelta
 import httpx
 import pytest
 
-from brokered import broker, talking
 from killable import served
+from mqtt_broker import broker, talking
 from seacage.service._store._database._checksum import with_checksum
 from seacage.service._store._database._open import database_at
 from seacage.service._store._store import open_store
 from seacage.testing import stand_in_twin
-from sized import sized
+from sizes import pick_size
 
 pytestmark = pytest.mark.timeout(900)
 
@@ -61,13 +61,13 @@ def by_http(client, acknowledged):
     return work
 
 
-def by_mqtt(talker, said):
+def by_mqtt(talker, sent):
     """A plain logger: what the broker has taken, the broker keeps."""
 
     def work(end):
         while not end.is_set():
-            talker.say("seacage/v1/site/ace/depth-2/obs", reading(len(said)))
-            said.append(len(said))
+            talker.say("seacage/v1/site/ace/depth-2/obs", reading(len(sent)))
+            sent.append(len(sent))
             time.sleep(0.005)
 
     return work
@@ -82,12 +82,12 @@ def leaving_what_was_learned(service):
         service.client.post("samples", json={"samples": [sample]}).raise_for_status()
         time.sleep(0.3)
     service.until("alarms", is_raised)
-    said = {"why": "We look.", "seconds": None}
-    service.client.post(f"alarms/{ALARM}/acknowledge", json=said).raise_for_status()
+    body = {"why": "We look.", "seconds": None}
+    service.client.post(f"alarms/{ALARM}/acknowledge", json=body).raise_for_status()
 
 
-def is_raised(told):
-    return any(one["id"] == ALARM and one["active"] for one in told["alarms"])
+def is_raised(answer):
+    return any(one["id"] == ALARM and one["active"] for one in answer["alarms"])
 
 
 def remembered(service):
@@ -113,13 +113,13 @@ def stored(place):
 
 @pytest.mark.mosquitto
 @pytest.mark.long
-@pytest.mark.timeout(sized(900, 7200))
+@pytest.mark.timeout(pick_size(900, 7200))
 def test_a_service_killed_while_it_is_fed_keeps_every_acknowledged_sample_once_and_its_alarms(
     tmp_path,
 ):
     stand_in_twin().write(tmp_path / "twin")
     place, moment = tmp_path / "data" / "samples.sqlite", random.Random(0)
-    acknowledged, said = [], []
+    acknowledged, outcome = [], []
     with (
         broker(tmp_path / "broker") as mosquitto,
         talking(mosquitto.port) as talker,
@@ -132,8 +132,8 @@ def test_a_service_killed_while_it_is_fed_keeps_every_acknowledged_sample_once_a
         before = remembered(service)
         assert before[0]["active"]
         assert before[0]["acknowledged"]
-        with meanwhile(by_http(service.client, acknowledged), by_mqtt(talker, said)):
-            for _ in range(sized(25, 500)):
+        with meanwhile(by_http(service.client, acknowledged), by_mqtt(talker, outcome)):
+            for _ in range(pick_size(25, 500)):
                 time.sleep(moment.uniform(0.1, 1.5))
                 promised = len(acknowledged)
                 service.kill()
@@ -142,15 +142,16 @@ def test_a_service_killed_while_it_is_fed_keeps_every_acknowledged_sample_once_a
                 assert len(http) % TOGETHER == 0, "half a batch is there"
                 service.start()
                 assert remembered(service) == before
-        last = ("depth-2", said[-1])
+        last = ("depth-2", outcome[-1])
         service.until(
-            "latest", lambda told: last in [(one["stream"], one["seq"]) for one in told["samples"]]
+            "latest",
+            lambda report: last in [(one["stream"], one["seq"]) for one in report["samples"]],
         )
     http, mqtt = stored(place)
     assert acknowledged
     assert http == list(range(len(http)))
     assert len(http) in {len(acknowledged), len(acknowledged) + TOGETHER}, "one was in flight"
-    assert mqtt == list(range(len(said)))
+    assert mqtt == list(range(len(outcome)))
 
 
 A_MONTH_S = 30 * 86_400
@@ -174,7 +175,7 @@ def test_a_service_with_a_month_on_its_disk_is_soon_live_again(
         service.kill()
         began = time.monotonic()
         service.start()
-        service.until("state", lambda told: told["valid"])
+        service.until("state", lambda report: report["valid"])
         took_s = time.monotonic() - began
     record_property("live_again_s", took_s)
     with capsys.disabled():
@@ -187,19 +188,21 @@ def a_month(place, twin, every_s):
     with closing(database_at(place)) as database, database.writing() as session:
         shackles = {one.name for one in twin.cage.shackles}
         for stream in twin.sensor_names:
-            said = {"tension_kn": [12.0, 1]} if stream in shackles else {"depth_m": [14.0, 1]}
-            fill(session, stream, said, every_s)
+            body = {"tension_kn": [12.0, 1]} if stream in shackles else {"depth_m": [14.0, 1]}
+            fill(session, stream, body, every_s)
         water = {"current_speed_m_s": [0.5, 1], "current_to_deg": [90.0, 1]}
         fill(session, twin.buoy, water, every_s)
         return session.rows("SELECT count(*) FROM sample")[0][0]
 
 
-def fill(session, stream, said, every_s):
+def fill(session, stream, values, every_s):
     first = round((START - timedelta(days=30)).timestamp())
     session.each(
         "INSERT INTO sample VALUES (?, ?, ?, ?, ?, ?, ?, ?)",
         [
-            with_checksum("sample", "ace", stream, t * 10**6, -1, json.dumps(said), "[]", t * 10**6)
+            with_checksum(
+                "sample", "ace", stream, t * 10**6, -1, json.dumps(values), "[]", t * 10**6
+            )
             for t in range(first, first + A_MONTH_S, every_s)
         ],
     )

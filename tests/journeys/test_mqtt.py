@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 import outside
-from brokered import broker, talking
+from mqtt_broker import broker, talking
 from seacage.service._ingest._shards import cages_of
 from seacage.service._store._store import open_store
 from seacage.testing import stand_in_field, stand_in_twin
@@ -96,9 +96,9 @@ def publishing(*words):
 
 
 def summary(process):
-    told = json.loads(process.stdout.read())
-    assert process.wait() == 0, told
-    return told
+    answer = json.loads(process.stdout.read())
+    assert process.wait() == 0, answer
+    return answer
 
 
 def one_thread():
@@ -174,8 +174,8 @@ def test_a_broker_that_is_killed_loses_nothing_of_an_edge_publisher(twin, tmp_pa
             time.sleep(2.0)
             mosquitto.kill()
             mosquitto.start()
-        told = summary(publisher)
-    assert (told["read"], told["acknowledged"], told["spooled"]) == (6000, 6000, 0)
+        report = summary(publisher)
+    assert (report["read"], report["acknowledged"], report["spooled"]) == (6000, 6000, 0)
     assert len(numbers(place)) == 6000
 
 
@@ -191,8 +191,8 @@ def test_a_publisher_that_is_killed_goes_on_where_it_was(twin, tmp_path):
             with publishing(*words, "--speed", "4000"):
                 wait_for_all(place, ["ace"], before + 100)
         with publishing(*words) as publisher:
-            told = summary(publisher)
-    assert told["read"] < 4000, "what was sent before is not read again"
+            report = summary(publisher)
+    assert report["read"] < 4000, "what was sent before is not read again"
     assert len(numbers(place)) == 4000
 
 
@@ -222,9 +222,9 @@ def test_after_a_broker_was_away_live_samples_come_first_and_the_others_follow(t
             began = time.monotonic()
             publisher.stdin.writelines(lines[-10:])
             publisher.stdin.close()
-            told = json.loads(publisher.stdout.read())
+            answer = json.loads(publisher.stdout.read())
             took_s = time.monotonic() - began
-    assert told["acknowledged"] == 3000
+    assert answer["acknowledged"] == 3000
     assert numbers(place) == list(range(3000))
     # Of a site that samples once a second: 3000 s in less than 300 s.
     assert took_s < 300
@@ -251,8 +251,8 @@ def test_two_workers_share_the_cages_and_one_of_them_is_killed(twin, tmp_path, p
         wait_for_all(place, cages, count)
         assert all(numbers(place, cage) == list(range(count)) for cage in cages)
         logger.listen("seacage/v1/south/+/status")
-        said = dict(logger.hears() for _ in workers)
-    assert said == {
+        messages = dict(logger.hears() for _ in workers)
+    assert messages == {
         f"seacage/v1/south/{name}/status": {"status": "online", "cages": list(shares[name])}
         for name in workers
     }
@@ -292,8 +292,8 @@ def test_an_edge_publisher_plays_a_buoy_and_its_sensors_at_a_hundred_times_real_
             *("--speed", "100"),
         ) as publisher,
     ):
-        told = summary(publisher)
-    assert told["acknowledged"] == sum(len(one) for one in records)
+        report = summary(publisher)
+    assert report["acknowledged"] == sum(len(one) for one in records)
     store = open_store(place)
     for one in records:
         stored = store.samples("ace", stream=one.stream, limit=10_000)

@@ -12,15 +12,15 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from brokered import broker
 from killable import SEACAGE, served
+from mqtt_broker import broker
 from outside import wait_for
 from seacage.cage import Cage
 from seacage.service._store._database._rows import microseconds
 from seacage.service._store._store import look_into
 from seacage.testing import stand_in_campaign, stand_in_field, stand_in_seas, stand_in_twin
 from seacage.twin import Training, train
-from sized import sized
+from sizes import pick_size
 
 pytestmark = [pytest.mark.mosquitto, pytest.mark.timeout(900)]
 
@@ -64,7 +64,7 @@ class Logger(threading.Thread):
     def __init__(self, pipe, twin, outage):
         super().__init__()
         self._pipe, self._twin, self._outage = pipe, twin, outage
-        self.now, self.said, self.end = START, 0, threading.Event()
+        self.now, self.sent, self.end = START, 0, threading.Event()
 
     def run(self):
         began, every = time.monotonic(), timedelta(seconds=self._outage.every_s)
@@ -82,12 +82,12 @@ class Logger(threading.Thread):
         water = {"current_speed_m_s": 0.4, "current_to_deg": 90.0 + self._due_s() % 10.0}
         yield self._line(self._twin.buoy, t, water)
         for number, name in enumerate(self._twin.sensor_names):
-            wave = 0.1 * ((self.said + number) % 7)  # a reading that never moves is no reading
+            wave = 0.1 * ((self.sent + number) % 7)  # a reading that never moves is no reading
             values = {"tension_kn": 12.0 + wave} if name in shackles else {"depth_m": 10.0 + wave}
             yield self._line(name, t, values)
 
     def _line(self, stream, t, values):
-        self.said += 1
+        self.sent += 1
         return json.dumps({"stream": stream, "t": t, "values": values}).encode() + b"\n"
 
 
@@ -125,7 +125,7 @@ def lost_and_found(service):
 def test_what_a_broker_missed_follows_behind_what_is_live_and_each_source_was_lost_once(
     tmp_path, capsys
 ):
-    outage = sized(SHORT, WHOLE)
+    outage = pick_size(SHORT, WHOLE)
     twin, place = twin_with(outage.depth_sensors), tmp_path / "data" / "samples.sqlite"
     twin.write(tmp_path / "twin")
     with (
@@ -137,7 +137,7 @@ def test_what_a_broker_missed_follows_behind_what_is_live_and_each_source_was_lo
         ) as service,
         logging_to(mosquitto.url, tmp_path, twin, outage) as (logger, publisher),
     ):
-        service.until("state", lambda told: told["valid"])
+        service.until("state", lambda answer: answer["valid"])
         mosquitto.kill()
         gone = logger.now
         time.sleep(60.0 * outage.minutes / outage.speed)
@@ -156,12 +156,12 @@ def test_what_a_broker_missed_follows_behind_what_is_live_and_each_source_was_lo
         filled = logger.now
         logger.end.set()
         logger.join()
-        told = json.loads(publisher.stdout.read())
+        answer = json.loads(publisher.stdout.read())
         lost = lost_and_found(service)
     # What came in after the first acknowledgement is live: until then all of it had to wait.
-    heard = min(came for _, came in counted(place, gone, back))
+    received = min(came for _, came in counted(place, gone, back))
     live = [
-        (came - t) / 1e6 / outage.speed for t, came in counted(place, back, filled) if t > heard
+        (came - t) / 1e6 / outage.speed for t, came in counted(place, back, filled) if t > received
     ]
     ratio, waited_s = (back - gone).total_seconds() / took_s, statistics.median(live)
     with capsys.disabled():
@@ -169,7 +169,7 @@ def test_what_a_broker_missed_follows_behind_what_is_live_and_each_source_was_lo
             f"{missed:,} samples of an outage back in {took_s:.1f} s, {ratio:.0f} times as fast; "
             f"live ones meanwhile in {waited_s:.1f} s, the slowest in {max(live):.1f} s\n"
         )
-    assert told["acknowledged"] == logger.said, "nothing is lost"
+    assert answer["acknowledged"] == logger.sent, "nothing is lost"
     assert lost == sorted(f"silent.{name}" for name in twin.sensor_names)
     assert ratio > 10.0
     assert waited_s < max(5.0, took_s / 4.0), "live ones do not queue behind what had waited"

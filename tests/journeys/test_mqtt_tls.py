@@ -4,7 +4,7 @@ import asyncio
 
 import pytest
 
-from brokered import broker
+from mqtt_broker import broker
 from seacage.service._mqtt._broker import Broker
 from seacage.service._mqtt._link import Link
 
@@ -15,11 +15,11 @@ class Ears:
     """Acknowledges all it hears."""
 
     def __init__(self):
-        self.heard = []
+        self.received = []
 
-    def hear(self, heard):
-        self.heard.append(heard.payload)
-        heard.acknowledge()
+    def hear(self, has_received):
+        self.received.append(has_received.payload)
+        has_received.acknowledge()
 
     async def drain(self):
         pass
@@ -61,13 +61,13 @@ def test_a_large_message_comes_whole_over_tls(encrypted, certificate):
     ears, message = Ears(), bytes(range(256)) * 800
     link = linked(encrypted, ears, certificate[0])
 
-    def heard():
-        if link.fault is None and not ears.heard:
+    def has_received():
+        if link.fault is None and not ears.received:
             link.publish("a/b", message)
-        return bool(ears.heard)
+        return bool(ears.received)
 
-    asyncio.run(running(link, heard))
-    assert ears.heard[0] == message
+    asyncio.run(running(link, has_received))
+    assert ears.received[0] == message
 
 
 def test_a_broker_whose_certificate_nobody_vouches_for_is_refused(encrypted):

@@ -9,9 +9,9 @@ from typing import Any
 import pytest
 
 from browser import Watched, opened_browser
+from running_service import NOON, Running, buoy, depth, eventually, running
 from seacage.testing import stand_in_twin
 from seacage.twin import AlarmPolicy
-from serviced import NOON, Running, buoy, depth, eventually, running
 
 pytestmark = pytest.mark.usefixtures("built_page")
 FIRST_LOAD_BYTES = 1_000_000  # what a phone on a boat can wait for
@@ -27,7 +27,7 @@ def live(tmp_path: Path):
     """A service with an hour of a calm sea behind it, and strict limits of the loads."""
     with running(tmp_path, policy=STRICT) as one:
         # At once: of the first alone the twin would find that its sensor fell silent since.
-        one.post(*(each for minutes in range(-60, 1, 10) for each in said(float(minutes), 0.5)))
+        one.post(*(each for minutes in range(-60, 1, 10) for each in readings(float(minutes), 0.5)))
         yield one
 
 
@@ -45,24 +45,24 @@ def address(live: Running, *scopes: str) -> str:
     return f"{live.address}/#token={token}"
 
 
-def said(minutes: float, speed: float) -> tuple[dict[str, Any], dict[str, Any]]:
+def readings(minutes: float, speed: float) -> tuple[dict[str, Any], dict[str, Any]]:
     """What buoy and one depth sensor say; no reading is quite like the one before."""
     ripple = 0.01 * (minutes % 3.0)
     return buoy(minutes, speed=speed + ripple), depth(minutes, metres=14.2 + ripple)
 
 
-def told(live: Running, minutes: float, speed: float) -> None:
+def post_readings(live: Running, minutes: float, speed: float) -> None:
     """Tell of the sea and of one depth."""
-    live.post(*said(minutes, speed))
+    live.post(*readings(minutes, speed))
 
 
 def later(live: Running, minutes: float, speed: float) -> None:
     """Let the cage's clock go on, and have the sea as it now is told."""
     live.clock.at += timedelta(minutes=minutes)
-    told(live, (live.clock.at - NOON) / timedelta(minutes=1), speed)
+    post_readings(live, (live.clock.at - NOON) / timedelta(minutes=1), speed)
     now = live.clock.at
-    heard = waited(live.state, lambda state: (at(state), state["age_s"]) == (now, 0.0))
-    assert at(heard) == now
+    received = waited(live.state, lambda state: (at(state), state["age_s"]) == (now, 0.0))
+    assert at(received) == now
 
 
 def at(state: dict) -> datetime:
@@ -70,8 +70,8 @@ def at(state: dict) -> datetime:
 
 
 def alarms_of(live: Running) -> dict[str, dict]:
-    told = live.reader.get("/api/v1/cages/ace/alarms").json()["alarms"]
-    return {one["id"]: one for one in told}
+    post_readings = live.reader.get("/api/v1/cages/ace/alarms").json()["alarms"]
+    return {one["id"]: one for one in post_readings}
 
 
 def raised(live: Running) -> list[str]:
@@ -89,7 +89,7 @@ def well(watched: Watched) -> None:
     watched.until("document.querySelector('.verdict').dataset.kind == 'well'")
 
 
-def test_a_load_beyond_its_limit_is_told_acknowledged_journaled_and_looked_back_at(
+def test_a_load_beyond_its_limit_is_reported_acknowledged_journaled_and_looked_back_at(
     chromium: Path, live: Running
 ) -> None:
     with opened_browser(chromium, webgl=False) as watched:
@@ -138,7 +138,7 @@ def test_a_load_beyond_its_limit_is_told_acknowledged_journaled_and_looked_back_
         page.keyboard.press("l")
         watched.until("document.body.dataset.mode == 'live'")
         assert not watched.complaints
-        assert not watched.asked_elsewhere(live.address)
+        assert not watched.foreign_requests(live.address)
 
 
 def test_alarms_of_one_cause_are_acknowledged_together(chromium: Path, live: Running) -> None:
@@ -160,7 +160,7 @@ def test_a_service_that_is_started_again_is_found_without_a_hand(
 ) -> None:
     with opened_browser(chromium, webgl=False) as watched:
         with running(tmp_path) as before:
-            told(before, 0.0, 0.5)
+            post_readings(before, 0.0, 0.5)
             port = int(before.address.rpartition(":")[2])
             watched.page.goto(address(before, "read"))
             well(watched)
@@ -199,7 +199,7 @@ def test_a_farm_shows_its_cages_the_worst_first_and_leads_to_each(
     chromium: Path, tmp_path: Path
 ) -> None:
     with running(tmp_path, names=("ace", "bay", "cove"), policy=STRICT) as live:
-        told(live, 0.0, 0.5)
+        post_readings(live, 0.0, 0.5)
         live.post(buoy(speed=0.4), cage="cove")
         excursion(live)
         live.post(depth(22.0, metres=14.2), cage="cove")  # within its timeout by the clock as it is

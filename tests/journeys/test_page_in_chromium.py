@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from browser import Line, Watched, opened_browser
-from serviced import Running, buoy, depth, eventually, running
+from running_service import Running, buoy, depth, eventually, running
 
 pytestmark = pytest.mark.usefixtures("built_page")
 MOUSE_STEPS = 4
@@ -26,8 +26,8 @@ def address(live: Running, scopes: tuple[str, ...] = ("read", "ack")) -> str:
 
 
 def silence(live: Running) -> dict:
-    told = live.reader.get("/api/v1/cages/ace/alarms").json()["alarms"]
-    return next(alarm for alarm in told if alarm["id"] == "silent.buoy-1")
+    answer = live.reader.get("/api/v1/cages/ace/alarms").json()["alarms"]
+    return next(alarm for alarm in answer if alarm["id"] == "silent.buoy-1")
 
 
 def place_of(watched: Watched, selector: str) -> tuple[float, float]:
@@ -43,7 +43,7 @@ def test_the_page_draws_what_a_buoy_reports_and_asks_nobody_else(
         watched.until_drawn()
         watched.until("document.body.innerText.includes('0.50 m/s')")
         assert watched.colours("#net") > 1000
-        assert not watched.asked_elsewhere(live.address)
+        assert not watched.foreign_requests(live.address)
         assert not watched.complaints
         assert "token" not in watched.page.url
 
@@ -100,7 +100,7 @@ def test_without_webgl_the_net_is_drawn_flat_with_a_table(chromium: Path, live: 
         assert "Sinker tube" in watched.page.locator(".flat-table").inner_text()
         watched.page.locator(".flat-bridle").nth(15).hover(force=True)  # seen from above
         assert "Of its capacity" in watched.page.locator(".scene-tip").inner_text()
-        assert not [asked for asked in watched.asked if "/three" in asked]
+        assert not [request for request in watched.requests if "/three" in request]
         assert not watched.complaints
 
 
@@ -213,7 +213,7 @@ def test_without_any_input_the_page_says_so_and_shows_no_load(
         assert not watched.complaints
 
 
-def test_a_connection_that_breaks_is_told_and_comes_back(chromium: Path, live: Running) -> None:
+def test_a_connection_that_breaks_is_reported_and_comes_back(chromium: Path, live: Running) -> None:
     with opened_browser(chromium) as watched:
         line = Line(watched)
         watched.page.goto(address(live))
@@ -265,7 +265,9 @@ def test_the_reader_travels_to_the_past_and_back(chromium: Path, live: Running) 
         assert not watched.complaints
 
 
-def test_a_silent_buoy_is_told_and_acknowledged_on_the_page(chromium: Path, live: Running) -> None:
+def test_a_silent_buoy_is_reported_and_acknowledged_on_the_page(
+    chromium: Path, live: Running
+) -> None:
     with opened_browser(chromium) as watched:
         watched.page.goto(address(live))
         watched.until_drawn()
@@ -277,4 +279,6 @@ def test_a_silent_buoy_is_told_and_acknowledged_on_the_page(chromium: Path, live
         found.wait_for(state="visible")
         found.click()
         watched.page.get_by_role("dialog").get_by_role("button", name="Acknowledge").click()
-        assert eventually(lambda: silence(live), lambda told: told["acknowledged"])["acknowledged"]
+        assert eventually(lambda: silence(live), lambda report: report["acknowledged"])[
+            "acknowledged"
+        ]

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from browser import opened_browser
-from serviced import Running, at, buoy, depth, eventually, running
+from running_service import Running, at, buoy, depth, eventually, running
 
 pytestmark = pytest.mark.usefixtures("built_page")
 
@@ -78,7 +78,7 @@ def test_charts_are_drawn_and_lead_to_the_past(chromium: Path, live: Running) ->
         assert not watched.complaints
 
 
-def test_who_may_only_read_is_told_at_once_why_nothing_can_be_acknowledged(
+def test_who_may_only_read_reads_at_once_why_nothing_can_be_acknowledged(
     chromium: Path, live: Running
 ) -> None:
     beyond_what_was_learned(live)

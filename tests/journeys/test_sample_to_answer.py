@@ -41,24 +41,24 @@ def test_a_file_is_replayed_into_answers_flags_and_silences(twin, buoy):
     assert bad.sample.values["current_to_deg"] == 412.0
     assert bad.sample.t == datetime(2018, 1, 26, 23, 38, tzinfo=UTC)
     # Five hours passed before the last row, by the record's own clock.
-    told = [type(event) for event in events if isinstance(event, StreamSilent | StreamBack)]
-    assert told == [StreamSilent, StreamBack]
+    kinds = [type(event) for event in events if isinstance(event, StreamSilent | StreamBack)]
+    assert kinds == [StreamSilent, StreamBack]
 
 
 def test_ticks_between_samples_notice_the_silence(twin, buoy):
-    state, told = twin.start(), []
+    state, report = twin.start(), []
     now = datetime(2018, 1, 26, 23, tzinfo=UTC)
     samples = list(buoy.samples())
     while now < datetime(2018, 1, 27, 6, tzinfo=UTC):
         now += timedelta(minutes=15)
         while samples and samples[0].t <= now:
             state, events = twin.step(state, samples.pop(0), now)
-            told += events
+            report += events
         state, events = twin.step(state, None, now)
-        told += events
-    kinds = [type(event) for event in told if isinstance(event, StreamSilent | StreamBack)]
+        report += events
+    kinds = [type(event) for event in report if isinstance(event, StreamSilent | StreamBack)]
     assert kinds == [StreamSilent, StreamBack]
-    valid = {event.t.hour: event.answer.valid[0] for event in told if isinstance(event, Answered)}
+    valid = {event.t.hour: event.answer.valid[0] for event in report if isinstance(event, Answered)}
     assert valid[1]
     assert not valid[4]
     assert valid[5]

@@ -39,16 +39,16 @@ def serving(data: Path, *words: object) -> Iterator[tuple[str, httpx.Client]]:
     command = [*SEACAGE, "serve", "--data", data, "--port", "0", "--json", *words]
     with subprocess.Popen([str(word) for word in command], stdout=subprocess.PIPE) as process:
         try:
-            said = json.loads(process.stdout.readline())
-            headers = {"Authorization": f"Bearer {said['token']}"}
-            with httpx.Client(base_url=said["address"], headers=headers) as client:
+            answer = json.loads(process.stdout.readline())
+            headers = {"Authorization": f"Bearer {answer['token']}"}
+            with httpx.Client(base_url=answer["address"], headers=headers) as client:
                 wait_for(lambda: client.get("/readyz").raise_for_status())
-                yield said["address"], client
+                yield answer["address"], client
         finally:
             process.kill()  # nothing that was acknowledged may need a goodbye
 
 
-def told(*words: object) -> str:
+def run_command(*words: object) -> str:
     result = CliRunner().invoke(app, [str(word) for word in words], catch_exceptions=False)
     assert result.exit_code == 0, result.stderr
     return result.stdout
@@ -67,10 +67,10 @@ def until(ask, accept):
 
 @pytest.mark.slow
 def test_a_record_sent_by_http_outlives_a_kill_and_is_answered_in_its_past(twin, field, tmp_path):
-    token = told("token", "new", "--data", tmp_path, "--scope", "ingest").splitlines()[-1]
+    token = run_command("token", "new", "--data", tmp_path, "--scope", "ingest").splitlines()[-1]
     with serving(tmp_path, "--twin", twin) as (address, _):
         send = ("replay", field, "--to", address, "--token", token, "--json")
-        receipt = json.loads(told(*send))
+        receipt = json.loads(run_command(*send))
         assert receipt["accepted"] == receipt["sent"] > 500
         assert receipt["rejected_count"] == 0
     with serving(tmp_path, "--twin", twin) as (address, client):
@@ -80,7 +80,7 @@ def test_a_record_sent_by_http_outlives_a_kill_and_is_answered_in_its_past(twin,
         assert all(sensor["measured"] is not None for sensor in state["sensors"])
         assert not client.get("/api/v1/cages/ace/state").json()["valid"], "the buoy is long stale"
         send = ("replay", field, "--to", address, "--token", token, "--json")
-        assert json.loads(told(*send))["duplicates"] == receipt["sent"]
+        assert json.loads(run_command(*send))["duplicates"] == receipt["sent"]
 
 
 @pytest.mark.slow

@@ -11,11 +11,11 @@ from pathlib import Path
 import pytest
 
 from disks import FILLER, filled, log_not_written, small_disk
+from running_service import Running, depth, eventually, running
 from seacage.service._store._alarms import journal_between
 from seacage.service._store._database._reserve import SIZE
 from seacage.service._store._store import StoreError, look_into, open_store
 from seacage.twin import Action, AlarmEvent
-from serviced import Running, depth, eventually, running
 from stores import NOON, put, sample
 
 ALARM = "history.store"
@@ -72,7 +72,9 @@ def alarmed(live):
 
 
 @pytest.mark.parametrize("fault", FAULTS.values(), ids=FAULTS)
-def test_a_disk_that_fails_stops_the_acknowledging_is_told_and_is_well_again_alone(tmp_path, fault):
+def test_a_disk_that_fails_stops_the_acknowledging_is_reported_and_is_well_again_alone(
+    tmp_path, fault
+):
     with fault.disk(tmp_path / "disk") as folder:
         folder.mkdir(exist_ok=True)
         place = folder / "samples.sqlite"
@@ -84,12 +86,14 @@ def test_a_disk_that_fails_stops_the_acknowledging_is_told_and_is_well_again_alo
                 assert posted(live, 3, first=-20) == [503] * 3
                 assert eventually(lambda: alarmed(live), bool)
                 patience_s = 5.0 if fault.kept else 1.0
-                told = eventually(lambda: journal(place), bool, seconds=patience_s)
-                assert told == [Action.RAISED] * fault.kept
+                lines_written = eventually(lambda: journal(place), bool, seconds=patience_s)
+                assert lines_written == [Action.RAISED] * fault.kept
             assert eventually(lambda: ready(live), lambda code: code == 200, seconds=20.0) == 200
             assert posted(live, 3, first=-10) == [201] * 3
             assert not eventually(lambda: alarmed(live), lambda raised: not raised)
-            lines = eventually(lambda: journal(place), lambda told: len(told) == 2)
+            lines = eventually(
+                lambda: journal(place), lambda lines_written: len(lines_written) == 2
+            )
             assert lines == [Action.RAISED, Action.CLEARED]
             assert place.with_name(place.name + "-reserve").stat().st_size == SIZE
         assert [one.t.minute for one in stored(place)] == [30, 31, 32, 50, 51, 52]

@@ -36,7 +36,7 @@ def chain(folder, **options) -> Chain:
     return Chain(folder=folder / "stages", cage=SMALL, recipe=RECIPE, workers=1, **options)
 
 
-def unheard(stage, done, total):
+def refuse_again(stage, done, total):
     assert stage in {"score", "draw", "shape error"}, f"{stage} was made again"
 
 
@@ -78,7 +78,7 @@ def test_level_one_is_close_to_simulations_that_it_has_not_seen(study):
 
 
 def test_the_page_stands_alone_and_says_what_is_virtual(study):
-    page = study.report.read_text("utf-8")
+    page = " ".join(study.report.read_text("utf-8").split())
     assert page.count("data:image/svg+xml") == 6, "net, loads, depths, errors, nets, by speed"
     assert "Every reading is of the virtual field" in page
     assert "Where the paper is at odds with itself" in page
@@ -101,7 +101,7 @@ def test_the_numbers_behind_the_page_can_be_read_by_a_program(study):
 
 def test_a_second_study_makes_nothing_again_and_says_the_same(study, folder):
     page = study.report.read_bytes()
-    again = study_chain(chain(folder, progress=unheard), folder)
+    again = study_chain(chain(folder, progress=refuse_again), folder)
     assert again.report.read_bytes() == page
 
 
@@ -117,13 +117,13 @@ def in_waves(study, folder):
     waves = {"hs_m": hs, "tp_s": 5.0 * np.sqrt(hs), "wave_from_deg": np.full(len(buoy), 270.0)}
     buoy = check_record(replace(buoy, values={**buoy.values, **waves}, flags={}))
     kept = np.arange(len(buoy)) % 50 != 7  # the radio lost some words; the truth has them all
-    heard = replace(
+    received = replace(
         buoy,
         time=buoy.time[kept],
         values={key: column[kept] for key, column in buoy.values.items()},
         flags={key: flags[kept] for key, flags in buoy.flags.items()},
     )
-    replace(made.field, buoy=heard).write(folder / "field")
+    replace(made.field, buoy=received).write(folder / "field")
     replace(made.truth, buoy=buoy).write(folder / "field" / "truth")
     return folder / "campaign.zarr", folder / "field"
 
@@ -155,7 +155,7 @@ def test_a_given_campaign_and_field_are_studied_with_and_without_waves(in_waves,
     page = study.report.read_text("utf-8")
     assert "Training readings and inputs" in page
     assert page.count("data:image/svg+xml") == 7
-    again = study_chain(given(tmp_path, in_waves, progress=unheard), tmp_path)
+    again = study_chain(given(tmp_path, in_waves, progress=refuse_again), tmp_path)
     assert again.report.read_text("utf-8") == page
 
 
@@ -184,23 +184,23 @@ def test_a_campaign_of_another_cage_is_refused(in_waves, tmp_path):
 
 
 def test_a_stop_in_any_stage_loses_no_simulation(study, tmp_path):
-    heard = []
+    messages = []
 
     def stopped(stage, done, total):
-        heard.append((stage, done))
+        messages.append((stage, done))
         if (stage, done) == ("campaign", 32):
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
         _ = chain(tmp_path, progress=stopped).campaign
 
-    heard.clear()
-    record = chain(tmp_path, progress=lambda *told: heard.append(told[:2])).campaign
-    assert heard[0] == ("campaign", 32)
+    messages.clear()
+    record = chain(tmp_path, progress=lambda *report: messages.append(report[:2])).campaign
+    assert messages[0] == ("campaign", 32)
     assert len(record) == RECIPE.cases
 
 
-def test_a_twin_is_scored_alone_on_the_days_after_its_lessons(study, folder, tmp_path):
+def test_a_twin_is_scored_alone_on_the_days_after_its_training_windows(study, folder, tmp_path):
     stages = chain(folder)
     scores = score_record(stages.twin, stages.field, out=tmp_path, seed=RECIPE.seed)
     assert [score.means for score in scores] == [score.means for score in study.sensors]
@@ -209,7 +209,7 @@ def test_a_twin_is_scored_alone_on_the_days_after_its_lessons(study, folder, tmp
 
 
 def test_a_demonstration_is_a_twin_a_buoy_and_virtual_sensors(study, folder):
-    made = prepare_demonstration(folder / "stages", workers=1, progress=unheard)
+    made = prepare_demonstration(folder / "stages", workers=1, progress=refuse_again)
     twin = Twin.read(made.twin_folder)
     assert twin.sensor_names == made.cage.sensor_names == tuple(made.field.sensors)
     assert twin.discrepancy is not None
@@ -225,4 +225,4 @@ def test_another_buoys_record_drives_the_show_and_teaches_nobody(study, folder):
     assert shown.twin_folder == made.twin_folder
     assert len(shown.buoy) == len(part)
     assert shown.field.hidden_sha256 == made.field.hidden_sha256
-    prepare_demonstration(folder / "stages", record=part, workers=1, progress=unheard)
+    prepare_demonstration(folder / "stages", record=part, workers=1, progress=refuse_again)

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from lived import Lived
+from cage_harness import CageHarness
+from running_service import NOON
 from seacage.records import Sample
-from serviced import NOON
-from sized import sized
+from sizes import pick_size
 
 JUMPS_S = (60.0, 300.0, 3600.0, 3 * 3600.0, 86400.0, 400 * 86400.0, 20 * 365 * 86400.0)
 MINUTES = 90
@@ -21,7 +21,7 @@ class Sea:
 
     def __init__(self, place):
         self.true, self.off = NOON, timedelta(0)
-        self.one = Lived(place)
+        self.one = CageHarness(place)
         self._spool: list[Sample] = []
         self.right: list[Sample] = []
         self.refused = 0
@@ -90,8 +90,8 @@ def check_jumps(folder, seed):
             shown = sea.one.tick()
             assert "clock.service" in sea.one.alarms()
             # Where true time gets as far, the wrong sample is the first of its name, and right.
-            told_apart = off > timedelta(minutes=lasting[minute] + 2.0)
-            if told_apart and draw.random() < 0.7:
+            distinct = off > timedelta(minutes=lasting[minute] + 2.0)
+            if distinct and draw.random() < 0.7:
                 # A gateway that takes its time from this machine.
                 values = {"current_speed_m_s": 1.3, "current_to_deg": 80.0}
                 wrong = Sample(stream="buoy-1", t=sea.one.clock.now(), values=values)
@@ -135,7 +135,7 @@ def test_after_any_jump_of_the_clock_all_is_as_if_it_had_been_right(tmp_path_fac
 
 @pytest.mark.slow
 @pytest.mark.long
-@pytest.mark.timeout(sized(400, 36_000))
+@pytest.mark.timeout(pick_size(400, 36_000))
 def test_after_many_jumps_of_the_clock_all_is_as_if_it_had_been_right(tmp_path):
-    for seed in range(sized(10, 1000)):
+    for seed in range(pick_size(10, 1000)):
         check_jumps(tmp_path, seed)

@@ -11,11 +11,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lived import History, Lived
+from cage_harness import CageHarness, History
 from seacage.conventions import Flag
 from seacage.records import Sample
 from seacage.service._store import _quality
-from sized import sized
+from sizes import pick_size
 
 SEEDS = st.integers(0, 2**32 - 1)
 
@@ -37,7 +37,7 @@ def lived_through(folder, name, history, restarts=()):
     place = folder / f"{name}.sqlite"
     for left in folder.glob(f"{name}.sqlite*"):
         left.unlink()
-    one = Lived(place, tick_s=history.tick_s)
+    one = CageHarness(place, tick_s=history.tick_s)
     return one, history.played(one, restarts=restarts)
 
 
@@ -89,15 +89,15 @@ def test_the_past_is_what_a_service_that_got_all_in_order_would_have_shown(folde
 
 @pytest.mark.slow
 @pytest.mark.long
-@pytest.mark.timeout(sized(400, 72_000))
+@pytest.mark.timeout(pick_size(400, 72_000))
 def test_many_histories_leave_nothing_different(folder):
-    for seed in range(0, sized(20, 10_000), 2):
+    for seed in range(0, pick_size(20, 10_000), 2):
         check_restarts(folder, seed)
         check_past(folder, seed + 1)
 
 
 def test_a_buoy_that_was_stuck_is_invalid_before_and_after_a_restart(tmp_path):
-    one = Lived(tmp_path / "stuck.sqlite")
+    one = CageHarness(tmp_path / "stuck.sqlite")
     values = {"current_speed_m_s": 0.41, "current_to_deg": 77.0}
     for _ in range(30):
         one.clock.at += timedelta(minutes=2)

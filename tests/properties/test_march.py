@@ -7,9 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from compiled import kernel_force, kernel_water
 from seacage.cage import Cage
 from seacage.dynamics import MOVING_LAWS, simulation_lanes
-from seacage.dynamics._kernel._march import March, Steps, kernel_force, kernel_water
+from seacage.dynamics._kernel._march import March, Steps
 from seacage.dynamics._kernel._march_inputs import Ocean
 from seacage.dynamics._moored._mass_scaling import scale_mass
 from seacage.dynamics._parts._assembly import Assembly, Ground
@@ -406,9 +407,9 @@ def check_steps(mesh, law, cases, each, hold, held, seed):
     # Over all nodes together, for a single bar that rings in rounding may be off by more: 70
     # cages were off by 1.7e-4 at most, and the smallest slip tried, drag taken at the old speed
     # instead of the new, changes both by 2e-3 and more.
-    for ours, said, change in (
+    for ours, outcome, change in (
         (march.position, plain.position, plain.position - start),
         (march.velocity, plain.velocity, plain.velocity),
     ):
-        assert np.linalg.norm(ours - said) <= 5e-4 * np.linalg.norm(change)
+        assert np.linalg.norm(ours - outcome) <= 5e-4 * np.linalg.norm(change)
     assert np.all(np.isnan(march.lost_at))

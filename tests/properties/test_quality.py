@@ -76,8 +76,8 @@ def test_what_is_usable_is_finite_and_a_remark_stands_for_all_else_that_is_not_g
     for sample in record.samples():
         state, live = check_sample(state, sample)
         for key, flag in live.flags.items():
-            said = any(f" {key} " in remark for remark in live.remarks)
-            assert said == (flag is not Flag.GOOD)
+            named = any(f" {key} " in remark for remark in live.remarks)
+            assert named == (flag is not Flag.GOOD)
             assert np.isfinite(live.values[key]) or flag in {Flag.FAIL, Flag.MISSING}
 
 

@@ -27,13 +27,13 @@ class Watched:
 
     def __init__(self, page: Page) -> None:
         self.page = page
-        self.asked: list[str] = []
+        self.requests: list[str] = []
         self.complaints: list[str] = []
         self._came: list[Request] = []
         self.frame_bytes: list[int] = []
         page.on("console", self._hear)
         page.on("pageerror", lambda error: self.complaints.append(str(error)))
-        page.on("request", lambda request: self.asked.append(request.url))
+        page.on("request", lambda request: self.requests.append(request.url))
         page.on("requestfinished", self._receive)
         page.on("websocket", lambda line: line.on("framereceived", self._weigh_frame))
 
@@ -50,10 +50,10 @@ class Watched:
         self.until("document.body.dataset.connection == 'live'")
         self.until("Number(document.querySelector('#net')?.dataset.frames) > 2")
 
-    def asked_elsewhere(self, address: str) -> list[str]:
+    def foreign_requests(self, address: str) -> list[str]:
         """Addresses beyond the service's own."""
         own = (address, address.replace("http", "ws", 1), "data:", "blob:")
-        return [asked for asked in self.asked if not asked.startswith(own)]
+        return [request for request in self.requests if not request.startswith(own)]
 
     def loaded_bytes(self) -> int:
         """Bytes of all that was asked for and came, as they went over the wire."""

@@ -19,7 +19,7 @@ from seacage.campaigns._virtual_field._timetable import reading_times
 from seacage.dynamics import Damage
 from seacage.dynamics._equilibrium._search import equilibria
 from seacage.dynamics._moored._detailed import _tear
-from seacage.dynamics._moored._pretension import assemble, free_nodes
+from seacage.dynamics._moored._pretension import assemble
 from seacage.dynamics._physics._flow import steady_flow
 from seacage.dynamics._physics._loads import bar_tension
 from seacage.ocean import SeaState
@@ -71,8 +71,7 @@ def settled_answers(damage: str, hidden: TruthParameters, growth: float, seas: S
     velocity = np.array([sea.current_velocity for sea in seas])
     flow = steady_flow(assembly, velocity, law=hidden.law, wake=True, pipe_drag=True)
     flow = replace(flow, pressure=flow.pressure * whole)
-    free = free_nodes(cage, assembly, hold_collar=False)
-    found = equilibria(cage, assembly, flow, free=free)
+    found = equilibria(assembly, flow)
     tension = bar_tension(assembly.bars, found.position)[:, assembly.bridles]
     nodes = [sensor.node for sensor in cage.depth_sensors]
     lines = [shackle.bridle for shackle in cage.shackles]

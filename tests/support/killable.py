@@ -31,9 +31,9 @@ class Service:
         self._process = subprocess.Popen(
             self._command, stdout=subprocess.PIPE, stderr=self._log, env=os.environ | threads
         )
-        said = json.loads(self._process.stdout.readline())
-        if "admin_token" in said:
-            self.client.headers["Authorization"] = f"Bearer {said['admin_token']}"
+        answer = json.loads(self._process.stdout.readline())
+        if "admin_token" in answer:
+            self.client.headers["Authorization"] = f"Bearer {answer['admin_token']}"
         wait_for(self._ask_ready, seconds=60)
 
     def _ask_ready(self):

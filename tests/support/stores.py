@@ -24,8 +24,8 @@ def sample(minutes=0, metres=14.0, stream="depth-1", **rest):
 
 def put(store, *samples, cage="ace", limits=None, ingested=NOON):
     """Store samples, with their own flags or checked by limits; whether each was new."""
-    asked = store.append(cage, samples, ingested=ingested, limits=limits)
-    return asked.result(timeout=20).new
+    future = store.append(cage, samples, ingested=ingested, limits=limits)
+    return future.result(timeout=20).new
 
 
 def opened(path):

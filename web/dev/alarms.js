@@ -14,7 +14,7 @@ const ALARMS = {
   }],
   silent: [...["depth-1", "depth-2", "shackle-3"].map((one) => ({
     id: `silent.${one}`, kind: "silent", source: one, severity: 500, unit: "s",
-    title: `${one} is silent`, message: `${one} has said nothing for 1.8 h; 15 min is the limit.`,
+    title: `${one} is silent`, message: `${one} has sent nothing for 1.8 h; 15 min is the limit.`,
     advice: "Check its power, its radio and its clock.", value: 6500, worst: 6500, raise_at: 900, clear_at: 600,
   })), {
     id: "clock.service", kind: "clock", source: "service", severity: 600, unit: "1",
@@ -24,7 +24,7 @@ const ALARMS = {
     value: 1, worst: 1, raise_at: 1, clear_at: 0,
   }, {
     id: "silent.buoy-1", kind: "silent", source: "buoy-1", severity: 700, unit: "s",
-    title: "buoy-1 is silent", message: "buoy-1 has said nothing for 2.0 h.",
+    title: "buoy-1 is silent", message: "buoy-1 has sent nothing for 2.0 h.",
     advice: "Check its power and its link; loads and shape are unknown until it is back.",
     value: 7300, worst: 7300, raise_at: 1800, clear_at: 1800,
   }],

@@ -53,8 +53,8 @@ export function frameOf(one, t, sea, alarms, flags = 0) {
   const state = stateOf(one, t, sea, alarms);
   const shape = state.valid ? shapeIn(sea) : {};
   if (!one.spread) shape.sigma = null;
-  const said = (state.valid ? 1 : 0) | (state.in_domain ? 2 : 0) | flags;
-  return encodeFrame({ t, flags: said, state, ...shape });
+  const all = (state.valid ? 1 : 0) | (state.in_domain ? 2 : 0) | flags;
+  return encodeFrame({ t, flags: all, state, ...shape });
 }
 
 /** A cage's history between two times, in so many steps. */

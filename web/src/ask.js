@@ -1,6 +1,7 @@
-// The question for a token, and what is said where a token does not do.
+// Dialog for a token, with the reason where a token does not open the service.
 
 import { make } from "./dom.js";
+import { text } from "./texts/index.js";
 
 /** Add the dialog, which opens when the model asks. */
 export function mountAsk(model) {
@@ -9,13 +10,11 @@ export function mountAsk(model) {
   });
   const why = make("p", { className: "ask-why", role: "alert", hidden: true });
   const form = make("form", { method: "dialog" },
-    make("h2", { id: "ask-title" }, "Open the cage’s page"),
-    make("p", {}, "The service asks who reads. ", make("code", {}, "seacage serve"),
-      " printed a link with a token when it started; ", make("code", {}, "seacage token new"),
-      " makes others."),
+    make("h2", { id: "ask-title" }, text("ask.title")),
+    make("p", {}, ...text("ask.about").split("`").map((part, k) => (k % 2 ? make("code", {}, part) : part))),
     why,
-    make("label", { htmlFor: "token" }, "Token"),
-    make("div", { className: "ask-row" }, input, make("button", { type: "submit" }, "Open")));
+    make("label", { htmlFor: "token" }, text("ask.token")),
+    make("div", { className: "ask-row" }, input, make("button", { type: "submit" }, text("ask.open"))));
   const dialog = make("dialog", { id: "ask", "aria-labelledby": "ask-title" }, form);
   document.body.append(dialog);
 

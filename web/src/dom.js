@@ -21,5 +21,5 @@ export function draw(tag, attributes = {}, ...children) {
   return element;
 }
 
-/** Whether the reader asked for stillness. */
+/** Whether the reader prefers no motion. */
 export const still = () => matchMedia("(prefers-reduced-motion: reduce)").matches;

@@ -14,7 +14,7 @@ export function latestOnly(ask) {
     busy = true;
     try {
       const answer = await ask(question);
-      // Overtaken: what was asked later is what the reader wants to see.
+      // Overtaken: the reader waits for the answer to the later question.
       settle.resolve(waiting ? undefined : answer);
     } catch (error) {
       if (waiting) settle.resolve(undefined);

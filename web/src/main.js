@@ -11,9 +11,14 @@ import { mountAsk } from "./ask.js";
 import { Model } from "./model.js";
 import { mountPanels } from "./panels/index.js";
 import { mountScene } from "./scene/index.js";
+import { language, text } from "./texts/index.js";
 
 const model = new Model();
 const { dataset } = document.body;
+
+document.documentElement.lang = language;
+document.querySelector(".skip").textContent = text("page.skip");
+for (const id of ["scene", "panels"]) document.getElementById(id).ariaLabel = text(`page.region.${id}`);
 
 model.on("connection", (connection) => { dataset.connection = connection; });
 model.on("view", (view) => {

@@ -3,8 +3,9 @@
 import { possible } from "./bounds.js";
 import { latestOnly } from "./latest.js";
 import { connect } from "./link.js";
-import { Refusal } from "./request.js";
-import { begin, call, forget, renewal, resume, signIn, signOut, WHY_NOT } from "./session.js";
+import { cagePath, Refusal } from "./request.js";
+import { begin, call, forget, renewal, resume, signIn, signOut } from "./session.js";
+import { text } from "./texts/index.js";
 import { readFrame } from "./wire.js";
 
 const LOOK_ROUND_MS = 10_000;
@@ -15,7 +16,7 @@ const STALE_UNKNOWN_S = 3600;
  *
  * Names to listen to: `connection`, `topology`, `view` (what is shown), `live` (what is so now,
  * whatever is shown), `cages`, `session` (who is signed in), `selection`, `age` (each second),
- * `trouble` (an Error to tell).
+ * `trouble` (an Error to show).
  */
 export class Model {
   /** "connecting" | "live" | "lost" | "refused" | "asking" */
@@ -35,10 +36,10 @@ export class Model {
 
   #listeners = new Map();
   #link = null;
-  #wanted = null; // what the reader asked for: a Date, an input of a what-if, or null for live
+  #wanted = null; // what the reader chose: a Date, an input of a what-if, or null for live
   #frameOfPast = latestOnly((at) =>
-    this.call("GET", `${this.#path()}/frame?at=${encodeURIComponent(at.toISOString())}`));
-  #frameOfWhatIf = latestOnly((input) => this.call("POST", `${this.#path()}/whatif`, input));
+    this.call("GET", cagePath(this.cageName, `frame?at=${encodeURIComponent(at.toISOString())}`)));
+  #frameOfWhatIf = latestOnly((input) => this.call("POST", cagePath(this.cageName, "whatif"), input));
 
   /** Call `fn` with what changed, from now on; the answer stops it. */
   on(name, fn) {
@@ -47,7 +48,7 @@ export class Model {
     return () => all.delete(fn);
   }
 
-  #tell(name, value) {
+  #notify(name, value) {
     for (const fn of this.#listeners.get(name) ?? []) fn(value);
   }
 
@@ -59,11 +60,11 @@ export class Model {
     } catch (error) {
       return this.#notBegun(error);
     }
-    this.#tell("session", this.session);
+    this.#notify("session", this.session);
     try {
       await this.#lookRound();
     } catch (error) {
-      if (error.status === 401) return this.#askForToken(WHY_NOT.cookie);
+      if (error.status === 401) return this.#askForToken(text("session.cookie"));
       return this.#notBegun(error);
     }
     this.#repeat();
@@ -74,7 +75,7 @@ export class Model {
 
   #notBegun(error) {
     if (error.status >= 400 && error.status < 500) return this.#askForToken(error.message);
-    this.#connected("lost", "The service does not answer; trying again.");
+    this.#connected("lost", text("connection.again"));
     return setTimeout(() => this.open(), 3000);
   }
 
@@ -82,7 +83,7 @@ export class Model {
   #repeat() {
     this.#rest();
     this.round = setInterval(() => this.#lookRound().catch(() => {}), LOOK_ROUND_MS);
-    this.second = setInterval(() => this.#tell("age", this.view), 1000);
+    this.second = setInterval(() => this.#notify("age", this.view), 1000);
     this.renewed = setInterval(() => resume().catch(() => {}), renewal());
   }
 
@@ -93,7 +94,7 @@ export class Model {
   async #lookRound() {
     if (document.hidden && this.cages.length) return;
     this.cages = (await call("GET", "cages")).cages;
-    this.#tell("cages", this.cages);
+    this.#notify("cages", this.cages);
   }
 
   /** Use a token that the reader typed. */
@@ -120,8 +121,7 @@ export class Model {
     this.#link = connect(name, {
       topology: (message) => this.#setTopology(message),
       frame: (buffer) => this.#setLive(buffer),
-      lost: (seconds) =>
-        this.#connected("lost", `Connection lost; trying again in ${seconds} s.`),
+      lost: (seconds) => this.#connected("lost", text("connection.retry", { seconds })),
       refused: (why) => this.#refused(why),
     });
   }
@@ -135,7 +135,7 @@ export class Model {
   #setTopology(message) {
     if (message.topology_id && message.topology_id === this.topology?.topology_id) return;
     this.topology = { ...message, rest: Float32Array.from(message.rest_position_m.flat()) };
-    this.#tell("topology", this.topology);
+    this.#notify("topology", this.topology);
   }
 
   #setLive(buffer) {
@@ -147,7 +147,7 @@ export class Model {
       return this.#connected("refused", error.message);
     }
     if (this.connection !== "live") this.#connected("live");
-    this.#tell("live", this.live);
+    this.#notify("live", this.live);
     if (this.#wanted === null) this.#show(this.live);
     return undefined;
   }
@@ -163,7 +163,7 @@ export class Model {
 
   #show(view) {
     this.view = view;
-    this.#tell("view", view);
+    this.#notify("view", view);
   }
 
   /** Show the cage at a time past; null goes back to now. Rejects with a Refusal. */
@@ -192,7 +192,7 @@ export class Model {
   select(selection) {
     if (JSON.stringify(selection) === JSON.stringify(this.selection)) return;
     this.selection = selection;
-    this.#tell("selection", selection);
+    this.#notify("selection", selection);
   }
 
   /** Call the service: a path under /api/v1, such as `cages/ace/alarms`. Rejects with a Refusal. */
@@ -200,31 +200,25 @@ export class Model {
     try {
       return await call(method, path.replace(/^\//, ""), body);
     } catch (error) {
-      if (error instanceof Refusal && error.status === 401) this.#askForToken(WHY_NOT.session);
+      if (error instanceof Refusal && error.status === 401) this.#askForToken(text("session.ended"));
       throw error;
     }
   }
 
-  /** Tell the reader of something that did not work. */
+  /** Show the reader that something did not work. */
   complain(error) {
-    this.#tell("trouble", error);
-  }
-
-  #path() {
-    return `cages/${encodeURIComponent(this.cageName)}`;
+    this.#notify("trouble", error);
   }
 
   #connected(connection, why = "") {
     Object.assign(this, { connection, why });
-    this.#tell("connection", connection);
+    this.#notify("connection", connection);
   }
 
   #refused(why) {
-    if (why === "unknown") return this.#askForToken(WHY_NOT.session);
+    if (why === "unknown") return this.#askForToken(text("session.ended"));
     this.#part();
-    if (why === "cage") return this.#connected("refused", "No cage has this name any more.");
-    return this.#connected("refused", "This token may not read this cage. Take one with the " +
-      "scope read.");
+    return this.#connected("refused", why === "cage" ? text("connection.noCage") : text("connection.noScope"));
   }
 
   /** Ask the reader for a token. */

@@ -1,5 +1,10 @@
 // Asking the service by HTTP, and its refusals in words.
 
+import { text } from "./texts/index.js";
+
+/** A path below that of a cage. */
+export const cagePath = (cage, rest) => `cages/${encodeURIComponent(cage)}/${rest}`;
+
 /** A call was refused or failed; `status` is HTTP's, 0 where nobody answered. */
 export class Refusal extends Error {
   constructor(status, sentence) {
@@ -18,7 +23,7 @@ export async function request(method, address, { body, headers = {} } = {}) {
       method, headers: { ...kind, ...headers }, body: body === undefined ? undefined : JSON.stringify(body),
     });
   } catch {
-    throw new Refusal(0, "The service does not answer.");
+    throw new Refusal(0, text("connection.noAnswer"));
   }
   if (!answer.ok) throw new Refusal(answer.status, await reason(answer));
   if (answer.status === 204) return null;

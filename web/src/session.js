@@ -2,21 +2,12 @@
 // read stands for it. Here lies only what a write has to repeat, for a cookie goes by itself.
 
 import { Refusal, request } from "./request.js";
+import { text } from "./texts/index.js";
 
 const SIGNED_IN = "seacage-signed-in"; // whether it is worth asking who; it opens nothing
 const [UNKNOWN, FORBIDDEN] = [401, 403];
 const SOONEST_MS = 20_000;
 const LATEST_MS = 3600e3;
-
-/** Why nobody is signed in, in words. */
-export const WHY_NOT = {
-  token: "This token does not open the service. It may be mistyped, revoked, or made for an " +
-    "earlier start.",
-  session: "You are no longer signed in: the session was too old, its token was revoked, or the " +
-    "service was started anew.",
-  cookie: "The token is good, but this browser keeps no cookie of the service. Allow it, then " +
-    "try again.",
-};
 
 let session = null;
 let linked = null; // the token of the address, until the service has answered to it
@@ -32,11 +23,11 @@ export async function begin() {
 /** Give a token for a cookie; says who is signed in. */
 export async function signIn(token) {
   linked = token;
-  return kept(request("POST", "session", { body: { token } }), WHY_NOT.token);
+  return kept(request("POST", "session", { body: { token } }), text("session.token"));
 }
 
 /** Ask who is signed in, whose session then lasts anew. */
-export const resume = () => kept(request("GET", "session"), WHY_NOT.session);
+export const resume = () => kept(request("GET", "session"), text("session.ended"));
 
 /** End the session. */
 export async function signOut() {
@@ -54,7 +45,7 @@ export function forget() {
 export const call = (method, path, body) => requestSignedIn(method, `api/v1/${path}`, body);
 
 async function requestSignedIn(method, address, body) {
-  if (!session) throw new Refusal(UNKNOWN, "Nobody is signed in.");
+  if (!session) throw new Refusal(UNKNOWN, text("session.nobody"));
   const ask = () => request(method, address, { body, headers: method === "GET" ? {} : repeated() });
   try {
     return await ask();

@@ -1,7 +1,9 @@
 // Light or dark: as the system says, unless the reader chose.
 
+import { Observable } from "./observable.js";
+
 const KEY = "seacage-theme";
-const listeners = new Set();
+const themes = new Observable();
 const light = matchMedia("(prefers-color-scheme: light)");
 
 /** "light" or "dark", as shown. */
@@ -15,11 +17,8 @@ export function setTheme(chosen) {
   apply();
 }
 
-/** Call `fn` whenever it changes. */
-export function onTheme(fn) {
-  listeners.add(fn);
-  return () => listeners.delete(fn);
-}
+/** Call `fn` whenever it changes; the answer stops it. */
+export const onTheme = (fn) => themes.on(fn);
 
 /** A colour or number of the style sheet. */
 export const styled = (name) =>
@@ -27,7 +26,7 @@ export const styled = (name) =>
 
 function apply() {
   document.documentElement.dataset.theme = theme();
-  for (const fn of listeners) fn(theme());
+  themes.notify(theme());
 }
 
 light.addEventListener("change", apply);

@@ -1,5 +1,7 @@
 // What the service sends: one little-endian binary frame per state of a cage.
 
+import { text } from "./texts/index.js";
+
 const MAGIC = 0x52464353; // "SCFR"
 const VERSION = 2;
 const HEADER = 32;
@@ -8,7 +10,6 @@ const aligned = (at) => Math.ceil(at / 8) * 8;
 export const VALID = 1;
 export const IN_DOMAIN = 2;
 export const PAST = 4;
-export const WHAT_IF = 8;
 export const NO_SPREAD = 16;
 
 /**
@@ -23,12 +24,11 @@ export const NO_SPREAD = 16;
 export function readFrame(buffer, rest) {
   const view = new DataView(buffer);
   if (buffer.byteLength < HEADER || view.getUint32(0, true) !== MAGIC) {
-    throw new Error(`A frame begins with SCFR; these ${buffer.byteLength} bytes do not.`);
+    throw new Error(text("frame.magic", { bytes: buffer.byteLength }));
   }
   const version = view.getUint16(4, true);
   if (version !== VERSION) {
-    throw new Error(`The service sends frames of version ${version}; this page reads ${VERSION}. Load ` +
-      "the page again.");
+    throw new Error(text("frame.version", { version, known: VERSION }));
   }
   const nodes = view.getUint32(16, true);
   const spreadAt = aligned(HEADER + 6 * nodes);
@@ -38,7 +38,7 @@ export function readFrame(buffer, rest) {
   const words = new Uint8Array(buffer, wordsAt, view.getUint32(20, true));
   const valid = (flags & VALID) !== 0;
   if (valid && 3 * nodes !== rest.length) {
-    throw new Error(`A frame of ${nodes} nodes does not fit a net of ${rest.length / 3}.`);
+    throw new Error(text("frame.nodes", { nodes, rest: rest.length / 3 }));
   }
   return {
     t: view.getFloat64(8, true),

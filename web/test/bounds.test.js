@@ -24,7 +24,7 @@ test("nor does one of the history, and what is not known stays unknown", () => {
   assert.deepEqual(possible(unknown).bridles[0].tension_kn, { mean: 3, lower: null, upper: null });
 });
 
-test("an interval that is cut off is told by its ends, for half its width would mislead", () => {
+test("an interval that is cut off is shown by its ends, for half its width would mislead", () => {
   assert.equal(half({ mean: 1.2, lower: 0, upper: 5.2 }), "(0.0 to 5.2)");
   assert.equal(half({ mean: 3, lower: 1, upper: 5 }), "± 2.0");
 });

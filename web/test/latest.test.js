@@ -6,23 +6,23 @@ import { test } from "node:test";
 import { latestOnly } from "../src/latest.js";
 
 function held() {
-  const asked = [];
+  const questions = [];
   const settle = [];
   const ask = latestOnly((question) => new Promise((resolve, reject) => {
-    asked.push(question);
+    questions.push(question);
     settle.push({ resolve, reject });
   }));
-  return { ask, asked, settle };
+  return { ask, questions, settle };
 }
 
-test("of the questions that wait only the last is asked", async () => {
-  const { ask, asked, settle } = held();
+test("of the questions that wait only the last is put", async () => {
+  const { ask, questions, settle } = held();
   const answers = [ask(1), ask(2), ask(3)];
   settle[0].resolve("one");
   await answers[0];
   settle[1].resolve("three");
   assert.deepEqual(await Promise.all(answers), [undefined, undefined, "three"]);
-  assert.deepEqual(asked, [1, 3]);
+  assert.deepEqual(questions, [1, 3]);
 });
 
 test("a lone question is answered", async () => {
@@ -32,7 +32,7 @@ test("a lone question is answered", async () => {
   assert.equal(await answer, "one");
 });
 
-test("a failure is told to who asked last, and the next question is asked", async () => {
+test("a failure goes to the last question, and the next one is put", async () => {
   const { ask, settle } = held();
   const first = ask(1);
   settle[0].reject(new Error("no"));

@@ -1,4 +1,4 @@
-// The model: what is shown is what was asked for, and old is called old.
+// The model: what is shown is what was requested, and old is called old.
 
 import assert from "node:assert/strict";
 import { beforeEach, mock, test } from "node:test";
@@ -10,7 +10,7 @@ import { forget } from "../src/session.js";
 
 const topology = { ...topologyOf("calm", 1), topology_id: "one" };
 const nodes = topology.rest_position_m.length;
-const session = { who: "ada", scopes: ["read"], csrf: "said once", expires: "2100-01-01T00:00:00Z" };
+const session = { who: "ada", scopes: ["read"], csrf: "sent once", expires: "2100-01-01T00:00:00Z" };
 let sockets, calls, answers, reloaded;
 
 class Socket {
@@ -77,8 +77,8 @@ async function opened() {
 
 test("the token goes to the service once, and in no address", async () => {
   const { socket } = await opened();
-  const [asked, ...later] = calls;
-  assert.deepEqual([asked.method, asked.path, asked.body], ["POST", "session", '{"token":"secret"}']);
+  const [request, ...later] = calls;
+  assert.deepEqual([request.method, request.path, request.body], ["POST", "session", '{"token":"secret"}']);
   assert.equal(location.hash, "");
   assert.deepEqual(socket.sent, ['{"token":null}']);
   assert.ok(!JSON.stringify([later, socket]).includes("secret"));
@@ -92,27 +92,27 @@ test("a page that is loaded again goes on with its cookie", async () => {
   assert.equal(model.session.who, "ada");
 });
 
-test("a write repeats what the session said, a question does not", async () => {
+test("a write repeats the secret of the session, a read does not", async () => {
   const { model } = await opened();
   answers = { alarms: {} };
   await model.call("POST", "cages/calm/alarms/a/acknowledge", {});
   await model.call("GET", "cages/calm/alarms");
-  assert.deepEqual(calls.slice(-2).map(({ headers }) => headers["X-CSRF-Token"]), ["said once", undefined]);
+  assert.deepEqual(calls.slice(-2).map(({ headers }) => headers["X-CSRF-Token"]), ["sent once", undefined]);
 });
 
-test("where another tab has signed in anew, a write is repeated with what it said", async () => {
+test("where another tab has signed in anew, a write is repeated with its secret", async () => {
   const { model } = await opened();
   answers = { session: { ...session, csrf: "another" }, alarms: { status: 403, detail: "No." } };
   await assert.rejects(model.call("POST", "cages/calm/alarms/a/acknowledge", {}), { status: 403 });
   assert.deepEqual(calls.slice(-3).map(({ path, headers }) => [path.split("/").at(-1), headers["X-CSRF-Token"]]),
-    [["acknowledge", "said once"], ["session", undefined], ["acknowledge", "another"]]);
+    [["acknowledge", "sent once"], ["session", undefined], ["acknowledge", "another"]]);
 });
 
 test("signing out ends the session and leaves nothing", async () => {
   const { model } = await opened();
   await model.leave();
   const { method, path, headers } = calls.at(-1);
-  assert.deepEqual([method, path, headers["X-CSRF-Token"]], ["DELETE", "session", "said once"]);
+  assert.deepEqual([method, path, headers["X-CSRF-Token"]], ["DELETE", "session", "sent once"]);
   assert.equal(reloaded, 1);
   await assert.rejects(model.call("GET", "cages/calm/alarms"), { status: 401 });
 });
@@ -140,7 +140,7 @@ test("without a token the page asks for one and calls nobody", async () => {
   assert.equal(calls.length + sockets.length, 0);
 });
 
-test("a token that is refused is dropped and asked for again", async () => {
+test("a token that is refused is dropped and requested again", async () => {
   answers = { session: { status: 401, detail: "No." } };
   const model = new Model();
   await model.open();
@@ -150,7 +150,7 @@ test("a token that is refused is dropped and asked for again", async () => {
   assert.equal(calls.length, 1);
 });
 
-test("a session that ended while the page was closed is told as such", async () => {
+test("a session that ended while the page was closed is reported as such", async () => {
   localStorage.setItem("seacage-signed-in", "yes");
   location.hash = "";
   answers = { session: { status: 401, detail: "No." } };
@@ -160,14 +160,14 @@ test("a session that ended while the page was closed is told as such", async () 
   assert.match(model.why, /no longer signed in/);
 });
 
-test("whoever tries too often is told to wait in the service's words", async () => {
+test("whoever tries too often reads the service's words to wait", async () => {
   answers = { session: { status: 429, detail: "Ask again in 3 s." } };
   const model = new Model();
   await model.open();
   assert.deepEqual([model.connection, model.why], ["asking", "Ask again in 3 s."]);
 });
 
-test("a browser that keeps no cookie is told so", async () => {
+test("a browser that keeps no cookie is reported", async () => {
   answers = { session, cages: { status: 401, detail: "No." } };
   const model = new Model();
   await model.open();
@@ -186,7 +186,7 @@ test("a service that does not answer yet gets the token again", async () => {
   assert.deepEqual(given, ["session", '{"token":"secret"}']);
 });
 
-test("a session that has ended is told so, and a token asked for", async () => {
+test("a session that has ended is reported, and a token requested", async () => {
   const { model, socket } = await opened();
   socket.close(4401);
   assert.equal(model.connection, "asking");
@@ -203,13 +203,13 @@ test("a first message that came too late is sent again", async () => {
   assert.deepEqual(sockets[1].sent, ['{"token":null}']);
 });
 
-test("without a token nothing is asked of the service", async () => {
+test("without a token nothing is requested of the service", async () => {
   const model = new Model();
   await assert.rejects(model.call("GET", "cages/calm/alarms"), { status: 401 });
   assert.equal(calls.length, 0);
 });
 
-test("a token without the scope is told so", async () => {
+test("a token without the scope is reported", async () => {
   const { model, socket } = await opened();
   socket.close(4403);
   assert.equal(model.connection, "refused");
@@ -277,14 +277,14 @@ test("a topology that is already known is not built again", async () => {
   assert.equal(built.length, 1);
 });
 
-test("a selection is told once", () => {
+test("a selection is announced once", () => {
   const model = new Model();
-  const told = [];
-  model.on("selection", (one) => told.push(one));
+  const selections = [];
+  model.on("selection", (one) => selections.push(one));
   model.select({ bridle: "bridle-1" });
   model.select({ bridle: "bridle-1" });
   model.select(null);
-  assert.deepEqual(told, [{ bridle: "bridle-1" }, null]);
+  assert.deepEqual(selections, [{ bridle: "bridle-1" }, null]);
 });
 
 test("input older than the limit is stale, and the past never is", () => {

@@ -4,7 +4,8 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { topologyOf } from "../dev/cage.js";
-import { alarmed, cssColour, rank } from "../src/scene/colours.js";
+import { rank } from "../src/panels/ranks.js";
+import { alarmed, cssColour } from "../src/scene/colours.js";
 import { roundLength } from "../src/scene/furniture.js";
 import {
   bearingOf, extent, movedBy, nodeNormals, smoothLoop, towards, triangles, tubeRing,
@@ -129,9 +130,9 @@ test("without valid input a bridle shows dashes and the reason", () => {
     valid: false, in_domain: false, reason: "buoy-1 is silent.", sensors: [],
     bridles: [{ name: "bridle-1", level: 1, tension_kn: nothing, utilisation: null }],
   };
-  const said = wordsFor({ bridle: "bridle-1" }, topology, { state });
-  assert.deepEqual(said.rows.map(([, value]) => value), ["–", "–", "–"]);
-  assert.equal(said.note, "buoy-1 is silent.");
+  const words = wordsFor({ bridle: "bridle-1" }, topology, { state });
+  assert.deepEqual(words.rows.map(([, value]) => value), ["–", "–", "–"]);
+  assert.equal(words.note, "buoy-1 is silent.");
 });
 
 test("a line outside the training domain of its own level is labelled, and one without an interval says why", () => {
@@ -141,16 +142,16 @@ test("a line outside the training domain of its own level is labelled, and one w
   assert.match(wordsFor({ bridle: "bridle-1" }, topology, { state }).note, /Outside the training domain/);
   const none = { mean: 32, lower: null, upper: null };
   state.bridles = [{ ...bridle, level: 1, in_domain: true, interval_reason: "No sensor.", tension_kn: none }];
-  const said = wordsFor({ bridle: "bridle-1" }, topology, { state });
-  assert.equal(said.rows[1][1], "not known");
-  assert.equal(said.note, "From simulations alone. No sensor.");
+  const words = wordsFor({ bridle: "bridle-1" }, topology, { state });
+  assert.equal(words.rows[1][1], "not known");
+  assert.equal(words.note, "From simulations alone. No sensor.");
 });
 
 test("a node without a spread says that it is not known, and why", () => {
-  const state = { valid: true, shape: { interval_reason: "No sensor has taught the shape." } };
-  const said = wordsFor({ node: 3 }, topology, { state, position: topology.rest, sigma: null });
-  assert.deepEqual(said.rows.at(-1), ["Uncertainty, σ", "not known"]);
-  assert.equal(said.note, "No sensor has taught the shape.");
+  const state = { valid: true, shape: { interval_reason: "No sensor has trained the shape." } };
+  const words = wordsFor({ node: 3 }, topology, { state, position: topology.rest, sigma: null });
+  assert.deepEqual(words.rows.at(-1), ["Uncertainty, σ", "not known"]);
+  assert.equal(words.note, "No sensor has trained the shape.");
   assert.equal(tintOf(topology, { position: topology.rest, sigma: null }, { tint: "sigma" }), null);
 });
 

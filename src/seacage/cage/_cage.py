@@ -6,7 +6,6 @@ from dataclasses import dataclass, field, fields, is_dataclass, replace
 from functools import cached_property
 from importlib import resources
 from itertools import pairwise
-from pathlib import Path
 from typing import Any, Self
 
 import numpy as np
@@ -31,9 +30,9 @@ from seacage.cage._parts import (
     quantity,
 )
 from seacage.cage._tangent_plane import TangentPlane
-from seacage.cage._toml import alter, parse, to_text
+from seacage.cage._toml import TomlFile, alter
 from seacage.cage._volume import enclosed_volume
-from seacage.conventions import InputError, read_text, towards
+from seacage.conventions import InputError, towards
 
 SNAPPED = 0.01
 """A bridle that a node moves by more is warned of [deg]; bearings are seldom written finer."""
@@ -57,7 +56,7 @@ class DepthSensor:
 
 # No slots here: what is derived from the parts is computed once and kept.
 @dataclass(frozen=True, kw_only=True)
-class Cage:
+class Cage(TomlFile):
     """A cage as its file describes it, with the node graph derived from it.
 
     ``Cage.named("ace")`` is the reference cage, ``Cage.read("mine.toml")`` one's own;
@@ -121,28 +120,10 @@ class Cage:
             )
         return cls.from_toml((shelf / f"{name}.toml").read_text("utf-8"), source=f"{name}.toml")
 
-    @classmethod
-    def read(cls, path: str | Path) -> Self:
-        """A cage from a TOML file, refused with the key's name where a key is wrong."""
-        return cls.from_toml(read_text(path), source=str(path))
-
-    @classmethod
-    def from_toml(cls, text: str, *, source: str = "cage") -> Self:
-        """A cage from TOML text; ``source`` names it in errors."""
-        return parse(cls, text, source=source)
-
-    def to_toml(self) -> str:
-        """TOML text with the unit in every key and the meaning beside it."""
-        return to_text(self)
-
     @property
     def sha256(self) -> str:
         """Hash of the whole cage."""
         return hashlib.sha256(self.to_toml().encode()).hexdigest()
-
-    def write(self, path: str | Path) -> None:
-        """Write a TOML file that ``read`` takes back."""
-        Path(path).write_text(self.to_toml(), "utf-8")
 
     # Changed copies
 

@@ -3,24 +3,23 @@
 import difflib
 from dataclasses import dataclass, field
 from functools import cached_property
-from pathlib import Path
-from typing import Self, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.cage._parts import Site, check_bounds, quantity
 from seacage.cage._structure_parts import Anchor, Line, Named, Net, Point, Ring, Section, Tie, Twine
-from seacage.cage._toml import parse, to_text
+from seacage.cage._toml import TomlFile
 from seacage.cage._volume import enclosed_volume
-from seacage.conventions import InputError, read_text
+from seacage.conventions import InputError
 
 _Part = TypeVar("_Part", bound=Named)
 
 
 # No slots here: what is derived from the parts is computed once and kept.
 @dataclass(frozen=True, kw_only=True)
-class Structure:
+class Structure(TomlFile):
     """A net cage of any topology, as its file describes it, with the nodes derived from it.
 
     Where ``Cage`` is one kind of cage with many sizes, this is rings of nodes on common
@@ -80,26 +79,6 @@ class Structure:
                 raise InputError(
                     f"Structure {self.name}: line {line.name!r} starts and ends at {line.start!r}."
                 )
-
-    # Doors
-
-    @classmethod
-    def read(cls, path: str | Path) -> Self:
-        """A structure from a TOML file, refused with the key's name where a key is wrong."""
-        return cls.from_toml(read_text(path), source=str(path))
-
-    @classmethod
-    def from_toml(cls, text: str, *, source: str = "structure") -> Self:
-        """A structure from TOML text; ``source`` names it in errors."""
-        return parse(cls, text, source=source)
-
-    def to_toml(self) -> str:
-        """TOML text with the unit in every key and the meaning beside it."""
-        return to_text(self)
-
-    def write(self, path: str | Path) -> None:
-        """Write a TOML file that ``read`` takes back."""
-        Path(path).write_text(self.to_toml(), "utf-8")
 
     # What a part is made of
 

@@ -1,7 +1,7 @@
 """The parts of a structure of any topology, each with its parameters, units and bounds."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import Any
 
 from seacage.cage._parts import check_bounds, quantity
@@ -16,8 +16,10 @@ def _name(meaning: str) -> Any:
     return field(metadata={"meaning": meaning})
 
 
-def _choice(meaning: str, default: str) -> Any:
-    return field(metadata={"meaning": meaning}, default=default)
+def _choice(meaning: str, default: str, *others: str) -> Any:
+    """Declare a text: any, or with others the default and those alone."""
+    allowed = (default, *others) if others else ()
+    return field(metadata={"meaning": meaning, "allowed": allowed}, default=default)
 
 
 class Named:
@@ -27,13 +29,18 @@ class Named:
     name: str
 
     def __post_init__(self) -> None:
-        check_bounds(self, f"Structure, {type(self).__name__} {self.name!r}")
+        where = f"Structure, {type(self).__name__} {self.name!r}"
+        check_bounds(self, where)
+        _check_choices(self, where)
 
-    def _one_of(self, key: str, value: str, allowed: tuple[str, ...]) -> None:
-        if value not in allowed:
+
+def _check_choices(part: Any, where: str) -> None:
+    for parameter in fields(part):
+        value, allowed = getattr(part, parameter.name), parameter.metadata.get("allowed")
+        if allowed and value not in allowed:
             raise InputError(
-                f"Structure, {type(self).__name__} {self.name!r}: {key} = {value!r} must be one "
-                f"of {', '.join(map(repr, allowed))}."
+                f"{where}: {parameter.name} = {value!r} must be one of "
+                f"{', '.join(map(repr, sorted(allowed)))}."
             )
 
 
@@ -42,7 +49,7 @@ class Section(Named):
     """Cross-section of a ring, a tie or a line."""
 
     name: str = _name("what rings, ties and lines call it")
-    kind: str = _choice("'pipe': bears a push, floats at the surface; 'rope': neither", ROPE)
+    kind: str = _choice("'pipe': bears a push, floats at the surface; 'rope': neither", ROPE, PIPE)
     diameter: float = quantity("m", "outer diameter, that the water meets", above=True)
     mass: float = quantity("kg_m", "in air, with its filling")
     axial_stiffness: float = quantity("n", "EA", above=True)
@@ -56,10 +63,6 @@ class Section(Named):
     damping_ratio: float = quantity(
         "", "structural damping over pair-critical damping", default=0.1
     )
-
-    def __post_init__(self) -> None:
-        super(Section, self).__post_init__()
-        self._one_of("kind", self.kind, (PIPE, ROPE))
 
     @property
     def is_pipe(self) -> bool:
@@ -132,11 +135,10 @@ class Net(Named):
     height: float = quantity("m", "knitted, edge to edge or to the centre; 0: as built", default=0)
     upper_width: float = quantity("m", "knitted, round the upper edge; 0: as built", default=0.0)
     lower_width: float = quantity("m", "knitted, round the lower edge; 0: as built", default=0.0)
-    twines: str = _choice("run 'along' the panels' edges, or 'diagonal' to them", ALONG)
+    twines: str = _choice("run 'along' the panels' edges, or 'diagonal' to them", ALONG, DIAGONAL)
 
     def __post_init__(self) -> None:
         super(Net, self).__post_init__()
-        self._one_of("twines", self.twines, (ALONG, DIAGONAL))
         if self.upper == self.lower:
             raise InputError(
                 f"Structure, Net {self.name!r}: upper and lower are both {self.upper!r}. Name two "
@@ -152,14 +154,15 @@ class Tie(Named):
     section: str = _name("of which they are made")
     upper: str = _name("the ring of the upper ends")
     lower: str = _name("the ring of the lower ends")
-    kind: str = _choice("'ropes', 'struts', or 'braces': struts and diagonals both ways", ROPES)
+    kind: str = _choice(
+        "'ropes', 'struts', or 'braces': struts and diagonals both ways", ROPES, STRUTS, BRACES
+    )
     every: int = quantity("", "how many spokes from one to the next", low=1, default=1)
     length: float = quantity("m", "unstretched; 0: as built", default=0.0)
     segments: int = quantity("", "pieces that each is cut into", low=1, default=1)
 
     def __post_init__(self) -> None:
         super(Tie, self).__post_init__()
-        self._one_of("kind", self.kind, (ROPES, STRUTS, BRACES))
         if self.kind != ROPES and self.segments != 1:
             raise InputError(
                 f"Structure, Tie {self.name!r}: segments = {self.segments}, but {self.kind} are "

@@ -5,11 +5,34 @@ import json
 from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, Field, fields, is_dataclass, replace
 from numbers import Integral, Real
+from pathlib import Path
 from types import UnionType
-from typing import Any, get_args, get_origin
+from typing import Any, Self, get_args, get_origin
 
 from seacage.cage._parts import key_of
-from seacage.conventions import InputError, NonsenseError, parse_toml
+from seacage.conventions import InputError, NonsenseError, parse_toml, read_text
+
+
+class TomlFile:
+    """A value that is kept as TOML text."""
+
+    @classmethod
+    def read(cls, path: str | Path) -> Self:
+        """Read a TOML file, refused with the key's name where a key is wrong."""
+        return cls.from_toml(read_text(path), source=str(path))
+
+    @classmethod
+    def from_toml(cls, text: str, *, source: str = "") -> Self:
+        """Read TOML text; ``source`` names it in errors."""
+        return parse(cls, text, source=source or cls.__name__.lower())
+
+    def to_toml(self) -> str:
+        """TOML text with the unit in every key and the meaning beside it."""
+        return to_text(self)
+
+    def write(self, path: str | Path) -> None:
+        """Write a TOML file that ``read`` takes back."""
+        Path(path).write_text(self.to_toml(), "utf-8")
 
 
 def parse(kind: type, text: str, *, source: str) -> Any:

@@ -216,7 +216,7 @@ class Plan:
         try:
             table = parse_json(text, "Plan")
             seas = tuple(
-                _sea_of(_inside(case), f"Plan: case {number}")
+                _sea_of({_DOOR[key]: value for key, value in case.items()}, f"Plan: case {number}")
                 for number, case in enumerate(table["cases"])
             )
             return cls(
@@ -241,10 +241,6 @@ class Plan:
     def sha256(self) -> str:
         """Hash of the whole plan."""
         return hashlib.sha256(self.to_json().encode()).hexdigest()
-
-
-def _inside(case: Mapping[str, Any]) -> dict[str, float]:
-    return {_DOOR[key]: value for key, value in case.items()}
 
 
 def _sea_of(case: Mapping[str, Any], where: str) -> SeaState:

@@ -22,7 +22,7 @@ Task = TypeVar("Task")
 Answer = TypeVar("Answer")
 
 
-def available_cores() -> int:
+def _available_cores() -> int:
     """Cores that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
@@ -33,7 +33,7 @@ def map_tasks(
     work: Callable[[Task], Answer],
     tasks: Sequence[Task],
     *,
-    workers: int,
+    workers: int | None,
     progress: Callable[[float], None] | None = None,
 ) -> Generator[tuple[Task, Answer], None, None]:
     """Tasks with their answers, in the order in which they end.
@@ -48,12 +48,12 @@ def map_tasks(
     tasks
         What to do.
     workers
-        Processes at most.
+        Processes at most; None for one per available core.
     progress
         Called now and then, while an answer is waited for, with the sum that the tasks report
         by ``report_progress``.
     """
-    workers = min(workers, len(tasks))
+    workers = min(workers or _available_cores(), len(tasks))
     spawn = multiprocessing.get_context("spawn")
     board = spawn.RawArray("d", max(len(tasks), 1))
     if workers <= 1:

@@ -15,7 +15,7 @@ from seacage.cage import Cage
 from seacage.campaigns._cases import Answers, CaseBlock, Simulator, answer_block, software_version
 from seacage.campaigns._cluster import map_on_cluster
 from seacage.campaigns._plan import Plan
-from seacage.campaigns._pool import available_cores, map_tasks
+from seacage.campaigns._pool import map_tasks
 from seacage.conventions import InputError, Origin, Progress, no_progress
 from seacage.dynamics import PHYSICS, Mooring, MovingLaw
 from seacage.records import (
@@ -226,7 +226,7 @@ def _map_blocks(
 ) -> Generator[tuple[CaseBlock, Answers], None, None]:
     if cluster is not None and blocks:
         return map_on_cluster(answer_block, blocks, address=cluster)
-    return map_tasks(answer_block, blocks, workers=workers or available_cores())
+    return map_tasks(answer_block, blocks, workers=workers)
 
 
 def _create(

@@ -36,9 +36,7 @@ _LONGEST_GAP = 12.0 * _HOUR
 """In a winter that has it all [s]."""
 
 
-def generated_waves(
-    seed: int, *, start: datetime, days: float = 50.0, every_s: float = 3600.0
-) -> Record:
+def generated_waves(seed: int, *, start: datetime, days: float = 50.0) -> Record:
     """A wave record of a sheltered site, with weather that passes over days.
 
     Hs is log-normal about 0.5 m and 3 m at most; Tp is that of 5 sqrt(Hs) times a factor that
@@ -52,16 +50,14 @@ def generated_waves(
     start
         Time of the first value, with its zone.
     days
-        Length of the record.
-    every_s
-        Time between values [s].
+        Length of the record, of a value an hour.
     """
-    steps = int(days * 24.0 * _HOUR / every_s)
+    steps = int(days * 24.0)
     if steps < 1:
-        raise InputError(f"generated_waves: {days:g} days hold no step of {every_s:g} s.")
+        raise InputError(f"generated_waves: {days:g} days hold no step of an hour.")
     rng = np.random.default_rng([seed, *b"waves"])
-    high, own = wandering(rng, steps, sd=1.0, step_s=every_s, memory_s=_MEMORY).T
-    wind = wandering(rng, steps, sd=0.6, step_s=every_s, memory_s=_MEMORY)
+    high, own = wandering(rng, steps, sd=1.0, step_s=_HOUR, memory_s=_MEMORY).T
+    wind = wandering(rng, steps, sd=0.6, step_s=_HOUR, memory_s=_MEMORY)
     middle, spread, most = _HEIGHT
     hs = np.minimum(middle * np.exp(spread * high), most)
     least, above, width = _PERIOD
@@ -69,7 +65,7 @@ def generated_waves(
     tp = 5.0 * np.sqrt(hs) * (least + above * np.exp(width * long))
     record = Record(
         stream="buoy-1",
-        time=instant(start) + (np.arange(steps) * every_s * 1e6).astype("timedelta64[us]"),
+        time=instant(start) + (np.arange(steps) * _HOUR * 1e6).astype("timedelta64[us]"),
         values={
             "hs_m": np.round(hs, 2),
             "tp_s": np.round(tp, 1),

@@ -10,7 +10,7 @@ from jaxtyping import Bool, Float, Int
 from seacage.cage import Cage
 from seacage.conventions import InputError, Result
 from seacage.dynamics._equilibrium import Equilibria, equilibria
-from seacage.dynamics._moored import assemble, free_nodes
+from seacage.dynamics._moored import assemble
 from seacage.dynamics._parts import Assembly
 from seacage.dynamics._physics import Law, SteadyFlow, bar_tension, steady_flow, total_net_force
 from seacage.ocean import SeaState, wave_velocity_variance
@@ -116,14 +116,13 @@ def settle(
         )
     seas = [sea] if isinstance(sea, SeaState) else list(sea)
     _check(seas, mean_waves=mean_waves, starts=starts)
-    assembly = assemble(cage)
+    assembly = assemble(cage).held() if hold_collar else assemble(cage)
     velocity = np.array([state.current_velocity for state in seas])
     variance = _wave_variance(cage, assembly, seas) if mean_waves else None
     flow = steady_flow(
         assembly, velocity, law=law, wake=wake, pipe_drag=collar_drag, wave_variance=variance
     )
-    free = free_nodes(cage, assembly, hold_collar=hold_collar)
-    found = equilibria(cage, assembly, flow, free=free, starts=starts, workers=workers)
+    found = equilibria(assembly, flow, starts=starts, workers=workers)
     rest = rest_shape(cage, hold_collar=hold_collar)
     response = _response(cage, assembly, flow, found, rest)
     return _only_case(response) if isinstance(sea, SeaState) else response
@@ -152,10 +151,8 @@ def rest_shape(cage: Cage, *, hold_collar: bool = False) -> Float[np.ndarray, "n
     InputError
         A cage that has no rest: its parts cannot hang together.
     """
-    assembly = assemble(cage)
-    flow = steady_flow(assembly, np.zeros((1, 2)), law="loland")
-    free = free_nodes(cage, assembly, hold_collar=hold_collar)
-    found = equilibria(cage, assembly, flow, free=free)
+    assembly = assemble(cage).held() if hold_collar else assemble(cage)
+    found = equilibria(assembly, steady_flow(assembly, np.zeros((1, 2)), law="loland"))
     if found.result[0] != Result.CONVERGED:
         raise InputError(
             f"Cage {cage.name}: it does not come to rest in still water (a node keeps "

@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.conventions import InputError
+from seacage.ocean._spread import turn_vectors
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,13 +59,5 @@ class CurrentProfile:
 
     def velocity(self, surface: Float[np.ndarray, "*sea 2"]) -> Float[np.ndarray, "*sea depth 2"]:
         """Velocity (east, north) at each depth, from that at the surface [m/s]."""
-        angle = np.deg2rad(self.turned)
-        east, north = surface[..., :1], surface[..., 1:]
-        turned = np.stack(
-            [
-                np.cos(angle) * east + np.sin(angle) * north,
-                np.cos(angle) * north - np.sin(angle) * east,
-            ],
-            axis=-1,
-        )
+        turned = turn_vectors(surface[..., None, :], np.deg2rad(self.turned))
         return np.array(self.factor)[:, None] * turned

@@ -64,15 +64,11 @@ class SeaState:
         tp = 5.0 * math.sqrt(hs) if self.tp is None else _number("tp", self.tp, "s")
         if hs > 0.0:
             _check_steepness(hs, tp)
-        object.__setattr__(self, "current_speed", speed)
-        object.__setattr__(
-            self, "current_to", fold_degrees(self.current_to, what="SeaState: current_to")
-        )
-        object.__setattr__(self, "hs", hs)
-        object.__setattr__(self, "tp", tp if hs > 0.0 else 0.0)
-        object.__setattr__(
-            self, "wave_from", fold_degrees(self.wave_from, what="SeaState: wave_from")
-        )
+        for name, value in (("current_speed", speed), ("hs", hs), ("tp", tp if hs > 0.0 else 0.0)):
+            object.__setattr__(self, name, value)
+        for name in ("current_to", "wave_from"):
+            degrees = fold_degrees(getattr(self, name), what=f"SeaState: {name}")
+            object.__setattr__(self, name, degrees)
 
     @property
     def current_velocity(self) -> Float[np.ndarray, "2"]:

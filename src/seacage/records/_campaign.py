@@ -16,26 +16,10 @@ from seacage.conventions import Origin, RecordError, Result
 from seacage.ocean import SeaState
 from seacage.records._brief import brief
 from seacage.records._campaign_store import MEAN, NOT_RUN, SEA, campaign_unsummed, not_a_campaign
-from seacage.records._netcdf_check import check_netcdf
+from seacage.records._netcdf_file import check_netcdf, write_netcdf
 
 if TYPE_CHECKING:
     import xarray
-
-_MAY_LACK = (
-    "residual",
-    "wave_seed",
-    "diverged_at",
-    "net_force_std",
-    "volume_std",
-    "quantile",
-    "second_moment",
-    *(
-        f"{name}_{statistic}"
-        for name in ("node_position", "bridle_tension")
-        for statistic in ("std", "minimum", "maximum", "quantile")
-    ),
-)
-"""Fields of a record that some campaigns have and others not."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -151,8 +135,12 @@ def read_campaign(path: str | Path) -> CampaignRecord:
     """
     path = Path(path)
     with _open(path) as dataset:
-        names = [name for name in (*SEA, *MEAN, "result", *_MAY_LACK) if name in dataset.variables]
-        variables = {name: np.asarray(dataset[name].values) for name in names}
+        variables = {name: np.asarray(dataset[name].values) for name in (*SEA, *MEAN, "result")}
+        variables |= {
+            part.name: np.asarray(dataset[part.name].values)
+            for part in fields(CampaignRecord)
+            if part.default is None and part.name in dataset.variables
+        }
         attributes = dict(dataset.attrs)
     missing = int(np.sum(variables["result"] == NOT_RUN))
     if missing:
@@ -177,15 +165,12 @@ def read_campaign(path: str | Path) -> CampaignRecord:
 
 def export_campaign(store: str | Path, path: str | Path) -> None:
     """Write a campaign's Zarr store as one CF-NetCDF file."""
-    path = Path(path)
-    unborn = path.with_name(f".{path.name}.unborn")
     with _open(Path(store)) as dataset:
         for variable in dataset.variables.values():
             variable.encoding = {}  # Zarr's own, which NetCDF does not know
         result = dataset["result"]
         result.attrs["flag_values"] = np.array(result.attrs["flag_values"], result.dtype)
-        dataset.to_netcdf(unborn, engine="h5netcdf")
-    unborn.replace(path)
+        write_netcdf(dataset, Path(path))
 
 
 def _open(path: Path) -> "xarray.Dataset":

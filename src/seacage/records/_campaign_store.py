@@ -27,7 +27,7 @@ _BLOCKS = "blocks"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Variable:
+class Variable:
     """A variable of the store: where it varies, its CF attributes and its type."""
 
     dims: tuple[str, ...]
@@ -38,33 +38,39 @@ class _Variable:
     comment: str = ""
     dtype: str = "float64"
 
+    @property
+    def attributes(self) -> dict[str, Any]:
+        """Attributes of CF, those that it has."""
+        names = ("units", "long_name", "standard_name", "cell_methods", "comment")
+        return {name: value for name in names if (value := getattr(self, name))}
+
 
 SEA = {
-    "current_speed": _Variable(
+    "current_speed": Variable(
         dims=("case",),
         units="m s-1",
         long_name="speed of the current",
         standard_name="sea_water_speed",
     ),
-    "current_to": _Variable(
+    "current_to": Variable(
         dims=("case",),
         units="degree",
         long_name="where the current goes, clockwise from true north",
         standard_name="sea_water_velocity_to_direction",
     ),
-    "hs": _Variable(
+    "hs": Variable(
         dims=("case",),
         units="m",
         long_name="significant wave height",
         standard_name="sea_surface_wave_significant_height",
     ),
-    "tp": _Variable(
+    "tp": Variable(
         dims=("case",),
         units="s",
         long_name="peak period of the waves, 0 without waves",
         standard_name="sea_surface_wave_period_at_variance_spectral_density_maximum",
     ),
-    "wave_from": _Variable(
+    "wave_from": Variable(
         dims=("case",),
         units="degree",
         long_name="where the waves come from, clockwise from true north",
@@ -74,59 +80,45 @@ SEA = {
 """The sea state of each case, with the names of ``SeaState``."""
 
 MEAN = {
-    "node_position": _Variable(
+    "node_position": Variable(
         dims=("case", "node", "axis"), units="m", long_name="mean position of the net's nodes"
     ),
-    "bridle_tension": _Variable(
+    "bridle_tension": Variable(
         dims=("case", "line"), units="N", long_name="mean tension of the bridles"
     ),
-    "net_force": _Variable(
+    "net_force": Variable(
         dims=("case", "axis"), units="N", long_name="load of the water on the netting"
     ),
-    "volume": _Variable(dims=("case",), units="m3", long_name="volume inside the net"),
+    "volume": Variable(dims=("case",), units="m3", long_name="volume inside the net"),
 }
 """What every campaign answers."""
 
-_RESULT = {
-    "result": _Variable(dims=("case",), units="1", long_name="how the case ended", dtype="int8"),
-}
+_RESULT = Variable(dims=("case",), units="1", long_name="how the case ended", dtype="int8")
 
-_RESIDUAL = {
-    "residual": _Variable(
-        dims=("case",), units="N", long_name="largest unbalanced force at a node"
-    ),
-}
+_RESIDUAL = Variable(dims=("case",), units="N", long_name="largest unbalanced force at a node")
 
-_WAVE_SEED = {
-    "wave_seed": _Variable(
-        dims=("case",),
-        units="1",
-        long_name="seed of the waves: a simulation with it repeats the case",
-        dtype="int64",
-    ),
-}
+_WAVE_SEED = Variable(
+    dims=("case",),
+    units="1",
+    long_name="seed of the waves: a simulation with it repeats the case",
+    dtype="int64",
+)
 
-_QUANTILE = {
-    "quantile": _Variable(dims=("quantile",), units="1", long_name="probability of not exceeding"),
-}
+_QUANTILE = Variable(dims=("quantile",), units="1", long_name="probability of not exceeding")
 
-_SECOND_MOMENT = {
-    "second_moment": _Variable(
-        dims=("coordinate", "other_coordinate"),
-        units="m2",
-        long_name="mean product of two coordinates' displacements from the design shape",
-        comment="coordinate 3 n + a is axis a of node n; over time and all converged cases",
-    ),
-}
+_SECOND_MOMENT = Variable(
+    dims=("coordinate", "other_coordinate"),
+    units="m2",
+    long_name="mean product of two coordinates' displacements from the design shape",
+    comment="coordinate 3 n + a is axis a of node n; over time and all converged cases",
+)
 
-_CORE_SECONDS = {
-    "core_seconds": _Variable(
-        dims=("block",), units="s", long_name="processor time that a block of cases took"
-    ),
-}
+_CORE_SECONDS = Variable(
+    dims=("block",), units="s", long_name="processor time that a block of cases took"
+)
 
 
-def _spread(name: str, statistic: str, method: str) -> _Variable:
+def _spread(name: str, statistic: str, method: str) -> Variable:
     """A statistic over time beside a mean; four bytes are finer than any sensor."""
     whole = MEAN[name]
     dims = (
@@ -134,7 +126,7 @@ def _spread(name: str, statistic: str, method: str) -> _Variable:
         if statistic == "quantile"
         else ("case", *whole.dims[1:])
     )
-    return _Variable(
+    return Variable(
         dims=dims,
         units=whole.units,
         long_name=f"{statistic.replace('_', ' ')} of {name.replace('_', ' ')} over time",
@@ -157,7 +149,7 @@ SPREAD = {
         for statistic, method in _STATISTICS.items()
     },
     **{f"{name}_std": _spread(name, "std", _STATISTICS["std"]) for name in ("net_force", "volume")},
-    "diverged_at": _Variable(
+    "diverged_at": Variable(
         dims=("case",),
         units="s",
         long_name="simulated time at which the case was given up, spin-up included",
@@ -257,7 +249,7 @@ def write_cases(
         _array(path, f"{_BLOCKS}/moment")[number] = moment
     if (path / "core_seconds").is_dir():  # the first campaigns had none
         _array(path, "core_seconds")[number] = core_seconds
-    for name in (*MEAN, *_RESIDUAL, *SPREAD, *_RESULT):
+    for name in (*MEAN, "residual", *SPREAD, "result"):
         if (path / name).is_dir():
             values = answers[name]
             _array(path, name)[first : first + len(values)] = values
@@ -321,12 +313,15 @@ def _array(path: Path, name: str) -> Any:
     return zarr.open_array(path / name, mode="r+")
 
 
-def _variables(*, in_time: bool, quantiles: bool, moment: bool) -> dict[str, _Variable]:
+def _variables(*, in_time: bool, quantiles: bool, moment: bool) -> dict[str, Variable]:
     """Of a campaign of equilibria, or of one in time."""
-    variables = {**SEA, **MEAN, **_RESULT, **_CORE_SECONDS}
-    variables |= {**_WAVE_SEED, **_QUANTILE, **SPREAD} if in_time else _RESIDUAL
+    variables = {**SEA, **MEAN, "result": _RESULT, "core_seconds": _CORE_SECONDS}
+    if in_time:
+        variables |= {"wave_seed": _WAVE_SEED, "quantile": _QUANTILE, **SPREAD}
+    else:
+        variables["residual"] = _RESIDUAL
     if moment:
-        variables |= _SECOND_MOMENT
+        variables["second_moment"] = _SECOND_MOMENT
     return {
         name: variable
         for name, variable in variables.items()
@@ -337,7 +332,7 @@ def _variables(*, in_time: bool, quantiles: bool, moment: bool) -> dict[str, _Va
 def _create_array(
     group: Any,
     name: str,
-    variable: _Variable,
+    variable: Variable,
     size: Mapping[str, int],
     chunk: Mapping[str, int],
 ) -> None:
@@ -402,11 +397,8 @@ def _move(unborn: Path, path: Path) -> None:
             raise
 
 
-def _attributes(name: str, variable: _Variable) -> dict[str, Any]:
-    attributes: dict[str, Any] = {"units": variable.units, "long_name": variable.long_name}
-    for key in ("standard_name", "cell_methods", "comment"):
-        if getattr(variable, key):
-            attributes[key] = getattr(variable, key)
+def _attributes(name: str, variable: Variable) -> dict[str, Any]:
+    attributes = variable.attributes
     if "axis" in variable.dims:
         attributes["comment"] = "axis: x east, y north, z up; z = 0 at still water"
     if "case" in variable.dims and name not in SEA:

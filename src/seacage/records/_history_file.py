@@ -15,7 +15,8 @@ from jaxtyping import Float, Int
 from seacage.conventions import Origin, RecordError, Result, parse_json
 from seacage.ocean import SeaState
 from seacage.records._brief import brief
-from seacage.records._netcdf_check import check_netcdf
+from seacage.records._campaign_store import SEA, Variable
+from seacage.records._netcdf_file import open_netcdf, write_netcdf
 
 if TYPE_CHECKING:
     import xarray
@@ -24,6 +25,9 @@ _SCHEMA = "seacage history 1"
 
 STATISTICS = ("mean", "std", "minimum", "maximum", "quantile")
 """Of each quantity, as ``HistoryRecord`` and its file name them."""
+
+# No date: CF's standard name "time" would ask for one.
+_TIME = {"units": "s", "long_name": "time from the end of the spin-up", "axis": "T"}
 
 _CELL_METHODS = {
     "mean": "time: mean",
@@ -34,52 +38,30 @@ _CELL_METHODS = {
 """By CF's words; it has none for quantiles but the median."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _HistoryVariable:
-    """What varies: its dimensions but time, its unit, and what it is."""
-
-    dims: tuple[str, ...]
-    units: str
-    long_name: str
-    standard_name: str = ""
-
-
 _QUANTITIES = {
-    "node_position": _HistoryVariable(
+    "node_position": Variable(
         dims=("node", "axis"), units="m", long_name="position of the net's nodes"
     ),
-    "bridle_tension": _HistoryVariable(
-        dims=("bridle",), units="N", long_name="tension of the bridles"
-    ),
-    "net_force": _HistoryVariable(
-        dims=("axis",), units="N", long_name="load of the water on the netting"
-    ),
-    "volume": _HistoryVariable(dims=(), units="m3", long_name="volume inside the net"),
+    "bridle_tension": Variable(dims=("bridle",), units="N", long_name="tension of the bridles"),
+    "net_force": Variable(dims=("axis",), units="N", long_name="load of the water on the netting"),
+    "volume": Variable(dims=(), units="m3", long_name="volume inside the net"),
 }
 
 _SERIES = {
-    "node_position": _HistoryVariable(
+    "node_position": Variable(
         dims=("time", "kept_node", "axis"),
         units="m",
         long_name="position of the nodes that the series kept",
     ),
-    "bridle_tension": _HistoryVariable(
+    "bridle_tension": Variable(
         dims=("time", "bridle"), units="N", long_name="tension of the bridles"
     ),
-    "surface_elevation": _HistoryVariable(
+    "surface_elevation": Variable(
         dims=("time",),
         units="m",
         long_name="height of the water's surface at the cage's centre",
         standard_name="sea_surface_height_above_mean_sea_level",
     ),
-}
-
-_SEA = {
-    "current_speed": ("m s-1", "sea_water_speed"),
-    "current_to": ("degree", "sea_water_velocity_to_direction"),
-    "hs": ("m", "sea_surface_wave_significant_height"),
-    "tp": ("s", "sea_surface_wave_period_at_variance_spectral_density_maximum"),
-    "wave_from": ("degree", "sea_surface_wave_from_direction"),
 }
 
 
@@ -167,12 +149,8 @@ def write_history(record: HistoryRecord, path: Path | str) -> None:
     path
         Ends in ``.nc``. What is there is replaced at once, by the whole file.
     """
-    path = Path(path)
-    unborn = path.with_name(f".{path.name}.unborn")
-    packed = {"zlib": True, "complevel": 4, "shuffle": True, "dtype": "float32"}
-    encoding = {f"{name}_series": packed for name in _SERIES if len(record.time)}
-    _dataset(record).to_netcdf(unborn, engine="h5netcdf", encoding=encoding)
-    unborn.replace(path)
+    packed = [f"{name}_series" for name in _SERIES if len(record.time)]
+    write_netcdf(_dataset(record), Path(path), packed=packed)
 
 
 def read_history(path: Path | str) -> HistoryRecord:
@@ -183,11 +161,8 @@ def read_history(path: Path | str) -> HistoryRecord:
     RecordError
         No such file, no NetCDF, or one of another schema.
     """
-    import xarray
-
     try:
-        check_netcdf(Path(path), whole=True)
-        with xarray.open_dataset(path, engine="h5netcdf", decode_times=False) as dataset:
+        with open_netcdf(Path(path), _SCHEMA) as dataset:
             return _record(dataset)
     except (OSError, KeyError, ValueError) as error:
         raise RecordError(
@@ -204,13 +179,13 @@ def _dataset(record: HistoryRecord) -> "xarray.Dataset":
     import xarray
 
     series = {
-        f"{name}_series": (known.dims, getattr(record, name), _attributes(known))
+        f"{name}_series": (known.dims, getattr(record, name), known.attributes)
         for name, known in _SERIES.items()
     }
     return xarray.Dataset(
         {**series, **_statistics(record), **_scalars(record)},
         coords={
-            "time": ("time", record.time, _time_attributes()),
+            "time": ("time", record.time, _TIME),
             "kept_node": ("kept_node", record.kept_node, {"long_name": "index of the node"}),
             "node": ("node", np.arange(len(record.node_displacement)), {"long_name": "index"}),
             "bridle": np.array(record.bridle_names, dtype=object),
@@ -275,34 +250,20 @@ def _scalars(record: HistoryRecord) -> dict[str, Any]:
             {"units": "s", "long_name": "when the case was given up, from the start"},
         ),
     }
-    for name, (units, standard_name) in _SEA.items():
-        value = float(getattr(record.sea, name))
-        variables[name] = ((), value, {"units": units, "standard_name": standard_name})
+    for name, known in SEA.items():
+        attributes = {"units": known.units, "standard_name": known.standard_name}
+        variables[name] = ((), float(getattr(record.sea, name)), attributes)
     return variables
-
-
-def _attributes(known: _HistoryVariable) -> dict[str, str]:
-    attributes = {"units": known.units, "long_name": known.long_name}
-    if known.standard_name:
-        attributes["standard_name"] = known.standard_name
-    return attributes
-
-
-def _time_attributes() -> dict[str, str]:
-    # No date: CF's standard name "time" would ask for one.
-    return {"units": "s", "long_name": "time from the end of the spin-up", "axis": "T"}
 
 
 def _record(dataset: "xarray.Dataset") -> HistoryRecord:
     attributes = dataset.attrs
-    if attributes.get("schema") != _SCHEMA:
-        raise ValueError(f"its schema is {attributes.get('schema')!r}, not {_SCHEMA!r}")
     values = {str(name): np.asarray(dataset[name].values) for name in dataset.variables}
     return HistoryRecord(
         cage_name=str(attributes["cage"]),
         cage_toml=str(attributes["cage_toml"]),
         bridle_names=tuple(str(name) for name in values["bridle"]),
-        sea=SeaState(**{name: float(values[name]) for name in _SEA}),
+        sea=SeaState(**{name: float(values[name]) for name in SEA}),
         time=values["time"].astype(np.float64),
         kept_node=values["kept_node"].astype(np.int64),
         **{name: values[f"{name}_series"] for name in _SERIES},

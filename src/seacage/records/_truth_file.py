@@ -12,7 +12,7 @@ from jaxtyping import Float, Shaped
 
 from seacage.conventions import Origin, RecordError
 from seacage.records._brief import brief
-from seacage.records._netcdf_check import NETCDF_TROUBLE, check_netcdf
+from seacage.records._netcdf_file import NETCDF_TROUBLE, open_netcdf, write_netcdf
 
 if TYPE_CHECKING:
     import xarray
@@ -79,12 +79,7 @@ class TrueMeans:
         folder = Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
         for file, names in _FILES.items():
-            unborn = folder / f".{file}.unborn"
-            packed = {"zlib": True, "complevel": 4, "shuffle": True, "dtype": "float32"}
-            self._dataset(names).to_netcdf(
-                unborn, engine="h5netcdf", encoding=dict.fromkeys(names, packed)
-            )
-            unborn.replace(folder / file)
+            write_netcdf(self._dataset(names), folder / file, packed=names)
 
     @classmethod
     def read(cls, folder: Path | str) -> Self:
@@ -95,14 +90,11 @@ class TrueMeans:
         RecordError
             A file that is missing or damaged, or of another schema.
         """
-        import xarray
-
         values: dict[str, Any] = {}
         for file, names in _FILES.items():
             path = Path(folder) / file
             try:
-                check_netcdf(path, whole=True)
-                with xarray.open_dataset(path, engine="h5netcdf", decode_times=False) as dataset:
+                with open_netcdf(path, _SCHEMA) as dataset:
                     found = _values(dataset, names)
                 if not np.array_equal(values.get("time", found["time"]), found["time"]):
                     raise ValueError("its times are not those of the file before")
@@ -162,8 +154,6 @@ def _method(name: str) -> str:
 
 
 def _values(dataset: "xarray.Dataset", names: tuple[str, ...]) -> dict[str, Any]:
-    if dataset.attrs.get("schema") != _SCHEMA:
-        raise ValueError(f"its schema is {dataset.attrs.get('schema')!r}, not {_SCHEMA!r}")
     values: dict[str, Any] = {name: np.asarray(dataset[name].values) for name in names}
     values["time"] = np.asarray(dataset["time"].values, dtype=np.int64).view("datetime64[us]")
     values["length"] = float(dataset.attrs["mean_length_s"])

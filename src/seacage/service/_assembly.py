@@ -9,7 +9,7 @@ import structlog
 
 from seacage.conventions import InputError, ModelError
 from seacage.service._auth._audit import Audit
-from seacage.service._auth._tokens import Tokens
+from seacage.service._auth._token_store import Tokens
 from seacage.service._http._api import Service, create_app
 from seacage.service._ingest._file_feed import FileTail
 from seacage.service._ingest._mqtt_feed import MqttFeed
@@ -166,7 +166,16 @@ def _serve_from(
         feeds.append(Retention(store, clocks=dict.fromkeys(cages, clock), keep_days=keep_days).run)
     if replay is not None and isinstance(clock, ReplayClock):
         feeds.append(partial(replay.feed, next(iter(cages.values())), clock))
-    return _service(settings, cages, store, metrics, feeds)
+    return Service(
+        cages=cages,
+        store=store,
+        tokens=Tokens(settings.data),
+        metrics=metrics,
+        feeds=feeds,
+        limits=settings.limits,
+        site=settings.site,
+        audit=Audit(settings.data / "audit.jsonl"),
+    )
 
 
 def server(service: Service, settings: Settings) -> "uvicorn.Server":
@@ -213,9 +222,8 @@ def _clock(
 
 
 def _feeds(settings: Settings, cages: Mapping[str, LiveCage], metrics: Metrics) -> list[Feed]:
-    feeds, hooks = list[Feed](), [Webhook(**hook.model_dump()) for hook in settings.webhooks]
-    if hooks:
-        feeds.append(WebhookNotifier(hooks, cages).run)
+    hooks = [Webhook(**hook.model_dump()) for hook in settings.webhooks]
+    feeds: list[Feed] = [WebhookNotifier(hooks, cages).run] if hooks else []
     quarantine = Quarantine(settings.data / "quarantine.jsonl")
     metrics.quarantined.set_function(lambda: float(quarantine.count))
     feeds += _tails(settings, cages, quarantine)
@@ -246,22 +254,3 @@ def _tails(settings: Settings, cages: Mapping[str, LiveCage], quarantine: Quaran
             feed = FileTail(tail.path, cage, quarantine=quarantine, stream=tail.stream, kept=kept)
             feeds.append(feed.run)
     return feeds
-
-
-def _service(
-    settings: Settings,
-    cages: Mapping[str, LiveCage],
-    store: Store,
-    metrics: Metrics,
-    feeds: list[Feed],
-) -> Service:
-    return Service(
-        cages=cages,
-        store=store,
-        tokens=Tokens(settings.data),
-        metrics=metrics,
-        feeds=feeds,
-        limits=settings.limits,
-        site=settings.site,
-        audit=Audit(settings.data / "audit.jsonl"),
-    )

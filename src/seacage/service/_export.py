@@ -5,9 +5,10 @@ import io
 import json
 import math
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from importlib import import_module
 from importlib.metadata import version
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -29,6 +30,14 @@ if TYPE_CHECKING:
 BLOCK = 512
 """Rows that are answered and written at once; the shapes of more would crowd the memory."""
 
+_SAME_IN_ALL_ROWS = {
+    "bridle_names",
+    "bridle_level",
+    "sensor_names",
+    "sensor_units",
+    "sensor_level",
+    "shape_level",
+}
 _DOOR = {"N": ("kn", 1e-3), "m": ("m", 1.0)}
 
 Column = list[Any]
@@ -94,36 +103,21 @@ def replay_in_blocks(twin: Twin, buoy: Record) -> Iterator[Replayed]:
 
 def join_answers(answers: list[Answer]) -> Answer:
     """Put the rows of several answers of one twin, at least one, into one answer."""
-    first = answers[0]
+    rows = {
+        one.name: _join([getattr(answer, one.name) for answer in answers])
+        for one in fields(Answer)
+        if one.name not in _SAME_IN_ALL_ROWS
+    }
+    return replace(answers[0], **rows)
 
-    def rows(part: Callable[[Answer], np.ndarray]) -> Any:
-        return np.concatenate([part(answer) for answer in answers])
 
-    def both(part: Callable[[Answer], Prediction]) -> Prediction:
-        return Prediction(
-            mean=rows(lambda answer: part(answer).mean), std=rows(lambda answer: part(answer).std)
-        )
-
-    return Answer(
-        valid=rows(lambda answer: answer.valid),
-        in_domain=rows(lambda answer: answer.in_domain),
-        bridle_in_domain=rows(lambda answer: answer.bridle_in_domain),
-        sensor_in_domain=rows(lambda answer: answer.sensor_in_domain),
-        reason=tuple(reason for answer in answers for reason in answer.reason),
-        bridle_names=first.bridle_names,
-        bridle_tension=both(lambda answer: answer.bridle_tension),
-        bridle_low=rows(lambda answer: answer.bridle_low),
-        bridle_level=first.bridle_level,
-        sensor_names=first.sensor_names,
-        sensor_units=first.sensor_units,
-        sensor=both(lambda answer: answer.sensor),
-        sensor_low=both(lambda answer: answer.sensor_low),
-        sensor_level=first.sensor_level,
-        node_position=rows(lambda answer: answer.node_position),
-        node_sigma=rows(lambda answer: answer.node_sigma),
-        shape_level=first.shape_level,
-        volume_fraction=rows(lambda answer: answer.volume_fraction),
-    )
+def _join(parts: list[Any]) -> Any:
+    if isinstance(parts[0], Prediction):
+        mean, std = ([getattr(part, name) for part in parts] for name in ("mean", "std"))
+        return Prediction(mean=np.concatenate(mean), std=np.concatenate(std))
+    if isinstance(parts[0], np.ndarray):
+        return np.concatenate(parts)
+    return tuple(chain.from_iterable(parts))
 
 
 # --- a table, and lines of JSON with the same columns ---
@@ -231,67 +225,46 @@ def write_netcdf(blocks: Iterator[Replayed], path: Path) -> None:
 def _dataset(replayed: Replayed) -> "xarray.Dataset":
     import xarray
 
-    answer = replayed.answer
-    sensors = {unit: _places(answer, unit) for unit in ("m", "N")}
+    answer, buoy = replayed.answer, replayed.buoy
+    m, kn = (np.flatnonzero(np.array(answer.sensor_units) == unit) for unit in ("m", "N"))
+    names = np.array(answer.sensor_names, dtype=object)
     sensor, bridle = answer.sensor_interval(), answer.bridle_interval()
     low, low_of_bridle = answer.sensor_low.mean, np.asarray(answer.bridle_low)
     best, best_of_bridle = answer.sensor.mean, answer.bridle_tension.mean
-    variables: dict[str, tuple[tuple[str, ...], Any, dict[str, Any]]] = {
-        "valid": (
-            ("time",),
-            answer.valid.astype(np.int8),
-            _label("1", "input passed its checks"),
-        ),
-        "in_domain": (
-            ("time",),
-            answer.in_domain.astype(np.int8),
-            _label("1", "inside what was learned; 0 is extrapolating"),
-        ),
-        "reason": (("time",), np.array(answer.reason, dtype=object), {}),
-        **_buoy_variables(replayed.buoy),
-        **_interval_variables("depth_low", "depth_sensor", low, None, sensors["m"]),
-        **_interval_variables("depth", "depth_sensor", best, sensor, sensors["m"]),
-        **_interval_variables("shackle_tension_low", "shackle", low, None, sensors["N"]),
-        **_interval_variables("shackle_tension", "shackle", best, sensor, sensors["N"]),
+    learned = "inside what was learned; 0 is extrapolating"
+    position, no_sigma = answer.node_position, np.full_like(answer.node_sigma, np.nan)
+    where = "position of the net's nodes, level 1"
+    unknown = "standard deviation; not a number where none is known"
+    variables = {
+        "valid": _variable("time", answer.valid.astype(np.int8), "1", "input passed its checks"),
+        "in_domain": _variable("time", answer.in_domain.astype(np.int8), "1", learned),
+        "reason": _variable("time", np.array(answer.reason, dtype=object)),
+        **{
+            key: _variable("time", values, KEYS[key].cf_unit, KEYS[key].long_name)
+            for key, values in buoy.values.items()
+        },
+        **_interval_variables("depth_low", "depth_sensor", low, None, m),
+        **_interval_variables("depth", "depth_sensor", best, sensor, m),
+        **_interval_variables("shackle_tension_low", "shackle", low, None, kn),
+        **_interval_variables("shackle_tension", "shackle", best, sensor, kn),
         **_interval_variables("bridle_tension_low", "bridle", low_of_bridle, None, slice(None)),
         **_interval_variables("bridle_tension", "bridle", best_of_bridle, bridle, slice(None)),
-        "depth_in_domain": _flags("depth_sensor", answer.sensor_in_domain[:, sensors["m"]]),
-        "shackle_in_domain": _flags("shackle", answer.sensor_in_domain[:, sensors["N"]]),
+        "depth_in_domain": _flags("depth_sensor", answer.sensor_in_domain[:, m]),
+        "shackle_in_domain": _flags("shackle", answer.sensor_in_domain[:, kn]),
         "bridle_in_domain": _flags("bridle", answer.bridle_in_domain),
-        "depth_level": (
-            ("depth_sensor",),
-            answer.sensor_level[sensors["m"]],
-            _label("1", "level"),
-        ),
-        "shackle_level": (
-            ("shackle",),
-            answer.sensor_level[sensors["N"]],
-            _label("1", "level"),
-        ),
-        "bridle_level": (("bridle",), answer.bridle_level, _label("1", "level")),
-        "node_position": (
-            ("time", "node", "axis"),
-            answer.node_position.astype(np.float32),
-            _label("m", "position of the net's nodes, level 1"),
-        ),
-        "node_sigma": (
-            ("time", "node"),
-            np.full(answer.node_sigma.shape, np.nan, dtype=np.float32),
-            _label("m", "standard deviation; not a number where none is known"),
-        ),
-        "volume_fraction": (
-            ("time",),
-            answer.volume_fraction,
-            _label("1", "of still water"),
-        ),
+        "depth_level": _variable("depth_sensor", answer.sensor_level[m], "1", "level"),
+        "shackle_level": _variable("shackle", answer.sensor_level[kn], "1", "level"),
+        "bridle_level": _variable("bridle", answer.bridle_level, "1", "level"),
+        "node_position": _variable("time node axis", position.astype(np.float32), "m", where),
+        "node_sigma": _variable("time node", no_sigma.astype(np.float32), "m", unknown),
+        "volume_fraction": _variable("time", answer.volume_fraction, "1", "of still water"),
     }
-    names = np.array(answer.sensor_names, dtype=object)
     return xarray.Dataset(
         variables,
         coords={
-            "time": replayed.buoy.time.astype("datetime64[ns]"),
-            "depth_sensor": names[sensors["m"]],
-            "shackle": names[sensors["N"]],
+            "time": buoy.time.astype("datetime64[ns]"),
+            "depth_sensor": names[m],
+            "shackle": names[kn],
             "bridle": np.array(answer.bridle_names, dtype=object),
             "axis": np.array(["x", "y", "z"], dtype=object),
         },
@@ -301,21 +274,6 @@ def _dataset(replayed: Replayed) -> "xarray.Dataset":
     )
 
 
-def _places(answer: Answer, unit: str) -> np.ndarray:
-    return np.flatnonzero(np.array(answer.sensor_units) == unit)
-
-
-def _buoy_variables(buoy: Record) -> dict[str, Any]:
-    return {
-        key: (
-            ("time",),
-            values,
-            {"units": KEYS[key].cf_unit, "long_name": KEYS[key].long_name},
-        )
-        for key, values in buoy.values.items()
-    }
-
-
 def _interval_variables(
     name: str, dim: str, mean: Table, interval: tuple[Table, Table] | None, columns: Any
 ) -> dict[str, Any]:
@@ -323,68 +281,31 @@ def _interval_variables(
     lower, upper = interval or (np.full_like(mean, np.nan),) * 2
     kinds = {"": (mean, "mean"), "_lower": (lower, "95 %, lower"), "_upper": (upper, "95 %, upper")}
     return {
-        f"{name}{end}": (
-            ("time", dim),
-            scale * values[:, columns],
-            _label(unit, long_name),
-        )
+        f"{name}{end}": _variable(f"time {dim}", scale * values[:, columns], unit, long_name)
         for end, (values, long_name) in kinds.items()
     }
 
 
 def _flags(dim: str, inside: Bool[np.ndarray, "t output"]) -> Any:
-    attributes = _label(
-        "1", "inside what the level that answers was trained on; 0 is extrapolating"
-    )
-    return ("time", dim), inside.astype(np.int8), attributes
+    meaning = "inside what the level that answers was trained on; 0 is extrapolating"
+    return _variable(f"time {dim}", inside.astype(np.int8), "1", meaning)
 
 
 def write_response(path: Path, cage: Cage, sea: SeaState, law: str, response: "Response") -> None:
     """Write one equilibrium as CF-NetCDF."""
     import xarray
 
+    moved, share = "displacement from still water", float(response.volume_fraction)
     dataset = xarray.Dataset(
         {
-            "node_position": (
-                ("node", "axis"),
-                response.node_position,
-                _label("m", "position"),
-            ),
-            "node_displacement": (
-                ("node", "axis"),
-                response.node_displacement,
-                _label("m", "displacement from still water"),
-            ),
-            "bridle_tension": (
-                ("bridle",),
-                response.bridle_tension,
-                _label("N", "tension"),
-            ),
-            "net_force": (
-                ("axis",),
-                response.net_force,
-                _label("N", "load of the water"),
-            ),
-            "volume": (
-                (),
-                float(response.volume),
-                _label("m3", "volume inside the net"),
-            ),
-            "volume_fraction": (
-                (),
-                float(response.volume_fraction),
-                _label("1", "of still water"),
-            ),
-            "residual": (
-                (),
-                float(response.residual),
-                _label("N", "largest unbalanced force"),
-            ),
-            "result": (
-                (),
-                int(response.result),
-                _label("1", "0 converged, 1 not, 2 diverged"),
-            ),
+            "node_position": _variable("node axis", response.node_position, "m", "position"),
+            "node_displacement": _variable("node axis", response.node_displacement, "m", moved),
+            "bridle_tension": _variable("bridle", response.bridle_tension, "N", "tension"),
+            "net_force": _variable("axis", response.net_force, "N", "load of the water"),
+            "volume": _variable("", float(response.volume), "m3", "volume inside the net"),
+            "volume_fraction": _variable("", share, "1", "of still water"),
+            "residual": _variable("", float(response.residual), "N", "largest unbalanced force"),
+            "result": _variable("", int(response.result), "1", "0 converged, 1 not, 2 diverged"),
         },
         coords={
             "bridle": np.array(cage.bridle_names, dtype=object),
@@ -404,8 +325,9 @@ def write_response(path: Path, cage: Cage, sea: SeaState, law: str, response: "R
     dataset.to_netcdf(path, engine="h5netcdf")  # pyright: ignore[reportUnknownMemberType]
 
 
-def _label(units: str, long_name: str) -> dict[str, Any]:
-    return {"units": units, "long_name": long_name}
+def _variable(dims: str, values: Any, units: str = "", long_name: str = "") -> Any:
+    attributes = {"units": units, "long_name": long_name} if units else {}
+    return tuple(dims.split()), values, attributes
 
 
 def _attributes(title: str, cage: Cage) -> dict[str, Any]:

@@ -14,7 +14,12 @@ from seacage.studies._paper import (
 )
 from seacage.studies._quality import quality_page
 from seacage.studies._sensor_scores import Errors, SensorScore
-from seacage.studies._shape_error import Reliability, learned_discrepancy, score_paths, score_points
+from seacage.studies._shape_discrepancy import (
+    Reliability,
+    learned_discrepancy,
+    score_paths,
+    score_points,
+)
 
 __all__ = [
     "BenchmarkStudy",

@@ -4,7 +4,7 @@ from dataclasses import asdict, dataclass, fields, replace
 from datetime import UTC, datetime
 from functools import cached_property
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from jaxtyping import Int
@@ -16,20 +16,18 @@ from seacage.campaigns import (
     TruthParameters,
     generated_current,
     generated_waves,
-    run_campaign,
     virtual_field,
 )
-from seacage.conventions import InputError, Progress
+from seacage.conventions import InputError, Progress, no_progress
 from seacage.records import CampaignRecord, FieldRecord, Record, read_campaign
 from seacage.studies._split import split
-from seacage.studies._stages import Stages, code_sha256
+from seacage.studies._stages import SIMULATION, Stages, code_sha256
 from seacage.twin import Training, Twin, train
 
 _OF_ALL = ("quantile", "second_moment")
 """Arrays that have no axis of cases."""
 
-_SIMULATION = ("conventions", "ocean", "cage", "dynamics", "campaigns")
-_FIELD = (*_SIMULATION, "records")
+_FIELD = (*SIMULATION, "records")
 TRAINING = (*_FIELD, "surrogates", "twin")
 """Rooms whose code makes a twin."""
 
@@ -125,7 +123,7 @@ class Chain:
     given_campaign: Path | None = None
     given_field: Path | None = None
     workers: int | None = None
-    progress: Progress | None = None
+    progress: Progress = no_progress
 
     @property
     def campaign(self) -> CampaignRecord:
@@ -184,14 +182,9 @@ class Chain:
         """Virtual sensors under another buoy record: for display, not for training."""
         settings = {**self._truth_settings, "record_sha256": record.sha256}
         folder = self.stages.ensure(
-            "display", settings, lambda begun: self._drive(begun, record), rooms=_FIELD
+            "display", settings, lambda begun: self._settle_field(begun, record), rooms=_FIELD
         )
         return FieldRecord.read(folder / "field")
-
-    def report(self, stage: str, done: int, total: int) -> None:
-        """Report the progress of a stage."""
-        if self.progress is not None:
-            self.progress(stage, done, total)
 
     @property
     def stages(self) -> Stages:
@@ -255,55 +248,40 @@ class Chain:
         )
 
     def _run(self, stage: str, plan: Plan) -> CampaignRecord:
-        def make(begun: Path) -> None:
-            run_campaign(
-                self.cage,
-                plan,
-                begun / "campaign.zarr",
-                method=self.recipe.method,
-                workers=self.workers,
-                progress=self.progress,
-            )
-
-        settings = {
-            "cage": self.cage.to_toml(),
-            "plan_sha256": plan.sha256,
-            "method": self.recipe.method,
-        }
-        folder = self.stages.ensure(stage, settings, make, rooms=_SIMULATION)
-        return read_campaign(folder / "campaign.zarr")
+        return self.stages.ensure_campaign(
+            stage,
+            self.cage,
+            plan,
+            method=self.recipe.method,
+            second_moment=True,
+            workers=self.workers,
+            progress=self.progress,
+        )
 
     def _make_field(self, begun: Path) -> None:
         recipe = self.recipe
         buoy = generated_current(recipe.seed, start=recipe.start, days=recipe.days)
         if not recipe.in_time:
-            self._drive(begun, buoy)
+            self._settle_field(begun, buoy)
             return
-        made = virtual_field(
-            self.cage,
-            buoy,
-            hidden=TruthParameters.read(),
-            seed=recipe.seed,
-            # To the last reading, and an hour on.
-            waves=generated_waves(recipe.seed, start=recipe.start, days=recipe.days + 1.0),
-            timetable=Timetable.over(buoy, one_in=recipe.one_in),
-            kept=begun / "stretches",
-            workers=self.workers,
-            progress=self.progress,
-        )
-        made.record.write(begun / "field")
-        made.truth.write(begun / "truth")
+        # To the last reading, and an hour on.
+        waves = generated_waves(recipe.seed, start=recipe.start, days=recipe.days + 1.0)
+        timetable = Timetable.over(buoy, one_in=recipe.one_in)
+        self._write_field(begun, buoy, waves=waves, timetable=timetable, kept=begun / "stretches")
 
-    def _drive(self, begun: Path, buoy: Record) -> None:
+    def _settle_field(self, begun: Path, buoy: Record) -> None:
+        kept = self.folder / f"responses-{code_sha256(SIMULATION)[:10]}"
+        self._write_field(begun, buoy, method="settle", kept=kept)
+
+    def _write_field(self, begun: Path, buoy: Record, **how: Any) -> None:
         made = virtual_field(
             self.cage,
             buoy,
             hidden=TruthParameters.read(),
             seed=self.recipe.seed,
-            method="settle",
-            kept=self.folder / f"responses-{code_sha256(_SIMULATION)[:10]}",
             workers=self.workers,
             progress=self.progress,
+            **how,
         )
         made.record.write(begun / "field")
         made.truth.write(begun / "truth")

@@ -5,10 +5,10 @@ from pathlib import Path
 
 from seacage.cage import Cage
 from seacage.campaigns import TruthParameters
-from seacage.conventions import Progress
+from seacage.conventions import Progress, no_progress
 from seacage.records import FieldRecord, Record
 from seacage.studies._chain import TRAINING, Chain, Recipe
-from seacage.studies._shape_error import CASES, SEEDS, learned_discrepancy
+from seacage.studies._shape_discrepancy import CASES, SEEDS, learned_discrepancy
 from seacage.twin import Twin
 
 
@@ -62,7 +62,7 @@ def prepare_demonstration(
         cage=Cage.named("ace"),
         recipe=Recipe(),
         workers=workers,
-        progress=progress,
+        progress=progress or no_progress,
     )
     twin_folder = _with_discrepancy(chain)
     field = chain.field if record is None else chain.display_field(record)

@@ -1,14 +1,13 @@
 """Scores of a twin on held-out days of a field record, and the figures that go with them."""
 
-import json
 from collections.abc import Mapping, Sequence
-from dataclasses import fields, is_dataclass
 from pathlib import Path
 
 import numpy as np
 
 from seacage.figures import Comparison, density_figure, series_figure, write_figure
 from seacage.records import FieldRecord
+from seacage.studies._page import write_scores
 from seacage.studies._sensor_scores import Readings, SensorScore, compare, score_sensor
 from seacage.studies._split import unseen
 from seacage.twin import Twin
@@ -82,11 +81,6 @@ def display_span(readings: Readings) -> tuple[np.datetime64, np.datetime64]:
     return start, min(until + np.timedelta64(1, "us"), start + np.timedelta64(SHOWN_DAYS, "D"))
 
 
-def write_scores(path: Path, scores: Mapping[str, object]) -> None:
-    """Write scores and what belongs to them as JSON."""
-    path.write_text(json.dumps(scores, default=_plain, indent=2) + "\n", encoding="utf-8")
-
-
 def _write(out: Path, scores: Sequence[SensorScore], readings: Mapping[str, Readings]) -> None:
     out.mkdir(parents=True, exist_ok=True)
     write_scores(out / "scores.json", {"sensors": scores})
@@ -95,14 +89,3 @@ def _write(out: Path, scores: Sequence[SensorScore], readings: Mapping[str, Read
         start, end = display_span(readings[score.sensor])
         write_figure(density_figure(drawn), out / f"{score.sensor}-density.svg")
         write_figure(series_figure(drawn, start=start, end=end), out / f"{score.sensor}-series.svg")
-
-
-def _plain(value: object) -> object:
-    """What JSON can hold, of what it cannot."""
-    if isinstance(value, np.ndarray):
-        return value.tolist()
-    if is_dataclass(value) and not isinstance(value, type):
-        return {
-            part.metadata.get("key", part.name): getattr(value, part.name) for part in fields(value)
-        }
-    raise TypeError(f"{type(value)} has no place in a score file")

@@ -1,84 +1,67 @@
-"""The few pieces of HTML that a report is made of; all text is escaped on its way in."""
+"""A report: a page that needs nothing beside itself, and its numbers for programs."""
 
 import base64
-from collections.abc import Iterable, Mapping, Sequence
-from html import escape
-from importlib import resources
+import json
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from seacage.figures import svg_text
+from seacage.studies._text import join_names, number, percent
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-_LOOKS = {"holds": "better", "reproduced": "better", "missed": "worse", "not reproduced": "worse"}
+def render(template: str, **values: object) -> str:
+    """A file of ``templates`` filled with values; all text is escaped on its way in."""
+    from jinja2 import Environment, PackageLoader, StrictUndefined
 
-
-class Html(str):
-    """Text that is HTML already."""
-
-    __slots__ = ()
-
-
-def text(content: str) -> Html:
-    """Content as HTML: escaped unless it is HTML already."""
-    return content if isinstance(content, Html) else Html(escape(content))
-
-
-def tag(name: str, *content: str, look: str = "") -> Html:
-    """One element around its content, with a class where it has a look."""
-    attribute = f' class="{look}"' if look else ""
-    inside = "".join(text(part) for part in content)
-    return Html(f"<{name}{attribute}>{inside}</{name}>")
-
-
-def table(head: Sequence[str], rows: Iterable[Sequence[str]], *, caption: str) -> Html:
-    """A table whose first column names the rows."""
-    heading = tag("thead", tag("tr", *(tag("th", cell) for cell in head)))
-    body = [tag("tr", tag("th", row[0]), *(tag("td", cell) for cell in row[1:])) for row in rows]
-    return tag(
-        "div", tag("table", tag("caption", caption), heading, tag("tbody", *body)), look="wide"
+    pages = Environment(
+        loader=PackageLoader("seacage.studies"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
     )
+    pages.filters |= {
+        "number": number,
+        "percent": percent,
+        "names": join_names,
+        "mean": lambda values: float(np.mean(list(values))),
+        "median": lambda values: float(np.median(list(values))),
+    }
+    return pages.get_template(template).render(values)
 
 
-def facts(entries: Mapping[str, str]) -> Html:
-    """Names and what they are, a line break for each line."""
-    pairs = (
-        tag("dt", name) + tag("dd", Html(text(value).replace("\n", "<br>")))
-        for name, value in entries.items()
-    )
-    return tag("dl", *map(Html, pairs), look="facts")
+def embed(figure: "Figure") -> str:
+    """A figure as the address of an SVG image, which keeps its identifiers to itself."""
+    return f"data:image/svg+xml;base64,{base64.b64encode(svg_text(figure).encode()).decode()}"
 
 
-def claims(entries: Iterable[tuple[str, str, str]]) -> Html:
-    """Verdict, claim and finding of each claim, with the look of its verdict."""
-    parts = (
-        tag("dt", verdict, look=_LOOKS.get(verdict, "unproven"))
-        + tag("dd", tag("strong", claim), " ", finding)
-        for verdict, claim, finding in entries
-    )
-    return tag("dl", *map(Html, parts), look="claims")
+def write_report(out: Path, page: str, scores: Mapping[str, object]) -> tuple[Path, Path]:
+    """Write the page and the scores of a study into a folder, and name both files."""
+    out.mkdir(parents=True, exist_ok=True)
+    report, numbers = out / "report.html", out / "scores.json"
+    report.write_text(page, encoding="utf-8")
+    write_scores(numbers, scores)
+    return report, numbers
 
 
-def picture(figure: "Figure", *, caption: str, alternative: str, look: str = "") -> Html:
-    """A figure as an embedded SVG image, which keeps its identifiers to itself."""
-    content = base64.b64encode(svg_text(figure).encode()).decode()
-    image = Html(f'<img src="data:image/svg+xml;base64,{content}" alt="{escape(alternative)}">')
-    return tag("figure", image, tag("figcaption", caption), look=look)
+def write_scores(path: Path, scores: Mapping[str, object]) -> None:
+    """Write scores and what belongs to them as JSON."""
+    path.write_text(json.dumps(scores, default=_plain, indent=2) + "\n", encoding="utf-8")
 
 
-def bar(share: float) -> Html:
-    """A bar that is filled to a share."""
-    return Html(f'<span class="bar"><i style="width:{100.0 * min(share, 1.0):.0f}%"></i></span>')
-
-
-def page(title: str, *content: Html) -> str:
-    """A whole document that needs nothing beside itself."""
-    style = (resources.files("seacage.studies") / "report.css").read_text("utf-8")
-    return (
-        '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        f"<title>{escape(title)}</title>\n<style>\n{style}</style>\n</head>\n"
-        f"<body>\n{tag('main', *content)}\n</body>\n</html>\n"
-    )
+def _plain(value: object) -> object:
+    """What JSON can hold, of what it cannot."""
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if is_dataclass(value) and not isinstance(value, type):
+        return {
+            part.metadata.get("key", part.name): getattr(value, part.name) for part in fields(value)
+        }
+    raise TypeError(f"{type(value)} has no place in a score file")

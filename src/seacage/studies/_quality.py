@@ -8,7 +8,7 @@ from jaxtyping import UInt8
 from seacage.conventions import Flag
 from seacage.figures import quality_figure
 from seacage.records import DEFAULT_LIMITS, Limits, Record, Verdict, alike, verdicts_on
-from seacage.studies._page import Html, facts, page, picture, table, tag
+from seacage.studies._page import embed, render
 
 _WORDS = {flag: flag.name.lower().replace("_", " ") for flag in Flag}
 _TROUBLES = (Flag.FAIL, Flag.MISSING, Flag.SUSPECT)  # the gravest first
@@ -27,17 +27,12 @@ def quality_page(records: Sequence[Record], limits: Limits = DEFAULT_LIMITS) -> 
     """
     names = [record.stream for record in records]
     few = len(names) <= _NAMED
-    title = f"Quality of {', '.join(names) if few else f'{len(names)} streams'}"
-    legend = tag(
-        "p",
-        "Suspect values are used and say so; failed and missing ones never reach a model. Raw "
-        "values are kept. The flags are those of QARTOD (IOOS).",
-    )
-    return page(
-        title,
-        tag("header", tag("h1", title), tag("p", _summary(records), look="lead"), legend),
-        *([_overview(records)] if len(records) > 1 else []),
-        *(part for record in records for part in _stream(record, limits)),
+    return render(
+        "quality.html",
+        title=f"Quality of {', '.join(names) if few else f'{len(names)} streams'}",
+        summary=_summary(records),
+        troubles=[_WORDS[flag] for flag in _TROUBLES],
+        streams=[_stream(record, limits) for record in records],
     )
 
 
@@ -54,55 +49,44 @@ def _summary(records: Sequence[Record]) -> str:
     return f"{flagged:,} of {readings:,} readings are flagged ({share}): {parts}."
 
 
-def _overview(records: Sequence[Record]) -> Html:
-    rows: list[tuple[str, ...]] = []
-    for record in records:
-        worst = _worst(record)
-        marked = np.flatnonzero(np.isin(worst, _TROUBLES))
-        rows.append(
-            (
-                record.stream,
-                f"{len(record):,}",
-                *(f"{np.sum(worst == flag):,}" for flag in _TROUBLES),
-                _percent(len(marked), len(record)),
-                _when(record, int(marked[-1])) if marked.size else "–",
-            )
-        )
-    head = ("Stream", "Readings", *(_WORDS[flag] for flag in _TROUBLES), "Flagged", "Last flagged")
-    return table(head, rows, caption="Each reading once, by the worst flag of its values")
+def _stream(record: Record, limits: Limits) -> dict[str, object]:
+    """Values of a stream's section."""
+    worst = _worst(record)
+    marked = np.flatnonzero(np.isin(worst, _TROUBLES))
+    verdicts = verdicts_on(record, limits)
+    worst_first = sorted(alike(verdicts), key=lambda same: _TROUBLES.index(same[0].flag))
+    examples = tuple(one.example for one in verdicts)
+    sound = len(record) - len(marked)
+    return {
+        "name": record.stream,
+        "readings": len(record),
+        "counts": [int(np.sum(worst == flag)) for flag in _TROUBLES],
+        "flagged": _percent(len(marked), len(record)),
+        "last": _when(record, int(marked[-1])) if marked.size else "–",
+        "about": {
+            "Numbers are": str(record.origin),
+            "Time": _span(record),
+            "Readings": f"{len(record):,}, of which {sound:,} carry no flag",
+            "Usual step": _step(record),
+        },
+        "picture": embed(quality_figure(record)) if len(record) else None,
+        "findings": [_finding(record, same) for same in worst_first],
+        "shown": {
+            _WORDS[flag]: flag
+            for flag in Flag
+            if any(np.any(flags == flag) for flags in record.flags.values())
+        },
+        "quantities": list(record.values),
+        "flags": record.flags,
+        # What the tests found is listed already.
+        "notes": [note for note in record.notes if not note.startswith(examples)],
+    }
 
 
 def _worst(record: Record) -> UInt8[np.ndarray, " t"]:
     """The worst flag of each reading."""
     none = np.full(len(record), Flag.GOOD, dtype=np.uint8)
     return np.max([none, *record.flags.values()], axis=0)
-
-
-def _stream(record: Record, limits: Limits) -> list[Html]:
-    sound = int(np.sum(~np.isin(_worst(record), _TROUBLES)))
-    parts = [
-        tag("h2", record.stream),
-        facts(
-            {
-                "Numbers are": str(record.origin),
-                "Time": _span(record),
-                "Readings": f"{len(record):,}, of which {sound:,} carry no flag",
-                "Usual step": _step(record),
-            }
-        ),
-    ]
-    if len(record):
-        parts.append(
-            picture(
-                quality_figure(record),
-                caption="What came, and where it is suspect, failed or missing. A failed value "
-                "outside the picture stands at its edge.",
-                alternative=f"{record.stream} over time with its quality flags",
-                look="wide",
-            )
-        )
-    verdicts = verdicts_on(record, limits)
-    return [*parts, *_findings(record, verdicts), _counts(record), *_notes(record, verdicts)]
 
 
 def _span(record: Record) -> str:
@@ -118,40 +102,17 @@ def _step(record: Record) -> str:
     return f"{_long(float(np.median(seconds)))} (longest silence {_long(float(np.max(seconds)))})"
 
 
-def _counts(record: Record) -> Html:
-    shown = [flag for flag in Flag if any(np.any(f == flag) for f in record.flags.values())]
-    return table(
-        ("Quantity", *(_WORDS[flag] for flag in shown)),
-        [
-            (key, *(f"{np.sum(record.flags[key] == flag):,}" for flag in shown))
-            for key in record.values
-        ],
-        caption="How many values have each flag",
-    )
-
-
-def _findings(record: Record, verdicts: Sequence[Verdict]) -> list[Html]:
-    """What each test found; quantities that it found in the same readings are listed at once."""
-    if not verdicts:
-        return [tag("p", "No test found anything.")]
-
-    worst_first = sorted(alike(verdicts), key=lambda same: _TROUBLES.index(same[0].flag))
-    items = [_item(record, same) for same in worst_first]
-    return [tag("h3", "What was flagged, when and why"), tag("ul", *items, look="found")]
-
-
-def _item(record: Record, same: Sequence[Verdict]) -> Html:
-    first, rows = same[0], same[0].rows
-    keys = ", ".join(one.key for one in same)
-    flag = tag("span", _WORDS[first.flag], look=f"flag {_WORDS[first.flag]}")
-    head = tag("b", f"{first.test[0].upper()}{first.test[1:]}")
-    why = first.example.split(": ", 1)[-1].rsplit(" Flagged ", 1)[0]
-    return tag(
-        "li",
-        tag("p", head, flag, f" {len(rows):,} × {keys}"),
-        tag("p", _times(record, first)),
-        tag("p", f"The first: {why}", look="why"),
-    )
+def _finding(record: Record, same: Sequence[Verdict]) -> dict[str, str]:
+    """What a test found; quantities that it found in the same readings are listed at once."""
+    first = same[0]
+    return {
+        "test": f"{first.test[0].upper()}{first.test[1:]}",
+        "flag": _WORDS[first.flag],
+        "count": f"{len(first.rows):,}",
+        "quantities": ", ".join(one.key for one in same),
+        "times": _times(record, first),
+        "why": first.example.split(": ", 1)[-1].rsplit(" Flagged ", 1)[0],
+    }
 
 
 def _times(record: Record, verdict: Verdict) -> str:
@@ -184,15 +145,3 @@ def _long(seconds: float) -> str:
 
 def _percent(part: int, whole: int) -> str:
     return "0 %" if not part else f"{max(100.0 * part / whole, 0.01):.2g} %"
-
-
-def _notes(record: Record, verdicts: Sequence[Verdict]) -> list[Html]:
-    """What else the record says of itself; what the tests found is listed already."""
-    examples = tuple(one.example for one in verdicts)
-    notes = [note for note in record.notes if not note.startswith(examples)]
-    if not notes:
-        return []
-    return [
-        tag("h3", "What else the record says of itself"),
-        tag("ul", *(tag("li", note) for note in notes)),
-    ]

@@ -167,6 +167,11 @@ class SensorScore:
     low_truth_mae: float | None
     multi_truth_mae: float | None
 
+    @property
+    def underestimates(self) -> bool:
+        """Low fidelity predicts too small a response: too deep a net, or too low a tension."""
+        return (self.raw.low_bias > 0.0) == (self.unit == "m")
+
 
 def compare(answer: Answer, field: FieldRecord) -> dict[str, Readings]:
     """Every sound reading of a field record beside a twin's prediction of it.

@@ -8,11 +8,18 @@ from functools import cache
 from importlib import resources
 from importlib.metadata import version
 from pathlib import Path
+from typing import Literal
 
-from seacage.conventions import RecordError
-from seacage.dynamics import PHYSICS
+from seacage.cage import Cage
+from seacage.campaigns import Plan, run_campaign
+from seacage.conventions import Progress, RecordError
+from seacage.dynamics import PHYSICS, Law
+from seacage.records import CampaignRecord, read_campaign
 
 MANIFEST = "stage.json"
+
+SIMULATION = ("conventions", "ocean", "cage", "dynamics", "campaigns")
+"""Rooms whose code makes a campaign."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,6 +72,48 @@ class Stages:
         make(begun)
         (begun / MANIFEST).write_text(text, encoding="utf-8")
         return begun.rename(finished)
+
+    def ensure_campaign(
+        self,
+        stage: str,
+        cage: Cage,
+        plan: Plan,
+        *,
+        method: Literal["simulate", "settle"] = "settle",
+        law: Law = "kristiansen-faltinsen",
+        second_moment: bool = False,
+        workers: int | None,
+        progress: Progress,
+    ) -> CampaignRecord:
+        """A cage in the seas of a plan, kept on disk case by case.
+
+        Parameters
+        ----------
+        stage
+            Its name, which the progress is called with.
+        cage, plan, method, law, second_moment, workers, progress
+            As for ``run_campaign``.
+        """
+
+        def make(begun: Path) -> None:
+            run_campaign(
+                cage,
+                plan,
+                begun / "campaign.zarr",
+                method=method,
+                law=law,
+                second_moment=second_moment,
+                workers=workers,
+                progress=lambda _, done, total: progress(stage, done, total),
+            )
+
+        settings = {
+            "cage": cage.to_toml(),
+            "plan_sha256": plan.sha256,
+            "method": method,
+            "law": law,
+        }
+        return read_campaign(self.ensure(stage, settings, make, rooms=SIMULATION) / "campaign.zarr")
 
 
 @cache  # what this process runs is what it has loaded, whatever is edited meanwhile

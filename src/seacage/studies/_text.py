@@ -1,6 +1,6 @@
 """Numbers, shares and lists of names as a report writes them."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 
 
 def number(value: float) -> str:
@@ -15,7 +15,7 @@ def percent(share: float, *, digits: int = 0) -> str:
     return written.replace("-", "\N{MINUS SIGN}")
 
 
-def join_names(names: Sequence[str]) -> str:
+def join_names(names: Iterable[str]) -> str:
     """Names as a sentence lists them."""
     *others, last = names
     return f"{', '.join(others)} and {last}" if others else last

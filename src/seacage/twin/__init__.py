@@ -41,7 +41,8 @@ from seacage.twin._rov import (
     inspection_path,
 )
 from seacage.twin._saving import read_key
-from seacage.twin._state import StreamTimeouts, TwinState
+from seacage.twin._settings import FaultDetectorSettings, StreamTimeouts
+from seacage.twin._state import TwinState
 from seacage.twin._tabulated import Loads, TabulatedTwin
 from seacage.twin._training import Training, train, update
 from seacage.twin._twin import Twin, replay
@@ -62,6 +63,7 @@ __all__ = [
     "Correction",
     "Discrepancy",
     "Event",
+    "FaultDetectorSettings",
     "FixedPrediction",
     "Flagged",
     "InspectionPath",

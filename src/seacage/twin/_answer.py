@@ -10,6 +10,9 @@ from seacage.surrogates import Prediction
 
 Interval = tuple[Float[np.ndarray, "case output"], Float[np.ndarray, "case output"]]
 
+INTERVAL_SD = 1.96
+"""Half the width of an interval, in standard deviations; it holds 95 %."""
+
 NO_INTERVAL = "No sensor has trained level 2: how far the simulation is from the sea is not known."
 """Why an answer of level 1 has no interval."""
 
@@ -85,13 +88,13 @@ class Answer:
             sensor=replace(self.sensor, std=self.sensor.std * sensor),
         )
 
-    def bridle_interval(self, *, z: float = 1.96) -> Interval:
-        """Interval of the tensions [N], mean ± z standard deviations; NaN at level 1."""
-        return _interval(self.bridle_tension, self.bridle_level, z)
+    def bridle_interval(self) -> Interval:
+        """Interval of the tensions that holds 95 % [N]; NaN at level 1."""
+        return _interval(self.bridle_tension, self.bridle_level)
 
-    def sensor_interval(self, *, z: float = 1.96) -> Interval:
-        """Interval of the readings [N] or [m], mean ± z standard deviations; NaN at level 1."""
-        return _interval(self.sensor, self.sensor_level, z)
+    def sensor_interval(self) -> Interval:
+        """Interval of the readings that holds 95 % [N] or [m]; NaN at level 1."""
+        return _interval(self.sensor, self.sensor_level)
 
 
 def interval_reason(level: int) -> str | None:
@@ -99,8 +102,8 @@ def interval_reason(level: int) -> str | None:
     return None if level > 1 else NO_INTERVAL
 
 
-def _interval(prediction: Prediction, level: Int[np.ndarray, " output"], z: float) -> Interval:
-    half = np.where(level > 1, z * prediction.std, np.nan)
+def _interval(prediction: Prediction, level: Int[np.ndarray, " output"]) -> Interval:
+    half = np.where(level > 1, INTERVAL_SD * prediction.std, np.nan)
     # A rope never pushes, and no sensor hangs above the surface.
     lower, upper = (np.maximum(prediction.mean + end, 0.0) for end in (-half, half))
     return lower, upper

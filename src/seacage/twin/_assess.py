@@ -17,7 +17,6 @@ from seacage.twin._alarms import (
     evaluate,
 )
 from seacage.twin._events import Answered
-from seacage.twin._faults import faulty_streams
 from seacage.twin._state import TwinState
 from seacage.twin._twin import Twin
 
@@ -60,12 +59,13 @@ def assess(
     active = frozenset(name for name, alarm in book.alarms.items() if alarm.active)
     detector = book.detector.stepped(twin, state, answered, active=active)
     ended = detector.sums.number != book.detector.sums.number
-    distrusted = faulty_streams(detector.monitors, active)
+    settings = twin.fault_detector
+    distrusted = detector.faulty_streams(active, settings)
     alarms, lines = dict(book.alarms), list[AlarmEvent]()
     without_input = set(alarms)
     for one in (
         *alarm_inputs(twin, state, answered, distrusted=distrusted),
-        *(detector.inputs(twin.cage) if ended else detector.stuck_inputs()),
+        *(detector.inputs(twin.cage, settings) if ended else detector.stuck_inputs(settings)),
         *_faults(book, trouble),
     ):
         alarm, changed = _evaluate(alarms, one, policy, now)

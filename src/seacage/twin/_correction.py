@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Literal, Self
 
 import numpy as np
@@ -77,7 +78,7 @@ class Spread:
             )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Correction:
     """Level 2 of a sensor: its reading, from the water and the prediction of level 1.
 
@@ -133,17 +134,17 @@ class Correction:
         below = self.rest.lower.predict(x).mean
         return replace(self, rest=self.rest.updated(x, pairs.value - self.gain * below))
 
-    @property
+    @cached_property
     def domain(self) -> Domain:
         """Of the features of the water that trained it."""
         return Domain.of(self.rest.upper[-1].cases()[:, :-1])
 
-    @property
-    def noise(self) -> float:
-        """Variance of the instrument's noise [N2] or [m2]."""
-        return self.spread.white
+    @cached_property
+    def alone(self) -> "Corrections":
+        """The same, as one of several."""
+        return Corrections.of([self])
 
-    @property
+    @cached_property
     def own(self) -> float:
         """Variance of the cage's response that the water does not explain [N2] or [m2].
 
@@ -152,13 +153,10 @@ class Correction:
         found = float(self.rest.upper[-1].noise[0])
         return max(found - self.spread.white, LEAST_SHARE * found)
 
-    def latent(
-        self,
-        x: Features,
-        low: Prediction,
-        steepness: Float[np.ndarray, " case"] | None = None,
-    ) -> Prediction:
+    def latent(self, x: Features, low: Prediction) -> Prediction:
         """Predict a reading without the instrument's noise, given level 1.
+
+        The current that the buoy does not measure is left out of the standard deviation.
 
         Parameters
         ----------
@@ -166,13 +164,9 @@ class Correction:
             Features of the water.
         low
             Level 1 there.
-        steepness
-            Of level 1: length of its gradient over the current [N s/m] or [s]; None where the
-            spread has no part of the current.
         """
-        steepness = np.zeros_like(low.mean) if steepness is None else steepness
         column = Prediction(mean=low.mean[:, None], std=low.std[:, None])
-        latent = Corrections.of([self]).latent(x, column, steepness[:, None])
+        latent = self.alone.latent(x, column, np.zeros_like(column.mean))
         return Prediction(mean=latent.mean[:, 0], std=latent.std[:, 0])
 
     def latent_variance(
@@ -210,7 +204,7 @@ class Corrections:
             own=np.array([model.own for model in models]),
             scale=np.array([model.spread.scale for model in models]),
             water_sd=np.array([model.spread.water_sd for model in models]),
-            noise=np.array([model.noise for model in models]),
+            noise=np.array([model.spread.white for model in models]),
         )
 
     def latent(

@@ -1,5 +1,6 @@
 """Discrepancy: the distribution of true shapes about a twin's shapes."""
 
+import math
 from dataclasses import dataclass
 from typing import Self
 
@@ -7,13 +8,13 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.cage import Cage, Nearest
-from seacage.conventions import InputError, Origin, compass
+from seacage.conventions import InputError, Origin
 
 SIMILAR_SPEED = 0.15
 """Difference of speeds at which currents are similar [m/s]: sd of a Gaussian weight."""
 
-SIMILAR_DIRECTION = 35.0
-"""The same difference of directions [deg]; slack water has none."""
+SIMILAR_DIRECTION = math.radians(35.0)
+"""The same difference of directions [rad]; slack water has none."""
 
 NEGLIGIBLE = 0.02
 """Least weight of a case, over the largest; cases with less are left out."""
@@ -93,8 +94,9 @@ class Discrepancy:
 
     def _likelihood(self, velocity: Float[np.ndarray, " 2"]) -> Float[np.ndarray, " case"]:
         speed, here = np.hypot(*self.current_velocity.T), np.hypot(*velocity)
-        turned = compass(self.current_velocity) - compass(velocity)
-        turned = (turned + 180.0) % 360.0 - 180.0
+        (east, north), (here_east, here_north) = self.current_velocity.T, velocity
+        across = east * here_north - north * here_east
+        turned = np.arctan2(across, self.current_velocity @ velocity)
         # Where either is slack, directions mean less and less.
         sense = np.minimum(np.minimum(speed, here) / SIMILAR_SPEED, 1.0)
         off = ((speed - here) / SIMILAR_SPEED) ** 2 + (sense * turned / SIMILAR_DIRECTION) ** 2

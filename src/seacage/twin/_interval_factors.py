@@ -13,10 +13,8 @@ from datetime import UTC, datetime, timedelta
 from seacage.conventions import Flag, InputError
 from seacage.records import Sample
 from seacage.surrogates import AdaptiveConformal
-from seacage.twin._pairs import SI
-
-DEVIATIONS = 1.96
-"""Half the width of an interval, in standard deviations; it holds 95 %."""
+from seacage.twin._answer import INTERVAL_SD
+from seacage.twin._pairs import reading_of
 
 BLOCK_US = 600_000_000
 """Length of a block of readings that the intervals are adapted to at once [us]."""
@@ -68,9 +66,8 @@ def counts(tracked: Tracked, sample: Sample, *, every_s: float) -> bool:
     Sound readings alone count, and one in so many seconds: those between are the same error
     again.
     """
-    ((key, _),) = sample.values.items()
     due = tracked.counted is None or sample.t >= tracked.counted + timedelta(seconds=every_s)
-    return due and sample.flags[key] == Flag.GOOD
+    return due and reading_of(sample)[1] == Flag.GOOD
 
 
 def adapt_factor(tracked: Tracked, sample: Sample, expected: MeanStd, *, rate: float) -> Tracked:
@@ -87,10 +84,8 @@ def adapt_factor(tracked: Tracked, sample: Sample, expected: MeanStd, *, rate: f
     rate
         Step of the factor's logarithm; 0 changes nothing [-].
     """
-    ((key, value),) = sample.values.items()
-    mean, std = expected
-    reading = value * SI[key]
-    held = abs(reading - mean) <= DEVIATIONS * tracked.factor * std
+    (mean, std), (reading, _) = expected, reading_of(sample)
+    held = abs(reading - mean) <= INTERVAL_SD * tracked.factor * std
     factor = AdaptiveConformal(rate=rate).stepped(tracked.factor, held=held)
     return replace(tracked, factor=factor, counted=sample.t)
 

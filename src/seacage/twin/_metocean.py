@@ -1,6 +1,6 @@
 """Input of a twin: currents and waves at the buoy as vectors, one row per sample."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal, Self
 
@@ -19,6 +19,11 @@ INPUT_KEYS: Mapping[Input, tuple[str, ...]] = {
     "waves": ("hs_m", "wave_from_deg"),
 }
 """The door keys that each kind of input is made from."""
+
+
+def input_keys(inputs: Iterable[Input]) -> list[str]:
+    """Return the door keys of some inputs."""
+    return [key for name in inputs for key in INPUT_KEYS[name]]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -54,7 +59,7 @@ class Metocean:
         """Read columns named and united as at the doors; a missing one is all NaN."""
         unknown = np.full(count, np.nan)
         speed, current_to, hs, wave_from = (
-            columns.get(key, unknown) for keys in INPUT_KEYS.values() for key in keys
+            columns.get(key, unknown) for key in input_keys(INPUT_KEYS)
         )
         return cls(
             current_velocity=towards(speed, current_to),
@@ -65,7 +70,7 @@ class Metocean:
     @classmethod
     def of_record(cls, record: Record) -> Self:
         """Read every row of a buoy's record; a value that failed its checks is NaN."""
-        keys = [key for keys in INPUT_KEYS.values() for key in keys if key in record.values]
+        keys = [key for key in input_keys(INPUT_KEYS) if key in record.values]
         usable = {key: np.where(record.usable(key), record.values[key], np.nan) for key in keys}
         return cls.from_columns(usable, len(record))
 
@@ -80,31 +85,23 @@ class Metocean:
             wave_direction=self.wave_direction[index],
         )
 
-    @classmethod
-    def joined(cls, parts: Sequence[Self]) -> Self:
-        """Put the rows of several one after the other."""
-        return cls(
-            current_velocity=np.concatenate([one.current_velocity for one in parts]),
-            hs=np.concatenate([one.hs for one in parts]),
-            wave_direction=np.concatenate([one.wave_direction for one in parts]),
-        )
+    @property
+    def table(self) -> Float[np.ndarray, "case 5"]:
+        """All its numbers, side by side."""
+        return np.column_stack([self.current_velocity, self.hs, self.wave_direction])
 
-    def distinct(self) -> tuple[Self, Int[np.ndarray, " case"]]:
-        """Return each water once, and for each row which of them it is."""
-        table = np.column_stack([self.current_velocity, self.hs, self.wave_direction])
-        _, first, place = np.unique(table, axis=0, return_index=True, return_inverse=True)
-        return self.rows(first), place.ravel()
+    @classmethod
+    def from_table(cls, table: Float[np.ndarray, "case 5"]) -> Self:
+        """Read what ``table`` gave."""
+        return cls(
+            current_velocity=table[:, :2].copy(),
+            hs=table[:, 2].copy(),
+            wave_direction=table[:, 3:].copy(),
+        )
 
     def same(self, other: Self) -> bool:
         """Whether the other holds the same numbers; two unknown ones are the same."""
-        return all(
-            np.array_equal(mine, theirs, equal_nan=True)
-            for mine, theirs in (
-                (self.current_velocity, other.current_velocity),
-                (self.hs, other.hs),
-                (self.wave_direction, other.wave_direction),
-            )
-        )
+        return np.array_equal(self.table, other.table, equal_nan=True)
 
     def limited(self, *, current_speed: float, hs: float) -> Self:
         """Return the nearest milder water: slower and lower, in the same directions.

@@ -3,10 +3,10 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Bool, Float
 
 from seacage.cage import Cage
 from seacage.surrogates import (
@@ -30,8 +30,6 @@ STRIDE = 0.02
 """Either way, of the central difference over the current [m/s]: well below what bends a load."""
 
 Features = Float[np.ndarray, "case feature"]
-Numbers = dict[str, Float[np.ndarray, "case *rest"]]
-"""By quantity; a mean and its standard deviation side by side."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -86,23 +84,31 @@ class Models:
     upper: Mapping[str, Correction] = field(default_factory=dict[str, Correction])
 
     @cached_property
+    def corrections(self) -> Mapping[int, Correction]:
+        """Level 2 by the sensor's column, in the cage's order."""
+        names = enumerate(self.cage.sensor_names)
+        return {column: self.upper[name] for column, name in names if name in self.upper}
+
+    @cached_property
     def together(self) -> Corrections | None:
-        """Level 2 of the cage's sensors, in their order; None where there is none."""
-        models = [self.upper[name] for name in self.upper_domains]
+        """Level 2 of all sensors that have it; None where there is none."""
+        models = list(self.corrections.values())
         return Corrections.of(models) if models else None
 
     @cached_property
-    def upper_domains(self) -> Mapping[str, Domain]:
-        """Of the features that trained level 2, by sensor, in the cage's order."""
-        names = [name for name in self.cage.sensor_names if name in self.upper]
-        return {name: self.upper[name].domain for name in names}
+    def _lines(self) -> Mapping[int, int]:
+        """The bridle of each shackle that has level 2, by the sensor's column."""
+        first = len(self.cage.depth_sensors)  # the shackles come after them
+        lines = enumerate((one.bridle for one in self.cage.shackles), start=first)
+        return {column: line for column, line in lines if column in self.corrections}
 
     def lower(self, sensor: str) -> Predicts:
         """Level 1 of one sensor [N] or [m]."""
-        nodes = {one.name: one.node for one in self.cage.depth_sensors}
-        if sensor in nodes:
-            return Depth(height=self.shape.coordinate(nodes[sensor], 2))
-        return self.bridles.output(self._lines()[sensor])
+        for one in self.cage.depth_sensors:
+            if one.name == sensor:
+                return Depth(height=self.shape.coordinate(one.node, 2))
+        (bridle,) = (one.bridle for one in self.cage.shackles if one.name == sensor)
+        return self.bridles.output(bridle)
 
     def with_level_2(self, sensor: str, model: Correction) -> Self:
         """Return a copy that has level 2 of one more sensor."""
@@ -129,92 +135,79 @@ class Models:
         own domain, the variance of level 2 grows in the same way.
         """
         valid = np.array([not one for one in trouble], dtype=bool)
-        rows = np.flatnonzero(valid)
-        inside = self._inside(water.rows(rows))
+        known = water.rows(valid)
         blocks = [
-            self._numbers(water.rows(rows[part]), inside[part])
-            for part in (
-                slice(first, first + BLOCK_ROWS)
-                for first in range(0, max(len(rows), 1), BLOCK_ROWS)
-            )
+            self._block(known.rows(np.arange(first, min(first + BLOCK_ROWS, len(known)))))
+            for first in range(0, max(len(known), 1), BLOCK_ROWS)
         ]
-        numbers = {
-            name: _fill_valid([block[name] for block in blocks], valid) for name in blocks[0]
-        }
-        in_domain = valid.copy()
-        in_domain[rows] = inside
-        bridle_in_domain, sensor_in_domain = self._own_domains(water, in_domain)
-        beyond = self._beyond()
+        of_rows = {name: _fill([block[name] for block in blocks], valid) for name in blocks[0]}
+        inside = of_rows["in_domain"] | ~valid
+        beyond = "" if inside.all() else self._beyond()
+        cage, shackles = self.cage, len(self.cage.shackles)
+        bridle_level, sensor_level = (
+            np.ones(count, dtype=int) for count in (cage.bridle_count, len(cage.sensor_names))
+        )
+        bridle_level[list(self._lines.values())] = 2
+        sensor_level[list(self.corrections)] = 2
         return Answer(
             valid=valid,
-            in_domain=in_domain,
-            bridle_in_domain=bridle_in_domain,
-            sensor_in_domain=sensor_in_domain,
             reason=tuple(
-                one or ("" if here else beyond)
-                for one, here in zip(trouble, in_domain, strict=True)
+                one or ("" if here else beyond) for one, here in zip(trouble, inside, strict=True)
             ),
-            bridle_names=self.cage.bridle_names,
-            bridle_tension=_prediction(numbers, "bridle"),
-            bridle_low=numbers["bridle_low_mean"],
-            bridle_level=self._bridle_level(),
-            sensor_names=self.cage.sensor_names,
-            sensor_units=self._sensor_units(),
-            sensor=_prediction(numbers, "sensor"),
-            sensor_low=_prediction(numbers, "sensor_low"),
-            sensor_level=np.array([self._level(name) for name in self.cage.sensor_names]),
-            node_position=numbers["node_position"],
-            node_sigma=numbers["node_sigma"],
+            bridle_names=cage.bridle_names,
+            bridle_level=bridle_level,
+            sensor_names=cage.sensor_names,
+            sensor_units=("m",) * (len(sensor_level) - shackles) + ("N",) * shackles,
+            sensor_level=sensor_level,
             shape_level=1,
-            volume_fraction=numbers["volume_fraction"],
+            **of_rows,
         )
 
-    def _inside(self, water: Metocean) -> Bool[np.ndarray, " case"]:
+    def _block(self, water: Metocean) -> dict[str, Any]:
+        """Predict in known water: the fields of an answer that have rows."""
+        x = water.features(self.inputs)
         # The box of features leaves a margin, and its corners are faster than any current.
         speed = np.linalg.norm(water.current_velocity, axis=1)
-        trained = self.domain.contains(water.features(self.inputs))
-        return trained & (speed <= self.edge[0] + ROUNDING)
-
-    def _own_domains(
-        self, water: Metocean, in_domain: Bool[np.ndarray, " case"]
-    ) -> tuple[Bool[np.ndarray, "case line"], Bool[np.ndarray, "case sensor"]]:
-        """Where bridles and sensors are in the domain of the level that answers."""
-        bridle = np.tile(in_domain[:, None], self.cage.bridle_count)
-        sensor = np.tile(in_domain[:, None], len(self.cage.sensor_names))
-        rows, lines = np.flatnonzero(in_domain), self._lines()
-        x = water.rows(rows).features(self.inputs)
-        for name, domain in self.upper_domains.items():
-            column = self.cage.sensor_names.index(name)
-            sensor[rows, column] = domain.contains(x)
-            if name in lines:
-                bridle[:, lines[name]] = sensor[:, column]
-        return bridle, sensor
-
-    def _numbers(self, water: Metocean, inside: Bool[np.ndarray, " case"]) -> Numbers:
-        parts = self._predict(water)
+        inside = self.domain.contains(x) & (speed <= self.edge[0] + ROUNDING)
+        parts = self._predict(water, x)
         if not inside.all():
-            speed, hs = self.edge
-            milder = water.rows(~inside).limited(current_speed=speed, hs=hs)
-            edge = self._predict(milder)
+            edge_speed, edge_hs = self.edge
+            milder = water.rows(~inside).limited(current_speed=edge_speed, hs=edge_hs)
+            edge = self._predict(milder, milder.features(self.inputs))
             parts = {name: _widen(one, edge[name], ~inside) for name, one in parts.items()}
-        shape = parts.pop("shape")
-        numbers = {f"{name}_mean": one.mean for name, one in parts.items()}
-        numbers |= {f"{name}_std": one.std for name, one in parts.items()}
-        # A rope never pushes, though a Gaussian has negative values.
-        for name in ("bridle_mean", "bridle_low_mean"):
-            numbers[name] = np.maximum(numbers[name], 0.0)
-        return numbers | {
+        bridle_low, shape, sensor_low, bridle, sensor = parts.values()
+        bridle_in_domain, sensor_in_domain = self._own_domains(x, inside)
+        return {
+            "in_domain": inside,
+            "bridle_in_domain": bridle_in_domain,
+            "sensor_in_domain": sensor_in_domain,
+            # A rope never pushes, though a Gaussian has negative values.
+            "bridle_tension": Prediction(mean=np.maximum(bridle.mean, 0.0), std=bridle.std),
+            "bridle_low": np.maximum(bridle_low.mean, 0.0),
+            "sensor": sensor,
+            "sensor_low": sensor_low,
             "node_position": shape.mean,
             "node_sigma": shape.std.max(axis=2),
             "volume_fraction": self.cage.volume(shape.mean) / self.still_volume,
         }
 
-    def _predict(self, water: Metocean) -> dict[str, Prediction]:
-        x = water.features(self.inputs)
+    def _own_domains(
+        self, x: Features, inside: Bool[np.ndarray, " case"]
+    ) -> tuple[Bool[np.ndarray, "case line"], Bool[np.ndarray, "case sensor"]]:
+        """Where bridles and sensors are in the domain of the level that answers."""
+        bridle = np.tile(inside[:, None], self.cage.bridle_count)
+        sensor = np.tile(inside[:, None], len(self.cage.sensor_names))
+        for column, model in self.corrections.items():
+            sensor[:, column] &= model.domain.contains(x)
+        bridle[:, list(self._lines.values())] = sensor[:, list(self._lines)]
+        return bridle, sensor
+
+    def _predict(self, water: Metocean, x: Features) -> dict[str, Prediction]:
+        """Predict by both levels in water and its features."""
         bridle, shape = self.bridles.predict(x), self.shape.predict(x)
         low = self._sensor_low(bridle, shape)
         parts = {"bridle_low": bridle, "shape": shape, "sensor_low": low}
-        return parts | self._level_2(water, bridle, low)
+        return parts | self._level_2(water, x, bridle, low)
 
     def _sensor_low(self, bridle: Prediction, shape: Prediction) -> Prediction:
         nodes = [one.node for one in self.cage.depth_sensors]
@@ -225,60 +218,43 @@ class Models:
         )
 
     def _level_2(
-        self, water: Metocean, bridle_low: Prediction, sensor_low: Prediction
+        self, water: Metocean, x: Features, bridle_low: Prediction, sensor_low: Prediction
     ) -> dict[str, Prediction]:
         """Predict tensions and readings by the best level.
 
         A reading has the instrument's noise; the tension of a shackle's bridle has none.
         """
         bridle, sensor = _copy(bridle_low), _copy(sensor_low)
-        if self.together is None:
-            return {"bridle": bridle, "sensor": sensor}
-        corrected = np.array([name in self.upper for name in self.cage.sensor_names])
-        low = Prediction(mean=sensor_low.mean[:, corrected], std=sensor_low.std[:, corrected])
-        steepness = np.zeros_like(low.mean)
-        if self.together.water_sd.any():
-            steepness = self.steepness(water)[:, corrected]
-        x = water.features(self.inputs)
-        latent = self.together.latent(x, low, steepness)
-        latent = self._widen_outside(x, latent)
-        sensor.mean[:, corrected] = latent.mean
-        sensor.std[:, corrected] = np.sqrt(latent.std**2 + self.together.noise)
-        lines = [line for name, line in self._lines().items() if name in self.upper]
-        if lines:  # the shackles are the last of the sensors
-            bridle.mean[:, lines] = latent.mean[:, -len(lines) :]
-            bridle.std[:, lines] = latent.std[:, -len(lines) :]
+        if self.together is not None:
+            columns = list(self.corrections)
+            low = Prediction(mean=sensor_low.mean[:, columns], std=sensor_low.std[:, columns])
+            steepness = np.zeros_like(low.mean)
+            if self.together.water_sd.any():
+                steepness = self.steepness(water)[:, columns]
+            latent = self.together.latent(x, low, steepness)
+            sensor.mean[:, columns] = latent.mean
+            sensor.std[:, columns] = self._widen_outside(x, latent)
+            lines, here = list(self._lines.values()), list(self._lines)
+            bridle.mean[:, lines] = sensor.mean[:, here]
+            bridle.std[:, lines] = sensor.std[:, here]
+            sensor.std[:, columns] = np.sqrt(sensor.std[:, columns] ** 2 + self.together.noise)
         return {"bridle": bridle, "sensor": sensor}
 
-    def _widen_outside(self, x: Features, latent: Prediction) -> Prediction:
+    def _widen_outside(
+        self, x: Features, latent: Prediction
+    ) -> Float[np.ndarray, "case corrected"]:
         """Widen each level 2 outside its own domain, without a step at its edge."""
         std = latent.std.copy()
-        for column, (name, domain) in enumerate(self.upper_domains.items()):
-            edge = nearest_inside(x, domain)
+        for place, model in enumerate(self.corrections.values()):
+            edge = nearest_inside(x, model.domain)
             # Not ``contains``, whose margin would make a step that no table can follow.
             beyond = np.any(np.abs(edge - x) > ROUNDING, axis=1)
             if beyond.any():
                 edge = edge[beyond]
-                there = self.upper[name].latent(edge, self.lower(name).predict(edge)).mean
-                std[beyond, column] = np.hypot(
-                    std[beyond, column], latent.mean[beyond, column] - there
-                )
-        return Prediction(mean=latent.mean, std=std)
-
-    def _lines(self) -> dict[str, int]:
-        return {one.name: one.bridle for one in self.cage.shackles}
-
-    def _level(self, sensor: str) -> int:
-        return 2 if sensor in self.upper else 1
-
-    def _bridle_level(self) -> Int[np.ndarray, " line"]:
-        level = np.ones(self.cage.bridle_count, dtype=int)
-        for name, line in self._lines().items():
-            level[line] = self._level(name)
-        return level
-
-    def _sensor_units(self) -> tuple[str, ...]:
-        return tuple("N" if name in self._lines() else "m" for name in self.cage.sensor_names)
+                there = model.latent(edge, model.rest.lower.predict(edge)).mean
+                moved = latent.mean[beyond, place] - there
+                std[beyond, place] = np.hypot(std[beyond, place], moved)
+        return std
 
     def _beyond(self) -> str:
         speed, hs = self.edge
@@ -300,17 +276,15 @@ def _copy(prediction: Prediction) -> Prediction:
     return Prediction(mean=prediction.mean.copy(), std=prediction.std.copy())
 
 
-def _fill_valid(
-    parts: Sequence[Float[np.ndarray, "_ *rest"]], valid: Bool[np.ndarray, " case"]
-) -> Float[np.ndarray, "case *rest"]:
-    """Values of the valid rows, in all rows, NaN elsewhere."""
+def _fill(parts: Sequence[Any], valid: Bool[np.ndarray, " case"]) -> Any:
+    """Values of the valid rows, in all rows; False or NaN elsewhere."""
+    if isinstance(parts[0], Prediction):
+        mean, std = (_fill([getattr(one, key) for one in parts], valid) for key in ("mean", "std"))
+        return Prediction(mean=mean, std=std)
     values = np.concatenate(parts)
     if len(values) == len(valid):
         return values
-    scattered = np.full((len(valid), *values.shape[1:]), np.nan)
-    scattered[valid] = values
-    return scattered
-
-
-def _prediction(numbers: Numbers, name: str) -> Prediction:
-    return Prediction(mean=numbers[f"{name}_mean"], std=numbers[f"{name}_std"])
+    nothing = False if values.dtype == bool else np.nan
+    filled = np.full((len(valid), *values.shape[1:]), nothing)
+    filled[valid] = values
+    return filled

@@ -1,5 +1,6 @@
 """Pairs of a sensor's readings and the buoy's samples in force at their times."""
 
+import math
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from typing import Self
@@ -8,15 +9,23 @@ import numpy as np
 from jaxtyping import Bool, Float, Int, Shaped
 
 from seacage.conventions import Flag, InputError
-from seacage.records import FieldRecord, Record, instant
+from seacage.records import FieldRecord, Record, Sample, instant
 from seacage.surrogates import block_means, spread_design
-from seacage.twin._metocean import INPUT_KEYS, Metocean
+from seacage.twin._metocean import Metocean, input_keys
 
 HOLD_S = 10800.0
 """Longest time for which a buoy's value is held [s]; the live twin's default."""
 
 SI = {"tension_kn": 1000.0, "depth_m": 1.0}
 """Factors on values by the door keys of cage sensors, to N and m."""
+
+
+def reading_of(sample: Sample) -> tuple[float, Flag]:
+    """Return the reading of a cage sensor [N] or [m], and its flag; NaN where it has none."""
+    for key, factor in SI.items():
+        if key in sample.values:
+            return factor * sample.values[key], sample.flags[key]
+    return math.nan, Flag.MISSING
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -83,7 +92,11 @@ def align(
         )
     record = field.sensors[sensor]
     (key,) = record.values
-    sound = _sound(record, key, suspect=suspect) & _between(record.time, start, end)
+    sound = _sound(record, key, suspect=suspect)
+    if start is not None:
+        sound = sound & (record.time >= instant(start))
+    if end is not None:
+        sound = sound & (record.time < instant(end))
     time, value = record.time[sound], SI[key] * record.values[key][sound]
 
     held = np.searchsorted(field.buoy.time, time, side="right") - 1
@@ -91,7 +104,7 @@ def align(
     time, value, held = time[found], value[found], held[found]
     age = (time - field.buoy.time[held]) / np.timedelta64(1, "s")
     trusted = np.logical_and.reduce(
-        [_sound(field.buoy, key, suspect=suspect) for key in INPUT_KEYS["current"]]
+        [_sound(field.buoy, key, suspect=suspect) for key in input_keys(["current"])]
     )
     known = (age <= hold_s) & trusted[held]
     pairs = Pairs(
@@ -148,29 +161,13 @@ def _sound(record: Record, key: str, *, suspect: bool) -> Bool[np.ndarray, " t"]
     return usable if suspect else usable & (record.flags[key] != Flag.SUSPECT)
 
 
-def _between(
-    time: Shaped[np.ndarray, " t"], start: datetime | None, end: datetime | None
-) -> Bool[np.ndarray, " t"]:
-    counts = np.ones(time.shape, dtype=bool)
-    if start is not None:
-        counts &= time >= instant(start)
-    if end is not None:
-        counts &= time < instant(end)
-    return counts
-
-
 def _block_means(pairs: Pairs, mean_s: float) -> Pairs:
     length = round(mean_s * 1e6)
     microsecond = pairs.time.astype("datetime64[us]").astype(np.int64)
-    water = pairs.metocean
-    columns = (*water.current_velocity.T, water.hs, *water.wave_direction.T, pairs.value)
-    window, (u, v, hs, x, y, value) = block_means(microsecond // length, *columns)
+    columns = (*pairs.metocean.table.T, pairs.value)
+    window, (*water, value) = block_means(microsecond // length, *columns)
     return Pairs(
         time=(window * length + length // 2).astype("datetime64[us]"),
-        metocean=Metocean(
-            current_velocity=np.column_stack([u, v]),
-            hs=hs,
-            wave_direction=np.column_stack([x, y]),
-        ),
+        metocean=Metocean.from_table(np.column_stack(water)),
         value=value,
     )

@@ -6,10 +6,9 @@ from datetime import datetime
 
 import numpy as np
 
-from seacage.conventions import Flag
+from seacage.conventions import Flag, duration_text
 from seacage.records import Sample
 from seacage.twin._metocean import Metocean
-from seacage.twin._state import Stream, latest_in, usable
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -32,7 +31,12 @@ class Reading:
 
 
 def reading_at(
-    stream: Stream, now: datetime, *, buoy: str, keys: Sequence[str], stale_after_s: float
+    newest: Mapping[str, Sample],
+    now: datetime,
+    *,
+    buoy: str,
+    keys: Sequence[str],
+    stale_after_s: float,
 ) -> Reading:
     """Return the buoy's newest value of each key, if it is sound and fresh.
 
@@ -42,34 +46,38 @@ def reading_at(
 
     Parameters
     ----------
-    stream, now
-        The buoy's samples, and the clock.
+    newest, now
+        The buoy's last sample with each key, and the clock.
     buoy, keys
         Its name, and the quantities that the models take.
     stale_after_s
         Longest time for which a value is held [s].
     """
-    taken = latest_in(stream, now)
-    newest: Mapping[str, Sample] = taken.newest if taken else {}
     missing = [key for key in keys if key not in newest]
     if missing:
         return Reading(metocean=None, age_s=None, trouble=f"{buoy} has not sent {missing[0]} yet.")
 
     columns = {
-        key: np.array([sample.values[key] if usable(sample, key) else np.nan])
+        key: np.array([sample.values[key] if _usable(sample, key) else np.nan])
         for key, sample in newest.items()
     }
     age = max((now - newest[key].t).total_seconds() for key in keys)
-    bad = [key for key in keys if not usable(newest[key], key)]
+    bad = [key for key in keys if not _usable(newest[key], key)]
     if bad:
         trouble = fault_of(buoy, bad[0], newest[bad[0]].flags[bad[0]])
     elif age > stale_after_s:
         trouble = (
-            f"The last reading of {buoy} is {age:.0f} s old; {stale_after_s:.0f} s is the limit."
+            f"The last reading of {buoy} is {duration_text(age)} old; "
+            f"{duration_text(stale_after_s)} is the limit."
         )
     else:
         trouble = ""
     return Reading(metocean=Metocean.from_columns(columns, 1), age_s=age, trouble=trouble)
+
+
+def _usable(sample: Sample, key: str) -> bool:
+    """Whether a value may reach a model."""
+    return sample.flags[key] not in {Flag.FAIL, Flag.MISSING}
 
 
 def fault_of(buoy: str, key: str, flag: int) -> str:

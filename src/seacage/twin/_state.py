@@ -19,37 +19,6 @@ from seacage.twin._models import Models
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class StreamTimeouts:
-    """Timeouts of a twin's streams, and the rate at which its intervals adapt.
-
-    Parameters
-    ----------
-    stale_after_s
-        Longest time for which a buoy's value is held [s]. The default suits the sparse records of
-        coastal buoys, where it also spans the longest gaps.
-    sensor_silent_after_s
-        Timeout of a cage sensor [s].
-    disorder_s
-        Time within which samples without flags may come out of order [s]; a later one is
-        checked alone.
-    future_s
-        A sample further ahead of the clock has a wrong time [s].
-    adapt_rate
-        Rate of adaptation of the intervals: step of the logarithm of their width per reading
-        that counts [-]; 0 leaves them as trained.
-    adapt_every_s
-        Time between readings that count [s].
-    """
-
-    stale_after_s: float = 10800.0
-    sensor_silent_after_s: float = 900.0
-    disorder_s: float = 600.0
-    future_s: float = 60.0
-    adapt_rate: float = 0.01
-    adapt_every_s: float = 60.0
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class Taken:
     """A sample of a stream, and the newest values up to it.
 
@@ -227,11 +196,6 @@ def amendments_in(stream: Stream) -> tuple[Amendment, ...]:
 def is_flagged(sample: Sample) -> bool:
     """Whether a value has a flag worse than good."""
     return any(flag in {Flag.SUSPECT, Flag.FAIL, Flag.MISSING} for flag in sample.flags.values())
-
-
-def usable(sample: Sample, key: str) -> bool:
-    """Whether a value may reach a model."""
-    return sample.flags[key] not in {Flag.FAIL, Flag.MISSING}
 
 
 def _check_again(after: list[Taken], quality: QualityState) -> list[Taken]:

@@ -8,14 +8,13 @@ from seacage.conventions import InputError
 from seacage.records import Amendment, Sample, amended
 from seacage.twin._events import Flagged, StreamBack, StreamSilent
 from seacage.twin._interval_factors import ADAPTATION_BLOCK
+from seacage.twin._settings import StreamTimeouts
 from seacage.twin._state import (
     Stream,
-    StreamTimeouts,
     TwinState,
     amendments_in,
     insert,
     is_flagged,
-    latest_in,
     trim,
 )
 
@@ -88,8 +87,8 @@ def _horizon(state: TwinState, now: datetime) -> datetime:
 
 
 def _last(state: TwinState, stream: str, now: datetime) -> datetime:
-    taken = latest_in(state.streams[stream], now)
-    return now if taken is None else taken.sample.t
+    sample = state.latest(stream, now)
+    return now if sample is None else sample.t
 
 
 def _silent(state: TwinState, now: datetime, timeouts: Mapping[str, float]) -> frozenset[str]:

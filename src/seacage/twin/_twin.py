@@ -1,8 +1,9 @@
 """The trained twin: its models, where they come from, and the live loop around them."""
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from datetime import datetime
+from functools import partial
 from pathlib import Path
 from typing import Self
 
@@ -12,17 +13,18 @@ from seacage.cage import Cage
 from seacage.conventions import InputError, Origin
 from seacage.ocean import SeaState
 from seacage.records import Amendment, Record, Sample
-from seacage.twin._adaptation import Adapter
+from seacage.twin._adaptation import adapt
 from seacage.twin._answer import Answer
 from seacage.twin._discrepancy import Discrepancy
 from seacage.twin._events import Answered, Event
 from seacage.twin._interval_factors import MeanStd, factors_from_json, with_predictions
-from seacage.twin._metocean import INPUT_KEYS, Metocean
+from seacage.twin._metocean import Metocean, input_keys
 from seacage.twin._models import Models
 from seacage.twin._provenance import Provenance
-from seacage.twin._reading import fault_of, reading_at
+from seacage.twin._reading import Reading, fault_of, reading_at
 from seacage.twin._saving import from_parts, read_folder, to_parts, write_folder
-from seacage.twin._state import Held, StreamTimeouts, TwinState
+from seacage.twin._settings import FaultDetectorSettings, StreamTimeouts
+from seacage.twin._state import Held, TwinState
 from seacage.twin._step import forget, receive
 
 
@@ -42,6 +44,8 @@ class Twin:
         The stream that the inputs come from.
     timeouts
         How long streams may be silent, late or ahead.
+    fault_detector
+        Numbers of the fault detector, which reads them in ``assess``.
     discrepancy
         Distribution of true shapes about its shapes; None where there is none.
     """
@@ -50,6 +54,7 @@ class Twin:
     provenance: Provenance
     buoy: str = "buoy-1"
     timeouts: StreamTimeouts = field(default_factory=StreamTimeouts)
+    fault_detector: FaultDetectorSettings = field(default_factory=FaultDetectorSettings)
     discrepancy: Discrepancy | None = None
 
     @classmethod
@@ -75,8 +80,8 @@ class Twin:
         ModelError
             The folder holds something else.
         """
-        parts = self.models, self.provenance, self.buoy, self.timeouts, self.discrepancy
-        write_folder(Path(folder), *to_parts(*parts), key=key)
+        parts = {one.name: getattr(self, one.name) for one in fields(self)}
+        write_folder(Path(folder), *to_parts(**parts), key=key)
 
     @property
     def cage(self) -> Cage:
@@ -122,7 +127,7 @@ class Twin:
         These are the answers that ``step`` gives to the record's samples, made in blocks and
         so faster; only ``step`` adapts the intervals to the sensors' readings.
         """
-        keys = self._keys()
+        keys = input_keys(self.models.inputs)
         absent = [key for key in keys if key not in buoy.values]
         if absent:
             raise InputError(
@@ -178,7 +183,8 @@ class Twin:
         """
         before = state
         state, notices = self.receive(state, () if sample is None else (sample,), now)
-        if sample is None or _newest(state, self.buoy) != _newest(before, self.buoy):
+        newest, was = (one.latest(self.buoy, one.clock) for one in (state, before))
+        if sample is None or newest != was:
             state, answered = self._answer(state, now)
             return state, (*notices, answered)
         return state, notices
@@ -210,16 +216,17 @@ class Twin:
             limits=self.timeouts,
             amendments=amendments,
         )
-        adapter = Adapter(models=self.models, buoy=self.buoy, timeouts=self.timeouts)
-        state = adapter.adapt(state, now)
+        state = adapt(
+            state,
+            now,
+            models=self.models,
+            timeouts=self.timeouts,
+            reading_at=partial(self._reading_at, state),
+        )
         return forget(state, now, disorder_s=self.timeouts.disorder_s), notices
 
     def _answer(self, state: TwinState, now: datetime) -> tuple[TwinState, Answered]:
-        stale_after_s = self.timeouts.stale_after_s
-        stream = state.streams.get(self.buoy, ())
-        reading = reading_at(
-            stream, now, buoy=self.buoy, keys=self._keys(), stale_after_s=stale_after_s
-        )
+        reading = self._reading_at(state, now)
         unknown = Metocean.from_columns({}, 1)
         water = unknown if reading.metocean is None else reading.metocean
         held = None if reading.trouble else state.held
@@ -239,9 +246,8 @@ class Twin:
         """Mean and standard deviation of the sensors that have level 2."""
         mean, std = answer.sensor.mean[0].tolist(), answer.sensor.std[0].tolist()
         return {
-            name: (mean[column], std[column]) if answer.valid[0] else None
-            for column, name in enumerate(answer.sensor_names)
-            if name in self.models.upper
+            answer.sensor_names[column]: (mean[column], std[column]) if answer.valid[0] else None
+            for column in self.models.corrections
         }
 
     def _adapt(self, answer: Answer, state: TwinState) -> Answer:
@@ -256,8 +262,14 @@ class Twin:
         sensor = np.array([factor.get(name, 1.0) for name in answer.sensor_names])
         return answer.widened(bridle=bridle, sensor=sensor)
 
-    def _keys(self) -> list[str]:
-        return [key for name in self.models.inputs for key in INPUT_KEYS[name]]
+    def _reading_at(self, state: TwinState, t: datetime) -> Reading:
+        return reading_at(
+            state.newest(self.buoy, t),
+            t,
+            buoy=self.buoy,
+            keys=input_keys(self.models.inputs),
+            stale_after_s=self.timeouts.stale_after_s,
+        )
 
     def _timeout_by_stream(self) -> dict[str, float]:
         sensors = dict.fromkeys(self.sensor_names, self.timeouts.sensor_silent_after_s)
@@ -275,8 +287,3 @@ def replay(twin: Twin, samples: Iterable[Sample]) -> Iterator[Event]:
         now = sample.t if state.clock is None else max(sample.t, state.clock)
         state, events = twin.step(state, sample, now)
         yield from events
-
-
-def _newest(state: TwinState, stream: str) -> Sample | None:
-    """Newest sample of a stream that is not ahead of the state's clock."""
-    return state.latest(stream, state.clock)

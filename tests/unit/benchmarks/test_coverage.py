@@ -9,7 +9,7 @@ from seacage.surrogates import crps
 from seacage.testing import stand_in_field, stand_in_twin
 from seacage.twin import Training
 
-TAUGHT = Training(high_fidelity_points=60, days=2.0, restarts=0)
+TRAINING = Training(high_fidelity_points=60, days=2.0, restarts=0)
 
 
 def test_shares_are_of_all_and_of_each_third_of_the_load():
@@ -42,7 +42,7 @@ def scores():
         replace(twin, models=models),
         fields[0],
         averaged(fields),
-        training=TAUGHT,
+        training=TRAINING,
         since_day=2.0,
     )
 
@@ -65,4 +65,4 @@ def test_a_record_without_unseen_days_is_refused():
     twin = stand_in_twin()
     field = stand_in_field(twin.cage, days=1.0)
     with pytest.raises(InputError, match="too few to judge by"):
-        truth_coverage(twin, field, field, training=TAUGHT, since_day=2.0)
+        truth_coverage(twin, field, field, training=TRAINING, since_day=2.0)

@@ -106,8 +106,10 @@ def test_a_change_in_any_source_of_the_kernel_builds_it_again(
 
 def test_loading_a_library_keeps_denormals_in_the_rest_of_the_process(library: Path) -> None:
     halve = f"import ctypes; ctypes.CDLL({str(library)!r}); print(float('1e-320') * 0.5)"
-    told = subprocess.run([sys.executable, "-c", halve], check=True, capture_output=True, text=True)
-    assert float(told.stdout) > 0.0
+    result = subprocess.run(
+        [sys.executable, "-c", halve], check=True, capture_output=True, text=True
+    )
+    assert float(result.stdout) > 0.0
 
 
 def test_a_build_leaves_nothing_but_the_library(library: Path) -> None:
@@ -144,7 +146,7 @@ def test_a_compiler_named_in_cc_is_taken_at_its_word(
     assert build.system_compiler() == ["ccache", "clang"]
 
 
-def test_zig_is_told_the_instruction_set_in_its_own_spelling(build: ModuleType) -> None:
+def test_zig_gets_the_instruction_set_in_its_own_spelling(build: ModuleType) -> None:
     assert build.instruction_set(["gcc"], "x86-64-v3") == ["-march=x86-64-v3"]
     zig = [sys.executable, "-m", "ziglang", "cc"]
     assert build.instruction_set(zig, "x86-64-v3") == ["-mcpu=x86_64_v3"]

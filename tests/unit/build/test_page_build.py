@@ -111,7 +111,7 @@ def test_an_install_leaves_a_current_page_alone(
     hook.build_page("")
 
 
-def test_a_build_that_fails_tells_the_first_words_of_the_program(
+def test_a_build_that_fails_reports_the_first_words_of_the_program(
     page: ModuleType, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     script = "import sys; sys.exit('no such module: three')"

@@ -24,7 +24,7 @@ def test_two(): burn(0.1)
 def test_processor_time_is_summed_by_test_and_by_file(tmp_path: Path, workers: int) -> None:
     (tmp_path / "test_burns.py").write_text(BURNS)
     (tmp_path / "pytest.ini").write_text("[pytest]\n")
-    told = subprocess.run(
+    result = subprocess.run(
         [
             sys.executable,
             "-m",
@@ -42,7 +42,7 @@ def test_processor_time_is_summed_by_test_and_by_file(tmp_path: Path, workers: i
         text=True,
         check=True,
     ).stdout
-    spent = {name: float(seconds) for seconds, name in re.findall(r"([\d.]+) s  (\S+)", told)}
+    spent = {name: float(seconds) for seconds, name in re.findall(r"([\d.]+) s  (\S+)", result)}
     burns = next(name for name in spent if name.endswith("test_burns.py"))
     # A loop that ends by its own clock takes what it says; a loaded machine adds a little to it.
     assert 0.28 < spent[f"{burns}::test_one"] < 1.0
@@ -50,4 +50,4 @@ def test_processor_time_is_summed_by_test_and_by_file(tmp_path: Path, workers: i
     assert spent[burns] == pytest.approx(
         spent[f"{burns}::test_one"] + spent[f"{burns}::test_two"], abs=0.02
     )
-    assert len(re.findall("s to start and to collect", told)) == max(workers, 1)
+    assert len(re.findall("s to start and to collect", result)) == max(workers, 1)

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from _pytest.mark.expression import Expression
 
-from collected import MARKS, shuffle
+from collection import MARKS, shuffle
 from tools.variation import in_turn, variations
 
 ROOT = Path(__file__).parents[3]

@@ -17,7 +17,7 @@ def test_only_the_named_keys_change():
 
 
 @pytest.mark.parametrize(
-    ("sections", "said"),
+    ("sections", "message"),
     [
         ({"tipp": {}}, "Cage.altered: no section 'tipp'; there are: site, mesh, collar"),
         ({"shackle": {}}, "no section 'shackle'"),
@@ -29,10 +29,10 @@ def test_only_the_named_keys_change():
         ({"mesh": {"ring_depths_m": 3.0}}, "mesh, ring_depths_m: must be a list, not 3.0"),
     ],
 )
-def test_a_change_that_a_file_could_not_make_is_refused(sections, said):
+def test_a_change_that_a_file_could_not_make_is_refused(sections, message):
     with pytest.raises(InputError) as caught:
         ACE.altered(**sections)
-    assert said in str(caught.value)
+    assert message in str(caught.value)
 
 
 def test_growth_adds_solidity_above_and_below_its_boundary():

@@ -113,7 +113,7 @@ def test_a_missing_section_is_refused():
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "said"),
+    ("old", "new", "message"),
     [
         ("radius_m = 25.0", 'radius_m = "25"', "collar, radius_m: must be a number, not '25'."),
         ("radius_m = 25.0", "radius_m = true", "collar, radius_m: must be a number, not True."),
@@ -122,8 +122,8 @@ def test_a_missing_section_is_refused():
         ("ring_depths_m = [0.0", 'ring_depths_m = ["top"', "must be a number, not 'top'."),
     ],
 )
-def test_a_value_of_another_kind_is_refused_by_its_key(old, new, said):
-    assert said in refusal(edited(old, new))
+def test_a_value_of_another_kind_is_refused_by_its_key(old, new, message):
+    assert message in refusal(edited(old, new))
 
 
 def test_a_number_where_a_section_should_be_is_refused():
@@ -133,7 +133,7 @@ def test_a_number_where_a_section_should_be_is_refused():
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "said"),
+    ("old", "new", "expected"),
     [
         (
             "radius_m = 25.0",
@@ -149,9 +149,9 @@ def test_a_number_where_a_section_should_be_is_refused():
         ("bridle = 7 ", "bridle = 0 ", "ShackleEntry: bridle = 0 must be a finite number at"),
     ],
 )
-def test_a_number_out_of_its_bounds_is_refused_with_the_bound(old, new, said):
+def test_a_number_out_of_its_bounds_is_refused_with_the_bound(old, new, expected):
     message = refusal(edited(old, new))
-    assert said in message
+    assert expected in message
     assert "It is: " in message  # and with what the number means
 
 
@@ -198,7 +198,7 @@ def test_an_unknown_name_is_refused_with_the_known_ones():
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "said"),
+    ("old", "new", "message"),
     [
         ("water_depth_m = 191.0", "water_depth_m = 22.0", "hangs 31 m deep in water of 22 m"),
         ("water_depth_m = 191.0", "water_depth_m = 31.0", "water_depth_m, tip_depth_m and the"),
@@ -209,10 +209,10 @@ def test_an_unknown_name_is_refused_with_the_known_ones():
         ("radius_m = 25.0", "radius_m = nan", "radius_m = nan must be a finite number"),
     ],
 )
-def test_a_file_that_makes_no_sense_is_refused_with_its_name(tmp_path, old, new, said):
+def test_a_file_that_makes_no_sense_is_refused_with_its_name(tmp_path, old, new, message):
     path = tmp_path / "mine.toml"
     path.write_text(edited(old, new))
-    with pytest.raises(NonsenseError, match=f"^{path}: .*{said}"):
+    with pytest.raises(NonsenseError, match=f"^{path}: .*{message}"):
         Cage.read(path)
 
 

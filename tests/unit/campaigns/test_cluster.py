@@ -14,7 +14,7 @@ from seacage.conventions import SeacageError
         ("localhost", "missing port number"),
     ],
 )
-def test_an_address_where_no_scheduler_answers_is_told_in_one_sentence(
+def test_an_address_where_no_scheduler_answers_is_reported_in_one_sentence(
     address: str, says: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("seacage.campaigns._cluster._CONNECT_S", 0.3)
@@ -23,7 +23,7 @@ def test_an_address_where_no_scheduler_answers_is_told_in_one_sentence(
     assert "Start one with `dask scheduler`" in str(refused.value)
 
 
-def test_a_scheduler_without_workers_is_told_in_one_sentence(
+def test_a_scheduler_without_workers_is_reported_in_one_sentence(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     from distributed import LocalCluster

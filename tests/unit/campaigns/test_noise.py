@@ -5,7 +5,7 @@ import numpy as np
 from seacage.campaigns._noise import wandering
 
 
-def test_it_has_the_size_and_the_memory_asked_for() -> None:
+def test_it_has_the_size_and_the_memory_requested() -> None:
     walk = wandering(np.random.default_rng(1), 100_000, sd=0.04, step_s=60.0, memory_s=600.0)
     # 100,000 steps hold 5,000 independent ones: 1 % of sd, 2 % of correlation.
     np.testing.assert_allclose(walk.std(axis=0), 0.04, rtol=0.05)

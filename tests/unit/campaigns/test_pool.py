@@ -39,13 +39,13 @@ def test_answers_come_with_their_tasks() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("workers", [1, 2])
 def test_tasks_say_how_far_they_are_while_they_work(workers: int) -> None:
-    heard: list[float] = []
-    answers = map_tasks(_slow_halves, [1.0, 2.0, 3.0], workers=workers, progress=heard.append)
+    messages: list[float] = []
+    answers = map_tasks(_slow_halves, [1.0, 2.0, 3.0], workers=workers, progress=messages.append)
     assert len(list(answers)) == 3
-    assert heard == sorted(heard)
+    assert messages == sorted(messages)
     # while a task worked, half of it had been told
-    assert any(0.0 < amount < 6.0 for amount in heard)
-    assert heard[-1] <= 6.0
+    assert any(0.0 < amount < 6.0 for amount in messages)
+    assert messages[-1] <= 6.0
 
 
 def test_one_task_stays_in_this_process() -> None:
@@ -57,8 +57,8 @@ def test_workers_compute_on_one_thread_and_this_process_is_left_as_it_was(
 ) -> None:
     monkeypatch.setenv("OMP_NUM_THREADS", "5")
     main = sys.modules["__main__"]
-    told = dict(map_tasks(os.getenv, ["OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"], workers=2))
-    assert set(told.values()) == {"1"}
+    messages = dict(map_tasks(os.getenv, ["OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"], workers=2))
+    assert set(messages.values()) == {"1"}
     assert os.environ["OMP_NUM_THREADS"] == "5"
     assert sys.modules["__main__"] is main
 
@@ -67,8 +67,8 @@ def test_workers_compute_on_one_thread_and_this_process_is_left_as_it_was(
 def test_a_script_without_a_guard_runs_once(tmp_path: Path) -> None:
     script = tmp_path / "script.py"
     script.write_text(UNGUARDED)
-    told = subprocess.run([sys.executable, script], capture_output=True, text=True, check=True)
-    assert told.stdout.splitlines() == ["script", "[1, 2, 3]"]
+    result = subprocess.run([sys.executable, script], capture_output=True, text=True, check=True)
+    assert result.stdout.splitlines() == ["script", "[1, 2, 3]"]
 
 
 @pytest.mark.slow
@@ -80,7 +80,7 @@ def test_closing_early_drops_what_has_not_begun() -> None:
     assert time.monotonic() - began < 20.0
 
 
-def test_a_worker_that_dies_is_told_in_one_sentence() -> None:
+def test_a_worker_that_dies_is_reported_in_one_sentence() -> None:
     with pytest.raises(SeacageError, match="ended from outside"):
         list(map_tasks(os._exit, [1, 1], workers=2))
 

@@ -45,15 +45,15 @@ def stopping(at: int) -> Callable[[str, int, int], None]:
 def test_a_campaign_answers_every_case_and_reports_on_its_way(
     small_cage: Cage, stand_in: StandIn, tmp_path: Path
 ) -> None:
-    told: list[tuple[str, int, int]] = []
+    messages: list[tuple[str, int, int]] = []
     record = run_campaign(
-        small_cage, PLAN, tmp_path / "c", workers=1, progress=lambda *step: told.append(step)
+        small_cage, PLAN, tmp_path / "c", workers=1, progress=lambda *step: messages.append(step)
     )
     assert record.seas == PLAN.seas
     assert record.seed == PLAN.seed
     assert record.cage_toml == small_cage.to_toml()
     assert record.node_position.shape == (100, small_cage.node_count, 3)
-    assert told == [("campaign", done, 100) for done in (0, 16, 32, 48, 64, 80, 96, 100)]
+    assert messages == [("campaign", done, 100) for done in (0, 16, 32, 48, 64, 80, 96, 100)]
 
 
 def test_a_campaign_in_time_keeps_the_spread_of_every_quantity(
@@ -180,12 +180,16 @@ def test_what_is_done_is_not_done_again(
 ) -> None:
     first = run_campaign(small_cage, PLAN, tmp_path / "c", workers=1)
     assert len(stand_in.settled) == 100
-    told: list[int] = []
+    messages: list[int] = []
     again = run_campaign(
-        small_cage, PLAN, tmp_path / "c", workers=1, progress=lambda _, done, __: told.append(done)
+        small_cage,
+        PLAN,
+        tmp_path / "c",
+        workers=1,
+        progress=lambda _, done, __: messages.append(done),
     )
     assert len(stand_in.settled) == 100
-    assert told == [100]
+    assert messages == [100]
     assert again.sha256 == first.sha256
 
 
@@ -306,7 +310,7 @@ def test_a_worker_with_another_version_refuses_to_answer(
 
 
 @pytest.mark.parametrize("asks", [run_campaign, Simulator, run_command])
-def test_what_is_not_asked_for_is_as_in_a_single_simulation(asks: Callable[..., object]) -> None:
+def test_what_is_not_requested_is_as_in_a_single_simulation(asks: Callable[..., object]) -> None:
     def defaults(of: Callable[..., object]) -> dict[str, object]:
         return {name: one.default for name, one in inspect.signature(of).parameters.items()}
 

@@ -38,7 +38,7 @@ def test_a_stopped_campaign_counts_what_is_kept(
     assert status.failures == {}
 
 
-def test_each_failure_is_told_with_its_sea_and_its_reason(
+def test_each_failure_is_reported_with_its_sea_and_its_reason(
     small_cage: Cage, stand_in: StandIn, tmp_path: Path
 ) -> None:
     stand_in.reach = 1.0
@@ -53,7 +53,7 @@ def test_each_failure_is_told_with_its_sea_and_its_reason(
     assert status.simulated_s == pytest.approx(2 * 2100.0 + 12.5)
 
 
-def test_an_equilibrium_that_was_not_found_is_told_with_the_force_left(
+def test_an_equilibrium_that_was_not_found_is_reported_with_the_force_left(
     small_cage: Cage, stand_in: StandIn, tmp_path: Path
 ) -> None:
     stand_in.reach = 0.32

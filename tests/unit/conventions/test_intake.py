@@ -95,7 +95,7 @@ def test_a_number_that_is_none_is_no_json(number):
         parse_json(f'{{"a": {number}}}', "mine")
 
 
-def test_where_finite_numbers_are_asked_for_the_key_of_another_is_named():
+def test_where_finite_numbers_are_requested_the_key_of_another_is_named():
     text = "[[a]]\nb.c = 1\n[[a]]\nb.c = -inf"
     assert parse_toml(text, "mine")
     with pytest.raises(NonsenseError, match=r"mine: a\.b\.c = -inf is no finite number"):

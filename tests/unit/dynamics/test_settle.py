@@ -304,7 +304,7 @@ def too_light(assembly, rate):
 # What it refuses
 
 
-def test_waves_are_refused_unless_their_mean_is_asked_for():
+def test_waves_are_refused_unless_their_mean_is_requested():
     rough = SeaState(current_speed=0.4, current_to=0.0, hs=1.5)
     with pytest.raises(InputError, match=r"hs = 1.5 m, but an equilibrium has no waves. Pass mean"):
         settle(COARSE, [current(0.4, 0.0), rough])
@@ -328,16 +328,16 @@ def test_an_unknown_law_is_refused_with_those_that_are_known():
         "settle(Cage.named('ace'), SeaState(current_speed=0.1, current_to=0.0), law='morison')"
     )
     done = subprocess.run([sys.executable, "-c", ask], capture_output=True, text=True, check=False)
-    said = done.stderr.splitlines()[-1]
-    assert said.endswith("no law 'morison'; there are: aarsnes, loland, kristiansen-faltinsen.")
+    message = done.stderr.splitlines()[-1]
+    assert message.endswith("no law 'morison'; there are: aarsnes, loland, kristiansen-faltinsen.")
 
 
-def test_who_passes_a_structure_is_told_where_it_comes_to_rest():
+def test_who_passes_a_structure_learns_where_it_comes_to_rest():
     # a process without the tests' checks of types, which would refuse it first
     script = (
         "from seacage.dynamics import settle; from seacage.ocean import SeaState; "
         "settle(object(), SeaState(current_speed=0.1, current_to=0.0))"
     )
     command = [sys.executable, "-c", script]
-    told = subprocess.run(command, check=False, capture_output=True, text=True).stderr
-    assert "settle: takes a Cage, not a object. A structure comes to rest in simulate" in told
+    result = subprocess.run(command, check=False, capture_output=True, text=True).stderr
+    assert "settle: takes a Cage, not a object. A structure comes to rest in simulate" in result

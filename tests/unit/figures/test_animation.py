@@ -56,20 +56,20 @@ def test_it_runs_in_real_time_and_loops_for_ever(picture):
     assert played == 16 * 200
 
 
-def test_it_tells_how_far_it_is(tmp_path, cage, motion):
-    told = []
+def test_it_reports_how_far_it_is(tmp_path, cage, motion):
+    messages = []
     write_animation(
         tmp_path / "a.gif",
         cage,
         motion,
         frames_per_second=2.0,
         width=160,
-        progress=lambda *where: told.append(where),
+        progress=lambda *where: messages.append(where),
     )
-    assert told == [("draw", picture, 7) for picture in range(1, 8)]
+    assert messages == [("draw", picture, 7) for picture in range(1, 8)]
 
 
-def test_it_is_as_wide_as_asked_and_light(picture):
+def test_it_is_as_wide_as_requested_and_light(picture):
     with Image.open(picture) as gif:
         assert gif.width == 320
         assert gif.convert("RGB").getpixel((2, 2)) == (255, 255, 255)

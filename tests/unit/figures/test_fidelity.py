@@ -17,7 +17,7 @@ PANELS = [Panel(sensor=f"depth-{number}", quantity="Rise", unit="m") for number 
 ORIGIN = Origin.VIRTUAL_FIELD
 
 
-def said(figure) -> str:
+def words_of(figure) -> str:
     """Every word of a figure."""
     return " ".join(text.get_text() for text in figure.findobj(lambda a: hasattr(a, "get_text")))
 
@@ -30,7 +30,7 @@ def test_every_sensor_has_a_panel_and_a_direction_without_current_no_bar():
     assert len(shown) == 5
     heights = [bar.get_height() for bar in shown[0].patches]
     assert np.isnan(heights[3])
-    assert "virtual field" in said(figure)
+    assert "virtual field" in words_of(figure)
     again = sector_figure(PANELS, tuple("ABCDEFGH"), truth, 0.5 * truth, origin=ORIGIN)
     assert svg_text(figure) == svg_text(again)
 
@@ -39,7 +39,7 @@ def test_what_is_left_is_a_bar_beside_what_has_to_be():
     figure = left_figure(["a", "b"], np.array([0.5, 0.07]), least=0.1, origin=ORIGIN)
     (axes,) = figure.axes
     assert [bar.get_width() for bar in axes.patches] == pytest.approx([1.0, 1.0, 0.5, 0.07])
-    assert "10% must be left" in said(figure)
+    assert "10% must be left" in words_of(figure)
 
 
 def test_zero_is_in_the_middle_of_the_null_case():
@@ -62,4 +62,4 @@ def test_each_current_has_its_line_and_the_record_its_dots():
         origin=ORIGIN,
     )
     assert len(figure.axes[0].lines) == 1 + 2 + 1, "zero, two currents, the record"
-    assert "0.6 m/s, settled" in said(figure)
+    assert "0.6 m/s, settled" in words_of(figure)

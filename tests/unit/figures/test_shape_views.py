@@ -25,11 +25,11 @@ def test_seas_are_rows_and_models_columns(figure):
     assert [axes.get_title() for axes in figure.axes] == ["exact", "wrong", "", ""]
 
 
-def test_the_worst_node_is_said_in_metres(figure):
-    said = [text.get_text() for axes in figure.axes for text in axes.texts]
-    assert any("worst node 2 m" in one for one in said)
-    assert any("worst node 0.5 m" in one for one in said)
-    assert any("Harsh" in one for one in said)
+def test_the_worst_node_is_reported_in_metres(figure):
+    message = [text.get_text() for axes in figure.axes for text in axes.texts]
+    assert any("worst node 2 m" in one for one in message)
+    assert any("worst node 0.5 m" in one for one in message)
+    assert any("Harsh" in one for one in message)
 
 
 def test_both_nets_are_drawn_with_every_twine(figure):

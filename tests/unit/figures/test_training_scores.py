@@ -41,5 +41,5 @@ def test_no_mark_lies_outside_its_panel(figure):
         assert np.nanmax(marks) <= axes.get_xlim()[1]
 
 
-def test_where_the_readings_come_from_is_said(figure):
+def test_where_the_readings_come_from_is_reported(figure):
     assert figure.axes[2].get_title(loc="right") == "virtual field"

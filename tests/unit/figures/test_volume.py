@@ -15,11 +15,11 @@ def test_each_law_is_a_line_in_per_cent():
 
 def test_measured_cages_are_named_as_other_cages_with_their_sources():
     (axes,) = volume_figure(SPEED, {"A": 1.0 - 0.5 * SPEED}).axes
-    said = " ".join(text.get_text() for text in axes.texts)
+    message = " ".join(text.get_text() for text in axes.texts)
     for mark in MEASURED_VOLUMES:
-        assert mark.name in said
-        assert mark.source in said
-    assert "other cages with other gear" in said
+        assert mark.name in message
+        assert mark.source in message
+    assert "other cages with other gear" in message
     marks = [line for line in axes.lines if line.get_marker() == "D"]
     places = [(line.get_xdata()[0], line.get_ydata()[0]) for line in marks]
     assert places == [(0.13, 80.0), (0.35, 60.0), (0.5, 60.0)]

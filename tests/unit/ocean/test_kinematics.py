@@ -24,7 +24,7 @@ def test_the_components_carry_the_energy_of_the_sea():
         assert np.sum(waves.amplitude**2) / 2.0 == pytest.approx(SEA.hs**2 / 16.0, rel=1e-12)
 
 
-def test_there_are_30_components_unless_more_are_asked_for():
+def test_there_are_30_components_unless_more_are_requested():
     assert sample_waves(SEA, seed=0).amplitude.shape == (30,)
     assert sample_waves(SEA, seed=0, components=64).amplitude.shape == (64,)
 
@@ -159,7 +159,7 @@ def test_near_the_bottom_the_water_moves_along_it():
     assert up == pytest.approx(0.0, abs=1e-20)
 
 
-def test_a_regular_wave_has_its_height_and_comes_from_where_it_is_said_to():
+def test_a_regular_wave_has_its_height_and_comes_from_where_it_is_stated_to():
     wave = regular_wave(height=2.0, period=6.0, wave_from=270.0)
     time = np.linspace(0.0, 6.0, 601)
     elevation = surface_elevation(wave, np.zeros((1, 2)), time)
@@ -169,7 +169,7 @@ def test_a_regular_wave_has_its_height_and_comes_from_where_it_is_said_to():
 
 
 @pytest.mark.parametrize(
-    ("wrong", "told"),
+    ("wrong", "message"),
     [
         ({"height": 9.0}, "breaks above"),
         ({"height": 0.0}, "height = 0 m is not a positive"),
@@ -177,8 +177,8 @@ def test_a_regular_wave_has_its_height_and_comes_from_where_it_is_said_to():
         ({"wave_from": 412.0}, r"outside \[0, 360\]"),
     ],
 )
-def test_a_wave_that_cannot_be_is_refused(wrong, told):
-    with pytest.raises(InputError, match=told):
+def test_a_wave_that_cannot_be_is_refused(wrong, message):
+    with pytest.raises(InputError, match=message):
         regular_wave(**{"height": 1.0, "period": 5.0, "wave_from": 0.0} | wrong)
 
 

@@ -77,7 +77,7 @@ def test_no_window_has_a_mean_across_a_gap_or_at_its_edge(minutes, whole):
     assert means.flags["depth_m"].tolist() == [Flag.GOOD if whole else Flag.MISSING]
 
 
-def test_failed_values_make_a_gap_and_suspect_ones_are_said_or_left_out():
+def test_failed_values_make_a_gap_and_suspect_ones_are_reported_or_left_out():
     spoken = check_record(record([1, 3, 5, 7, 9], depth_m=[1.0, 1.1, 500.0, 1.1, 1.0]))
     assert aligned(spoken, clock(max_gap_s=300.0)).flags["depth_m"].tolist() == [Flag.GOOD]
     assert aligned(spoken, clock(max_gap_s=180.0)).flags["depth_m"].tolist() == [Flag.MISSING]

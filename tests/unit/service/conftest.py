@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from serviced import Running, running
+from running_service import Running, running
 
 
 @pytest.fixture

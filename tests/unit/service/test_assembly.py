@@ -22,7 +22,7 @@ def ended():
         asyncio.run(one.end())
 
 
-def told(tmp_path, **settings):
+def settings_of(tmp_path, **settings):
     return Settings.model_validate({"data": tmp_path / "data"} | settings)
 
 
@@ -30,7 +30,7 @@ def test_cages_share_a_store_and_have_limits_of_their_own(tmp_path, ended):
     stand_in_twin().write(tmp_path / "twin")
     north = {"name": "north", "twin": tmp_path / "twin"}
     south = {"name": "south", "twin": tmp_path / "twin", "alarms": {"load": {"raise_at": 0.9}}}
-    settings = told(tmp_path, cages=[north, south], alarms={"load": {"raise_at": 0.75}})
+    settings = settings_of(tmp_path, cages=[north, south], alarms={"load": {"raise_at": 0.75}})
     service = assemble(settings, read_twins(settings))
     ended.append(service)
     assert list(service.cages) == ["north", "south"]
@@ -43,7 +43,7 @@ def test_workers_part_the_cages_and_leave_none_out(tmp_path):
     stand_in_twin().write(tmp_path / "twin")
     cages = [{"name": f"cage-{k}", "twin": tmp_path / "twin"} for k in range(7)]
     served = [
-        list(read_twins(told(tmp_path, cages=cages, worker=worker, workers=2)))
+        list(read_twins(settings_of(tmp_path, cages=cages, worker=worker, workers=2)))
         for worker in range(2)
     ]
     assert all(served)
@@ -60,7 +60,7 @@ def keyed(tmp_path):
     (tmp_path / "key").write_bytes(KEY)
     (tmp_path / "key").chmod(0o600)
     cages = [{"name": "north", "twin": tmp_path / "twin"}]
-    return told(tmp_path, cages=cages, twin_key=tmp_path / "key")
+    return settings_of(tmp_path, cages=cages, twin_key=tmp_path / "key")
 
 
 def test_where_there_is_a_key_an_unsigned_twin_is_refused(tmp_path, keyed):
@@ -97,7 +97,7 @@ def test_a_key_that_others_can_read_stops_the_start(tmp_path, keyed):
 
 def test_a_folder_is_served_by_one_process(tmp_path, ended, monkeypatch):
     monkeypatch.setattr("seacage.service._store._store._PATIENCE_S", 0.3)
-    settings = told(tmp_path)
+    settings = settings_of(tmp_path)
     ended.append(assemble(settings, {"ace": stand_in_twin()}))
     reserve = tmp_path / "data" / "samples.sqlite-reserve"
     for _ in range(2):
@@ -107,14 +107,14 @@ def test_a_folder_is_served_by_one_process(tmp_path, ended, monkeypatch):
 
 
 def test_a_group_takes_a_store_that_its_processes_share(tmp_path):
-    settings = told(tmp_path, mqtt={"url": "mqtt://127.0.0.1", "group": "twins"})
+    settings = settings_of(tmp_path, mqtt={"url": "mqtt://127.0.0.1", "group": "twins"})
     with pytest.raises(InputError, match=r"one PostgreSQL as store\.url"):
         assemble(settings, {"ace": stand_in_twin()})
 
 
 def test_a_clock_that_follows_goes_on_where_the_store_ends(tmp_path, ended):
     then = datetime(2018, 1, 26, tzinfo=UTC)
-    settings = told(tmp_path, clock="samples", speed=100.0)
+    settings = settings_of(tmp_path, clock="samples", speed=100.0)
     for speaks in (True, False):
         service = assemble(settings, {"ace": stand_in_twin()})
         cage = service.cages["ace"]
@@ -130,7 +130,7 @@ def test_a_clock_that_follows_goes_on_where_the_store_ends(tmp_path, ended):
 def test_a_table_that_grows_feeds_its_cage(tmp_path, ended):
     stand_in_twin().write(tmp_path / "twin")
     tail = {"path": tmp_path / "buoy.csv"}
-    settings = told(tmp_path, cages=[{"twin": tmp_path / "twin", "tail": [tail]}])
+    settings = settings_of(tmp_path, cages=[{"twin": tmp_path / "twin", "tail": [tail]}])
     service = assemble(settings, read_twins(settings))
     ended.append(service)
     (tmp_path / "buoy.csv").write_text(
@@ -149,14 +149,14 @@ def test_a_table_that_grows_feeds_its_cage(tmp_path, ended):
 
 
 def test_what_is_replayed_lies_apart_from_what_was_measured(tmp_path):
-    settings = told(tmp_path, store={"url": "postgresql://db/farm"})
+    settings = settings_of(tmp_path, store={"url": "postgresql://db/farm"})
     assert store_place(settings) == "postgresql://db/farm"
     assert store_place(settings, replayed=True) == tmp_path / "data" / "replay.sqlite"
-    assert store_place(told(tmp_path)) == tmp_path / "data" / "samples.sqlite"
+    assert store_place(settings_of(tmp_path)) == tmp_path / "data" / "samples.sqlite"
 
 
 def test_a_record_is_not_replayed_into_several_cages(tmp_path):
     twin = stand_in_twin()
     buoy = stand_in_field(twin.cage, days=0.25).buoy
     with pytest.raises(InputError, match="there are 2"):
-        assemble(told(tmp_path), {"a": twin, "b": twin}, replay=replay_of(buoy))
+        assemble(settings_of(tmp_path), {"a": twin, "b": twin}, replay=replay_of(buoy))

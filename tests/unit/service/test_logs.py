@@ -22,9 +22,9 @@ def logging_as_it_was(monkeypatch):
 def test_a_machine_gets_one_json_object_per_event(capsys):
     begin_logs("json")
     structlog.get_logger("seacage.test").info("stream back", cage="ace")
-    said = json.loads(capsys.readouterr().err)
-    assert (said["event"], said["cage"], said["level"]) == ("stream back", "ace", "info")
-    assert said["timestamp"].endswith("Z")
+    output = json.loads(capsys.readouterr().err)
+    assert (output["event"], output["cage"], output["level"]) == ("stream back", "ace", "info")
+    assert output["timestamp"].endswith("Z")
 
 
 def test_others_speak_the_same_way_and_only_where_something_is_wrong(capsys):
@@ -54,8 +54,8 @@ def test_a_line_that_is_repeated_is_counted_and_not_written_again(capsys, monkey
     now[0] = 10.0
     logging.getLogger("asyncio").error("no %s", "socket")
     structlog.get_logger("seacage.test").warning("dropped", address="10.0.0.1")
-    said = [json.loads(line)["event"] for line in capsys.readouterr().err.splitlines()]
+    output = [json.loads(line)["event"] for line in capsys.readouterr().err.splitlines()]
     more = "(900 more like it were not written)"
-    assert said == [f"no socket {more}", f"dropped {more}"]
+    assert output == [f"no socket {more}", f"dropped {more}"]
     logging.getLogger("asyncio").error("another")
     assert json.loads(capsys.readouterr().err)["event"] == "another"

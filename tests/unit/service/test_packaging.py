@@ -38,7 +38,7 @@ def test_a_service_is_started_with_its_file_of_settings_and_never_as_root(name):
 
 
 @pytest.mark.parametrize("name", ["seacage.service", "Containerfile"])
-def test_where_the_data_lie_is_said_once_and_where_the_service_may_write(name):
+def test_where_the_data_lie_is_stated_once_and_where_the_service_may_write(name):
     text = (PACKAGING / name).read_text()
     assert "SEACAGE_" not in text, "a variable would go before the file, and nobody would see it"
     data = read_settings(PACKAGING / "seacage.toml").data

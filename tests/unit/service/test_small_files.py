@@ -5,11 +5,11 @@ from contextlib import closing
 
 import pytest
 
+from running_service import NOON
 from seacage.service._publish._spool import Spool
 from seacage.service._quarantine import Quarantine
 from seacage.service._small_files import append_line, keep_private, write_small
 from seacage.service._store._store import Store
-from serviced import NOON
 
 
 def rights(path):

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import pytest
 from structlog.testing import capture_logs
 
+from running_service import HandClock
 from seacage.conventions import RecordError
 from seacage.records import ColumnMap
 from seacage.service._ingest._file_feed import FileTail
@@ -14,7 +15,6 @@ from seacage.service._quarantine import Quarantine
 from seacage.service._store._store import StoreError, open_store
 from seacage.service._tail import Tail, TailPosition
 from seacage.testing import stand_in_twin
-from serviced import HandClock
 
 HEADER = "time,current_speed_m_s,current_to_deg\n"
 MAP = """
@@ -245,10 +245,12 @@ def test_rows_that_the_disk_does_not_take_are_read_again(cage, logger, tmp_path,
     assert refusals == [None, "The disk is full.", "The disk is full."]
 
 
-def test_a_place_that_a_full_disk_cut_off_is_said_and_the_file_read_anew(cage, logger, tmp_path):
+def test_a_place_that_a_full_disk_cut_off_is_reported_and_the_file_read_anew(
+    cage, logger, tmp_path
+):
     logger.write(HEADER + row(0) + row(1))
     (tmp_path / "place.json").write_bytes(b'{"offset": 12, "he\xff')
-    with capture_logs() as said:
+    with capture_logs() as logs:
         tail = feed(cage, logger, tmp_path)
-    assert "place cannot be read" in said[0]["event"]
+    assert "place cannot be read" in logs[0]["event"]
     run_until(tail, lambda: minutes(cage.store.samples("ace", limit=100)) == [0, 1])

@@ -93,7 +93,7 @@ def test_a_sparse_record_counts_the_hours_that_it_has():
     assert score.blocks == 20
 
 
-def test_the_interval_is_judged_on_means_as_long_as_those_that_teach():
+def test_the_interval_is_scored_on_means_as_long_as_those_that_teach():
     time = START + np.arange(1440) * np.timedelta64(2, "s")
     sway = np.where(np.arange(1440) % 2, 3.0, -3.0)  # six of the twin's standard deviations
     score = score_run(readings(1440, time=time, reading=readings(1440).multi + sway))

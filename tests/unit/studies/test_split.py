@@ -63,36 +63,40 @@ def test_the_days_that_teach_come_first_and_every_reading_is_in_one_part(field):
     assert max(days(teaching.sensors["depth-1"])) == np.datetime64("2020-01-22")
 
 
-def test_a_shackle_teaches_with_its_first_window_and_is_judged_on_its_second(field):
+def test_a_shackle_teaches_with_its_first_window_and_is_scored_on_its_second(field):
     teaching, judging = split(field, teaching_days=5)
     assert len(teaching.sensors["shackle-1"]) == 24
     assert len(judging.sensors["shackle-1"]) == 48
 
 
 @pytest.mark.parametrize("teaching_days", [1, 9])
-def test_a_sensor_with_nothing_to_teach_or_to_judge_is_refused(field, teaching_days):
+def test_a_sensor_with_nothing_to_train_with_or_to_score_is_refused(field, teaching_days):
     with pytest.raises(InputError, match="shackle-1 has"):
         split(field, teaching_days=teaching_days)
 
 
-def lesson(first: datetime, last: datetime) -> TrainingWindow:
+def window(first: datetime, last: datetime) -> TrainingWindow:
     return TrainingWindow(start=first, end=last, points=300)
 
 
-def test_the_days_after_a_lesson_are_unseen_and_a_sensor_that_taught_nothing_is_whole(field):
-    taught = lesson(datetime(2020, 1, 18, 6, tzinfo=UTC), datetime(2020, 1, 22, 23, 59, tzinfo=UTC))
-    left = unseen(field, {"depth-1": taught})
+def test_the_days_after_a_training_window_are_unseen_and_a_sensor_that_trained_nothing_is_whole(
+    field,
+):
+    trained = window(
+        datetime(2020, 1, 18, 6, tzinfo=UTC), datetime(2020, 1, 22, 23, 59, tzinfo=UTC)
+    )
+    left = unseen(field, {"depth-1": trained})
     assert min(days(left.sensors["depth-1"])) == np.datetime64("2020-01-23")
     assert len(left.sensors["shackle-1"]) == len(field.sensors["shackle-1"])
 
 
-def test_the_days_before_a_late_lesson_are_unseen_too(field):
-    late = lesson(datetime(2020, 1, 25, 3, tzinfo=UTC), datetime(2020, 1, 29, tzinfo=UTC))
+def test_the_days_before_a_late_training_window_are_unseen_too(field):
+    late = window(datetime(2020, 1, 25, 3, tzinfo=UTC), datetime(2020, 1, 29, tzinfo=UTC))
     left = unseen(field, {"depth-1": late})
     assert max(days(left.sensors["depth-1"])) == np.datetime64("2020-01-24")
 
 
-def test_a_record_of_lesson_days_alone_judges_nobody(field):
-    whole = lesson(datetime(2020, 1, 18, tzinfo=UTC), datetime(2020, 1, 29, tzinfo=UTC))
+def test_a_record_of_training_days_alone_scores_nobody(field):
+    whole = window(datetime(2020, 1, 18, tzinfo=UTC), datetime(2020, 1, 29, tzinfo=UTC))
     with pytest.raises(InputError, match="depth-1: all its readings are of training days"):
         unseen(field, {"depth-1": whole})

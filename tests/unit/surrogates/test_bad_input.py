@@ -100,7 +100,7 @@ def test_a_repeated_case_can_be_taken_in(model) -> None:
 
 
 @every_noise
-def test_two_points_are_a_sound_if_modest_lesson(noise) -> None:
+def test_two_points_are_a_sound_if_modest_training_set(noise) -> None:
     fitted = GaussianProcess(noise=noise, restarts=0).fit(X[:2], Y[:2])
     answer = fitted.predict(X, noisy=True)
     sound(answer)

@@ -38,13 +38,13 @@ def test_with_a_period_waves_are_the_speed_of_the_surface_and_their_height() -> 
 def test_metocean_features_are_the_current_then_the_waves(names: str, columns: int) -> None:
     velocity, along = np.array([[0.3, -0.4]]), np.array([[0.0, 1.0]])
     every = {"hs": np.array([1.0]), "wave_direction": along, "tp": np.array([6.0])}
-    told = {name: value for name, value in every.items() if name.split("_")[0] in names.split()}
-    x = metocean_features(velocity, **told)
+    body = {name: value for name, value in every.items() if name.split("_")[0] in names.split()}
+    x = metocean_features(velocity, **body)
     assert x.shape == (1, columns)
     np.testing.assert_array_equal(x[:, :3], current_features(velocity))
     if columns > 3:
         np.testing.assert_array_equal(
-            x[:, 3:], wave_features(every["hs"], along, tp=told.get("tp"))
+            x[:, 3:], wave_features(every["hs"], along, tp=body.get("tp"))
         )
     check_turnable(x, what="test")
 

@@ -137,6 +137,8 @@ def test_a_setting_of_another_kind_is_refused() -> None:
 
 def test_loading_the_room_leaves_scipy_for_when_it_is_needed() -> None:
     # The command line loads this room to print its help.
-    tell = "import sys, seacage.surrogates; print('scipy.linalg' in sys.modules)"
-    told = subprocess.run([sys.executable, "-c", tell], check=True, capture_output=True, text=True)
-    assert told.stdout.strip() == "False"
+    script = "import sys, seacage.surrogates; print('scipy.linalg' in sys.modules)"
+    result = subprocess.run(
+        [sys.executable, "-c", script], check=True, capture_output=True, text=True
+    )
+    assert result.stdout.strip() == "False"

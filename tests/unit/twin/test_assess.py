@@ -3,10 +3,10 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from assessed import Assessed
 from seacage.records import Sample
 from seacage.testing import stand_in_twin
-from seacage.twin import Action, Alarm, AlarmPolicy, Limit, alarm_text
+from seacage.twin import Action, Alarm, AlarmPolicy, FaultDetectorSettings, Limit, alarm_text
+from twin_harness import TwinHarness
 
 NOON = datetime(2020, 2, 1, 12, tzinfo=UTC)
 AT_ONCE = Limit(raise_at=1.0, clear_at=0.0)
@@ -28,11 +28,11 @@ def shackle(minutes: float, kilonewtons: float, **rest: object) -> Sample:
     return Sample(stream="shackle-2", t=at(minutes), values={"tension_kn": kilonewtons}, **rest)
 
 
-def assessed(**limits: Limit) -> Assessed:
+def assessed(**limits: Limit) -> TwinHarness:
     """With these limits by kind, the others as usual."""
     policy = AlarmPolicy.default(stand_in_twin().cage)
     policy = replace(policy, limits={**policy.limits, **limits})
-    return Assessed(stand_in_twin(), policy=policy)
+    return TwinHarness(stand_in_twin(), policy=policy)
 
 
 def events_of(happened):
@@ -90,6 +90,17 @@ def test_without_valid_input_a_load_neither_raises_nor_clears():
     watch.hear(buoy(12, speed=-3.0))
     assert events_of(watch.tick(at(12))) == [("input.buoy-1", Action.RAISED)]
     assert "flagged" in alarm_text(watch.book.alarms["input.buoy-1"], watch.policy).message
+
+
+@pytest.mark.parametrize(("stuck_s", "raised"), [(1800.0, []), (600.0, ["irregular.shackle-2"])])
+def test_the_settings_of_the_twin_say_when_a_sensor_is_stuck(stuck_s, raised):
+    settings = FaultDetectorSettings(stuck_s=stuck_s)
+    watch = TwinHarness(replace(stand_in_twin(), fault_detector=settings))
+    watch.hear(buoy(0))
+    for minutes in range(0, 16, 2):
+        watch.hear(shackle(minutes, 20.0))
+        watch.tick(at(minutes))
+    assert watch.raised == raised
 
 
 def test_a_silent_stream_is_named_and_its_return_clears_it():

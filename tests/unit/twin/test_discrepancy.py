@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from netted import CAGE, erring_twin, net_in
+from predicted_nets import CAGE, erring_twin, net_in
 from seacage.conventions import InputError, ModelError, Origin
 from seacage.testing import stand_in_twin
 from seacage.twin import Discrepancy, Twin
@@ -31,7 +31,7 @@ def test_a_net_that_always_drifts_alike_is_expected_there_and_nowhere_else():
 
 
 @pytest.mark.parametrize(
-    ("asked", "drift"),
+    ("velocity", "drift"),
     [
         ([0.8, 0.0], 1.0),
         ([0.0, 0.8], 2.0),
@@ -39,9 +39,9 @@ def test_a_net_that_always_drifts_alike_is_expected_there_and_nowhere_else():
         ([5.0, 0.0], 1.0),  # faster than any that was met
     ],
 )
-def test_the_cases_whose_currents_were_alike_speak(asked, drift):
+def test_the_cases_whose_currents_were_alike_speak(velocity, drift):
     one = known([[0.8, 0.0], [0.0, 0.8], [0.2, 0.0]], [[1.0, 0, 0], [2.0, 0, 0], [3.0, 0, 0]])
-    error = one.at(CAGE, np.array(asked))
+    error = one.at(CAGE, np.array(velocity))
     assert error.mean[0, 0] == pytest.approx(drift, abs=0.05)
     assert error.weight.sum() == pytest.approx(1.0)
 

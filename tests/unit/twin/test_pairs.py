@@ -40,7 +40,7 @@ def test_a_reading_meets_the_last_word_of_the_buoy_before_it():
     assert pairs.metocean.current_velocity[:, 0] == pytest.approx([0.2, 0.2, 0.6, 0.6])
 
 
-def test_a_word_of_the_buoy_is_not_held_for_longer_than_asked():
+def test_a_word_of_the_buoy_is_not_held_for_longer_than_allowed():
     record = field(buoy([0], [0.2], [90.0]), stream("depth-1", [10, 70], depth_m=[1.0, 2.0]))
     assert align(record, "depth-1", hold_s=3600.0).value.tolist() == [1.0]
 

@@ -82,7 +82,7 @@ def test_a_buoys_value_is_held_until_it_is_stale():
     assert held.input_age_s == 179 * 60
     assert held.answer.sensor.mean == pytest.approx(at_once.answer.sensor.mean)
     assert stale.answer.valid.tolist() == [False]
-    assert "10860 s old" in stale.answer.reason[0]
+    assert "is 3 h old; 3 h is the limit." in stale.answer.reason[0]
 
 
 @pytest.mark.parametrize(
@@ -239,7 +239,7 @@ def test_silence_and_return_are_reported_once_each():
     assert events == (StreamBack(stream="depth-2", t=NOON + timedelta(minutes=20)),)
 
 
-def test_a_sample_after_a_silence_that_no_tick_noticed_tells_of_both():
+def test_a_sample_after_a_silence_that_no_tick_noticed_reports_both():
     _, events = played(depth(), depth(20), depth(21))
     assert events == [
         StreamSilent(stream="depth-2", since=NOON),

@@ -30,7 +30,7 @@ def tabulated() -> TabulatedTwin:
     return TabulatedTwin.of(twin(), **COARSE)
 
 
-def test_it_says_what_the_twin_says_to_the_error_that_was_asked_for(tabulated):
+def test_it_says_what_the_twin_says_to_the_error_that_was_requested(tabulated):
     water = Metocean.of(stand_in_seas(400, seed=8, current_speed=0.95))
     quick, answer = tabulated.predict(water), twin().predict(water)
     assert answer.bridle_level.max() == 2
@@ -59,7 +59,7 @@ def test_a_rope_that_goes_slack_is_held_at_zero_as_the_twin_holds_it(tabulated):
     assert loads.bridle_low.min() >= 0.0
 
 
-def test_beyond_the_table_the_twin_itself_is_asked(tabulated):
+def test_beyond_the_table_the_twin_itself_answers(tabulated):
     water = Metocean.of(stand_in_seas(30, seed=10, current_speed=1.6))
     loads, answer = tabulated.predict(water), twin().predict(water)
     assert loads.in_domain.tolist() == answer.in_domain.tolist()

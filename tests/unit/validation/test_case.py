@@ -111,7 +111,7 @@ def test_the_cases_that_come_with_seacage_are_read():
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "said"),
+    ("old", "new", "message"),
     [
         ("title =", "head =", "key 'title' is missing"),
         ('cage = "ace"', 'cage = "ace"\ncolour = 3', "key 'colour' is unknown"),
@@ -137,16 +137,16 @@ def test_the_cases_that_come_with_seacage_are_read():
         ('cage = "ace"', 'cage = "ace"\nensemble = {tip = 3}', "ensemble key 'tip' must name"),
     ],
 )
-def test_a_wrong_toml_is_refused_in_one_sentence(folder, old, new, said):
+def test_a_wrong_toml_is_refused_in_one_sentence(folder, old, new, message):
     assert old in TOML
     (folder / "case.toml").write_text(TOML.replace(old, new, 1))
     with pytest.raises(InputError) as caught:
         read_case(folder)
-    assert said in str(caught.value)
+    assert message in str(caught.value)
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         ("speed,net_drag_kn\n0.2,3\n", "the column current_speed_m_s is missing"),
         ("current_speed_m_s,drag\n0.2,3\n", "column 'drag' is no quantity. Known are: net_drag_kn"),
@@ -162,11 +162,11 @@ def test_a_wrong_toml_is_refused_in_one_sentence(folder, old, new, said):
         ("current_speed_m_s,net_drag_kn\n0.2,\n", "it holds no measured number"),
     ],
 )
-def test_a_wrong_csv_is_refused_in_one_sentence(folder, text, said):
+def test_a_wrong_csv_is_refused_in_one_sentence(folder, text, message):
     (folder / "measured.csv").write_text(text)
     with pytest.raises(InputError) as caught:
         read_case(folder)
-    assert said in str(caught.value)
+    assert message in str(caught.value)
 
 
 def test_a_case_without_numbers_is_refused(folder):
@@ -235,18 +235,18 @@ def test_a_panel_of_netting_is_a_case_too(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "said"),
+    ("old", "new", "message"),
     [
         ("half_mesh_m", "mesh_m", "[panel] key 'mesh_m' is unknown"),
         ("half_mesh_m = 0.029", "", "[panel] key 'half_mesh_m' is missing"),
         ("area_m2 = 2.0", "area_m2 = 0.0", "[panel] area_m2 = 0.0 must be a number above 0"),
     ],
 )
-def test_a_wrong_panel_is_refused_in_one_sentence(tmp_path, old, new, said):
+def test_a_wrong_panel_is_refused_in_one_sentence(tmp_path, old, new, message):
     (tmp_path / "case.toml").write_text(PANEL.replace(old, new))
     with pytest.raises(InputError) as caught:
         read_case(tmp_path)
-    assert said in str(caught.value)
+    assert message in str(caught.value)
 
 
 TANK = """

@@ -28,12 +28,12 @@ def test_all_rows_that_must_hold_do(module, index):
             assert row.note, f"{row.what}: the row does not hold and does not say why"
 
 
-def test_the_table_keeps_the_order_of_its_sections_and_tells_each():
+def test_the_table_keeps_the_order_of_its_sections_and_reports_each():
     jobs = chosen(quick=True, only=["screens", "catenaries"])
-    told = []
-    table = computed(jobs, workers=1, told=lambda *said: told.append(said))
+    report = []
+    table = computed(jobs, workers=1, report=lambda *outcome: report.append(outcome))
     assert list(table) == [sections_of(module)[index].title for module, index in jobs]
-    assert [done for _, done, _ in told] == list(range(1, len(jobs) + 1))
+    assert [done for _, done, _ in report] == list(range(1, len(jobs) + 1))
     names = Counter(row.what for _, rows in table.values() for row in rows)
     assert names.most_common(1)[0][1] == 1
 

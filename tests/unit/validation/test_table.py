@@ -41,13 +41,13 @@ def test_the_page_says_reference_source_ours_tolerance_and_verdict():
     assert "What we miss" not in page
 
 
-def test_the_page_tells_a_miss_and_why():
+def test_the_page_reports_a_miss_and_why():
     page = markdown(table(row(ours=3.0, must_hold=False, note="other gear")))
     assert "| **no** (may miss), note 1 |" in page
     assert "\n\n1. other gear\n" in page
 
 
-def test_a_note_that_rows_share_is_told_once():
+def test_a_note_that_rows_share_is_reported_once():
     rows = [row(what=what, note="a pond") for what in ("drag", "lift")]
     assert markdown(table(*rows)).count("a pond") == 1
 

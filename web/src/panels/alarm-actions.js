@@ -1,39 +1,13 @@
-// What can be done with an alarm, and how each is asked for.
+// Actions on an alarm, and for how long one can be shelved.
 
-const MINUTE = 60;
-const HOUR = 3600;
+import { text } from "../texts/index.js";
 
-export const ACTIONS = {
-  acknowledge: {
-    word: "Acknowledge", title: "Acknowledge this alarm",
-    explain: "Somebody has seen it. It stays active until its cause is gone.", demand: false,
-  },
-  comment: {
-    word: "Comment", title: "Comment on this alarm",
-    explain: "Your words go into the journal and stay with the alarm.", demand: true,
-  },
-  shelve: {
-    word: "Shelve", title: "Shelve this alarm",
-    explain: "It makes nobody look until the time is over. It is evaluated and recorded all the same.",
-    demand: true,
-  },
-  unshelve: {
-    word: "Unshelve", title: "Unshelve this alarm", explain: "It is announced again from now on.",
-    demand: false,
-  },
-  "out-of-service": {
-    word: "Out of service", title: "Take this alarm out of service",
-    explain: "It makes nobody look until somebody puts it back, however long that is.", demand: true,
-  },
-  "in-service": {
-    word: "Back in service", title: "Put this alarm back in service",
-    explain: "It is announced again from now on.", demand: true,
-  },
-};
+/** Actions that demand a reason. */
+export const REASONED = new Set(["comment", "shelve", "out-of-service", "in-service"]);
 
-export const SHELVES = [
-  ["15 minutes", 15 * MINUTE], ["1 hour", HOUR], ["4 hours", 4 * HOUR], ["8 hours", 8 * HOUR],
-  ["1 day", 24 * HOUR], ["3 days", 72 * HOUR], ["7 days", 168 * HOUR],
+const UNIT_S = { minutes: 60, hours: 3600, days: 86400 };
+const SHELVES = [
+  [15, "minutes"], [1, "hours"], [4, "hours"], [8, "hours"], [1, "days"], [3, "days"], [7, "days"],
 ];
 
 /** The names of the actions that make sense for an alarm as it is, the likeliest first. */
@@ -43,6 +17,8 @@ export function actionsFor(alarm) {
   return [...seen, alarm.shelved ? "unshelve" : "shelve", "comment", "out-of-service"];
 }
 
-/** How long an alarm can be shelved: one that is active also until it clears. */
-export const shelvesFor = (alarm) =>
-  alarm.active ? [...SHELVES, ["until it clears", null]] : SHELVES;
+/** How long an alarm can be shelved, as [words, seconds]: one that is active also until it clears. */
+export function shelvesFor({ active }) {
+  const times = SHELVES.map(([count, unit]) => [text(`dialog.shelf.${unit}`, { count }), count * UNIT_S[unit]]);
+  return active ? [...times, [text("dialog.cleared"), null]] : times;
+}

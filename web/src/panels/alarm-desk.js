@@ -1,17 +1,20 @@
 // The alarms as the service has them, and what people do with them.
 
+import { Observable } from "../observable.js";
+import { cagePath } from "../request.js";
 import { waits } from "./ranks.js";
 import { may } from "./rights.js";
 
 const LOOK_MS = 15_000;
 const FORBIDDEN = 403;
 
-export class AlarmDesk {
-  #listeners = new Set();
+/** The alarms of the cage; it calls its listeners whenever they differ. */
+export class AlarmDesk extends Observable {
   #seen = null;
   #turn = 0;
 
   constructor(model) {
+    super();
     this.model = model;
     this.forget();
     model.on("topology", () => this.forget());
@@ -19,21 +22,12 @@ export class AlarmDesk {
     setInterval(() => this.look(), LOOK_MS);
   }
 
-  /** Call `fn` whenever the alarms are other than they were. */
-  on(fn) {
-    this.#listeners.add(fn);
-  }
-
   forget() {
     const denied = !may(this.model.session?.scopes ?? ["ack"], "ack");
     Object.assign(this, { alarms: null, fault: null, denied });
     this.#seen = null;
     this.#turn += 1; // an answer on its way is of another cage
-    this.#tell();
-  }
-
-  #tell() {
-    for (const fn of this.#listeners) fn();
+    this.notify();
   }
 
   /** Ask anew, once, where the live state says that something changed. */
@@ -56,7 +50,7 @@ export class AlarmDesk {
       if (turn !== this.#turn) return;
       this.fault = error.message;
     }
-    this.#tell();
+    this.notify();
   }
 
   get waiting() {
@@ -65,37 +59,33 @@ export class AlarmDesk {
 
   /** Do something with an alarm; rejects with a Refusal that says why not. */
   async act(id, action, { why, seconds = null }) {
-    try {
-      await this.model.call("POST", this.path(`alarms/${encodeURIComponent(id)}/${action}`), { why, seconds });
-    } catch (error) {
-      this.refused(error);
-      throw error;
-    }
+    await this.#post(id, action, { why, seconds });
     await this.look();
   }
 
   /** Acknowledge alarms of one cause together; what was done stays done where one is refused. */
   async acknowledge(ids, { why }) {
     try {
-      for (const id of ids) {
-        await this.model.call("POST", this.path(`alarms/${encodeURIComponent(id)}/acknowledge`), { why, seconds: null });
-      }
-    } catch (error) {
-      this.refused(error);
-      throw error;
+      for (const id of ids) await this.#post(id, "acknowledge", { why, seconds: null });
     } finally {
       await this.look();
     }
   }
 
-  /** Remember that this token may not. */
-  refused(error) {
-    if (error.status !== FORBIDDEN) return;
-    this.denied = true;
-    this.#tell();
+  /** Post an action; remember where this token may not. */
+  async #post(id, action, body) {
+    try {
+      await this.model.call("POST", this.path(`alarms/${encodeURIComponent(id)}/${action}`), body);
+    } catch (error) {
+      if (error.status === FORBIDDEN) {
+        this.denied = true;
+        this.notify();
+      }
+      throw error;
+    }
   }
 
   path(rest) {
-    return `cages/${encodeURIComponent(this.model.cageName)}/${rest}`;
+    return cagePath(this.model.cageName, rest);
   }
 }

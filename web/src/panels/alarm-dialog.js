@@ -1,7 +1,8 @@
-// The question for a reason, before anything is done with an alarm.
+// Dialog for a reason, before anything is done with an alarm.
 
 import { make } from "../dom.js";
-import { ACTIONS, shelvesFor } from "./alarm-actions.js";
+import { text } from "../texts/index.js";
+import { REASONED, shelvesFor } from "./alarm-actions.js";
 import { write } from "./dom.js";
 
 export class AlarmDialog {
@@ -14,10 +15,11 @@ export class AlarmDialog {
     this.label = make("label", { htmlFor: "alarm-why" });
     this.times = make("select", { id: "alarm-time" });
     this.time = make("div", { className: "field" },
-      make("label", { htmlFor: "alarm-time" }, "For how long"), this.times);
+      make("label", { htmlFor: "alarm-time" }, text("dialog.time")), this.times);
     this.fault = make("p", { className: "dialog-fault", role: "alert", hidden: true });
     this.go = make("button", { type: "submit", className: "button main" });
-    const leave = make("button", { type: "button", className: "button", onclick: () => this.dialog.close() }, "Cancel");
+    const leave = make("button", { type: "button", className: "button", onclick: () => this.dialog.close() },
+      text("dialog.cancel"));
     const form = make("form", { method: "dialog" }, this.title, this.about, this.words, this.time,
       make("div", { className: "field" }, this.label, this.why), this.fault,
       make("div", { className: "dialog-buttons" }, leave, this.go));
@@ -31,14 +33,13 @@ export class AlarmDialog {
 
   /** Ask for a reason for an action on an alarm, or for acknowledging a group of one cause. */
   ask(alarm, name, group = null) {
-    const action = ACTIONS[name];
     Object.assign(this, { alarm, name, group });
-    write(this.title, group ? `Acknowledge these ${group.ids.length} alarms` : action.title);
+    write(this.title, group ? text("dialog.group", { count: group.ids.length }) : text(`actions.${name}.title`));
     write(this.about, group ? group.title : alarm.title);
-    write(this.words, action.explain);
-    write(this.go, action.word);
-    write(this.label, action.demand ? "Why" : "Why (you may leave this empty)");
-    this.why.required = action.demand;
+    write(this.words, text(`actions.${name}.about`));
+    write(this.go, text(`actions.${name}.word`));
+    this.why.required = REASONED.has(name);
+    write(this.label, this.why.required ? text("dialog.why") : text("dialog.whyOrNot"));
     this.why.value = "";
     this.time.hidden = name !== "shelve";
     this.times.replaceChildren(...shelvesFor(alarm).map(([words, seconds]) =>
@@ -58,7 +59,7 @@ export class AlarmDialog {
   async send() {
     const seconds = this.name === "shelve" && this.times.value ? Number(this.times.value) : null;
     const why = this.why.value.trim();
-    if (this.why.required && !why) return this.say("Say why: spaces alone tell the next shift nothing.");
+    if (this.why.required && !why) return this.say(text("dialog.blank"));
     this.go.disabled = true;
     try {
       if (this.group) await this.desk.acknowledge(this.group.ids, { why });

@@ -1,18 +1,11 @@
-// Alarms of one cause, told and acknowledged as one.
+// Alarms of one cause, shown and acknowledged as one.
 
-import { counted } from "./format.js";
+import { text } from "../texts/index.js";
 import { waits } from "./ranks.js";
 
 const TOGETHER_MS = 15 * 60e3; // of one cause, what begins within so long of what began before
 const SILENCE = new Set(["silent", "input"]); // a buoy that is silent gives no input
-const TITLES = {
-  silent: (count) => `${counted(count, "stream")} without readings`,
-  load: (count) => `High load on ${counted(count, "bridle")}`,
-  clock: (count) => `${counted(count, "clock")} that disagree`,
-  irregular: (count) => `${counted(count, "sensor")} that read irregularly`,
-  bridle: (count) => `${counted(count, "bridle")} that may have parted`,
-  history: (count) => `${counted(count, "fault")} of the service`,
-};
+const TITLED = new Set(["silent", "load", "clock", "irregular", "bridle", "history"]);
 
 const kindOf = ({ id }) => id.slice(0, id.indexOf("."));
 const family = (alarm) => (SILENCE.has(kindOf(alarm)) ? "silent" : kindOf(alarm));
@@ -46,9 +39,11 @@ export function grouped(alarms) {
 
 /** What a group is called; one alarm alone by its own title. */
 export function titleOf(group) {
-  if (group.length === 1) return group[0].title;
-  const words = TITLES[family(group[0])];
-  return words ? words(group.length) : `${group[0].title}, and ${group.length - 1} more of one cause`;
+  const [first, ...others] = group;
+  if (!others.length) return first.title;
+  const kind = family(first);
+  return TITLED.has(kind) ? text(`groups.kind.${kind}`, { count: group.length })
+    : text("groups.other", { title: first.title, count: others.length });
 }
 
 /** Those of a group that nobody has acknowledged. */

@@ -1,11 +1,12 @@
 // The alarms, worst first, each with what can be done.
 
 import { make } from "../dom.js";
-import { ACTIONS, actionsFor } from "./alarm-actions.js";
+import { text } from "../texts/index.js";
+import { actionsFor } from "./alarm-actions.js";
 import { grouped, titleOf, unseen } from "./alarm-groups.js";
 import { empty, write } from "./dom.js";
 import { moment, unbroken } from "./format.js";
-import { icon, rankIcon } from "./icons.js";
+import { icon } from "./icons.js";
 import { sourceOf } from "./load-rows.js";
 import { ordered, rank, standing, waits } from "./ranks.js";
 import { worth } from "./worth.js";
@@ -13,8 +14,7 @@ import { worth } from "./worth.js";
 export class AlarmList {
   constructor(holder, model, desk, { ask }) {
     Object.assign(this, { model, desk, ask });
-    this.denied = make("p", { className: "denied", hidden: true },
-      "This token may read but not handle alarms. Ask for one with the scope ack.");
+    this.denied = make("p", { className: "denied", hidden: true }, text("alarms.denied"));
     this.list = make("ol", { className: "alarms" });
     this.none = make("div");
     holder.append(this.denied, this.none, this.list);
@@ -46,11 +46,12 @@ export class AlarmList {
     const title = titleOf(group);
     const ids = unseen(group).map(({ id }) => id);
     const item = make("li", { className: "alarm-group" },
-      make("header", {}, make("span", { className: "alarm-mark" }, rankIcon(how)),
+      make("header", {}, make("span", { className: "alarm-mark" }, icon(how)),
         make("div", { className: "alarm-words" }, make("h3", {}, title),
           make("p", { className: "alarm-standing" }, together(group))),
         ...(ids.length ? [this.button({ id: `group.${first.id}`, title }, "acknowledge",
-          { ids, title }, ids.length === group.length ? "Acknowledge all" : `Acknowledge ${ids.length}`)] : [])),
+          { ids, title }, 
+          ids.length === group.length ? text("alarms.all") : text("alarms.some", { count: ids.length }))] : [])),
       make("ol", { className: "alarms" }, ...group.map((alarm) => this.item(alarm))));
     item.dataset.rank = waits(first) ? how : "quiet";
     return item;
@@ -63,21 +64,22 @@ export class AlarmList {
       make("p", { className: "alarm-standing" }, unbroken(facts(alarm))),
       make("p", { className: "alarm-message" }, unbroken(alarm.message)),
       ...[alarm.advice, alarm.comment && `“${alarm.comment}”`].filter(Boolean)
-        .map((text) => make("p", { className: "alarm-more" }, text)));
+        .map((more) => make("p", { className: "alarm-more" }, more)));
     const buttons = make("div", { className: "alarm-buttons" },
       ...actionsFor(alarm).map((name) => this.button(alarm, name)), ...this.pointer(alarm));
     const item = make("li", { className: "alarm" },
-      make("span", { className: "alarm-mark" }, rankIcon(how), make("span", { className: "unseen" }, how)),
+      make("span", { className: "alarm-mark" }, icon(how), make("span", { className: "unseen" }, text(`rank.${how}`))),
       words, buttons);
     item.dataset.rank = waits(alarm) ? how : "quiet";
     item.dataset.seen = alarm.acknowledged;
     return item;
   }
 
-  button(alarm, name, group = null, word = ACTIONS[name].word) {
+  button(alarm, name, group = null, word = text(`actions.${name}.word`)) {
     const main = name === "acknowledge" ? " main" : "";
     const button = make("button", {
-      type: "button", className: `button small${main}`, ariaLabel: `${word}: ${alarm.title}`,
+      type: "button", className: `button small${main}`,
+      ariaLabel: text("alarms.button", { action: word, title: alarm.title }),
       onclick: () => (this.desk.denied ? this.refuse() : this.ask(alarm, name, group)),
     }, word);
     button.dataset.act = `${alarm.id} ${name}`;
@@ -104,9 +106,9 @@ export class AlarmList {
         .some(({ name }) => name === source) ? { sensor: source } : null;
     if (!there) return [];
     return [make("button", {
-      type: "button", className: "button small quiet", ariaLabel: `Show on the net: ${title}`,
+      type: "button", className: "button small quiet", ariaLabel: text("alarms.showOnNet", { title }),
       onclick: () => this.model.select(there),
-    }, "Show")];
+    }, text("alarms.show"))];
   }
 }
 
@@ -114,22 +116,27 @@ export class AlarmList {
 function together(group) {
   const since = Math.min(...group.map((alarm) => Date.parse(alarm.since)).filter(Number.isFinite));
   const open = unseen(group).length;
-  return unbroken(`${group[0].active ? "active" : "cleared"}, ${open || "all"} ${open ? "not " : ""}acknowledged`
-    + `${Number.isFinite(since) ? ` · since ${moment(since)}` : ""}`);
+  const state = group[0].active ? text("alarms.active") : text("alarms.cleared");
+  return unbroken([
+    open ? text("alarms.unacknowledged", { state, count: open }) : text("alarms.allAcknowledged", { state }),
+    ...(Number.isFinite(since) ? [text("alarms.since", { moment: moment(since) })] : []),
+  ].join(" · "));
 }
 
 function facts(alarm) {
-  const since = alarm.since ? ` · since ${moment(Date.parse(alarm.since))}` : "";
-  const number = worth(alarm.id, alarm.value);
-  const until = alarm.shelved_until ? ` until ${moment(Date.parse(alarm.shelved_until))}` : "";
-  return `${standing(alarm)}${until}${since}${number && ` · ${number}`}`;
+  const at = (t) => ({ moment: moment(Date.parse(t)) });
+  const state = standing(alarm);
+  return [
+    alarm.shelved_until ? text("alarms.until", { state, ...at(alarm.shelved_until) }) : state,
+    alarm.since && text("alarms.since", at(alarm.since)), worth(alarm.id, alarm.value),
+  ].filter(Boolean).join(" · ");
 }
 
 function nothing(alarms, listed, fault) {
-  if (fault) return [empty("The alarms did not come", fault)];
-  if (!alarms) return [empty("Looking", "Asking the service for the alarms.")];
+  if (fault) return [empty(text("alarms.failed"), fault)];
+  if (!alarms) return [empty(text("alarms.loading"), text("alarms.asking"))];
   if (listed.length) return [];
-  const calm = empty("No alarms", "Nothing is active, shelved or waiting to be seen.");
+  const calm = empty(text("alarms.none"), text("alarms.calm"));
   calm.prepend(icon("well"));
   return [calm];
 }

@@ -1,6 +1,7 @@
-// All about alarms: those that are, what was done, and how well they do.
+// The alarms in three tabs: those there are, their journal and their key figures.
 
 import { make } from "../dom.js";
+import { text } from "../texts/index.js";
 import { AlarmDialog } from "./alarm-dialog.js";
 import { AlarmList } from "./alarm-list.js";
 import { Journal } from "./journal.js";
@@ -10,11 +11,8 @@ import { Tabs } from "./tabs.js";
 
 export class Alarms {
   constructor(holder, model, desk, past) {
-    const views = [
-      { name: "alarm-list", title: "Now" }, { name: "journal", title: "Journal" },
-      { name: "kpi", title: "Key figures" },
-    ];
-    const tabs = new Tabs(holder, views, { label: "Alarms", seen: () => this.refresh() });
+    const views = [{ name: "alarm-list" }, { name: "journal" }, { name: "kpi" }];
+    const tabs = new Tabs(holder, views, { label: text("tabs.title.alarms"), seen: () => this.refresh() });
     tabs.list.classList.add("minor");
     const dialog = new AlarmDialog(desk);
     new AlarmList(tabs.panel("alarm-list"), model, desk, { ask: (...question) => dialog.ask(...question) });

@@ -1,6 +1,7 @@
 // A band under the top line, wherever what is shown is not the sea now.
 
 import { make } from "../dom.js";
+import { text } from "../texts/index.js";
 import { write } from "./dom.js";
 import { moment, span } from "./format.js";
 import { icon } from "./icons.js";
@@ -12,7 +13,7 @@ export class Banner {
     this.head = make("strong");
     this.words = make("span");
     const back = make("button", { type: "button", className: "button small", onclick: () => model.travel(null) },
-      "Back to live");
+      text("banner.live"));
     this.band = make("div", { className: "banner", role: "status", hidden: true },
       this.mark, make("p", {}, this.head, " ", this.words), back);
     holder.append(this.band);
@@ -26,13 +27,10 @@ export class Banner {
     if (mode === "live") return;
     if (this.band.dataset.mode !== mode) this.mark.replaceChildren(icon(mode));
     this.band.dataset.mode = mode;
+    write(this.head, text(`banner.head.${mode}`));
     if (mode === "past") {
-      const ago = live ? `, ${span((live.t - view.t) / 1000)} before now` : "";
-      write(this.head, "The past.");
-      write(this.words, `You see ${moment(view.t)}${ago}.`);
-    } else {
-      write(this.head, "What if.");
-      write(this.words, "This is not the sea now: loads and net answer the sea you chose.");
-    }
+      const shown = { moment: moment(view.t), ago: live && span((live.t - view.t) / 1000) };
+      write(this.words, live ? text("banner.shownAgo", shown) : text("banner.shown", shown));
+    } else write(this.words, text("banner.chosen"));
   }
 }

@@ -1,25 +1,21 @@
 // The top line: whose cage, whether all is well, how old the news is.
 
 import { make } from "../dom.js";
+import { text } from "../texts/index.js";
 import { write } from "./dom.js";
-import { day, span, time } from "./format.js";
+import { day, inputAge, span, time } from "./format.js";
 import { icon } from "./icons.js";
 import { rank, waits } from "./ranks.js";
 import { themeSwitch } from "./theme-switch.js";
 import { verdict } from "./verdict.js";
 import { Who } from "./who.js";
 
-const LINKS = {
-  live: "Live", connecting: "Connecting", lost: "Connection lost, trying again",
-  refused: "Not admitted", asking: "Waiting for a token",
-};
-
 export class Bar {
   constructor(holder, model, { openFarm, openHelp }) {
     this.model = model;
     this.cage = make("span", { className: "cage-name" }, "seacage");
     this.cages = make("button", { className: "cage-button", type: "button", onclick: openFarm },
-      icon("farm"), this.cage, make("span", { className: "unseen" }, ", choose a cage"));
+      icon("farm"), this.cage, make("span", { className: "unseen" }, text("bar.choose")));
     this.origin = make("span", { className: "badge origin", hidden: true });
     this.mark = make("span", { className: "verdict-mark" });
     this.headline = make("strong", { className: "verdict-headline" });
@@ -31,7 +27,7 @@ export class Bar {
     this.speed = make("span", { className: "badge speed", hidden: true });
     this.link = make("span", { className: "link", role: "status" });
     const help = make("button", {
-      className: "round", type: "button", title: "Help and keys (?)", ariaLabel: "Help and keys",
+      className: "round", type: "button", title: `${text("bar.help")} (?)`, ariaLabel: text("bar.help"),
       onclick: openHelp,
     }, icon("help"));
     const time = make("div", { className: "bar-time" }, this.clock, this.speed, this.age);
@@ -54,16 +50,16 @@ export class Bar {
     write(this.cage, topology.cage);
     this.origin.hidden = topology.origin === "measured";
     write(this.origin, topology.origin);
-    this.origin.title = "How the sensors' numbers were made: this is no sea that was measured.";
+    this.origin.title = text("bar.origin");
     this.speed.hidden = topology.speed === 1;
-    write(this.speed, `replay ${topology.speed} ×`);
+    write(this.speed, text("bar.replay", { speed: topology.speed }));
   }
 
   show() {
     const { live, connection, why } = this.model;
-    this.judge(verdict({ connection, why, live }));
+    this.showVerdict(verdict({ connection, why, live }));
     this.link.dataset.connection = connection;
-    write(this.link, LINKS[connection] ?? connection);
+    write(this.link, text(`connection.state.${connection}`));
     if (!live) return;
     write(this.clock, `${day(live.t)} ${time(live.t, true)} UTC`);
     this.clock.dateTime = new Date(live.t).toISOString();
@@ -71,23 +67,23 @@ export class Bar {
     this.entitle(live.state);
   }
 
-  judge({ kind, icon: shape, headline, detail }) {
+  showVerdict({ kind, icon: shape, headline, detail }) {
     const elsewhere = (this.model.view?.mode ?? "live") !== "live";
     this.verdict.dataset.kind = kind;
     if (this.mark.dataset.shape !== shape) this.mark.replaceChildren(icon(shape));
     this.mark.dataset.shape = shape;
     // The verdict is on the sea now, even while the reader looks at another.
-    write(this.headline, elsewhere ? `Now: ${headline}` : headline);
+    write(this.headline, elsewhere ? text("bar.verdictNow", { headline }) : headline);
     write(this.detail, detail);
     this.detail.title = detail;
   }
 
   old(age) {
     const limit = this.model.topology?.stale_after_s ?? Infinity;
-    write(this.age, age === null ? "no input yet" : `input ${span(age)} old`);
+    write(this.age, inputAge(age));
     this.age.dataset.old = age === null || age > limit / 2;
     this.age.title = Number.isFinite(limit)
-      ? `The newest reading of the buoy; it counts for ${span(limit)}.` : "";
+      ? text("bar.patience", { span: span(limit) }) : "";
   }
 
   /** Say in the tab's title what would make somebody come back to it. */
@@ -95,7 +91,7 @@ export class Bar {
     const unseen = alarms.filter((alarm) => waits(alarm) && !alarm.acknowledged);
     const urgent = unseen.some((alarm) => rank(alarm.severity) === "critical") ? "! " : "";
     const count = unseen.length ? `(${urgent}${unseen.length}) ` : "";
-    const title = `${count}${cage}${valid ? "" : ", no valid input"} · seacage`;
+    const title = `${count}${cage}${valid ? "" : text("bar.invalid")} · seacage`;
     if (document.title !== title) document.title = title;
   }
 }

@@ -3,25 +3,26 @@
 import uPlot from "uplot";
 
 import { make } from "../dom.js";
+import { text } from "../texts/index.js";
 import { styled } from "../theme.js";
 import { write } from "./dom.js";
-import { fixed, half, known, moment, time, titled } from "./format.js";
+import { day, fixed, half, known, moment, time } from "./format.js";
 import { joined, nearest, widened } from "./plotted.js";
 
 const HEIGHT = 138;
 const [LOWER, UPPER, MEASURED, LOW, MEAN] = [1, 2, 3, 4, 5];
 
 export class Chart {
-  /** `travel` is told the time [s] that the reader chose. */
+  /** `travel` is called with the time [s] that the reader chose. */
   constructor(quantity, { sync, travel }) {
     this.quantity = quantity;
     this.now = make("p", { className: "chart-now" });
     this.area = make("div", {
       className: "chart-area", tabIndex: 0, role: "group",
-      ariaLabel: `Chart of ${titled(quantity.name)}. Arrow keys read it, Enter travels there.`,
+      ariaLabel: text("charts.label", { name: quantity.title }),
     });
     this.read = make("p", { className: "unseen", ariaLive: "polite" });
-    const head = make("header", {}, make("h3", {}, titled(quantity.name),
+    const head = make("header", {}, make("h3", {}, quantity.title,
       make("small", {}, quantity.place)), this.now);
     this.card = make("article", { className: "chart" }, head, this.area, this.read);
     this.card.dataset.key = quantity.key;
@@ -54,10 +55,10 @@ export class Chart {
         { ...axis, size: 46, space: 28, values: (_, marks) => marks.map((m) => fixed(m, places(marks))) },
       ],
       series: [{}, hidden("lower"), hidden("upper"),
-        { label: "measured", stroke: () => styled("--measured"), paths: () => null,
+        { label: text("mark.measured"), stroke: () => styled("--measured"), paths: () => null,
           points: { show: true, size: 3.5, width: 0, fill: () => styled("--measured") } },
-        { label: "simulation alone", stroke: () => styled("--low"), width: 1.3, dash: [5, 4], points: { show: false } },
-        { label: `twin [${unit}]`, stroke: () => styled("--mean"), width: 1.8, points: { show: false } }],
+        { ...line(text("mark.simulated"), "--low", 1.3), dash: [5, 4] },
+        line(`${text("mark.twin")} [${unit}]`, "--mean", 1.8)],
       bands: [{ series: [UPPER, LOWER], fill: () => styled("--band") }],
       hooks: { setCursor: [() => this.report()], draw: [(plot) => this.mark(plot)] },
     };
@@ -114,7 +115,8 @@ export class Chart {
     const when = pointed && k >= 0 ? `${time(1000 * this.rows[0][k])}  ` : "";
     this.now.replaceChildren(when, make("b", {}, fixed(mean, decimals)),
       make("span", { className: "pm" }, ` ${half(interval, decimals)} ${known(mean) ? unit : ""}`),
-      known(measured) ? make("span", { className: "read" }, `  ${fixed(measured, decimals)} measured`) : "");
+      known(measured) ? make("span", { className: "read" },
+        `  ${text("charts.measured", { value: fixed(measured, decimals) })}`) : "");
     this.now.title = k < 0 ? "" : moment(1000 * this.rows[0][k]);
   }
 
@@ -153,6 +155,7 @@ export class Chart {
 
 const hidden = (label) => ({ label, stroke: "transparent", width: 0, points: { show: false } });
 
+const line = (label, colour, width) => ({ label, stroke: () => styled(colour), width, points: { show: false } });
 
 /** So many decimals as the step between two marks has. */
 const places = ([first, second]) =>
@@ -162,8 +165,8 @@ const places = ([first, second]) =>
 function stamps(_, marks) {
   const daily = marks.length > 1 && marks[1] - marks[0] >= 86400;
   return marks.map((t, k) => {
-    const text = new Date(t * 1000).toISOString();
-    if (daily) return text.slice(5, 10);
-    return k === 0 || text.slice(11, 16) === "00:00" ? `${text.slice(5, 10)} ${text.slice(11, 16)}` : text.slice(11, 16);
+    const [date, clock] = [day(1000 * t).slice(5), time(1000 * t)];
+    if (daily) return date;
+    return k === 0 || clock === "00:00" ? `${date} ${clock}` : clock;
   });
 }

@@ -1,14 +1,14 @@
 // The charts: what the reader chose to see over time, all under one cursor.
 
 import { make } from "../dom.js";
+import { text } from "../texts/index.js";
 import { onTheme } from "../theme.js";
 import { Chart } from "./chart.js";
 import { empty, explain, painted } from "./dom.js";
-import { titled } from "./format.js";
 import { quantities, rowsOf } from "./plotted.js";
 
 const KEY = "seacage-charts";
-const DEFAULT_KINDS = new Set(["Depths", "Shackles"]);
+const DEFAULT_KINDS = new Set(["depths", "shackles"]);
 
 export class Charts {
   constructor(holder, model, past) {
@@ -18,9 +18,9 @@ export class Charts {
     this.grid = make("div", { className: "chart-grid" });
     this.none = make("div");
     holder.append(
-      make("details", { className: "chooser" }, make("summary", {}, "Choose what is shown", this.count),
+      make("details", { className: "chooser" }, make("summary", {}, text("charts.choose"), this.count),
         this.choice),
-      explain({ curve: "twin", band: "95 % interval", dash: "simulation alone", dot: "measured" }),
+      explain({ curve: "twin", band: "interval", dash: "simulated", dot: "measured" }),
       this.none, this.grid);
     this.paint = painted(() => this.show());
     model.on("topology", () => this.topology());
@@ -54,11 +54,11 @@ export class Charts {
   offer() {
     const kinds = [...new Set(this.all.map(({ kind }) => kind))];
     this.choice.replaceChildren(...kinds.map((kind) => make("fieldset", {},
-      make("legend", {}, kind),
+      make("legend", {}, text(`charts.kind.${kind}`)),
       ...this.all.filter((one) => one.kind === kind).map((one) => this.box(one)))));
   }
 
-  box({ key, name }) {
+  box({ key, title }) {
     const input = make("input", { type: "checkbox", checked: this.chosen.has(key) });
     input.addEventListener("change", () => {
       if (input.checked) this.chosen.add(key);
@@ -66,7 +66,7 @@ export class Charts {
       localStorage.setItem(KEY, [...this.chosen].join(" "));
       this.arrange();
     });
-    return make("label", { className: "pill" }, input, make("span", {}, titled(name)));
+    return make("label", { className: "pill" }, input, make("span", {}, title));
   }
 
   /** Make the charts that were chosen and are not there, and remove the others. */
@@ -84,7 +84,7 @@ export class Charts {
     });
     this.grid.replaceChildren(...cards);
     this.mark();
-    this.count.textContent = `${cards.length} of ${this.all.length}`;
+    this.count.textContent = text("charts.chosen", { count: cards.length, all: this.all.length });
     this.paint();
   }
 
@@ -115,13 +115,12 @@ export class Charts {
   }
 
   missing(columns) {
-    if (this.past.fault && !columns) return empty("No history came", this.past.fault);
-    if (!columns) return empty("Looking back", "Asking the service for what has been.");
+    if (this.past.fault && !columns) return empty(text("charts.failed"), this.past.fault);
+    if (!columns) return empty(text("charts.loading"), text("charts.asking"));
     if (!columns.t.length && Object.values(columns.measured).every(({ t }) => !t.length)) {
-      return empty("Nothing has been measured in this span",
-        "Curves begin with the first reading. Choose a longer span below to look further back.");
+      return empty(text("charts.empty"), text("charts.begin"));
     }
-    if (!this.charts.size) return empty("No chart is chosen", "Choose above what is shown.");
+    if (!this.charts.size) return empty(text("charts.none"), text("charts.above"));
     return null;
   }
 }

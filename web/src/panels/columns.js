@@ -93,4 +93,4 @@ export function trim(columns, since) {
   }
 }
 
-const seconds = (text) => Date.parse(text) / 1000;
+const seconds = (stamp) => Date.parse(stamp) / 1000;

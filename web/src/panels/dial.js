@@ -1,7 +1,7 @@
 // A compass to turn by hand or by keys.
 
 import { draw, make } from "../dom.js";
-import { bearing, spoken, turned } from "./format.js";
+import { bearing, compass, spoken, turned } from "./format.js";
 
 const STEPS = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 15, PageDown: -15 };
 const MARKS = Array.from({ length: 16 }, (_, k) => 22.5 * k);
@@ -20,7 +20,7 @@ export function dial({ name, kind, says, turn }) {
     ...MARKS.map((degrees) => draw("path", {
       class: "dial-mark", d: degrees % 90 ? "M0-44v3" : "M0-44v6", transform: `rotate(${degrees})`,
     })),
-    draw("text", { class: "dial-north", y: -53 }, "N"), needle);
+    draw("text", { class: "dial-north", y: -53 }, compass(0)), needle);
   const words = make("output", { className: "dial-words" });
   const slider = make("div", {
     className: "dial", role: "slider", tabIndex: 0, ariaLabel: name, ariaValueMin: "0", ariaValueMax: "359",

@@ -1,7 +1,8 @@
 // A cage among others: what it does in three seconds, in a tile.
 
 import { make } from "../dom.js";
-import { bearing, counted, fixed, known, percent, span } from "./format.js";
+import { text } from "../texts/index.js";
+import { bearing, fixed, inputAge, known, percent } from "./format.js";
 import { icon } from "./icons.js";
 import { rank } from "./ranks.js";
 import { concerned } from "./verdict.js";
@@ -12,20 +13,21 @@ export function tileVerdict(cage) {
   const { waiting, worst_severity: severity, worst_title: title, valid, reason } = cage;
   if (waiting) {
     const kind = rank(severity);
-    return { kind, icon: kind, words: counted(waiting, "alarm"), detail: title ?? "" };
+    return { kind, icon: kind, words: text("count.alarms", { count: waiting }), detail: title ?? "" };
   }
-  if (!valid) return { kind: "none", icon: "none", words: "No valid input", detail: reason ?? "" };
+  if (!valid) return { kind: "none", icon: "none", words: text("verdict.invalid"), detail: reason ?? "" };
   const concern = concerned(cage);
   if (concern) return { kind: concern.kind, icon: concern.icon, words: concern.headline, detail: concern.detail };
-  return { kind: "well", icon: "well", words: "All well", detail: "" };
+  return { kind: "well", icon: "well", words: text("verdict.well"), detail: "" };
 }
 
 /** How many there are, and how many of them are well. */
 export function summed(cages) {
   const well = cages.filter((cage) => tileVerdict(cage).kind === "well").length;
-  const words = { 0: "none well", [cages.length]: "all well" };
-  if (cages.length === 1) return well ? "1 cage, well" : "1 cage, not well";
-  return `${counted(cages.length, "cage")}, ${words[well] ?? `${well} of them well`}`;
+  if (cages.length === 1) return well ? text("farm.oneWell") : text("farm.oneNotWell");
+  const values = { cages: text("count.cages", { count: cages.length }), count: well };
+  if (!well) return text("farm.noneWell", values);
+  return well === cages.length ? text("farm.allWell", values) : text("farm.someWell", values);
 }
 
 const PLACE = { critical: 0, warning: 1, none: 2, note: 3, beyond: 4, caution: 5, well: 6 };
@@ -44,7 +46,8 @@ export function tile(cage, { present, enter }) {
   const fill = make("span", { className: "share-fill" });
   fill.style.width = `${Math.min(100, 100 * (cage.max_utilisation ?? 0))}%`;
   const current = cage.valid && known(cage.current_speed_m_s)
-    ? `${fixed(cage.current_speed_m_s, 2)} m/s to ${bearing(cage.current_to_deg)}` : "current not known";
+    ? text("farm.current", { speed: fixed(cage.current_speed_m_s, 2), direction: bearing(cage.current_to_deg) })
+    : text("farm.noCurrent");
   const button = make("button", { type: "button", className: "tile", onclick: () => enter(cage.name) },
     make("span", { className: "tile-name" }, cage.name,
       cage.origin === "measured" ? "" : make("span", { className: "badge origin" }, cage.origin)),
@@ -53,9 +56,9 @@ export function tile(cage, { present, enter }) {
     make("span", { className: "tile-load" },
       make("span", { className: "share-line" }, make("span", { className: "share-bar" }, fill),
         make("span", { className: "share" }, percent(cage.max_utilisation))),
-      make("span", { className: "tile-note" }, "largest known load, of capacity")),
+      make("span", { className: "tile-note" }, text("farm.load"))),
     make("span", { className: "tile-sea" }, arrow, current),
-    make("span", { className: "tile-age" }, known(cage.age_s) ? `input ${span(cage.age_s)} old` : "no input yet"));
+    make("span", { className: "tile-age" }, inputAge(cage.age_s)));
   button.dataset.kind = kind;
   if (present) button.setAttribute("aria-current", "true");
   return button;

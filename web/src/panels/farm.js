@@ -1,20 +1,19 @@
 // The farm: all cages of the service, the worst first.
 
 import { make } from "../dom.js";
-import { write } from "./dom.js";
+import { text } from "../texts/index.js";
+import { closeButton, write } from "./dom.js";
 import { byNeed, summed, tile } from "./farm-tile.js";
-import { icon } from "./icons.js";
 
 export class Farm {
   constructor(model) {
     this.model = model;
     this.tiles = make("div", { className: "tiles" });
     this.sum = make("p", { className: "aside" });
-    const close = make("button", { type: "button", className: "round", ariaLabel: "Close",
-      onclick: () => this.dialog.close() }, icon("close"));
+    const close = closeButton(() => this.dialog.close());
     this.dialog = make("dialog", { className: "sheet wide", "aria-labelledby": "farm-title" },
       make("header", { className: "sheet-head" },
-        make("div", {}, make("h2", { id: "farm-title" }, "The farm"), this.sum), close),
+        make("div", {}, make("h2", { id: "farm-title" }, text("farm.title")), this.sum), close),
       this.tiles);
     document.body.append(this.dialog);
     // Who was sent to one cage sees that; who was sent to the farm sees all.

@@ -1,11 +1,10 @@
 // Numbers and times as people read them: no number without a value behind it, no value
 // without its unit.
 
+import { text } from "../texts/index.js";
+
 export const DASH = "–";
-const POINTS = [
-  "N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE", "S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW",
-];
-const NAMES = ["north", "north-east", "east", "south-east", "south", "south-west", "west", "north-west"];
+const [POINTS, NAMES] = [text("compass.points").split(" "), text("compass.names").split(" ")];
 
 /** Whether there is a number. */
 export const known = (value) => Number.isFinite(value);
@@ -13,8 +12,8 @@ export const known = (value) => Number.isFinite(value);
 /** A number with so many decimals; a dash where there is none. What rounds to nothing has no sign. */
 export function fixed(value, decimals = 1) {
   if (!known(value)) return DASH;
-  const text = value.toFixed(decimals);
-  return text.replace("-", Number(text) === 0 ? "" : "−");
+  const digits = value.toFixed(decimals);
+  return digits.replace("-", Number(digits) === 0 ? "" : "−");
 }
 
 /** A number with its unit. */
@@ -29,7 +28,7 @@ export const unbroken = (words) =>
   words.replace(/(\d) (?=%|(?:kN|m\/s|m|s|min|h|deg)\b)/g, "$1\u00a0");
 
 /**
- * An interval, as what follows the mean: half its width, never said to be nothing; its ends where
+ * An interval, as what follows the mean: half its width, never given as zero; its ends where
  * it reaches less far to one side, as where nothing can be below zero.
  */
 export function half(interval, decimals = 1) {
@@ -37,16 +36,16 @@ export function half(interval, decimals = 1) {
   if (!known(lower) || !known(upper)) return "";
   const middle = (lower + upper) / 2;
   if (known(mean) && Math.abs(middle - mean) > 0.6 * 10 ** -decimals) {
-    return `(${fixed(lower, decimals)} to ${fixed(upper, decimals)})`;
+    return `(${text("number.range", { lower: fixed(lower, decimals), upper: fixed(upper, decimals) })})`;
   }
-  const text = ((interval.upper - interval.lower) / 2).toFixed(decimals);
-  return Number(text) ? `± ${text}` : `± <${(10 ** -decimals).toFixed(decimals)}`;
+  const digits = ((upper - lower) / 2).toFixed(decimals);
+  return Number(digits) ? `± ${digits}` : `± <${(10 ** -decimals).toFixed(decimals)}`;
 }
 
 /** Why the twin extrapolates, without the word that stands before it anyway. */
 export function beyond(reason) {
   const words = (reason ?? "").replace(/^Extrapolating:\s*/, "");
-  return words ? words[0].toUpperCase() + words.slice(1) : "The sea is beyond what the twin has learned.";
+  return words ? words[0].toUpperCase() + words.slice(1) : text("beyond");
 }
 
 /** A compass direction as its point, e.g. WSW. */
@@ -55,7 +54,7 @@ export const compass = (degrees) =>
 
 /** A compass direction in a word, for those who listen. */
 export const spoken = (degrees) =>
-  known(degrees) ? NAMES[Math.round(turned(degrees) / 45) % 8] : "unknown";
+  known(degrees) ? NAMES[Math.round(turned(degrees) / 45) % 8] : text("compass.unknown");
 
 /** Degrees with three figures, as on a bridge. */
 export const bearing = (degrees) =>
@@ -67,11 +66,14 @@ export const turned = (degrees) => ((degrees % 360) + 360) % 360;
 /** A length of time in the largest unit that says something. */
 export function span(seconds) {
   if (!known(seconds)) return DASH;
-  if (seconds < 90) return `${Math.round(seconds)} s`;
-  if (seconds < 5400) return `${Math.round(seconds / 60)} min`;
-  if (seconds < 172800) return `${(seconds / 3600).toFixed(1).replace(".0", "")} h`;
-  return `${Math.round(seconds / 86400)} days`;
+  if (seconds < 90) return text("span.seconds", { count: Math.round(seconds) });
+  if (seconds < 5400) return text("span.minutes", { count: Math.round(seconds / 60) });
+  if (seconds < 172800) return text("span.hours", { count: (seconds / 3600).toFixed(1).replace(".0", "") });
+  return text("span.days", { count: Math.round(seconds / 86400) });
 }
+
+/** The age of the newest input [s], in words. */
+export const inputAge = (age) => (known(age) ? text("bar.age", { age: span(age) }) : text("bar.noInput"));
 
 const two = (number) => String(number).padStart(2, "0");
 
@@ -96,6 +98,3 @@ export const plain = (name) => name.replaceAll("-", " ");
 
 /** The same with a large first letter, to begin a line. */
 export const titled = (name) => plain(name).replace(/^./, (letter) => letter.toUpperCase());
-
-/** So many of something. */
-export const counted = (count, noun) => `${count} ${noun}${count === 1 ? "" : "s"}`;

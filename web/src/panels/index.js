@@ -4,13 +4,13 @@ import "uplot/dist/uPlot.min.css";
 import "./panels.css";
 
 import { make } from "../dom.js";
+import { text } from "../texts/index.js";
 import { AlarmDesk } from "./alarm-desk.js";
 import { Alarms } from "./alarms.js";
 import { Banner } from "./banner.js";
 import { Bar } from "./bar.js";
 import { Charts } from "./charts.js";
 import { Farm } from "./farm.js";
-import { counted } from "./format.js";
 import { Help } from "./help.js";
 import { Loads } from "./loads.js";
 import { Now } from "./now.js";
@@ -23,10 +23,7 @@ import { Timeline } from "./timeline.js";
 import { Toasts } from "./toasts.js";
 import { WhatIf } from "./whatif.js";
 
-const TABS = [
-  { name: "loads", title: "Loads", key: 1 }, { name: "charts", title: "Charts", key: 2 },
-  { name: "alarms", title: "Alarms", key: 3 }, { name: "whatif", title: "What if", key: 4 },
-];
+const TABS = ["loads", "charts", "alarms", "whatif"].map((name, k) => ({ name, key: k + 1 }));
 
 /** Fill the regions around the scene. */
 export function mountPanels(model) {
@@ -37,12 +34,12 @@ export function mountPanels(model) {
   new Bar(bar, model, { openFarm: () => farm.open(), openHelp: () => help.open() });
   new Banner(region("bar"), model);
 
-  const now = make("section", { className: "now", ariaLabel: "Now" });
+  const now = make("section", { className: "now", ariaLabel: text("now.title") });
   region("panels").append(now);
   new Now(now, model);
   const parts = {};
   const tabs = new Tabs(region("panels"), TABS, {
-    label: "Panels",
+    label: text("tabs.label"),
     seen: (shown) => Object.entries(parts).forEach(([name, part]) => part.visible?.(name === shown)),
   });
   Object.assign(parts, {
@@ -53,7 +50,8 @@ export function mountPanels(model) {
   });
   desk.on(() => {
     const first = worst(desk.waiting);
-    tabs.badge("alarms", desk.waiting.length, counted(desk.waiting.length, "alarm"), first && rank(first.severity));
+    const count = desk.waiting.length;
+    tabs.badge("alarms", count, text("count.alarms", { count }), first && rank(first.severity));
   });
   new Toasts(model, { look: () => tabs.show("alarms", { focus: true }) });
   const timeline = new Timeline(region("timeline"), model, past, desk);

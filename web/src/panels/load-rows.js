@@ -1,4 +1,4 @@
-// What is said of each bridle: as the twin answers, as simulated, as measured.
+// Rows of the bridles: as the twin answers, as simulated, as measured.
 
 import { knownLoad } from "../known-load.js";
 import { rank, waits } from "./ranks.js";
@@ -30,8 +30,8 @@ export function loadRows(topology, state, colours = []) {
 }
 
 /**
- * Where the load of a bridle lies; null where no honest interval is known, as where no shackle has
- * taught it: the simulation alone knows how well it is followed, not how far it is off at sea.
+ * Interval of the load of a bridle; null where none is known, as where no shackle has trained
+ * level 2: the error of the simulation alone at sea is not known.
  */
 export const intervalOf = (bridle) =>
   (bridle?.level > 1 && Number.isFinite(bridle.tension_kn.lower) ? bridle.tension_kn : null);

@@ -3,29 +3,27 @@
 import { make } from "../dom.js";
 import { bridleColours } from "../scene/paint.js";
 import { noSpread } from "../scene/words.js";
+import { text } from "../texts/index.js";
 import { onTheme } from "../theme.js";
-import { explain, write } from "./dom.js";
+import { explain, tableHead, write } from "./dom.js";
 import { fixed, half, known, percent, plain, spoken, titled, withUnit } from "./format.js";
 import { largest, loadRows } from "./load-rows.js";
 import { Rose } from "./rose.js";
 import { scaleFor } from "./scale.js";
-
-const NO_INTERVAL = "No interval is known here.";
-const HEADS = ["Bridle", "Twin", "Simulated", "Measured", "Of capacity"];
 
 export class Loads {
   constructor(holder, model) {
     this.model = model;
     this.rose = new Rose({ pick: (name) => model.select({ bridle: name }) });
     this.body = make("tbody");
-    const heads = HEADS.map((head) => make("th", { scope: "col" }, head));
     this.caption = make("p", { className: "aside" });
     this.table = make("table", { className: "loads" },
-      make("caption", { className: "unseen" }, "Tension of each bridle with its 95 % interval"),
-      make("thead", {}, make("tr", {}, ...heads)), this.body);
+      make("caption", { className: "unseen" }, text("loads.caption")),
+      tableHead(["bridle", "twin", "simulated", "measured", "share"].map((head) => text(`loads.heads.${head}`))),
+      this.body);
     holder.append(
       make("div", { className: "rose-holder" }, this.rose.drawing),
-      explain({ bar: "twin", whisker: "95 % interval", tick: "simulation alone", dot: "measured" }),
+      explain({ bar: "twin", whisker: "interval", tick: "simulated", dot: "measured" }),
       make("div", { className: "table-holder" }, this.table), this.caption);
     model.on("topology", () => this.topology());
     model.on("view", () => this.show());
@@ -42,9 +40,9 @@ export class Loads {
     this.rows = topology.bridle_names.map((name, k) => this.row(name, k, topology));
     this.body.replaceChildren(...this.rows.map(({ row }) => row));
     const limits = topology.bridle_capacity_kn;
-    const [low, high] = [Math.min(...limits), Math.max(...limits)];
-    this.capacity = `Capacity ${low === high ? "" : `${fixed(low, 0)} to `}${fixed(high, 0)} kN each; ` +
-      "tensions in kN. Level 2 is trained by a shackle, level 1 is simulation alone.";
+    const [lower, upper] = [Math.min(...limits), Math.max(...limits)].map((kn) => fixed(kn, 0));
+    this.capacity = text("loads.capacity",
+      { capacity: lower === upper ? upper : text("number.range", { lower, upper }) });
     this.show();
     this.select();
   }
@@ -75,8 +73,8 @@ export class Loads {
     loads.forEach((load, k) => fill(this.rows[k], load, this.end));
     const reason = loads.find(({ kn, interval }) => known(kn) && !interval)?.reason;
     const shape = view.position && !view.sigma ? noSpread(view.state) : "";
-    write(this.caption, [this.capacity, reason && `No interval at level 1: ${lowered(reason)}`,
-      shape && `No ±2σ of the net: ${lowered(shape)}`].filter(Boolean).join(" "));
+    write(this.caption, [this.capacity, reason && text("loads.noIntervalWhy", { reason: lowered(reason) }),
+      shape && text("loads.noSpreadWhy", { reason: lowered(shape) })].filter(Boolean).join(" "));
   }
 
   select() {
@@ -91,18 +89,19 @@ export class Loads {
 
 function fill({ row, level, cells, fill: bar, share }, load, end) {
   const [twin, low, measured] = cells;
-  write(level, `${load.level}${load.within ? "" : " outside"}`);
+  const trained = load.level > 1
+    ? text("loads.trained", { level: load.level, shackle: load.shackle ?? text("loads.shackle") })
+    : text("loads.simulation");
+  write(level, load.within ? String(load.level) : text("loads.outside", { level: load.level }));
   level.classList.toggle("outside", !load.within);
-  level.title = (load.level > 1 ? `level ${load.level}: trained by ${load.shackle ?? "a shackle"}`
-    : "level 1: simulation alone")
-    + (load.within ? "" : ", and outside the training domain of this level");
+  level.title = load.within ? trained : text("loads.outsideDomain", { level: trained });
   twin.replaceChildren(make("b", {}, fixed(load.kn)),
     make("span", { className: "pm" }, half(load.interval)));
-  twin.title = known(load.kn) && !load.interval ? load.reason || NO_INTERVAL : "";
+  twin.title = known(load.kn) && !load.interval ? load.reason || text("loads.noInterval") : "";
   write(low, fixed(load.lowKn));
   write(measured, load.shackle ? fixed(load.measuredKn) : "");
   measured.title = load.shackle && !known(load.measuredKn)
-    ? `${plain(load.shackle)} has given no good reading within its timeout` : "";
+    ? text("loads.noReading", { shackle: plain(load.shackle) }) : "";
   write(share, percent(load.top));
   bar.style.width = `${Math.min(100, (100 * (load.top ?? 0)) / Math.max(1, end))}%`;
   bar.style.backgroundColor = known(load.top) ? load.colour : "";
@@ -111,11 +110,12 @@ function fill({ row, level, cells, fill: bar, share }, load, end) {
 
 function roseWords(loads, water) {
   const loaded = loads.filter(({ top }) => known(top));
-  if (!loaded.length) return "Rose of bridle loads: no valid input, no loads.";
+  if (!loaded.length) return text("loads.noRose");
   const most = loaded.reduce((a, b) => (b.top > a.top ? b : a));
-  const flow = Number.isFinite(water?.current_to_deg) ? ` The current goes ${spoken(water.current_to_deg)}.` : "";
-  return `Rose of bridle loads, north up. Largest: ${plain(most.name)}, ` +
-    `${withUnit(most.topKn, "kN")}, ${percent(most.top)} of capacity.${flow} The table has all.`;
+  return text("loads.rose", {
+    name: plain(most.name), load: withUnit(most.topKn, "kN"), share: percent(most.top),
+    flow: known(water?.current_to_deg) ? text("loads.flow", { direction: spoken(water.current_to_deg) }) : "",
+  });
 }
 
 const lowered = (sentence) => sentence[0].toLowerCase() + sentence.slice(1);

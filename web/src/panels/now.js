@@ -2,21 +2,22 @@
 
 import { make } from "../dom.js";
 import { largestKnown } from "../known-load.js";
+import { text } from "../texts/index.js";
 import { write } from "./dom.js";
-import { DASH, bearing, compass, fixed, half, known, percent, plain } from "./format.js";
+import { DASH, bearing, compass, fixed, half, known, percent, plain, withUnit } from "./format.js";
 import { intervalOf } from "./load-rows.js";
 import { waterArrow } from "./water-arrow.js";
 
 export class Now {
   constructor(holder, model) {
     this.model = model;
-    this.current = figure("Current", waterArrow("current"));
-    this.waves = figure("Waves", waterArrow("wave"));
-    this.load = figure("Largest load");
-    this.volume = figure("Cage volume");
+    this.current = figure("current", waterArrow("current"));
+    this.waves = figure("waves", waterArrow("wave"));
+    this.load = figure("load");
+    this.volume = figure("volume");
     this.why = make("p", { className: "now-why", hidden: true });
     holder.append(
-      make("h2", { className: "unseen" }, "Now"),
+      make("h2", { className: "unseen" }, text("now.title")),
       make("dl", { className: "figures" },
         ...[this.current, this.waves, this.load, this.volume].map(({ box }) => box)),
       this.why);
@@ -28,7 +29,7 @@ export class Now {
     const state = this.model.view?.state;
     const water = state?.valid ? state.water : null;
     this.current.say(fixed(water?.current_speed_m_s, 2), "m/s",
-      towards("towards", water?.current_to_deg));
+      known(water?.current_to_deg) ? text("now.towards", { direction: way(water.current_to_deg) }) : "");
     this.current.turn(water?.current_to_deg);
     this.sayWaves(water);
     const top = largestKnown(state);
@@ -37,15 +38,17 @@ export class Now {
     this.load.mark(concernOf(state, "load"));
     const share = state?.valid ? state.volume_fraction : null;
     this.volume.say(known(share) ? String(Math.round(100 * share)) : DASH, "%",
-      known(share) ? "of that in still water" : "");
+      known(share) ? text("now.ofStill") : "");
     this.volume.mark(concernOf(state, "volume"));
     this.explain(state);
   }
 
   sayWaves(water) {
-    const period = known(water?.tp_s) ? `${fixed(water.tp_s)} s, ` : "";
-    this.waves.say(fixed(water?.hs_m), "m",
-      known(water?.hs_m) ? `${period}${towards("from", water.wave_from_deg)}` : water ? "not known" : "");
+    const words = [
+      known(water?.tp_s) && withUnit(water.tp_s, "s"),
+      known(water?.wave_from_deg) && text("now.from", { direction: way(water.wave_from_deg) }),
+    ].filter(Boolean).join(", ");
+    this.waves.say(fixed(water?.hs_m), "m", known(water?.hs_m) ? words : water ? text("number.notKnown") : "");
     this.waves.turn(known(water?.wave_from_deg) ? water.wave_from_deg + 180 : null);
   }
 
@@ -53,30 +56,29 @@ export class Now {
   explain(state) {
     const silent = state?.silent ?? [];
     const words = !state ? ""
-      : !state.valid ? `${state.reason || "No usable reading yet."} Predictions come back with the next good reading.`
-      : silent.length ? `Silent: ${silent.join(", ")}. The answer does without.` : "";
+      : !state.valid ? text("now.comeBack", { reason: state.reason || text("now.noReading") })
+      : silent.length ? text("now.silent", { names: silent.join(", ") }) : "";
     this.why.hidden = !words;
     write(this.why, words);
   }
 }
 
-/** Where a largest load is, how large, and who says so. */
+/** Place, share and source of a largest load. */
 export function loadWords({ name, share, by, bridle }) {
-  const source = by ? `measured by ${plain(by)}` : bridle.level > 1 ? "predicted" : "simulated";
-  return `${plain(name)}, ${percent(share)} of capacity, ${source}`;
+  const source = by ? text("now.measuredBy", { name: plain(by) })
+    : bridle.level > 1 ? text("now.predicted") : text("now.simulated");
+  return text("now.largest", { name: plain(name), share: percent(share), source });
 }
 
 /** What is not well about something, in words; empty where nothing is. */
 const concernOf = (state, kind) =>
   state?.concerns?.find((one) => one.kind === kind)?.message ?? "";
 
-function towards(word, degrees) {
-  return known(degrees) ? `${word} ${bearing(degrees)} ${compass(degrees)}` : "";
-}
+const way = (degrees) => `${bearing(degrees)} ${compass(degrees)}`;
 
 function figure(name, pointer) {
   const [value, unit, note] = ["value", "unit", "note"].map((c) => make("span", { className: c }));
-  const box = make("div", { className: "figure" }, make("dt", {}, name),
+  const box = make("div", { className: "figure" }, make("dt", {}, text(`now.figure.${name}`)),
     make("dd", {}, make("span", { className: "figure-line" }, ...(pointer ? [pointer.arrow] : []), value, unit), note));
   const say = (number, its, words) => {
     write(value, number);

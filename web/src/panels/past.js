@@ -1,22 +1,26 @@
 // What has been, for all panels that look back: one span, one message of the service.
 
+import { Observable } from "../observable.js";
+import { cagePath } from "../request.js";
+import { text } from "../texts/index.js";
 import { append, columnsOf, trim } from "./columns.js";
 
-export const HOUR_MS = 3600e3;
+const HOUR_MS = 3600e3;
 export const SPANS = [
-  ["1 h", HOUR_MS], ["6 h", 6 * HOUR_MS], ["24 h", 24 * HOUR_MS], ["3 days", 72 * HOUR_MS],
-  ["7 days", 168 * HOUR_MS], ["30 days", 720 * HOUR_MS],
+  ...[1, 6, 24].map((count) => [text("span.hours", { count }), count * HOUR_MS]),
+  ...[3, 7, 30].map((count) => [text("span.days", { count }), 24 * count * HOUR_MS]),
 ];
 const POINTS = 2000; // of a curve: more than a screen has columns
 const MISSED_MS = 0.5 * HOUR_MS; // a longer step of the clock means that something was missed
 const AGAIN_MS = 10_000; // of the wall: a fast replay misses all the time
 
-export class Past {
-  #listeners = new Set();
+/** The past of the cage; it calls its listeners whenever there is more, or another. */
+export class Past extends Observable {
   #requests = 0;
-  #askedAt = -Infinity;
+  #requestedAt = -Infinity;
 
   constructor(model) {
+    super();
     this.model = model;
     this.spanMs = 24 * HOUR_MS;
     this.columns = null;
@@ -25,20 +29,11 @@ export class Past {
     model.on("live", (live) => this.take(live));
   }
 
-  /** Call `fn` whenever there is more, or other, past. */
-  on(fn) {
-    this.#listeners.add(fn);
-  }
-
-  #tell() {
-    for (const fn of this.#listeners) fn();
-  }
-
   forget() {
     Object.assign(this, { columns: null, fault: null, end: undefined });
     this.#requests += 1;
-    this.#askedAt = -Infinity;
-    this.#tell();
+    this.#requestedAt = -Infinity;
+    this.notify();
   }
 
   /** The span that is looked back over, up to now [ms]. */
@@ -46,10 +41,16 @@ export class Past {
     return this.end - this.spanMs;
   }
 
+  /** The span in the query of a request; its end, of a millisecond, is in it. */
+  get query() {
+    const [from, to] = [this.start, this.end + 1].map((t) => new Date(t).toISOString());
+    return new URLSearchParams({ from, to });
+  }
+
   /** Look further back, or less far. */
   reach(spanMs) {
     this.spanMs = spanMs;
-    this.#tell();
+    this.notify();
     if (this.end !== undefined) this.load();
   }
 
@@ -57,28 +58,28 @@ export class Past {
     const step = t - (this.end ?? t);
     const missed = !this.columns || step < 0 || step > MISSED_MS;
     this.end = t;
-    if (missed && performance.now() - this.#askedAt > AGAIN_MS) this.load();
+    if (missed && performance.now() - this.#requestedAt > AGAIN_MS) this.load();
     if (this.columns) {
       append(this.columns, state, this.spanMs / 1000 / POINTS);
       trim(this.columns, this.start / 1000);
     }
-    this.#tell();
+    this.notify();
   }
 
   /** Ask the service for the span anew. */
   async load() {
     const turn = ++this.#requests;
-    this.#askedAt = performance.now();
+    this.#requestedAt = performance.now();
     const from = encodeURIComponent(new Date(this.start).toISOString());
-    const path = `cages/${encodeURIComponent(this.model.cageName)}/history`;
     try {
-      const history = await this.model.call("GET", `${path}?from=${from}&limit=${POINTS}`);
+      const history = await this.model.call("GET",
+        cagePath(this.model.cageName, `history?from=${from}&limit=${POINTS}`));
       if (turn !== this.#requests) return;
       Object.assign(this, { columns: columnsOf(history), fault: null });
     } catch (error) {
       if (turn !== this.#requests) return;
       this.fault = error.message;
     }
-    this.#tell();
+    this.notify();
   }
 }

@@ -4,7 +4,7 @@ const BEAT_MS = 200;
 export const SPEEDS = [1, 10, 60, 600, 3600];
 
 export class Playback {
-  /** `go` is told each next time [ms]; `ended` is called where the past ends. */
+  /** `go` is called with each next time [ms]; `ended` is called where the past ends. */
   constructor({ go, ended }) {
     Object.assign(this, { go, ended, speed: 600, timer: null });
   }
@@ -13,7 +13,7 @@ export class Playback {
     return this.timer !== null;
   }
 
-  /** Play from a time; `end` tells where the past ends by then. */
+  /** Play from a time; `end` answers where the past ends by then. */
   start(from, end) {
     this.stop();
     let at = from;

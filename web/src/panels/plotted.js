@@ -1,28 +1,31 @@
 // What a chart draws of one quantity: rows over one set of times, with gaps where nothing is known.
 
-/** The quantities that can be charted: {key, name, kind, unit, place, sensor}. */
+import { text } from "../texts/index.js";
+import { plain, titled } from "./format.js";
+
+/** The quantities that can be charted: {key, name, title, kind, unit, place, sensor}. */
 export function quantities(topology) {
   const shackles = new Map(topology.shackles.map(({ name, bridle }) => [bridle, name]));
   const rest = (node) => -topology.rest_position_m[node][2];
   return [
     ...topology.depth_sensors.map(({ name, node }) => ({
-      key: `sensor:${name}`, name, kind: "Depths", unit: "m", downwards: true, sensor: name,
-      place: `rests at ${rest(node).toFixed(1)} m`,
+      key: `sensor:${name}`, name, kind: "depths", unit: "m", downwards: true, sensor: name,
+      place: text("charts.rests", { depth: rest(node).toFixed(1) }),
     })),
     ...topology.shackles.map(({ name, bridle }) => ({
-      key: `sensor:${name}`, name, kind: "Shackles", unit: "kN", downwards: false, sensor: name,
-      place: `on ${topology.bridle_names[bridle].replaceAll("-", " ")}`,
+      key: `sensor:${name}`, name, kind: "shackles", unit: "kN", downwards: false, sensor: name,
+      place: text("charts.on", { bridle: plain(topology.bridle_names[bridle]) }),
     })),
     ...topology.bridle_names.map((name, k) => ({
-      key: `bridle:${name}`, name, kind: "Bridles", unit: "kN", downwards: false,
+      key: `bridle:${name}`, name, kind: "bridles", unit: "kN", downwards: false,
       sensor: shackles.get(k) ?? null,
-      place: `capacity ${Math.round(topology.bridle_capacity_kn[k])} kN`,
+      place: text("charts.capacity", { capacity: Math.round(topology.bridle_capacity_kn[k]) }),
     })),
-    { key: "water:speed", name: "current", kind: "Sea and cage", unit: "m/s", downwards: false,
-      sensor: null, place: "as the answer has it" },
-    { key: "cage:volume", name: "volume", kind: "Sea and cage", unit: "%", downwards: false,
-      sensor: null, place: "of that in still water" },
-  ];
+    { key: "water:speed", name: text("charts.current"), kind: "water", unit: "m/s", downwards: false,
+      sensor: null, place: text("charts.answer") },
+    { key: "cage:volume", name: text("charts.volume"), kind: "water", unit: "%", downwards: false,
+      sensor: null, place: text("now.ofStill") },
+  ].map((one) => ({ ...one, title: titled(one.name) }));
 }
 
 /**
@@ -43,8 +46,9 @@ export function rowsOf(columns, { key, name, sensor }) {
 /**
  * Put the twin's rows and the readings over one set of times.
  *
- * Columns: t, lower, upper, measured, low, mean, as they are drawn one over the other. A row of nulls breaks the curves where the twin said nothing for longer than `gap` seconds;
- * undefined, where only the other had something to say, does not.
+ * Columns: t, lower, upper, measured, low, mean, as they are drawn one over the other. A row of nulls breaks the
+ * curves where the twin gave no answer for longer than `gap` seconds; undefined, where only the
+ * other has a value, does not.
  */
 export function joined(rows, gap) {
   const names = ["lower", "upper", "low", "mean"];

@@ -1,5 +1,7 @@
 // How bad an alarm is, and which comes first.
 
+import { text } from "../texts/index.js";
+
 const CRITICAL = 800;
 const WARNING = 500;
 
@@ -15,10 +17,10 @@ export const waits = (alarm) =>
 
 /** What an alarm is doing, in words. */
 export function standing(alarm) {
-  if (alarm.in_service === false) return "out of service";
-  if (alarm.shelved) return "shelved";
-  if (alarm.active) return alarm.acknowledged ? "active, acknowledged" : "active, not acknowledged";
-  return alarm.acknowledged ? "cleared" : "cleared, not acknowledged";
+  if (alarm.in_service === false) return text("standing.outOfService");
+  if (alarm.shelved) return text("standing.shelved");
+  if (alarm.active) return alarm.acknowledged ? text("standing.active") : text("standing.activeUnseen");
+  return alarm.acknowledged ? text("standing.cleared") : text("standing.clearedUnseen");
 }
 
 /** Order: those that are active, then those that have cleared and that nobody has seen, then those

@@ -1,15 +1,19 @@
 // What a token's scopes let its holder do, in words.
 
-const WORDS = { read: "look", ack: "handle alarms", ingest: "send samples" };
+import { text } from "../texts/index.js";
+
+const KNOWN = new Set(["read", "ack", "ingest"]);
 
 /** Say in a sentence what the scopes allow; one may hold for a single cage, as `ack:bay`. */
 export function rights(scopes) {
-  if (scopes.includes("admin")) return "May do everything.";
+  if (scopes.includes("admin")) return text("rights.admin");
   const may = scopes.map((scope) => {
-    const [action, where] = scope.split(":");
-    return `${WORDS[action] ?? action}${where ? ` at ${where}` : ""}`;
+    const [name, where] = scope.split(":");
+    const action = KNOWN.has(name) ? text(`rights.action.${name}`) : name;
+    return where ? text("rights.at", { action, where }) : action;
   });
-  return may.length > 1 ? `May ${may.slice(0, -1).join(", ")} and ${may.at(-1)}.` : `May ${may[0]} only.`;
+  if (may.length === 1) return text("rights.one", { action: may[0] });
+  return text("rights.several", { actions: may.slice(0, -1).join(", "), last: may.at(-1) });
 }
 
 /** Whether the scopes may let their holder do something here; where, the service alone knows. */

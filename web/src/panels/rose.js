@@ -1,14 +1,13 @@
 // The rose: every bridle where it leaves the collar, as long as its load.
 
 import { draw } from "../dom.js";
-import { known, percent, titled, withUnit } from "./format.js";
+import { text } from "../texts/index.js";
+import { compass, known, percent, titled, withUnit } from "./format.js";
 import { INNER, OUTER, across, azimuths, polar, radius, wedge, whisker } from "./rose-shape.js";
 import { ringsOf } from "./scale.js";
 
-const WINDS = [["N", 0], ["E", 90], ["S", 180], ["W", 270]];
-
 export class Rose {
-  /** `pick` is told the name of the bridle that was chosen. */
+  /** `pick` is called with the name of the bridle that was chosen. */
   constructor({ pick }) {
     this.pick = pick;
     this.rings = draw("g", { class: "rings" });
@@ -16,7 +15,7 @@ export class Rose {
     this.current = draw("path", { class: "rose-current", d: "M0 -17 8 12 0 6 -8 12Z" });
     this.wave = draw("path", { class: "rose-wave", d: "M0 -110 4.5 -119 -4.5 -119Z" });
     this.drawing = draw("svg", { viewBox: "-122 -121 244 242", class: "rose", role: "img" },
-      this.rings, draw("g", { class: "winds" }, ...WINDS.map(wind)), this.bars, this.current,
+      this.rings, draw("g", { class: "winds" }, ...[0, 90, 180, 270].map(wind)), this.bars, this.current,
       this.wave);
   }
 
@@ -40,7 +39,7 @@ export class Rose {
     return { name, group, title, fill, low, interval, measured };
   }
 
-  /** `loads` are shares of capacity by bridle, with what else is said of it. */
+  /** `loads` are rows as of load-rows.js. */
   show({ loads, end, current, wave, words }) {
     this.ring(end);
     loads.forEach((load, k) => this.fill(this.parts[k], load, k, end));
@@ -62,7 +61,8 @@ export class Rose {
     measured.setAttribute("cx", x);
     measured.setAttribute("cy", y);
     group.dataset.rank = load.rank ?? "";
-    title.textContent = `${titled(load.name)}: ${withUnit(load.kn, "kN")}, ${percent(load.mean)} of capacity`;
+    title.textContent = text("loads.bar",
+      { name: titled(load.name), load: withUnit(load.kn, "kN"), share: percent(load.mean) });
   }
 
   ring(end) {
@@ -82,9 +82,9 @@ export class Rose {
   }
 }
 
-function wind([name, degrees]) {
+function wind(degrees) {
   const [x, y] = polar(degrees, OUTER + 13);
-  return draw("text", { x, y, class: "wind" }, name);
+  return draw("text", { x, y, class: "wind" }, compass(degrees));
 }
 
 function outline(path, d) {

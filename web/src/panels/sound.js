@@ -1,6 +1,7 @@
 // A short tone for a new alarm, off until somebody wants it.
 
 import { make } from "../dom.js";
+import { text } from "../texts/index.js";
 
 const KEY = "seacage-sound";
 const TONES = { critical: [660, 880, 660, 880], warning: [660, 880], note: [660] };
@@ -11,7 +12,7 @@ const wanted = () => localStorage.getItem(KEY) === "on";
 /** Sound the rank of an alarm, if sound is wanted. */
 export function sound(rank) {
   if (!wanted()) return;
-  // A browser lets a page be heard only after a click; the switch was one.
+  // A browser lets a page sound only after a click; the switch was one.
   context ??= new AudioContext();
   TONES[rank].forEach((pitch, k) => tone(pitch, context.currentTime + 0.22 * k));
 }
@@ -27,12 +28,12 @@ function tone(pitch, at) {
   source.stop(at + 0.2);
 }
 
-/** A box to tick; it lets itself be heard once when it is. */
+/** A box to tick; it sounds once when it is ticked. */
 export function soundSwitch() {
   const box = make("input", { type: "checkbox", checked: wanted() });
   box.addEventListener("change", () => {
     localStorage.setItem(KEY, box.checked ? "on" : "off");
     sound("note");
   });
-  return make("label", {}, box, " Sound for new alarms");
+  return make("label", {}, box, ` ${text("alarms.sound")}`);
 }

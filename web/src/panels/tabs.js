@@ -1,9 +1,10 @@
 // The panels as tabs: one is seen, arrow keys go round.
 
 import { make, still } from "../dom.js";
+import { text } from "../texts/index.js";
 
 export class Tabs {
-  /** `all` are {name, title, key}; `seen` is told the name of the one that is shown. */
+  /** `all` are {name, key}, titled by the texts; `seen` is called with the name of the one shown. */
   constructor(holder, all, { label, seen = () => {} }) {
     this.seen = seen;
     this.parts = new Map(all.map((one) => [one.name, this.part(one)]));
@@ -14,12 +15,12 @@ export class Tabs {
     this.show(all[0].name);
   }
 
-  part({ name, title, key }) {
+  part({ name, key }) {
     const badge = make("span", { className: "tab-badge", hidden: true });
     const tab = make("button", {
       type: "button", role: "tab", id: `tab-${name}`, "aria-controls": `panel-${name}`,
-      title: key ? `Key ${key}` : "", onclick: () => this.chosen(name),
-    }, title, badge);
+      title: key ? text("tabs.key", { key }) : "", onclick: () => this.chosen(name),
+    }, text(`tabs.title.${name}`), badge);
     const panel = make("div", {
       role: "tabpanel", id: `panel-${name}`, className: "tab-panel", "aria-labelledby": tab.id,
       tabIndex: 0, hidden: true,

@@ -1,6 +1,7 @@
 // A button that goes from light to dark and back.
 
 import { make } from "../dom.js";
+import { text } from "../texts/index.js";
 import { onTheme, setTheme, theme } from "../theme.js";
 import { icon } from "./icons.js";
 
@@ -13,8 +14,8 @@ export function themeSwitch() {
   const show = () => {
     const other = theme() === "dark" ? "light" : "dark";
     button.replaceChildren(icon(other === "light" ? "sun" : "moon"));
-    button.title = `Use the ${other} colours (T)`;
-    button.ariaLabel = `Use the ${other} colours`;
+    button.ariaLabel = text(`bar.theme.${other}`);
+    button.title = `${button.ariaLabel} (T)`;
   };
   onTheme(show);
   show();

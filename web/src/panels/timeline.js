@@ -1,6 +1,7 @@
 // Time: a slider back through what has been, which can also be played.
 
 import { make } from "../dom.js";
+import { text } from "../texts/index.js";
 import { onTheme } from "../theme.js";
 import { painted, write } from "./dom.js";
 import { day, moment, time } from "./format.js";
@@ -18,14 +19,15 @@ export class Timeline {
   constructor(holder, model, past, desk) {
     Object.assign(this, { model, past, desk, marks: [], at: null });
     this.playback = new Playback({ go: (t) => this.go(t), ended: () => this.live() });
-    this.liveButton = button("live-button", "live", "Live (L)", () => this.live());
-    this.liveButton.append("Live");
-    this.playButton = button("round play", "play", "", () => this.play());
-    this.speeds = choice("Speed of playing", SPEEDS.map((speed) => [`${speed} ×`, speed]), 600,
+    this.liveButton = button("live",
+      { className: "live-button", title: text("timeline.liveTitle"), onclick: () => this.live() });
+    this.liveButton.append(text("timeline.live"));
+    this.playButton = button("play", { className: "round play", onclick: () => this.play() });
+    this.speeds = choice(text("timeline.speed"), SPEEDS.map((speed) => [`${speed} ×`, speed]), 600,
       (speed) => { this.playback.speed = speed; });
-    this.spans = choice("Look back over", SPANS, past.spanMs, (spanMs) => past.reach(spanMs));
+    this.spans = choice(text("timeline.span"), SPANS, past.spanMs, (spanMs) => past.reach(spanMs));
     this.slider = make("input", { type: "range", className: "time-slider", min: 0, max: STEPS,
-      value: STEPS, ariaLabel: "Time that is shown" });
+      value: STEPS, ariaLabel: text("timeline.slider") });
     this.canvas = make("canvas", { className: "overview", ariaHidden: "true" });
     this.label = make("output", { className: "time-label" });
     const [from, to] = ["from", "to"].map((end) => make("span", { className: `time-${end}` }));
@@ -120,7 +122,7 @@ export class Timeline {
     const travels = this.travelled !== null;
     const shown = this.travelled ?? end;
     this.slider.value = Math.round((STEPS * (shown - start)) / spanMs);
-    this.slider.setAttribute("aria-valuetext", travels ? moment(shown) : "now");
+    this.slider.setAttribute("aria-valuetext", travels ? moment(shown) : text("timeline.now"));
     this.write((shown - start) / spanMs, travels ? moment(shown) : "", `${day(start)} ${time(start)}`);
     const shares = columns && topology ? largestOver(columns, topology.bridle_capacity_kn, topology.shackles) : [];
     const times = shares.length ? columns.t : [];
@@ -134,7 +136,7 @@ export class Timeline {
     this.label.style.left = `${100 * Math.min(1, Math.max(0, share))}%`;
     this.label.dataset.side = share < NEAR ? "left" : share > 1 - NEAR ? "right" : "";
     write(this.from, travelled && share < NEAR ? "" : from);
-    const end = this.model.connection === "live" ? "now" : moment(this.past.end);
+    const end = this.model.connection === "live" ? text("timeline.now") : moment(this.past.end);
     write(this.to, travelled && share > 1 - NEAR ? "" : end);
   }
 
@@ -145,14 +147,13 @@ export class Timeline {
       this.playButton.replaceChildren(icon(playing ? "pause" : "play"));
     }
     this.playButton.dataset.playing = playing;
-    this.playButton.ariaLabel = playing ? "Pause" : "Play the past";
-    this.playButton.title = `${this.playButton.ariaLabel} (space)`;
+    const action = playing ? text("timeline.pause") : text("timeline.play");
+    this.playButton.ariaLabel = action;
+    this.playButton.title = text("timeline.withSpace", { action });
   }
 }
 
-function button(className, shape, title, onclick) {
-  return make("button", { type: "button", className, title, onclick }, icon(shape));
-}
+const button = (shape, properties) => make("button", { type: "button", ...properties }, icon(shape));
 
 function choice(words, options, chosen, pick) {
   const select = make("select", {}, ...options.map(([name, value]) =>

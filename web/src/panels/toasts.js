@@ -1,9 +1,11 @@
-// What has just happened, said once at the edge of the page.
+// News, shown once at the edge of the page.
 
 import { make } from "../dom.js";
+import { text } from "../texts/index.js";
 import { grouped, titleOf } from "./alarm-groups.js";
+import { closeButton } from "./dom.js";
 import { fresh } from "./fresh.js";
-import { icon, rankIcon } from "./icons.js";
+import { icon } from "./icons.js";
 import { sourceOf } from "./load-rows.js";
 import { rank } from "./ranks.js";
 import { sound } from "./sound.js";
@@ -22,10 +24,10 @@ export class Toasts {
     document.body.append(this.stack);
     model.on("topology", () => { this.before = null; });
     model.on("live", ({ state }) => this.compare(state.alarms ?? []));
-    model.on("trouble", (error) => this.put("note", "That did not work", error.message));
+    model.on("trouble", (error) => this.put("note", text("page.trouble"), error.message));
   }
 
-  /** Tell of new alarms; those that were there when the page opened are no news. */
+  /** Announce new alarms; those that were there when the page opened are no news. */
   compare(alarms) {
     const news = this.before ? fresh(this.before, alarms) : [];
     this.before = alarms;
@@ -43,19 +45,17 @@ export class Toasts {
   }
 
   put(how, title, words, isAlarm = false) {
-    const close = make("button", { type: "button", className: "round", ariaLabel: "Close" }, icon("close"));
-    const toast = make("div", { className: "toast" }, rankIcon(how),
+    const toast = make("div", { className: "toast" }, icon(how),
       make("div", {}, make("strong", {}, title), make("p", {}, words)));
     toast.dataset.rank = isAlarm ? how : "trouble";
     const gone = () => toast.remove();
-    close.addEventListener("click", gone);
     if (isAlarm) {
       toast.append(make("button", { type: "button", className: "button small", onclick: () => {
         gone();
         this.look();
-      } }, "Look"));
+      } }, text("alarms.look")));
     }
-    toast.append(close);
+    toast.append(closeButton(gone));
     (how === "critical" ? this.urgent : this.polite).append(toast);
     // A critical one stays until somebody takes it away.
     if (how !== "critical") setTimeout(gone, STAY_MS);

@@ -1,11 +1,12 @@
-// The first line: what an operator has to know in three seconds.
+// The verdict of the first line, to be read in three seconds.
 
+import { text } from "../texts/index.js";
 import { grouped, titleOf } from "./alarm-groups.js";
-import { beyond, counted, moment, plain, span, titled } from "./format.js";
+import { beyond, moment, plain, span, titled } from "./format.js";
 import { rank, waits, worst } from "./ranks.js";
 
 /**
- * One judgement on the whole: {kind, icon, headline, detail}.
+ * One verdict on the whole: {kind, icon, headline, detail}.
  *
  * Worst first: no connection, then no valid input, then alarms, then what the service is concerned
  * about and an answer beyond what was learned. Nothing is well without an input that says so.
@@ -13,16 +14,16 @@ import { rank, waits, worst } from "./ranks.js";
 export function verdict({ connection, why = "", live }) {
   const state = live?.state;
   if (connection === "lost") {
-    const shown = state ? `What is shown is of ${moment(live.t)}.` : why || "Nothing has come yet.";
-    return result("lost", "lost", "Connection lost", shown);
+    const shown = state ? text("verdict.shown", { moment: moment(live.t) }) : why || text("verdict.nothingYet");
+    return result("lost", "lost", text("verdict.lost"), shown);
   }
-  if (connection === "asking") return result("none", "wait", "Waiting for a token", "");
-  if (connection === "refused") return result("lost", "none", "Not admitted", why);
+  if (connection === "asking") return result("none", "wait", text("connection.state.asking"), "");
+  if (connection === "refused") return result("lost", "none", text("connection.state.refused"), why);
   if (!state || connection === "connecting") {
-    return result("none", "wait", "Connecting", "Asking for the newest state.");
+    return result("none", "wait", text("connection.state.connecting"), text("verdict.newest"));
   }
   if (live.stale && state.valid) {
-    return result("lost", "lost", "Input too old", `The newest reading is ${span(live.ageS)} old.`);
+    return result("lost", "lost", text("verdict.old"), text("verdict.age", { age: span(live.ageS) }));
   }
   return state.valid ? ofLoads(state) : withoutInput(state);
 }
@@ -34,13 +35,14 @@ function ofLoads(state) {
     const kind = rank(first.severity);
     const group = grouped(alarms).find((one) => one.includes(first));
     const others = alarms.length - group.length;
-    const more = others ? ` and ${others} more` : "";
-    const over = first.active ? "" : ", over by now";
+    const detail = text("verdict.worst", {
+      title: titleOf(group), over: first.active ? "" : text("verdict.over"),
+      more: others ? text("verdict.more", { count: others }) : "",
+    });
     const named = state.in_domain || first.id.startsWith("domain.");
-    const extra = named ? "" : " The twin is extrapolating.";
-    return result(kind, kind, counted(alarms.length, "alarm"), `${titleOf(group)}${over}${more}.${extra}`);
+    return result(kind, kind, counted(alarms), named ? detail : `${detail} ${text("verdict.extrapolating")}`);
   }
-  return concerned(state) ?? result("well", "well", "All well", "Loads and net within their limits.");
+  return concerned(state) ?? result("well", "well", text("verdict.well"), text("verdict.within"));
 }
 
 /** What keeps a cage without alarms from being well; null where nothing does. */
@@ -49,26 +51,27 @@ export function concerned({ in_domain: within, reason, concerns = [], silent = [
   const messages = concerns.map(({ message }) => titled(message));
   // A load at its limit has the colour of the alarm that it will raise.
   if (load) return result("warning", "warning", load.title, messages.join(" "));
-  if (!within) return result("beyond", "beyond", "Extrapolating", [beyond(reason), ...messages].join(" "));
+  if (!within) return result("beyond", "beyond", text("verdict.beyond"), [beyond(reason), ...messages].join(" "));
   if (messages.length) return result("caution", "caution", concerns[0].title, messages.join(" "));
   if (silent.length) {
-    return result("caution", "caution", "Partly measured", `Silent: ${silent.map(plain).join(", ")}.`);
+    return result("caution", "caution", text("verdict.partly"),
+      text("verdict.silent", { names: silent.map(plain).join(", ") }));
   }
   return null;
 }
 
 function withoutInput(state) {
   const alarms = (state.alarms ?? []).filter(waits);
-  const also = alarms.length ? ` ${counted(alarms.length, "alarm")}.` : "";
-  if (state.age_s === null) {
-    return result("none", "wait", "Waiting for a first reading", `Nothing is predicted.${also}`);
-  }
+  const rest = [text("verdict.nothing"), ...(alarms.length ? [`${counted(alarms)}.`] : [])];
+  if (state.age_s === null) return result("none", "wait", text("verdict.waiting"), rest.join(" "));
   const first = worst(alarms);
   const load = (state.concerns ?? []).find(({ kind }) => kind === "load");
   const kind = first ? rank(first.severity) : load ? "warning" : "none";
-  const measured = load ? `${titled(load.message)} ` : "";
-  return result(kind, "none", "No valid input",
-    `${measured}${state.reason || "The newest reading is not usable."} Nothing is predicted.${also}`);
+  const measured = load ? [titled(load.message)] : [];
+  return result(kind, "none", text("verdict.invalid"),
+    [...measured, state.reason || text("verdict.unusable"), ...rest].join(" "));
 }
+
+const counted = ({ length: count }) => text("count.alarms", { count });
 
 const result = (kind, icon, headline, detail) => ({ kind, icon, headline, detail });

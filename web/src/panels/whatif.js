@@ -2,9 +2,11 @@
 
 import { make } from "../dom.js";
 import { largestPredicted } from "../known-load.js";
+import { cagePath } from "../request.js";
+import { text } from "../texts/index.js";
 import { dial } from "./dial.js";
-import { write } from "./dom.js";
-import { bearing, beyond, compass, fixed, known, titled } from "./format.js";
+import { tableHead, write } from "./dom.js";
+import { bearing, beyond, compass, known, titled, withUnit } from "./format.js";
 import { icon } from "./icons.js";
 import { change, choices, introduced, learnedWords, seaNow } from "./sea-wanted.js";
 
@@ -17,14 +19,13 @@ export class WhatIf {
     this.fault = make("p", { className: "dialog-fault", role: "alert", hidden: true });
     this.table = make("tbody");
     this.back = make("button", { type: "button", className: "button main", disabled: true,
-      onclick: () => model.travel(null) }, "Back to the sea now");
+      onclick: () => model.travel(null) }, text("whatif.back"));
     this.anew = make("button", { type: "button", className: "button", disabled: true,
-      onclick: () => this.reset() }, "Start from the sea now");
+      onclick: () => this.reset() }, text("whatif.anew"));
     holder.append(this.aside, this.inputs, this.fault, this.warning,
       make("table", { className: "compared" },
-        make("caption", { className: "unseen" }, "The sea now and the sea you chose"),
-        make("thead", {}, make("tr", {}, ...["Of the cage", "Now", "What if", "Change"]
-          .map((head) => make("th", { scope: "col" }, head)))), this.table),
+        make("caption", { className: "unseen" }, text("whatif.caption")),
+        tableHead(["what", "now", "then", "change"].map((head) => text(`whatif.heads.${head}`))), this.table),
       make("div", { className: "whatif-buttons" }, this.back, this.anew));
     for (const name of ["view", "live"]) model.on(name, () => this.show());
     model.on("topology", () => this.learn());
@@ -35,7 +36,7 @@ export class WhatIf {
     Object.assign(this, { kinds: [], shows: [], sea: {}, begun: false });
     this.inputs.replaceChildren();
     this.anew.disabled = true;
-    write(this.aside, "Asking the service what this twin has learned.");
+    write(this.aside, text("whatif.asking"));
     this.fill();
   }
 
@@ -44,7 +45,7 @@ export class WhatIf {
     this.forget();
     const { cageName } = this.model;
     try {
-      const learned = await this.model.call("GET", `cages/${encodeURIComponent(cageName)}/whatif`);
+      const learned = await this.model.call("GET", cagePath(cageName, "whatif"));
       if (cageName !== this.model.cageName) return;
       this.offer(learned);
       this.say("");
@@ -77,9 +78,9 @@ export class WhatIf {
     input.addEventListener("input", () => this.take({ [key]: Number(input.value) }));
     this.shows.push(() => {
       input.value = this.sea[key];
-      const text = `${fixed(this.sea[key], decimals)} ${unit}`;
-      input.setAttribute("aria-valuetext", text);
-      write(words, text);
+      const shown = withUnit(this.sea[key], unit, decimals);
+      input.setAttribute("aria-valuetext", shown);
+      write(words, shown);
     });
     return make("div", { className: "slider" }, make("label", { htmlFor: input.id }, name), words, input,
       make("small", {}, learnedWords({ learned, unit, decimals })));
@@ -126,8 +127,8 @@ export class WhatIf {
     this.back.disabled = !then;
     this.warning.hidden = !then || (then.valid && then.in_domain);
     if (!this.warning.hidden) {
-      const why = then.valid ? `Extrapolating. ${beyond(then.reason)}`
-        : `No answer: ${then.reason}`;
+      const why = then.valid ? text("whatif.extrapolating", { reason: beyond(then.reason) })
+        : text("whatif.noAnswer", { reason: then.reason });
       if (this.warning.textContent !== why) this.warning.replaceChildren(icon("beyond"), why);
     }
     this.table.replaceChildren(...compared(live?.state, then));
@@ -139,11 +140,11 @@ function compared(now, then) {
   const share = (state) => (state?.valid && known(state.volume_fraction) ? 100 * state.volume_fraction : NaN);
   const least = (state) => (state?.valid ? Math.min(...depths(state)) : NaN);
   return [
-    row("Largest load, predicted", load.map((one) => one?.kn), "kN", 1),
-    row("Of its capacity", load.map((one) => 100 * (one?.share ?? NaN)), "%", 0,
+    row(text("whatif.load"), load.map((one) => one?.kn), "kN", 1),
+    row(text("whatif.share"), load.map((one) => 100 * (one?.share ?? NaN)), "%", 0,
       load.map((one) => (one ? titled(one.name) : ""))),
-    row("Cage volume", [share(now), share(then)], "%", 1),
-    row("Shallowest depth sensor", [least(now), least(then)], "m", 1),
+    row(text("whatif.volume"), [share(now), share(then)], "%", 1),
+    row(text("whatif.shallowest"), [least(now), least(then)], "m", 1),
   ];
 }
 
@@ -151,7 +152,7 @@ const depths = ({ sensors }) => sensors.filter(({ unit }) => unit === "m").map((
 
 function row(name, [now, then], unit, decimals, notes = []) {
   const cell = (value, note) => make("td", { className: "number" },
-    known(value) ? `${fixed(value, decimals)} ${unit}` : "–",
+    withUnit(value, unit, decimals),
     note ? make("small", {}, ` ${note}`) : "");
   return make("tr", {}, make("th", { scope: "row" }, name), cell(now, notes[0]), cell(then, notes[1]),
     make("td", { className: "number change" }, change(now, then, decimals)));

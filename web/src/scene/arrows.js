@@ -2,9 +2,8 @@
 
 import { ConeGeometry, CylinderGeometry, Group, Mesh, MeshBasicMaterial, Vector3 } from "three";
 
-import { towards } from "./geometry.js";
+import { SLACK_M_S, towards } from "./geometry.js";
 
-const SLACK_M_S = 0.03; // below it a direction says nothing
 const LENGTH_PER_M_S = 40;
 const UP = new Vector3(0, 1, 0);
 

@@ -1,5 +1,7 @@
 // Colour scales that read the same to every eye, and the colours of alarms.
 
+import { rank } from "../panels/ranks.js";
+
 // Matplotlib's viridis and cividis (CC0), at eleven even steps.
 const SCALES = {
   viridis: "440154 482475 414487 355f8d 2a788e 21918c 22a884 44bf70 7ad151 bddf26 fde725",
@@ -29,10 +31,6 @@ export function gradient(how) {
   const stops = Array.from({ length: 9 }, (_, k) => cssColour(k / 8, how));
   return `linear-gradient(90deg, ${stops.join(", ")})`;
 }
-
-/** "critical", "warning" or "note". */
-export const rank = (severity) =>
-  severity >= 800 ? "critical" : severity >= 500 ? "warning" : "note";
 
 /** The worst rank of the active alarms on each bridle and sensor, by name. */
 export function alarmed(state) {

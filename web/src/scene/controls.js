@@ -1,18 +1,15 @@
 // The buttons over the scene: from where, what and in which colours.
 
 import { draw, make } from "../dom.js";
+import { text } from "../texts/index.js";
 import { onTheme, theme } from "../theme.js";
 import { gradient } from "./colours.js";
 import { loadEnd, tintOf } from "./paint.js";
 import { noSpread } from "./words.js";
 
-const SIDES = { oblique: "Oblique", side: "Side", top: "Top" };
-const TINTS = { plain: "Net: plain", moved: "Net: movement", sigma: "Net: uncertainty" };
-const TOGGLES = {
-  ghost: ["Still water", "Show how the net hangs in still water"],
-  shell: ["±2σ", "Show where the net may be: plus and minus two sigma"],
-  sea: ["Surface", "Show the sea’s surface"],
-};
+const SIDES = ["oblique", "side", "top"];
+const TINTS = ["plain", "moved", "sigma"];
+const TOGGLES = ["ghost", "shell", "sea"];
 
 /** Add them; `look` turns to a named side, in three dimensions. */
 export function mountControls(model, options, holder, { look, flatOnly }) {
@@ -23,21 +20,20 @@ export function mountControls(model, options, holder, { look, flatOnly }) {
     pressed.set(name, made);
     return made;
   };
-  const sides = Object.entries(SIDES).map(([name, words]) =>
-    button(name, words, "Look from this side", () => look(name)));
-  const flat = button("flat", "2-D", "Draw flat, from the side and from above (V)", () =>
+  const sides = SIDES.map((name) =>
+    button(name, text(`scene.sides.${name}`), text("scene.look"), () => look(name)));
+  const flat = button("flat", text("scene.flat"), text("scene.flatTitle"), () =>
     options.set("view", options.view === "flat" ? "3d" : "flat"));
-  const toggles = Object.entries(TOGGLES).map(([name, [words, title]]) =>
-    button(name, words, title, () =>
+  const toggles = TOGGLES.map((name) =>
+    button(name, text(`scene.toggles.${name}.word`), text(`scene.toggles.${name}.title`), () =>
       pressed.get(name).ariaDisabled !== "true" && options.set(name, !options[name])));
-  const tint = make("select", {
-    title: "What the net’s colour says", "aria-label": "Colour of the net",
-  }, ...Object.entries(TINTS).map(([value, words]) => make("option", { value }, words)));
+  const tint = make("select", { title: text("scene.tintTitle"), "aria-label": text("scene.tint") },
+    ...TINTS.map((value) => make("option", { value }, text(`scene.tints.${value}`))));
   tint.addEventListener("change", () => options.set("tint", tint.value));
 
   const show = () => {
     const isFlat = flatOnly || options.view === "flat";
-    for (const name of Object.keys(TOGGLES)) pressed.get(name).ariaPressed = String(options[name]);
+    for (const name of TOGGLES) pressed.get(name).ariaPressed = String(options[name]);
     flat.ariaPressed = String(isFlat);
     for (const one of [pressed.get("sea"), tint]) one.hidden = isFlat;
     tint.value = options.tint;
@@ -48,14 +44,14 @@ export function mountControls(model, options, holder, { look, flatOnly }) {
     const without = Boolean(view?.position && !view.sigma);
     const shell = pressed.get("shell");
     shell.ariaDisabled = String(without);
-    shell.title = without ? noSpread(view.state) : TOGGLES.shell[1];
+    shell.title = without ? noSpread(view.state) : text("scene.toggles.shell.title");
     tint.querySelector("[value=sigma]").disabled = without;
   };
   options.on(show);
   model.on("view", spread);
   show();
   holder.append(
-    make("div", { className: "scene-tools", role: "toolbar", "aria-label": "How the net is drawn" },
+    make("div", { className: "scene-tools", role: "toolbar", "aria-label": text("scene.tools") },
       make("div", { className: "tool-group", hidden: flatOnly }, ...sides, flat),
       make("div", { className: "tool-group" }, ...toggles),
       tint),
@@ -64,18 +60,16 @@ export function mountControls(model, options, holder, { look, flatOnly }) {
 
 /** What the colours mean: of the bridles, and of the net where it is tinted. */
 function legend(model, options) {
-  const load = scale("Bridle load, of capacity");
+  const load = scale(text("scene.load"));
   const net = scale("");
   const envelope = make("div", { className: "legend-envelope", hidden: true },
     make("span", { className: "envelope-mark" }), make("span"));
   const lock = make("button", {
-    type: "button", className: "legend-lock", title: "Lock the scale to the capacity",
-    "aria-label": "Lock the scale to the capacity",
+    type: "button", className: "legend-lock", title: text("scene.lock"), "aria-label": text("scene.lock"),
   }, padlock());
   lock.addEventListener("click", () => options.set("locked", !options.locked));
   load.head.append(lock);
-  const palette = make("button", { type: "button", className: "legend-palette",
-    title: "Use the other colour scale" });
+  const palette = make("button", { type: "button", className: "legend-palette", title: text("scene.palette") });
   palette.addEventListener("click", () =>
     options.set("scale", options.scale === "viridis" ? "cividis" : "viridis"));
   load.head.append(palette);
@@ -89,7 +83,7 @@ function legend(model, options) {
     net.element.hidden = !tint;
     envelope.hidden = !options.shell || !model.view?.position;
     envelope.dataset.known = Boolean(model.view?.sigma);
-    envelope.lastChild.textContent = model.view?.sigma ? "±2σ of the net" : "±2σ is not known";
+    envelope.lastChild.textContent = model.view?.sigma ? text("scene.envelope") : text("scene.noEnvelope");
     if (tint) net.show(how, "0", `${tint.end} ${tint.unit}`, tint.name);
   };
   for (const name of ["view", "topology"]) model.on(name, show);

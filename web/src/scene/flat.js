@@ -2,27 +2,28 @@
 // and for readers who like it better.
 
 import { draw, make } from "../dom.js";
+import { tableHead } from "../panels/dom.js";
+import { bearing, compass, fixed, withUnit } from "../panels/format.js";
+import { text } from "../texts/index.js";
 import { onTheme } from "../theme.js";
-import { extent, ringNodes, towards, tubeRing } from "./geometry.js";
+import { SLACK_M_S, extent, ringNodes, towards, tubeRing } from "./geometry.js";
 import { sensorPlaces } from "./places.js";
 import { bridleColours, sensorColour } from "./paint.js";
 import { band, outline } from "./silhouette.js";
 import { Tip } from "./tip.js";
-import { compass } from "../panels/format.js";
-import { bearing, fixed, wordsFor } from "./words.js";
+import { wordsFor } from "./words.js";
 
 const PAD = 5; // metres around the drawing
-const SLACK_M_S = 0.03; // below it a direction says nothing
 
 export class FlatView {
   constructor(model, options, holder) {
     Object.assign(this, { model, options, holder });
-    this.side = drawing("The net from the side");
-    this.plan = drawing("From above: north up");
+    this.side = drawing(text("flat.side"));
+    this.plan = drawing(text("flat.plan"));
     this.heading = 90; // that the side view looks across [compass degrees]
     this.table = make("table", { className: "flat-table" });
     this.element = make("div", { className: "flat", tabIndex: 0, role: "group",
-      "aria-label": "The net from the side and from above" },
+      "aria-label": text("flat.both") },
     this.side.figure, make("div", { className: "flat-words" }, this.table), this.plan.figure);
     this.side.figure.className = "flat-side";
     holder.append(this.element);
@@ -58,8 +59,7 @@ export class FlatView {
     this.side.svg.setAttribute("viewBox", `${-reach} ${-PAD} ${2 * reach} ${1.12 * depth + PAD}`);
     const way = `${bearing(this.heading)} ${compass(this.heading)}`;
     this.side.caption.textContent = flows
-      ? `From the side, across the current, which goes to the right: ${way}`
-      : `From the side, ${way} to the right; no current is known`;
+      ? text("flat.across", { way }) : text("flat.still", { way });
     return ([x, y, z]) => [along([x, y]), -z];
   }
 
@@ -74,7 +74,7 @@ export class FlatView {
     this.fill(view);
   }
 
-  /** Heard on the whole drawing, whose lines are drawn anew with each state. */
+  /** Listen on the whole drawing, whose lines are drawn anew with each state. */
   listen(svg) {
     const named = ({ target }) => {
       const { kind, name } = target.closest("[data-name]")?.dataset ?? {};
@@ -93,7 +93,7 @@ export class FlatView {
   fill(view) {
     const { topology } = this;
     const { spokes, rings, rest } = topology;
-    const places = [["Collar", 0], ["Sinker tube", tubeRing(topology)], ["Tip", null]];
+    const places = [["collar", 0], ["tube", tubeRing(topology)], ["tip", null]];
     const rows = places.map(([name, ring]) => {
       const nodes = ring === null ? [spokes * rings] : ringNodes(topology, ring);
       const mean = (array, axis) =>
@@ -103,13 +103,12 @@ export class FlatView {
       const sigma = position && view.sigma
         && nodes.reduce((most, node) => Math.max(most, view.sigma[node]), 0);
       const aside = moved && Math.hypot(moved[0], moved[1]);
-      return [name, fixed(position && -mean(position, 2), 1), fixed(aside, 1),
+      return [text(`flat.ring.${name}`), fixed(position && -mean(position, 2), 1), fixed(aside, 1),
         fixed(moved && moved[2], 1), fixed(sigma, 2)];
     });
-    const heads = ["Where", "Depth [m]", "Moved aside [m]", "Raised [m]", "σ [m]"];
     this.table.replaceChildren(
-      make("caption", { className: "unseen" }, "Where the net is, on average over each ring"),
-      make("thead", {}, make("tr", {}, ...heads.map((head) => make("th", { scope: "col" }, head)))),
+      make("caption", { className: "unseen" }, text("flat.caption")),
+      tableHead(["where", "depth", "aside", "raised", "sigma"].map((head) => text(`flat.heads.${head}`))),
       make("tbody", {}, ...rows.map(([name, ...cells]) => make("tr", {},
         make("th", { scope: "row" }, name), ...cells.map((cell) => make("td", {}, cell))))));
   }
@@ -176,7 +175,7 @@ function sketch({ topology, view, position, options, chosen }, project, kind) {
 /** The edge of the plan to which north is. */
 function north(topology) {
   const edge = Math.max(...topology.corner_position_m.map(([, y]) => y));
-  return [draw("text", { x: 0, y: -edge - 2, class: "flat-name" }, "N")];
+  return [draw("text", { x: 0, y: -edge - 2, class: "flat-name" }, compass(0))];
 }
 
 function mooring({ corner_position_m: corners }, project) {
@@ -205,7 +204,7 @@ function arrow(topology, water, project) {
     draw("line", { x1: from[0], y1: from[1], x2: to[0] - 2.4 * u, y2: to[1] - 2.4 * v }),
     draw("path", { d: head }),
     draw("text", { x: (from[0] + to[0]) / 2, y: Math.max(from[1], to[1]) + 4.5, class: "flat-name" },
-      fixed(water.current_speed_m_s, 2, "m/s")));
+      withUnit(water.current_speed_m_s, "m/s", 2)));
 }
 
 const short = (metres) => metres.toFixed(2);

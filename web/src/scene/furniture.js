@@ -1,6 +1,8 @@
 // What lies over the drawing: names, compass and scale bar.
 
 import { draw, make } from "../dom.js";
+import { compass as compassPoint } from "../panels/format.js";
+import { text } from "../texts/index.js";
 
 const BAR_PX = [60, 150];
 
@@ -12,18 +14,18 @@ export class Labels {
     holder.append(this.layer);
   }
 
-  /** Pin a text at a place on the screen [px], or hide it where `at` is null. */
-  pin(name, text, at) {
+  /** Pin words at a place on the screen [px], or hide them where `at` is null. */
+  pin(name, words, at) {
     let label = this.all.get(name);
     if (!label) {
       label = make("span", { className: `scene-label ${name}` });
       this.all.set(name, label);
       this.layer.append(label);
     }
-    label.hidden = !at || !text;
+    label.hidden = !at || !words;
     if (label.hidden) return;
-    if (label.textContent !== text) {
-      label.textContent = text;
+    if (label.textContent !== words) {
+      label.textContent = words;
       label.half = label.offsetWidth / 2 + 6;
     }
     // A name that is seen is seen whole.
@@ -40,9 +42,9 @@ export function compass(onClick) {
   const needle = draw("g", {},
     draw("path", { d: "M0 -15 L5 0 L0 -3.500 L-5 0 Z", class: "needle-north" }),
     draw("path", { d: "M0 15 L5 0 L0 3.500 L-5 0 Z", class: "needle-south" }),
-    draw("text", { y: -18, class: "needle-name" }, "N"));
+    draw("text", { y: -18, class: "needle-name" }, compassPoint(0)));
   const button = make("button", {
-    type: "button", className: "scene-compass", title: "Look north", "aria-label": "Look north",
+    type: "button", className: "scene-compass", title: text("scene.north"), "aria-label": text("scene.north"),
   }, draw("svg", { viewBox: "-30 -30 60 60", "aria-hidden": "true" },
     draw("circle", { r: 27, class: "compass-face" }), needle));
   button.addEventListener("click", onClick);

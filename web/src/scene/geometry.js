@@ -1,5 +1,8 @@
 // The net's geometry, as arrays: what the drawings in three and in two dimensions share.
 
+/** Below it the direction of a current says nothing [m/s]. */
+export const SLACK_M_S = 0.03;
+
 /** Triangles of the net, counter-clockwise seen from outside: rings × spokes and a tip. */
 export function triangles({ rings, spokes }) {
   const found = [];

@@ -1,31 +1,31 @@
-// What is said over the scene where there is no net to show, or where it is not what it seems.
+// Notice over the scene where there is no net to show, or where it is not the net of now.
 
 import { make } from "../dom.js";
+import { text } from "../texts/index.js";
 import { lasting } from "./words.js";
 
 /** Which notice a model calls for: {kind, title, words, retry} or null. */
 export function noticeFor({ connection, why, view }) {
   if (connection === "asking") return null; // the dialog asks
   if (connection === "refused") {
-    return { kind: "refused", title: "This cage cannot be shown", words: why };
+    return { kind: "refused", title: text("notice.refused"), words: why };
   }
   if (connection === "lost") {
-    return { kind: "lost", title: "No connection", words: view
-      ? `${why} What you see is the last that was received.` : why, retry: true };
+    return { kind: "lost", title: text("notice.lost"),
+      words: view ? text("notice.lastSeen", { why }) : why, retry: true };
   }
-  if (!view) return { kind: "connecting", title: "Connecting", words: "Asking for the cage’s shape." };
+  if (!view) return { kind: "connecting", title: text("connection.state.connecting"), words: text("notice.asking") };
   if (!view.state.valid) {
     const never = view.state.age_s === null;
     return {
       kind: never ? "empty" : "invalid",
-      title: never ? "Waiting for the first reading" : "No valid input",
-      words: `${view.state.reason || "No current has been measured yet."} The net is drawn as it ` +
-        "hangs in still water; nothing is predicted.",
+      title: never ? text("notice.empty") : text("verdict.invalid"),
+      words: text("notice.still", { reason: view.state.reason || text("notice.noCurrent") }),
     };
   }
   if (view.stale) {
-    return { kind: "stale", title: "Old input",
-      words: `The current was measured ${lasting(view.ageS)} ago. This is not the net as it is now.` };
+    return { kind: "stale", title: text("notice.stale"),
+      words: text("notice.staleFor", { age: lasting(view.ageS) }) };
   }
   return null;
 }
@@ -34,7 +34,7 @@ export function noticeFor({ connection, why, view }) {
 export function mountNotice(model, holder) {
   const title = make("strong");
   const words = make("p");
-  const retry = make("button", { type: "button", hidden: true }, "Try now");
+  const retry = make("button", { type: "button", hidden: true }, text("notice.retry"));
   const box = make("div", { className: "scene-notice", role: "status", hidden: true },
     make("span", { className: "notice-mark", "aria-hidden": "true" }), make("div", {}, title, words),
     retry);

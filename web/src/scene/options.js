@@ -1,5 +1,7 @@
 // What the reader chose to see, remembered by the browser.
 
+import { Observable } from "../observable.js";
+
 const KEY = "seacage-scene";
 const FIRST = {
   view: "3d", // or "flat"
@@ -9,10 +11,10 @@ const FIRST = {
   locked: true, // the scale of the loads reaches to the capacity, else to the largest load
 };
 
-/** The options, and who listens to them. */
-export class Options {
+/** The options; listeners are called with the name of what changed. */
+export class Options extends Observable {
   constructor() {
-    this.listeners = new Set();
+    super();
     let kept = {};
     try {
       kept = JSON.parse(localStorage.getItem(KEY)) ?? {};
@@ -24,16 +26,10 @@ export class Options {
     }
   }
 
-  /** Call `fn` with the name of what changed; the answer stops it. */
-  on(fn) {
-    this.listeners.add(fn);
-    return () => this.listeners.delete(fn);
-  }
-
   set(name, value) {
     this[name] = value;
     const kept = Object.fromEntries(Object.keys(FIRST).map((one) => [one, this[one]]));
     localStorage.setItem(KEY, JSON.stringify(kept));
-    for (const fn of this.listeners) fn(name);
+    this.notify(name);
   }
 }

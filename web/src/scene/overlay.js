@@ -1,11 +1,13 @@
 // What lies over the three-dimensional drawing, moved along with it.
 
+import { bearing, compass as compassPoint, withUnit } from "../panels/format.js";
+import { text } from "../texts/index.js";
 import { compass, Labels, scaleBar } from "./furniture.js";
 import { towards } from "./geometry.js";
 import { Tip } from "./tip.js";
-import { bearing, fixed, wordsFor } from "./words.js";
+import { wordsFor } from "./words.js";
 
-const POINTS = { N: 0, E: 90, S: 180, W: 270 };
+const POINTS = { N: 0, E: 90, S: 180, W: 270 }; // names of classes, too
 const OUTSIDE = 1.08; // the ring of the compass
 
 export class Overlay {
@@ -32,17 +34,17 @@ export class Overlay {
   #names({ sea, screen }) {
     for (const [name, degrees] of Object.entries(POINTS)) {
       const [x, y] = towards(degrees).map((one) => OUTSIDE * sea.ringRadius * one);
-      this.labels.pin(`point-${name}`, name, screen.at([x, y, 0]));
+      this.labels.pin(`point-${name}`, compassPoint(degrees), screen.at([x, y, 0]));
     }
   }
 
   #water({ arrows, screen, shown }) {
     const water = shown?.state.valid ? shown.state.water : null;
-    const pin = (name, arrow, place, text) =>
-      this.labels.pin(name, text, water && arrow.visible ? screen.at(place.toArray()) : null);
-    pin("current", arrows.currents[0], arrows.currentLabel, water
-      && `Current ${fixed(water.current_speed_m_s, 2, "m/s")} to ${bearing(water.current_to_deg)}`);
-    pin("waves", arrows.wave, arrows.waveLabel, water
-      && `Waves ${fixed(water.hs_m, 1, "m")} from ${bearing(water.wave_from_deg)}`);
+    const pin = (name, arrow, place, words) =>
+      this.labels.pin(name, words, water && arrow.visible ? screen.at(place.toArray()) : null);
+    pin("current", arrows.currents[0], arrows.currentLabel, water && text("scene.current",
+      { speed: withUnit(water.current_speed_m_s, "m/s", 2), direction: bearing(water.current_to_deg) }));
+    pin("waves", arrows.wave, arrows.waveLabel, water && text("scene.waves",
+      { height: withUnit(water.hs_m, "m"), direction: bearing(water.wave_from_deg) }));
   }
 }

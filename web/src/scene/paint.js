@@ -1,6 +1,7 @@
 // Which colour the net, the bridles and the sensors have.
 
 import { knownLoad } from "../known-load.js";
+import { text } from "../texts/index.js";
 import { styled, theme } from "../theme.js";
 import { alarmed, cssColour, scaleColour } from "./colours.js";
 import { movedBy } from "./geometry.js";
@@ -9,7 +10,7 @@ const NICE = [0.1, 0.2, 0.25, 0.5, 1, 2, 4, 6, 8, 10, 15, 20, 30, 50];
 const RANK = { critical: "--critical", warning: "--warning", note: "--note" };
 
 /** The end of a scale that holds the values: a round number. */
-export const roundEnd = (values) => {
+const roundEnd = (values) => {
   const most = values.reduce((a, b) => Math.max(a, b), 0);
   return NICE.find((one) => one >= most) ?? Math.ceil(most);
 };
@@ -44,7 +45,7 @@ export function sensorColour(view, name) {
 export function tintOf(topology, { position, sigma } = {}, { tint }) {
   if (tint === "plain" || !position || (tint === "sigma" && !sigma)) return null;
   const values = tint === "moved" ? movedBy(position, topology.rest) : sigma;
-  const name = tint === "moved" ? "Net moved from rest" : "Net uncertainty, σ";
+  const name = tint === "moved" ? text("scene.moved") : text("scene.sigma");
   return { values, end: roundEnd(values), unit: "m", name };
 }
 

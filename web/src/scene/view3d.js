@@ -5,6 +5,7 @@ import {
 } from "three";
 
 import { make, still } from "../dom.js";
+import { text } from "../texts/index.js";
 import { onTheme, styled, theme } from "../theme.js";
 import { Arrows } from "./arrows.js";
 import { extent } from "./geometry.js";
@@ -32,8 +33,7 @@ export class View3d {
     Object.assign(this, { model, options, holder });
     this.canvas = make("canvas", {
       id: "net", tabIndex: 0, role: "img",
-      "aria-label": "The net in three dimensions. Arrow keys turn it, plus and minus zoom, " +
-        "page up and page down step through bridles and sensors.",
+      "aria-label": text("scene.canvas"),
     });
     holder.append(this.canvas);
     this.renderer = new WebGLRenderer({ canvas: this.canvas, antialias: true, alpha: true });
@@ -128,7 +128,7 @@ export class View3d {
     this.envelop();
   }
 
-  /** Show where the net may be, where that is asked for and known. */
+  /** Show where the net may be, where that is chosen and known. */
   envelop() {
     this.net.shell.visible = this.options.shell && Boolean(this.shown?.sigma);
   }

@@ -21,7 +21,7 @@ test("a number has its decimals and a true minus", () => {
   assert.equal(withUnit(2, "m", 2), "2.00 m");
 });
 
-test("an interval is said by half its width, and not at all where an end is missing", () => {
+test("an interval is shown by half its width, and not at all where an end is missing", () => {
   assert.equal(half({ lower: 1, upper: 4 }), "± 1.5");
   assert.equal(half({ lower: null, upper: 4 }), "");
   assert.equal(half(undefined), "");
@@ -54,7 +54,7 @@ test("names lose their hyphens", () => {
   assert.equal(titled("bridle-12"), "Bridle 12");
 });
 
-test("extrapolating is not said twice", () => {
+test("extrapolating is not written twice", () => {
   assert.equal(beyond("Extrapolating: level 1 ends at 1 m/s."), "Level 1 ends at 1 m/s.");
   assert.match(beyond(""), /beyond what the twin has learned/);
 });

@@ -19,7 +19,7 @@ test("an alarm that was there before the span has its row", () => {
   assert.deepEqual(row, { name: "a", raised: 0, longestS: 60, state: "standing" });
 });
 
-test("one that stands and chatters is told so", () => {
+test("one that stands and chatters is shown as both", () => {
   const [row] = kpiRows({ raised: { a: 4 }, standing: { a: "x" }, longest_s: {}, chattering: ["a"] });
   assert.deepEqual([row.state, row.longestS], ["standing, chattering", null]);
 });

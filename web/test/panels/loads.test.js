@@ -60,7 +60,7 @@ test("a row says what twin, simulation and shackle say of a bridle", () => {
   assert.equal(largest([one, two]), 0.5);
 });
 
-test("a bridle that no shackle has taught has no interval, for nobody knows how far off it is", () => {
+test("a bridle that no shackle has trained has no interval, for its error is not known", () => {
   const [one] = loadRows(topology, state);
   assert.deepEqual([one.interval, one.lower, one.upper], [null, null, null]);
 });
@@ -118,7 +118,7 @@ test("a bridle of level 2 without an interval shows none, and says why", () => {
   assert.deepEqual([two.interval, two.lower, two.reason, two.within], [null, null, "No sensor.", false]);
 });
 
-test("a change has its sign, and none is said where a side is not known", () => {
+test("a change has its sign, and none is shown where a side is not known", () => {
   assert.equal(change(1, 3.04, 1), "+2.0");
   assert.equal(change(3, 1, 1), "−2.0");
   assert.equal(change(1, 1.01, 1), "no change");

@@ -54,7 +54,7 @@ test("without valid input the curves have a hole, not a number", () => {
   assert.equal(columns.bridles["bridle-1"].mean[2], null);
 });
 
-test("a reading counts once however often it is said, and a spike is taken back", () => {
+test("a reading counts once however often it comes, and a spike is taken back", () => {
   const columns = columnsOf(history());
   append(columns, state(120), 30);
   const again = state(122).sensors.map((one) => ({ ...one, measured_age_s: 7 }));
@@ -83,7 +83,7 @@ test("the twin's rows and the readings share one set of times", () => {
   assert.deepEqual([lower[0], upper[0], low[0]], [3, 7, 6]);
 });
 
-test("what no sensor has taught is drawn without an interval", () => {
+test("what no sensor has trained is drawn without an interval", () => {
   const columns = columnsOf(history());
   columns.bridles["bridle-1"].level = 1;
   const { lower, upper, mean } =
@@ -91,7 +91,7 @@ test("what no sensor has taught is drawn without an interval", () => {
   assert.deepEqual([lower, upper, mean], [[null, null], [null, null], [10, 20]]);
 });
 
-test("a curve is not drawn through a time of which the twin said nothing", () => {
+test("a curve is not drawn through a time for which the twin has no answer", () => {
   const columns = columnsOf(history());
   const [t, , , , , mean] =
     joined(rowsOf(columns, { key: "bridle:bridle-1", name: "bridle-1", sensor: null }), 30);

@@ -39,7 +39,7 @@ test("the worst is of those that wait", () => {
   assert.equal(worst([alarm("a"), alarm("b", { severity: 900 })]).id, "b");
 });
 
-test("what an alarm does is said in words", () => {
+test("the state of an alarm is written in words", () => {
   assert.equal(standing(alarm("a")), "active, not acknowledged");
   assert.equal(standing(alarm("a", { active: false })), "cleared, not acknowledged");
   assert.equal(standing(alarm("a", { shelved: true })), "shelved");
@@ -79,7 +79,7 @@ test("what an alarm is about has the worst rank of its alarms", () => {
   assert.equal(sourceOf("irregular.depth-2"), "depth-2");
 });
 
-test("an alarm's number is told only where it means something", () => {
+test("an alarm's number is shown only where it means something", () => {
   assert.equal(worth("load.bridle-3", 0.96), "96 %");
   assert.equal(worth("silent.buoy-1", 7200), "2 h");
   assert.equal(worth("irregular.depth-2", 9.1), "");

@@ -3,7 +3,7 @@ import { test } from "node:test";
 
 import { may, rights } from "../../src/panels/rights.js";
 
-test("scopes are told as what they allow, each where it holds", () => {
+test("scopes are shown as what they allow, each where it holds", () => {
   assert.equal(rights(["read", "ack:bay"]), "May look and handle alarms at bay.");
   assert.equal(rights(["read"]), "May look only.");
   assert.equal(rights(["read", "admin"]), "May do everything.");

@@ -14,7 +14,7 @@ test("only what the twin has learned can be chosen, a little beyond its range", 
   assert.deepEqual(choices({ inputs: [...current, ...waves] }).map(({ speed }) => speed.most), [1.29, 3.15]);
 });
 
-test("what the twin does not know is said", () => {
+test("what the twin has not learned is written", () => {
   assert.match(introduced({ inputs: current }), /^Move the current: .*Waves are not among/);
   assert.match(introduced({ inputs: [...current, ...waves] }), /^Move the current and waves: .*period goes/);
 });

@@ -28,7 +28,7 @@ test("with a silent sensor all is not well, and it is named", () => {
 const concern = (kind, title, message) => ({ kind, title, message });
 const VOLUME = concern("volume", "Volume low", "The net holds 71 % of its volume in still water; 80 % is the limit.");
 
-test("a net that has lost volume is not well, and the limit is said", () => {
+test("a net that has lost volume is not well, and the limit is shown", () => {
   const { kind, headline, detail } = now({ concerns: [VOLUME] });
   assert.deepEqual([kind, headline], ["caution", "Volume low"]);
   assert.match(detail, /80 % is the limit/);
@@ -79,20 +79,20 @@ test("without valid input nothing is well, and the reason is given", () => {
   assert.match(detail, /buoy-1 is silent\. Nothing is predicted\. 1 alarm\./);
 });
 
-test("a cage that never heard anything waits for a first reading", () => {
+test("a cage that never received anything waits for a first reading", () => {
   assert.equal(now({ valid: false, age_s: null }).headline, "Waiting for a first reading");
 });
 
-test("beyond what was learned is said, and alarms come first", () => {
+test("extrapolation is shown, and alarms come first", () => {
   assert.equal(now({ in_domain: false }).headline, "Extrapolating");
   const both = now({ in_domain: false, alarms: [alarm()] });
   assert.equal(both.headline, "1 alarm");
   assert.match(both.detail, /extrapolating/);
-  const said = now({ in_domain: false, alarms: [alarm({ id: "domain.input", title: "Water beyond" })] });
-  assert.equal(said.detail, "Water beyond.");
+  const verdictNow = now({ in_domain: false, alarms: [alarm({ id: "domain.input", title: "Water beyond" })] });
+  assert.equal(verdictNow.detail, "Water beyond.");
 });
 
-test("an alarm that went and waits to be seen is not told as if it were still so", () => {
+test("an alarm that went and waits to be seen is not shown as active", () => {
   const gone = alarm({ active: false, acknowledged: false, title: "Bridle 3 is heavily loaded" });
   assert.match(now({ alarms: [gone] }).detail, /^Bridle 3 is heavily loaded, over by now\.$/);
 });

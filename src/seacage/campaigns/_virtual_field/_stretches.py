@@ -12,7 +12,7 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.cage import Cage
-from seacage.campaigns._pool import available_cores, map_tasks, one_thread, report_progress
+from seacage.campaigns._pool import map_tasks, one_thread, report_progress
 from seacage.campaigns._virtual_field._timetable import Stretch, Timetable, side_by_side
 from seacage.campaigns._virtual_field._truth_parameters import TruthParameters
 from seacage.campaigns._virtual_field._weather import Weather
@@ -145,12 +145,12 @@ class StretchStore:
         """Whether a stretch is done."""
         return self._path(stretch).exists()
 
-    def keep(self, stretch: Stretch, simulate_group: Passed) -> None:
+    def keep(self, stretch: Stretch, passed: Passed) -> None:
         """Put a stretch in its place."""
         from safetensors.numpy import save
 
         # safetensors takes the memory as it lies
-        arrays = {name: np.ascontiguousarray(getattr(simulate_group, name)) for name in _NAMES}
+        arrays = {name: np.ascontiguousarray(getattr(passed, name)) for name in _NAMES}
         _write(self._path(stretch), save(arrays))
 
     def read(self, stretch: Stretch) -> Passed:
@@ -166,20 +166,14 @@ class StretchStore:
 
         path = self._path(stretch)
         try:
-            arrays = load(path.read_bytes())
-            position, head, tension, shape, lost = (arrays[name] for name in _NAMES)
+            found = load(path.read_bytes())
+            arrays = {name: found[name] for name in _NAMES}
         except (OSError, KeyError, SafetensorError) as error:
             raise RecordError(
                 f"{path}: this is no finished stretch ({error}). "
                 "Delete the file and run again: it will be simulated anew."
             ) from error
-        return Passed(
-            watched_position=position,
-            wave_head=head,
-            bridle_tension=tension,
-            shape=shape,
-            lost=bool(lost),
-        )
+        return Passed(**{**arrays, "lost": bool(arrays["lost"])})
 
     def _path(self, stretch: Stretch) -> Path:
         return self.folder / f"{stretch.first:08d}.safetensors"
@@ -226,12 +220,8 @@ def simulate_stretches(
     ]
     there = len(stretches) - len(missing)
     report(there)
-
-    def report_sum(since: float) -> None:
-        report(there + since)
-
     running = map_tasks(
-        simulate_group, groups, workers=workers or available_cores(), progress=report_sum
+        simulate_group, groups, workers=workers, progress=lambda since: report(there + since)
     )
     with closing(running) as finished:
         for group, answers in finished:
@@ -279,7 +269,7 @@ def _stretch_of_lane(followed: Followed, lane: int, weather: Weather) -> Passed:
     finite = all(np.isfinite(each).all() for each in (position, tension, shape))
     lost = not (finite and np.isnan(followed.lost_at[lane]))
     head = np.zeros(position.shape[:2])
-    if not (lost or _calm(weather, followed.time[lane, 0])):
+    if not lost and weather.waves(followed.time[lane, 0]).amplitude.size:
         head = weather.pressure_head(followed.time[lane], position)
     return Passed(
         watched_position=position.astype(np.float32),
@@ -288,10 +278,6 @@ def _stretch_of_lane(followed: Followed, lane: int, weather: Weather) -> Passed:
         shape=shape.astype(np.float32),
         lost=lost,
     )
-
-
-def _calm(weather: Weather, second: float) -> bool:
-    return not weather.waves(second).amplitude.size
 
 
 def _manifest(path: Path) -> dict[str, object]:

@@ -11,7 +11,7 @@ from jaxtyping import Float
 from seacage.cage import Cage
 from seacage.campaigns._cases import CaseBlock, Simulator, answer_block, software_version
 from seacage.campaigns._current import generated_current
-from seacage.campaigns._pool import available_cores, map_tasks
+from seacage.campaigns._pool import map_tasks
 from seacage.campaigns._virtual_field._truth_parameters import TruthParameters
 from seacage.campaigns._virtual_field._weather import current_at_cage
 from seacage.conventions import InputError, Progress, Result, compass, no_progress, towards
@@ -90,7 +90,7 @@ def true_shapes(
     position = np.full((len(reported), cage.node_count, 3), np.nan)
     report, done = progress or no_progress, 0
     blocks = _blocks(cage, moments)
-    running = map_tasks(answer_block, list(blocks), workers=workers or available_cores())
+    running = map_tasks(answer_block, list(blocks), workers=workers)
     with closing(running) as finished:
         for block, answers in finished:
             rows = blocks[block]

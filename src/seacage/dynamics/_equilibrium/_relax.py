@@ -1,12 +1,13 @@
 """To rest by dynamic relaxation: slow and sure, for cases that Newton's method does not finish."""
 
+from collections.abc import Callable
 from concurrent.futures import Executor
+from typing import TypeVar
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Float, Int
 
-from seacage.cage import Cage
-from seacage.dynamics._kernel import Relaxation, Relaxing, kernel
+from seacage.dynamics._kernel import Balancing, Relaxation, Relaxing, kernel
 from seacage.dynamics._parts import Assembly
 from seacage.dynamics._physics import SteadyFlow, total_net_force
 
@@ -23,12 +24,6 @@ LOST = 1e12
 """No cage bears such a force: the case has left the finite numbers [N]."""
 
 
-def hung_on_a_spoke(cage: Cage) -> float:
-    """Share of a spoke in what the tube and the tip weigh [N]."""
-    hung = cage.sinker_tube.weight * 2.0 * np.pi * cage.collar.radius + cage.tip.weight
-    return max(float(hung) / cage.spokes, 1.0)
-
-
 def start_relaxing(assembly: Assembly, flow: SteadyFlow) -> Relaxing:
     """Cases at rest in the design shape."""
     damping = _damping(assembly, flow)
@@ -39,28 +34,42 @@ def start_relaxing(assembly: Assembly, flow: SteadyFlow) -> Relaxing:
 def relax(
     assembly: Assembly, flow: SteadyFlow, state: Relaxing, relaxation: Relaxation, pool: Executor
 ) -> None:
-    """Relax the open cases. A done one leaves its lane to others; none sees who runs beside."""
+    """Relax the open cases."""
+
+    def step(some: Int[np.ndarray, " some"]) -> Relaxing:
+        return kernel().relax(
+            assembly, flow.rows(some), state.rows(some), relaxation, rounds=STRETCH
+        )
+
+    for _ in range(STRETCHES):
+        advance(state, step, relaxation.tolerance, pool)
+
+
+State = TypeVar("State", Relaxing, Balancing)
+
+
+def advance(
+    state: State,
+    step: Callable[[Int[np.ndarray, " some"]], State],
+    tolerance: float,
+    pool: Executor,
+) -> None:
+    """Advance the open cases. A done one leaves its lane to others; none sees who runs beside."""
     lanes = kernel().lanes
 
     def run(some: Int[np.ndarray, " some"]) -> None:
-        moved = kernel().relax(
-            assembly, flow.cases(some), state.cases(some), relaxation, rounds=STRETCH
-        )
-        state.take(some, moved)
+        state.take(some, step(some))
 
-    for _ in range(STRETCHES):
-        left = (state.residual > relaxation.tolerance) & (state.residual < LOST)
-        cases = np.flatnonzero(left)
-        list(pool.map(run, (cases[i : i + lanes] for i in range(0, len(cases), lanes))))
+    cases = np.flatnonzero((state.residual > tolerance) & (state.residual < LOST))
+    list(pool.map(run, (cases[i : i + lanes] for i in range(0, len(cases), lanes))))
 
 
-def relaxation_of(
-    cage: Cage, assembly: Assembly, *, free: Bool[np.ndarray, " node"], tolerance: float
-) -> Relaxation:
+def relaxation_of(assembly: Assembly, *, tolerance: float) -> Relaxation:
     """Settings of the relaxation that brings a cage to rest."""
-    soft = _soft_rates(cage, assembly)
+    soft = _soft_rates(assembly)
+    inverse_mass = 1.0 / _fictitious_mass(assembly, soft)
     return Relaxation(
-        inverse_mass=np.where(free, 1.0 / _fictitious_mass(assembly, soft), 0.0),
+        inverse_mass=np.where(assembly.fixed, 0.0, inverse_mass),
         soft_rate=soft,
         tolerance=tolerance,
         progress=0.9,
@@ -70,11 +79,11 @@ def relaxation_of(
     )
 
 
-def _soft_rates(cage: Cage, assembly: Assembly) -> Float[np.ndarray, " bar"]:
+def _soft_rates(assembly: Assembly) -> Float[np.ndarray, " bar"]:
     """Spring rates to relax with: the net's no stiffer than the shape needs [N/m]."""
     bars = assembly.bars
     true = bars.stiffness / bars.length
-    straightening = hung_on_a_spoke(cage) / np.mean(bars.length[: len(cage.edges)])
+    straightening = assembly.scales.force / assembly.scales.mesh
     soft = np.minimum(true, SOFTNESS * max(straightening, 1.0))
     soft[bars.pushed] = HOOP_SHARE * true[bars.pushed]
     soft[assembly.bridles] = true[assembly.bridles]
@@ -106,6 +115,10 @@ def _damping(assembly: Assembly, flow: SteadyFlow) -> Float[np.ndarray, " case"]
 
     Tuned on the reference cage: the slowest swing is then near critical damping.
     """
-    rigid = np.abs(total_net_force(assembly.panels, flow, assembly.position[None]))
-    load = np.linalg.norm(rigid, axis=1) / -np.sum(assembly.weight)
-    return np.minimum(0.01 + 0.05 * np.sqrt(load), 0.2)
+    return np.minimum(0.01 + 0.05 * np.sqrt(load_over_weight(assembly, flow)), 0.2)
+
+
+def load_over_weight(assembly: Assembly, flow: SteadyFlow) -> Float[np.ndarray, " case"]:
+    """The water's load on the design shape over all weights [-]."""
+    rigid = total_net_force(assembly.panels, flow, assembly.position[None])
+    return np.linalg.norm(rigid, axis=1) / -np.sum(assembly.weight)

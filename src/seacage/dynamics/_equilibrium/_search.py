@@ -6,19 +6,19 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from seacage.cage import Cage
 from seacage.conventions import Result
 from seacage.dynamics._equilibrium._newton import hooke
 from seacage.dynamics._equilibrium._relax import (
     LOST,
-    hung_on_a_spoke,
+    advance,
+    load_over_weight,
     relax,
     relaxation_of,
     start_relaxing,
 )
 from seacage.dynamics._kernel import Balance, Balancing, kernel
 from seacage.dynamics._parts import Assembly
-from seacage.dynamics._physics import SteadyFlow, total_net_force
+from seacage.dynamics._physics import SteadyFlow
 
 TOLERANCE = 0.5
 """Largest force left on any node of a settled cage [N]."""
@@ -55,13 +55,7 @@ class Equilibria:
 
 
 def equilibria(
-    cage: Cage,
-    assembly: Assembly,
-    flow: SteadyFlow,
-    *,
-    free: Bool[np.ndarray, " node"],
-    starts: int = 1,
-    workers: int = 1,
+    assembly: Assembly, flow: SteadyFlow, *, starts: int = 1, workers: int = 1
 ) -> Equilibria:
     """Seek an equilibrium of each case from each of so many first shapes.
 
@@ -70,12 +64,12 @@ def equilibria(
     """
     cases = len(flow.direction)
     problem_of = np.repeat(np.arange(cases), starts)
-    state = _start(cage, _first_shapes(assembly, flow, starts), assembly)
-    balance = _balance(cage, free)
+    state = _start(assembly, _first_shapes(assembly, flow, starts))
+    balance = _balance(assembly)
     with ThreadPoolExecutor(workers) as pool:
-        _seek(assembly, flow.cases(problem_of), state, balance, pool)
-        _relax_the_rest(cage, assembly, flow, state, balance, pool)
-    return _choose(cage, state, starts)
+        _seek(assembly, flow.rows(problem_of), state, balance, pool)
+        _relax_the_rest(assembly, flow, state, balance, pool)
+    return _choose(assembly, state, starts)
 
 
 def _first_shapes(
@@ -86,8 +80,7 @@ def _first_shapes(
     By the angle that the load asks for; not at all; nearly flat; and then aside, each the
     golden angle on from the last.
     """
-    rigid = total_net_force(assembly.panels, flow, assembly.position[None])
-    load = np.linalg.norm(rigid, axis=1) / -np.sum(assembly.weight)
+    load = load_over_weight(assembly, flow)
     still = np.all(flow.direction == 0.0, axis=1, keepdims=True)
     along = np.where(still, np.array([1.0, 0.0, 0.0]), flow.direction)
     shapes = []
@@ -116,60 +109,50 @@ def _swung(
     return shape
 
 
-def _start(
-    cage: Cage, position: Float[np.ndarray, "problem node 3"], assembly: Assembly
-) -> Balancing:
+def _start(assembly: Assembly, position: Float[np.ndarray, "problem node 3"]) -> Balancing:
     """All bars of the net taken to bear some of what hangs on a spoke."""
-    borne = 0.3 * hung_on_a_spoke(cage)
+    borne = 0.3 * assembly.scales.force
     tension = np.where(assembly.bars.pushed, 0.0, borne)
     return Balancing.begun(
         position,
         np.repeat(tension[None], len(position), axis=0),
         barrier=(0.1 * borne) ** 2,
-        shift=_shift(cage),
+        shift=_shift(assembly),
     )
 
 
-def _shift(cage: Cage) -> float:
+def _shift(assembly: Assembly) -> float:
     """Stiffness against swinging of a net that bears what hangs on it, for a start [N/m]."""
-    return 0.2 * hung_on_a_spoke(cage) / cage.collar.radius
+    return 0.2 * assembly.scales.force / assembly.scales.length
 
 
-def _balance(cage: Cage, free: Bool[np.ndarray, " node"]) -> Balance:
+def _balance(assembly: Assembly) -> Balance:
     return Balance(
-        free=free,
+        free=~assembly.fixed,
         tolerance=AIM,
-        reach=0.06 * cage.collar.radius,
+        reach=0.06 * assembly.scales.length,
         least_barrier=(0.3 * AIM) ** 2,
-        least_shift=3e-3 * _shift(cage),
-        most_shift=300.0 * _shift(cage),
+        least_shift=3e-3 * _shift(assembly),
+        most_shift=300.0 * _shift(assembly),
     )
 
 
 def _seek(
     assembly: Assembly, flow: SteadyFlow, state: Balancing, balance: Balance, pool: Executor
 ) -> None:
-    """Newton's method on all problems. A done one leaves its lane to others."""
-    lanes = kernel().lanes
+    """Newton's method on all problems."""
 
-    def run(some: Int[np.ndarray, " some"]) -> None:
-        moved = kernel().balance(
-            assembly, flow.cases(some), state.cases(some), balance, iterations=STRETCH
+    def step(some: Int[np.ndarray, " some"]) -> Balancing:
+        return kernel().balance(
+            assembly, flow.rows(some), state.rows(some), balance, iterations=STRETCH
         )
-        state.take(some, moved)
 
     for _ in range(0, MOST_ITERATIONS, STRETCH):
-        cases = np.flatnonzero((state.residual > AIM) & (state.residual < LOST))
-        list(pool.map(run, (cases[i : i + lanes] for i in range(0, len(cases), lanes))))
+        advance(state, step, AIM, pool)
 
 
 def _relax_the_rest(
-    cage: Cage,
-    assembly: Assembly,
-    flow: SteadyFlow,
-    state: Balancing,
-    balance: Balance,
-    pool: Executor,
+    assembly: Assembly, flow: SteadyFlow, state: Balancing, balance: Balance, pool: Executor
 ) -> None:
     """Relaxation, and Newton's method from where it ends, for cases without an equilibrium.
 
@@ -181,9 +164,9 @@ def _relax_the_rest(
     rest = np.flatnonzero(~settled)
     if len(rest) == 0:
         return
-    water = flow.cases(rest)
+    water = flow.rows(rest)
     relaxing = start_relaxing(assembly, water)
-    relaxation = relaxation_of(cage, assembly, free=balance.free, tolerance=TOLERANCE)
+    relaxation = relaxation_of(assembly, tolerance=TOLERANCE)
     found = Balancing.begun(
         relaxing.position, np.zeros_like(relaxing.carried), barrier=AIM, shift=balance.least_shift
     )
@@ -191,7 +174,7 @@ def _relax_the_rest(
         relax(assembly, water, relaxing, relaxation, pool)
         some = np.flatnonzero(~(found.residual <= TOLERANCE) & (relaxing.residual < LOST))
         sharper = _near(assembly, relaxing.position[some], balance)
-        _seek(assembly, water.cases(some), sharper, balance, pool)
+        _seek(assembly, water.rows(some), sharper, balance, pool)
         found.take(some, sharper)
     worse = ~(found.residual <= np.minimum(relaxing.residual, TOLERANCE))
     found.position[worse] = relaxing.position[worse]
@@ -211,7 +194,7 @@ def _near(
     return Balancing.begun(position.copy(), borne, barrier=1.0, shift=balance.least_shift)
 
 
-def _choose(cage: Cage, state: Balancing, starts: int) -> Equilibria:
+def _choose(assembly: Assembly, state: Balancing, starts: int) -> Equilibria:
     """The equilibrium to report of each case's problems, and the number of different ones."""
     shapes = state.position.reshape(-1, starts, *state.position.shape[1:])
     residual = state.residual.reshape(-1, starts)
@@ -223,7 +206,9 @@ def _choose(cage: Cage, state: Balancing, starts: int) -> Equilibria:
     lost = ~(left < LOST) | ~np.isfinite(position).all(axis=(1, 2))
     position[lost] = np.nan
     result = np.where(left <= TOLERANCE, Result.CONVERGED, Result.NOT_CONVERGED)
-    number, spread = _distinct(cage, shapes[:, :, : cage.node_count], residual)
+    number, spread = _distinct(
+        shapes[:, :, : assembly.cage_nodes], residual, APART * assembly.scales.length
+    )
     return Equilibria(
         position=position,
         residual=left,
@@ -235,11 +220,11 @@ def _choose(cage: Cage, state: Balancing, starts: int) -> Equilibria:
 
 
 def _distinct(
-    cage: Cage,
     shapes: Float[np.ndarray, "case start node 3"],
     residual: Float[np.ndarray, "case start"],
+    least: float,
 ) -> tuple[Int[np.ndarray, " case"], Float[np.ndarray, " case"]]:
-    """Number of different shapes among the converged, and their largest distance [m].
+    """Number of shapes at least so far apart among the converged, and their largest distance [m].
 
     Where half a newton is left, slack netting may still lie decimetres from its place.
     """
@@ -251,6 +236,6 @@ def _distinct(
         for other in range(one):
             apart = np.linalg.norm(shapes[:, one] - shapes[:, other], axis=-1).max(axis=-1)
             both = kept[:, one] & kept[:, other]
-            kept[:, one] &= ~(both & (apart <= APART * cage.collar.radius))
+            kept[:, one] &= ~(both & (apart <= least))
             spread = np.maximum(spread, np.where(kept[:, one] & kept[:, other], apart, 0.0))
     return kept.sum(axis=1), spread

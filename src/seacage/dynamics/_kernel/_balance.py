@@ -3,7 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Bool, Float
+
+from seacage.dynamics._parts import Rows
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -33,7 +35,7 @@ class Balance:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Balancing:
+class Balancing(Rows):
     """Cases on their way to balance. A copy can go on later, beside other cases.
 
     Attributes
@@ -86,12 +88,3 @@ class Balancing:
             iterations=0.0 * every,
             residual=1e11 * every,
         )
-
-    def cases(self, some: Int[np.ndarray, " some"]) -> "Balancing":
-        """Copies of some of the cases."""
-        return Balancing(**{name: getattr(self, name)[some] for name in self.__slots__})
-
-    def take(self, some: Int[np.ndarray, " some"], other: "Balancing") -> None:
-        """Take the state of some cases from elsewhere."""
-        for name in self.__slots__:
-            getattr(self, name)[some] = getattr(other, name)

@@ -1,6 +1,7 @@
 /* Forces for Python, and the way to rest by relaxation. */
 #include "_forces.h"
 #include "_isa.h"
+#include "_layout.h"
 
 int32_t seacage_lanes(void) { return LANES; }
 
@@ -93,3 +94,36 @@ void seacage_relax(const assembly *s, const flow *w, const relaxation *r, relaxi
         }
     }
 }
+
+/* --- layouts, for Python to compare with its own ---------------------------------------- */
+
+#define FIELD(name) LAYOUT_FIELD(assembly, name)
+const layout_row seacage_layout_assembly[] = {
+    FIELD(nodes), FIELD(bars), FIELD(bends), FIELD(panels), FIELD(cylinders), FIELD(floats),
+    FIELD(springs), FIELD(bar_ends), FIELD(bend_nodes), FIELD(panel_corners), FIELD(cylinder_ends),
+    FIELD(float_nodes), FIELD(spring_nodes), FIELD(weight), FIELD(bar_length), FIELD(bar_stiffness),
+    FIELD(bar_least), FIELD(bend_stiffness), FIELD(panel_share), FIELD(cylinder_width),
+    FIELD(float_stiffness), FIELD(float_draft), FIELD(float_height), FIELD(spring_place),
+    FIELD(spring_stiffness), FIELD(spring_preload), LAYOUT_END(assembly),
+};
+#undef FIELD
+
+#define FIELD(name) LAYOUT_FIELD(flow, name)
+const layout_row seacage_layout_flow[] = {
+    FIELD(direction), FIELD(panel), FIELD(pipe_pressure), LAYOUT_END(flow),
+};
+#undef FIELD
+
+#define FIELD(name) LAYOUT_FIELD(relaxation, name)
+const layout_row seacage_layout_relaxation[] = {
+    FIELD(inverse_mass), FIELD(soft_rate), FIELD(true_rate), FIELD(tolerance), FIELD(progress),
+    FIELD(most_damping), FIELD(patience), FIELD(steps), FIELD(rounds), LAYOUT_END(relaxation),
+};
+#undef FIELD
+
+#define FIELD(name) LAYOUT_FIELD(relaxing, name)
+const layout_row seacage_layout_relaxing[] = {
+    FIELD(position), FIELD(velocity), FIELD(carried), FIELD(damping), FIELD(best), FIELD(stalled),
+    FIELD(rounds), FIELD(residual), LAYOUT_END(relaxing),
+};
+#undef FIELD

@@ -7,86 +7,35 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
+from typing import Any, TypeVar
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Float
 
 from seacage.conventions import SeacageError
 from seacage.dynamics._kernel._balance import Balance, Balancing
 from seacage.dynamics._kernel._sparsity import Pattern
-from seacage.dynamics._kernel._struct import DOUBLES, INTEGERS, Struct, pointer
-from seacage.dynamics._parts import Assembly
+from seacage.dynamics._kernel._structs import (
+    STRUCTS,
+    AssemblyStruct,
+    BalanceStruct,
+    BalancingStruct,
+    BenchStruct,
+    FlowStruct,
+    PatternStruct,
+    RelaxationStruct,
+    RelaxingStruct,
+    Struct,
+    by_name,
+    check_layout,
+    pointer,
+)
+from seacage.dynamics._parts import Assembly, Rows
 from seacage.dynamics._physics import SteadyFlow
 
 SUFFIX = {"Darwin": ".dylib", "Windows": ".dll"}.get(platform.system(), ".so")
 LEVELS = {"native": 0, "x86-64-v4": 4, "x86-64-v3": 3, "x86-64-v2": 2}
 """The kernels that the build can make, best first, and the level of processor that each needs."""
-
-
-class _Assembly(Struct):
-    _fields_ = (
-        *((name, ctypes.c_int32) for name in ("nodes", "bars", "bends", "panels")),
-        *((name, ctypes.c_int32) for name in ("cylinders", "floats", "springs")),
-        *((name, INTEGERS) for name in ("bar_ends", "bend_nodes", "panel_corners")),
-        *((name, INTEGERS) for name in ("cylinder_ends", "float_nodes", "spring_nodes")),
-        *((name, DOUBLES) for name in ("weight", "bar_length", "bar_stiffness", "bar_least")),
-        *((name, DOUBLES) for name in ("bend_stiffness", "panel_share", "cylinder_width")),
-        *((name, DOUBLES) for name in ("float_stiffness", "float_draft", "float_height")),
-        *((name, DOUBLES) for name in ("spring_place", "spring_stiffness", "spring_preload")),
-    )
-
-
-class _Flow(Struct):
-    _fields_ = tuple((name, DOUBLES) for name in ("direction", "panel", "pipe_pressure"))
-
-
-class _Relaxation(Struct):
-    _fields_ = (
-        *((name, DOUBLES) for name in ("inverse_mass", "soft_rate", "true_rate")),
-        *((name, ctypes.c_double) for name in ("tolerance", "progress", "most_damping")),
-        *((name, ctypes.c_int32) for name in ("patience", "steps", "rounds")),
-    )
-
-
-class _Relaxing(Struct):
-    _fields_ = tuple(
-        (name, DOUBLES)
-        for name in (
-            *("position", "velocity", "carried"),
-            *("damping", "best", "stalled", "rounds", "residual"),
-        )
-    )
-
-
-class _Pattern(Struct):
-    _fields_ = tuple(
-        (name, INTEGERS)
-        for name in (
-            *("row", "diagonal", "column", "order"),
-            *("bars", "bends", "panels", "floats", "springs"),
-        )
-    )
-
-
-class _Balance(Struct):
-    _fields_ = (
-        *((name, DOUBLES) for name in ("free", "true_rate")),
-        *((name, ctypes.c_double) for name in ("tolerance", "reach", "least_barrier")),
-        *((name, ctypes.c_double) for name in ("least_shift", "most_shift")),
-        ("iterations", ctypes.c_int32),
-    )
-
-
-class _Balancing(Struct):
-    _fields_ = tuple((name, DOUBLES) for name in Balancing.__slots__)
-
-
-class _Bench(Struct):
-    _fields_ = (
-        *((name, DOUBLES) for name in ("truth", "force", "step")),
-        *((name, DOUBLES) for name in ("zero", "tension", "bar", "blocks")),
-        ("place", INTEGERS),
-    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -118,7 +67,7 @@ class Relaxation:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Relaxing:
+class Relaxing(Rows):
     """Cases on their way to rest. A copy can go on later, beside other cases.
 
     ``best``, ``stalled`` and ``rounds`` are the kernel's own account of each case.
@@ -153,44 +102,23 @@ class Relaxing:
             residual=much.copy(),
         )
 
-    def cases(self, some: Int[np.ndarray, " some"]) -> "Relaxing":
-        """Copies of some of the cases."""
-        return Relaxing(**{name: getattr(self, name)[some] for name in self.__slots__})
-
-    def take(self, some: Int[np.ndarray, " some"], other: "Relaxing") -> None:
-        """Take the state of some cases from elsewhere."""
-        for name in self.__slots__:
-            getattr(self, name)[some] = getattr(other, name)
-
 
 class Kernel:
-    """One loaded library; a call releases the interpreter, so threads run side by side."""
+    """One loaded library; a call releases the interpreter, so threads run side by side.
+
+    Raises
+    ------
+    SeacageError
+        A library whose structs are not those of this version.
+    """
 
     def __init__(self, path: Path) -> None:
         self.library = ctypes.CDLL(str(path))
+        for struct in STRUCTS:
+            check_layout(self.library, struct)
         self.lanes: int = self.library.seacage_lanes()
-        self.library.seacage_forces.restype = None
-        self.library.seacage_relax.restype = None
-        self.library.seacage_balance.restype = None
-
-    def forces(
-        self, assembly: Assembly, flow: SteadyFlow, position: Float[np.ndarray, "case node 3"]
-    ) -> Float[np.ndarray, "case node 3"]:
-        """All nodal forces, as ``nodal_force`` defines them, for at most ``lanes`` cases [N]."""
-        rate = assembly.bars.stiffness / assembly.bars.length
-        nothing = np.zeros((len(rate), self.lanes))
-        laned = self.to_lanes(position)
-        force = np.zeros_like(laned)
-        self.library.seacage_forces(
-            ctypes.byref(_assembly(assembly)),
-            ctypes.byref(self.flow(flow)),
-            pointer(rate),
-            pointer(nothing),
-            pointer(np.empty_like(nothing)),
-            pointer(laned),
-            pointer(force),
-        )
-        return np.moveaxis(force, -1, 0)[: len(position)]
+        for name in ("forces", "relax", "balance", "march", "march_forces", "march_water"):
+            getattr(self.library, f"seacage_{name}").restype = None
 
     def relax(
         self,
@@ -202,30 +130,15 @@ class Kernel:
         rounds: int,
     ) -> Relaxing:
         """At most ``lanes`` cases, so many rounds nearer to rest."""
-        rate = assembly.bars.stiffness / assembly.bars.length
-        r = relaxation
-        laned = [self.to_lanes(getattr(state, name)) for name in Relaxing.__slots__]
-        position = laned[0]
+        rate, laned = bar_rate(assembly), self._state(RelaxingStruct, state)
+        settings = RelaxationStruct.filled(**by_name(relaxation), true_rate=rate, rounds=rounds)
         self.library.seacage_relax(
-            ctypes.byref(_assembly(assembly)),
-            ctypes.byref(self.flow(flow)),
-            ctypes.byref(
-                _Relaxation.filled(
-                    *(r.inverse_mass, r.soft_rate, rate, r.tolerance, r.progress),
-                    *(r.most_damping, r.patience, r.steps, rounds),
-                )
-            ),
-            ctypes.byref(_Relaxing.filled(*laned)),
+            *self.problem(assembly, flow),
+            *map(ctypes.byref, (settings, laned)),
             pointer(np.empty((len(rate), self.lanes))),
-            pointer(np.empty_like(position)),
+            pointer(np.empty_like(laned.arrays["position"])),
         )
-        cases = len(state.damping)
-        return Relaxing(
-            **{
-                name: np.moveaxis(values, -1, 0)[:cases]
-                for name, values in zip(Relaxing.__slots__, laned, strict=True)
-            }
-        )
+        return _cases(laned, state)
 
     def balance(
         self,
@@ -237,49 +150,48 @@ class Kernel:
         iterations: int,
     ) -> Balancing:
         """At most ``lanes`` cases, so many iterations of ``nearer`` further on."""
-        bars = assembly.bars
-        pattern = Pattern.of(assembly)
-        laned = [self.to_lanes(getattr(state, name)) for name in Balancing.__slots__]
-        self.library.seacage_balance(
-            ctypes.byref(_assembly(assembly)),
-            ctypes.byref(self.flow(flow)),
-            ctypes.byref(_Pattern.filled(*(getattr(pattern, n) for n in Pattern.__slots__))),
-            ctypes.byref(
-                _Balance.filled(
-                    *(balance.free.astype(np.float64), bars.stiffness / bars.length),
-                    *(balance.tolerance, balance.reach, balance.least_barrier),
-                    *(balance.least_shift, balance.most_shift, iterations),
-                )
+        pattern, laned = Pattern.of(assembly), self._state(BalancingStruct, state)
+        structs = (
+            PatternStruct.filled(**by_name(pattern)),
+            BalanceStruct.cast(
+                **by_name(balance), true_rate=bar_rate(assembly), iterations=iterations
             ),
-            ctypes.byref(_Balancing.filled(*laned)),
-            ctypes.byref(self._bench(len(assembly.position), len(bars.length), pattern)),
+            laned,
+            self.bench(len(assembly.position), len(assembly.bars.length), pattern),
         )
-        cases = len(state.residual)
-        return Balancing(
-            **{
-                name: np.moveaxis(values, -1, 0)[:cases]
-                for name, values in zip(Balancing.__slots__, laned, strict=True)
-            }
+        self.library.seacage_balance(*self.problem(assembly, flow), *map(ctypes.byref, structs))
+        return _cases(laned, state)
+
+    def bench(self, nodes: int, bars: int, pattern: Pattern) -> Struct:
+        """Room for Newton's method to work in."""
+        shapes = dict.fromkeys(("truth", "force", "step"), (nodes, 3)) | {
+            "tension": (bars,),
+            "bar": (bars, 6),
+            "blocks": (len(pattern.column), 9),
+        }
+        return BenchStruct.filled(
+            zero=np.zeros((bars, self.lanes)),
+            place=np.empty((2, nodes), dtype=np.int32),
+            **{name: np.empty((*shape, self.lanes)) for name, shape in shapes.items()},
         )
 
-    def _bench(self, nodes: int, bars: int, pattern: Pattern) -> Struct:
-        """Room for the kernel to work in."""
-        return _Bench.filled(
-            *(np.empty((nodes, 3, self.lanes)) for _ in range(3)),
-            np.zeros((bars, self.lanes)),
-            np.empty((bars, self.lanes)),
-            np.empty((bars, 6, self.lanes)),
-            np.empty((len(pattern.column), 9, self.lanes)),
-            np.empty((2, nodes), dtype=np.int32),
-        )
-
-    def flow(self, flow: SteadyFlow) -> Struct:
-        """The flow as the kernel reads it."""
+    def problem(self, assembly: Assembly, flow: SteadyFlow) -> tuple[Any, Any]:
+        """A cage and its water as the kernel reads them."""
         panel = np.stack(
             [flow.pressure, flow.constant, flow.slope, flow.third, flow.lift, flow.lift_second],
             axis=-1,
         )
-        return _Flow.filled(*map(self.to_lanes, (flow.direction, panel, flow.pipe_pressure)))
+        arrays = {"direction": flow.direction, "panel": panel, "pipe_pressure": flow.pipe_pressure}
+        structure = AssemblyStruct.cast(
+            bar_stiffness=assembly.bars.stiffness,
+            cylinder_width=assembly.cylinders.drag_width,
+            **parts_of(assembly),
+        )
+        water = FlowStruct.filled(**{name: self.to_lanes(each) for name, each in arrays.items()})
+        return ctypes.byref(structure), ctypes.byref(water)
+
+    def _state(self, kind: type[Struct], state: Relaxing | Balancing) -> Struct:
+        return kind.filled(**{name: self.to_lanes(each) for name, each in by_name(state).items()})
 
     def to_lanes(
         self, values: Float[np.ndarray, "case *shape"]
@@ -289,46 +201,51 @@ class Kernel:
         return np.ascontiguousarray(np.moveaxis(np.concatenate([values, spare]), 0, -1))
 
 
-def _assembly(assembly: Assembly) -> Struct:
+State = TypeVar("State", Relaxing, Balancing)
+
+
+def _cases(laned: Struct, like: State) -> State:
+    """The state that the kernel left, of as many cases as it began with."""
+    cases = len(like.residual)
+    return type(like)(
+        **{name: np.moveaxis(each, -1, 0)[:cases] for name, each in laned.arrays.items()}
+    )
+
+
+def bar_rate(assembly: Assembly) -> Float[np.ndarray, " bar"]:
+    """True spring rate of each bar [N/m]."""
+    return assembly.bars.stiffness / assembly.bars.length
+
+
+def parts_of(assembly: Assembly) -> dict[str, Any]:
+    """Numbers of an assembly that equilibria and march both need, as C names them."""
     a = assembly
-    counts = (
-        len(part)
-        for part in (
-            a.position,
-            a.bars.length,
-            a.bends.stiffness,
-            a.panels.solidity,
-            a.cylinders.drag_width,
-            a.floats.draft,
-            a.springs.nodes,
-        )
-    )
-    indices: Sequence[np.ndarray] = (
-        a.bars.ends,
-        a.bends.nodes,
-        a.panels.corners,
-        a.cylinders.ends,
-        a.floats.nodes,
-        a.springs.nodes,
-    )
-    least = np.where(a.bars.pushed, -np.inf, 0.0)
-    return _Assembly.filled(
-        *counts,
-        *(index.astype(np.int32) for index in indices),
-        a.weight,
-        a.bars.length,
-        a.bars.stiffness,
-        least,
-        a.bends.stiffness,
-        a.panels.share,
-        a.cylinders.drag_width,
-        a.floats.stiffness,
-        a.floats.draft,
-        a.floats.height,
-        a.position[a.springs.nodes],
-        a.springs.stiffness,
-        a.springs.preload,
-    )
+    return {
+        "nodes": len(a.position),
+        "bars": len(a.bars.length),
+        "bends": len(a.bends.stiffness),
+        "panels": len(a.panels.area),
+        "cylinders": len(a.cylinders.drag_width),
+        "floats": len(a.floats.nodes),
+        "springs": len(a.springs.nodes),
+        "bar_ends": a.bars.ends,
+        "bend_nodes": a.bends.nodes,
+        "panel_corners": a.panels.corners,
+        "cylinder_ends": a.cylinders.ends,
+        "float_nodes": a.floats.nodes,
+        "spring_nodes": a.springs.nodes,
+        "weight": a.weight,
+        "bar_length": a.bars.length,
+        "bar_least": np.where(a.bars.pushed, -np.inf, 0.0),
+        "bend_stiffness": a.bends.stiffness,
+        "panel_share": a.panels.share,
+        "float_stiffness": a.floats.stiffness,
+        "float_draft": a.floats.draft,
+        "float_height": a.floats.height,
+        "spring_place": a.position[a.springs.nodes],
+        "spring_stiffness": a.springs.stiffness,
+        "spring_preload": a.springs.preload,
+    }
 
 
 @lru_cache(maxsize=1)

@@ -9,6 +9,7 @@
  * `refresh` seconds, for where they will be, and runs straight in between; so do the
  * coefficients that depend on the Reynolds number, which are held.
  */
+#include "_layout.h"
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
@@ -826,3 +827,58 @@ void seacage_march(const body *b, const netting *net, const sea *w, const schedu
         give_up_lost(b, s, now + interval);
     }
 }
+
+/* --- layouts, for Python to compare with its own ---------------------------------------- */
+
+#define FIELD(name) LAYOUT_FIELD(body, name)
+const layout_row seacage_layout_body[] = {
+    FIELD(nodes), FIELD(bars), FIELD(bends), FIELD(panels), FIELD(cylinders), FIELD(floats),
+    FIELD(springs), FIELD(grounds), FIELD(bridles), FIELD(bar_ends), FIELD(bend_nodes),
+    FIELD(panel_corners), FIELD(cylinder_ends), FIELD(float_nodes), FIELD(spring_nodes),
+    FIELD(ground_nodes), FIELD(bridle_bars), FIELD(weight), FIELD(mass), FIELD(water_mass),
+    FIELD(place), FIELD(bar_length), FIELD(bar_rate), FIELD(bar_damping), FIELD(bar_least),
+    FIELD(bend_stiffness), FIELD(panel_share), FIELD(panel_mass), FIELD(cylinder_drag),
+    FIELD(cylinder_skin), FIELD(float_stiffness), FIELD(float_draft), FIELD(float_height),
+    FIELD(spring_place), FIELD(spring_stiffness), FIELD(spring_preload), FIELD(spring_damping),
+    FIELD(ground_stiffness), FIELD(cylinder_series), FIELD(ground_level), LAYOUT_END(body),
+};
+#undef FIELD
+
+#define FIELD(name) LAYOUT_FIELD(netting, name)
+const layout_row seacage_layout_netting[] = {
+    FIELD(kind), FIELD(law), FIELD(drag_factor), FIELD(wake), FIELD(all), LAYOUT_END(netting),
+};
+#undef FIELD
+
+#define FIELD(name) LAYOUT_FIELD(sea, name)
+const layout_row seacage_layout_sea[] = {
+    FIELD(components), FIELD(levels), FIELD(turns), FIELD(turns_per_second), FIELD(east),
+    FIELD(north), FIELD(decay), FIELD(amplitude), FIELD(along_x), FIELD(along_y), FIELD(up),
+    FIELD(floor), FIELD(bounce), FIELD(level_z), FIELD(current), FIELD(depth), LAYOUT_END(sea),
+};
+#undef FIELD
+
+#define FIELD(name) LAYOUT_FIELD(schedule, name)
+const layout_row seacage_layout_schedule[] = {
+    FIELD(time_step), FIELD(ramp), FIELD(first), FIELD(refreshes), FIELD(count_from),
+    FIELD(sample_every), FIELD(steps), FIELD(hold), LAYOUT_END(schedule),
+};
+#undef FIELD
+
+#define FIELD(name) LAYOUT_FIELD(state, name)
+const layout_row seacage_layout_state[] = {
+    FIELD(position), FIELD(rest), FIELD(velocity), FIELD(water), FIELD(slope), FIELD(current),
+    FIELD(relative), FIELD(force), FIELD(base), FIELD(held), FIELD(drag), FIELD(elevation),
+    FIELD(rise), FIELD(panel_current), FIELD(panel_drag), FIELD(panel_lift), FIELD(lost_at),
+    LAYOUT_END(state),
+};
+#undef FIELD
+
+#define FIELD(name) LAYOUT_FIELD(record, name)
+const layout_row seacage_layout_record[] = {
+    FIELD(node_sum), FIELD(node_square), FIELD(node_least), FIELD(node_most), FIELD(bridle_sum),
+    FIELD(bridle_square), FIELD(bridle_least), FIELD(bridle_most), FIELD(load_sum),
+    FIELD(load_square), FIELD(load_least), FIELD(load_most), FIELD(counted), FIELD(sampled),
+    FIELD(positions), FIELD(tensions), FIELD(elevations), FIELD(loads), LAYOUT_END(record),
+};
+#undef FIELD

@@ -8,56 +8,24 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.conventions import InputError
+from seacage.dynamics._kernel._library import kernel
 from seacage.dynamics._kernel._march_inputs import (
     Ocean,
     body_of,
     cache_zeros,
     from_lanes,
-    marching,
     netting_of,
     sea_tables,
     simulation_lanes,
     to_lanes,
 )
-from seacage.dynamics._kernel._struct import DOUBLES, FLOATS, LONGS, Struct, pointer
-from seacage.dynamics._parts import Assembly, Bars
-from seacage.dynamics._physics import NetLaw, Water, damped_tension
+from seacage.dynamics._kernel._structs import RecordStruct, ScheduleStruct, StateStruct
+from seacage.dynamics._parts import Assembly
+from seacage.dynamics._physics import NetLaw, damped_tension
 from seacage.ocean import Waves
 
 REFRESH = 0.1
 """Between two looks at the water [s]."""
-
-
-class _Schedule(Struct):
-    _fields_ = (
-        *((n, ctypes.c_double) for n in ("time_step", "ramp")),
-        *((n, ctypes.c_int64) for n in ("first", "refreshes", "count_from", "sample_every")),
-        *((n, ctypes.c_int32) for n in ("steps", "hold")),
-    )
-
-
-class _State(Struct):
-    _fields_ = tuple(
-        (n, FLOATS)
-        for n in (
-            *("position", "rest", "velocity", "water", "slope", "current", "relative"),
-            *("force", "base", "held", "drag", "elevation", "rise", "panel_current"),
-            *("panel_drag", "panel_lift", "lost_at"),
-        )
-    )
-
-
-class _Record(Struct):
-    _fields_ = (
-        *((n, DOUBLES) for n in ("node_sum", "node_square")),
-        *((n, FLOATS) for n in ("node_least", "node_most")),
-        *((n, DOUBLES) for n in ("bridle_sum", "bridle_square")),
-        *((n, FLOATS) for n in ("bridle_least", "bridle_most")),
-        *((n, DOUBLES) for n in ("load_sum", "load_square")),
-        *((n, FLOATS) for n in ("load_least", "load_most")),
-        *((n, LONGS) for n in ("counted", "sampled")),
-        *((n, FLOATS) for n in ("positions", "tensions", "elevations", "loads")),
-    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -89,6 +57,11 @@ class Steps:
     sample_every: int
 
     @property
+    def whole(self) -> int:
+        """Refreshes of the whole march."""
+        return self.spin_up + self.counted
+
+    @property
     def samples(self) -> int:
         """Number of samples in the whole march."""
         return -(-self.counted // self.sample_every) if self.sample_every else 0
@@ -115,7 +88,7 @@ class March:
         self._body = body_of(assembly)
         self._net = netting_of(assembly, law)
         self._sea = sea_tables(ocean)
-        self._motion = _motion(assembly, to_lanes(position))
+        self._motion = motion_of(assembly, to_lanes(position))
         lanes, bridles = simulation_lanes(), len(assembly.bridles)
         sizes = {"node": (3 * nodes, lanes), "bridle": (bridles, lanes), "load": (3, lanes)}
         self.account = {
@@ -138,14 +111,14 @@ class March:
             name: np.empty((steps.samples, *shape, lanes), np.float32)
             for name, shape in shapes.items()
         }
-        self._record = _Record.filled(**self.account, **self.samples)
+        self._record = RecordStruct.filled(**self.account, **self.samples)
 
     def go(self, refreshes: int) -> None:
         """Move on by so many refreshes."""
         steps = self.steps
-        room = steps.spin_up + steps.counted - self.refreshed
+        room = steps.whole - self.refreshed
         assert not steps.sample_every or refreshes <= room, "samples would go beyond their room"
-        schedule = _Schedule.filled(
+        schedule = ScheduleStruct.filled(
             time_step=steps.time_step,
             ramp=steps.ramp,
             first=self.refreshed,
@@ -155,7 +128,7 @@ class March:
             steps=steps.each,
             hold=steps.hold,
         )
-        marching().seacage_march(
+        kernel().library.seacage_march(
             *map(
                 ctypes.byref,
                 (self._body, self._net, self._sea, schedule, self._motion, self._record),
@@ -215,9 +188,9 @@ class March:
     def tension(self) -> Float[np.ndarray, "case bridle"]:
         """Present tension of the bridles [N]."""
         assembly = self._assembly
-        some = {n: getattr(assembly.bars, n)[assembly.bridles] for n in Bars.__slots__}
-        nodes, ends = np.unique(some["ends"], return_inverse=True)
-        bridles = Bars(**some | {"ends": ends.reshape(-1, 2)})
+        bridles = assembly.bars.rows(assembly.bridles)
+        nodes, ends = np.unique(bridles.ends, return_inverse=True)
+        bridles = replace(bridles, ends=ends.reshape(-1, 2))
         at, moving = self._of("position", nodes), self._of("velocity", nodes)
         return damped_tension(bridles, assembly.mass[nodes], at, moving)
 
@@ -238,51 +211,8 @@ def _counts(assembly: Assembly) -> str:
     return f"{nodes} nodes, {panels} panels, {floats} floats and {bridles} bridles"
 
 
-def kernel_force(
-    assembly: Assembly,
-    law: NetLaw,
-    water: Water,
-    position: Float[np.ndarray, "case node 3"],
-    velocity: Float[np.ndarray, "case node 3"],
-) -> Float[np.ndarray, "case node 3"]:
-    """All forces as the kernel computes them, for at most a vector of cases [N]."""
-    cases = len(position)
-    motion = _motion(assembly, to_lanes(position))
-    motion.arrays["velocity"][:] = to_lanes(velocity)
-    motion.arrays["water"][:] = to_lanes(water.velocity)
-    motion.arrays["current"][:] = to_lanes(water.current)
-    motion.arrays["elevation"][:] = to_lanes(water.elevation[:, assembly.floats.nodes])
-    inertia = assembly.water_mass[:, None] * water.acceleration
-    inertia[..., 2] += assembly.weight
-    motion.arrays["base"][:] = to_lanes(inertia)
-    total = np.zeros((3, simulation_lanes()), np.float32)
-    marching().seacage_march_forces(
-        *map(ctypes.byref, (body_of(assembly), netting_of(assembly, law), motion)),
-        pointer(total),
-    )
-    return from_lanes(motion.arrays["force"])[:cases].astype(np.float64)
-
-
-def kernel_water(
-    waves: Sequence[Waves], position: Float[np.ndarray, "case 3"], time: float
-) -> tuple[Float[np.ndarray, " case"], Float[np.ndarray, "case 3"]]:
-    """Surface [m] and wave velocity [m/s] at one place for each case, as the kernel has them."""
-    cases, lanes = len(waves), simulation_lanes()
-    ocean = Ocean(
-        waves=waves, current=np.zeros((cases, 1, 2)), level_z=np.zeros(1), depth=waves[0].depth
-    )
-    elevation, velocity = np.zeros(lanes, np.float32), np.zeros((3, lanes), np.float32)
-    marching().seacage_march_water(
-        ctypes.byref(sea_tables(ocean)),
-        pointer(to_lanes(position)),
-        ctypes.c_double(time),
-        pointer(elevation),
-        pointer(velocity),
-    )
-    return elevation[:cases].astype(np.float64), velocity.T[:cases].astype(np.float64)
-
-
-def _motion(assembly: Assembly, position: Float[np.ndarray, "node 3 lane"]) -> _State:
+def motion_of(assembly: Assembly, position: Float[np.ndarray, "node 3 lane"]) -> StateStruct:
+    """Nodes at rest in still water, as the kernel keeps them."""
     lanes, nodes = simulation_lanes(), len(position)
     panels, floats = len(assembly.panels.area), len(assembly.floats.nodes)
     nodal = ("rest", "velocity", "water", "slope", "current", "relative", "force", "base", "held")
@@ -296,4 +226,4 @@ def _motion(assembly: Assembly, position: Float[np.ndarray, "node 3 lane"]) -> _
     }
     arrays = {name: cache_zeros((*shape, lanes)) for name, shape in shapes.items()}
     lost_at = np.full(lanes, -1.0, np.float32)
-    return _State.filled(position=position, **arrays, lost_at=lost_at)
+    return StateStruct.filled(position=position, **arrays, lost_at=lost_at)

@@ -6,6 +6,7 @@
  * diagonal keeps the elimination sound, and what it loses in accuracy the next iteration mends.
  */
 #include "_forces.h"
+#include "_layout.h"
 
 #define HELD 1e15 /* stiffness that holds a node where it is [N/m] */
 
@@ -472,3 +473,33 @@ void seacage_balance(const assembly *s, const flow *f, const pattern *p, const b
         adapt(r, b, open, share, far);
     }
 }
+
+/* --- layouts, for Python to compare with its own ---------------------------------------- */
+
+#define FIELD(name) LAYOUT_FIELD(pattern, name)
+const layout_row seacage_layout_pattern[] = {
+    FIELD(row), FIELD(diagonal), FIELD(column), FIELD(order), FIELD(bars), FIELD(bends),
+    FIELD(panels), FIELD(floats), FIELD(springs), LAYOUT_END(pattern),
+};
+#undef FIELD
+
+#define FIELD(name) LAYOUT_FIELD(balance, name)
+const layout_row seacage_layout_balance[] = {
+    FIELD(free), FIELD(true_rate), FIELD(tolerance), FIELD(reach), FIELD(least_barrier),
+    FIELD(least_shift), FIELD(most_shift), FIELD(iterations), LAYOUT_END(balance),
+};
+#undef FIELD
+
+#define FIELD(name) LAYOUT_FIELD(balancing, name)
+const layout_row seacage_layout_balancing[] = {
+    FIELD(position), FIELD(tension), FIELD(barrier), FIELD(shift), FIELD(moved), FIELD(sign),
+    FIELD(iterations), FIELD(residual), LAYOUT_END(balancing),
+};
+#undef FIELD
+
+#define FIELD(name) LAYOUT_FIELD(bench, name)
+const layout_row seacage_layout_bench[] = {
+    FIELD(truth), FIELD(force), FIELD(step), FIELD(zero), FIELD(tension), FIELD(bar), FIELD(blocks),
+    FIELD(place), LAYOUT_END(bench),
+};
+#undef FIELD

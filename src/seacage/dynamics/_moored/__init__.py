@@ -3,14 +3,13 @@
 from seacage.dynamics._moored._detailed import Damage, broken, full_assembly
 from seacage.dynamics._moored._mass_scaling import scale_mass
 from seacage.dynamics._moored._mooring import anchor_assembly
-from seacage.dynamics._moored._pretension import assemble, free_nodes
+from seacage.dynamics._moored._pretension import assemble
 
 __all__ = [
     "Damage",
     "anchor_assembly",
     "assemble",
     "broken",
-    "free_nodes",
     "full_assembly",
     "scale_mass",
 ]

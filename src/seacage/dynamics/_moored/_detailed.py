@@ -11,7 +11,7 @@ from seacage.conventions import WATER_DENSITY, InputError
 from seacage.dynamics._moored._anchor_line import is_rope
 from seacage.dynamics._moored._mooring import anchor_assembly
 from seacage.dynamics._moored._pretension import assemble
-from seacage.dynamics._parts import Assembly, Bars, join_bars
+from seacage.dynamics._parts import Assembly, Bars
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -78,7 +78,7 @@ def _tube_hung(cage: Cage, base: Assembly) -> Assembly:
         mass=_shift(base.mass, ring, lump),
         water_mass=_shift(base.water_mass, ring, water + tube.added_mass_coefficient * water),
         fixed=np.append(base.fixed, np.zeros(len(ring), dtype=bool)),
-        bars=join_bars(bars, _hangers(cage, ring, count)),
+        bars=Bars.joined(bars, _hangers(cage, ring, count)),
         bends=replace(bends, nodes=_move(bends.nodes, ring, moved)),
         cylinders=replace(pipes, ends=_move(pipes.ends, ring, moved)),
     )
@@ -110,19 +110,18 @@ def _shift(
 
 
 def _hangers(cage: Cage, ring: Int[np.ndarray, " spoke"], first: int) -> Bars:
-    count, length = len(ring), cage.sinker_tube.hung_below
+    length = cage.sinker_tube.hung_below
     if length <= 0.0 or cage.ropes.axial_stiffness <= 0.0:
         raise InputError(
             f"Cage {cage.name}: its sinker tube hangs hung_below_m = {length:g} m below the net "
             f"on ropes of axial_stiffness_n = {cage.ropes.axial_stiffness:g} N. Give both more "
             "than 0."
         )
-    return Bars(
-        ends=np.column_stack([ring, first + np.arange(count)]),
-        length=np.full(count, length),
-        stiffness=np.full(count, cage.ropes.axial_stiffness),
-        pushed=np.zeros(count, dtype=bool),
-        damping_ratio=np.full(count, cage.netting.damping_ratio),
+    return Bars.alike(
+        np.column_stack([ring, first + np.arange(len(ring))]),
+        length,
+        cage.ropes.axial_stiffness,
+        damping_ratio=cage.netting.damping_ratio,
     )
 
 
@@ -130,18 +129,16 @@ def _stiffening(
     assembly: Assembly, ropes: Int[np.ndarray, " rope"], strain: float, share: float
 ) -> Assembly:
     """Lay a second, longer bar beside each rope."""
-    bars = assembly.bars
-    second = Bars(
-        ends=bars.ends[ropes],
-        length=bars.length[ropes] * (1.0 + strain),
-        stiffness=bars.stiffness[ropes] * (1.0 + strain) * share,
-        pushed=bars.pushed[ropes],
-        damping_ratio=bars.damping_ratio[ropes],
+    bars, first = assembly.bars, assembly.bars.rows(ropes)
+    second = replace(
+        first,
+        length=first.length * (1.0 + strain),
+        stiffness=first.stiffness * (1.0 + strain) * share,
     )
     beside = len(bars.length) + np.arange(len(assembly.bridles))
     return replace(
         assembly,
-        bars=join_bars(bars, second),
+        bars=Bars.joined(bars, second),
         bridles=np.concatenate([assembly.bridles, beside]),
     )
 

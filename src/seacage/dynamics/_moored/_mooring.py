@@ -1,6 +1,6 @@
 """A cage moored as it is built: frame, corner buoys and anchor lines instead of springs."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -24,7 +24,6 @@ from seacage.dynamics._parts import (
     Cylinders,
     Floats,
     Ground,
-    join_bars,
     no_springs,
 )
 
@@ -58,17 +57,14 @@ def anchor_assembly(cage: Cage) -> Assembly:
     position = np.vstack([base.position, lines.position])
     frame = _frame(cage, shape, bridles)
     weight, mass, water_mass = _lump(cage, base, frame, lines)
-    return Assembly(
-        cage_nodes=base.cage_nodes,
+    return replace(
+        base,
         position=position,
         weight=weight,
         mass=mass,
         water_mass=water_mass,
         fixed=np.concatenate([base.fixed, lines.anchors]),
-        bars=join_bars(base.bars, frame, lines.bars),
-        bridles=base.bridles,
-        bends=base.bends,
-        panels=base.panels,
+        bars=Bars.joined(base.bars, frame, lines.bars),
         cylinders=_cylinders(cage, base, frame, lines),
         floats=_floats(cage, base, lift),
         springs=no_springs(),
@@ -100,12 +96,11 @@ def _lines(cage: Cage, shape: LineShape) -> _Lines:
     )
     own = cage.node_count + 4 + np.arange(count * each).reshape(count, each)
     chain = np.column_stack([cage.node_count + corners, own])
-    bars = Bars(
-        ends=np.stack([chain[:, :-1], chain[:, 1:]], axis=-1).reshape(-1, 2),
-        length=np.tile(length, count),
-        stiffness=np.tile(stiffness, count),
-        pushed=np.zeros(count * each, dtype=bool),
-        damping_ratio=np.full(count * each, cage.netting.damping_ratio),
+    bars = Bars.alike(
+        np.stack([chain[:, :-1], chain[:, 1:]], axis=-1).reshape(-1, 2),
+        np.tile(length, count),
+        np.tile(stiffness, count),
+        damping_ratio=cage.netting.damping_ratio,
     )
     return _Lines(
         position=position.reshape(-1, 3),
@@ -173,12 +168,11 @@ def _frame(cage: Cage, shape: LineShape, bridles: Float[np.ndarray, "corner 3"])
             f"Cage {cage.name}: frame, rope_axial_stiffness_n = 0, but free corners need ropes "
             "between them. Give a number above 0, or moor the cage on springs."
         )
-    return Bars(
-        ends=cage.node_count + ends,
-        length=span / (1.0 + np.maximum(tension, 0.0) / stiffness) + cage.frame.rope_slack,
-        stiffness=np.full(4, stiffness),
-        pushed=np.zeros(4, dtype=bool),
-        damping_ratio=np.full(4, cage.netting.damping_ratio),
+    return Bars.alike(
+        cage.node_count + ends,
+        span / (1.0 + np.maximum(tension, 0.0) / stiffness) + cage.frame.rope_slack,
+        stiffness,
+        damping_ratio=cage.netting.damping_ratio,
     )
 
 
@@ -212,25 +206,25 @@ def _cylinders(cage: Cage, base: Assembly, frame: Bars, lines: _Lines) -> Cylind
     """Drag on frame and lines too; the bottom chain is dragged like the rope above it."""
     widths = (cage.frame.rope_diameter, cage.anchor_lines.rope_diameter)
     counts = (len(frame.length), len(lines.bars.length))
-    added = ROPE_DRAG * np.repeat(widths, counts)
-    return Cylinders(
-        ends=np.concatenate([base.cylinders.ends, frame.ends, lines.bars.ends]),
-        drag_width=np.append(base.cylinders.drag_width, added),
-        skin_width=np.append(base.cylinders.skin_width, np.zeros(len(added))),
+    ropes = Cylinders(
+        ends=np.concatenate([frame.ends, lines.bars.ends]),
+        drag_width=ROPE_DRAG * np.repeat(widths, counts),
+        skin_width=np.zeros(sum(counts)),
     )
+    return Cylinders.joined(base.cylinders, ropes)
 
 
 def _floats(cage: Cage, base: Assembly, lift: Float[np.ndarray, " corner"]) -> Floats:
     """The buoys, referred to their corners: as deep under water as bears what hangs on them."""
     frame = cage.frame
     stiffness = frame.corner_stiffness_vertical
-    draft = np.maximum(lift, 0.0) / stiffness
-    return Floats(
-        nodes=np.append(base.floats.nodes, cage.node_count + np.arange(4)),
-        stiffness=np.append(base.floats.stiffness, np.full(4, stiffness)),
-        draft=np.append(base.floats.draft, draft - frame.depth),
-        height=np.append(base.floats.height, np.full(4, frame.buoy_buoyancy / stiffness)),
+    buoys = Floats(
+        nodes=cage.node_count + np.arange(4),
+        stiffness=np.full(4, stiffness),
+        draft=np.maximum(lift, 0.0) / stiffness - frame.depth,
+        height=np.full(4, frame.buoy_buoyancy / stiffness),
     )
+    return Floats.joined(base.floats, buoys)
 
 
 def _ground(cage: Cage, base: Assembly, lines: _Lines, mass: Float[np.ndarray, " node"]) -> Ground:

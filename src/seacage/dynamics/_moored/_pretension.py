@@ -3,7 +3,6 @@
 from functools import lru_cache
 
 import numpy as np
-from jaxtyping import Bool
 
 from seacage.cage import Cage
 from seacage.dynamics._equilibrium import equilibria
@@ -20,16 +19,8 @@ def assemble(cage: Cage) -> Assembly:
     """
     designed, pretension = Assembly.of(cage), cage.bridles.pretension
     still = steady_flow(designed, np.zeros((1, 2)), law="loland")
-    shape, free = designed.position, free_nodes(cage, designed, hold_collar=False)
+    shape = designed.position
     for _ in range(2):
         soft = designed.strung(shape, pretension, softness=30.0)
-        shape = equilibria(cage, soft, still, free=free).position[0]
+        shape = equilibria(soft, still).position[0]
     return designed.strung(shape, pretension, offset=cage.bridles.length_offset)
-
-
-def free_nodes(cage: Cage, assembly: Assembly, *, hold_collar: bool) -> Bool[np.ndarray, " node"]:
-    """Nodes that may move; the collar's only unless it is held."""
-    free = ~assembly.fixed
-    if hold_collar:
-        free[cage.ring_nodes(0)] = False
-    return free

@@ -8,9 +8,10 @@ from seacage.dynamics._parts._assembly import (
     Floats,
     Ground,
     Panels,
+    Scales,
     Springs,
-    join_bars,
 )
+from seacage.dynamics._parts._rows import Rows
 from seacage.dynamics._parts._structure import SINKING, assemble_structure, no_springs
 
 __all__ = [
@@ -22,8 +23,9 @@ __all__ = [
     "Floats",
     "Ground",
     "Panels",
+    "Rows",
+    "Scales",
     "Springs",
     "assemble_structure",
-    "join_bars",
     "no_springs",
 ]

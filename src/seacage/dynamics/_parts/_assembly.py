@@ -7,10 +7,11 @@ from jaxtyping import Bool, Float, Int
 
 from seacage.cage import Cage
 from seacage.conventions import GRAVITY, WATER_DENSITY, InputError
+from seacage.dynamics._parts._rows import Rows
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Bars:
+class Bars(Rows):
     """Straight elastic members; those that cannot be pushed go slack."""
 
     ends: Int[np.ndarray, "bar 2"]
@@ -19,9 +20,29 @@ class Bars:
     pushed: Bool[np.ndarray, " bar"]  # carries compression too
     damping_ratio: Float[np.ndarray, " bar"]  # over pair-critical [-]
 
+    @classmethod
+    def alike(
+        cls,
+        ends: Int[np.ndarray, "bar 2"],
+        length: Float[np.ndarray, " bar"] | float,
+        stiffness: Float[np.ndarray, " bar"] | float,
+        *,
+        damping_ratio: float,
+        pushed: bool = False,
+    ) -> "Bars":
+        """Bars of one kind: what is one number is that of all."""
+        count = len(ends)
+        return cls(
+            ends=ends,
+            length=np.full(count, length),
+            stiffness=np.full(count, stiffness),
+            pushed=np.full(count, pushed),
+            damping_ratio=np.full(count, damping_ratio),
+        )
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Bends:
+class Bends(Rows):
     """Joints of a pipe that resist being bent."""
 
     nodes: Int[np.ndarray, "bend 3"]
@@ -29,7 +50,7 @@ class Bends:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Panels:
+class Panels(Rows):
     """Pieces of netting that the water loads."""
 
     corners: Int[np.ndarray, "panel 4"]
@@ -45,7 +66,7 @@ class Panels:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Cylinders:
+class Cylinders(Rows):
     """Pipes that the water drags across."""
 
     ends: Int[np.ndarray, "cylinder 2"]
@@ -54,7 +75,7 @@ class Cylinders:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Floats:
+class Floats(Rows):
     """Nodes that the water carries, as boxes of equal waterplane and volume."""
 
     nodes: Int[np.ndarray, " float"]
@@ -64,7 +85,7 @@ class Floats:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Springs:
+class Springs(Rows):
     """Nodes held to the ground: the frame corners."""
 
     nodes: Int[np.ndarray, " spring"]
@@ -83,10 +104,21 @@ class Ground:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Scales:
+    """Sizes against which a solver measures steps and forces."""
+
+    length: float  # radius of the collar [m]
+    mesh: float  # mean length of the netting's bars [m]
+    force: float  # what hangs on a spoke [N]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Assembly:
     """All of a cage that carries load; the frame corners follow the net's nodes."""
 
     cage_nodes: int
+    scales: Scales
+    collar: Int[np.ndarray, " spoke"]  # nodes of the uppermost ring
     position: Float[np.ndarray, "node 3"]  # design [m]
     weight: Float[np.ndarray, " node"]  # submerged, upwards negative [N]
     mass: Float[np.ndarray, " node"]  # with the added mass of water [kg]
@@ -120,6 +152,8 @@ class Assembly:
         mass, water_mass = _masses(cage, position, panels)
         return cls(
             cage_nodes=cage.node_count,
+            scales=_scales(cage, bars),
+            collar=cage.ring_nodes(0),
             position=position,
             weight=weight,
             mass=mass,
@@ -138,6 +172,12 @@ class Assembly:
                 level=-cage.site.water_depth,
             ),
         )
+
+    def held(self) -> "Assembly":
+        """A copy whose collar is held in its place."""
+        fixed = self.fixed.copy()
+        fixed[self.collar] = True
+        return replace(self, fixed=fixed)
 
     def strung(
         self,
@@ -159,10 +199,19 @@ class Assembly:
         return replace(self, bars=replace(bars, stiffness=stiffness, length=length))
 
 
+def _scales(cage: Cage, bars: Bars) -> Scales:
+    hung = cage.sinker_tube.weight * 2.0 * np.pi * cage.collar.radius + cage.tip.weight
+    return Scales(
+        length=cage.collar.radius,
+        mesh=float(np.mean(bars.length[: len(cage.edges)])),
+        force=max(float(hung) / cage.spokes, 1.0),
+    )
+
+
 def _bars(
     cage: Cage, position: Float[np.ndarray, "node 3"]
 ) -> tuple[Bars, Int[np.ndarray, " bridle"]]:
-    bars = join_bars(
+    bars = Bars.joined(
         _net_bars(cage),
         _hoop(cage, 0, cage.collar.pipes * cage.collar.pipe_axial_stiffness),
         _hoop(cage, cage.tube_ring, cage.sinker_tube.axial_stiffness),
@@ -170,14 +219,6 @@ def _bars(
     )
     count = len(bars.length)
     return bars, np.arange(count - cage.bridle_count, count)
-
-
-def join_bars(*several: Bars) -> Bars:
-    """All bars of several groups, in their order."""
-    names = Bars.__slots__
-    return Bars(
-        **{name: np.concatenate([getattr(bars, name) for bars in several]) for name in names}
-    )
 
 
 def _net_bars(cage: Cage) -> Bars:
@@ -192,26 +233,14 @@ def _net_bars(cage: Cage) -> Bars:
     meridian_width = (around + below) / 2.0
     netting = cage.netting.stiffness * np.concatenate([ring_width.ravel(), meridian_width.ravel()])
     netting[cage.rings * spokes :] += cage.ropes.axial_stiffness
-    return Bars(
-        ends=cage.edges,
-        length=length,
-        stiffness=netting,
-        pushed=np.zeros(len(length), dtype=bool),
-        damping_ratio=np.full(len(length), cage.netting.damping_ratio),
-    )
+    return Bars.alike(cage.edges, length, netting, damping_ratio=cage.netting.damping_ratio)
 
 
 def _hoop(cage: Cage, ring: int, stiffness: float) -> Bars:
     ends = _around(cage, ring)
     length = np.linalg.norm(np.diff(cage.design_position[ends], axis=1)[:, 0], axis=1)
-    count = len(length)
-    return Bars(
-        ends=ends,
-        length=length,
-        stiffness=np.full(count, stiffness),
-        pushed=np.ones(count, dtype=bool),
-        damping_ratio=np.full(count, cage.netting.damping_ratio),
-    )
+    damping_ratio = cage.netting.damping_ratio
+    return Bars.alike(ends, length, stiffness, damping_ratio=damping_ratio, pushed=True)
 
 
 def _bridle_bars(cage: Cage, position: Float[np.ndarray, "node 3"]) -> Bars:
@@ -227,13 +256,7 @@ def _bridle_bars(cage: Cage, position: Float[np.ndarray, "node 3"]) -> Bars:
     give = (span - line.chain_length) / line.rope_axial_stiffness
     stiffness = span / (give + line.chain_length / line.chain_axial_stiffness)
     length = span / (1.0 + line.pretension / stiffness)
-    return Bars(
-        ends=ends,
-        length=length,
-        stiffness=stiffness,
-        pushed=np.zeros(len(span), dtype=bool),
-        damping_ratio=np.full(len(span), cage.netting.damping_ratio),
-    )
+    return Bars.alike(ends, length, stiffness, damping_ratio=cage.netting.damping_ratio)
 
 
 def _bends(cage: Cage) -> Bends:
@@ -249,8 +272,7 @@ def _bends(cage: Cage) -> Bends:
 
 def _panels(cage: Cage) -> Panels:
     corners = cage.panels
-    triangle = corners[:, 2] == corners[:, 3]
-    share = np.where(triangle[:, None], [1 / 3, 1 / 3, 1 / 6, 1 / 6], [1 / 4, 1 / 4, 1 / 4, 1 / 4])
+    share = corner_shares(corners)
     centre = np.einsum("pc,pcx->px", share, cage.design_position[corners])
     solidity = np.array([cage.netting.solidity_at(-z) for z in centre[:, 2]])
     return Panels(
@@ -262,7 +284,7 @@ def _panels(cage: Cage) -> Panels:
         outward=centre[:, :2] / np.linalg.norm(centre[:, :2], axis=1, keepdims=True),
         half_width=np.full(len(corners), np.pi / cage.spokes),
         depth=-centre[:, 2],
-        area=_area(cage.design_position, corners),
+        area=panel_area(cage.design_position, corners),
         twine_spacing=np.full(len(corners), cage.netting.half_mesh),
         diamond=np.zeros(len(corners), dtype=bool),
     )
@@ -336,9 +358,16 @@ def _masses(
     return own + added, displaced + added
 
 
-def _area(
+def corner_shares(corners: Int[np.ndarray, "panel 4"]) -> Float[np.ndarray, "panel 4"]:
+    """Share of a panel's load that each corner takes; a triangle repeats its last [-]."""
+    triangle = corners[:, 2] == corners[:, 3]
+    return np.where(triangle[:, None], [1 / 3, 1 / 3, 1 / 6, 1 / 6], [1 / 4, 1 / 4, 1 / 4, 1 / 4])
+
+
+def panel_area(
     position: Float[np.ndarray, "node 3"], corners: Int[np.ndarray, "panel 4"]
 ) -> Float[np.ndarray, " panel"]:
+    """Area of each panel, a warped one's as seen along its mean normal [m2]."""
     a, b, c, d = np.moveaxis(position[corners], 1, 0)
     return np.linalg.norm(np.cross(c - a, d - b), axis=1) / 2.0
 

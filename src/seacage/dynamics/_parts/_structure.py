@@ -15,8 +15,10 @@ from seacage.dynamics._parts._assembly import (
     Floats,
     Ground,
     Panels,
+    Scales,
     Springs,
-    join_bars,
+    corner_shares,
+    panel_area,
 )
 
 SINKING = 0.01
@@ -49,7 +51,7 @@ def assemble_structure(structure: Structure) -> Assembly:
     position = structure.design_position
     wet_nets = [index for index, net in enumerate(structure.net) if not structure.is_dry(net)]
     panels = _join_panels([_panels(structure, index) for index in wet_nets])
-    bars = join_bars(*_net_bars(structure), *(_bars(member) for member in members))
+    bars = Bars.joined(*_net_bars(structure), *(_bars(member) for member in members))
     lumps = _lumps(structure, members)
     _check_floats(structure, members)
     _check_masses(structure, lumps)
@@ -58,6 +60,12 @@ def assemble_structure(structure: Structure) -> Assembly:
     fixed[structure.anchor_nodes] = True
     return Assembly(
         cage_nodes=structure.node_count,
+        scales=Scales(
+            length=structure.ring[0].radius,
+            mesh=float(np.mean(bars.length)),
+            force=max(-float(np.sum(lumps.weight)) / structure.spokes, 1.0),
+        ),
+        collar=structure.ring_nodes(0),
         position=position,
         weight=lumps.weight,
         mass=lumps.mass + lumps.added,
@@ -153,13 +161,13 @@ def _span(structure: Structure, ends: Int[np.ndarray, "bar 2"]) -> Float[np.ndar
 
 
 def _bars(member: _Member) -> Bars:
-    count = len(member.length)
-    return Bars(
-        ends=member.ends,
-        length=member.length,
-        stiffness=np.full(count, member.section.axial_stiffness),
-        pushed=np.full(count, member.pushed),
-        damping_ratio=np.full(count, member.section.damping_ratio),
+    section = member.section
+    return Bars.alike(
+        member.ends,
+        member.length,
+        section.axial_stiffness,
+        damping_ratio=section.damping_ratio,
+        pushed=member.pushed,
     )
 
 
@@ -179,12 +187,11 @@ def _net_bars(structure: Structure) -> list[Bars]:
         width = np.concatenate([(chord[:-1] + chord[1:]) / 2.0, shares[levels]])
         length = np.concatenate([np.full(rows, row), chord[levels]])
         several.append(
-            Bars(
-                ends=ends,
-                length=np.repeat(length, spokes),
-                stiffness=twine.stiffness * np.repeat(width, spokes),
-                pushed=np.zeros(len(ends), dtype=bool),
-                damping_ratio=np.full(len(ends), twine.damping_ratio),
+            Bars.alike(
+                ends,
+                np.repeat(length, spokes),
+                twine.stiffness * np.repeat(width, spokes),
+                damping_ratio=twine.damping_ratio,
             )
         )
     return several
@@ -216,11 +223,10 @@ def _panels(structure: Structure, index: int) -> Panels:
     twine, corners = structure.twine_of(net), structure.net_panels(index)
     row, chord = structure.design_net(index)
     area = np.repeat((chord[:-1] + chord[1:]) / 2.0 * row, structure.spokes)
-    folds = np.maximum(area / _outlines(corners, position), 1.0)
+    folds = np.maximum(area / panel_area(position, corners), 1.0)
     cover = twine.diameter / twine.half_mesh
     solidity = np.minimum(1.0 - (1.0 - cover) * (1.0 - cover * folds), MOST_SOLIDITY)
-    triangle = corners[:, 2] == corners[:, 3]
-    share = np.where(triangle[:, None], [1 / 3, 1 / 3, 1 / 6, 1 / 6], [1 / 4, 1 / 4, 1 / 4, 1 / 4])
+    share = corner_shares(corners)
     centre = np.einsum("pc,pcx->px", share, position[corners])
     away = np.linalg.norm(centre[:, :2], axis=1, keepdims=True)
     count = len(corners)
@@ -239,7 +245,6 @@ def _panels(structure: Structure, index: int) -> Panels:
 
 
 def _join_panels(several: list[Panels]) -> Panels:
-    names = Panels.__slots__
     shapes = {"corners": (0, 4), "share": (0, 4), "outward": (0, 2)}
     kinds = {"corners": np.int64, "diamond": np.bool_}
     return Panels(
@@ -250,16 +255,9 @@ def _join_panels(several: list[Panels]) -> Panels:
                     *(getattr(panels, name) for panels in several),
                 ]
             )
-            for name in names
+            for name in Panels.__slots__
         }
     )
-
-
-def _outlines(
-    corners: Int[np.ndarray, "panel 4"], position: Float[np.ndarray, "node 3"]
-) -> Float[np.ndarray, " panel"]:
-    a, b, c, d = np.moveaxis(position[corners], 1, 0)
-    return np.linalg.norm(np.cross(c - a, d - b), axis=1) / 2.0
 
 
 # Weights and water

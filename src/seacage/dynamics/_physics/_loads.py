@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.conventions import WATER_DENSITY
-from seacage.dynamics._parts import Assembly, Bars, Bends, Cylinders, Floats, Panels, Springs
+from seacage.dynamics._parts import Assembly, Bars, Bends, Cylinders, Floats, Panels, Rows, Springs
 
 Nodal = Float[np.ndarray, "case node 3"]
 
@@ -19,7 +19,7 @@ DYNAMIC = 0.5 * WATER_DENSITY
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SteadyFlow:
+class SteadyFlow(Rows):
     """Flow and coefficients of each panel and pipe in steady water, ready for the loads.
 
     A net at rest in a steady current meets each panel with one fixed speed, so the
@@ -49,10 +49,6 @@ class SteadyFlow:
     lift: Float[np.ndarray, "case panel"]
     lift_second: Float[np.ndarray, "case panel"]
     pipe_pressure: Float[np.ndarray, " case"]
-
-    def cases(self, some: Int[np.ndarray, " some"]) -> "SteadyFlow":
-        """The flow of some of the cases."""
-        return SteadyFlow(**{name: getattr(self, name)[some] for name in self.__slots__})
 
 
 def nodal_force(assembly: Assembly, flow: SteadyFlow, position: Nodal) -> Nodal:

@@ -2,7 +2,8 @@
 
 from seacage.dynamics._time._follow import Followed, follow
 from seacage.dynamics._time._history import History, Statistics
-from seacage.dynamics._time._simulate import Mooring, simulate
+from seacage.dynamics._time._simulate import simulate
+from seacage.dynamics._time._simulation import Mooring
 from seacage.dynamics._time._weather import AbstractWeather
 
 __all__ = ["AbstractWeather", "Followed", "History", "Mooring", "Statistics", "follow", "simulate"]

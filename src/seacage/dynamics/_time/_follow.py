@@ -114,7 +114,7 @@ def follow(
         segments.meets(step)
         if step >= 0:
             seen.takes(step)
-        segments.goes()
+        segments.march.go(course.refreshes)
         if step >= 0:
             seen.adds(step)
         if progress is not None:
@@ -140,20 +140,22 @@ class _Seen:
         self._place = np.empty((stretches, course.samples, len(self._watched), 3))
         self._tension = np.empty((stretches, course.samples, cage.bridle_count))
         self._shape: list[Float[np.ndarray, "stretch node 3"]] = []
-        self._sum = segments.displacement_sum(self._shaped)
+        self._sum = segments.march.node_sum(self._shaped)
 
     def takes(self, step: int) -> None:
         """One sample."""
-        self._place[:, step] = self._segments.position(self._watched)
+        self._place[:, step] = self._segments.march.position_of(self._watched)
         self._tension[:, step] = self._segments.bridle_tension
 
     def adds(self, step: int) -> None:
         """One mean, where its time is over."""
         if (step + 1) % self._course.shape_samples:
             return
-        now = self._segments.displacement_sum(self._shaped)
+        now = self._segments.march.node_sum(self._shaped)
         count = self._course.shape_samples * self._course.refreshes
-        self._shape.append(self._segments.place[self._shaped] + (now - self._sum) / count)
+        self._shape.append(
+            self._segments.assembly.position[self._shaped] + (now - self._sum) / count
+        )
         self._sum = now
 
     def result(self) -> Followed:
@@ -164,7 +166,7 @@ class _Seen:
             watched_position=self._place,
             bridle_tension=self._tension,
             shape=np.stack(self._shape, axis=1),
-            lost_at=starts - course.spin_up * course.every + self._segments.lost_at,
+            lost_at=starts - course.spin_up * course.every + self._segments.march.lost_at,
         )
 
 

@@ -1,100 +1,81 @@
 """From what the kernel kept of a march to a history."""
 
-from dataclasses import dataclass, fields, replace
+from collections.abc import Callable
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Float
 
-from seacage.cage import Cage, Structure
 from seacage.conventions import Result
 from seacage.dynamics._kernel import REFRESH, March
 from seacage.dynamics._parts import Assembly
 from seacage.dynamics._time._history import History, Statistics
+from seacage.dynamics._time._simulation import Simulation
 
 VOLUMES = 360
 """At most so many samples give the volume's statistics: it changes slowly, and costs."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Reduction:
-    """Series and statistics to make of each case.
+def histories(
+    simulation: Simulation, assembly: Assembly, march: March, rest: Float[np.ndarray, "node 3"]
+) -> list[History]:
+    """One for each case of a march that has ended."""
+    return [_history(simulation, assembly, march, rest, case) for case in range(march.cases)]
 
-    Attributes
-    ----------
-    cage
-        Which was simulated.
-    kept
-        Nodes of the series.
-    series
-        Whether there are any.
-    levels
-        Of the quantiles.
-    second_moment
-        Whether it is wanted.
-    rest
-        Shape in still water [m].
-    """
 
-    cage: Cage | Structure
-    kept: Int[np.ndarray, " kept"]
-    series: bool
-    levels: Float[np.ndarray, " quantile"]
-    second_moment: bool
-    rest: Float[np.ndarray, "node 3"]
+def _history(
+    simulation: Simulation,
+    assembly: Assembly,
+    march: March,
+    rest: Float[np.ndarray, "node 3"],
+    case: int,
+) -> History:
+    cage, steps, levels = simulation.cage, march.steps, simulation.quantile_levels
+    sampled = {name: values[..., case] for name, values in march.samples.items()}
+    net = np.ascontiguousarray(sampled["positions"][:, : cage.node_count])
+    counted = int(march.account["counted"][0])
 
-    def histories(self, assembly: Assembly, march: March) -> list[History]:
-        """One for each case of a march that has ended."""
-        lost_at = march.lost_at
-        return [
-            self._history(assembly, march, case, float(lost_at[case]))
-            for case in range(march.cases)
-        ]
+    def of(what: str, sample: np.ndarray, count: int, origin: np.ndarray) -> Statistics:
+        account = {
+            how: march.account[f"{what}_{how}"][: origin.size, case].reshape(origin.shape)
+            for how in ("sum", "square", "least", "most")
+        }
+        return _statistics(account, sample, count, origin, levels)
 
-    def _history(self, assembly: Assembly, march: March, case: int, lost_at: float) -> History:
-        cage, steps = self.cage, march.steps
-        sampled = {name: values[..., case] for name, values in march.samples.items()}
-        net = np.ascontiguousarray(sampled["positions"][:, : cage.node_count])
-        counted = int(march.account["counted"][0])
+    every = max(1, -(-len(net) // VOLUMES))
+    volume = cage.volume(net[::every].astype(np.float64))
+    node = of("node", net, counted, assembly.position[: cage.node_count])
+    nothing = np.zeros(len(assembly.bridles))
+    kept = slice(None) if simulation.series else slice(0)
+    history = History(
+        time=(np.arange(len(net)) * steps.sample_every * REFRESH)[kept],
+        nodes=simulation.nodes,
+        node_position=net[kept, simulation.nodes].astype(np.float64),
+        bridle_tension=sampled["tensions"][kept].astype(np.float64),
+        surface_elevation=sampled["elevations"][kept].astype(np.float64),
+        node=node,
+        bridle=of("bridle", sampled["tensions"], counted * steps.each, nothing),
+        net_force=of("load", sampled["loads"], counted, np.zeros(3)),
+        volume=_plain_statistics(volume, levels),
+        node_displacement=node.mean - rest,
+        volume_fraction=np.asarray(volume.mean() / cage.volume(rest)),
+        quantile_levels=levels,
+        second_moment=_second_moment(simulation, net),
+        result=np.asarray(Result.CONVERGED),
+        diverged_at=np.asarray(float(march.lost_at[case])),
+    )
+    return _mask_lost(history, march) if np.isfinite(history.diverged_at) else history
 
-        def of(what: str, sample: np.ndarray, count: int, origin: np.ndarray) -> Statistics:
-            account = {
-                how: march.account[f"{what}_{how}"][: origin.size, case].reshape(origin.shape)
-                for how in ("sum", "square", "least", "most")
-            }
-            return _statistics(account, sample, count, origin, self.levels)
 
-        every = max(1, -(-len(net) // VOLUMES))
-        volume = cage.volume(net[::every].astype(np.float64))
-        node = of("node", net, counted, assembly.position[: cage.node_count])
-        nothing = np.zeros(len(assembly.bridles))
-        kept = slice(None) if self.series else slice(0)
-        history = History(
-            time=(np.arange(len(net)) * steps.sample_every * REFRESH)[kept],
-            nodes=self.kept,
-            node_position=net[kept, self.kept].astype(np.float64),
-            bridle_tension=sampled["tensions"][kept].astype(np.float64),
-            surface_elevation=sampled["elevations"][kept].astype(np.float64),
-            node=node,
-            bridle=of("bridle", sampled["tensions"], counted * steps.each, nothing),
-            net_force=of("load", sampled["loads"], counted, np.zeros(3)),
-            volume=_plain_statistics(volume, self.levels),
-            node_displacement=node.mean - self.rest,
-            volume_fraction=np.asarray(volume.mean() / cage.volume(self.rest)),
-            quantile_levels=self.levels,
-            second_moment=self._moment(net),
-            result=np.asarray(Result.CONVERGED),
-            diverged_at=np.asarray(lost_at),
-        )
-        return history if np.isnan(lost_at) else _mask_lost(history, march)
-
-    def _moment(
-        self, net: Float[np.ndarray, "t node 3"]
-    ) -> Float[np.ndarray, "coordinate coordinate"]:
-        if not self.second_moment:
-            return np.zeros((0, 0))
-        moved = (net - self.cage.design_position.astype(np.float32)).reshape(len(net), -1)
-        return (moved.T @ moved).astype(np.float64) / len(net)
+def _second_moment(
+    simulation: Simulation, net: Float[np.ndarray, "t node 3"]
+) -> Float[np.ndarray, "coordinate coordinate"]:
+    if not simulation.second_moment:
+        return np.zeros((0, 0))
+    design = simulation.cage.design_position.astype(np.float32)
+    moved = (net - design).reshape(len(net), -1)
+    return (moved.T @ moved).astype(np.float64) / len(net)
 
 
 def _statistics(
@@ -145,12 +126,7 @@ def _mask_lost(history: History, march: March) -> History:
     gone = history.time + spin_up >= float(history.diverged_at)
 
     def mask(statistics: Statistics) -> Statistics:
-        return Statistics(
-            **{
-                f.name: np.full_like(getattr(statistics, f.name), np.nan)
-                for f in fields(Statistics)
-            }
-        )
+        return _each_field([statistics], lambda values: np.full_like(values[0], np.nan))
 
     def after(series: np.ndarray) -> np.ndarray:
         return np.where(gone.reshape(-1, *(1,) * (series.ndim - 1)), np.nan, series)
@@ -170,6 +146,14 @@ def _mask_lost(history: History, march: March) -> History:
     )
 
 
+def _each_field(
+    several: list[Statistics], join: Callable[[list[np.ndarray]], np.ndarray]
+) -> Statistics:
+    """Several statistics joined to one, field by field."""
+    names = [f.name for f in fields(Statistics)]
+    return Statistics(**{name: join([getattr(one, name) for one in several]) for name in names})
+
+
 _SHARED = ("time", "nodes", "quantile_levels")
 
 
@@ -181,12 +165,7 @@ def stack(cases: list[History]) -> History:
         if name in _SHARED:
             return values[0]
         if isinstance(values[0], Statistics):
-            return Statistics(
-                **{
-                    f.name: np.stack([getattr(v, f.name) for v in values])
-                    for f in fields(Statistics)
-                }
-            )
+            return _each_field(values, np.stack)
         return np.stack(values)
 
     return History(**{f.name: join(f.name) for f in fields(History)})

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Bool, Float
 
 from seacage.cage import Cage
 from seacage.conventions import compass
@@ -74,7 +74,7 @@ class Build:
 
 
 class SegmentBatch:
-    """Stretches side by side, each in its own weather; ``goes`` moves them all by one sample."""
+    """Stretches side by side, each in its own weather; ``march`` moves them all."""
 
     def __init__(
         self,
@@ -88,7 +88,7 @@ class SegmentBatch:
         self._build, self._weathers, self._course = build, weathers, course
         self._time_step = REFRESH / course.steps
         assembly, self._panels = build.assembly(damaged, self._time_step)
-        self._assembly = assembly
+        self.assembly = assembly
         begun = starts - course.spin_up * course.every
         current = self._current(begun)
         start = _start(build.cage, assembly, current.mean(axis=1))
@@ -109,8 +109,8 @@ class SegmentBatch:
 
     def breaks(self, damages: tuple[Damage, ...]) -> None:
         """From now on these damages are done."""
-        self._assembly, self._panels = self._build.assembly(damages, self._time_step)
-        self.march.rebuild(self._assembly)
+        self.assembly, self._panels = self._build.assembly(damages, self._time_step)
+        self.march.rebuild(self.assembly)
 
     def meets(self, step: int) -> None:
         """The weather of a sample's time; what changes slowly is looked at now and then."""
@@ -125,33 +125,11 @@ class SegmentBatch:
             self._relax_wake(current.mean(axis=1))
             self.march.set_net(self._law())
 
-    def goes(self) -> None:
-        """To the next sample's time."""
-        self.march.go(self._course.refreshes)
-
-    def position(self, nodes: Int[np.ndarray, " n"]) -> Float[np.ndarray, "stretch n 3"]:
-        """Present positions of some nodes [m]."""
-        return self.march.position_of(nodes)
-
     @property
     def bridle_tension(self) -> Float[np.ndarray, "stretch bridle"]:
         """Tension of each bridle, its two ropes together [N]."""
         both = self.march.tension
         return both.reshape(len(both), 2, -1).sum(axis=1)
-
-    @property
-    def place(self) -> Float[np.ndarray, "node 3"]:
-        """Design positions, from which ``displacement_sum`` counts [m]."""
-        return self._assembly.position
-
-    def displacement_sum(self, nodes: Int[np.ndarray, " n"]) -> Float[np.ndarray, "stretch n 3"]:
-        """Sum of displacements over all counted looks at the water [m]."""
-        return self.march.node_sum(nodes)
-
-    @property
-    def lost_at(self) -> Float[np.ndarray, " stretch"]:
-        """Since the beginning; NaN where all is well [s]."""
-        return self.march.lost_at
 
     def _current(self, at: Float[np.ndarray, " stretch"]) -> Float[np.ndarray, "stretch level 2"]:
         return np.array([w.current(t) for w, t in zip(self._weathers, at, strict=True)])
@@ -160,7 +138,7 @@ class SegmentBatch:
         self, at: Float[np.ndarray, " stretch"]
     ) -> tuple[Float[np.ndarray, "stretch panel"], Float[np.ndarray, "stretch panel"]]:
         """Solidity, and drag factor: that of what grew there, and none where netting is gone."""
-        panels = self._assembly.panels
+        panels = self.assembly.panels
         grown = [w.netting(t, panels.depth) for w, t in zip(self._weathers, at, strict=True)]
         added, factor = (np.array(each) for each in zip(*grown, strict=True))
         return panels.solidity + added, factor * self._panels
@@ -179,7 +157,7 @@ class SegmentBatch:
         current: Float[np.ndarray, "stretch 2"],
     ) -> Float[np.ndarray, "stretch panel"]:
         return wake_in_sight(
-            self._assembly.panels,
+            self.assembly.panels,
             net,
             current,
             solidity=self._solidity,

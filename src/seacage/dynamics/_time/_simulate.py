@@ -5,24 +5,20 @@ from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from threading import Lock
-from typing import Literal
 
 import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.cage import Cage, Structure
 from seacage.conventions import InputError, Progress
-from seacage.dynamics._kernel import REFRESH, March, Steps, simulation_lanes
-from seacage.dynamics._moored import anchor_assembly, assemble, scale_mass
-from seacage.dynamics._parts import Assembly, assemble_structure
-from seacage.dynamics._physics import MOVING_LAWS, MovingLaw, NetLaw
-from seacage.dynamics._settle import rest_shape, settle
-from seacage.dynamics._time._forcing import draw_waves, ocean_of, wakes
+from seacage.dynamics._kernel import REFRESH, March, Ocean, Steps, simulation_lanes
+from seacage.dynamics._parts import Assembly
+from seacage.dynamics._physics import MOVING_LAWS, MovingLaw
+from seacage.dynamics._time._forcing import draw_waves, ocean_of
 from seacage.dynamics._time._history import History
-from seacage.dynamics._time._reduction import Reduction, stack
+from seacage.dynamics._time._reduction import histories, stack
+from seacage.dynamics._time._simulation import Mooring, Simulation
 from seacage.ocean import CurrentProfile, SeaState, Waves
-
-Mooring = Literal["springs", "catenary"]
 
 HOLD = 4
 """Time steps through which the water's load is held."""
@@ -133,39 +129,52 @@ def simulate(
     """
     seas = [sea] if isinstance(sea, SeaState) else list(sea)
     _check(seas, law, twine_drag, workers)
-    steps = _steps(duration, ramp, spin_up, time_step, sample_every)
-    assembly = _prepare(cage, mooring, hold_collar=hold_collar, collar_drag=collar_drag)
-    assembly, _ = scale_mass(assembly, steps.time_step)
-    _check_room(steps, assembly)
+    simulation = Simulation(
+        cage=cage,
+        law=law,
+        twine_drag=twine_drag,
+        mooring=mooring,
+        wake=wake,
+        hold_collar=hold_collar,
+        collar_drag=collar_drag,
+        steps=_steps(duration, ramp, spin_up, time_step, sample_every),
+        nodes=_series_nodes(cage, series_nodes),
+        series=sample_every is not None,
+        quantile_levels=_levels(quantile_levels),
+        second_moment=second_moment,
+    )
     depth = cage.site.water_depth
     ocean = ocean_of(seas, draw_waves(seas, waves, seed, depth), current_profile, depth)
-    lanes = simulation_lanes()
-    blocks = [slice(i, min(i + lanes, len(seas))) for i in range(0, len(seas), lanes)]
-    report = _Report(progress, (steps.spin_up + steps.counted) * len(seas))
-    reduction = Reduction(
-        cage=cage,
-        kept=_series_nodes(cage, series_nodes),
-        series=sample_every is not None,
-        levels=_levels(quantile_levels),
-        second_moment=second_moment,
-        rest=_rest(cage, hold_collar=hold_collar),
-    )
+    cases = _simulate(simulation, seas, ocean, workers, progress)
+    return cases[0] if isinstance(sea, SeaState) else stack(cases)
+
+
+def _simulate(
+    simulation: Simulation,
+    seas: list[SeaState],
+    ocean: Ocean,
+    workers: int,
+    progress: Progress | None,
+) -> list[History]:
+    """Each case's history; as many cases as the kernel has lanes travel together."""
+    steps, assembly, rest = simulation.steps, simulation.assembly(), simulation.rest
+    _check_room(steps, assembly)
+    report = _Report(progress, steps.whole * len(seas))
 
     def run(block: slice) -> list[History]:
         some = replace(ocean, waves=ocean.waves[block], current=ocean.current[block])
-        net = NetLaw(name=law, wake=wakes(assembly, law, some, wake=wake), twine_drag=twine_drag)
-        start = _start(cage, assembly, seas[block], law, wake=wake, hold_collar=hold_collar)
-        march = March(assembly, net, some, steps, start)
-        whole = steps.spin_up + steps.counted
-        for first in range(0, whole, CHUNK):
-            taken = min(CHUNK, whole - first)
+        start = simulation.start(assembly, seas[block])
+        march = March(assembly, simulation.net_law(assembly, some), some, steps, start)
+        for first in range(0, steps.whole, CHUNK):
+            taken = min(CHUNK, steps.whole - first)
             march.go(taken)
             report(taken * march.cases)
-        return reduction.histories(assembly, march)
+        return histories(simulation, assembly, march, rest)
 
+    lanes = simulation_lanes()
     with ThreadPoolExecutor(workers) as pool:
-        cases = [case for block in pool.map(run, blocks) for case in block]
-    return cases[0] if isinstance(sea, SeaState) else stack(cases)
+        blocks = pool.map(run, (slice(i, i + lanes) for i in range(0, len(seas), lanes)))
+        return [case for block in blocks for case in block]
 
 
 def _check(
@@ -255,64 +264,6 @@ def _series_nodes(
             f"Give nodes from 0 … {cage.node_count - 1}."
         )
     return nodes
-
-
-def _prepare(
-    cage: Cage | Structure, mooring: Mooring, *, hold_collar: bool, collar_drag: bool
-) -> Assembly:
-    if mooring not in ("springs", "catenary"):
-        raise InputError(f"simulate: no mooring {mooring!r}; there are: springs, catenary.")
-    if isinstance(cage, Structure):
-        if mooring != "springs":
-            raise InputError(
-                f"simulate: mooring = {mooring!r}, but structure {cage.name} has lines and anchors "
-                "of its own. Leave it out."
-            )
-        assembly = assemble_structure(cage)
-    else:
-        assembly = anchor_assembly(cage) if mooring == "catenary" else assemble(cage)
-    if hold_collar:
-        fixed = assembly.fixed.copy()
-        fixed[cage.ring_nodes(0)] = True
-        assembly = replace(assembly, fixed=fixed)
-    if not collar_drag:
-        nothing = np.zeros_like(assembly.cylinders.drag_width)
-        assembly = replace(assembly, cylinders=replace(assembly.cylinders, drag_width=nothing))
-    return assembly
-
-
-def _rest(cage: Cage | Structure, *, hold_collar: bool) -> Float[np.ndarray, "node 3"]:
-    if isinstance(cage, Structure):
-        return cage.design_position
-    return rest_shape(cage, hold_collar=hold_collar)
-
-
-def _start(
-    cage: Cage | Structure,
-    assembly: Assembly,
-    seas: list[SeaState],
-    law: MovingLaw,
-    *,
-    wake: bool,
-    hold_collar: bool,
-) -> Float[np.ndarray, "case node 3"]:
-    """Equilibria in the sea's surface current; it is only a start, so any will do."""
-    start = np.repeat(assembly.position[None], len(seas), axis=0)
-    if isinstance(cage, Structure):
-        return start
-    still = [SeaState(current_speed=s.current_speed, current_to=s.current_to) for s in seas]
-    settled = settle(
-        cage,
-        still,
-        law="loland" if law == "morison" else law,
-        wake=wake,
-        hold_collar=hold_collar,
-        starts=1,
-    ).node_position
-    known = np.isfinite(settled).all(axis=(1, 2), keepdims=True)
-    net = np.where(known, settled, rest_shape(cage, hold_collar=hold_collar))
-    start[:, : cage.node_count] = net
-    return start
 
 
 class _Report:

@@ -4,7 +4,8 @@
 # pyright: reportUnknownMemberType=false
 
 import re
-from collections.abc import Hashable, Mapping
+from collections.abc import Generator, Hashable, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -14,7 +15,7 @@ import numpy as np
 from jaxtyping import Float, Shaped
 
 from seacage.conventions import Origin, RecordError, parse_toml
-from seacage.records._netcdf_check import NETCDF_TROUBLE, check_netcdf
+from seacage.records._netcdf_file import NETCDF_TROUBLE, check_netcdf
 from seacage.records._readers._column_map import (
     Column,
     check_components,
@@ -179,14 +180,27 @@ def read_cf(path: Path, choice: NetcdfMap, *, stream: str) -> Record:
     RecordError
         No NetCDF, nothing to read, a unit, sense, zone, place or origin that nothing tells.
     """
+    with open_foreign(path) as dataset:
+        return _record(path, dataset, choice, stream=stream)
+
+
+@contextmanager
+def open_foreign(path: Path) -> "Generator[xarray.Dataset]":
+    """Open a NetCDF file that others wrote, its times as numbers.
+
+    Raises
+    ------
+    RecordError
+        No such file, or one that cannot be read, within too.
+    """
     import xarray
 
     if not path.is_file():
         raise RecordError(f"{path}: there is no such file.")
     try:
         check_netcdf(path, whole=False)
-        with xarray.open_dataset(path, engine=engine_of(path), decode_times=False) as dataset:
-            return _record(path, dataset, choice, stream=stream)
+        with xarray.open_dataset(path, engine=_engine_of(path), decode_times=False) as dataset:
+            yield dataset
     except RecordError:
         raise
     except NETCDF_TROUBLE as error:
@@ -201,7 +215,7 @@ def is_netcdf(path: Path) -> bool:
     return path.suffix.lower() in {".nc", ".nc4", ".cdf", ".netcdf"}
 
 
-def engine_of(path: Path) -> str:
+def _engine_of(path: Path) -> str:
     """The engine that xarray reads a file with, by the file's first bytes.
 
     Raises
@@ -243,8 +257,10 @@ def _record(path: Path, dataset: "xarray.Dataset", choice: NetcdfMap, *, stream:
         notes.append(
             f"{column.quantity} is read from {column.name} [{column.unit}{sense}]{one.where}."
         )
-    if any(one.direction for one in series.values()):
-        notes += _north(dataset)
+    if any(one.direction for one in series.values()) and "declination" not in dataset.attrs:
+        notes.append(
+            "Nothing in the file says which north its compass means; it is taken for true."
+        )
     record = in_order(time, vectors_joined(values), stream=stream, origin=choice.origin)
     return replace(record, notes=(*notes, *record.notes))
 
@@ -455,9 +471,3 @@ def _check_unit(path: Path, one: _Series, column: Column) -> None:
             f"{path}: the map says that {column.name} is in {column.unit}, and the file says "
             f"{one.units!r}. Mend the one that is wrong."
         )
-
-
-def _north(dataset: "xarray.Dataset") -> list[str]:
-    if "declination" in dataset.attrs:
-        return []
-    return ["Nothing in the file says which north its compass means; it is taken for true."]

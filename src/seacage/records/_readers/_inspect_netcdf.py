@@ -9,12 +9,10 @@ from typing import TYPE_CHECKING, TypedDict
 
 import numpy as np
 
-from seacage.conventions import RecordError
-from seacage.records._netcdf_check import NETCDF_TROUBLE, check_netcdf
 from seacage.records._readers._cf import (
     STANDARD_NAMES,
-    engine_of,
     is_compass,
+    open_foreign,
     vertical_of,
     zone_conflict,
 )
@@ -38,21 +36,8 @@ def inspect_netcdf(path: Path) -> Found:
     RecordError
         No NetCDF file.
     """
-    import xarray
-
-    if not path.is_file():
-        raise RecordError(f"{path}: there is no such file.")
-    try:
-        check_netcdf(path, whole=False)
-        with xarray.open_dataset(path, engine=engine_of(path), decode_times=False) as dataset:
-            return _find(path, dataset)
-    except RecordError:
-        raise
-    except NETCDF_TROUBLE as error:
-        raise RecordError(
-            f"{path}: this NetCDF file cannot be read ({' '.join(str(error).split())[:200]}). "
-            "Load or write it anew."
-        ) from error
+    with open_foreign(path) as dataset:
+        return _find(path, dataset)
 
 
 def _find(path: Path, dataset: "xarray.Dataset") -> Found:

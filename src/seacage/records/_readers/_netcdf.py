@@ -11,7 +11,7 @@ import numpy as np
 
 from seacage.conventions import Flag, Origin, RecordError, read_bytes
 from seacage.records._keys import KEYS
-from seacage.records._netcdf_check import NETCDF_TROUBLE, check_netcdf
+from seacage.records._netcdf_file import NETCDF_TROUBLE, open_netcdf
 from seacage.records._record import Record
 
 if TYPE_CHECKING:
@@ -56,12 +56,9 @@ def read_netcdf(path: Path) -> Record:
     RecordError
         No such file, no NetCDF, or one of another schema.
     """
-    import xarray
-
     try:
         _check_seal(path)
-        check_netcdf(path, whole=True)
-        with xarray.open_dataset(path, engine="h5netcdf", decode_times=False) as dataset:
+        with open_netcdf(path, _SCHEMA) as dataset:
             return _record(dataset)
     except NETCDF_TROUBLE as error:
         raise RecordError(
@@ -133,10 +130,6 @@ def _flag_attributes(key: str) -> dict[str, Any]:
 
 def _record(dataset: "xarray.Dataset") -> Record:
     attributes = dataset.attrs
-    if "schema" not in attributes:
-        raise ValueError("it does not say seacage's schema")
-    if attributes["schema"] != _SCHEMA:
-        raise ValueError(f"its schema is {attributes.get('schema')!r}, not {_SCHEMA!r}")
     keys = [str(name) for name in dataset.data_vars if not str(name).endswith(_FLAG)]
     for key in keys:
         units = dataset[key].attrs.get("units")

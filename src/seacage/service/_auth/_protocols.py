@@ -9,7 +9,7 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 from websockets.http11 import Request
 
-from seacage.service._auth._guard import Gate
+from seacage.service._auth._authorization import Gate
 
 
 def _came(one: Any) -> None:

@@ -11,7 +11,7 @@ from threading import Lock
 
 import structlog
 
-from seacage.service._auth._tokens import Grant, Tokens, digest
+from seacage.service._auth._token_store import Grant, Tokens, digest
 from seacage.service._small_files import write_small
 
 _MOST_SESSIONS = 1000

@@ -5,7 +5,7 @@ from starlette.datastructures import MutableHeaders
 from starlette.requests import HTTPConnection
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from seacage.service._auth._guard import Gate, source_of
+from seacage.service._auth._authorization import Gate, source_of
 
 _HEADERS = {
     "content-security-policy": (

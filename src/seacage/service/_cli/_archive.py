@@ -1,12 +1,21 @@
 """``seacage archive``: whole days of samples as Parquet files."""
 
+import json
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from seacage.service._cli._console import Exit, Json, exit_with, guard, progress_bar, report
+from seacage.service._cli._console import (
+    Exit,
+    exit_with,
+    guard,
+    progress_bar,
+    report,
+    wants_json,
+    without_nan,
+)
 
 group = typer.Typer(help="Whole days of samples as Parquet files: write, read and check them.")
 
@@ -21,15 +30,9 @@ Day = Annotated[
 def write(
     folder: Folder,
     *,
-    store: Annotated[
-        str, typer.Option(help="postgresql://user@host/name, or a file of SQLite.")
-    ] = "var/samples.sqlite",
-    cage: Annotated[str | None, typer.Option(help="Only its samples.")] = None,
-    before: Annotated[
-        datetime | None,
-        typer.Option(formats=["%Y-%m-%d"], help="Only days before it, UTC. [default: today]"),
-    ] = None,
-    as_json: Json = False,
+    store: str = "var/samples.sqlite",
+    cage: str | None = None,
+    before: Annotated[datetime | None, typer.Option(formats=["%Y-%m-%d"])] = None,
 ) -> None:
     """Write every whole day of a store; the store keeps its samples.
 
@@ -38,10 +41,19 @@ def write(
 
     Example: archive all that was measured until yesterday.
         seacage archive write archive --store var/samples.sqlite
+
+    Parameters
+    ----------
+    store
+        postgresql://user@host/name, or a file of SQLite.
+    cage
+        Only its samples.
+    before
+        Only days before it, UTC. [default: today]
     """
     from seacage.service._store._archive import Archive
     from seacage.service._store._database._rows import microseconds, moment_of, readable
-    from seacage.service._store._retention import cages, days_before, rows_of_day
+    from seacage.service._store._days import cages, days_before, rows_of_day
     from seacage.service._store._store import look_into
 
     until = microseconds((before or datetime.now(UTC)).replace(tzinfo=UTC))
@@ -59,7 +71,6 @@ def write(
             progress("archive", done, len(days))
     report(
         {"folder": str(folder), "files": len(days), "samples": count},
-        as_json=as_json,
         rows=[("Archive", str(folder)), ("Files", str(len(days))), ("Samples", str(count))],
     )
 
@@ -69,29 +80,33 @@ def write(
 def read(
     folder: Folder,
     *,
-    cage: Annotated[str, typer.Option(help="Whose samples.")],
-    stream: Annotated[str | None, typer.Option(help="Only this stream's.")] = None,
+    cage: str,
+    stream: str | None = None,
     start: Day = None,
     end: Day = None,
-    as_json: Json = False,
 ) -> None:
     """Print archived samples in time order, one JSON object a line.
 
     Example: a day of a buoy.
         seacage archive read archive --cage ace --stream buoy-1 --start 2020-02-01 --end 2020-02-02
-    """
-    import json
 
+    Parameters
+    ----------
+    cage
+        Whose samples.
+    stream
+        Only this stream's.
+    """
     from seacage.conventions import InputError
-    from seacage.service._cli._console import without_nan
     from seacage.service._store._archive import Archive
     from seacage.service._store._archive_reads import read_archive_between
+    from seacage.service._store._database._rows import Bounds
 
     archive = Archive(folder)
     if cage not in archive.cages():
         there = ", ".join(archive.cages()) or "none"
         raise InputError(f"{folder} has no samples of cage {cage!r}. It has: {there}.")
-    bounds = {"start": start and start.replace(tzinfo=UTC), "end": end and end.replace(tzinfo=UTC)}
+    bounds = Bounds(start=start and start.replace(tzinfo=UTC), end=end and end.replace(tzinfo=UTC))
     rows = (
         {
             "stream": one.stream,
@@ -101,10 +116,10 @@ def read(
             "flags": {key: int(flag) for key, flag in one.flags.items()},
             "remarks": list(one.remarks),
         }
-        for one in read_archive_between(archive, cage, stream=stream, **bounds)
+        for one in read_archive_between(archive, cage, stream, bounds)
     )
-    if as_json:
-        report({"samples": list(rows)}, as_json=True)
+    if wants_json():
+        report({"samples": list(rows)})
         return
     for line in rows:
         typer.echo(json.dumps(line))
@@ -112,7 +127,7 @@ def read(
 
 @group.command()
 @guard
-def check(folder: Folder, *, as_json: Json = False) -> None:
+def check(folder: Folder) -> None:
     """Read every file and compare it with what was written; ends with 3 at any fault.
 
     Example:
@@ -127,7 +142,6 @@ def check(folder: Folder, *, as_json: Json = False) -> None:
     faults = [fault for _, fault in looked if fault]
     report(
         {"folder": str(folder), "files": len(looked), "faults": faults},
-        as_json=as_json,
         rows=[("Files", str(len(looked))), *(("Fault", fault) for fault in faults)],
     )
     if faults:

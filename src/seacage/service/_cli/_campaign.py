@@ -2,14 +2,30 @@
 
 import math
 import shlex
+from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from seacage.service._cli import _plans as plans
-from seacage.service._cli._console import Exit, Json, exit_with, guard, progress_bar, report
-from seacage.service._cli._settle import CageName, read_cage
+from seacage.service._cli._console import (
+    Exit,
+    exit_with,
+    guard,
+    progress_bar,
+    report,
+    wants_json,
+)
+from seacage.service._cli._options import (
+    CageName,
+    Law,
+    Mooring,
+    SpinUp,
+    Workers,
+    read_cage,
+    read_share,
+)
+from seacage.service._cli._plans import PlanOptions
 
 if TYPE_CHECKING:
     from seacage.campaigns import CampaignStatus
@@ -44,46 +60,18 @@ exec {command} --share "$SLURM_ARRAY_TASK_ID/{tasks}"
 def run(
     store: Store,
     *,
-    plan: plans.PlanName = "default",
-    ranges: plans.Ranges = None,
-    grid: plans.Grid = None,
-    listed: plans.Listed = None,
-    cases: plans.Cases = None,
-    duration: plans.Duration = None,
-    seed: plans.Seed = None,
+    plan: PlanOptions,
     cage: CageName = "ace",
-    method: Annotated[
-        Literal["simulate", "settle"],
-        typer.Option(help="simulate: in time; settle: equilibria, waves by their mean loads."),
-    ] = "simulate",
-    law: Annotated[
-        Literal["kristiansen-faltinsen", "loland", "aarsnes", "morison"],
-        typer.Option(help="How the water loads the netting."),
-    ] = "kristiansen-faltinsen",
-    mooring: Annotated[
-        Literal["springs", "catenary"],
-        typer.Option(help="What holds the frame: springs, or buoys and anchor lines."),
-    ] = "springs",
-    ramp: Annotated[float, typer.Option(help="Over which the waves rise, s.")] = 60.0,
-    spin_up: Annotated[
-        float, typer.Option(help="Simulated first and thrown away, s; the waves rise in it.")
-    ] = 300.0,
-    time_step: Annotated[float, typer.Option(help="s")] = 0.002,
-    second_moment: Annotated[
-        bool, typer.Option(help="Keep the second moment of all node coordinates.")
-    ] = True,
-    workers: Annotated[
-        int | None, typer.Option(min=1, help="Processes. [default: one per core]")
-    ] = None,
-    cluster: Annotated[
-        str | None,
-        typer.Option(metavar="ADDRESS", help="Of a Dask scheduler you trust: tcp://host:8786."),
-    ] = None,
-    share: Annotated[
-        str | None,
-        typer.Option(metavar="I/N", help="Only the I-th of N shares, from 0; others run the rest."),
-    ] = None,
-    as_json: Json = False,
+    method: Literal["simulate", "settle"] = "simulate",
+    law: Law = "kristiansen-faltinsen",
+    mooring: Mooring = "springs",
+    ramp: float = 60.0,
+    spin_up: SpinUp = 300.0,
+    time_step: float = 0.002,
+    second_moment: bool = True,
+    workers: Workers = None,
+    cluster: Annotated[str | None, typer.Option(metavar="ADDRESS")] = None,
+    share: Annotated[str | None, typer.Option(metavar="I/N")] = None,
 ) -> None:
     """Simulate a cage in many sea states.
 
@@ -92,18 +80,25 @@ def run(
 
     Example:
         seacage campaign run ace.zarr --plan paper --cases 400 --seed 1
+
+    Parameters
+    ----------
+    method
+        simulate: in time; settle: equilibria, waves by their mean loads.
+    ramp
+        Over which the waves rise, s.
+    time_step
+        s
+    second_moment
+        Keep the second moment of all node coordinates.
+    cluster
+        Of a Dask scheduler you trust: tcp://host:8786.
+    share
+        Only the I-th of N shares, from 0; others run the rest.
     """
     from seacage.campaigns import Simulator, run_share
 
-    chosen = plans.plan_of(
-        plan=plan,
-        ranges=ranges,
-        grid=grid,
-        listed=listed,
-        cases=cases,
-        duration=duration,
-        seed=seed,
-    )
+    chosen = plan.read()
     by = Simulator(
         method=method,
         law=law,
@@ -124,12 +119,12 @@ def run(
             cluster=cluster,
             progress=progress,
         )
-    _report_end(store, as_json=as_json)
+    _report_end(store)
 
 
 @group.command()
 @guard
-def status(store: Store, *, as_json: Json = False) -> None:
+def status(store: Store) -> None:
     """Say how far a campaign is, what failed in it and why, and how quick it is.
 
     While it runs, or after it was stopped.
@@ -139,12 +134,12 @@ def status(store: Store, *, as_json: Json = False) -> None:
     """
     from seacage.campaigns import campaign_status
 
-    _report_status(store, campaign_status(store), as_json=as_json)
+    _report_status(store, campaign_status(store))
 
 
 @group.command()
 @guard
-def finish(store: Store, *, as_json: Json = False) -> None:
+def finish(store: Store) -> None:
     """Sum up a campaign whose cases have all been run, in shares perhaps.
 
     Whoever runs the last share does it; only if that was stopped just there it is left to do.
@@ -163,37 +158,37 @@ def finish(store: Store, *, as_json: Json = False) -> None:
             "been run. Run them first.",
             Exit.REFUSED,
         )
-    _report_status(store, reached, as_json=as_json)
+    _report_status(store, reached)
 
 
 @group.command()
 @guard
 def export(
     store: Store,
-    out: Annotated[Path, typer.Argument(dir_okay=False, help="The CF-NetCDF file to write.")],
-    *,
-    as_json: Json = False,
+    out: Annotated[Path, typer.Argument(dir_okay=False)],
 ) -> None:
     """Write a campaign as one CF-NetCDF file.
 
     Example:
         seacage campaign export ace.zarr ace.nc
+
+    Parameters
+    ----------
+    out
+        The CF-NetCDF file to write.
     """
     from seacage.records import export_campaign
 
     export_campaign(store, out)
-    report({"written": str(out)}, as_json=as_json, rows=[("Written", str(out))])
+    report({"written": str(out)}, rows=[("Written", str(out))])
 
 
 @group.command(context_settings={"ignore_unknown_options": True})
 @guard
 def slurm(
-    words: Annotated[
-        list[str], typer.Argument(metavar="STORE [OPTIONS]", help="As of `campaign run`.")
-    ],
+    words: Annotated[list[str], typer.Argument(metavar="STORE [OPTIONS]")],
     *,
-    tasks: Annotated[int, typer.Option(min=1, help="Of the job array: one share each.")],
-    as_json: Json = False,
+    tasks: Annotated[int, typer.Option(min=1)],
 ) -> None:
     """Print a SLURM job array that runs a campaign in shares.
 
@@ -201,6 +196,13 @@ def slurm(
 
     Example:
         seacage campaign slurm --tasks 50 ace.zarr --plan paper > job.sh
+
+    Parameters
+    ----------
+    words
+        As of `campaign run`.
+    tasks
+        Of the job array: one share each.
     """
     from seacage.campaigns import Simulator
 
@@ -209,8 +211,7 @@ def slurm(
         raise exit_with(
             "campaign slurm: it makes the shares. Leave --share and --cluster out.", Exit.USAGE
         )
-    names = ("plan", "ranges", "grid", "listed", "cases", "duration", "seed")
-    chosen = plans.plan_of(**{name: given[name] for name in names})
+    chosen = PlanOptions(**{one.name: given[one.name] for one in fields(PlanOptions)}).read()
     read_cage(given["cage"])
     blocks = -(-len(chosen) // Simulator(method=given["method"]).block)
     alone = [] if given["workers"] else ["--workers", "1"]
@@ -222,8 +223,8 @@ def slurm(
         store=shlex.quote(str(given["store"])),
         command=shlex.join(["seacage", "campaign", "run", *words, *alone]),
     )
-    if as_json:
-        report({"script": script}, as_json=True)
+    if wants_json():
+        report({"script": script})
     else:
         typer.echo(script, nl=False)
 
@@ -232,29 +233,19 @@ def _parse_options(words: list[str]) -> dict[str, Any]:
     """The options that `campaign run` would get of the words meant for it."""
     command: Any = typer.main.get_command(group)
     with command.commands["run"].make_context("seacage campaign run", [*words]) as context:
-        return dict(context.params)
+        return {name: None if one == () else one for name, one in context.params.items()}
 
 
-def read_share(text: str | None) -> tuple[int, int]:
-    """Which share of how many, from I/N."""
-    from seacage.conventions import InputError
-
-    which, slash, shares = (text or "0/1").partition("/")
-    if not (slash and which.isdigit() and shares.isdigit()):
-        raise InputError(f"--share {text}: expected I/N, as 0/8 for the first of 8 shares.")
-    return int(which), int(shares)
-
-
-def _report_end(store: Path, *, as_json: bool) -> None:
+def _report_end(store: Path) -> None:
     from seacage.campaigns import campaign_status
 
     reached = campaign_status(store)
-    _report_status(store, reached, as_json=as_json)
+    _report_status(store, reached)
     if reached.finished and not reached.converged:
         raise exit_with("campaign run: no case converged. Check the cage's file.", Exit.FAILED)
 
 
-def _report_status(store: Path, reached: "CampaignStatus", *, as_json: bool) -> None:
+def _report_status(store: Path, reached: "CampaignStatus") -> None:
     counts = {
         "converged": reached.converged,
         "not_converged": reached.not_converged,
@@ -266,7 +257,6 @@ def _report_status(store: Path, reached: "CampaignStatus", *, as_json: bool) -> 
         | {"finished": reached.finished, "failures": _failures(reached)}
         | {"simulated_s": reached.simulated_s, "core_seconds": round(reached.core_seconds, 2)}
         | {"simulated_s_per_core_second": round(reached.pace, 1)},
-        as_json=as_json,
         rows=[
             ("Campaign", f"{store}: plan {reached.plan}, {reached.method}, {reached.law}"),
             ("Done", f"{reached.done} of {reached.total}{_pending_checksums(reached)}"),

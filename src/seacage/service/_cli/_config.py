@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
-from seacage.service._cli._console import Exit, Finding, Json, guard, report, report_findings
+from seacage.service._cli._console import Exit, Finding, guard, report, report_findings
 
 if TYPE_CHECKING:
     from seacage.service._settings import Settings
@@ -25,10 +25,7 @@ Config = Annotated[
 def check(
     *,
     config: Config = None,
-    reach: Annotated[
-        bool, typer.Option("--reach", help="Also open the store and knock at the broker.")
-    ] = False,
-    as_json: Json = False,
+    reach: Annotated[bool, typer.Option("--reach")] = False,
 ) -> None:
     """Check settings before a service starts with them: all that can be known now.
 
@@ -37,16 +34,21 @@ def check(
 
     Example:
         seacage config check --config seacage.toml
+
+    Parameters
+    ----------
+    reach
+        Also open the store and knock at the broker.
     """
     from seacage.service._settings import read_settings
 
     findings = list(_findings(read_settings(config), reach=reach))
-    report_findings("config", findings, code=Exit.REFUSED, as_json=as_json)
+    report_findings("config", findings, code=Exit.REFUSED)
 
 
 @group.command()
 @guard
-def show(*, config: Config = None, as_json: Json = False) -> None:
+def show(*, config: Config = None) -> None:
     """Show all settings as a service would take them: file, environment and defaults together.
 
     Secrets, and addresses that may hold one, are not shown.
@@ -57,7 +59,7 @@ def show(*, config: Config = None, as_json: Json = False) -> None:
     from seacage.service._settings import read_settings
 
     settled = dict(_flat("", read_settings(config).model_dump(mode="json")))
-    report(settled, as_json=as_json, rows=[(name, str(value)) for name, value in settled.items()])
+    report(settled, rows=[(name, str(value)) for name, value in settled.items()])
 
 
 def _flat(prefix: str, value: object) -> Iterator[tuple[str, object]]:

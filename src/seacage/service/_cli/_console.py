@@ -1,30 +1,35 @@
 """What every command shares: exit codes, one-sentence errors, output and progress."""
 
 import functools
+import inspect
 import json
 import os
 import re
 import sys
 import time
-from collections.abc import Callable, Generator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from contextvars import ContextVar
+from copy import copy
+from dataclasses import MISSING, dataclass, fields, is_dataclass
 from enum import IntEnum
 from importlib.metadata import requires
-from typing import TYPE_CHECKING, Annotated, Literal, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, get_args, get_origin
 
 import typer
 
 if TYPE_CHECKING:
     from seacage.conventions import Progress
 
-P = ParamSpec("P")
 R = TypeVar("R")
 
 Json = Annotated[
     bool,
     typer.Option("--json", help="Print one JSON object on stdout, for programs."),
 ]
+_MEANING = re.compile(r"^(\w+)\n((?: {4}.+\n?)+)", re.MULTILINE)  # of a parameter
+_LINE_EVERY_S = 5.0  # of progress in a log
+_wants_json = ContextVar("_wants_json", default=False)
 
 
 class Exit(IntEnum):
@@ -47,13 +52,27 @@ EXIT_CODES = (
 )
 
 
-def guard(command: Callable[P, R]) -> Callable[P, R]:
-    """Let a command end with one sentence on stderr and an exit code, never a traceback."""
+def guard(command: Callable[..., R]) -> Callable[..., R]:
+    """Let a command end with one sentence on stderr and an exit code, never a traceback.
+
+    Every command gets the option ``--json``. A parameter whose type is a dataclass becomes one
+    option per field, and the command gets them as that one value. The docstrings hold the help.
+    """
+    text, meanings = _split_docstring(command.__doc__)
+    signature = inspect.signature(command)
+    groups: dict[str, type[Any]] = {
+        one.name: one.annotation
+        for one in signature.parameters.values()
+        if isinstance(one.annotation, type) and is_dataclass(one.annotation)
+    }
 
     @functools.wraps(command)
-    def run(*args: P.args, **kwargs: P.kwargs) -> R:
+    def run(*args: Any, as_json: bool = False, **kwargs: Any) -> R:
         from seacage.conventions import InputError, ModelError, NonsenseError, SeacageError
 
+        _wants_json.set(as_json)
+        for name, group in groups.items():
+            kwargs[name] = group(**{one.name: kwargs.pop(one.name) for one in fields(group)})
         try:
             return command(*args, **kwargs)
         except NonsenseError as error:
@@ -71,8 +90,44 @@ def guard(command: Callable[P, R]) -> Callable[P, R]:
         except KeyboardInterrupt as error:
             raise exit_with("Interrupted; run it again to go on.", Exit.INTERRUPTED) from error
 
-    run.__doc__ = _with_examples_kept(command.__doc__ or "")
+    parameters = list(_with_options(signature, meanings))
+    run.__signature__ = signature.replace(parameters=parameters)  # pyright: ignore[reportAttributeAccessIssue]
+    # A backspace alone on a line tells typer not to rewrap the paragraph below it.
+    run.__doc__ = text.replace("\nExample", "\n\b\nExample", 1)
     return run
+
+
+def _split_docstring(docstring: str | None) -> tuple[str, dict[str, str]]:
+    """The text of a docstring, and the meanings of its parameters."""
+    text, _, section = inspect.cleandoc(docstring or "").partition("\n\nParameters\n----------\n")
+    return text, {name: " ".join(meaning.split()) for name, meaning in _MEANING.findall(section)}
+
+
+def _with_options(
+    signature: inspect.Signature, meanings: Mapping[str, str]
+) -> Iterator[inspect.Parameter]:
+    """The parameters that the command line has for a command's own."""
+    for one in signature.parameters.values():
+        if is_dataclass(one.annotation):
+            _, own = _split_docstring(one.annotation.__doc__)
+            for option in fields(one.annotation):
+                default = one.empty if option.default is MISSING else option.default
+                kind = _with_help(option.type, own.get(option.name))
+                yield one.replace(name=option.name, annotation=kind, default=default)
+        else:
+            yield one.replace(annotation=_with_help(one.annotation, meanings.get(one.name)))
+    kind = inspect.Parameter.KEYWORD_ONLY
+    yield inspect.Parameter("as_json", kind, annotation=Json, default=False)
+
+
+def _with_help(annotation: Any, meaning: str | None) -> Any:
+    """An option's or an argument's type with its help; a shared type may have its own."""
+    if meaning is None:
+        return annotation
+    parts = get_args(annotation) if get_origin(annotation) is Annotated else (annotation, None)
+    info = copy(parts[1]) if parts[1] else typer.Option()
+    info.help = meaning
+    return Annotated[parts[0], info]
 
 
 def _of_an_extra(error: ModuleNotFoundError) -> str:
@@ -88,32 +143,28 @@ def _of_an_extra(error: ModuleNotFoundError) -> str:
     raise error
 
 
-def _with_examples_kept(text: str) -> str:
-    # A backspace alone on a line tells typer not to rewrap the paragraph below it.
-    return re.sub(r"\n( *)Example", "\n\\1\b\n\\1Example", text, count=1)
-
-
 def exit_with(sentence: str, code: Exit) -> typer.Exit:
     """Say a sentence on stderr and return the exit to raise."""
     typer.echo(f"seacage: {sentence}", err=True)
     return typer.Exit(code)
 
 
-def report(
-    answer: Mapping[str, object], *, as_json: bool, rows: Sequence[tuple[str, str]] = ()
-) -> None:
+def wants_json() -> bool:
+    """Whether ``--json`` was given to the command that runs."""
+    return _wants_json.get()
+
+
+def report(answer: Mapping[str, object], *, rows: Sequence[tuple[str, str]] = ()) -> None:
     """Print a command's answer.
 
     Parameters
     ----------
     answer
         What a program gets with ``--json``; NaN becomes null.
-    as_json
-        Whether ``--json`` was given.
     rows
         What a person gets: names and values, in two columns.
     """
-    if as_json:
+    if wants_json():
         typer.echo(json.dumps(without_nan(answer), default=str))
         return
     width = max((len(name) for name, _ in rows), default=0)
@@ -158,14 +209,13 @@ def progress_bar() -> "Generator[Progress]":
 class _Lines:
     """Progress for a log: a line when a stage begins, ends, and now and then between."""
 
-    def __init__(self, *, every_s: float = 5.0) -> None:
-        self._every_s = every_s
+    def __init__(self) -> None:
         self._began: dict[str, tuple[float, int]] = {}
         self._said = 0.0
 
     def __call__(self, stage: str, done: int, total: int) -> None:
         now = time.monotonic()
-        if stage in self._began and done < total and now - self._said < self._every_s:
+        if stage in self._began and done < total and now - self._said < _LINE_EVERY_S:
             return
         began, first = self._began.setdefault(stage, (now, done))
         self._said = now
@@ -183,9 +233,7 @@ class Finding:
     message: str
 
 
-def report_findings(
-    command: str, findings: Sequence[Finding], *, code: Exit, as_json: bool
-) -> None:
+def report_findings(command: str, findings: Sequence[Finding], *, code: Exit) -> None:
     """Print what was found, and end with a code where something is wrong.
 
     Parameters
@@ -196,14 +244,11 @@ def report_findings(
         All of them, in the order in which they are read.
     code
         To end with where one is wrong.
-    as_json
-        Whether ``--json`` was given.
     """
     wrong = [one for one in findings if one.state == "wrong"]
     report(
         {"ok": not wrong}
         | {"findings": [{"what": f.what, "state": f.state, "said": f.message} for f in findings]},
-        as_json=as_json,
         rows=[(f"{one.state:<6}  {one.what}", one.message) for one in findings],
     )
     if wrong:

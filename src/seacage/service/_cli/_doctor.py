@@ -11,7 +11,8 @@ from typing import Annotated
 
 import typer
 
-from seacage.service._cli._console import Exit, Finding, Json, guard, report_findings
+from seacage.service._cli._console import Exit, Finding, guard, report_findings
+from seacage.service._cli._options import DataFolder
 
 _LOOK_S = 20.0
 _EXTRAS = {
@@ -26,15 +27,9 @@ _EXTRAS = {
 @guard
 def doctor(
     *,
-    data: Annotated[Path, typer.Option(file_okay=False, help="The service's data folder.")] = Path(
-        "var"
-    ),
-    store: Annotated[
-        str | None,
-        typer.Option(help="postgresql://user@host/name, or a file. [default: that in --data]"),
-    ] = None,
-    port: Annotated[int, typer.Option(min=1, max=65535, help="The service's port.")] = 8000,
-    as_json: Json = False,
+    data: DataFolder = Path("var"),
+    store: str | None = None,
+    port: Annotated[int, typer.Option(min=1, max=65535)] = 8000,
 ) -> None:
     """Say what is installed and what is wrong.
 
@@ -42,6 +37,13 @@ def doctor(
 
     Example:
         seacage doctor
+
+    Parameters
+    ----------
+    store
+        postgresql://user@host/name, or a file. [default: that in --data]
+    port
+        The service's port.
     """
     checks: tuple[Callable[[], Finding], ...] = (
         _python,
@@ -54,7 +56,7 @@ def doctor(
         lambda: _demonstration(data),
     )
     findings = [check() for check in checks] + [_extra(name) for name in _EXTRAS]
-    report_findings("doctor", findings, code=Exit.FAILED, as_json=as_json)
+    report_findings("doctor", findings, code=Exit.FAILED)
 
 
 def _python() -> Finding:
@@ -115,7 +117,7 @@ def _disk(data: Path) -> Finding:
 
 
 def _tokens(data: Path) -> Finding:
-    from seacage.service._auth._tokens import Tokens
+    from seacage.service._auth._token_store import Tokens
 
     tokens = Tokens(data)
     count = len(tokens.all())

@@ -1,14 +1,24 @@
 """``seacage field``: records of buoys and sensors."""
 
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from seacage.service._cli._campaign import read_share
-from seacage.service._cli._console import Json, guard, progress_bar, report
-from seacage.service._cli._settle import CageName, read_cage
+from seacage.service._cli._console import guard, progress_bar, report
+from seacage.service._cli._options import (
+    CageName,
+    Columns,
+    InFile,
+    OutFile,
+    Seed,
+    Workers,
+    read_cage,
+    read_share,
+    read_streams,
+)
 
 if TYPE_CHECKING:
     from seacage.campaigns import Event, TruthParameters
@@ -21,72 +31,29 @@ _FLAG_WORDS = {1: "good", 2: "not evaluated", 3: "suspect", 4: "fail", 9: "missi
 
 LimitsFile = Annotated[
     Path | None,
-    typer.Option(
-        "--limits", exists=True, dir_okay=False, help="The site's limits (TOML); else defaults."
-    ),
+    typer.Option(exists=True, dir_okay=False, help="The site's limits (TOML); else defaults."),
 ]
 
 
 @group.command()
 @guard
 def virtual(
-    out: Annotated[Path, typer.Argument(file_okay=False, help="Folder of the field record.")],
+    out: Annotated[Path, typer.Argument(file_okay=False)],
     *,
-    method: Annotated[
-        Literal["simulate", "settle"],
-        typer.Option(help="In time, in waves: hours. Or equilibria in the current: minutes."),
-    ] = "simulate",
-    record: Annotated[
-        Path | None,
-        typer.Option(exists=True, dir_okay=False, help="A buoy's record; else one is generated."),
-    ] = None,
-    days: Annotated[
-        float | None,
-        typer.Option(
-            min=0.01, max=400.0, help="Its first days. [default: 48 generated, or the whole record]"
-        ),
-    ] = None,
-    start: Annotated[
-        datetime, typer.Option(formats=["%Y-%m-%d"], help="Of a generated current, UTC.")
-    ] = datetime(2020, 1, 18),  # noqa: DTZ001
-    waves: Annotated[
-        Path | None,
-        typer.Option(
-            exists=True,
-            dir_okay=False,
-            help="A record of waves, brought to the same days of the year and to a sheltered "
-            "site; else the buoy's own, else they are generated.",
-        ),
-    ] = None,
-    calm: Annotated[bool, typer.Option("--calm", help="No waves at all.")] = False,
-    one_in: Annotated[
-        int,
-        typer.Option(min=1, help="Simulate one hour in so many, and those of the shackles."),
-    ] = 1,
-    event: Annotated[
-        list[str] | None,
-        typer.Option(help='What goes wrong, as "bridle-cut bridle-8 2020-02-01T12:00Z".'),
-    ] = None,
-    events: Annotated[
-        Path | None, typer.Option(exists=True, dir_okay=False, help="A TOML file of events.")
-    ] = None,
-    seed: Annotated[int, typer.Option(min=0, help="Of weather, noise and outages.")] = 0,
-    hidden: Annotated[
-        Path | None,
-        typer.Option(exists=True, dir_okay=False, help="Hidden parameters; else those shipped."),
-    ] = None,
+    method: Literal["simulate", "settle"] = "simulate",
+    record: InFile = None,
+    days: Annotated[float | None, typer.Option(min=0.01, max=400.0)] = None,
+    start: Annotated[datetime, typer.Option(formats=["%Y-%m-%d"])] = datetime(2020, 1, 18),  # noqa: DTZ001
+    waves: InFile = None,
+    calm: Annotated[bool, typer.Option("--calm")] = False,
+    one_in: Annotated[int, typer.Option(min=1)] = 1,
+    event: list[str] | None = None,
+    events: InFile = None,
+    seed: Seed = 0,
+    hidden: InFile = None,
     cage: CageName = "ace",
-    workers: Annotated[
-        int | None, typer.Option(min=1, help="Processes. [default: one per core]")
-    ] = None,
-    share: Annotated[
-        str | None,
-        typer.Option(
-            metavar="I/N",
-            help="Only simulate the I-th of N shares of the hours, from 0; others do the rest.",
-        ),
-    ] = None,
-    as_json: Json = False,
+    workers: Workers = None,
+    share: Annotated[str | None, typer.Option(metavar="I/N")] = None,
 ) -> None:
     """Make a virtual field: sensors on a cage that differs from its drawing.
 
@@ -98,6 +65,36 @@ def virtual(
         seacage field virtual field --days 1.5 --seed 1
         seacage field virtual field --record buoy.csv --waves nora10.csv --one-in 8
         seacage field virtual field --event "net-hole ring-3/spoke-24 2020-02-01T12:00Z"
+
+    Parameters
+    ----------
+    out
+        Folder of the field record.
+    method
+        In time, in waves: hours. Or equilibria in the current: minutes.
+    record
+        A buoy's record; else one is generated.
+    days
+        Its first days. [default: 48 generated, or the whole record]
+    start
+        Of a generated current, UTC.
+    waves
+        A record of waves, brought to the same days of the year and to a sheltered site; else the
+        buoy's own, else they are generated.
+    calm
+        No waves at all.
+    one_in
+        Simulate one hour in so many, and those of the shackles.
+    event
+        What goes wrong, as "bridle-cut bridle-8 2020-02-01T12:00Z".
+    events
+        A TOML file of events.
+    seed
+        Of weather, noise and outages.
+    hidden
+        Hidden parameters; else those shipped.
+    share
+        Only simulate the I-th of N shares of the hours, from 0; others do the rest.
     """
     from seacage.campaigns import Timetable, TruthParameters, virtual_field, virtual_field_share
 
@@ -119,19 +116,17 @@ def virtual(
             virtual_field_share(
                 read_cage(cage), buoy, share=read_share(share), progress=progress, **options
             )
-            report({"share": share}, as_json=as_json, rows=[("Simulated", f"share {share}")])
+            report({"share": share}, rows=[("Simulated", f"share {share}")])
             return
         made = virtual_field(read_cage(cage), buoy, progress=progress, **options)
     made.write(out)
-    _report_field(made.record, out, as_json=as_json)
+    _report_field(made.record, out)
 
 
 def _buoy(
     path: Path | None, *, days: float | None, start: datetime, seed: int, calm: bool
 ) -> "Record":
     """The buoy's record: read or generated, its first days, and without waves for a calm sea."""
-    from dataclasses import replace
-
     from seacage.campaigns import generated_current
     from seacage.records import moment, read_record
 
@@ -180,7 +175,7 @@ def _check_settled(*, waves: Path | None, calm: bool, one_in: int, share: str | 
         )
 
 
-def _report_field(record: "FieldRecord", out: Path, *, as_json: bool) -> None:
+def _report_field(record: "FieldRecord", out: Path) -> None:
     streams = [record.buoy, *record.sensors.values()]
     report(
         {
@@ -189,7 +184,6 @@ def _report_field(record: "FieldRecord", out: Path, *, as_json: bool) -> None:
             "streams": {one.stream: len(one) for one in streams},
             "notes": record.notes,
         },
-        as_json=as_json,
         rows=[
             ("Written", f"{out} ({record.origin})"),
             *((one.stream, f"{len(one)} readings") for one in streams),
@@ -198,40 +192,61 @@ def _report_field(record: "FieldRecord", out: Path, *, as_json: bool) -> None:
     )
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapOptions:
+    """The meaning of a file's columns, as far as the file does not say it.
+
+    Parameters
+    ----------
+    origin
+        Of a foreign NetCDF file: measured or computed.
+    zone
+        Of a foreign NetCDF file's times, where it names none.
+    depth_m
+        Which depth of a profile.
+    range_m
+        Which bin of a profile, from the instrument.
+    """
+
+    columns: Columns = None
+    origin: str | None = None
+    zone: str | None = None
+    depth_m: float | None = None
+    range_m: float | None = None
+
+    def of(self, path: Path) -> "ColumnMap | NetcdfMap | None":
+        """The map that was named, with what the other options add to it."""
+        from seacage.conventions import InputError, Origin
+        from seacage.records import NetcdfMap, known_map, read_map
+
+        options = {"time_zone": self.zone, "depth_m": self.depth_m, "range_m": self.range_m}
+        given: dict[str, Any] = {name: one for name, one in options.items() if one is not None}
+        if self.origin is not None:
+            if self.origin not in {str(Origin.MEASURED), str(Origin.COMPUTED)}:
+                raise InputError(f"--origin {self.origin!r} is unknown. Say measured or computed.")
+            given |= {"origin": Origin(self.origin)}
+        chosen = read_map(self.columns) if self.columns else known_map(path) if given else None
+        if isinstance(chosen, NetcdfMap) or (chosen is None and given):
+            return replace(chosen or NetcdfMap(title=path.name), **given)
+        if chosen is not None and self.depth_m is not None and len(given) == 1:
+            return chosen.taken_at(self.depth_m)
+        if given:
+            raise InputError(
+                "--origin, --zone and --range-m are for NetCDF; a table's map says them."
+            )
+        return chosen
+
+
 @group.command("import")
 @guard
 def import_(
-    path: Annotated[
-        Path,
-        typer.Argument(
-            exists=True, dir_okay=False, help="A table (text, Parquet, CO-OPS, NDBC) or NetCDF."
-        ),
-    ],
-    out: Annotated[
-        Path, typer.Argument(dir_okay=False, help="To write: CF-NetCDF, or with --inspect a map.")
-    ],
+    path: Annotated[Path, typer.Argument(exists=True, dir_okay=False)],
+    out: Annotated[Path, typer.Argument(dir_okay=False)],
     *,
-    inspect: Annotated[
-        bool, typer.Option("--inspect", help="Say what the file seems to be; begin its map.")
-    ] = False,
-    columns: Annotated[
-        str | None,
-        typer.Option(help="Map of the file: a TOML file or a shipped name; else by the header."),
-    ] = None,
-    origin: Annotated[
-        str | None, typer.Option(help="Of a foreign NetCDF file: measured or computed.")
-    ] = None,
-    zone: Annotated[
-        str | None,
-        typer.Option(help="Of a foreign NetCDF file's times, where it names none."),
-    ] = None,
-    depth_m: Annotated[float | None, typer.Option(help="Which depth of a profile.")] = None,
-    range_m: Annotated[
-        float | None, typer.Option(help="Which bin of a profile, from the instrument.")
-    ] = None,
+    inspect: Annotated[bool, typer.Option("--inspect")] = False,
+    meaning: MapOptions,
     limits: LimitsFile = None,
-    stream: Annotated[str, typer.Option(help="What to call the stream.")] = "buoy-1",
-    as_json: Json = False,
+    stream: str = "buoy-1",
 ) -> None:
     """Read a file in house units, check every value, and keep it as CF-NetCDF.
 
@@ -242,19 +257,29 @@ def import_(
     Example:
         seacage field import logger.csv map.toml --inspect
         seacage field import logger.csv buoy-1.nc --columns map.toml
+
+    Parameters
+    ----------
+    path
+        A table (text, Parquet, CO-OPS, NDBC) or NetCDF.
+    out
+        To write: CF-NetCDF, or with --inspect a map.
+    inspect
+        Say what the file seems to be; begin its map.
+    stream
+        What to call the stream.
     """
     from seacage.records import read_record, write_record
 
     if inspect:
-        _inspect(path, out, as_json=as_json)
+        _inspect(path, out)
         return
-    choice = _choice(path, columns, origin=origin, zone=zone, depth_m=depth_m, range_m=range_m)
-    record = read_record(path, columns=choice, stream=stream, limits=_limits(limits))
+    record = read_record(path, columns=meaning.of(path), stream=stream, limits=_limits(limits))
     write_record(record, out)
-    _report_flags([record], as_json=as_json, written=out)
+    _report_flags([record], written=out)
 
 
-def _inspect(path: Path, out: Path, *, as_json: bool) -> None:
+def _inspect(path: Path, out: Path) -> None:
     from seacage.conventions import InputError
     from seacage.records import inspect_file
 
@@ -266,43 +291,11 @@ def _inspect(path: Path, out: Path, *, as_json: bool) -> None:
     written = str(out) if found.map_text else None
     report(
         {"findings": found.findings, "written": written, "to_fill_in": found.open_questions},
-        as_json=as_json,
         rows=[
             *(("", finding) for finding in found.findings),
             ("", f'{out}: fill in {found.open_questions} "?"' if written else "No map is needed."),
         ],
     )
-
-
-def _choice(
-    path: Path,
-    columns: str | None,
-    *,
-    origin: str | None,
-    zone: str | None,
-    depth_m: float | None,
-    range_m: float | None,
-) -> "ColumnMap | NetcdfMap | None":
-    """The map that was named, with what the command line adds to it."""
-    from dataclasses import replace
-
-    from seacage.conventions import InputError, Origin
-    from seacage.records import NetcdfMap, known_map, read_map
-
-    options: dict[str, Any] = {"time_zone": zone, "depth_m": depth_m, "range_m": range_m}
-    given = {name: value for name, value in options.items() if value is not None}
-    if origin is not None:
-        if origin not in {str(Origin.MEASURED), str(Origin.COMPUTED)}:
-            raise InputError(f"--origin {origin!r} is unknown. Say measured or computed.")
-        given |= {"origin": Origin(origin)}
-    chosen = read_map(columns) if columns else known_map(path) if given else None
-    if isinstance(chosen, NetcdfMap) or (chosen is None and given):
-        return replace(chosen or NetcdfMap(title=path.name), **given)
-    if chosen is not None and depth_m is not None and len(given) == 1:
-        return chosen.taken_at(depth_m)
-    if given:
-        raise InputError("--origin, --zone and --range-m are for NetCDF; a table's map says them.")
-    return chosen
 
 
 def _limits(path: Path | None) -> "Limits":
@@ -314,16 +307,10 @@ def _limits(path: Path | None) -> "Limits":
 @group.command()
 @guard
 def check(
-    path: Annotated[
-        Path, typer.Argument(exists=True, help="A record's file, or a field record's folder.")
-    ],
+    path: Annotated[Path, typer.Argument(exists=True)],
     *,
-    report: Annotated[
-        Path | None,
-        typer.Option(dir_okay=False, help="An HTML page to write: what, when, why, with figures."),
-    ] = None,
+    report: OutFile = None,
     limits: LimitsFile = None,
-    as_json: Json = False,
 ) -> None:
     """Count what the quality checks say of a record, with the first of each kind.
 
@@ -332,25 +319,28 @@ def check(
 
     Example:
         seacage field check buoy.csv --report quality.html
+
+    Parameters
+    ----------
+    path
+        A record's file, or a field record's folder.
+    report
+        An HTML page to write: what, when, why, with figures.
     """
-    from seacage.records import FieldRecord, check_record, read_record
+    from seacage.records import check_record
 
     used = _limits(limits)
-    if path.is_dir():
-        field = FieldRecord.read(path)
-        records = [field.buoy, *field.sensors.values()]
-    else:
-        records = [read_record(path, limits=used)]
+    records = read_streams(path, limits=used)
     if limits is not None:
         records = [check_record(one, used) for one in records]
     if report is not None:
         from seacage.studies import quality_page
 
         report.write_text(quality_page(records, used), encoding="utf-8")
-    _report_flags(records, as_json=as_json, written=report)
+    _report_flags(records, written=report)
 
 
-def _report_flags(records: "list[Record]", *, as_json: bool, written: Path | None = None) -> None:
+def _report_flags(records: "list[Record]", written: Path | None = None) -> None:
     rows: list[tuple[str, str]] = [("Written", str(written))] if written else []
     for record in records:
         rows.append((record.stream, _span(record)))
@@ -369,7 +359,6 @@ def _report_flags(records: "list[Record]", *, as_json: bool, written: Path | Non
                 for one in records
             },
         },
-        as_json=as_json,
         rows=rows,
     )
 

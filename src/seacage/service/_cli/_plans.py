@@ -1,7 +1,7 @@
 """Which sea states: the options of a shell turned into a plan."""
 
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -19,113 +19,85 @@ _AXES = {
 }
 """What can have a range or stand on a grid, as people write it; the ratio is Tp / (5 √Hs)."""
 
-PlanName = Annotated[
-    str,
-    typer.Option(
-        help="paper: its ranges; default: also other periods than 5 √Hs; current: no waves; or "
-        "the path of a plan that was written, ending in .json."
-    ),
-]
-Ranges = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--range",
-        metavar="KEY=LEAST,MOST",
-        help=f"In place of the plan's, e.g. hs_m=0,2. Keys: {', '.join(_AXES)}.",
-    ),
-]
-Grid = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--grid",
-        metavar="KEY=VALUES",
-        help="Instead of a plan every combination, e.g. hs_m=0,1,2 or, 11 values from 0 to 1, "
-        "current_speed_m_s=0:1:11.",
-    ),
-]
-Listed = Annotated[
-    Path | None,
-    typer.Option(
-        "--list",
-        exists=True,
-        dir_okay=False,
-        help="Instead of a plan a CSV file of sea states: current_speed_m_s, current_to_deg and, "
-        "if there are waves, hs_m, tp_s, wave_from_deg.",
-    ),
-]
-Cases = Annotated[
-    int | None, typer.Option(min=1, help="Sea states to draw of a plan. [default: 1000]")
-]
-Duration = Annotated[
-    float | None, typer.Option(help="Of each sea state, s. [default: 1800, or as written]")
-]
-Seed = Annotated[
-    int | None,
-    typer.Option(min=0, help="Of the draw and of the waves. [default: 0, or as written]"),
-]
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlanOptions:
+    """Which sea states, as a shell gives them.
 
-def plan_of(
-    *,
-    plan: str,
-    ranges: Iterable[str] | None,
-    grid: Iterable[str] | None,
-    listed: Path | None,
-    cases: int | None,
-    duration: float | None,
-    seed: int | None,
-) -> "Plan":
-    """The one plan that the options describe.
-
-    Raises
-    ------
-    InputError
-        Options that contradict each other or that no plan understands.
+    Parameters
+    ----------
+    plan
+        paper: its ranges; default: also other periods than 5 √Hs; current: no waves; or the path of
+        a plan that was written, ending in .json.
+    grid
+        Instead of a plan every combination, e.g. hs_m=0,1,2 or, 11 values from 0 to 1,
+        current_speed_m_s=0:1:11.
+    listed
+        Instead of a plan a CSV file of sea states: current_speed_m_s, current_to_deg and, if there
+        are waves, hs_m, tp_s, wave_from_deg.
+    cases
+        Sea states to draw of a plan. [default: 1000]
+    duration
+        Of each sea state, s. [default: 1800, or as written]
+    seed
+        Of the draw and of the waves. [default: 0, or as written]
     """
-    from seacage.campaigns import Plan
 
-    written = Path(plan) if plan.endswith(".json") else None
-    _check_alone(written=written, ranges=ranges, grid=grid, listed=listed, cases=cases)
-    lasting = 1800.0 if duration is None else duration
-    if written is not None:
-        return _with_changes(Plan.read(written), duration, seed)
-    if listed is not None:
-        return Plan.table(listed, duration=lasting, seed=seed or 0)
-    if grid:
-        return _grid_plan(_pairs("--grid", grid), lasting, seed or 0)
-    own = {
-        _AXES[key]: _least_and_most(key, values)
-        for key, values in _pairs("--range", ranges or ()).items()
-    }
-    return Plan.named(plan, seed or 0, cases or 1000, duration=lasting, ranges=own)
+    plan: str = "default"
+    ranges: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--range",
+            metavar="KEY=LEAST,MOST",
+            help=f"In place of the plan's, e.g. hs_m=0,2. Keys: {', '.join(_AXES)}.",
+        ),
+    ] = None
+    grid: Annotated[list[str] | None, typer.Option("--grid", metavar="KEY=VALUES")] = None
+    listed: Annotated[Path | None, typer.Option("--list", exists=True, dir_okay=False)] = None
+    cases: Annotated[int | None, typer.Option(min=1)] = None
+    duration: float | None = None
+    seed: Annotated[int | None, typer.Option(min=0)] = None
 
+    def read(self) -> "Plan":
+        """The one plan that the options describe.
 
-def _check_alone(
-    *,
-    written: Path | None,
-    ranges: Iterable[str] | None,
-    grid: Iterable[str] | None,
-    listed: Path | None,
-    cases: int | None,
-) -> None:
-    from seacage.conventions import InputError
+        Raises
+        ------
+        InputError
+            Options that contradict each other or that no plan understands.
+        """
+        from seacage.campaigns import Plan
 
-    whole = {"--plan with a file": written, "--grid": grid, "--list": listed}
-    given = [name for name, value in whole.items() if value]
-    drawn = [name for name, value in {"--range": ranges, "--cases": cases}.items() if value]
-    if len(given) > 1 or (given and drawn):
-        raise InputError(
-            f"{' and '.join([*given, *drawn])} exclude each other: {given[0]} names every sea "
-            "state. Give one of them."
-        )
+        self._check_alone()
+        duration = 1800.0 if self.duration is None else self.duration
+        if self.plan.endswith(".json"):
+            given = {"duration": self.duration, "seed": self.seed}
+            changed = {name: value for name, value in given.items() if value is not None}
+            return replace(Plan.read(self.plan), **changed)
+        if self.listed is not None:
+            return Plan.table(self.listed, duration=duration, seed=self.seed or 0)
+        if self.grid:
+            return _grid_plan(_pairs("--grid", self.grid), duration, self.seed or 0)
+        ranges = {
+            _AXES[key]: _least_and_most(key, values)
+            for key, values in _pairs("--range", self.ranges or ()).items()
+        }
+        seed, cases = self.seed or 0, self.cases or 1000
+        return Plan.named(self.plan, seed, cases, duration=duration, ranges=ranges)
 
+    def _check_alone(self) -> None:
+        from seacage.conventions import InputError
 
-def _with_changes(plan: "Plan", duration: float | None, seed: int | None) -> "Plan":
-    return replace(
-        plan,
-        duration=plan.duration if duration is None else duration,
-        seed=plan.seed if seed is None else seed,
-    )
+        written = self.plan.endswith(".json")
+        whole = {"--plan with a file": written, "--grid": self.grid, "--list": self.listed}
+        given = [name for name, value in whole.items() if value]
+        some = {"--range": self.ranges, "--cases": self.cases}
+        drawn = [name for name, value in some.items() if value]
+        if len(given) > 1 or (given and drawn):
+            raise InputError(
+                f"{' and '.join([*given, *drawn])} exclude each other: {given[0]} names every sea "
+                "state. Give one of them."
+            )
 
 
 def _pairs(option: str, given: Iterable[str]) -> dict[str, str]:

@@ -2,7 +2,7 @@
 
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import closing
 from dataclasses import dataclass, field
 from datetime import timedelta
 from pathlib import Path
@@ -10,69 +10,33 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from seacage.service._cli._console import Exit, Json, exit_with, guard, progress_bar, report
+from seacage.service._cli._console import Exit, exit_with, guard, progress_bar, report
+from seacage.service._cli._options import Columns, InFile, ServedCage, read_streams
 
 if TYPE_CHECKING:
-    from collections.abc import Generator
-
-    from seacage.service._publish._courier import Courier
     from seacage.service._publish._publisher import Batch, Published
     from seacage.service._publish._spool import Spool
+    from seacage.service._publish._transport import Transport
 
 
 @guard
 def publish(
-    source: Annotated[
-        str,
-        typer.Argument(
-            help="A buoy's record, a field record's folder, or - for lines of JSON on stdin."
-        ),
-    ],
+    source: Annotated[str, typer.Argument()],
     *,
-    to: Annotated[
-        str,
-        typer.Option(
-            help="mqtt://host:1883, mqtts://user:password@host:8883, or http://host:8000."
-        ),
-    ],
-    cage: Annotated[str, typer.Option(help="The cage's name there.")] = "ace",
-    site: Annotated[str, typer.Option(help="By MQTT: the site's name in the topics.")] = "site",
-    stream: Annotated[str, typer.Option(help="What to call the stream of a file.")] = "buoy-1",
-    columns: Annotated[
-        str | None,
-        typer.Option(help="Map of the file: a TOML file or a shipped name; else by the header."),
-    ] = None,
-    follow: Annotated[
-        bool, typer.Option("--follow", help="Go on with the rows that a logger appends.")
-    ] = False,
-    speed: Annotated[
-        float | None,
-        typer.Option(min=0.1, help="Of a record, against real time. [default: as fast as it goes]"),
-    ] = None,
-    spool: Annotated[
-        Path, typer.Option(dir_okay=False, help="File of what is not yet acknowledged.")
-    ] = Path("publish.spool"),
-    spool_most: Annotated[int, typer.Option(min=1, help="Samples that it holds.")] = 1_000_000,
-    when_full: Annotated[
-        Literal["wait", "drop-oldest"],
-        typer.Option(help="Then the source waits, or the oldest samples are given up."),
-    ] = "wait",
-    keep_ahead_days: Annotated[
-        float,
-        typer.Option(min=0.0, help="Try samples ahead of the service's clock for so long [d]."),
-    ] = 7.0,
-    patience_s: Annotated[
-        float | None,
-        typer.Option(min=1.0, help="Give up when nothing is acknowledged for so long [s]."),
-    ] = None,
-    token: Annotated[
-        str, typer.Option(envvar="SEACAGE_TOKEN", help="By HTTP: with the scope ingest.")
-    ] = "",
-    ca: Annotated[
-        Path | None,
-        typer.Option(exists=True, dir_okay=False, help="By MQTT: whom the certificate is from."),
-    ] = None,
-    as_json: Json = False,
+    to: str,
+    cage: ServedCage = "ace",
+    site: str = "site",
+    stream: str = "buoy-1",
+    columns: Columns = None,
+    follow: Annotated[bool, typer.Option("--follow")] = False,
+    speed: Annotated[float | None, typer.Option(min=0.1)] = None,
+    spool: Annotated[Path, typer.Option(dir_okay=False)] = Path("publish.spool"),
+    spool_most: Annotated[int, typer.Option(min=1)] = 1_000_000,
+    when_full: Literal["wait", "drop-oldest"] = "wait",
+    keep_ahead_days: Annotated[float, typer.Option(min=0.0)] = 7.0,
+    patience_s: Annotated[float | None, typer.Option(min=1.0)] = None,
+    token: Annotated[str, typer.Option(envvar="SEACAGE_TOKEN")] = "",
+    ca: InFile = None,
 ) -> None:
     """Send samples to a service, and again until it has them on disk.
 
@@ -90,6 +54,35 @@ def publish(
         seacage publish logger.csv --follow --columns map.toml --to mqtt://127.0.0.1:1883
     Example: lines like {"stream": "depth-2", "t": "2026-01-02T03:04:05Z", "values": {…}}.
         read-sensors | seacage publish - --to http://127.0.0.1:8000 --token TOKEN
+
+    Parameters
+    ----------
+    source
+        A buoy's record, a field record's folder, or - for lines of JSON on stdin.
+    to
+        mqtt://host:1883, mqtts://user:password@host:8883, or http://host:8000.
+    site
+        By MQTT: the site's name in the topics.
+    stream
+        What to call the stream of a file.
+    follow
+        Go on with the rows that a logger appends.
+    speed
+        Of a record, against real time. [default: as fast as it goes]
+    spool
+        File of what is not yet acknowledged.
+    spool_most
+        Samples that it holds.
+    when_full
+        Then the source waits, or the oldest samples are given up.
+    keep_ahead_days
+        Try samples ahead of the service's clock for so long [d].
+    patience_s
+        Give up when nothing is acknowledged for so long [s].
+    token
+        By HTTP: with the scope ingest.
+    ca
+        By MQTT: whom the certificate is from.
     """
     from seacage.conventions import InputError
     from seacage.service._logs import begin_logs
@@ -100,20 +93,20 @@ def publish(
     begin_logs("lines")
     refused, pace = _Refused(), speed or 1.0
     with (
-        _courier(to, cage, site, token, ca) as courier,  # first: it refuses a wrong address
-        _spool(spool, to, cage, site, spool_most, when_full) as kept,
+        closing(_transport(to, cage, site, token, ca)) as transport,  # refuses a wrong address
+        closing(_spool(spool, to, cage, site, spool_most, when_full)) as kept,
         progress_bar() as progress,
     ):
         batches = _batches(source, kept, refused, stream, columns, follow=follow, speed=speed)
         done = Publisher(
             kept,
-            courier,
+            transport,
             retry_s=max(1.0, 60.0 / pace),
             keep_ahead=timedelta(days=keep_ahead_days / pace),
             patience_s=patience_s,
             progress=progress,
         ).run(batches)
-    _report_outcome(done, refused, as_json=as_json)
+    _report_outcome(done, refused)
     if refused.count or done.rejected or done.quarantined:
         count = refused.count + done.rejected + done.quarantined
         raise exit_with(f"{count} samples were refused; see the summary.", Exit.REFUSED)
@@ -149,7 +142,7 @@ def _batches(
     speed: float | None,
 ) -> "Iterator[Batch]":
     from seacage.conventions import InputError
-    from seacage.records import ColumnMap, FieldRecord, read_map, read_record
+    from seacage.records import ColumnMap, read_map
     from seacage.service._publish._sources import (
         arriving,
         line_batches,
@@ -172,46 +165,29 @@ def _batches(
         at = TailPosition() if place is None else TailPosition.parse(place)
         tail = Tail(path=path, columns=choice, stream=stream, refuse=refused, place=at)
         return tail_batches(tail, source=name)
-    if path.is_dir():
-        field_record = FieldRecord.read(path)
-        records = [field_record.buoy, *field_record.sensors.values()]
-    else:
-        records = [read_record(path, columns=choice, stream=stream)]
+    records = read_streams(path, columns=choice, stream=stream)
     return record_batches(records, source=name, place=place, speed=speed)
 
 
-@contextmanager
-def _spool(
-    path: Path, to: str, cage: str, site: str, most: int, when_full: str
-) -> "Generator[Spool]":
+def _spool(path: Path, to: str, cage: str, site: str, most: int, when_full: str) -> "Spool":
     from seacage.service._publish._spool import Spool
 
     place = to.rpartition("://")[2].rpartition("@")[2]  # a password may change
     destination = f"{place}, site {site}, cage {cage}"
-    opened = Spool(path, to=destination, most=most, drop_oldest=when_full == "drop-oldest")
-    try:
-        yield opened
-    finally:
-        opened.close()
+    return Spool(path, to=destination, most=most, drop_oldest=when_full == "drop-oldest")
 
 
-@contextmanager
-def _courier(to: str, cage: str, site: str, token: str, ca: Path | None) -> "Generator[Courier]":
+def _transport(to: str, cage: str, site: str, token: str, ca: Path | None) -> "Transport":
     from seacage.service._mqtt._broker import Broker
-    from seacage.service._publish._courier import HttpCourier, MqttCourier
     from seacage.service._publish._sender import Sender
+    from seacage.service._publish._transport import HttpTransport, MqttTransport
 
     if to.startswith(("http://", "https://")):
-        made = HttpCourier(Sender(address=to, cage=cage, token=token, patience_s=()))
-    else:
-        made = MqttCourier(Broker.parse(to, ca=ca), site=site, cage=cage)
-    try:
-        yield made
-    finally:
-        made.close()
+        return HttpTransport(Sender(address=to, cage=cage, token=token, patience_s=()))
+    return MqttTransport(Broker.parse(to, ca=ca), site=site, cage=cage)
 
 
-def _report_outcome(done: "Published", refused: _Refused, *, as_json: bool) -> None:
+def _report_outcome(done: "Published", refused: _Refused) -> None:
     reasons = [*refused.reasons, *done.reasons]
     report(
         {
@@ -225,7 +201,6 @@ def _report_outcome(done: "Published", refused: _Refused, *, as_json: bool) -> N
             "ahead": done.ahead,
             "quarantined": done.quarantined,
         },
-        as_json=as_json,
         rows=[
             ("Read", f"{done.read} samples"),
             ("Acknowledged", str(done.acknowledged)),

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from seacage.service._cli._console import Json, guard, report
+from seacage.service._cli._console import guard, report
+from seacage.service._cli._options import OutFolder, Seed
 
 if TYPE_CHECKING:
     from seacage.studies import SensorScore
@@ -16,15 +17,10 @@ if TYPE_CHECKING:
 @guard
 def score(
     *,
-    twin: Annotated[Path, typer.Option(exists=True, file_okay=False, help="Folder of the twin.")],
-    field: Annotated[
-        Path, typer.Option(exists=True, file_okay=False, help="Folder of a field record.")
-    ],
-    out: Annotated[
-        Path | None, typer.Option(file_okay=False, help="Folder for tables and figures.")
-    ] = None,
-    seed: Annotated[int, typer.Option(min=0, help="Of the bootstrap.")] = 0,
-    as_json: Json = False,
+    twin: Annotated[Path, typer.Option(exists=True, file_okay=False)],
+    field: Annotated[Path, typer.Option(exists=True, file_okay=False)],
+    out: OutFolder = None,
+    seed: Seed = 0,
 ) -> None:
     """Score a twin on readings that did not teach it.
 
@@ -33,6 +29,17 @@ def score(
 
     Example:
         seacage score --twin twin --field field --out scores
+
+    Parameters
+    ----------
+    twin
+        Folder of the twin.
+    field
+        Folder of a field record.
+    out
+        Folder for tables and figures.
+    seed
+        Of the bootstrap.
     """
     from seacage.records import FieldRecord
     from seacage.studies import score_record
@@ -42,7 +49,6 @@ def score(
     rows = error_rows(scores)
     report(
         {"sensors": error_table(scores), "written": None if out is None else str(out)},
-        as_json=as_json,
         rows=rows if out is None else [*rows, ("Written", str(out))],
     )
 

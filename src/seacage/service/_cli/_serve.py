@@ -3,13 +3,13 @@
 import os
 import socket
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from seacage.service._cli._console import Json, guard, progress_bar, report
+from seacage.service._cli._console import guard, progress_bar, report
+from seacage.service._cli._options import InFile, InFolder
 
 if TYPE_CHECKING:
     from seacage.service._http._api import Service
@@ -21,72 +21,22 @@ if TYPE_CHECKING:
 @guard
 def serve(
     *,
-    config: Annotated[
-        Path | None,
-        typer.Option(exists=True, dir_okay=False, help="Settings as TOML; options go before it."),
-    ] = None,
-    data: Annotated[
-        Path | None, typer.Option(help="Folder for everything the service writes. [default: var]")
-    ] = None,
-    twin: Annotated[
-        Path | None,
-        typer.Option(
-            exists=True, file_okay=False, help="A trained twin; the demonstration's if left out."
-        ),
-    ] = None,
-    cage: Annotated[
-        str | None, typer.Option(help="Name to serve the cage under. [default: the cage's own]")
-    ] = None,
-    host: Annotated[
-        str | None, typer.Option(help="Address to listen on. [default: 127.0.0.1]")
-    ] = None,
-    port: Annotated[
-        int | None, typer.Option(help="Port to listen on; 0 takes a free one. [default: 8000]")
-    ] = None,
-    site: Annotated[
-        str | None, typer.Option(help="Where the cages lie, in topics and scopes. [default: site]")
-    ] = None,
-    store: Annotated[
-        str | None,
-        typer.Option(help="postgresql://user@host/name, or a file of SQLite. [default: in --data]"),
-    ] = None,
-    mqtt: Annotated[
-        str | None, typer.Option(help="Broker that samples come by, as mqtt://host:1883.")
-    ] = None,
-    certificate: Annotated[
-        Path | None, typer.Option(exists=True, dir_okay=False, help="PEM, to speak HTTPS.")
-    ] = None,
-    key: Annotated[
-        Path | None, typer.Option(exists=True, dir_okay=False, help="PEM, of the certificate.")
-    ] = None,
-    demo: Annotated[
-        bool, typer.Option("--demo", help="Feed the demonstration: a buoy and virtual sensors.")
-    ] = False,
-    record: Annotated[
-        Path | None,
-        typer.Option(exists=True, dir_okay=False, help="A buoy's record to replay, over and over."),
-    ] = None,
-    clock: Annotated[
-        Literal["wall", "samples"] | None,
-        typer.Option(
-            help="The time at the cage: this machine's, or that of the newest sample, for a "
-            "record that is published as if it were live. [default: wall]"
-        ),
-    ] = None,
-    speed: Annotated[
-        float | None,
-        typer.Option(
-            min=0.1,
-            max=10_000.0,
-            help="Of a replay, or of --clock samples between two of them, against real time. "
-            "[default: 60 of a replay, else 1]",
-        ),
-    ] = None,
-    insecure_http: Annotated[
-        bool,
-        typer.Option("--insecure-http", help="Listen beyond this machine without encryption."),
-    ] = False,
-    as_json: Json = False,
+    config: InFile = None,
+    data: Path | None = None,
+    twin: InFolder = None,
+    cage: str | None = None,
+    host: str | None = None,
+    port: int | None = None,
+    site: str | None = None,
+    store: str | None = None,
+    mqtt: str | None = None,
+    certificate: InFile = None,
+    key: InFile = None,
+    demo: Annotated[bool, typer.Option("--demo")] = False,
+    record: InFile = None,
+    clock: Literal["wall", "samples"] | None = None,
+    speed: Annotated[float | None, typer.Option(min=0.1, max=10_000.0)] = None,
+    insecure_http: Annotated[bool, typer.Option("--insecure-http")] = False,
 ) -> None:
     """Serve cages live: their page and their interface.
 
@@ -105,6 +55,43 @@ def serve(
         seacage publish record.csv --to mqtt://127.0.0.1:1883 --speed 100
     Example: serve a farm as its file says.
         seacage serve --config seacage.toml
+
+    Parameters
+    ----------
+    config
+        Settings as TOML; options go before it.
+    data
+        Folder for everything the service writes. [default: var]
+    twin
+        A trained twin; the demonstration's if left out.
+    cage
+        Name to serve the cage under. [default: the cage's own]
+    host
+        Address to listen on. [default: 127.0.0.1]
+    port
+        Port to listen on; 0 takes a free one. [default: 8000]
+    site
+        Where the cages lie, in topics and scopes. [default: site]
+    store
+        postgresql://user@host/name, or a file of SQLite. [default: in --data]
+    mqtt
+        Broker that samples come by, as mqtt://host:1883.
+    certificate
+        PEM, to speak HTTPS.
+    key
+        PEM, of the certificate.
+    demo
+        Feed the demonstration: a buoy and virtual sensors.
+    record
+        A buoy's record to replay, over and over.
+    clock
+        The time at the cage: this machine's, or that of the newest sample, for a record that is
+        published as if it were live. [default: wall]
+    speed
+        Of a replay, or of --clock samples between two of them, against real time. [default: 60 of a
+        replay, else 1]
+    insecure_http
+        Listen beyond this machine without encryption.
     """
     from seacage.conventions import InputError
     from seacage.service._assembly import assemble, server
@@ -138,8 +125,7 @@ def serve(
             twins = dict.fromkeys([cage], next(iter(twins.values())))
         pace = 60.0 if speed is None else speed
         service = assemble(settings, twins, replay=replay, speed=pace)
-        greeting = _greeting(settings, service, listener, pace if replay else None)
-        report(greeting.body, as_json=as_json, rows=greeting.rows)
+        _greet(settings, service, listener, pace if replay else None)
         with suppress(KeyboardInterrupt):  # Ctrl-C is how a service is stopped
             server(service, settings).run(sockets=[listener])
 
@@ -178,24 +164,18 @@ def _prepare(
     return {twin.cage.name: twin}, replay_of(buoy) if buoy else None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Welcome:
-    """What a start tells a program, and what it tells a person."""
-
-    body: dict[str, object]
-    rows: list[tuple[str, str]]
-
-
-def _greeting(
+def _greet(
     settings: "Settings", service: "Service", listener: socket.socket, speed: float | None
-) -> _Welcome:
+) -> None:
     scheme = "https" if settings.certificate else "http"
     host = f"[{settings.host}]" if ":" in settings.host else settings.host
     address = f"{scheme}://{host}:{listener.getsockname()[1]}/"
     # A replay is forgotten at the next start: who looks at it may try its alarms too.
     scopes = ["read"] if speed is None else ["read", "ack"]
     token, cages = service.tokens.mint(scopes, keep=False, name="this start"), list(service.cages)
-    came = _sources(settings) if speed is None else f"a replay at {speed:g} × real time"
+    came = f"samples by HTTP{' and MQTT' if settings.mqtt else ''}"
+    if speed is not None:
+        came = f"a replay at {speed:g} × real time"
     body: dict[str, object] = {"address": address, "token": token, "cage": cages[0], "cages": cages}
     rows = [
         ("Cage" if len(cages) == 1 else "Cages", f"{', '.join(cages)}, fed by {came}"),
@@ -206,8 +186,4 @@ def _greeting(
         admin = service.tokens.mint(["admin"], keep=True, name="first start")
         body["admin_token"] = admin
         rows.append(("Admin", f"{admin}  (opens everything; keep it, it is shown this once)"))
-    return _Welcome(body=body, rows=[*rows, ("Stop", "Ctrl-C")])
-
-
-def _sources(settings: "Settings") -> str:
-    return "samples by HTTP and MQTT" if settings.mqtt else "samples by HTTP"
+    report(body, rows=[*rows, ("Stop", "Ctrl-C")])

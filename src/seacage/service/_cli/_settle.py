@@ -1,56 +1,25 @@
 """``seacage settle``: one sea state."""
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from seacage.service._cli._console import Exit, Json, exit_with, guard, report
+from seacage.service._cli._console import Exit, exit_with, guard, report
+from seacage.service._cli._options import CageName, OutFile, SeaOptions, read_cage
 
 if TYPE_CHECKING:
     from seacage.cage import Cage
     from seacage.dynamics import Response
 
-CageName = Annotated[
-    str, typer.Option("--cage", help="A cage that comes with seacage, or the path of a TOML file.")
-]
-Law = Annotated[
-    Literal["kristiansen-faltinsen", "loland", "aarsnes"],
-    typer.Option(help="How the water loads the netting."),
-]
-
-
-def read_cage(name: str) -> "Cage":
-    """A shipped cage by its name, else a file; what the cage warns of goes to stderr."""
-    from seacage.cage import Cage
-
-    cage = Cage.read(name) if name.endswith(".toml") else Cage.named(name)
-    for warning in cage.warnings:
-        typer.echo(f"seacage: warning: {warning}", err=True)
-    return cage
-
 
 @guard
 def settle(
     *,
-    current_speed: Annotated[float, typer.Option(help="m/s")],
-    current_to: Annotated[
-        float, typer.Option(help="Where the current goes, degrees clockwise from north.")
-    ],
-    hs: Annotated[float, typer.Option(help="Significant wave height, m.")] = 0.0,
-    tp: Annotated[float | None, typer.Option(help="Peak period, s. [default: 5 √hs]")] = None,
-    wave_from: Annotated[
-        float, typer.Option(help="Where the waves come from, degrees clockwise from north.")
-    ] = 0.0,
-    mean_waves: Annotated[
-        bool, typer.Option("--mean-waves", help="Take the waves in by their mean drag.")
-    ] = False,
+    sea: SeaOptions,
+    mean_waves: Annotated[bool, typer.Option("--mean-waves")] = False,
     cage: CageName = "ace",
-    law: Law = "kristiansen-faltinsen",
-    out: Annotated[
-        Path | None, typer.Option(dir_okay=False, help="Write the response as CF-NetCDF.")
-    ] = None,
-    as_json: Json = False,
+    law: Literal["kristiansen-faltinsen", "loland", "aarsnes"] = "kristiansen-faltinsen",
+    out: OutFile = None,
 ) -> None:
     """Settle one sea state: shape and loads.
 
@@ -59,23 +28,28 @@ def settle(
 
     Example: half a metre per second towards east.
         seacage settle --current-speed 0.5 --current-to 90
+
+    Parameters
+    ----------
+    mean_waves
+        Take the waves in by their mean drag.
+    law
+        How the water loads the netting.
+    out
+        Write the response as CF-NetCDF.
     """
     from seacage.conventions import RESULTS, Result
     from seacage.dynamics import settle as settled
-    from seacage.ocean import SeaState
 
-    sea = SeaState(
-        current_speed=current_speed, current_to=current_to, hs=hs, tp=tp, wave_from=wave_from
-    )
-    subject = read_cage(cage)
-    response = settled(subject, sea, law=law, mean_waves=mean_waves)
+    state, subject = sea.state(), read_cage(cage)
+    response = settled(subject, state, law=law, mean_waves=mean_waves)
     answer = _answer(subject, response)
     if out is not None:
         from seacage.service._export import write_response
 
-        write_response(out, subject, sea, law, response)
+        write_response(out, subject, state, law, response)
         answer["written"] = str(out)
-    report(answer, as_json=as_json, rows=_rows(subject, response))
+    report(answer, rows=_rows(subject, response))
     result = Result(int(response.result))
     if result is not Result.CONVERGED:
         raise exit_with(f"settle: {result.name.lower()}: {RESULTS[result]}.", Exit.FAILED)

@@ -1,23 +1,25 @@
 """``seacage simulate``: one sea state in time."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING
 
-import typer
-
-from seacage.service._cli._console import Exit, Json, exit_with, guard, progress_bar, report
-from seacage.service._cli._settle import CageName, read_cage
+from seacage.service._cli._console import Exit, exit_with, guard, progress_bar, report
+from seacage.service._cli._options import (
+    CageName,
+    Law,
+    Mooring,
+    OutFile,
+    SeaOptions,
+    Seed,
+    SpinUp,
+    read_cage,
+)
 
 if TYPE_CHECKING:
     from seacage.cage import Cage
     from seacage.dynamics import History, Statistics
     from seacage.figures import Motion
     from seacage.ocean import SeaState, Waves
-
-MovingLaw = Annotated[
-    Literal["kristiansen-faltinsen", "loland", "aarsnes", "morison"],
-    typer.Option(help="How the water loads the netting."),
-]
 
 _SMOOTH = 0.5
 """Between samples that an animation can follow waves by [s]."""
@@ -26,37 +28,16 @@ _SMOOTH = 0.5
 @guard
 def simulate(
     *,
-    current_speed: Annotated[float, typer.Option(help="m/s")],
-    current_to: Annotated[
-        float, typer.Option(help="Where the current goes, degrees clockwise from north.")
-    ],
-    hs: Annotated[float, typer.Option(help="Significant wave height, m.")] = 0.0,
-    tp: Annotated[float | None, typer.Option(help="Peak period, s. [default: 5 √hs]")] = None,
-    wave_from: Annotated[
-        float, typer.Option(help="Where the waves come from, degrees clockwise from north.")
-    ] = 0.0,
-    duration: Annotated[float, typer.Option(help="That counts, s.")] = 1800.0,
-    spin_up: Annotated[
-        float, typer.Option(help="Simulated first and thrown away, s; the waves rise in it.")
-    ] = 300.0,
-    seed: Annotated[int, typer.Option(min=0, help="Of the waves.")] = 0,
+    sea: SeaOptions,
+    duration: float = 1800.0,
+    spin_up: SpinUp = 300.0,
+    seed: Seed = 0,
     cage: CageName = "ace",
-    law: MovingLaw = "kristiansen-faltinsen",
-    mooring: Annotated[
-        Literal["springs", "catenary"],
-        typer.Option(help="What holds the frame: springs, or buoys and anchor lines."),
-    ] = "springs",
-    sample_every: Annotated[
-        float, typer.Option(help="Between samples of the series, s: whole tenths.")
-    ] = 0.5,
-    out: Annotated[
-        Path | None,
-        typer.Option(dir_okay=False, help="Write series and statistics as CF-NetCDF."),
-    ] = None,
-    animation: Annotated[
-        Path | None, typer.Option(dir_okay=False, help="Write the first minute as a GIF.")
-    ] = None,
-    as_json: Json = False,
+    law: Law = "kristiansen-faltinsen",
+    mooring: Mooring = "springs",
+    sample_every: float = 0.5,
+    out: OutFile = None,
+    animation: OutFile = None,
 ) -> None:
     """Simulate one sea state in time: shape and loads in waves.
 
@@ -65,10 +46,23 @@ def simulate(
 
     Example: half an hour in a current towards east, with waves from west.
         seacage simulate --current-speed 0.5 --current-to 90 --hs 2 --wave-from 270 --out sea.nc
+
+    Parameters
+    ----------
+    duration
+        That counts, s.
+    seed
+        Of the waves.
+    sample_every
+        Between samples of the series, s: whole tenths.
+    out
+        Write series and statistics as CF-NetCDF.
+    animation
+        Write the first minute as a GIF.
     """
     from seacage.conventions import InputError
     from seacage.dynamics import simulate as simulated
-    from seacage.ocean import SeaState, sample_waves
+    from seacage.ocean import sample_waves
 
     for path, ending in ((out, ".nc"), (animation, ".gif")):
         _check_file(path, ending)
@@ -77,15 +71,12 @@ def simulate(
             f"simulate: a sample every {sample_every:g} s is too seldom for an animation. "
             f"Give --sample-every {_SMOOTH:g} or less."
         )
-    subject = read_cage(cage)
-    sea = SeaState(
-        current_speed=current_speed, current_to=current_to, hs=hs, tp=tp, wave_from=wave_from
-    )
-    waves = sample_waves(sea, seed=seed, depth=subject.site.water_depth)
+    subject, state = read_cage(cage), sea.state()
+    waves = sample_waves(state, seed=seed, depth=subject.site.water_depth)
     with progress_bar() as progress:
         history = simulated(
             subject,
-            sea,
+            state,
             duration=duration,
             spin_up=spin_up,
             ramp=min(60.0, spin_up),
@@ -105,17 +96,17 @@ def simulate(
     }
     answer = _answer(subject, history, settings)
     if out is not None:
-        _write(out, subject, sea, history, settings)
+        _write(out, subject, state, history, settings)
         answer["written"] = str(out)
     _refuse_failure(history)
     if animation is not None:
         from seacage.figures import write_animation
 
-        motion = _motion(subject, sea, waves, history, spin_up)
+        motion = _motion(subject, state, waves, history, spin_up)
         with progress_bar() as progress:
             write_animation(animation, subject, motion, progress=progress)
         answer["animation"] = str(animation)
-    report(answer, as_json=as_json, rows=_rows(subject, history))
+    report(answer, rows=_rows(subject, history))
 
 
 def _check_file(path: Path | None, ending: str) -> None:

@@ -6,11 +6,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from seacage.service._cli._console import Json, guard, progress_bar, report
+from seacage.service._cli._console import guard, progress_bar, report
+from seacage.service._cli._options import InFile, InFolder, Seed, Workers, read_cage
 from seacage.service._cli._score import error_rows, error_table
 
 if TYPE_CHECKING:
-    from seacage.studies import ShapeScore
+    from seacage.studies import BenchmarkStudy, FidelityStudy, PaperStudy, ShapeScore
+
+ReportFolder = Annotated[Path, typer.Option(file_okay=False, help="Folder of the report.")]
 
 group = typer.Typer(help="Whole experiments, from simulations to one HTML report.")
 
@@ -19,47 +22,15 @@ group = typer.Typer(help="Whole experiments, from simulations to one HTML report
 @guard
 def paper(
     *,
-    out: Annotated[Path, typer.Option(file_okay=False, help="Folder of the report.")] = Path(
-        "study"
-    ),
-    quick: Annotated[
-        bool,
-        typer.Option(
-            "--quick/--full",
-            help="400 equilibria without waves, or the paper's 1,000 half-hours and a field in "
-            "time.",
-        ),
-    ] = True,
-    campaign: Annotated[
-        Path | None,
-        typer.Option(exists=True, help="A finished campaign to take; its last 100 cases judge."),
-    ] = None,
-    field: Annotated[
-        Path | None,
-        typer.Option(
-            exists=True,
-            file_okay=False,
-            help="A folder of `seacage field virtual` to take, truth included.",
-        ),
-    ] = None,
-    days: Annotated[
-        float, typer.Option(min=4.0, max=400.0, help="Of a field made with --full.")
-    ] = 48.0,
-    one_in: Annotated[
-        int,
-        typer.Option(
-            min=1, help="With --full: simulate one hour in so many, and those of the shackles."
-        ),
-    ] = 1,
-    networks: Annotated[
-        bool | None,
-        typer.Option(help="Train graph networks too (JAX). [default: with --full]"),
-    ] = None,
-    seed: Annotated[int, typer.Option(min=0, help="Of everything that is drawn.")] = 0,
-    workers: Annotated[
-        int | None, typer.Option(min=1, help="Processes. [default: one per core]")
-    ] = None,
-    as_json: Json = False,
+    out: ReportFolder = Path("study"),
+    quick: Annotated[bool, typer.Option("--quick/--full")] = True,
+    campaign: Annotated[Path | None, typer.Option(exists=True)] = None,
+    field: InFolder = None,
+    days: Annotated[float, typer.Option(min=4.0, max=400.0)] = 48.0,
+    one_in: Annotated[int, typer.Option(min=1)] = 1,
+    networks: bool | None = None,
+    seed: Seed = 0,
+    workers: Workers = None,
 ) -> None:
     """Repeat the paper's study with a virtual field.
 
@@ -70,6 +41,23 @@ def paper(
     Example:
         seacage study paper --quick --out study
         seacage study paper --full --campaign campaign.zarr --field field --out study
+
+    Parameters
+    ----------
+    quick
+        400 equilibria without waves, or the paper's 1,000 half-hours and a field in time.
+    campaign
+        A finished campaign to take; its last 100 cases judge.
+    field
+        A folder of `seacage field virtual` to take, truth included.
+    days
+        Of a field made with --full.
+    one_in
+        With --full: simulate one hour in so many, and those of the shackles.
+    networks
+        Train graph networks too (JAX). [default: with --full]
+    seed
+        Of everything that is drawn.
     """
     from seacage.studies import paper_study
 
@@ -88,14 +76,11 @@ def paper(
         )
     report(
         {
-            "report": str(study.report),
-            "scores": str(study.scores),
-            "origin": "virtual field",
+            **_files(study, "virtual field"),
             "sensors": error_table(study.sensors),
             "shapes": [_shape_entry(one) for one in study.shapes],
             "claims": [asdict(claim) for claim in study.claims],
         },
-        as_json=as_json,
         rows=[
             *error_rows(study.sensors),
             *((one.model, _shape_line(one)) for one in study.shapes),
@@ -103,6 +88,10 @@ def paper(
             ("Report", f"{study.report} (virtual field)"),
         ],
     )
+
+
+def _files(study: "PaperStudy | FidelityStudy | BenchmarkStudy", origin: str) -> dict[str, object]:
+    return {"report": str(study.report), "scores": str(study.scores), "origin": origin}
 
 
 def _shape_entry(score: "ShapeScore") -> dict[str, object]:
@@ -130,34 +119,13 @@ def _shape_line(score: "ShapeScore") -> str:
 @guard
 def fidelity(
     *,
-    out: Annotated[Path, typer.Option(file_okay=False, help="Folder of the report.")] = Path(
-        "fidelity"
-    ),
-    field: Annotated[
-        Path | None,
-        typer.Option(
-            exists=True,
-            file_okay=False,
-            help="A folder of `seacage field virtual`, truth included; else one is made.",
-        ),
-    ] = None,
-    hidden: Annotated[
-        Path | None,
-        typer.Option(
-            exists=True, dir_okay=False, help="What the field was made with; else as shipped."
-        ),
-    ] = None,
-    cage: Annotated[
-        str | None, typer.Option(help="The cage drawn; else the shipped one of the field's name.")
-    ] = None,
-    windows: Annotated[
-        int, typer.Option(min=1, help="10-minute windows that survey the days, about.")
-    ] = 600,
-    seed: Annotated[int, typer.Option(min=0, help="Of everything that is drawn.")] = 0,
-    workers: Annotated[
-        int | None, typer.Option(min=1, help="Processes. [default: one per core]")
-    ] = None,
-    as_json: Json = False,
+    out: ReportFolder = Path("fidelity"),
+    field: InFolder = None,
+    hidden: InFile = None,
+    cage: str | None = None,
+    windows: Annotated[int, typer.Option(min=1)] = 600,
+    seed: Seed = 0,
+    workers: Workers = None,
 ) -> None:
     """Hold a virtual field against the rules that keep it honest.
 
@@ -168,9 +136,21 @@ def fidelity(
 
     Example:
         seacage study fidelity --field field --out fidelity
+
+    Parameters
+    ----------
+    field
+        A folder of `seacage field virtual`, truth included; else one is made.
+    hidden
+        What the field was made with; else as shipped.
+    cage
+        The cage drawn; else the shipped one of the field's name.
+    windows
+        10-minute windows that survey the days, about.
+    seed
+        Of everything that is drawn.
     """
     from seacage.campaigns import TruthParameters
-    from seacage.service._cli._settle import read_cage
     from seacage.studies import fidelity_study
 
     with progress_bar() as progress:
@@ -185,13 +165,7 @@ def fidelity(
             progress=progress,
         )
     report(
-        {
-            "report": str(study.report),
-            "scores": str(study.scores),
-            "origin": "virtual field",
-            "claims": [asdict(claim) for claim in study.claims],
-        },
-        as_json=as_json,
+        _files(study, "virtual field") | {"claims": [asdict(claim) for claim in study.claims]},
         rows=[
             *((claim.verdict, f"{claim.claim} {claim.finding}") for claim in study.claims),
             ("Report", f"{study.report} (virtual field)"),
@@ -203,30 +177,12 @@ def fidelity(
 @guard
 def benchmarks(
     *,
-    out: Annotated[Path, typer.Option(file_okay=False, help="Folder of the report.")] = Path(
-        "benchmarks-report"
-    ),
-    peers: Annotated[
-        Path | None,
-        typer.Option(
-            exists=True,
-            file_okay=False,
-            help="The environment of `make bench-peers`; else ours alone.",
-        ),
-    ] = None,
-    seeds: Annotated[
-        str, typer.Option(help="First and last seed; those below 5 tune and decide nothing.")
-    ] = "0-9",
-    quick: Annotated[
-        bool, typer.Option("--quick/--full", help="Two seeds of each kind, no cage-size problem.")
-    ] = False,
-    fresh: Annotated[
-        bool, typer.Option("--fresh", help="Time the cage-size problem again, all in one run.")
-    ] = False,
-    kept: Annotated[
-        bool, typer.Option("--kept", help="Run nothing; write the page from what is there.")
-    ] = False,
-    as_json: Json = False,
+    out: ReportFolder = Path("benchmarks-report"),
+    peers: InFolder = None,
+    seeds: str = "0-9",
+    quick: Annotated[bool, typer.Option("--quick/--full")] = False,
+    fresh: Annotated[bool, typer.Option("--fresh")] = False,
+    kept: Annotated[bool, typer.Option("--kept")] = False,
 ) -> None:
     """Compare our learners with other people's on published problems.
 
@@ -235,9 +191,20 @@ def benchmarks(
 
     Example:
         seacage study benchmarks --peers .venv-peers --out benchmarks-report
-    """
-    from dataclasses import asdict
 
+    Parameters
+    ----------
+    peers
+        The environment of `make bench-peers`; else ours alone.
+    seeds
+        First and last seed; those below 5 tune and decide nothing.
+    quick
+        Two seeds of each kind, no cage-size problem.
+    fresh
+        Time the cage-size problem again, all in one run.
+    kept
+        Run nothing; write the page from what is there.
+    """
     from seacage.studies import benchmark_study
 
     with progress_bar() as progress:
@@ -251,13 +218,7 @@ def benchmarks(
             progress=progress,
         )
     report(
-        {
-            "report": str(study.report),
-            "scores": str(study.scores),
-            "origin": "computed",
-            "verdicts": [asdict(one) for one in study.verdicts],
-        },
-        as_json=as_json,
+        _files(study, "computed") | {"verdicts": [asdict(one) for one in study.verdicts]},
         rows=[
             *((one.verdict, f"{one.claim} {one.finding}") for one in study.verdicts),
             ("Report", str(study.report)),
@@ -267,9 +228,9 @@ def benchmarks(
 
 def _seeds(written: str) -> range:
     """The seeds of ``5``, or of ``0-9``."""
+    from seacage.conventions import InputError
+
     first, dash, last = written.partition("-")
     if not first.isdecimal() or (dash and not last.isdecimal()):
-        from seacage.conventions import InputError
-
         raise InputError(f"--seeds {written} is not a range of seeds. Write 0-9, or a single one.")
     return range(int(first), int(last or first) + 1)

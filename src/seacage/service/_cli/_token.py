@@ -5,31 +5,22 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from seacage.service._cli._console import Json, guard, report
+from seacage.service._cli._console import guard, report, wants_json
+from seacage.service._cli._options import DataFolder
 
 if TYPE_CHECKING:
-    from seacage.service._auth._tokens import Grant
+    from seacage.service._auth._token_store import Grant
 
 group = typer.Typer(help="Tokens of the service.")
-
-Data = Annotated[Path, typer.Option(file_okay=False, help="The service's data folder.")]
 
 
 @group.command()
 @guard
 def new(
     *,
-    data: Data = Path("var"),
-    scope: Annotated[
-        str,
-        typer.Option(
-            help="read, ingest, ack (or for one cage or site: ingest:ace), admin; by commas."
-        ),
-    ],
-    name: Annotated[
-        str, typer.Option(help="Of whoever will hold it, as journals and logs name them.")
-    ] = "",
-    as_json: Json = False,
+    data: DataFolder = Path("var"),
+    scope: str,
+    name: str = "",
 ) -> None:
     """Make a token; it is printed once, and only its hash is kept.
 
@@ -38,27 +29,35 @@ def new(
     Example: a token for a logger, and one for a person who may acknowledge alarms.
         seacage token new --data var --scope ingest
         seacage token new --data var --scope read,ack --name "Night shift"
-    """
-    import json
 
-    from seacage.service._auth._tokens import Tokens
+    Parameters
+    ----------
+    scope
+        read, ingest, ack (or for one cage or site: ingest:ace), admin; by commas.
+    name
+        Of whoever will hold it, as journals and logs name them.
+    """
+    from seacage.service._auth._token_store import Tokens
 
     tokens, scopes = Tokens(data), scope.split(",")
     token = tokens.mint(scopes, keep=True, name=name)
     _audit(data, "token new", tokens.grant(token))
     typer.echo(f"Keep it safe; it opens {scope} and cannot be shown again.", err=True)
-    typer.echo(json.dumps({"token": token, "scope": scopes, "name": name}) if as_json else token)
+    if wants_json():
+        report({"token": token, "scope": scopes, "name": name})
+    else:
+        typer.echo(token)
 
 
 @group.command("list")
 @guard
-def show(*, data: Data = Path("var"), as_json: Json = False) -> None:
+def show(*, data: DataFolder = Path("var")) -> None:
     """List the tokens: their ids, names, scopes and when they were made.
 
     Example:
         seacage token list --data var
     """
-    from seacage.service._auth._tokens import Tokens
+    from seacage.service._auth._token_store import Tokens
 
     grants = Tokens(data).all()
     report(
@@ -68,7 +67,6 @@ def show(*, data: Data = Path("var"), as_json: Json = False) -> None:
                 for one in grants
             ]
         },
-        as_json=as_json,
         rows=[(one.id, f"{one.who}: {','.join(one.scopes)} {one.made}") for one in grants],
     )
 
@@ -77,20 +75,24 @@ def show(*, data: Data = Path("var"), as_json: Json = False) -> None:
 @guard
 def revoke(
     *,
-    data: Data = Path("var"),
-    token: Annotated[str, typer.Argument(help="Its name or id, as `seacage token list` says.")],
-    as_json: Json = False,
+    data: DataFolder = Path("var"),
+    token: Annotated[str, typer.Argument()],
 ) -> None:
     """Let a token open nothing from now on, in a running service too.
 
     Example:
         seacage token revoke --data var "Night shift"
+
+    Parameters
+    ----------
+    token
+        Its name or id, as `seacage token list` says.
     """
-    from seacage.service._auth._tokens import Tokens
+    from seacage.service._auth._token_store import Tokens
 
     revoked = Tokens(data).revoke(token)
     _audit(data, "token revoke", revoked)
-    report({"revoked": revoked.id}, as_json=as_json, rows=[("Revoked", revoked.who)])
+    report({"revoked": revoked.id}, rows=[("Revoked", revoked.who)])
 
 
 def _audit(data: Path, did: str, grant: "Grant | None") -> None:

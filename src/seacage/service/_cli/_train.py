@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from seacage.service._cli._console import Json, guard, progress_bar, report
-from seacage.service._cli._settle import read_cage
+from seacage.service._cli._console import guard, progress_bar, report
+from seacage.service._cli._options import InFolder, Seed, read_cage
 
 if TYPE_CHECKING:
     from seacage.cage import Cage
@@ -17,46 +17,17 @@ if TYPE_CHECKING:
 @guard
 def train(
     *,
-    campaign: Annotated[
-        Path | None,
-        typer.Option(exists=True, file_okay=False, help="Simulations, as `campaign run` left."),
-    ] = None,
-    base: Annotated[
-        Path | None,
-        typer.Option(
-            exists=True,
-            file_okay=False,
-            help="A twin whose level 1 is taken, instead of --campaign: only sensors that moved, "
-            "or are new, are trained at level 2.",
-        ),
-    ] = None,
-    field: Annotated[
-        Path | None,
-        typer.Option(exists=True, file_okay=False, help="A field record; else level 1 alone."),
-    ] = None,
-    out: Annotated[Path, typer.Option(file_okay=False, help="Folder of the twin.")],
-    cage: Annotated[
-        str | None,
-        typer.Option(help="Where sensors have moved: a TOML file. [default: as simulated]"),
-    ] = None,
-    inputs: Annotated[
-        Literal["current", "current,waves"], typer.Option(help="What the twin is asked with.")
-    ] = "current",
-    points: Annotated[
-        int, typer.Option(min=20, max=5000, help="Readings that each sensor teaches with.")
-    ] = 300,
-    choice: Annotated[
-        Literal["spread", "paper"],
-        typer.Option(help="spread over currents and time, or the paper's few minutes or seconds."),
-    ] = "spread",
-    days: Annotated[
-        float, typer.Option(min=0.1, help="Longest that a sensor teaches; the rest can judge.")
-    ] = 25.0,
-    seed: Annotated[int, typer.Option(min=0, help="Of the choice and the searches.")] = 0,
-    sign: Annotated[
-        Path | None, typer.Option(metavar="KEYFILE", help="Sign the twin with this key.")
-    ] = None,
-    as_json: Json = False,
+    campaign: InFolder = None,
+    base: InFolder = None,
+    field: InFolder = None,
+    out: Annotated[Path, typer.Option(file_okay=False)],
+    cage: str | None = None,
+    inputs: Literal["current", "current,waves"] = "current",
+    points: Annotated[int, typer.Option(min=20, max=5000)] = 300,
+    choice: Literal["spread", "paper"] = "spread",
+    days: Annotated[float, typer.Option(min=0.1)] = 25.0,
+    seed: Seed = 0,
+    sign: Annotated[Path | None, typer.Option(metavar="KEYFILE")] = None,
 ) -> None:
     """Train a twin from simulations and sensors.
 
@@ -66,6 +37,32 @@ def train(
 
     Example:
         seacage train --campaign ace.zarr --field field --out twin
+
+    Parameters
+    ----------
+    campaign
+        Simulations, as `campaign run` left.
+    base
+        A twin whose level 1 is taken, instead of --campaign: only sensors that moved, or are new,
+        are trained at level 2.
+    field
+        A field record; else level 1 alone.
+    out
+        Folder of the twin.
+    cage
+        Where sensors have moved: a TOML file. [default: as simulated]
+    inputs
+        What the twin is asked with.
+    points
+        Readings that each sensor teaches with.
+    choice
+        spread over currents and time, or the paper's few minutes or seconds.
+    days
+        Longest that a sensor teaches; the rest can judge.
+    seed
+        Of the choice and the searches.
+    sign
+        Sign the twin with this key.
     """
     from seacage.conventions import NonsenseError
     from seacage.records import FieldRecord
@@ -102,7 +99,6 @@ def train(
         {"written": str(out), "origin": str(twin.origin), "cases": twin.provenance.cases}
         | {"level": levels, "points": counts}
         | {"calibrated": {name: window.calibrated for name, window in windows.items()}},
-        as_json=as_json,
         rows=[
             ("Written", f"{out} ({twin.origin})"),
             ("Level 1", f"{twin.provenance.cases} simulations, {twin.provenance.law}"),

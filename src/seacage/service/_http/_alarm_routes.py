@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 from fastapi import APIRouter, HTTPException, Path
 
-from seacage.service._auth._guard import Who
+from seacage.service._auth._authorization import Who
 from seacage.service._http._dependencies import (
     READ,
     WRITE,
@@ -23,8 +23,6 @@ from seacage.service._schemas._alarms import (
     Journal,
     Kpi,
     alarm_state,
-    journal_line,
-    kpi_of,
 )
 from seacage.twin import alarm_kpi
 
@@ -72,7 +70,7 @@ async def handle_alarm(live: Live, id: Id, how: How, body: Handling, who: Who) -
 def get_journal(live: Live, start: From = None, end: To = None, limit: Limit = 1000) -> Journal:
     """Give the last lines of a span, in time order: what happened to which alarm, and who did."""
     lines = live.store.journal(live.name, start=start, end=end, limit=limit, newest=True)
-    return Journal(lines=[journal_line(line) for line in lines])
+    return Journal.model_validate({"lines": lines})
 
 
 @alarms.get("/kpi", dependencies=may_read, responses=READ)
@@ -81,4 +79,4 @@ def get_kpi(live: Live, start: From = None, end: To = None) -> Kpi:
     until = end or live.clock.now() + timedelta(microseconds=1)  # what happens now counts
     since = start or until - _WATCH
     lines = live.store.journal(live.name, end=until, limit=_LINES, newest=True)
-    return kpi_of(alarm_kpi(lines, start=since, end=until))
+    return Kpi.model_validate(alarm_kpi(lines, start=since, end=until))

@@ -17,10 +17,10 @@ from starlette.types import Scope
 
 from seacage.conventions import InputError
 from seacage.service._auth._audit import Audit
-from seacage.service._auth._guard import Gate
+from seacage.service._auth._authorization import Gate
 from seacage.service._auth._limits import Limits
 from seacage.service._auth._shield import Shield
-from seacage.service._auth._tokens import Tokens
+from seacage.service._auth._token_store import Tokens
 from seacage.service._http._alarm_routes import alarms
 from seacage.service._http._cage_routes import around, cages
 from seacage.service._http._clearance_routes import rov
@@ -33,18 +33,17 @@ from seacage.service._live._cage import LiveCage
 from seacage.service._live._frame import MEDIA_TYPE
 from seacage.service._live._metrics import Metrics
 from seacage.service._rov._files import MCAP
+from seacage.service._rov._ros_messages import NoRosbagsError
 from seacage.service._schemas._base import with_nulls
 from seacage.service._store._store import Store, StoreError
+from seacage.twin import StaleError
 
 _FAULTS = 5  # of a request, as many as anyone reads
 _METHODS = ("DELETE", "GET", "PATCH", "POST", "PUT")
 _PACKED = 1000  # the shortest answer that is worth it to compress [bytes]
-_UNPACKED = (
-    *DEFAULT_EXCLUDED_CONTENT_TYPES,
-    MEDIA_TYPE,
-    NETCDF,
-    MCAP,
-)  # packed, or short and often
+_UNPACKED = (*DEFAULT_EXCLUDED_CONTENT_TYPES, MEDIA_TYPE, NETCDF, MCAP)
+"""What is packed already, or short and frequent."""
+
 _log = structlog.get_logger(__name__)
 
 PAGE = Path(__file__).parents[1] / "page"
@@ -89,7 +88,7 @@ class Service:
 
     def begin(self) -> None:
         """Set every cage and feed to work."""
-        work = {**{f"cage {name}": one.run() for name, one in self.cages.items()}}
+        work = {f"cage {name}": one.run() for name, one in self.cages.items()}
         work |= {f"feed {number}": feed() for number, feed in enumerate(self._feeds, start=1)}
         for name, task in work.items():
             self._tasks.append(asyncio.create_task(task, name=name))
@@ -151,8 +150,10 @@ def create_app(service: Service) -> FastAPI:
         GZipMiddleware, minimum_size=_PACKED, compresslevel=5, exclude_content_types=_UNPACKED
     )
     app.add_middleware(Shield)
-    app.add_exception_handler(StoreError, _unavailable)
-    app.add_exception_handler(InputError, _input_error)
+    app.add_exception_handler(InputError, _answer(422))
+    app.add_exception_handler(StaleError, _answer(409))
+    app.add_exception_handler(StoreError, _answer(503, {"Retry-After": "5"}))
+    app.add_exception_handler(NoRosbagsError, _answer(501))
     app.add_exception_handler(RequestValidationError, _validation_error)
     app.add_exception_handler(405, _other_methods)
     for router in (around, sessions, cages, alarms, what_if, downloads, rov, things, sockets):
@@ -175,12 +176,11 @@ async def _page(request: Request) -> Response:
     )
 
 
-def _unavailable(_: Request, error: Exception) -> JSONResponse:
-    return JSONResponse({"detail": str(error)}, status_code=503, headers={"Retry-After": "5"})
-
-
-def _input_error(_: Request, error: Exception) -> JSONResponse:
-    return JSONResponse({"detail": str(error)}, status_code=422)
+def _answer(
+    status: int, headers: dict[str, str] | None = None
+) -> Callable[[Request, Exception], JSONResponse]:
+    """Answer an error by its message."""
+    return lambda _, error: JSONResponse({"detail": str(error)}, status, headers)
 
 
 def _other_methods(request: Request, _: Exception) -> JSONResponse:

@@ -6,8 +6,9 @@ from fastapi import APIRouter, Depends, Request, Response
 from fastapi.responses import JSONResponse, StreamingResponse
 
 from seacage.records import Sample
-from seacage.service._auth._guard import Permit
+from seacage.service._auth._authorization import Permit
 from seacage.service._http._dependencies import (
+    BINARY,
     READ,
     REFUSED,
     WRITE,
@@ -17,10 +18,10 @@ from seacage.service._http._dependencies import (
     Limit,
     Live,
     OneStream,
-    Responses,
     Stream,
     To,
     Width,
+    body_of,
     cages_of,
     may_ingest,
     may_read,
@@ -29,7 +30,6 @@ from seacage.service._http._dependencies import (
 from seacage.service._http._history import history_between
 from seacage.service._live._answers import sample_of, shape_of, summary_of
 from seacage.service._live._frame import MEDIA_TYPE, Flags, frame_of
-from seacage.service._live._past import state_at
 from seacage.service._schemas._cages import Cages, Topology
 from seacage.service._schemas._history import History
 from seacage.service._schemas._samples import (
@@ -46,12 +46,7 @@ from seacage.service._schemas._state import Shape, State
 
 _TOGETHER = 500  # samples that are written at once
 _HEALTH = {**REFUSED, 503: {"model": Health, "description": "The service cannot do its work."}}
-FRAME: Responses = {
-    200: {
-        "content": {MEDIA_TYPE: {"schema": {"type": "string", "format": "binary"}}},
-        "description": "The page's binary message.",
-    }
-}
+FRAME = body_of(MEDIA_TYPE, "The page's binary message.", schema=BINARY)
 """How a call documents a frame."""
 
 _METRICS = 'seacage_samples_total{cage="ace",outcome="accepted"} 42.0\n'
@@ -80,13 +75,7 @@ async def readyz(request: Request) -> Response:
 @around.get(
     "/metrics",
     response_class=Response,
-    responses={
-        **REFUSED,
-        200: {
-            "content": {"text/plain": {"example": _METRICS}},
-            "description": "For Prometheus.",
-        },
-    },
+    responses=REFUSED | body_of("text/plain", "For Prometheus.", example=_METRICS),
 )
 async def metrics(request: Request) -> Response:
     """Tell Prometheus what happened."""
@@ -158,15 +147,8 @@ def get_aggregates(
     found = live.store.aggregates(
         live.name, stream=stream, key=key, width_s=width_s, start=start, end=end, limit=limit
     )
-    return AggregatesOut(
-        stream=stream,
-        key=key,
-        width_s=width_s,
-        aggregates=[
-            AggregateOut(t=one.t, count=one.count, mean=one.mean, least=one.least, most=one.most)
-            for one in found
-        ],
-    )
+    aggregates = [AggregateOut.model_validate(one) for one in found]
+    return AggregatesOut(stream=stream, key=key, width_s=width_s, aggregates=aggregates)
 
 
 @cages.get("/{cage}/state", dependencies=may_read, responses=READ)
@@ -174,7 +156,7 @@ def get_state(live: Live, at: At = None) -> State:
     """Say what the cage does: loads, sensors, volume, each with its level and 95 % interval."""
     if at is None:
         return live.snapshot.state
-    memory, answered = state_at(live.twin, live.store, live.name, at)
+    memory, answered = live.past.state_at(at)
     return live.state_of(answered, memory)
 
 
@@ -183,7 +165,7 @@ def get_shape(live: Live, at: At = None) -> Shape:
     """Say where the net is, node by node, and how surely."""
     if at is None:
         return shape_of(live.snapshot.answered)
-    return shape_of(state_at(live.twin, live.store, live.name, at)[1])
+    return shape_of(live.past.state_at(at)[1])
 
 
 @cages.get(
@@ -193,7 +175,7 @@ def get_frame(live: Live, at: At = None) -> Response:
     """Give the page's binary message of now or of the past; ``docs/service.md`` has its layout."""
     if at is None:
         return Response(live.snapshot.frame, media_type=MEDIA_TYPE)
-    memory, answered = state_at(live.twin, live.store, live.name, at)
+    memory, answered = live.past.state_at(at)
     state = live.state_of(answered, memory)
     frame = frame_of(state, answered, live.rest_position, about=Flags.PAST)
     return Response(frame, media_type=MEDIA_TYPE)

@@ -1,12 +1,19 @@
 """The calls for ROV pilots: how far from the net, a way along it, and files of both."""
 
-from collections.abc import Callable
 from typing import Annotated
 
-from fastapi import APIRouter, HTTPException, Query, Response
+from fastapi import APIRouter, Query, Response
 
-from seacage.service._http._dependencies import READ, WRITE, At, Live, Responses, may_read, refusal
-from seacage.service._live._past import state_at
+from seacage.service._http._dependencies import (
+    BINARY,
+    READ,
+    WRITE,
+    At,
+    Live,
+    body_of,
+    may_read,
+    refusal,
+)
 from seacage.service._rov._clearance import clearance_answer, inspection_answer, inspection_of
 from seacage.service._rov._files import (
     GEOJSON,
@@ -16,14 +23,13 @@ from seacage.service._rov._files import (
     net_geojson,
     net_mcap,
 )
-from seacage.service._rov._ros_messages import NoRosbagsError
 from seacage.service._schemas._clearance import (
     ClearanceAnswer,
     ClearanceQuery,
     InspectionAnswer,
     InspectionQuery,
 )
-from seacage.twin import PredictedNet, StaleError
+from seacage.twin import PredictedNet
 
 rov = APIRouter(prefix="/api/v1/cages", tags=["rov"], dependencies=may_read)
 
@@ -40,13 +46,11 @@ _MAP = {
 _NO_MCAP = refusal(501, "MCAP cannot be written here.", "Install seacage[ros].")
 
 
-def _file(media_type: str) -> Responses:
-    binary = {"schema": {"type": "string", "format": "binary"}}
-    content = {"schema": {"type": "object"}, "example": _MAP} if media_type == GEOJSON else binary
-    return {200: {"content": {media_type: content}, "description": "The file."}}
+_MCAP = _NO_MCAP | body_of(MCAP, "The file.", schema=BINARY)
+_GEOJSON = body_of(GEOJSON, "The file.", schema={"type": "object"}, example=_MAP)
 
 
-@rov.post("/{cage}/clearance", responses={**WRITE, **_STALE})
+@rov.post("/{cage}/clearance", responses=WRITE | _STALE)
 def ask_clearance(live: Live, body: ClearanceQuery, at: At = None) -> ClearanceAnswer:
     """Say how far points, or a path, are from the net, and how surely.
 
@@ -55,53 +59,52 @@ def ask_clearance(live: Live, body: ClearanceQuery, at: At = None) -> ClearanceA
     (``shape_error`` null) there is none. Waves, the age of the reading and objects beside the
     net are not in it.
     """
-    net = _net(live, at, allow_stale=body.allow_stale, most_age_s=body.max_age_s)
-    return clearance_answer(net, body)
+    return clearance_answer(_net_for(live, body, at), body)
 
 
-@rov.post("/{cage}/inspection", responses={**WRITE, **_STALE})
+@rov.post("/{cage}/inspection", responses=WRITE | _STALE)
 def ask_inspection(live: Live, body: InspectionQuery, at: At = None) -> InspectionAnswer:
     """Lay a way along the net at a stand-off, facing it, from the top to the tip."""
-    return inspection_answer(_inspection_net(live, body, at), body)
+    return inspection_answer(_net_for(live, body, at), body)
 
 
 @rov.post(
     "/{cage}/inspection.mcap",
     response_class=Response,
-    responses={**WRITE, **_STALE, **_NO_MCAP, **_file(MCAP)},
+    responses=WRITE | _STALE | _MCAP,
 )
 def ask_inspection_mcap(live: Live, body: InspectionQuery, at: At = None) -> Response:
     """Give the same way as a nav_msgs/Path in an MCAP file, with the net it follows."""
-    net = _inspection_net(live, body, at)
-    return _mcap(lambda: inspection_mcap(net, inspection_of(net, body)))
+    net = _net_for(live, body, at)
+    return Response(inspection_mcap(net, inspection_of(net, body)), media_type=MCAP)
 
 
 @rov.post(
     "/{cage}/inspection.geojson",
     response_class=Response,
-    responses={**WRITE, **_STALE, **_file(GEOJSON)},
+    responses=WRITE | _STALE | _GEOJSON,
 )
 def ask_inspection_geojson(live: Live, body: InspectionQuery, at: At = None) -> Response:
     """Give the same way as lines by latitude and longitude."""
-    net = _inspection_net(live, body, at)
+    net = _net_for(live, body, at)
     return Response(inspection_geojson(net, inspection_of(net, body)), media_type=GEOJSON)
 
 
 @rov.get(
     "/{cage}/shape.mcap",
     response_class=Response,
-    responses={**READ, **_STALE, **_NO_MCAP, **_file(MCAP)},
+    responses=READ | _STALE | _MCAP,
 )
 def get_shape_mcap(live: Live, at: At = None, *, allow_stale: Stale = False) -> Response:
     """Give the net for ROS 2: a PointCloud2, a Marker of triangles, and the collar's Path."""
     net = _net(live, at, allow_stale=allow_stale)
-    return _mcap(lambda: net_mcap(net))
+    return Response(net_mcap(net), media_type=MCAP)
 
 
 @rov.get(
     "/{cage}/shape.geojson",
     response_class=Response,
-    responses={**READ, **_STALE, **_file(GEOJSON)},
+    responses=READ | _STALE | _GEOJSON,
 )
 def get_shape_geojson(live: Live, at: At = None, *, allow_stale: Stale = False) -> Response:
     """Give the net for a map; the cage's file must say where it lies."""
@@ -109,22 +112,10 @@ def get_shape_geojson(live: Live, at: At = None, *, allow_stale: Stale = False) 
     return Response(net_geojson(net), media_type=GEOJSON)
 
 
-def _inspection_net(live: Live, body: InspectionQuery, at: At) -> PredictedNet:
+def _net_for(live: Live, body: ClearanceQuery | InspectionQuery, at: At) -> PredictedNet:
     return _net(live, at, allow_stale=body.allow_stale, most_age_s=body.max_age_s)
 
 
 def _net(live: Live, at: At, *, allow_stale: bool, most_age_s: float | None = None) -> PredictedNet:
-    answered = (
-        live.snapshot.answered if at is None else state_at(live.twin, live.store, live.name, at)[1]
-    )
-    try:
-        return PredictedNet.of(live.twin, answered, allow_stale=allow_stale, most_age_s=most_age_s)
-    except StaleError as error:
-        raise HTTPException(409, str(error)) from error
-
-
-def _mcap(make: Callable[[], bytes]) -> Response:
-    try:
-        return Response(make(), media_type=MCAP)
-    except NoRosbagsError as error:
-        raise HTTPException(501, str(error)) from error
+    answered = live.snapshot.answered if at is None else live.past.state_at(at)[1]
+    return PredictedNet.of(live.twin, answered, allow_stale=allow_stale, most_age_s=most_age_s)

@@ -4,8 +4,8 @@ from typing import Annotated, Any
 
 from fastapi import Depends, HTTPException, Path, Query, Request
 
-from seacage.service._auth._guard import Permit, gate_of
-from seacage.service._auth._tokens import Grant
+from seacage.service._auth._authorization import Permit, gate_of
+from seacage.service._auth._token_store import Grant
 from seacage.service._live._cage import LiveCage
 from seacage.service._schemas._base import Reach
 from seacage.service._schemas._service import Problem
@@ -17,6 +17,14 @@ def refusal(code: int, description: str, example: str) -> Responses:
     """Document one way in which a call may be refused."""
     content = {"application/json": {"example": {"detail": example}}}
     return {code: {"model": Problem, "description": description, "content": content}}
+
+
+BINARY = {"type": "string", "format": "binary"}
+
+
+def body_of(media_type: str, description: str, **content: Any) -> Responses:
+    """Document the answer of a call that is no model, with a schema or an example."""
+    return {200: {"content": {media_type: content}, "description": description}}
 
 
 REFUSED: Responses = {

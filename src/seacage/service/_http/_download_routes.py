@@ -21,28 +21,28 @@ from seacage.service._http._dependencies import (
     From,
     Limit,
     Live,
-    Responses,
     Stream,
     To,
+    body_of,
     may_read_rows,
     refusal,
 )
 from seacage.service._live._cage import LiveCage
-from seacage.service._live._past import readings_between
+from seacage.service._live._past import buoy_record
 from seacage.service._schemas._base import EXAMPLE_T
 
 _PIECE = 1 << 16  # of a file, sent at once [bytes]
 _COLUMNS = ("t", "stream", "seq", "quantity", "value", "flag")
 _CSV, NETCDF = "text/csv", "application/x-netcdf"
 
-downloads = APIRouter(prefix="/api/v1/cages", tags=["downloads"])
+downloads = APIRouter(
+    prefix="/api/v1/cages",
+    tags=["downloads"],
+    dependencies=may_read_rows,
+    default_response_class=StreamingResponse,
+)
 
 _Part = TypeVar("_Part")
-
-
-def _file(kind: str, description: str, example: str | None = None) -> Responses:
-    content = {kind: {} if example is None else {"example": example}}
-    return {**READ, 200: {"content": content, "description": description}}
 
 
 _NO_NETCDF = refusal(501, "NetCDF is not installed.", "NetCDF needs seacage[sim]. Ask for CSV.")
@@ -50,12 +50,11 @@ _NO_NETCDF = refusal(501, "NetCDF is not installed.", "NetCDF needs seacage[sim]
 
 @downloads.get(
     "/{cage}/samples.csv",
-    dependencies=may_read_rows,
-    response_class=StreamingResponse,
-    responses=_file(
+    responses=READ
+    | body_of(
         _CSV,
         "A row per value, with its flag.",
-        f"t,stream,seq,quantity,value,flag\n{EXAMPLE_T},depth-1,7,depth_m,14.2,1\n",
+        example=f"t,stream,seq,quantity,value,flag\n{EXAMPLE_T},depth-1,7,depth_m,14.2,1\n",
     ),
 )
 def download_samples(
@@ -68,12 +67,11 @@ def download_samples(
 
 @downloads.get(
     "/{cage}/history.csv",
-    dependencies=may_read_rows,
-    response_class=StreamingResponse,
-    responses=_file(
+    responses=READ
+    | body_of(
         _CSV,
         "A row per reading of the buoy.",
-        f"time,valid,bridle-1_kn\n{EXAMPLE_T},True,41.2\n",
+        example=f"time,valid,bridle-1_kn\n{EXAMPLE_T},True,41.2\n",
     ),
 )
 def download_history(
@@ -86,9 +84,7 @@ def download_history(
 
 @downloads.get(
     "/{cage}/history.nc",
-    dependencies=may_read_rows,
-    response_class=StreamingResponse,
-    responses=_file(NETCDF, "CF-NetCDF, with the whole shape.") | _NO_NETCDF,
+    responses=READ | body_of(NETCDF, "CF-NetCDF, with the whole shape.") | _NO_NETCDF,
 )
 def download_netcdf(
     live: Live, start: From = None, end: To = None, limit: Limit = 1000
@@ -107,8 +103,10 @@ def _history(
     live: LiveCage, start: datetime | None, end: datetime | None, limit: int
 ) -> Iterator[Replayed]:
     twin = live.twin
-    buoy = readings_between(twin, live.store, live.name, start=start, end=end, limit=limit)
-    return _begin(replay_in_blocks(twin, buoy))
+    samples = live.store.samples(
+        live.name, stream=twin.buoy, start=start, end=end, limit=limit, newest=True
+    )
+    return _begin(replay_in_blocks(twin, buoy_record(twin, samples)))
 
 
 def _begin(parts: Iterator[_Part]) -> Iterator[_Part]:

@@ -1,7 +1,7 @@
 """A cage's history: a span of any length, told in so many points."""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
 from functools import partial
 
@@ -12,9 +12,8 @@ from seacage.conventions import Flag
 from seacage.records import Sample
 from seacage.service._export import join_answers, replay_in_blocks
 from seacage.service._live._answers import history_of, usable_value
-from seacage.service._live._past import record_of
+from seacage.service._live._past import buoy_record
 from seacage.service._schemas._history import History, Measured
-from seacage.service._schemas._samples import BUOY_KEYS
 from seacage.service._store._aggregates import WIDTHS_S, Aggregate
 from seacage.service._store._store import Store
 from seacage.twin import Answer, Twin
@@ -44,19 +43,17 @@ def history_between(
     minutes, that tell most. Intervals are as trained: what the sensors' later readings made of
     them, the states of the time say, and folding one for each point would take too long.
     """
-    read = store.samples(cage, stream=twin.buoy, start=start, end=end, limit=READ_LIMIT + 1)
+    span = _Span(store=store, cage=cage, start=start, end=end, limit=limit)
+    read = span.readings(twin.buoy, READ_LIMIT + 1)
     if len(read) > READ_LIMIT:
-        few = _readings_of_spans(store, cage, read[0], start=start, end=end, limit=limit)
+        few = span.telling_readings(read[0])
         thinned = True
     else:
         once = list({sample.t: sample for sample in read}.values())  # of one time the last counts
         few = [once[row] for row in telling(_speeds(once), limit)]
         thinned = len(few) < len(once)
-    buoy = record_of(twin.buoy, few, keys=BUOY_KEYS, origin=twin.origin)
-    measured = {
-        sensor: measurements_between(store, cage, sensor, start=start, end=end, limit=limit)
-        for sensor in twin.sensor_names
-    }
+    buoy = buoy_record(twin, few)
+    measured = {sensor: span.measurements(sensor) for sensor in twin.sensor_names}
     answers = [_without_nodes(one.answer) for one in replay_in_blocks(twin, buoy)]
     return history_of(buoy, join_answers(answers), measured, thinned=thinned)
 
@@ -67,21 +64,70 @@ def _without_nodes(answer: Answer) -> Answer:
     return replace(answer, node_position=np.empty((rows, 0, 3)), node_sigma=np.empty((rows, 0)))
 
 
-def measurements_between(
-    store: Store,
-    cage: str,
-    sensor: str,
-    *,
-    start: datetime | None,
-    end: datetime | None,
-    limit: int,
-) -> Measured:
-    """Say what a sensor read: each reading, or where these are too many, the means of spans."""
-    read = store.samples(cage, stream=sensor, start=start, end=end, limit=limit + 1)
-    if len(read) > limit:
-        return _means_of_spans(store, cage, read[0], end=end, limit=limit)
-    good = [(one.t, value) for one in read if (value := usable_value(one)) is not None]
-    return Measured(t=[t for t, _ in good], value=[round(value, _DECIMALS) for _, value in good])
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Span:
+    """The stored readings of a cage in a span of time, of which ``limit`` at most are shown."""
+
+    store: Store
+    cage: str
+    start: datetime | None
+    end: datetime | None
+    limit: int
+
+    def readings(self, stream: str, limit: int) -> list[Sample]:
+        """The first readings of a stream."""
+        return self.store.samples(
+            self.cage, stream=stream, start=self.start, end=self.end, limit=limit
+        )
+
+    def measurements(self, sensor: str) -> Measured:
+        """Readings of a sensor one by one, or where these are too many, the means of spans."""
+        read = self.readings(sensor, self.limit + 1)
+        if len(read) > self.limit:
+            return self._means(read[0])
+        good = [(one.t, value) for one in read if (value := usable_value(one)) is not None]
+        return Measured(
+            t=[t for t, _ in good], value=[round(value, _DECIMALS) for _, value in good]
+        )
+
+    def telling_readings(self, first: Sample) -> list[Sample]:
+        """Of each of the spans that tell most, a reading as usual as its mean."""
+        some, chosen = max(1, READ_LIMIT // self.limit), list[Sample]()
+        width, spans = self._telling_spans(first, _SPEED)
+        for one in spans:
+            begin = max(one.t, self.start or one.t)
+            end = min(one.t + width, self.end or one.t + width)
+            read = replace(self, start=begin, end=end).readings(first.stream, some)
+            apart = np.abs(_speeds(read) - one.mean)
+            if np.isfinite(apart).any():  # else what was usable has been retired since
+                chosen.append(read[int(np.nanargmin(apart))])
+        return chosen
+
+    def _means(self, first: Sample) -> Measured:
+        """Means of one or of ten minutes, each at its middle."""
+        width, spans = self._telling_spans(first, next(iter(first.values)))
+        return Measured(
+            t=[one.t + width / 2 for one in spans],
+            value=[round(one.mean, _DECIMALS) for one in spans],
+            width_s=int(width.total_seconds()),
+        )
+
+    def _telling_spans(self, first: Sample, key: str) -> tuple[timedelta, list[Aggregate]]:
+        """Of the minutes or tens of minutes from a first reading on, those that tell most."""
+        store, cage, end = self.store, self.cage, self.end
+        (last,) = store.samples(cage, stream=first.stream, end=end, limit=1, newest=True)
+        length_s = (last.t - first.t).total_seconds()
+        width_s = next(
+            (width for width in WIDTHS_S if length_s <= width * self.limit), WIDTHS_S[-1]
+        )
+        width = timedelta(seconds=width_s)
+        since, found = first.t - (first.t - _ORIGIN) % width, list[Aggregate]()
+        read = partial(store.aggregates, cage, stream=first.stream, key=key, width_s=width_s)
+        while page := read(start=since, end=end, limit=_PAGE):
+            found += page
+            since = page[-1].t + width
+        means = np.array([one.mean for one in found])
+        return width, [found[row] for row in telling(means, self.limit)]
 
 
 def telling(value: Float[np.ndarray, " reading"], limit: int) -> list[int]:
@@ -106,56 +152,6 @@ def telling(value: Float[np.ndarray, " reading"], limit: int) -> list[int]:
     least = [int(run[np.argmin(lowest[run])]) for run in runs]
     most = [int(run[np.argmax(highest[run])]) for run in runs]
     return sorted({*ends, *least, *most})
-
-
-def _readings_of_spans(
-    store: Store,
-    cage: str,
-    first: Sample,
-    *,
-    start: datetime | None,
-    end: datetime | None,
-    limit: int,
-) -> list[Sample]:
-    """Of each of the spans that tell most, a reading as usual as its mean."""
-    some, chosen = max(1, READ_LIMIT // limit), list[Sample]()
-    width, spans = _telling_spans(store, cage, first, key=_SPEED, end=end, limit=limit)
-    for one in spans:
-        begin, over = max(one.t, start or one.t), min(one.t + width, end or one.t + width)
-        read = store.samples(cage, stream=first.stream, start=begin, end=over, limit=some)
-        apart = np.abs(_speeds(read) - one.mean)
-        if np.isfinite(apart).any():  # else what was usable has been retired since
-            chosen.append(read[int(np.nanargmin(apart))])
-    return chosen
-
-
-def _means_of_spans(
-    store: Store, cage: str, first: Sample, *, end: datetime | None, limit: int
-) -> Measured:
-    """Means of one or of ten minutes, each at its middle."""
-    key = next(iter(first.values))
-    width, spans = _telling_spans(store, cage, first, key=key, end=end, limit=limit)
-    return Measured(
-        t=[one.t + width / 2 for one in spans],
-        value=[round(one.mean, _DECIMALS) for one in spans],
-        width_s=int(width.total_seconds()),
-    )
-
-
-def _telling_spans(
-    store: Store, cage: str, first: Sample, *, key: str, end: datetime | None, limit: int
-) -> tuple[timedelta, list[Aggregate]]:
-    """Choose, of the minutes or tens of minutes from a first reading on, those that tell most."""
-    (last,) = store.samples(cage, stream=first.stream, end=end, limit=1, newest=True)
-    length_s = (last.t - first.t).total_seconds()
-    width_s = next((width for width in WIDTHS_S if length_s <= width * limit), WIDTHS_S[-1])
-    width = timedelta(seconds=width_s)
-    since, found = first.t - (first.t - _ORIGIN) % width, list[Aggregate]()
-    read = partial(store.aggregates, cage, stream=first.stream, key=key, width_s=width_s)
-    while page := read(start=since, end=end, limit=_PAGE):
-        found += page
-        since = page[-1].t + width
-    return width, [found[row] for row in telling(np.array([one.mean for one in found]), limit)]
 
 
 def _speeds(samples: Sequence[Sample]) -> Float[np.ndarray, " reading"]:

@@ -6,9 +6,9 @@ from typing import Annotated
 
 from fastapi import APIRouter, Header, HTTPException, Request, Response
 
-from seacage.service._auth._guard import COOKIE, Cookie, check_csrf, gate_of, source_of
+from seacage.service._auth._authorization import COOKIE, Cookie, check_csrf, gate_of, source_of
 from seacage.service._auth._sessions import Session
-from seacage.service._auth._tokens import Grant
+from seacage.service._auth._token_store import Grant
 from seacage.service._http._dependencies import BODY, REFUSED
 from seacage.service._schemas._service import SessionOut, SignIn
 

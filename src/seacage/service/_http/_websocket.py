@@ -7,8 +7,8 @@ from contextlib import suppress
 
 from fastapi import APIRouter, HTTPException, WebSocket, WebSocketDisconnect, WebSocketException
 
-from seacage.service._auth._guard import COOKIE, gate_of, source_of
-from seacage.service._auth._tokens import Grant
+from seacage.service._auth._authorization import COOKIE, gate_of, source_of
+from seacage.service._auth._token_store import Grant
 from seacage.service._live._cage import LiveCage
 
 _FIRST_MESSAGE_S = 5.0

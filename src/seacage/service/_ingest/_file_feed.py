@@ -6,7 +6,6 @@ from pathlib import Path
 import structlog
 
 from seacage.conventions import RecordError
-from seacage.records import ColumnMap
 from seacage.service._live._cage import LiveCage
 from seacage.service._quarantine import Quarantine
 from seacage.service._small_files import write_small
@@ -24,7 +23,7 @@ class FileTail:
 
     Parameters
     ----------
-    path, columns, stream
+    path, stream
         See ``Tail``.
     cage
         Whose samples they are.
@@ -34,6 +33,11 @@ class FileTail:
         File of the place; None reads from the beginning after each restart.
     every_s
         How often to look [s].
+
+    Attributes
+    ----------
+    fault
+        Why the file cannot be read; None while it can.
     """
 
     def __init__(
@@ -42,7 +46,6 @@ class FileTail:
         cage: LiveCage,
         *,
         quarantine: Quarantine,
-        columns: ColumnMap | None = None,
         stream: str = "buoy-1",
         kept: Path | None = None,
         every_s: float = 1.0,
@@ -52,15 +55,8 @@ class FileTail:
         place = TailPosition.parse(text)
         if str(place) != text:
             _log.warning("place cannot be read, so the file is read anew", path=str(kept))
-        self._tail = Tail(
-            path=path, columns=columns, stream=stream, refuse=self._refuse, place=place
-        )
-        self._fault: str | None = None
-
-    @property
-    def fault(self) -> str | None:
-        """Why the file cannot be read; None while it can."""
-        return self._fault
+        self._tail = Tail(path=path, stream=stream, refuse=self._refuse, place=place)
+        self.fault: str | None = None
 
     async def run(self) -> None:
         """Look for rows for ever."""
@@ -82,12 +78,12 @@ class FileTail:
             if self._tail.place != before:
                 await asyncio.to_thread(self._keep)
         except (OSError, RecordError, StoreError) as error:
-            if self._fault is None:
+            if self.fault is None:
                 _log.error("file waits", path=str(self._tail.path), reason=str(error))
-            self._fault = str(error)
+            self.fault = str(error)
             self._tail.place = before  # whatever was not stored is read again
             return False
-        self._fault = None
+        self.fault = None
         return True
 
     def _keep(self) -> None:

@@ -42,17 +42,13 @@ _WAITING = 10_000  # lines for a disk that takes none; then the oldest are lost
 
 _log = structlog.get_logger(__name__)
 
-Handle = Callable[[Alarm, str, datetime, str, float | None], Changed]
-
-HANDLES: Mapping[str, Handle] = {
-    "acknowledge": lambda alarm, who, now, why, _: acknowledge(alarm, who=who, now=now, why=why),
-    "comment": lambda alarm, who, now, why, _: remark(alarm, who=who, now=now, why=why),
-    "shelve": lambda alarm, who, now, why, s: shelve(alarm, who=who, now=now, why=why, seconds=s),
-    "unshelve": lambda alarm, who, now, why, _: unshelve(alarm, who=who, now=now, why=why),
-    "out-of-service": lambda alarm, who, now, why, _: take_out_of_service(
-        alarm, who=who, now=now, why=why
-    ),
-    "in-service": lambda alarm, who, now, why, _: put_in_service(alarm, who=who, now=now, why=why),
+HANDLES: Mapping[str, Callable[..., Changed]] = {
+    "acknowledge": acknowledge,
+    "comment": remark,
+    "shelve": shelve,
+    "unshelve": unshelve,
+    "out-of-service": take_out_of_service,
+    "in-service": put_in_service,
 }
 """What people can do with an alarm."""
 
@@ -186,7 +182,8 @@ class AlarmDesk:
         """
         if name not in self.alarms:
             raise InputError(f"No alarm is called {name!r} here, or it was never assessed.")
-        alarm, happened = HANDLES[how](self.alarms[name], who, now, why, seconds)
+        more = {"seconds": seconds} if how == "shelve" else {}
+        alarm, happened = HANDLES[how](self.alarms[name], who=who, now=now, why=why, **more)
         self._book = self._book.with_alarm(alarm)
         kept = self._keep(happened)
         self._announce(happened)
@@ -208,10 +205,8 @@ class AlarmDesk:
         return {"history.store": fault} if fault else {}
 
     def _keep(self, happened: Sequence[AlarmEvent]) -> Future[None]:
-        lines = list[AlarmEvent]()
-        while self._unkept:
-            lines.append(self._unkept.popleft())
-        lines += happened
+        waited = [self._unkept.popleft() for _ in range(len(self._unkept))]
+        lines = [*waited, *happened]
         kept = self._store.keep_alarms(self._cage, book=self._book.to_json(), journal=lines)
         kept.add_done_callback(partial(self._settle, lines))
         return kept

@@ -4,6 +4,7 @@ import hashlib
 import math
 from collections.abc import Iterator, Mapping
 from datetime import UTC, datetime
+from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -25,7 +26,6 @@ from seacage.service._schemas._state import (
     State,
     Water,
 )
-from seacage.surrogates import Prediction
 from seacage.twin import (
     Answer,
     Answered,
@@ -41,8 +41,6 @@ _PERIOD = "tp_s"
 _DOOR_UNIT = {"N": ("kN", 1e-3), "m": ("m", 1.0)}
 _ID_DIGITS = 16  # of the hash of a topology: enough that two never meet by chance
 _DECIMALS = 3  # a newton, a millimetre: below what any sensor here resolves
-
-Table = Float[np.ndarray, "case output"]
 
 
 def state_of(name: str, twin: Twin, answered: Answered, memory: TwinState) -> State:
@@ -246,8 +244,18 @@ def history_of(
         Whether the buoy read more often than these readings say.
     """
     times = [t.replace(tzinfo=UTC) for t in buoy.time.tolist()]
-    bridle, sensor = answer.bridle_interval(), answer.sensor_interval()
-    low = np.asarray(answer.bridle_low)
+    bridles = _Table(
+        answer.bridle_in_domain,
+        answer.bridle_low,
+        answer.bridle_tension.mean,
+        *answer.bridle_interval(),
+    )
+    sensors = _Table(
+        answer.sensor_in_domain,
+        answer.sensor_low.mean,
+        answer.sensor.mean,
+        *answer.sensor_interval(),
+    )
     return History(
         t=times,
         valid=answer.valid.tolist(),
@@ -255,27 +263,11 @@ def history_of(
         current_speed_m_s=_usable(buoy, "current_speed_m_s"),
         current_to_deg=_usable(buoy, "current_to_deg"),
         bridles={
-            name: _series(
-                "N",
-                int(answer.bridle_level[k]),
-                answer.bridle_in_domain,
-                low,
-                answer.bridle_tension,
-                bridle,
-                k,
-            )
+            name: bridles.series(k, "N", int(answer.bridle_level[k]))
             for k, name in enumerate(answer.bridle_names)
         },
         sensors={
-            name: _series(
-                answer.sensor_units[k],
-                int(answer.sensor_level[k]),
-                answer.sensor_in_domain,
-                answer.sensor_low.mean,
-                answer.sensor,
-                sensor,
-                k,
-            )
+            name: sensors.series(k, answer.sensor_units[k], int(answer.sensor_level[k]))
             for k, name in enumerate(answer.sensor_names)
         },
         measured=dict(measured),
@@ -284,26 +276,27 @@ def history_of(
     )
 
 
-def _series(
-    si_unit: str,
-    level: int,
-    in_domain: Bool[np.ndarray, "case output"],
-    low: Table,
-    best: Prediction,
-    interval: tuple[Table, Table],
-    k: int,
-) -> Series:
-    unit, scale = _DOOR_UNIT[si_unit]
-    return Series(
-        unit=unit,
-        level=level,
-        in_domain=in_domain[:, k].tolist(),
-        low_fidelity=_column(low[:, k] * scale),
-        mean=_column(best.mean[:, k] * scale),
-        lower=_column(interval[0][:, k] * scale),
-        upper=_column(interval[1][:, k] * scale),
-        interval_reason=interval_reason(level),
-    )
+class _Table(NamedTuple):
+    """What is answered about all bridles or sensors, one of them a column."""
+
+    in_domain: Bool[np.ndarray, "case output"]
+    low: Float[np.ndarray, "case output"]
+    mean: Float[np.ndarray, "case output"]
+    lower: Float[np.ndarray, "case output"]
+    upper: Float[np.ndarray, "case output"]
+
+    def series(self, k: int, si_unit: str, level: int) -> Series:
+        unit, scale = _DOOR_UNIT[si_unit]
+        return Series(
+            unit=unit,
+            level=level,
+            in_domain=self.in_domain[:, k].tolist(),
+            low_fidelity=_column(self.low[:, k] * scale),
+            mean=_column(self.mean[:, k] * scale),
+            lower=_column(self.lower[:, k] * scale),
+            upper=_column(self.upper[:, k] * scale),
+            interval_reason=interval_reason(level),
+        )
 
 
 def sample_of(sample: Sample) -> SampleOut:

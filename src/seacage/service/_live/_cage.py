@@ -3,7 +3,7 @@
 import asyncio
 import time
 from collections import deque
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Generator, Sequence
 from concurrent.futures import Future
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
@@ -22,10 +22,8 @@ from seacage.service._live._clock import Clock, FollowingClock, latest_allowed
 from seacage.service._live._concerns import concerns_of
 from seacage.service._live._frame import frame_of
 from seacage.service._live._live_twin import LiveTwin
-from seacage.service._live._mailbox import Mailbox
 from seacage.service._live._metrics import Metrics
-from seacage.service._live._past import streams_of
-from seacage.service._schemas._cages import Topology
+from seacage.service._live._past import Past
 from seacage.service._schemas._samples import BUOY_KEYS
 from seacage.service._schemas._state import AlarmBrief, State
 from seacage.service._store._samples import Stored
@@ -67,6 +65,31 @@ class Snapshot:
         return frame_of(self.state, self.answered, self.rest_position)
 
 
+class Mailbox:
+    """Where a slow reader finds the newest snapshot; what it missed is gone.
+
+    A client that does not read can so never make the service hold more than one snapshot
+    for it.
+    """
+
+    def __init__(self) -> None:
+        self._latest: Snapshot | None = None
+        self._filled = asyncio.Event()
+
+    def put(self, snapshot: Snapshot) -> None:
+        """Leave a snapshot in place of the one that was there."""
+        self._latest = snapshot
+        self._filled.set()
+
+    async def take(self) -> Snapshot:
+        """Wait for a snapshot and take it."""
+        await self._filled.wait()
+        self._filled.clear()
+        snapshot, self._latest = self._latest, None
+        assert snapshot is not None
+        return snapshot
+
+
 class LiveCage:
     """A twin that listens.
 
@@ -89,6 +112,13 @@ class LiveCage:
         Limits of the alarms; None for the usual.
     least_volume
         Share of the still-water volume below which the cage is not called well [-].
+
+    Attributes
+    ----------
+    streams
+        The streams listened to, and the quantities that each carries.
+    topology
+        What of the cage does not change.
     """
 
     def __init__(
@@ -105,32 +135,23 @@ class LiveCage:
     ) -> None:
         store.claim(name)
         self.name, self.twin, self.store, self.clock = name, twin, store, clock
+        self.past = Past(twin, store, name)
         self._metrics, self._tick_s, self._least_volume = metrics, tick_s, least_volume
-        self._streams = _quantities(twin)
+        self.streams = _quantities(twin)
         self._pending: deque[Stored] = deque()
         self._waiting = 0
         self._arrived, self._room = asyncio.Event(), asyncio.Event()
         self._room.set()
         self._stepping = asyncio.Lock()
-        self._mailboxes: set[Mailbox[Snapshot]] = set()
-        self._topology = topology_of(name, twin, speed=clock.speed)
-        self.rest_position = np.array(self._topology.rest_position_m)
+        self._mailboxes: set[Mailbox] = set()
+        self.topology = topology_of(name, twin, speed=clock.speed)
+        self.rest_position = np.array(self.topology.rest_position_m)
         limits = policy or AlarmPolicy.default(twin.cage, buoy=twin.buoy, timeouts=twin.timeouts)
         self.desk = AlarmDesk(cage=name, twin=twin, store=store, policy=limits)
         self.live = LiveTwin(
             name=name, twin=twin, store=store, clock=clock, desk=self.desk, tick_s=tick_s
         )
-        self.snapshot = self._snapshot_of(self.live.last_answer)
-
-    @property
-    def streams(self) -> Mapping[str, tuple[str, ...]]:
-        """The streams listened to, and the quantities that each carries."""
-        return self._streams
-
-    @property
-    def topology(self) -> Topology:
-        """What of the cage does not change."""
-        return self._topology
+        self.snapshot = self._snapshot_of(self.live.answered)
 
     @property
     def latest_allowed(self) -> datetime:
@@ -228,9 +249,9 @@ class LiveCage:
         return after
 
     @contextmanager
-    def subscribe(self) -> Generator[Mailbox[Snapshot]]:
+    def subscribe(self) -> Generator[Mailbox]:
         """Lend a mailbox that gets every snapshot, the present one first."""
-        mailbox = Mailbox[Snapshot]()
+        mailbox = Mailbox()
         mailbox.put(self.snapshot)
         self._mailboxes.add(mailbox)
         self._metrics.clients.labels(self.name).inc()
@@ -310,11 +331,7 @@ class LiveCage:
 
 def _quantities(twin: Twin) -> dict[str, tuple[str, ...]]:
     shackles = {shackle.name for shackle in twin.cage.shackles}
-    return {
-        stream: BUOY_KEYS
-        if stream == twin.buoy
-        else ("tension_kn",)
-        if stream in shackles
-        else ("depth_m",)
-        for stream in streams_of(twin)
+    sensors = {
+        name: ("tension_kn",) if name in shackles else ("depth_m",) for name in twin.sensor_names
     }
+    return {twin.buoy: BUOY_KEYS, **sensors}

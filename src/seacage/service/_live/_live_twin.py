@@ -6,17 +6,10 @@ from datetime import UTC, datetime, timedelta
 
 import structlog
 
-from seacage.records import DEFAULT_LIMITS
 from seacage.service._live._alarm_desk import AlarmDesk
 from seacage.service._live._clock import Clock
-from seacage.service._live._clock_watch import ClockWatch, Step
-from seacage.service._live._past import (
-    adaptations,
-    amendments_at,
-    answer_in,
-    state_at,
-    streams_of,
-)
+from seacage.service._live._clock_faults import ClockFaults, Step
+from seacage.service._live._past import Past, answer_in, streams_of
 from seacage.service._store._adaptations import Adaptation, Refold
 from seacage.service._store._database._session import StoreError
 from seacage.service._store._samples import Stored
@@ -54,30 +47,28 @@ class LiveTwin:
         Where its alarms are assessed.
     tick_s
         Between two assessments [s of the wall].
+
+    Attributes
+    ----------
+    state, answered
+        What the twin remembers now, and the answer of its last step.
     """
+
+    state: TwinState
+    answered: Answered
 
     def __init__(
         self, *, name: str, twin: Twin, store: Store, clock: Clock, desk: AlarmDesk, tick_s: float
     ) -> None:
         self._name, self._twin, self._store, self._clock = name, twin, store, clock
-        self._desk = desk
+        self._desk, self._past = desk, Past(twin, store, name)
         self._period = timedelta(seconds=tick_s * clock.speed)
-        self.clocks = ClockWatch(clock, streams=len(streams_of(twin)))
+        self.clocks = ClockFaults(clock, streams=len(streams_of(twin)))
         self._went_back: list[tuple[Step, float]] = []  # and how far from there it is now [s]
         self._withdrawing: list[tuple[Step, str]] = []
         self._reinstating: list[tuple[Step, str]] = []
         self.begin()
         self._catch_up()
-
-    @property
-    def last_answer(self) -> Answered:
-        """The answer of the last step."""
-        return self._answered
-
-    @property
-    def state(self) -> TwinState:
-        """What the twin remembers now."""
-        return self._state
 
     def begin(self) -> Answered:
         """Fold the state from what is stored, as at a start."""
@@ -86,9 +77,9 @@ class LiveTwin:
         self._looked: datetime | None = None
         self._refold = self._store.refold(self._name)
         kept = self._adapt_until(now)
-        self._state, self._answered = state_at(self._twin, self._store, self._name, now, kept=kept)
-        self._kept_until = self._state.adapted_until
-        return self._answered
+        self.state, self.answered = self._past.state_at(now, kept=kept)
+        self._kept_until = self.state.adapted_until
+        return self.answered
 
     def step(
         self, arrived: Sequence[Stored], *, ticked: bool = True
@@ -110,21 +101,18 @@ class LiveTwin:
         for sample in samples:
             self.clocks.note_acceptance(sample.stream)
         self._settle_clock(now)
-        self._state, noticed = self._twin.receive(self._state, samples, now, amendments=amendments)
+        self.state, noticed = self._twin.receive(self.state, samples, now, amendments=amendments)
         if amendments or any(stored.again for stored in arrived):
-            shown = amendments_at(self._twin, self._store, self._name, now)
-            self._state = replace(self._state, amendments=shown)
+            self.state = replace(self.state, amendments=self._past.amendments_at(now))
         self._keep_adaptation()
         if any(stored.late for stored in arrived):
             self._refold, self._folded = self._store.refold(self._name), None
         self._adapt_anew(now)
         self._look(now, ticked=ticked)
-        self._state, events = self._twin.step(self._state, None, now)
-        answered = answer_in(events)
-        assert answered is not None  # a tick is always answered
-        self._answered = answered
+        self.state, events = self._twin.step(self.state, None, now)
+        self.answered = answer_in(events)
         events = tuple(one for one in events if not isinstance(one, Answered))
-        return answered, (*noticed, *events)
+        return self.answered, (*noticed, *events)
 
     # Alarms
 
@@ -138,10 +126,8 @@ class LiveTwin:
             self._assess(now)
 
     def _assess(self, at: datetime) -> None:
-        self._state, events = self._twin.step(self._state, None, at)
-        answered = answer_in(events)
-        assert answered is not None
-        self._desk.look(self._state, answered, faults=self.clocks.faults())
+        self.state, events = self._twin.step(self.state, None, at)
+        self._desk.look(self.state, answer_in(events), faults=self.clocks.faults())
 
     def _catch_up(self) -> None:
         """Assess the alarms at the ticks since the book was kept, as who was killed would have."""
@@ -154,7 +140,7 @@ class LiveTwin:
             self._assess(at)
             self._looked = at
             at += self._period
-        self._state, _ = self._twin.step(self._state, None, now)
+        self.state, _ = self._twin.step(self.state, None, now)
 
     def _tick(self, at: datetime) -> datetime:
         return at - (at - _EPOCH) % self._period
@@ -165,19 +151,19 @@ class LiveTwin:
         """Adapt the intervals to the blocks that ended while nobody was there."""
         kept, until = self._store.adaptation(self._name, at=now), block_begin(now)
         if kept is None:  # none were kept before a stop, or a clock that went back took them
-            missed = list(self._adaptations(None, until - _UNKEPT, until))
+            missed = list(self._past.adaptations(None, until - _UNKEPT, until))
         elif kept.t is None:  # of 0.1.0, from now on
             missed = [Adaptation(t=until, factors=kept.factors)]
         else:
-            missed = list(self._adaptations(kept, kept.t + ADAPTATION_BLOCK, until))
+            missed = list(self._past.adaptations(kept, kept.t + ADAPTATION_BLOCK, until))
         self._keep(missed)
         return missed[-1] if missed else kept
 
     def _keep_adaptation(self) -> None:
-        until = self._state.adapted_until
+        until = self.state.adapted_until
         if until is not None and (self._kept_until is None or until > self._kept_until):
             self._kept_until = until
-            self._keep([Adaptation(t=until, factors=self._state.adapted)])
+            self._keep([Adaptation(t=until, factors=self.state.adapted)])
 
     def _adapt_anew(self, now: datetime) -> None:
         """Adapt the intervals anew from where late samples belong, once these have rested."""
@@ -192,22 +178,17 @@ class LiveTwin:
                 return
         self._keep(self._folded, refold=refold)
         last = self._store.adaptation(self._name, at=now)
-        self._state = self._state.with_factors(last.factors if last else None)
+        self.state = self.state.with_factors(last.factors if last else None)
         self._refold, self._folded = self._store.refold(self._name), None
 
     def _folding(self, refold: Refold) -> Iterator[Adaptation]:
         before = refold.t - timedelta(microseconds=1)
         kept, start = self._store.adaptation(self._name, at=before), refold.t
         while start <= (end := block_begin(self._clock.now())):
-            for one in self._adaptations(kept, start, end):
+            for one in self._past.adaptations(kept, start, end):
                 kept = one
                 yield one
             start = end + ADAPTATION_BLOCK
-
-    def _adaptations(
-        self, kept: Adaptation | None, start: datetime, end: datetime
-    ) -> Iterator[Adaptation]:
-        return adaptations(self._twin, self._store, self._name, kept=kept, start=start, end=end)
 
     def _keep(self, kept: Sequence[Adaptation], *, refold: Refold | None = None) -> None:
         """Keep factors; where the disk takes none they are found again after the next start."""
@@ -244,9 +225,7 @@ class LiveTwin:
             ):
                 for step, stream in list(tasks):
                     counts = (
-                        change(
-                            self._name, stream, clock=step.now, now=now, limits=DEFAULT_LIMITS
-                        ).result()
+                        change(self._name, stream, clock=step.now, now=now).result()
                         for _ in range(_CHUNKS)
                     )
                     for count in counts:

@@ -2,6 +2,7 @@
 
 from collections import Counter as Counted
 from collections.abc import Collection, Iterable
+from functools import partial
 
 from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, Metric, generate_latest
 from prometheus_client.registry import Collector
@@ -16,109 +17,81 @@ class Metrics:
 
     def __init__(self) -> None:
         registry = self._registry = CollectorRegistry()
-        self.samples = Counter(
-            "seacage_samples",
-            "Samples that arrived, by what became of them.",
-            ("cage", "outcome"),
-            registry=registry,
+        counter = partial(Counter, registry=registry)
+        gauge = partial(Gauge, registry=registry)
+        histogram = partial(Histogram, registry=registry)
+
+        self.samples = counter(
+            "seacage_samples", "Samples that arrived, by what became of them.", ("cage", "outcome")
         )
-        self.steps = Histogram(
+        self.steps = histogram(
             "seacage_step_seconds",
             "Time of one step of the twin: a sample or a tick.",
             ("cage",),
             buckets=_STEP_BUCKETS,
-            registry=registry,
         )
-        self.notices = Counter(
+        self.notices = counter(
             "seacage_notices",
             "What the twin noticed: values flagged, streams silent and back.",
             ("cage", "kind"),
-            registry=registry,
         )
-        self.valid = Gauge(
-            "seacage_valid", "1 while the twin answers with numbers.", ("cage",), registry=registry
+        self.valid = gauge("seacage_valid", "1 while the twin answers with numbers.", ("cage",))
+        self.input_age = gauge(
+            "seacage_input_age_seconds", "Age of the reading that the answer rests on.", ("cage",)
         )
-        self.input_age = Gauge(
-            "seacage_input_age_seconds",
-            "Age of the reading that the answer rests on.",
-            ("cage",),
-            registry=registry,
-        )
-        self.clients = Gauge(
-            "seacage_live_clients", "Open live connections.", ("cage",), registry=registry
-        )
-        self.dropped = Counter(
+        self.clients = gauge("seacage_live_clients", "Open live connections.", ("cage",))
+        self.dropped = counter(
             "seacage_connections_dropped",
             "Connections that the service ended because of a bound.",
             ("why",),
-            registry=registry,
         )
-        self.closed = Counter(
-            "seacage_live_closed",
-            "Live connections that the service closed, by code.",
-            ("code",),
-            registry=registry,
+        self.closed = counter(
+            "seacage_live_closed", "Live connections that the service closed, by code.", ("code",)
         )
-
-        self.commits = Histogram(
+        self.commits = histogram(
             "seacage_commit_seconds",
             "From a sample's arrival until it is on disk.",
             ("cage",),
             buckets=_WAIT_BUCKETS,
-            registry=registry,
         )
-        self.shown = Histogram(
+        self.shown = histogram(
             "seacage_answer_to_page_seconds",
             "From a new answer until a live connection has taken it.",
             ("cage",),
             buckets=_WAIT_BUCKETS,
-            registry=registry,
         )
-        self.alarms = Gauge(
+        self.alarms = gauge(
             "seacage_alarms",
             "Alarms that are active or not acknowledged; critical from severity 800, warning 500.",
             ("cage", "severity"),
-            registry=registry,
         )
-
-        self.damaged = Gauge(
+        self.damaged = gauge(
             "seacage_store_damaged_rows",
             "Stored rows found damaged or missing since the start; none of them is served.",
-            registry=registry,
         )
-        self.unverified = Gauge(
+        self.unverified = gauge(
             "seacage_store_unverified_rows",
             "Stored rows without a checksum, as 0.1.0 wrote them, found since the start.",
-            registry=registry,
         )
-        self.messages = Counter(
-            "seacage_broker_messages",
-            "Messages that a broker has brought.",
-            ("broker",),
-            registry=registry,
+        self.messages = counter(
+            "seacage_broker_messages", "Messages that a broker has brought.", ("broker",)
         )
-        self.connected = Gauge(
-            "seacage_broker_connected",
-            "1 while there is a connection to the broker.",
-            ("broker",),
-            registry=registry,
+        self.connected = gauge(
+            "seacage_broker_connected", "1 while there is a connection to the broker.", ("broker",)
         )
-        self.waiting = Gauge(
+        self.waiting = gauge(
             "seacage_broker_waiting",
             "Messages that a broker has brought and that are not stored yet.",
             ("broker",),
-            registry=registry,
         )
-        self.behind = Gauge(
+        self.behind = gauge(
             "seacage_broker_behind",
             "1 while a backlog drains, and the newest of each stream goes before it.",
             ("broker",),
-            registry=registry,
         )
-        self.quarantined = Gauge(
+        self.quarantined = gauge(
             "seacage_quarantined",
             "Messages and lines that could not be read, set aside since the start.",
-            registry=registry,
         )
 
     def count_alarms(self, cage: str, severities: Iterable[int]) -> None:

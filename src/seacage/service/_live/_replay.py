@@ -13,6 +13,7 @@ from seacage.service._live._cage import LiveCage
 from seacage.service._live._clock import ReplayClock
 
 _LOOK_S = 0.25  # of the wall: how often a replay looks for samples that are due
+_LEAD = timedelta(hours=24)
 _SETTLED = timedelta(hours=6)
 _BREAK = np.timedelta64(6, "h")
 
@@ -26,20 +27,17 @@ class Replay:
     records
         One per stream.
     start
-        Where the clock stands first.
-    lead
-        How much of what was before is there from the beginning.
+        Where the clock stands first; the day before is there from the beginning.
     """
 
     records: tuple[Record, ...]
     start: datetime
-    lead: timedelta = timedelta(hours=24)
 
     async def feed(self, cage: LiveCage, clock: ReplayClock) -> None:
         """Feed the samples when their time has come; begin anew at the end, for ever."""
         while True:
             clock.restart(self.start)
-            backlog = self._merge(self.start - self.lead, self.start)
+            backlog = self._merge(self.start - _LEAD, self.start)
             await cage.begin(list(backlog))
             await self._feed(cage, clock)
 

@@ -95,6 +95,11 @@ class Link:
         What the broker says when this client is lost.
     qos
         0 to get only what is published from now on, of which the broker keeps nothing.
+
+    Attributes
+    ----------
+    fault
+        Why there is no connection; None while there is one.
     """
 
     def __init__(
@@ -114,16 +119,11 @@ class Link:
         self._connection: _Connection | None = None
         self._properties = connecting(receive_maximum=receive_maximum, session_s=session_s)
         self._client: Client | None = None
-        self._fault: str | None = f"{broker} has not answered yet."
-
-    @property
-    def fault(self) -> str | None:
-        """Why there is no connection; None while there is one."""
-        return self._fault
+        self.fault: str | None = f"{broker} has not answered yet."
 
     def publish(self, topic: str, payload: bytes, *, qos: int = 1, retain: bool = False) -> bool:
         """Send a message; False without a connection, and then it is not kept."""
-        if self._client is None or self._fault is not None:
+        if self._client is None or self.fault is not None:
             return False
         sent = self._client.publish(topic, payload, qos, retain)
         return sent.rc == MQTTErrorCode.MQTT_ERR_SUCCESS
@@ -142,11 +142,11 @@ class Link:
                 await self._hold_connection()
             except (OSError, ValueError, _Ended) as error:
                 # A broker that greets and at once hangs up is no better than one away.
-                lasted = self._fault is None and time.monotonic() - began > _LASTED_S
+                lasted = self.fault is None and time.monotonic() - began > _LASTED_S
                 failures = 0 if lasted else failures + 1
                 if failures <= 1:  # then it is known, until it is well again
                     _log.warning("broker lost", broker=str(self._broker), reason=str(error))
-                self._fault = f"{self._broker} is away ({error})."
+                self.fault = f"{self._broker} is away ({error})."
             await self._listener.drain()
             wait_s = _PATIENCE_S[min(failures, len(_PATIENCE_S) - 1)]
             # Not all at once, where a farm's clients lost the broker together.
@@ -167,7 +167,7 @@ class Link:
             if connection.ended.is_set():
                 raise _Ended(connection.reason)
             client.subscribe([(one, SubscribeOptions(qos=self._qos)) for one in self._filters])
-            self._client, self._fault = client, None
+            self._client, self.fault = client, None
             _log.info("broker found", broker=str(self._broker), client=self._client_id)
             if self._will is not None:
                 self.publish(self._will.topic, self._will.here, retain=True)

@@ -10,9 +10,9 @@ from datetime import timedelta
 from seacage.conventions import Progress, SeacageError, no_progress
 from seacage.records import Sample
 from seacage.service._mqtt._messages import Settled
-from seacage.service._publish._courier import Courier
 from seacage.service._publish._sender import SendError
 from seacage.service._publish._spool import Spool
+from seacage.service._publish._transport import Transport
 from seacage.service._schemas._samples import BATCH_LIMIT
 
 _LOOK_S = 0.2
@@ -70,7 +70,7 @@ class Publisher:
 
     Parameters
     ----------
-    spool, courier
+    spool, transport
         Where samples wait, and what carries them.
     retry_s, keep_ahead
         How long samples ahead of the service's clock wait until they are tried again [s], and
@@ -84,14 +84,14 @@ class Publisher:
     def __init__(
         self,
         spool: Spool,
-        courier: Courier,
+        transport: Transport,
         *,
         retry_s: float = 60.0,
         keep_ahead: timedelta = timedelta(days=7),
         patience_s: float | None = None,
         progress: Progress = no_progress,
     ) -> None:
-        self._spool, self._courier = spool, courier
+        self._spool, self._transport = spool, transport
         self._retry_s, self._keep_ahead, self._retry_at = retry_s, keep_ahead, float("-inf")
         self._tried: list[Sample] = []
         self._patience_s, self._progress = patience_s, progress
@@ -155,7 +155,7 @@ class Publisher:
 
     def _send(self, batch: list[Sample]) -> bool:
         """Send a batch; whether anybody acknowledged anything."""
-        answers = self._courier.send(batch)
+        answers = self._transport.send(batch)
         self._hold([one for one in answers if one.retry], answered=bool(answers))
         settled = [one for one in answers if not one.retry]
         refused = [one.rejected for one in settled if one.rejected is not None]

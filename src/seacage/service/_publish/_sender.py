@@ -9,7 +9,7 @@ from seacage.conventions import InputError, SeacageError
 from seacage.records import Sample
 from seacage.service._mqtt._messages import sample_fields
 from seacage.service._publish._post import POST_FAILED, AbstractCaller
-from seacage.service._schemas._samples import BATCH_LIMIT, Receipt
+from seacage.service._schemas._samples import Receipt
 
 _LATER = (429, 503)
 
@@ -33,7 +33,7 @@ class Sender(AbstractCaller):
     patience_s: tuple[float, ...] = (0.5, 1.0, 2.0, 4.0, 8.0)
 
     def send(self, samples: Sequence[Sample]) -> Receipt:
-        """Send samples, again where the service is away for a moment; once each is kept.
+        """Send as many samples as one request takes, again where the service is away for a moment.
 
         Raises
         ------
@@ -42,17 +42,6 @@ class Sender(AbstractCaller):
         SendError
             Nobody answers.
         """
-        parts = [
-            self._send_once(samples[first : first + BATCH_LIMIT])
-            for first in range(0, len(samples), BATCH_LIMIT)
-        ]
-        return Receipt(
-            accepted=sum(part.accepted for part in parts),
-            duplicates=sum(part.duplicates for part in parts),
-            rejected=[one for part in parts for one in part.rejected],
-        )
-
-    def _send_once(self, samples: Sequence[Sample]) -> Receipt:
         body = json.dumps(
             {"samples": [{"stream": one.stream} | sample_fields(one) for one in samples]}
         )

@@ -16,8 +16,8 @@ from seacage.records import Sample
 from seacage.service._mqtt._messages import Settled, sample_fields
 from seacage.service._quarantine import Quarantine
 from seacage.service._small_files import keep_private
+from seacage.service._store._database._rows import microseconds
 
-_EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 _NO_SEQ = -1
 _TOGETHER = 1000  # samples that are set aside in one transaction
 
@@ -88,6 +88,11 @@ class Spool:
     now
         Tells the time by which samples wait.
 
+    Attributes
+    ----------
+    ahead
+        How many of those that wait are ahead of the service's clock.
+
     Raises
     ------
     InputError
@@ -113,7 +118,7 @@ class Spool:
             keep_private(path)
             self._connection = _open(path)
             self._count: int = self._all("SELECT count(*) FROM sample")[0][0]
-            self._ahead: int = self._all("SELECT count(*) FROM ahead")[0][0]
+            self.ahead: int = self._all("SELECT count(*) FROM ahead")[0][0]
         except (sqlite3.Error, OSError) as error:
             raise SpoolError(
                 f"{path} does not open as a spool ({error}). Another publisher may be using it; "
@@ -128,12 +133,7 @@ class Spool:
 
     def __len__(self) -> int:
         """How many samples wait."""
-        return self._count + self._ahead
-
-    @property
-    def ahead(self) -> int:
-        """How many of them are ahead of the service's clock."""
-        return self._ahead
+        return self._count + self.ahead
 
     @property
     def quarantined(self) -> int:
@@ -196,18 +196,18 @@ class Spool:
 
     def hold(self, settled: Sequence[Settled]) -> None:
         """Keep samples apart that the service refused as ahead of its clock."""
-        since, keys = _microseconds(self._now()), [_key(one) for one in settled]
+        since, keys = microseconds(self._now()), [_key(one) for one in settled]
         rows = [(*_key(one), since, one.rejected or "") for one in settled]
         with self._lock, self._transaction():
-            self._ahead += self._execute(_HOLD, rows)
+            self.ahead += self._execute(_HOLD, rows)
             self._count -= self._execute(_SETTLE, keys)
 
     def expire(self, age: timedelta) -> None:
         """Set samples aside that have been held for so long, or that there is no room for."""
         with self._lock:
-            rows = self._all(_EXPIRED, _microseconds(self._now() - age), _TOGETHER)
-            if (over := min(self._ahead - self._most, _TOGETHER)) > len(rows):
-                rows = self._all(_EXPIRED, _microseconds(self._now()), over)
+            rows = self._all(_EXPIRED, microseconds(self._now() - age), _TOGETHER)
+            if (over := min(self.ahead - self._most, _TOGETHER)) > len(rows):
+                rows = self._all(_EXPIRED, microseconds(self._now()), over)
             self._set_aside(rows)
 
     def settle(self, settled: Sequence[Settled]) -> int:
@@ -218,7 +218,7 @@ class Spool:
         with self._lock, self._transaction():
             gone, ahead = self._execute(_SETTLE, keys), self._execute(_SETTLE_AHEAD, keys)
             self._count -= gone
-            self._ahead -= ahead
+            self.ahead -= ahead
             return gone + ahead
 
     def _read(self, rows: Sequence[Any]) -> list[Sample]:
@@ -249,7 +249,7 @@ class Spool:
 
     @contextmanager
     def _transaction(self) -> Generator[None]:
-        connection, counts = self._connection, (self._count, self._ahead)
+        connection, counts = self._connection, (self._count, self.ahead)
         try:
             connection.execute("BEGIN IMMEDIATE")
             yield
@@ -257,7 +257,7 @@ class Spool:
         except sqlite3.Error as error:
             if connection.in_transaction:
                 connection.execute("ROLLBACK")
-            self._count, self._ahead = counts
+            self._count, self.ahead = counts
             raise SpoolError(f"{self._path} takes nothing ({error}). Free the disk.") from error
 
     def _execute(self, statement: str, rows: Sequence[tuple[object, ...]]) -> int:
@@ -294,12 +294,12 @@ def _text(content: bytes) -> str:
 
 
 def _row(sample: Sample) -> tuple[object, ...]:
-    key = (sample.stream, _microseconds(sample.t), _NO_SEQ if sample.seq is None else sample.seq)
+    key = (sample.stream, microseconds(sample.t), _NO_SEQ if sample.seq is None else sample.seq)
     return (*key, json.dumps(sample_fields(sample)))
 
 
 def _key(one: Settled) -> tuple[object, ...]:
-    return (one.stream, _microseconds(one.t), _NO_SEQ if one.seq is None else one.seq)
+    return (one.stream, microseconds(one.t), _NO_SEQ if one.seq is None else one.seq)
 
 
 def _sample(stream: str, text: str) -> Sample:
@@ -310,7 +310,3 @@ def _sample(stream: str, text: str) -> Sample:
         seq=read.get("seq"),
         values={key: nan if value is None else value for key, value in read["values"].items()},
     )
-
-
-def _microseconds(t: datetime) -> int:
-    return (t - _EPOCH) // timedelta(microseconds=1)

@@ -1,37 +1,80 @@
-"""Questions of a pilot to a running service."""
+"""Questions of a pilot, answered here or by a running service."""
 
 import json
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from http import HTTPStatus
 
 from seacage.conventions import InputError, SeacageError
 from seacage.service._publish._post import POST_FAILED, AbstractCaller
+from seacage.service._rov._clearance import clearance_answer, inspection_answer, inspection_of
+from seacage.service._rov._files import inspection_geojson, inspection_mcap
 from seacage.service._schemas._clearance import (
     ClearanceAnswer,
     ClearanceQuery,
     InspectionAnswer,
     InspectionQuery,
 )
-from seacage.twin import StaleError
+from seacage.twin import PredictedNet, StaleError
 
 
 class AskError(SeacageError):
     """A service does not answer."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Asker(AbstractCaller):
-    """Asks about one cage of one service; its token has the scope read."""
+class AbstractAsker(ABC):
+    """Answers about one net, here or elsewhere."""
+
+    @abstractmethod
+    def clearance(self, query: ClearanceQuery) -> ClearanceAnswer:
+        """How far points are from the net."""
+
+    @abstractmethod
+    def inspection(self, query: InspectionQuery) -> InspectionAnswer:
+        """A way along the net."""
+
+    @abstractmethod
+    def inspection_file(self, form: str, query: InspectionQuery) -> bytes:
+        """The same way as a file, ``.mcap`` or ``.geojson``."""
+
+
+class LocalAsker(AbstractAsker):
+    """Answers from a predicted net.
+
+    Parameters
+    ----------
+    net
+        The net that is asked about.
+    """
+
+    def __init__(self, net: PredictedNet) -> None:
+        self._net = net
 
     def clearance(self, query: ClearanceQuery) -> ClearanceAnswer:
-        """Ask how far points are from the net."""
+        return clearance_answer(self._net, query)
+
+    def inspection(self, query: InspectionQuery) -> InspectionAnswer:
+        return inspection_answer(self._net, query)
+
+    def inspection_file(self, form: str, query: InspectionQuery) -> bytes:
+        write = inspection_mcap if form == ".mcap" else inspection_geojson
+        return write(self._net, inspection_of(self._net, query))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ServiceAsker(AbstractCaller, AbstractAsker):
+    """Answers of a service about one of its cages; the token has the scope read."""
+
+    def clearance(self, query: ClearanceQuery) -> ClearanceAnswer:
         answer = self.ask("clearance", query.model_dump_json(exclude_none=True))
         return ClearanceAnswer.model_validate_json(answer)
 
     def inspection(self, query: InspectionQuery) -> InspectionAnswer:
-        """Ask for a way along the net."""
         answer = self.ask("inspection", query.model_dump_json(exclude_none=True))
         return InspectionAnswer.model_validate_json(answer)
+
+    def inspection_file(self, form: str, query: InspectionQuery) -> bytes:
+        return self.ask(f"inspection{form}", query.model_dump_json(exclude_none=True))
 
     def ask(self, call: str, body: str) -> bytes:
         """Post a question and return the answer's body.

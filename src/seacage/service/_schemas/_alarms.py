@@ -1,5 +1,6 @@
 """The JSON of the alarms' doors."""
 
+from dataclasses import asdict
 from datetime import datetime
 from typing import Annotated
 
@@ -7,7 +8,7 @@ from pydantic import Field
 
 from seacage.service._schemas._base import EXAMPLE_T, AbstractAnswer, AbstractRequest, example
 from seacage.service._schemas._state import EXAMPLE_ALARM_BRIEF
-from seacage.twin import Alarm, AlarmEvent, AlarmKpi, AlarmPolicy, alarm_text
+from seacage.twin import Alarm, AlarmPolicy, alarm_text
 
 LONGEST_WORDS = 500
 """Of a reason or a comment [characters]."""
@@ -153,43 +154,6 @@ class Kpi(AbstractAnswer):
 
 def alarm_state(alarm: Alarm, policy: AlarmPolicy) -> AlarmState:
     """Say how an alarm stands."""
-    limit, text = policy.limit(alarm.name), alarm_text(alarm, policy)
-    return AlarmState(
-        id=alarm.name,
-        kind=alarm.kind,
-        source=alarm.source,
-        title=text.title,
-        message=text.message,
-        advice=text.advice,
-        severity=limit.severity,
-        unit=text.unit,
-        value=alarm.value,
-        worst=alarm.worst,
-        raise_at=limit.raise_at,
-        clear_at=limit.clear_at,
-        active=alarm.active,
-        acknowledged=alarm.acknowledged,
-        shelved=alarm.shelved,
-        shelved_until=alarm.shelved_until,
-        in_service=alarm.in_service,
-        since=alarm.since,
-        comment=alarm.comment,
-    )
-
-
-def journal_line(happened: AlarmEvent) -> JournalLine:
-    """Say what happened."""
-    return JournalLine(
-        alarm=happened.alarm,
-        action=happened.action.value,
-        t=happened.t,
-        value=happened.value,
-        who=happened.who,
-        why=happened.why,
-        quiet=happened.quiet,
-    )
-
-
-def kpi_of(kpi: AlarmKpi) -> Kpi:
-    """Say what was counted."""
-    return Kpi.model_validate(kpi, from_attributes=True)
+    own = asdict(alarm) | {"kind": alarm.kind, "source": alarm.source, "shelved": alarm.shelved}
+    limit, text = asdict(policy.limit(alarm.name)), asdict(alarm_text(alarm, policy))
+    return AlarmState.model_validate({"id": alarm.name} | own | limit | text)

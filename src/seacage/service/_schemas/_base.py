@@ -57,9 +57,9 @@ class AbstractRequest(BaseModel):
 
 
 class AbstractAnswer(BaseModel):
-    """A body that is answered."""
+    """A body that is answered; it may be made of any object that has its fields."""
 
-    model_config = ConfigDict(frozen=True)
+    model_config = ConfigDict(frozen=True, from_attributes=True)
 
 
 EXAMPLE_T = "2018-01-26T23:08:00Z"

@@ -14,7 +14,7 @@ from datetime import datetime, timedelta
 from seacage.conventions import Flag, InputError
 from seacage.records import KEYS
 from seacage.service._store._database._checksum import with_checksum
-from seacage.service._store._database._rows import DAY_US, microseconds, moment_of, pairs_of
+from seacage.service._store._database._rows import DAY_US, Bounds, moment_of, pairs_of
 from seacage.service._store._database._session import AbstractSession
 from seacage.service._store._integrity._tally import recount
 
@@ -163,23 +163,13 @@ def renew_between(session: AbstractSession, cage: str, stream: str, start: int, 
 
 
 def aggregates_between(
-    session: AbstractSession,
-    cage: str,
-    *,
-    stream: str,
-    key: str,
-    width_s: int,
-    start: datetime | None,
-    end: datetime | None,
-    limit: int,
+    session: AbstractSession, of: tuple[str, str], key: str, width_s: int, bounds: Bounds
 ) -> list[Aggregate]:
-    """Read spans in time order, as ``Store.aggregates`` says."""
-    first = -(2**62) if start is None else microseconds(start)
-    last = 2**62 if end is None else microseconds(end)
-    of = (cage, stream)
+    """Read spans of a cage's stream in time order, as ``Store.aggregates`` says."""
+    first, last = bounds.us
     marked = _marks(session, *of, first - first % WIDEST_US, last)
     # A marked span may turn out empty, so as many more are read as could fall away.
-    enough = limit + len(marked) * WIDTHS_S[-1] // width_s
+    enough = bounds.limit + len(marked) * WIDTHS_S[-1] // width_s
     spans: dict[int, list[Sequence[float]]] = {t: [] for t in marked}
     kept = (*of, key, width_s)
     for row in session.intact("aggregate", _KEPT, (*kept, first, last), kept, limit=enough):
@@ -195,9 +185,9 @@ def aggregates_between(
             if t in marked
             else spans[t]
         )
-        if len(found) >= limit:
+        if len(found) >= bounds.limit:
             break
-    return [_aggregate(row) for row in found[:limit]]
+    return [_aggregate(row) for row in found[: bounds.limit]]
 
 
 def _marks(session: AbstractSession, cage: str, stream: str, start: int, end: int) -> set[int]:

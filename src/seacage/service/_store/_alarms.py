@@ -2,10 +2,9 @@
 
 import json
 from collections.abc import Sequence
-from datetime import datetime
 
 from seacage.service._store._database._checksum import with_checksum
-from seacage.service._store._database._rows import DAY_US, microseconds, moment_of
+from seacage.service._store._database._rows import DAY_US, Bounds, microseconds, moment_of
 from seacage.service._store._database._session import AbstractSession
 from seacage.service._store._integrity._tally import recount
 from seacage.twin import Action, AlarmEvent
@@ -16,6 +15,7 @@ ON CONFLICT (cage) DO UPDATE SET book = excluded.book, crc = excluded.crc"""
 _KEEP_LINE = "INSERT INTO journal (cage, t, line, crc) VALUES (?, ?, ?, ?)"
 _LINES = "SELECT t, line, crc FROM journal WHERE cage = ? AND t >= ? AND t < ? ORDER BY "
 _BOOK = "SELECT book, crc FROM alarm_book WHERE cage = ?"
+_KEYS = ("alarm", "action", "value", "who", "why", "quiet")  # of a line
 _ORDERS = {True: "t DESC, number DESC LIMIT ?", False: "t, number LIMIT ?"}
 
 
@@ -39,34 +39,17 @@ def alarm_book(session: AbstractSession, cage: str) -> str | None:
     return rows[0][0] if rows else None
 
 
-def journal_between(
-    session: AbstractSession,
-    cage: str,
-    *,
-    start: datetime | None,
-    end: datetime | None,
-    limit: int,
-    newest: bool,
-) -> list[AlarmEvent]:
+def journal_between(session: AbstractSession, cage: str, bounds: Bounds) -> list[AlarmEvent]:
     """Read lines in time order, as ``Store.journal`` says."""
-    first = -(2**62) if start is None else microseconds(start)
-    last = 2**62 if end is None else microseconds(end)
-    between = (cage, first, last)
-    rows = session.intact("journal", _LINES + _ORDERS[newest], between, (cage,), limit=limit)
-    return [_event(t, line) for t, line in (reversed(rows) if newest else rows)]
+    order = _ORDERS[bounds.newest]
+    rows = session.intact(
+        "journal", _LINES + order, (cage, *bounds.us), (cage,), limit=bounds.limit
+    )
+    return [_event(t, line) for t, line in (reversed(rows) if bounds.newest else rows)]
 
 
 def _line(one: AlarmEvent) -> str:
-    return json.dumps(
-        {
-            "alarm": one.alarm,
-            "action": one.action.value,
-            "value": one.value,
-            "who": one.who,
-            "why": one.why,
-            "quiet": one.quiet,
-        }
-    )
+    return json.dumps({key: getattr(one, key) for key in _KEYS})
 
 
 def _event(t: int, line: str) -> AlarmEvent:

@@ -14,11 +14,11 @@ from urllib.parse import quote, unquote
 from seacage.conventions import Flag, SeacageError
 from seacage.records import KEYS, Sample
 from seacage.service._small_files import write_small
-from seacage.service._store._database._rows import microseconds, moment_of
+from seacage.service._store._database._rows import Bounds, microseconds, moment_of
 from seacage.service._store._database._session import StoreError
 
 _MANIFEST = "manifest.json"
-_ALL = 2**62
+_ALL = Bounds()
 
 Manifest = Mapping[date, Mapping[str, Any]]
 """By UTC day: ``file``, ``sha256`` and how many ``samples``."""
@@ -70,35 +70,18 @@ class Archive:
                 if left.name != name:
                     left.unlink()
 
-    def days(
-        self,
-        cage: str,
-        *,
-        stream: str | None = None,
-        start: datetime | None = None,
-        end: datetime | None = None,
-    ) -> list[tuple[date, str]]:
-        """Days and streams that may hold samples of start <= t < end, in time order."""
-        streams = self.streams(cage) if stream is None else [stream]
+    def days(self, cage: str, stream: str | None, bounds: Bounds) -> list[tuple[date, str]]:
+        """Days and streams that may hold samples within bounds, in time order."""
+        streams, start, end = self.streams(cage), bounds.start, bounds.end
         return sorted(
             (day, one)
-            for one in streams
+            for one in (streams if stream is None else [stream])
             for day in self._manifest(self._folder(cage, one))
             if (start is None or day >= start.date()) and (end is None or day <= end.date())
         )
 
-    def read(
-        self,
-        cage: str,
-        stream: str,
-        day: date,
-        *,
-        start: datetime | None = None,
-        end: datetime | None = None,
-        limit: int = _ALL,
-        newest: bool = False,
-    ) -> list[Sample]:
-        """Read samples of one day in time order, start <= t < end.
+    def read(self, cage: str, stream: str, day: date, bounds: Bounds = _ALL) -> list[Sample]:
+        """Read samples of one day in time order.
 
         Raises
         ------
@@ -106,16 +89,12 @@ class Archive:
             The file is not there, or is not what was written.
         """
         folder = self._folder(cage, stream)
-        bounds = (
-            -_ALL if start is None else microseconds(start),
-            _ALL if end is None else microseconds(end),
-        )
         for again in (True, False):
             entry = self._manifest(folder).get(day)
             if entry is None:
                 return []
             try:
-                return self._read(folder, stream, day, entry, bounds, limit=limit, newest=newest)
+                return self._read(folder, stream, day, entry, bounds)
             except ArchiveError:
                 # Another process may just have put a fuller file in its place.
                 if not again or self._manifest(folder).get(day) == entry:
@@ -162,10 +141,7 @@ class Archive:
         stream: str,
         day: date,
         entry: Mapping[str, Any],
-        bounds: tuple[int, int] = (-_ALL, _ALL),
-        *,
-        limit: int = _ALL,
-        newest: bool = False,
+        bounds: Bounds = _ALL,
     ) -> list[Sample]:
         path = folder / entry["file"]
         with _translate_errors(path, f"cannot be read, so {stream} has no samples of {day}"):
@@ -175,8 +151,7 @@ class Archive:
                     f"{path} is not what was written: its hash differs from the manifest's. "
                     "Restore it from a copy."
                 )
-            start, end = bounds
-            return decode_parquet(content, stream, start=start, end=end, limit=limit, newest=newest)
+            return decode_parquet(content, stream, bounds)
 
     def _manifest(self, folder: Path) -> Manifest:
         path = folder / _MANIFEST
@@ -269,18 +244,17 @@ def encode_parquet(cage: str, stream: str, samples: Sequence[Sample]) -> bytes:
     return sink.getvalue().to_pybytes()
 
 
-def decode_parquet(
-    content: bytes, stream: str, *, start: int, end: int, limit: int, newest: bool
-) -> list[Sample]:
-    """Read the samples of a Parquet file in start <= t < end [µs], the first or the last."""
+def decode_parquet(content: bytes, stream: str, bounds: Bounds) -> list[Sample]:
+    """Read the samples of a Parquet file."""
+    start, end = bounds.us
     pa = _arrow()
     table = import_module("pyarrow.parquet").read_table(pa.BufferReader(content), use_threads=False)
     times: list[int] = table["t"].cast(pa.int64()).to_pylist()  # in order, as they were written
     first = next((k for k, t in enumerate(times) if t >= start), len(times))
     last = next((k for k in range(len(times), first, -1) if times[k - 1] < end), first)
-    if newest:
-        first = max(first, last - limit)
-    chosen: Any = table.slice(first, min(last - first, limit))
+    if bounds.newest:
+        first = max(first, last - bounds.limit)
+    chosen: Any = table.slice(first, min(last - first, bounds.limit))
     keys = [key for key in KEYS if key in chosen.column_names]
     columns = [(key, chosen[key].to_pylist(), chosen[f"{key}_flag"].to_pylist()) for key in keys]
     rows = zip(

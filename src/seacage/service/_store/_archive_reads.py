@@ -1,73 +1,53 @@
 """Samples of the store and of the archive, as if they were all in one."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from datetime import datetime, timedelta
+from dataclasses import replace
+from datetime import datetime
 from itertools import groupby
 
 from seacage.records import Sample
 from seacage.service._store._archive import Archive, key_of, order_of
-
-_MICROSECOND = timedelta(microseconds=1)
+from seacage.service._store._database._rows import MICROSECOND, Bounds
 
 
 def with_archive(
-    found: Sequence[Sample],
-    archive: Archive,
-    cage: str,
-    *,
-    stream: str | None,
-    start: datetime | None,
-    end: datetime | None,
-    limit: int,
-    newest: bool,
+    found: Sequence[Sample], archive: Archive, cage: str, stream: str | None, bounds: Bounds
 ) -> list[Sample]:
     """Add what only the archive has to what was found in the store, under the same bounds."""
-    if found and len(found) >= limit:  # what lies beyond would be cut off again
-        start = found[0].t if newest else start
-        end = end if newest else found[-1].t + _MICROSECOND
+    if found and len(found) >= bounds.limit:  # what lies beyond would be cut off again
+        beyond = {"start": found[0].t} if bounds.newest else {"end": found[-1].t + MICROSECOND}
+        bounds = replace(bounds, **beyond)
     held = {key_of(one): one for one in found}
-    days = archive.days(cage, stream=stream, start=start, end=end)
+    days = archive.days(cage, stream, bounds)
     added, reached = 0, None
-    for day, name in reversed(days) if newest else days:
-        if added >= limit and day != reached:
+    for day, name in reversed(days) if bounds.newest else days:
+        if added >= bounds.limit and day != reached:
             break
         reached = day
-        older = archive.read(cage, name, day, start=start, end=end, limit=limit, newest=newest)
+        older = archive.read(cage, name, day, bounds)
         added += len(older)
         held = {key_of(one): one for one in older} | held
     ordered = [held[key] for key in sorted(held, key=order_of)]
-    return ordered[-limit:] if newest else ordered[:limit]
+    return ordered[-bounds.limit :] if bounds.newest else ordered[: bounds.limit]
 
 
 def latest_of(
     latest: Mapping[str, Sample], archive: Archive, cage: str, *, at: datetime | None
 ) -> dict[str, Sample]:
     """Put what the archive has later in the place of a stream's newest in the store."""
-    end = None if at is None else at + _MICROSECOND
+    bounds = Bounds(end=at and at + MICROSECOND, limit=1, newest=True)
     newest = dict(latest)
     for stream in archive.streams(cage):
         found = [latest[stream]] if stream in latest else []
-        both = with_archive(
-            found, archive, cage, stream=stream, start=None, end=end, limit=1, newest=True
-        )
+        both = with_archive(found, archive, cage, stream, bounds)
         newest |= {one.stream: one for one in both}
     return newest
 
 
 def read_archive_between(
-    archive: Archive,
-    cage: str,
-    *,
-    stream: str | None,
-    start: datetime | None,
-    end: datetime | None,
+    archive: Archive, cage: str, stream: str | None, bounds: Bounds
 ) -> Iterator[Sample]:
-    """Read the archived samples of start <= t < end in time order, a day at a time."""
-    days = archive.days(cage, stream=stream, start=start, end=end)
-    for day, group in groupby(days, key=lambda one: one[0]):
-        samples = [
-            sample
-            for _, name in group
-            for sample in archive.read(cage, name, day, start=start, end=end)
-        ]
+    """Read archived samples in time order, a day at a time."""
+    for day, group in groupby(archive.days(cage, stream, bounds), key=lambda one: one[0]):
+        samples = [one for _, name in group for one in archive.read(cage, name, day, bounds)]
         yield from sorted(samples, key=lambda one: order_of(key_of(one)))

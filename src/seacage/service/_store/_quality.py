@@ -189,21 +189,22 @@ class QualityControl:
         limits
             To check with.
         """
-        end = self._memory_of(session, of, limits)
+        stream = _Stream(session, of)
+        end = self._memory_of(stream, limits)
         doubtful = [key for key in samples if key <= end.at or of in self._beyond]
-        known = _find_stored(session, of, doubtful)
+        known = stream.find(doubtful)
         again = {key for key, (_, one) in known.items() if is_withdrawn(one)}
         fresh = deque(sorted(key for key in samples if key not in known or key in again))
         checked = Checked(again=again)
-        for key in _of_sealed_days(session, of, fresh):
+        for key in stream.of_sealed_days(fresh):
             # Its neighbours have left the store.
             _, checked.fresh[key] = check_sample(QualityState(), samples[key], limits)
             fresh.remove(key)
         if fresh:
-            walk = _Walk(session, of, end, limits, checked)
+            walk = _Walk(stream, end, limits, checked)
             if fresh[0] <= end.at:
                 checked.walked = True
-                walk.memory = _root(session, of, fresh[0], limits)
+                walk.memory = stream.root(fresh[0], limits)
                 _check_again(walk, end, fresh, samples)
             while fresh:
                 key = fresh.popleft()
@@ -216,29 +217,30 @@ class QualityControl:
         self, session: AbstractSession, of: Of, *, clock: datetime, after: int, limits: Limits
     ) -> Checked:
         """Withdraw samples of a stream after a time [us], some at a time, the newest first."""
-        checked = Checked()
-        rows = _rows(session, _AHEAD, (*of, after, f"%{AHEAD}%"), limit=_AT_ONCE)
+        checked, stream = Checked(), _Stream(session, of)
+        rows = stream.rows(_AHEAD, after, f"%{AHEAD}%", limit=_AT_ONCE)
         if not rows:
             return checked
         session.rows(_CUT, (*of, after))
         gone = [
             _Entry(withdrawn(sample, clock=clock), _key(row), row) for row, sample in readable(rows)
         ]
-        _write(session, of, gone, checked)
+        stream.write(gone, checked)
         # What they had shown of the samples before them is taken back.
-        walk = _Walk(session, of, _recall(session, of, limits, until=after), limits, checked)
+        walk = _Walk(stream, stream.recall(limits, until=after), limits, checked)
         walk.open_again()
         walk.finish()
         self._memory.pop(of, None)
         return checked
 
-    def _memory_of(self, session: AbstractSession, of: Of, limits: Limits) -> Memory:
+    def _memory_of(self, stream: "_Stream", limits: Limits) -> Memory:
+        of = stream.of
         if of not in self._memory:
-            memory = _recall(session, of, limits)
+            memory = stream.recall(limits)
             if memory.since >= EVERY:
-                memory = _keep(session, of, memory)
+                memory = stream.keep(memory)
             self._memory[of] = memory
-            last = readable(_rows(session, _LAST, (*of, _END[0]), limit=1))
+            last = readable(stream.rows(_LAST, _END[0], limit=1))
             beyond = any(is_withdrawn(sample) for _, sample in last)
             (self._beyond.add if beyond else self._beyond.discard)(of)
         return self._memory[of]
@@ -246,12 +248,13 @@ class QualityControl:
 
 def newest_keys(session: AbstractSession, of: Of, at: int) -> set[Key]:
     """Find the last samples of a stream until a time [us] that carried each quantity."""
-    root = _checkpoint(session, of, _BEFORE, (at, _END[1]))
+    stream = _Stream(session, of)
+    root = stream.checkpoint(_BEFORE, (at, _END[1]))
     if root is None:
-        rows = reversed(_rows(session, _LAST, (*of, at), limit=4 * EVERY))
+        rows = reversed(stream.rows(_LAST, at, limit=4 * EVERY))
         found = ((row, sample) for row, sample in readable(rows) if not is_withdrawn(sample))
     else:
-        found = _read_stored(session, of, root.at, until=(at, _END[1]))
+        found = stream.read(root.at, until=(at, _END[1]))
     newest = dict[str, Key]() if root is None else dict(root.newest)
     for row, sample in found:
         newest |= dict.fromkeys(sample.values, _key(row))
@@ -262,8 +265,8 @@ def withdrawn_samples(
     session: AbstractSession, of: Of, *, clock: datetime, until: int
 ) -> dict[Key, Sample]:
     """Find samples until a time [us] that were withdrawn by a clock, the first of them."""
-    which = (*of, until, f"%{AHEAD} at {clock.isoformat()}%")
-    rows = _rows(session, _GONE, which, limit=_AT_ONCE)
+    which = f"%{AHEAD} at {clock.isoformat()}%"
+    rows = _Stream(session, of).rows(_GONE, until, which, limit=_AT_ONCE)
     return {_key(row): sample for row, sample in readable(rows)}
 
 
@@ -299,19 +302,124 @@ class _Entry:
         return {key: (int(self.own.flags[key]), t) for key, (_, t, _) in self.later.items()}
 
 
+@dataclass(frozen=True, slots=True)
+class _Stream:
+    """The samples of one stream and its checkpoints, in one transaction."""
+
+    session: AbstractSession
+    of: Of
+
+    def root(self, key: Key, limits: Limits) -> Memory:
+        """What was remembered a little before a sample."""
+        return self.checkpoint(_BEFORE, key) or self._first_memory(key[0], limits)
+
+    def recall(self, limits: Limits, *, until: int = _END[0]) -> Memory:
+        """What is remembered after the last sample until a time [us]."""
+        end = (until, _END[1])
+        memory = self.root(end, limits)
+        for row, sample in self.read(memory.at, until=end):
+            memory, _, _ = memory.after(_key(row), sample, limits)
+        return memory
+
+    def checkpoint(self, which: str, key: Key) -> Memory | None:
+        """Read the checkpoint before or behind a sample."""
+        rows = self.session.intact("quality", which, (*self.of, key[0], *key), self.of, limit=1)
+        if not rows:
+            return None
+        ((t, seq, text),) = rows
+        quality, newest = _adapter().validate_json(text)
+        return Memory(quality=quality, newest=newest, at=(t, seq))
+
+    def keep(self, memory: Memory) -> Memory:
+        """Make a checkpoint."""
+        text = _adapter().dump_json((memory.quality, dict(memory.newest))).decode()
+        self.session.rows(_KEEP, with_checksum("quality", *self.of, *memory.at, text))
+        return replace(memory, since=0)
+
+    def rows(self, sql: str, *values: object, limit: int | None = None) -> list[SampleRow]:
+        """Select samples as they are stored."""
+        return self.session.intact("sample", sql, (*self.of, *values), self.of[:1], limit=limit)
+
+    def read(self, after: Key, *, until: Key) -> Iterator[tuple[SampleRow, Sample]]:
+        """Read the samples in order, but for those that are withdrawn."""
+        while rows := self.rows(_FROM, after[0], *after, limit=_AT_ONCE):
+            for row, sample in readable(rows):
+                if _key(row) > until:
+                    return
+                if not is_withdrawn(sample):
+                    yield row, sample
+            if _key(rows[-1]) <= after:
+                raise DamageError(
+                    f"{self.of[0]}: samples of {self.of[1]} lie in disorder on the disk."
+                )
+            after = _key(rows[-1])
+
+    def find(self, keys: Sequence[Key]) -> dict[Key, tuple[SampleRow, Sample]]:
+        """Find which of some samples are stored."""
+        found = dict[Key, tuple[SampleRow, Sample]]()
+        times = sorted({t for t, _ in keys})
+        for first in range(0, len(times), _AT_ONCE):
+            some = times[first : first + _AT_ONCE]
+            places = ", ".join("?" * len(some))
+            rows = self.rows(f"{_SAMPLES} AND t IN ({places})", *some)
+            found |= {_key(row): (row, sample) for row, sample in readable(rows)}
+        return {key: found[key] for key in keys if key in found}
+
+    def of_sealed_days(self, keys: Sequence[Key]) -> list[Key]:
+        """Which of some samples, in order of time, are of days that have left the store."""
+        if not keys:
+            return []
+        first, last = keys[0][0], keys[-1][0]
+        span = (*self.of, first - first % DAY_US, last)
+        sealed = {t for (t,) in self.session.intact("sealed", _SEALED, span, self.of)}
+        return [key for key in keys if key[0] - key[0] % DAY_US in sealed]
+
+    def write(self, entries: Sequence[_Entry], checked: Checked) -> None:
+        """Write the entries that differ from what is stored; those not stored are fresh."""
+        changes = list[tuple[object, ...]]()
+        for entry in entries:
+            sample = entry.sample
+            if entry.row is None:
+                checked.fresh[entry.key] = sample
+                checked.amended[entry.key] = entry.amended
+                continue
+            texts = readings_text(sample, entry.amended), remarks_text(sample)
+            if texts != entry.row[3:5]:
+                crc = checksum("sample", (*self.of, *entry.key, *texts, entry.row[5]))
+                changes.append((*texts, crc, *self.of, *entry.key))
+                checked.amendments += _amendments(entry.row, sample)
+        self.session.each(_AMEND, changes)
+
+    def _first_memory(self, t: int, limits: Limits) -> Memory:
+        """Where to begin without a checkpoint: as far back as the tests look.
+
+        Only stores of 0.1.0 have more samples before their first checkpoint than are looked at
+        here.
+        """
+        last = [sample for _, sample in readable(self.rows(_LAST, t, limit=4 * EVERY))]
+        if not last:
+            return Memory()
+        seen, reach_s = {key for one in last for key in one.values}, 0.0
+        for group, keys in GROUPS.items():
+            if not seen.isdisjoint(keys):
+                steady = limits.steadiness[group]
+                times = (steady.attenuated_s, steady.flat_fail_s, steady.gap_s)
+                reach_s = max(reach_s, *(one for one in times if isfinite(one)), 0.0)
+        reach = 2 * round(min(reach_s, _LONGEST_S) * _SECOND)
+        return Memory(at=(min(microseconds(last[-1].t), microseconds(last[0].t) - reach), -2))
+
+
 class _Walk:
     """The checks on their way along a stream, and what changes by them."""
 
-    def __init__(
-        self, session: AbstractSession, of: Of, memory: Memory, limits: Limits, checked: Checked
-    ) -> None:
-        self.session, self.of, self.memory, self.limits = session, of, memory, limits
-        self._checked = checked
+    def __init__(self, stream: _Stream, memory: Memory, limits: Limits, checked: Checked) -> None:
+        self.stream, self.memory = stream, memory
+        self._limits, self._checked = limits, checked
         self._entries: dict[Key, _Entry] = {}
 
     def pass_by(self, key: Key, sample: Sample) -> None:
         """Go past a sample whose flags stay as they are."""
-        self.memory, _, _ = self.memory.after(key, sample, self.limits)
+        self.memory, _, _ = self.memory.after(key, sample, self._limits)
 
     def take(
         self, key: Key, sample: Sample, row: SampleRow | None = None, *, again: bool = False
@@ -321,7 +429,7 @@ class _Walk:
         Where samples are checked again the checkpoints that there are serve, as long as they lie
         near enough.
         """
-        self.memory, own, amendments = self.memory.after(key, sample, self.limits)
+        self.memory, own, amendments = self.memory.after(key, sample, self._limits)
         for one in amendments:
             self._amend(one, key[0])
         self._entries[key] = _Entry(own, key, row)
@@ -332,7 +440,7 @@ class _Walk:
 
     def keep(self) -> None:
         """Make a checkpoint here."""
-        self.memory = _keep(self.session, self.of, self.memory)
+        self.memory = self.stream.keep(self.memory)
 
     def open_again(self) -> None:
         """Take up the samples that the next may amend, without what was found of them later."""
@@ -357,7 +465,7 @@ class _Walk:
         return [entry for key, entry in self._entries.items() if key[0] == t]
 
     def _load(self, t: int) -> None:
-        for row, sample in readable(_rows(self.session, _AT, (*self.of, t))):
+        for row, sample in readable(self.stream.rows(_AT, t)):
             if not is_withdrawn(sample) and _key(row) not in self._entries:
                 flags = own_flags(row[3])
                 later = sum(flag != sample.flags[key] for key, flag in flags.items())
@@ -369,17 +477,17 @@ class _Walk:
         done = [entry for entry in self._entries.values() if which(entry)]
         for entry in done:
             del self._entries[entry.key]
-        _write(self.session, self.of, done, self._checked)
+        self.stream.write(done, self._checked)
 
 
 def _check_again(
     walk: _Walk, end: Memory, fresh: deque[Key], samples: Mapping[Key, Sample]
 ) -> None:
     """Check late samples and what follows them, until it makes no difference any more."""
-    kept = _checkpoint(walk.session, walk.of, _BEHIND, fresh[0])
+    kept = walk.stream.checkpoint(_BEHIND, fresh[0])
     same_from: Key | None = None
     began = False
-    for row, sample in _read_stored(walk.session, walk.of, walk.memory.at, until=end.at):
+    for row, sample in walk.stream.read(walk.memory.at, until=end.at):
         key = _key(row)
         while fresh and fresh[0] < key:
             if not began:
@@ -395,7 +503,7 @@ def _check_again(
         if kept is not None and key == kept.at:
             same_from = key if same_from is None and walk.memory.same(kept) else same_from
             walk.keep()
-            kept = _checkpoint(walk.session, walk.of, _BEHIND, key)
+            kept = walk.stream.checkpoint(_BEHIND, key)
         more = fresh and fresh[0] <= end.at
         if same_from and not more and min(walk.memory.open, default=key[0]) > same_from[0]:
             walk.finish(same_from)
@@ -403,94 +511,6 @@ def _check_again(
             return
     if not began:
         walk.open_again()
-
-
-def _root(session: AbstractSession, of: Of, key: Key, limits: Limits) -> Memory:
-    """What was remembered a little before a sample."""
-    kept = _checkpoint(session, of, _BEFORE, key)
-    return kept or _first_memory(session, of, key[0], limits)
-
-
-def _recall(session: AbstractSession, of: Of, limits: Limits, *, until: int = _END[0]) -> Memory:
-    """What is remembered after the last sample until a time [us], from the last checkpoint on."""
-    kept = _checkpoint(session, of, _BEFORE, (until, _END[1]))
-    memory = kept or _first_memory(session, of, until, limits)
-    for row, sample in _read_stored(session, of, memory.at, until=(until, _END[1])):
-        memory, _, _ = memory.after(_key(row), sample, limits)
-    return memory
-
-
-def _first_memory(session: AbstractSession, of: Of, t: int, limits: Limits) -> Memory:
-    """Where to begin without a checkpoint: at the first sample, or as far back as the tests look.
-
-    Only stores of 0.1.0 have more samples before their first checkpoint than are looked at here.
-    """
-    last = [sample for _, sample in readable(_rows(session, _LAST, (*of, t), limit=4 * EVERY))]
-    if not last:
-        return Memory()
-    seen, reach_s = {key for one in last for key in one.values}, 0.0
-    for group, keys in GROUPS.items():
-        if not seen.isdisjoint(keys):
-            steady = limits.steadiness[group]
-            times = (steady.attenuated_s, steady.flat_fail_s, steady.gap_s)
-            reach_s = max(reach_s, *(one for one in times if isfinite(one)), 0.0)
-    reach = 2 * round(min(reach_s, _LONGEST_S) * _SECOND)
-    return Memory(at=(min(microseconds(last[-1].t), microseconds(last[0].t) - reach), -2))
-
-
-def _read_stored(
-    session: AbstractSession, of: Of, after: Key, *, until: Key
-) -> Iterator[tuple[SampleRow, Sample]]:
-    """Read the samples of a stream in order, but for those that are withdrawn."""
-    while rows := _rows(session, _FROM, (*of, after[0], *after), limit=_AT_ONCE):
-        for row, sample in readable(rows):
-            if _key(row) > until:
-                return
-            if not is_withdrawn(sample):
-                yield row, sample
-        if _key(rows[-1]) <= after:
-            raise DamageError(f"{of[0]}: samples of {of[1]} lie in disorder on the disk.")
-        after = _key(rows[-1])
-
-
-def _find_stored(
-    session: AbstractSession, of: Of, keys: Sequence[Key]
-) -> dict[Key, tuple[SampleRow, Sample]]:
-    """Find which of some samples are stored."""
-    found = dict[Key, tuple[SampleRow, Sample]]()
-    times = sorted({t for t, _ in keys})
-    for first in range(0, len(times), _AT_ONCE):
-        some = times[first : first + _AT_ONCE]
-        places = ", ".join("?" * len(some))
-        rows = _rows(session, f"{_SAMPLES} AND t IN ({places})", (*of, *some))
-        found |= {_key(row): (row, sample) for row, sample in readable(rows)}
-    return {key: found[key] for key in keys if key in found}
-
-
-def _of_sealed_days(session: AbstractSession, of: Of, keys: Sequence[Key]) -> list[Key]:
-    if not keys:
-        return []
-    first, last = keys[0][0], keys[-1][0]
-    days = session.intact("sealed", _SEALED, (*of, first - first % DAY_US, last), of)
-    sealed = {t for (t,) in days}
-    return [key for key in keys if key[0] - key[0] % DAY_US in sealed] if sealed else []
-
-
-def _write(session: AbstractSession, of: Of, entries: Sequence[_Entry], checked: Checked) -> None:
-    """Write the entries that differ from what is stored; those that are not stored are fresh."""
-    changes = list[tuple[object, ...]]()
-    for entry in entries:
-        sample = entry.sample
-        if entry.row is None:
-            checked.fresh[entry.key] = sample
-            checked.amended[entry.key] = entry.amended
-            continue
-        texts = readings_text(sample, entry.amended), remarks_text(sample)
-        if texts != entry.row[3:5]:
-            crc = checksum("sample", (*of, *entry.key, *texts, entry.row[5]))
-            changes.append((*texts, crc, *of, *entry.key))
-            checked.amendments += _amendments(entry.row, sample)
-    session.each(_AMEND, changes)
 
 
 def _amendments(row: SampleRow, sample: Sample) -> Iterator[Amendment]:
@@ -502,27 +522,6 @@ def _amendments(row: SampleRow, sample: Sample) -> Iterator[Amendment]:
             yield Amendment(
                 stream=sample.stream, t=sample.t, key=key, flag=flag, was=was, remark=remark
             )
-
-
-def _checkpoint(session: AbstractSession, of: Of, which: str, key: Key) -> Memory | None:
-    rows = session.intact("quality", which, (*of, key[0], *key), of, limit=1)
-    if not rows:
-        return None
-    ((t, seq, text),) = rows
-    quality, newest = _adapter().validate_json(text)
-    return Memory(quality=quality, newest=newest, at=(t, seq))
-
-
-def _keep(session: AbstractSession, of: Of, memory: Memory) -> Memory:
-    text = _adapter().dump_json((memory.quality, dict(memory.newest))).decode()
-    session.rows(_KEEP, with_checksum("quality", *of, *memory.at, text))
-    return replace(memory, since=0)
-
-
-def _rows(
-    session: AbstractSession, sql: str, values: Sequence[object], *, limit: int | None = None
-) -> list[SampleRow]:
-    return session.intact("sample", sql, values, values[:1], limit=limit)
 
 
 def _key(row: SampleRow) -> Key:

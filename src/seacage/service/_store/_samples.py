@@ -5,12 +5,14 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from seacage.conventions import SeacageError
-from seacage.records import AHEAD, Amendment, Limits, Sample
-from seacage.service._store._adaptations import Refold, ask_refold
+from seacage.records import AHEAD, DEFAULT_LIMITS, Amendment, Limits, Sample
+from seacage.service._store._adaptations import Refold, ask_refold, cut_adaptations
 from seacage.service._store._aggregates import WIDEST_US
 from seacage.service._store._database._checksum import checksum, with_checksum
 from seacage.service._store._database._rows import (
     DAY_US,
+    MICROSECOND,
+    Bounds,
     Row,
     SampleRow,
     amendments_of_row,
@@ -71,8 +73,6 @@ _NEWEST = {
     ORDER BY t DESC, seq DESC LIMIT 1
 ) s""",
 }
-
-_FOREVER = 2**62
 
 
 @dataclass(frozen=True, slots=True)
@@ -221,40 +221,30 @@ def _mark_refold(
 
 
 def withdraw_samples(
-    session: AbstractSession,
-    control: QualityControl,
-    of: Of,
-    *,
-    clock: datetime,
-    after: datetime,
-    limits: Limits,
+    session: AbstractSession, control: QualityControl, of: Of, *, clock: datetime, after: datetime
 ) -> int:
     """Withdraw samples of a stream after a time, as ``Store.withdraw`` says; how many."""
-    checked = control.withdraw(session, of, clock=clock, after=microseconds(after), limits=limits)
+    cut_adaptations(session, of[0], after)
+    until = microseconds(after)
+    checked = control.withdraw(session, of, clock=clock, after=until, limits=DEFAULT_LIMITS)
     changed = _times_changed({of: checked})
     mark(session, changed, microseconds(clock))
     return len(changed)
 
 
 def reinstate_samples(
-    session: AbstractSession,
-    control: QualityControl,
-    of: Of,
-    *,
-    clock: datetime,
-    until: datetime,
-    limits: Limits,
+    session: AbstractSession, control: QualityControl, of: Of, *, clock: datetime, until: datetime
 ) -> int:
     """Take back that samples of a stream were withdrawn, as ``Store.reinstate`` says; how many."""
     samples = withdrawn_samples(session, of, clock=clock, until=microseconds(until))
-    checked = {of: control.check(session, of, samples, limits)}
+    checked = {of: control.check(session, of, samples, DEFAULT_LIMITS)}
     rows = [
         row_of(of[0], sample, until, checked[of].amended.get(key, {}))
         for key, sample in checked[of].fresh.items()
     ]
     _replace(session, rows)
     mark(session, _times_changed(checked), microseconds(until))
-    incoming = _Incoming(limits, samples, dict.fromkeys(samples, until))
+    incoming = _Incoming(DEFAULT_LIMITS, samples, dict.fromkeys(samples, until))
     _mark_refold(session, {of: incoming}, checked)
     return len(rows)
 
@@ -272,37 +262,28 @@ def samples_at(
 def samples_between(
     session: AbstractSession,
     cage: str,
+    bounds: Bounds,
     *,
     stream: str | None,
-    start: datetime | None,
-    end: datetime | None,
-    limit: int,
-    newest: bool,
-    withdrawn: bool = True,
+    withdrawn: bool,
     known_at: datetime | None = None,
 ) -> list[Sample]:
     """Read samples in time order, as ``Store.samples`` says."""
-    where, values = ["cage = ?"], [cage]
-    bounds = (
-        ("stream = ?", stream),
-        ("t >= ?", start and microseconds(start)),
-        ("t < ?", end and microseconds(end)),
-        ("remarks NOT LIKE ?", None if withdrawn else f"%{AHEAD}%"),
-    )
-    for clause, value in bounds:
-        if value is not None:
-            where.append(clause)
-            values.append(value)  # pyright: ignore[reportArgumentType]
-    order = "DESC" if newest else "ASC"
+    where, values = "cage = ? AND t >= ? AND t < ?", (cage, *bounds.us)
+    if stream is not None:
+        where, values = f"{where} AND stream = ?", (*values, stream)
+    if not withdrawn:
+        where, values = f"{where} AND remarks NOT LIKE ?", (*values, f"%{AHEAD}%")
+    order = "DESC" if bounds.newest else "ASC"
     rows = session.intact(
         "sample",
         "SELECT stream, t, seq, readings, remarks, t_ingest, crc FROM sample "  # noqa: S608
-        f"WHERE {' AND '.join(where)} ORDER BY t {order}, stream {order}, seq {order} LIMIT ?",
+        f"WHERE {where} ORDER BY t {order}, stream {order}, seq {order} LIMIT ?",
         values,
         (cage,),
-        limit=limit,
+        limit=bounds.limit,
     )
-    return _read(session, cage, reversed(rows) if newest else rows, known_at)
+    return _read(session, cage, reversed(rows) if bounds.newest else rows, known_at)
 
 
 def amendments_since(
@@ -318,19 +299,17 @@ def latest_samples(
     session: AbstractSession, cage: str, *, at: datetime | None
 ) -> dict[str, Sample]:
     """Read the newest sample of each stream until a time, it included; none that is withdrawn."""
-    until = _FOREVER if at is None else microseconds(at)
+    until = microseconds(at) if at else Bounds().us[1]
     query = _LATEST.format(newest=_NEWEST[session.lateral])
     found = session.rows(query, (cage, cage, cage, until, f"%{AHEAD}%"))
     samples = list[Sample]()
     for row in found:
-        samples += _read(session, cage, session.whole("sample", [row], (cage,))) or samples_between(
+        good = session.whole("sample", [row], (cage,))
+        samples += _read(session, cage, good) or samples_between(
             session,
             cage,
+            Bounds(end=at and at + MICROSECOND, limit=1, newest=True),
             stream=row[0],
-            start=None,
-            end=moment_of(until + 1) if at else None,
-            limit=1,
-            newest=True,
             withdrawn=False,
         )
     return {one.stream: one for one in samples}

@@ -13,7 +13,6 @@ from seacage.service._store._adaptations import (
     Adaptation,
     Refold,
     adaptation_at,
-    cut_adaptations,
     keep_adaptations,
     refold_of,
 )
@@ -21,18 +20,17 @@ from seacage.service._store._aggregates import (
     Aggregate,
     aggregates_between,
     check_aggregate,
-    renew_rested,
 )
 from seacage.service._store._alarms import alarm_book, journal_between, keep_alarms
 from seacage.service._store._archive import Archive
 from seacage.service._store._archive_reads import latest_of, with_archive
 from seacage.service._store._caretaker import Caretaker
-from seacage.service._store._database._checksum import Damage
+from seacage.service._store._database._checksum import CHECKED, Damage
 from seacage.service._store._database._open import database_at, look_into
-from seacage.service._store._database._rows import check_seq, microseconds
+from seacage.service._store._database._rows import Bounds, check_seq, microseconds
 from seacage.service._store._database._session import AbstractSession, DamageError, StoreError
+from seacage.service._store._days import retire_days
 from seacage.service._store._quality import newest_keys
-from seacage.service._store._retention import retire_days
 from seacage.service._store._samples import (
     Append,
     Stored,
@@ -53,19 +51,7 @@ T = TypeVar("T")
 _PATIENCE_S = 5.0  # a server may take a moment to see that a process was killed
 _LOOK_S = 0.2
 _AHEAD = timedelta(seconds=60)  # so far a source's clock may be ahead
-_TABLES = (
-    "sample",
-    "quality",
-    "aggregate",
-    "mark",
-    "sealed",
-    "alarm_book",
-    "adapted",
-    "adaptation",
-    "refold",
-    "journal",
-    "tally",
-)
+_TABLES = (*CHECKED, "tally")
 
 
 def open_store(place: Path | str, *, archive: Path | None = None) -> "Store":
@@ -103,7 +89,7 @@ class Store:
     def __init__(self, place: Path | str, *, archive: Archive | None = None) -> None:
         self._archive = archive
         self._database = database_at(place)
-        self._writer = Writer(self._database, chore=_chore)
+        self._writer = Writer(self._database)
         self._unread: dict[str, StoreError] = {}
         self._care = Caretaker(self._database, self._writer, self._read, self._look)
         if self._database.damaged:
@@ -176,11 +162,9 @@ class Store:
         """
         for sample in samples:
             check_seq(sample)
-        return self._writer.append(Append(cage, tuple(samples), ingested, limits))
+        return self._writer.ask(Append(cage, tuple(samples), ingested, limits))
 
-    def withdraw(
-        self, cage: str, stream: str, *, clock: datetime, now: datetime, limits: Limits
-    ) -> "Future[int]":
+    def withdraw(self, cage: str, stream: str, *, clock: datetime, now: datetime) -> "Future[int]":
         """Withdraw samples that are ahead of a clock that has stepped back, some at a time.
 
         They are flagged FAIL and count no more, until they are sent again: nothing is compared
@@ -194,8 +178,6 @@ class Store:
             What it was set to.
         now
             What it says now; samples up to a minute ahead of it stay.
-        limits
-            To check with what is left.
 
         Returns
         -------
@@ -203,22 +185,15 @@ class Store:
             How many flags changed; 0 once nothing is left to withdraw.
         """
         after, control, of = now + _AHEAD, self._writer.control, (cage, stream)
+        return self._writer.ask(
+            lambda session: withdraw_samples(session, control, of, clock=clock, after=after)
+        )
 
-        def work(session: AbstractSession) -> int:
-            cut_adaptations(session, cage, after)
-            return withdraw_samples(session, control, of, clock=clock, after=after, limits=limits)
-
-        return self._writer.ask(work)
-
-    def reinstate(
-        self, cage: str, stream: str, *, clock: datetime, now: datetime, limits: Limits
-    ) -> "Future[int]":
+    def reinstate(self, cage: str, stream: str, *, clock: datetime, now: datetime) -> "Future[int]":
         """Take back what ``withdraw`` did for a clock that was wrong itself, some at a time."""
         until, control, of = now + _AHEAD, self._writer.control, (cage, stream)
         return self._writer.ask(
-            lambda session: reinstate_samples(
-                session, control, of, clock=clock, until=until, limits=limits
-            )
+            lambda session: reinstate_samples(session, control, of, clock=clock, until=until)
         )
 
     def samples(
@@ -251,32 +226,16 @@ class Store:
             Give the flags that the samples until then had shown; None for those of now. What is
             archived has those of now.
         """
+        bounds = Bounds(start=start, end=end, limit=limit, newest=newest)
         found = self._read(
             "samples",
             lambda session: samples_between(
-                session,
-                cage,
-                stream=stream,
-                start=start,
-                end=end,
-                limit=limit,
-                newest=newest,
-                withdrawn=withdrawn,
-                known_at=known_at,
+                session, cage, bounds, stream=stream, withdrawn=withdrawn, known_at=known_at
             ),
         )
         if self._archive is None:
             return found
-        return with_archive(
-            found,
-            self._archive,
-            cage,
-            stream=stream,
-            start=start,
-            end=end,
-            limit=limit,
-            newest=newest,
-        )
+        return with_archive(found, self._archive, cage, stream, bounds)
 
     def latest(self, cage: str, *, at: datetime | None = None) -> dict[str, Sample]:
         """Read the newest sample of each stream, or the newest until a time, it included.
@@ -321,18 +280,10 @@ class Store:
             A direction, no quantity, or a width that is not kept.
         """
         check_aggregate(key, width_s)
+        bounds = Bounds(start=start, end=end, limit=limit)
         return self._read(
             "aggregates",
-            lambda session: aggregates_between(
-                session,
-                cage,
-                stream=stream,
-                key=key,
-                width_s=width_s,
-                start=start,
-                end=end,
-                limit=limit,
-            ),
+            lambda session: aggregates_between(session, (cage, stream), key, width_s, bounds),
         )
 
     def keep_alarms(self, cage: str, *, book: str, journal: Sequence[AlarmEvent]) -> "Future[None]":
@@ -419,12 +370,8 @@ class Store:
         newest
             Of more than ``limit`` the last rather than the first.
         """
-        return self._read(
-            "journal",
-            lambda session: journal_between(
-                session, cage, start=start, end=end, limit=limit, newest=newest
-            ),
-        )
+        bounds = Bounds(start=start, end=end, limit=limit, newest=newest)
+        return self._read("journal", lambda session: journal_between(session, cage, bounds))
 
     def retire(self, cage: str, *, before: datetime) -> int:
         """Delete the samples of whole UTC days before a time; their aggregates stay, final.
@@ -506,7 +453,3 @@ class Store:
         if self._unread:
             with suppress(StoreError):
                 self._read("trial", lambda session: session.rows("SELECT t FROM trial"))
-
-
-def _chore(session: AbstractSession) -> None:
-    renew_rested(session, now_us=time.time_ns() // 1000)

@@ -7,10 +7,11 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass
 from itertools import groupby
-from typing import Any, TypeVar
+from typing import Any
 
 import structlog
 
+from seacage.service._store._aggregates import renew_rested
 from seacage.service._store._database._session import (
     AbstractDatabase,
     AbstractSession,
@@ -19,9 +20,8 @@ from seacage.service._store._database._session import (
     StoreError,
 )
 from seacage.service._store._quality import QualityControl
-from seacage.service._store._samples import Append, Stored, append_all
+from seacage.service._store._samples import Append, append_all
 
-T = TypeVar("T")
 Work = Append | Callable[[AbstractSession], Any]
 
 _CHORE_S = 1.0
@@ -45,18 +45,16 @@ class Writer:
     A disk that is full takes nothing but what is vital, in the room that the database held in
     reserve; all else is taken again when that room is held again.
 
+    About every second, between two transactions, it renews aggregates.
+
     Parameters
     ----------
     database
         Where to.
-    chore
-        Done about every second between two transactions.
     """
 
-    def __init__(
-        self, database: AbstractDatabase, *, chore: Callable[[AbstractSession], object]
-    ) -> None:
-        self._database, self._chore = database, chore
+    def __init__(self, database: AbstractDatabase) -> None:
+        self._database = database
         self.control = QualityControl()  # to be used in a transaction alone
         self._next_chore = time.monotonic() + _CHORE_S
         self._queue: queue.SimpleQueue[_Job | None] = queue.SimpleQueue()
@@ -67,13 +65,15 @@ class Writer:
         self._thread = threading.Thread(target=self._run, name="store", daemon=True)
         self._thread.start()
 
-    def append(self, work: Append) -> "Future[Stored]":
-        """Store samples."""
-        return self._ask(work, vital=False)
-
-    def ask(self, work: Callable[[AbstractSession], T], *, vital: bool = False) -> "Future[T]":
+    def ask(self, work: Work, *, vital: bool = False) -> "Future[Any]":
         """Have something done in a transaction; the future resolves after its commit."""
-        return self._ask(work, vital=vital)
+        job = _Job(work, Future(), vital)
+        job.done.set_running_or_notify_cancel()  # what was asked is done, whoever still waits
+        with self._closing:
+            if self._closed:
+                raise StoreError("The store is closed; nothing more can be written to it.")
+            self._queue.put(job)
+        return job.done
 
     def claim(self, cage: str) -> "Future[bool]":
         """Be the one process that serves a cage; False where another is."""
@@ -82,7 +82,7 @@ class Writer:
             self._next_chore = 0.0  # from here on there is a reserve to hold, before anything else
             return self._database.claim(session, cage)
 
-        return self._ask(claim_cage, vital=True)
+        return self.ask(claim_cage, vital=True)
 
     def close(self) -> None:
         """Finish what was asked, and take nothing more."""
@@ -92,15 +92,6 @@ class Writer:
             self._closed = True
             self._queue.put(None)
         self._thread.join()
-
-    def _ask(self, work: Work, *, vital: bool) -> "Future[Any]":
-        job = _Job(work, Future(), vital)
-        job.done.set_running_or_notify_cancel()  # what was asked is done, whoever still waits
-        with self._closing:
-            if self._closed:
-                raise StoreError("The store is closed; nothing more can be written to it.")
-            self._queue.put(job)
-        return job.done
 
     def _run(self) -> None:
         try:
@@ -200,7 +191,7 @@ class Writer:
             with self._database.writing() as session:
                 if self.fault:
                     session.rows(_TRIAL, (time.time_ns() // 1000,))
-                self._chore(session)
+                renew_rested(session, now_us=time.time_ns() // 1000)
         except StoreError as error:
             self._note(error)
         else:

@@ -5,7 +5,7 @@ import json
 import os
 import subprocess
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -150,22 +150,15 @@ def _run(method: Method, out: Path, jobs: Sequence[Path], on_done: Callable[[], 
 
 def _read(problem: Problem, method: Method, seed: int, out: Path, job: Path) -> Run:
     result: Mapping[str, float | str] = json.loads(_sign(out, job).read_text("utf-8"))
+    run = Run(problem=problem.name, method=method.name, seed=seed)
     if "error" in result:
-        return Run(
-            problem=problem.name,
-            method=method.name,
-            seed=seed,
-            error=str(result["error"])[:300],
-        )
+        return replace(run, error=str(result["error"])[:300])
     with np.load(out / job.name) as answer:
         mean, std = answer["mean"], answer["std"]
     if mean.shape != (problem.tests,) or not (np.isfinite(mean) & np.isfinite(std)).all():
-        error = "the answer is not a finite number for each test point"
-        return Run(problem=problem.name, method=method.name, seed=seed, error=error)
-    return Run(
-        problem=problem.name,
-        method=method.name,
-        seed=seed,
+        return replace(run, error="the answer is not a finite number for each test point")
+    return replace(
+        run,
         mean=mean,
         std=std,
         fit_s=float(result["fit_s"]),

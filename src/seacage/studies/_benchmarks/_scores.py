@@ -1,7 +1,7 @@
 """How good the answers to benchmark problems are, by seed and over seeds."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
@@ -88,13 +88,12 @@ class Summary:
 
 def score_run(run: Run, truth: Float[np.ndarray, " row"]) -> RunScore:
     """Score a run."""
+    score = RunScore(problem=run.problem, method=run.method, seed=run.seed, error=run.error)
     if run.mean is None or run.std is None:
-        return RunScore(problem=run.problem, method=run.method, seed=run.seed, error=run.error)
+        return score
     std = np.maximum(run.std, NARROWEST * float(np.std(truth)))
-    return RunScore(
-        problem=run.problem,
-        method=run.method,
-        seed=run.seed,
+    return replace(
+        score,
         rmse=rmse(truth, run.mean),
         mnll=mnll(truth, run.mean, std),
         crps=crps(truth, run.mean, std),

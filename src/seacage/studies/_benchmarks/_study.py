@@ -7,12 +7,12 @@ from pathlib import Path
 from seacage.conventions import InputError, Progress, no_progress
 from seacage.studies._benchmarks._methods import OURS, Method, own_methods, peer_methods
 from seacage.studies._benchmarks._problems import CAGE_SIZE, PROBLEMS, Problem
-from seacage.studies._benchmarks._report import BenchmarkReport
+from seacage.studies._benchmarks._report import benchmark_page
 from seacage.studies._benchmarks._runs import Runs
 from seacage.studies._benchmarks._scores import RunScore, Summary, score_run, summary
 from seacage.studies._benchmarks._verdicts import verdicts
 from seacage.studies._claim import Claim
-from seacage.studies._held_out import write_scores
+from seacage.studies._page import write_report
 from seacage.studies._text import join_names
 
 TUNING_SEEDS = range(5)
@@ -102,27 +102,21 @@ def benchmark_study(
             "`kept`, and they are made."
         )
     evaluated = verdicts(found)
-    page = BenchmarkReport(
-        verdicts=evaluated,
-        problems=problems,
-        methods=methods,
+    page = benchmark_page(
+        evaluated,
+        problems,
+        methods,
         report=found,
         tuning=tuned,
         seeds=report,
         tuning_seeds=tuning,
         missing=_NO_PEERS if peers is None else None,
         provenance=_provenance(methods),
-    ).html()
-    study = BenchmarkStudy(
-        report=out / "report.html",
-        scores=out / "scores.json",
-        verdicts=evaluated,
-        summaries=tuple(found.values()),
     )
-    study.report.write_text(page, encoding="utf-8")
-    everything = {"verdicts": evaluated, "summaries": study.summaries, "runs": scores}
-    write_scores(study.scores, everything)
-    return study
+    summaries = tuple(found.values())
+    everything = {"verdicts": evaluated, "summaries": summaries, "runs": scores}
+    written, numbers = write_report(out, page, everything)
+    return BenchmarkStudy(report=written, scores=numbers, verdicts=evaluated, summaries=summaries)
 
 
 def _split_seeds(seeds: Sequence[int], *, quick: bool) -> tuple[list[int], list[int]]:

@@ -9,7 +9,7 @@ from seacage.cage import Cage
 from seacage.campaigns import Plan, TruthParameters
 from seacage.conventions import Progress, no_progress
 from seacage.dynamics import Law
-from seacage.studies._fidelity._windows import Windows, campaign_of_stage
+from seacage.studies._fidelity._windows import Windows
 from seacage.studies._stages import Stages
 
 SPEEDS = (0.3, 0.5, 0.7)
@@ -99,8 +99,8 @@ def fouling_gap(
     plan = Plan.grid(current_speed=SPEEDS, current_to=(to,), name="fouling")
 
     def answers_of(cage: Cage, law: Law) -> Float[np.ndarray, "speed sensor"]:
-        record = campaign_of_stage(
-            "fouling", cage, plan, stages, law=law, workers=workers, progress=no_progress
+        record = stages.ensure_campaign(
+            "fouling", cage, plan, law=law, workers=workers, progress=no_progress
         )
         return sensors.responses_of(record.node_position, record.bridle_tension)
 

@@ -9,7 +9,7 @@ from jaxtyping import Bool, Float
 
 from seacage.campaigns import Plan
 from seacage.conventions import Progress, Result
-from seacage.studies._fidelity._windows import Sensors, Windows, campaign_of_stage
+from seacage.studies._fidelity._windows import Sensors, Windows
 from seacage.studies._interval import Interval, by_day
 from seacage.studies._stages import Stages
 from seacage.surrogates import FittedGaussianProcess, GaussianProcess, current_features
@@ -172,8 +172,8 @@ def _fit_settled(
     plan = Plan.sample(
         seed, _CURRENTS, current_speed=(0.0, _FASTEST), hs=(0.0, 0.0), name="currents"
     )
-    record = campaign_of_stage(
-        "currents", sensors.cage, plan, stages, workers=workers, progress=progress
+    record = stages.ensure_campaign(
+        "currents", sensors.cage, plan, workers=workers, progress=progress
     )
     known = record.result != Result.DIVERGED
     velocity = np.array([sea.current_velocity for sea in record.seas])[known]

@@ -1,6 +1,5 @@
 """The fidelity study: a virtual field held against the rules that keep it honest."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,10 +15,10 @@ from seacage.studies._fidelity._claims import claims
 from seacage.studies._fidelity._fouling import FoulingGap, fouling_gap
 from seacage.studies._fidelity._gap import SensorGap, sensor_gaps
 from seacage.studies._fidelity._null_case import NullCase, null_case
-from seacage.studies._fidelity._report import FidelityReport
+from seacage.studies._fidelity._report import fidelity_page
 from seacage.studies._fidelity._rescaling import Rescaling, rescalings
 from seacage.studies._fidelity._windows import Sensors, Windows, answer_windows, choose_windows
-from seacage.studies._held_out import write_scores
+from seacage.studies._page import write_report
 from seacage.studies._stages import Stages
 
 _DAYS = 48.0
@@ -120,7 +119,7 @@ def fidelity_study(
     found = claims(gaps, scaled.sensors, null, fouling)
     recipe = _recipe(record, whole, lost=len(chosen) - len(whole))
     provenance = _provenance(record, cage, seed)
-    page = FidelityReport(
+    page = fidelity_page(
         claims=found,
         gaps=gaps,
         rescalings=scaled,
@@ -128,18 +127,26 @@ def fidelity_study(
         fouling=fouling,
         recipe=recipe,
         provenance=provenance,
-    ).html()
-    study = FidelityStudy(
-        report=out / "report.html",
-        scores=out / "scores.json",
+    )
+    scores = {
+        "recipe": recipe,
+        "provenance": provenance,
+        "claims": found,
+        "sensors": gaps,
+        "rescalings": scaled.sensors,
+        "null_case": null,
+        "fouling": fouling,
+    }
+    written, numbers = write_report(out, page, scores)
+    return FidelityStudy(
+        report=written,
+        scores=numbers,
         claims=found,
         gaps=gaps,
         rescalings=scaled.sensors,
         null=null,
         fouling=fouling,
     )
-    _write(study, page, {"recipe": recipe, "provenance": provenance})
-    return study
 
 
 def _field(
@@ -215,17 +222,3 @@ def _provenance(record: FieldRecord, cage: Cage, seed: int) -> dict[str, str]:
         "Hidden parameters": f"sha256 {record.hidden_sha256}",
         "Notes": "\n".join(record.notes),
     }
-
-
-def _write(study: FidelityStudy, page: str, about: Mapping[str, object]) -> None:
-    study.report.parent.mkdir(parents=True, exist_ok=True)
-    scores = {
-        **about,
-        "claims": study.claims,
-        "sensors": study.gaps,
-        "rescalings": study.rescalings,
-        "null_case": study.null,
-        "fouling": study.fouling,
-    }
-    write_scores(study.scores, scores)
-    study.report.write_text(page, encoding="utf-8")

@@ -2,32 +2,26 @@
 
 from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
-from pathlib import Path
-from typing import Literal, Self
+from typing import Self
 
 import numpy as np
 from jaxtyping import Bool, Float, Shaped
 
 from seacage.cage import Cage
-from seacage.campaigns import Plan, run_campaign
+from seacage.campaigns import Plan
 from seacage.conventions import GRAVITY, Flag, InputError, Progress, Result, compass
-from seacage.dynamics import Law, rest_shape
+from seacage.dynamics import rest_shape
 from seacage.ocean import SeaState
 from seacage.records import (
-    CampaignRecord,
     Clock,
     FieldRecord,
     Record,
     aligned,
     moment,
-    read_campaign,
 )
 from seacage.studies._sensor_scores import MEAN_S
 from seacage.studies._stages import Stages
 from seacage.twin import Metocean, StreamTimeouts
-
-SIMULATION = ("conventions", "ocean", "cage", "dynamics", "campaigns")
-"""Rooms whose code makes the low fidelity's answers."""
 
 _EVERY_S = 2.0
 """Interval at which the buoy's held sample enters a window's mean [s]."""
@@ -275,51 +269,16 @@ def answer_windows(
     """
     seas = windows.seas()
     plan = Plan.listed(seas, duration=MEAN_S, seed=seed, name="windows")
-    record = campaign_of_stage(
+    record = stages.ensure_campaign(
         "windows",
         windows.sensors.cage,
         plan,
-        stages,
         method="simulate" if windows.waves else "settle",
         workers=workers,
         progress=progress,
     )
     low = windows.sensors.responses_of(record.node_position, record.bridle_tension)
     return replace(windows, low=low).rows(record.result != Result.DIVERGED)
-
-
-def campaign_of_stage(
-    stage: str,
-    cage: Cage,
-    plan: Plan,
-    stages: Stages,
-    *,
-    method: Literal["simulate", "settle"] = "settle",
-    law: Law = "kristiansen-faltinsen",
-    workers: int | None,
-    progress: Progress,
-) -> CampaignRecord:
-    """A cage in the seas of a plan, kept on disk case by case."""
-
-    def make(begun: Path) -> None:
-        run_campaign(
-            cage,
-            plan,
-            begun / "campaign.zarr",
-            method=method,
-            law=law,
-            second_moment=False,
-            workers=workers,
-            progress=lambda _, done, total: progress(stage, done, total),
-        )
-
-    settings = {
-        "cage": cage.to_toml(),
-        "plan_sha256": plan.sha256,
-        "method": method,
-        "law": law,
-    }
-    return read_campaign(stages.ensure(stage, settings, make, rooms=SIMULATION) / "campaign.zarr")
 
 
 def _shortly_after(field: FieldRecord, row: int) -> datetime:

@@ -1,6 +1,6 @@
 """Statements of the paper, and whether this study's own numbers support them."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -10,7 +10,7 @@ from jaxtyping import Float
 from seacage.studies._paper._shape_models import GCN_DEGREES, GCN_PAPER, PCA_DEGREES, PCA_PAPER
 from seacage.studies._paper._shape_scores import ShapeScore
 from seacage.studies._paper._shape_study import ShapeStudy
-from seacage.studies._paper._ways import IN_A_ROW, ScoredWays
+from seacage.studies._paper._trainings import IN_A_ROW, ScoredWays
 from seacage.studies._sensor_scores import SensorScore
 from seacage.studies._text import join_names, number, percent
 
@@ -19,64 +19,6 @@ ROV_M = 1.0
 
 PAPER_VARIANCE = 0.93
 """What the paper's three modes hold at least."""
-
-UNJUDGED = (
-    (
-        "Its error figures. They stand in its plots, not in its text, and its field and "
-        "simulator are closed; a kilonewton here is of another cage in another sea."
-    ),
-    (
-        "Its simulator. FhSim cannot be had; its part is played by seacage's own low fidelity, "
-        "which has the cage's published dimensions and another code."
-    ),
-    (
-        "Its field. Measured data of the cage are not public; every reading here is of a "
-        "virtual field, whose truth is a simulation with other physics and hidden parameters."
-    ),
-    (
-        "Its times. Ten minutes on 56 cores for half an hour simulated, and answers within "
-        "seconds, are of other programs on other machines."
-    ),
-    ("Figures for more than one winter, which the paper asks for itself."),
-)
-"""What could not be evaluated, and why."""
-
-INCONSISTENT = (
-    (
-        "The harsh case is test index 31 in the text and 301 in the figure's caption; the mild "
-        "one is 801 in both. All three end in 1, as they would if every tenth of 1,000 cases "
-        "were a test, so both may be meant; neither sea is given. Here the harsh and the mild "
-        "net are the test cases at the 95th and the 20th percentile of the current's speed."
-    ),
-    (
-        "The network predicts coordinates where its output matrix is defined and displacements "
-        "where its loss is. The two differ by a constant, so do not differ in error. "
-        "Coordinates are drawn here. For the modes it matters: not centred, they are taken of "
-        "displacements here."
-    ),
-    (
-        "The matrix of modes multiplies from the wrong side: B = M φ does not fit M's shape, "
-        "φᵀM does, and gives the three rows that the text describes."
-    ),
-    (
-        "The reconstruction sums over modes and over scenarios; summed over scenarios it would "
-        "be one shape. Here, as in a later sentence of the paper, over modes alone."
-    ),
-    (
-        "Level 2 is said to need training inputs that level 1 has too. It is trained at "
-        "measured currents on level 1's mean there, so it does not."
-    ),
-    (
-        "A kernel of two inputs is said to have 2d + 3 hyperparameters; with one variance for "
-        "each of three factors and d + 1 + d weights it has 2d + 4, or 2d + 3 where the "
-        "product's variances are counted once."
-    ),
-    (
-        "The simulations have waves of up to 3 m, the models hear the current alone. So the "
-        "waves are noise to them, and bound what any model of the current can reach."
-    ),
-)
-"""Where the paper says two things, and what was chosen here."""
 
 Verdict = Literal["reproduced", "partly", "not reproduced", "not evaluated"]
 
@@ -123,11 +65,10 @@ def paper_claims(scored: ScoredWays, shapes: ShapeStudy) -> tuple[PaperClaim, ..
     )
 
 
-def _share(sensors: Sequence[SensorScore], true: Sequence[str]) -> Verdict:
-    """All of them, some or none."""
-    if len(true) == len(sensors):
-        return "reproduced"
-    return "partly" if true else "not reproduced"
+def _verdict(held: Iterable[bool]) -> Verdict:
+    """Reproduced where all parts of a statement hold, partly where some do."""
+    parts = list(held)
+    return "reproduced" if all(parts) else "partly" if any(parts) else "not reproduced"
 
 
 def _gain(sensors: Sequence[SensorScore], what: str) -> PaperClaim:
@@ -139,31 +80,29 @@ def _gain(sensors: Sequence[SensorScore], what: str) -> PaperClaim:
     proven = f"Proven at {join_names(better)}." if better else "Proven at no sensor."
     return PaperClaim(
         claim=f"Multifidelity predicts the {what} much better than low fidelity.",
-        verdict=_share(sensors, better),
+        verdict=_verdict(one.means.better for one in sensors),
         finding=f"Mean absolute errors of 10-minute means: {', '.join(pairs)}. {proven}",
     )
 
 
 def _slopes(sensors: Sequence[SensorScore]) -> PaperClaim:
-    nearer = [
-        one.sensor for one in sensors if abs(one.multi_line[0] - 1.0) < abs(one.low_line[0] - 1.0)
-    ]
     slopes = [
         f"{one.sensor} {number(one.low_line[0])} → {number(one.multi_line[0])}" for one in sensors
     ]
     return PaperClaim(
         claim="The best fit of prediction on reading comes closer to the diagonal.",
-        verdict=_share(sensors, nearer),
+        verdict=_verdict(
+            abs(one.multi_line[0] - 1.0) < abs(one.low_line[0] - 1.0) for one in sensors
+        ),
         finding=f"Slopes: {', '.join(slopes)}.",
     )
 
 
 def _underestimation(depths: Sequence[SensorScore]) -> PaperClaim:
-    # A depth that is too large is a displacement that is too small.
-    under = [one.sensor for one in depths if one.raw.low_bias > 0.0]
     return PaperClaim(
         claim="The simulations underestimate the net's deformation.",
-        verdict=_share(depths, under) if depths else "not evaluated",
+        # A depth that is too large is a displacement that is too small.
+        verdict=_verdict(one.raw.low_bias > 0.0 for one in depths) if depths else "not evaluated",
         finding="; ".join(
             f"{one.sensor} is predicted {number(abs(one.raw.low_bias))} m too "
             f"{'deep' if one.raw.low_bias > 0.0 else 'high'} on average"
@@ -175,14 +114,14 @@ def _underestimation(depths: Sequence[SensorScore]) -> PaperClaim:
 
 def _oscillation(loads: Sequence[SensorScore]) -> PaperClaim:
     """What single readings scatter beyond their ten-minute means."""
-    more = [one for one in loads if one.raw.multi_mae > 1.1 * one.means.multi_mae]
+    more = _verdict(one.raw.multi_mae > 1.1 * one.means.multi_mae for one in loads)
     pairs = [
         f"{one.sensor} {number(one.raw.multi_mae)} and {number(one.means.multi_mae)}"
         for one in loads
     ]
     return PaperClaim(
         claim="Readings oscillate about the multifidelity trend, which does not follow.",
-        verdict=_share(loads, [one.sensor for one in more]) if loads else "not evaluated",
+        verdict=more if loads else "not evaluated",
         finding="Errors of single readings and of 10-minute means, counted as true where the "
         f"first is a tenth larger: {', '.join(pairs)} kN.",
     )
@@ -212,7 +151,7 @@ def _few_minutes(scored: ScoredWays) -> PaperClaim:
     )
     return PaperClaim(
         claim=claim,
-        verdict=_share(row[0].sensors, better),
+        verdict=_verdict(one.sensor in better for one in row[0].sensors),
         finding="Read as minutes in a row, which the paper does not say: better than low fidelity "
         f"at {join_names(better or ['no sensor'])}, worse at {join_names(worse or ['none'])}. "
         f"{held}Readings spread over the teaching days do better at "
@@ -223,13 +162,10 @@ def _few_minutes(scored: ScoredWays) -> PaperClaim:
 def _three_modes(shapes: ShapeStudy) -> PaperClaim:
     centred = {name: share for name, share in shapes.variance.items() if "not" not in name}
     paper = shapes.scores[PCA_PAPER]
+    held = min(centred.values()) >= PAPER_VARIANCE
     return PaperClaim(
         claim="Three principal components hold 93 % of the variance, so three are enough.",
-        verdict="reproduced"
-        if min(centred.values()) >= PAPER_VARIANCE and paper.worst < ROV_M
-        else "partly"
-        if min(centred.values()) >= PAPER_VARIANCE
-        else "not reproduced",
+        verdict=_verdict((held, held and paper.worst < ROV_M)),
         finding="Held: "
         + "; ".join(
             f"{percent(share, digits=1)} ({name})" for name, share in shapes.variance.items()
@@ -264,11 +200,7 @@ def _harder_when_faster(shapes: ShapeStudy) -> PaperClaim:
     }
     return PaperClaim(
         claim="Errors are larger where the current is faster.",
-        verdict="reproduced"
-        if min(rank.values()) > 0.3
-        else "partly"
-        if max(rank.values()) > 0.3
-        else "not reproduced",
+        verdict=_verdict(value > 0.3 for value in rank.values()),
         finding="Rank correlation of a case's error with its speed, counted as true above 0.3: "
         + "; ".join(f"{name} {number(value)}" for name, value in rank.items())
         + ".",
@@ -290,7 +222,6 @@ def _network_wins(shapes: ShapeStudy) -> PaperClaim:
     ]
     if not pairs:
         return PaperClaim(claim=claim, verdict="not evaluated", finding=" ".join(shapes.left_out))
-    wins = [network.mae < modes.mae for network, modes in pairs]
     pairs_text = [
         f"with {network.inputs} "
         + ", ".join(
@@ -301,7 +232,7 @@ def _network_wins(shapes: ShapeStudy) -> PaperClaim:
     ]
     return PaperClaim(
         claim=claim,
-        verdict="reproduced" if all(wins) else "partly" if any(wins) else "not reproduced",
+        verdict=_verdict(network.mae < modes.mae for network, modes in pairs),
         finding=f"Mean absolute errors, network against PCA-GP: {'; '.join(pairs_text)}. The paper "
         "gives neither width, learning rate nor epochs, so another network may do better; this is "
         "no refutation.",
@@ -314,10 +245,9 @@ def _network_steadier(shapes: ShapeStudy) -> PaperClaim:
     if network is None:
         return PaperClaim(claim=claim, verdict="not evaluated", finding=" ".join(shapes.left_out))
     theirs, ours = (_spread(one) for one in (shapes.scores[PCA_PAPER], network))
-    wider = [axis for axis in "xz" if theirs[axis] > ours[axis]]
     return PaperClaim(
         claim=claim,
-        verdict="reproduced" if len(wider) == 2 else "partly" if wider else "not reproduced",
+        verdict=_verdict(theirs[axis] > ours[axis] for axis in "xz"),
         finding="Standard deviation over cases, PCA-GP against the network: "
         + ", ".join(
             f"{axis} {number(theirs[axis])} against {number(ours[axis])} m" for axis in "xyz"

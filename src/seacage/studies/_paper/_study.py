@@ -7,24 +7,20 @@ from pathlib import Path
 import numpy as np
 
 from seacage.cage import Cage
-from seacage.conventions import InputError, Origin, Progress
-from seacage.ocean import SeaState
+from seacage.conventions import InputError, Origin, Progress, no_progress
 from seacage.records import FieldRecord, read_campaign
 from seacage.studies._chain import Chain, Recipe
-from seacage.studies._held_out import write_scores
-from seacage.studies._paper._claims import PaperClaim
+from seacage.studies._page import write_report
+from seacage.studies._paper._claims import PaperClaim, paper_claims
 from seacage.studies._paper._level_one import LevelOneScore, score_level_one
-from seacage.studies._paper._report import PaperReport
+from seacage.studies._paper._report import paper_page
 from seacage.studies._paper._shape_models import shape_models
 from seacage.studies._paper._shape_scores import ShapeScore
 from seacage.studies._paper._shape_study import ShapeStudy, ShapeTrial, shape_study
-from seacage.studies._paper._ways import ScoredWays, WayScore, compare_ways, has_waves, ways_of
+from seacage.studies._paper._trainings import ScoredWays, WayScore, compare_ways, has_waves, ways_of
 from seacage.studies._sensor_scores import SensorScore
 from seacage.studies._text import join_names
 from seacage.twin import TrainingWindow
-
-_SHOWN_SPEED = 0.6
-"""Of the current that the report draws the net in [m/s]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -117,7 +113,7 @@ def paper_study(
         given_campaign=None if campaign is None else Path(campaign),
         given_field=None if field is None else Path(field),
         workers=workers,
-        progress=progress,
+        progress=progress or no_progress,
     )
     return study_chain(chain, Path(out), networks=not quick if networks is None else networks)
 
@@ -129,42 +125,39 @@ def study_chain(chain: Chain, out: Path, *, networks: bool = False) -> PaperStud
     scored = compare_ways(chain, ways_of(chain.recipe, waves=waves))
     level_one = score_level_one(scored.twin, chain.held_out)
     shapes = _shapes(chain, networks=networks)
-    sea = SeaState(current_speed=_SHOWN_SPEED, current_to=chain.cage.site.current_to)
-    page = PaperReport(
-        cage=chain.cage,
-        sea=sea,
-        answer=scored.twin.predict(sea),
+    claims = paper_claims(scored, shapes)
+    recipe, provenance = _recipe(chain, scored, shapes), _provenance(chain, scored)
+    page = paper_page(
+        chain,
         scored=scored,
         level_one=level_one,
         shapes=shapes,
-        recipe=_recipe(chain, scored, shapes),
-        provenance=_provenance(chain, scored),
-        in_time=chain.recipe.in_time,
-        progress=chain.report,
+        claims=claims,
+        recipe=recipe,
+        provenance=provenance,
     )
-    study = PaperStudy(
-        report=out / "report.html",
-        scores=out / "scores.json",
+    shape_scores = tuple(shapes.scores.values())
+    scores = {
+        "recipe": recipe,
+        "provenance": provenance,
+        "origin": Origin.VIRTUAL_FIELD,
+        "sensors": scored.sensors,
+        "level_one": level_one,
+        "ways": scored.ways,
+        "shapes": shape_scores,
+        "variance_of_three_modes": shapes.variance,
+        "claims": claims,
+    }
+    written, numbers = write_report(out, page, scores)
+    return PaperStudy(
+        report=written,
+        scores=numbers,
         sensors=scored.sensors,
         level_one=level_one,
         ways=scored.ways,
-        shapes=tuple(shapes.scores.values()),
-        claims=page.claims,
+        shapes=shape_scores,
+        claims=claims,
     )
-    study.report.write_text(page.html(), encoding="utf-8")
-    scores = {
-        "recipe": page.recipe,
-        "provenance": page.provenance,
-        "origin": Origin.VIRTUAL_FIELD,
-        "sensors": study.sensors,
-        "level_one": level_one,
-        "ways": study.ways,
-        "shapes": study.shapes,
-        "variance_of_three_modes": shapes.variance,
-        "claims": study.claims,
-    }
-    write_scores(study.scores, scores)
-    return study
 
 
 def _cage(cage: Cage | None, campaign: str | Path | None) -> Cage:
@@ -216,7 +209,7 @@ def _shapes(chain: Chain, *, networks: bool) -> ShapeStudy:
         ),
         chain.stages,
         left_out=left_out,
-        progress=chain.report,
+        progress=chain.progress,
     )
 
 

@@ -125,7 +125,7 @@ def _scale(mode: Mode) -> Float[np.ndarray, "parameter parameter"]:
         _loss_within_bounds(evidence, at + one)[1] - _loss_within_bounds(evidence, at - one)[1]
         for one in STEP * np.eye(len(at))
     ]
-    sd = evidence.prior().sd
+    sd = evidence.prior.sd
     curvature = np.stack(moved) / (2.0 * STEP) * sd * sd[:, None]
     value, direction = np.linalg.eigh(0.5 * (curvature + curvature.T))
     return sd[:, None] * direction / np.sqrt(np.maximum(value, 1.0))
@@ -140,7 +140,7 @@ def _loss_within_bounds(evidence: Evidence, log_parameters: Parameters) -> tuple
         value, gradient = evidence.loss(held)
     except LinAlgError:
         return math.inf, np.zeros_like(held)
-    prior = evidence.prior()
+    prior = evidence.prior
     offset, held_offset = (log_parameters - prior.mean) / prior.sd, (held - prior.mean) / prior.sd
     value += 0.5 * float(offset @ offset - held_offset @ held_offset)
     return value, np.where(held == log_parameters, gradient, offset / prior.sd)

@@ -177,10 +177,7 @@ class FittedGaussianProcess:
     def mean(self, x: Float[np.ndarray, "row feature"]) -> Float[np.ndarray, "row *output"]:
         """The mean of ``predict`` alone, at a fraction of its cost; all rows are held at once."""
         x = self._standardise(x, what="mean")
-        means = [
-            member.kernel.covariance(member.log_parameters, x, member.x) @ member.weights
-            for member in self.members
-        ]
+        means = [member.cross(x) @ member.weights for member in self.members]
         return self._reshape(self._average(means) + self._trend(x))
 
     def jacobian(
@@ -199,23 +196,21 @@ class FittedGaussianProcess:
                 "`fitted.output(0)`."
             )
         x = self._standardise(x, what="moments")
-        answers = [member.predict(x) for member in self.members]
-        mean, variance = self._mix(x, answers)
+        parts = [member.moments(x) for member in self.members]
+        mean, variance = self._mix(x, [(one.mean[:, None], one.variance[:, None]) for one in parts])
         of_members = mean - self._trend(x)
-        slopes = [member.mean_slope(x)[:, 0] for member in self.members]
-        mean_slope = self._average(slopes)
-        square = self.amplitude[0] ** 2
+        mean_slope = self._average([one.mean_slope for one in parts])
         # Of the law of total variance: of each member's, and of their means about the mean.
-        parts = [
-            square * member.variance_slope(x)
-            + 2.0 * (answer[0] - of_members) * (slope - mean_slope)
-            for member, answer, slope in zip(self.members, answers, slopes, strict=True)
+        variance_slopes = [
+            self.amplitude[0] ** 2 * one.variance_slope
+            + 2.0 * (one.mean[:, None] - of_members) * (one.mean_slope - mean_slope)
+            for one in parts
         ]
         return Moments(
             mean=mean[:, 0],
             variance=variance[:, 0],
             mean_slope=(mean_slope + self.line[:, 0]) / self.inputs.unit,
-            variance_slope=self._average(parts) / self.inputs.unit,
+            variance_slope=self._average(variance_slopes) / self.inputs.unit,
         )
 
     def updated(
@@ -348,7 +343,7 @@ class FittedGaussianProcess:
             lambda: array(arrays, "anchor", None, width),
             outputs=outputs,
         )
-        parameters = array(arrays, "log_parameters", len(share), len(kernel.prior(width).mean))
+        parameters = array(arrays, "log_parameters", len(share), kernel.size(width))
         log_noise = array(arrays, "log_noise", len(share), len(noise.prior().mean))
         noise_factor = array(arrays, "doubt", rows)
         members = [

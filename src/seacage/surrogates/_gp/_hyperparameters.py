@@ -58,6 +58,8 @@ class Evidence:
         Standardised inputs, and outputs of unit variance, which share the hyperparameters.
     noise_factor
         Factor on each point's noise.
+    prior
+        Of all hyperparameters.
     """
 
     kernel: AbstractKernel
@@ -65,6 +67,7 @@ class Evidence:
     x: Float[np.ndarray, "n feature"]
     y: Float[np.ndarray, "n output"]
     noise_factor: Float[np.ndarray, " n"]
+    prior: Prior
 
     @classmethod
     def of(
@@ -75,18 +78,14 @@ class Evidence:
         y: Float[np.ndarray, "n output"],
     ) -> Self:
         """With all noise factors at 1."""
-        return cls(kernel=kernel, noise=noise, x=x, y=y, noise_factor=np.ones(len(x)))
-
-    def prior(self) -> Prior:
-        """Of all hyperparameters."""
-        kernel, noise = self.kernel.prior(self.x.shape[1]), self.noise.prior()
-        return Prior(mean=np.append(kernel.mean, noise.mean), sd=np.append(kernel.sd, noise.sd))
+        prior = kernel.prior(x.shape[1]) + noise.prior()
+        return cls(kernel=kernel, noise=noise, x=x, y=y, noise_factor=np.ones(len(x)), prior=prior)
 
     def bounds(self) -> Float[np.ndarray, "parameter 2"]:
         """Least and largest of each; within them the covariance can be factorised."""
-        prior = self.prior()
-        bounds = np.stack([prior.mean - REACH * prior.sd, prior.mean + REACH * prior.sd], axis=1)
-        count = len(prior.mean) - len(self.noise.prior().mean)
+        mean, reach = self.prior.mean, REACH * self.prior.sd
+        bounds = np.stack([mean - reach, mean + reach], axis=1)
+        count = self.kernel.size(self.x.shape[1])
         bounds[count : count + self.noise.sizes] = NOISE_BOUNDS
         return bounds
 
@@ -94,7 +93,7 @@ class Evidence:
         self, log_parameters: Float[np.ndarray, " parameter"]
     ) -> tuple[Float[np.ndarray, " kernel"], Float[np.ndarray, " noise"]]:
         """Those of the kernel, and those of the noise."""
-        count = len(log_parameters) - len(self.noise.prior().mean)
+        count = self.kernel.size(self.x.shape[1])
         return log_parameters[:count], log_parameters[count:]
 
     def rows(self, chosen: Int[np.ndarray, " row"]) -> Self:
@@ -121,9 +120,8 @@ class Evidence:
         """
         misfit = self._misfit_per_output if self._unlike else self._misfit
         value, gradient = misfit(*self.split(log_parameters))
-        prior = self.prior()
-        offset = (log_parameters - prior.mean) / prior.sd
-        return float(value + 0.5 * offset @ offset), gradient + offset / prior.sd
+        offset = (log_parameters - self.prior.mean) / self.prior.sd
+        return float(value + 0.5 * offset @ offset), gradient + offset / self.prior.sd
 
     @property
     def _unlike(self) -> bool:
@@ -133,9 +131,9 @@ class Evidence:
         self, kernel: Float[np.ndarray, " kernel"], noise: Float[np.ndarray, " noise"]
     ) -> tuple[float, Float[np.ndarray, " parameter"]]:
         outputs = self.y.shape[1]
-        covariance, pull_kernel = self.kernel.with_pullback(kernel, self.x)
+        covariance = self.kernel.evaluate(kernel, self.x, self.x)
         scale, pull_noise = self.noise.with_pullback(noise, self.x)
-        lower = Cholesky.of(covariance, scale * self.noise_factor).lower
+        lower = Cholesky.of(covariance.value, scale * self.noise_factor).lower
         precision = inverse(lower)
         weights = precision @ self.y
         value = 0.5 * np.sum(self.y * weights) + outputs * np.sum(np.log(np.diag(lower)))
@@ -143,13 +141,13 @@ class Evidence:
         adjoint = 0.5 * (outputs * precision - weights @ weights.T)
         of_noise = pull_noise(np.diag(adjoint) * self.noise_factor)
         adjoint[np.diag_indices_from(adjoint)] *= 1.0 + JITTERS[0]
-        return float(value), np.append(pull_kernel(adjoint), of_noise)
+        return float(value), np.append(covariance.pull(adjoint), of_noise)
 
     def _misfit_per_output(
         self, kernel: Float[np.ndarray, " kernel"], noise: Float[np.ndarray, " noise"]
     ) -> tuple[float, Float[np.ndarray, " parameter"]]:
-        covariance, pull_kernel = self.kernel.with_pullback(kernel, self.x)
-        spectrum = Spectrum.of(covariance, np.exp(noise))
+        covariance = self.kernel.evaluate(kernel, self.x, self.x)
+        spectrum = Spectrum.of(covariance.value, np.exp(noise))
         inverse_value = spectrum.inverse_value
         turned = spectrum.basis.T @ self.y
         value = 0.5 * np.sum(turned**2 * inverse_value - np.log(inverse_value))
@@ -159,7 +157,7 @@ class Evidence:
         precision = (spectrum.basis * inverse_value.sum(axis=1)) @ spectrum.basis.T
         adjoint = 0.5 * (precision - weights @ weights.T)
         of_noise = 0.5 * np.exp(noise) * np.sum(inverse_value - turned_weights**2, axis=0)
-        return float(value), np.append(pull_kernel(adjoint), of_noise)
+        return float(value), np.append(covariance.pull(adjoint), of_noise)
 
     def reweighted(self, log_parameters: Float[np.ndarray, " parameter"]) -> Self:
         """With the noise factor that each point has under these hyperparameters.

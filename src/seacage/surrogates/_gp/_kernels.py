@@ -1,11 +1,10 @@
-"""Covariance functions with the gradient of their logarithmic hyperparameters."""
+"""Covariance functions that add and multiply, with their gradients."""
 
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 from jaxtyping import Float
@@ -16,15 +15,14 @@ KernelName = Literal["squared-exponential", "matern-5/2", "matern-3/2"]
 
 PUBLIC: tuple[KernelName, ...] = get_args(KernelName)
 
-Pullback = Callable[[Float[np.ndarray, "n n"]], Float[np.ndarray, " parameter"]]
-"""From the loss's gradient in each covariance to its gradient in each hyperparameter."""
+Normal = tuple[float, float]
+"""Mean and standard deviation of a log hyperparameter."""
 
-VARIANCE_PRIOR = (0.0, 2.0)
-"""Mean and sd of a log variance: the outputs have unit variance."""
+VARIANCE_PRIOR: Normal = (0.0, 2.0)
+"""Of a log variance: the outputs have unit variance."""
 
-LENGTH = 3.0
-LENGTH_SPREAD = 1.5
-"""Median length in spreads of a feature (which is about 3.5 across), and sd of its log.
+LENGTH_PRIOR: Normal = (math.log(3.0), 1.5)
+"""Of a log length in spreads of a feature, which is about 3.5 across.
 
 The median grows with the root of the number of features, as distances do: without that a
 prior over many inputs would make every case independent of the next.
@@ -38,6 +36,63 @@ class Prior:
     mean: Float[np.ndarray, " parameter"]
     sd: Float[np.ndarray, " parameter"]
 
+    @classmethod
+    def of(cls, *parameters: Normal) -> "Prior":
+        """From the mean and sd of each log hyperparameter."""
+        mean, sd = np.array(parameters).T
+        return cls(mean=mean, sd=sd)
+
+    def __add__(self, other: "Prior") -> "Prior":
+        """Of these hyperparameters and then the others."""
+        return Prior(mean=np.append(self.mean, other.mean), sd=np.append(self.sd, other.sd))
+
+
+def _no_pullback(_: np.ndarray) -> np.ndarray:
+    raise NotImplementedError("Hyperparameters are fitted to covariances, not to variances alone.")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Evaluation:
+    """Covariances of pairs of inputs, with what their gradients need; they add and multiply.
+
+    Parameters
+    ----------
+    value
+        Of each row of x with each row of z, or of each row of x with itself.
+    slope
+        From a share of each covariance to the gradient in each row of x of their sum by shares;
+        one row of shares stands for all.
+    pull
+        From a loss's gradient in each covariance to its gradient in each log hyperparameter,
+        where z is x and the gradient symmetric.
+    """
+
+    value: Float[np.ndarray, "*pair"]
+    slope: Callable[[np.ndarray], np.ndarray]
+    pull: Callable[[np.ndarray], np.ndarray] = _no_pullback
+
+    def __add__(self, other: "Evaluation") -> "Evaluation":
+        return Evaluation(
+            self.value + other.value,
+            lambda share: self.slope(share) + other.slope(share),
+            lambda adjoint: np.append(self.pull(adjoint), other.pull(adjoint)),
+        )
+
+    def __mul__(self, other: "Evaluation") -> "Evaluation":
+        one, two = self.value, other.value
+        return Evaluation(
+            one * two,
+            lambda share: self.slope(share * two) + other.slope(share * one),
+            lambda adjoint: np.append(self.pull(adjoint * two), other.pull(adjoint * one)),
+        )
+
+
+Covariances = Callable[[np.ndarray], Evaluation]
+"""Function of inputs: their covariances with some points."""
+
+Leaf = Callable[..., Any]
+"""Function of inputs whose results add and multiply."""
+
 
 class AbstractKernel(ABC):
     """A positive definite function of two inputs, and the prior of its hyperparameters."""
@@ -49,44 +104,105 @@ class AbstractKernel(ABC):
 
     @abstractmethod
     def prior(self, width: int) -> Prior:
-        """Of its hyperparameters, for inputs with so many features."""
+        """Of its log hyperparameters, for inputs with so many features."""
 
     @abstractmethod
+    def size(self, width: int) -> int:
+        """Number of its hyperparameters, for inputs with so many features."""
+
+    @abstractmethod
+    def at(
+        self,
+        log_parameters: Float[np.ndarray, "*batch parameter"],
+        z: Float[np.ndarray, "*batch n feature"],
+    ) -> Covariances:
+        """Covariance with points: a function of the other inputs.
+
+        What depends on the points alone is evaluated once. Only values are for batches; gradients
+        are for one set of hyperparameters.
+        """
+
+    @abstractmethod
+    def diagonal(
+        self,
+        log_parameters: Float[np.ndarray, "*batch parameter"],
+        x: Float[np.ndarray, "*batch row feature"],
+    ) -> Evaluation:
+        """Variance of each row."""
+
+    def evaluate(
+        self,
+        log_parameters: Float[np.ndarray, " parameter"],
+        x: Float[np.ndarray, "row feature"],
+        z: Float[np.ndarray, "n feature"],
+    ) -> Evaluation:
+        """Covariance between the rows of two sets of inputs."""
+        return self.at(log_parameters, z)(x)
+
     def covariance(
         self,
         log_parameters: Float[np.ndarray, " parameter"],
         x: Float[np.ndarray, "row feature"],
         z: Float[np.ndarray, "n feature"],
     ) -> Float[np.ndarray, "row n"]:
-        """Between the rows of two sets of inputs."""
+        """The value of ``evaluate`` alone, which keeps nothing for gradients."""
 
-    @abstractmethod
-    def variance(
-        self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "row feature"]
-    ) -> Float[np.ndarray, " row"]:
-        """Of each row: the diagonal of its covariance with itself."""
+        def value(leaf: AbstractKernel, own: np.ndarray) -> Leaf:
+            return lambda x: leaf.evaluate(own, x, z).value
 
-    @abstractmethod
-    def with_pullback(
-        self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "n feature"]
-    ) -> tuple[Float[np.ndarray, "n n"], Pullback]:
-        """Covariance of the rows with one another, and its pullback (of symmetric gradients)."""
+        return self.combine(log_parameters, x.shape[-1], value)(x)
 
-    @abstractmethod
-    def slope(
+    def combine(
         self,
-        log_parameters: Float[np.ndarray, " parameter"],
-        x: Float[np.ndarray, "row feature"],
-        z: Float[np.ndarray, "n feature"],
-        share: Float[np.ndarray, "_ n"],
-    ) -> Float[np.ndarray, "row feature"]:
-        """Gradient in each row of x of the sum over z of share times covariance."""
+        log_parameters: np.ndarray,
+        width: int,  # noqa: ARG002
+        leaf: Callable[["AbstractKernel", np.ndarray], Leaf],
+    ) -> Leaf:
+        """Function that adds and multiplies what its leaves give, as the kernel does.
 
-    @abstractmethod
-    def variance_slope(
-        self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "row feature"]
-    ) -> Float[np.ndarray, "row feature"]:
-        """Gradient of each row's variance in that row."""
+        Parameters
+        ----------
+        log_parameters, width
+            Of the kernel, and the number of features.
+        leaf
+            Called with each kernel that is no composition and its own hyperparameters.
+        """
+        return leaf(self, log_parameters)
+
+    def __add__(self, other: "AbstractKernel") -> "Sum":
+        return Sum(self, other)
+
+    def __mul__(self, other: "AbstractKernel") -> "Product":
+        return Product(self, other)
+
+
+@dataclass(frozen=True, slots=True)
+class Constant(AbstractKernel):
+    """The same variance everywhere: an offset, or in a product a scale."""
+
+    variance: Normal = VARIANCE_PRIOR
+
+    @property
+    def name(self) -> str:
+        return "constant"
+
+    def prior(self, width: int) -> Prior:  # noqa: ARG002
+        return Prior.of(self.variance)
+
+    def size(self, width: int) -> int:  # noqa: ARG002
+        return 1
+
+    def at(self, log_parameters: np.ndarray, z: np.ndarray) -> Covariances:
+        variance = np.exp(log_parameters)[..., None]
+        return lambda x: Evaluation(
+            np.tile(variance, (x.shape[-2], z.shape[-2])),
+            lambda _: np.zeros_like(x),
+            lambda adjoint: np.sum(adjoint) * variance,
+        )
+
+    def diagonal(self, log_parameters: np.ndarray, x: np.ndarray) -> Evaluation:
+        value = np.tile(np.exp(log_parameters), x.shape[-2])
+        return Evaluation(value, lambda _: np.zeros_like(x))
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,50 +210,167 @@ class StationaryKernel(AbstractKernel):
     """Variance times a correlation that falls with distance, one length per feature (ARD).
 
     Hyperparameters: log variance, then one log length per feature.
+
+    Parameters
+    ----------
+    shape
+        Of the correlation.
+    variance, length
+        Priors; that of the length is for a single feature. No variance is one of 1, known.
+    lengths
+        Prior of each feature's length, where the general one is not meant.
     """
 
     shape: KernelName
+    variance: Normal | None = VARIANCE_PRIOR
+    length: Normal = LENGTH_PRIOR
+    lengths: tuple[Normal, ...] = ()
 
     @property
     def name(self) -> str:
         return self.shape
 
     def prior(self, width: int) -> Prior:
-        return prior_of([VARIANCE_PRIOR, *length_priors(width)])
+        variance = [self.variance] if self.variance else []
+        mean, sd = self.length
+        lengths = self.lengths or [(mean + 0.5 * math.log(width), sd)] * width
+        return Prior.of(*variance, *lengths)
 
-    def covariance(
+    def size(self, width: int) -> int:
+        return width + (self.variance is not None)
+
+    def at(self, log_parameters: np.ndarray, z: np.ndarray) -> Covariances:
+        sized = self.variance is not None
+        variance = np.exp(log_parameters[..., :1, None]) if sized else None
+        length = np.exp(log_parameters[..., None, sized:])
+        scaled_z = z / length
+        distance_squared = _distance_squared(scaled_z)
+
+        def evaluate(x: np.ndarray) -> Evaluation:
+            scaled_x = x / length
+            value, fall = _covariance(self.shape, distance_squared(scaled_x), variance)
+
+            def slope(share: np.ndarray) -> np.ndarray:
+                weight = share * fall
+                return (weight @ scaled_z - weight.sum(axis=1)[:, None] * scaled_x) / length
+
+            def pull(adjoint: np.ndarray) -> np.ndarray:
+                # Sum of w_ab (z_a - z_b)^2 over the pairs, without n x n differences per feature.
+                weight = adjoint * fall
+                crossed = np.sum(scaled_z * (weight @ scaled_z), axis=0)
+                by_length = 2.0 * (weight.sum(axis=1) @ scaled_z**2 - crossed)
+                return np.append(np.sum(adjoint * value), by_length) if sized else by_length
+
+            return Evaluation(value, slope, pull)
+
+        return evaluate
+
+    def diagonal(self, log_parameters: np.ndarray, x: np.ndarray) -> Evaluation:
+        value = np.ones(x.shape[:-1])
+        if self.variance is not None:
+            value *= np.exp(log_parameters[..., :1])
+        return Evaluation(value, lambda _: np.zeros_like(x))
+
+
+@dataclass(frozen=True, slots=True)
+class Columns(AbstractKernel):
+    """A kernel of some of the features."""
+
+    part: AbstractKernel
+    columns: slice
+
+    @property
+    def name(self) -> str:
+        return f"{self.part.name}[{self.columns.start}:{self.columns.stop}]"
+
+    def prior(self, width: int) -> Prior:
+        return self.part.prior(self._width(width))
+
+    def size(self, width: int) -> int:
+        return self.part.size(self._width(width))
+
+    def at(self, log_parameters: np.ndarray, z: np.ndarray) -> Covariances:
+        part = self.part.at(log_parameters, z[..., self.columns])
+        return lambda x: self._widen(x, part(x[..., self.columns]))
+
+    def diagonal(self, log_parameters: np.ndarray, x: np.ndarray) -> Evaluation:
+        return self._widen(x, self.part.diagonal(log_parameters, x[..., self.columns]))
+
+    def _widen(self, x: np.ndarray, part: Evaluation) -> Evaluation:
+        def slope(share: np.ndarray) -> np.ndarray:
+            gradient = np.zeros_like(x)
+            gradient[..., self.columns] = part.slope(share)
+            return gradient
+
+        return Evaluation(part.value, slope, part.pull)
+
+    def _width(self, width: int) -> int:
+        return len(range(width)[self.columns])
+
+
+@dataclass(frozen=True, slots=True)
+class AbstractComposition(AbstractKernel):
+    """Two kernels in one; the hyperparameters of the first come first."""
+
+    one: AbstractKernel
+    other: AbstractKernel
+
+    @staticmethod
+    @abstractmethod
+    def join(one: Any, other: Any) -> Any:
+        """Of the evaluations of both parts, or of their values, which may be overwritten."""
+
+    def prior(self, width: int) -> Prior:
+        return self.one.prior(width) + self.other.prior(width)
+
+    def size(self, width: int) -> int:
+        return self.one.size(width) + self.other.size(width)
+
+    def at(self, log_parameters: np.ndarray, z: np.ndarray) -> Covariances:
+        return self.combine(log_parameters, z.shape[-1], lambda leaf, own: leaf.at(own, z))
+
+    def diagonal(self, log_parameters: np.ndarray, x: np.ndarray) -> Evaluation:
+        def variance(leaf: AbstractKernel, own: np.ndarray) -> Leaf:
+            return lambda x: leaf.diagonal(own, x)
+
+        return self.combine(log_parameters, x.shape[-1], variance)(x)
+
+    def combine(
         self,
-        log_parameters: Float[np.ndarray, " parameter"],
-        x: Float[np.ndarray, "row feature"],
-        z: Float[np.ndarray, "n feature"],
-    ) -> Float[np.ndarray, "row n"]:
-        return np.exp(log_parameters[0]) * correlation(self.shape, log_parameters[1:], x, z)
+        log_parameters: np.ndarray,
+        width: int,
+        leaf: Callable[[AbstractKernel, np.ndarray], Leaf],
+    ) -> Leaf:
+        size = self.one.size(width)
+        one = self.one.combine(log_parameters[..., :size], width, leaf)
+        other = self.other.combine(log_parameters[..., size:], width, leaf)
+        return lambda *at: self.join(one(*at), other(*at))
 
-    def variance(
-        self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "row feature"]
-    ) -> Float[np.ndarray, " row"]:
-        return np.full(len(x), np.exp(log_parameters[0]))
 
-    def with_pullback(
-        self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "n feature"]
-    ) -> tuple[Float[np.ndarray, "n n"], Pullback]:
-        return stationary_covariance(self.shape, log_parameters, x)
+@dataclass(frozen=True, slots=True)
+class Sum(AbstractComposition):
+    """The sum of two kernels: of independent processes that add."""
 
-    def slope(
-        self,
-        log_parameters: Float[np.ndarray, " parameter"],
-        x: Float[np.ndarray, "row feature"],
-        z: Float[np.ndarray, "n feature"],
-        share: Float[np.ndarray, "_ n"],
-    ) -> Float[np.ndarray, "row feature"]:
-        variance = np.exp(log_parameters[0])
-        return variance * correlation_slope(self.shape, log_parameters[1:], x, z, share)
+    @property
+    def name(self) -> str:
+        return f"({self.one.name} + {self.other.name})"
 
-    def variance_slope(
-        self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "row feature"]
-    ) -> Float[np.ndarray, "row feature"]:
-        del log_parameters  # The same everywhere, whatever they are.
-        return np.zeros_like(x)
+    @staticmethod
+    def join(one: Any, other: Any) -> Any:
+        return one + other if isinstance(one, Evaluation) else _join_values(np.add, one, other)
+
+
+@dataclass(frozen=True, slots=True)
+class Product(AbstractComposition):
+    """The product of two kernels: of a process whose size changes as another one does."""
+
+    @property
+    def name(self) -> str:
+        return f"({self.one.name} * {self.other.name})"
+
+    @staticmethod
+    def join(one: Any, other: Any) -> Any:
+        return one * other if isinstance(one, Evaluation) else _join_values(np.multiply, one, other)
 
 
 def kernel_named(name: str) -> StationaryKernel:
@@ -164,104 +397,45 @@ def restore_kernel(name: str) -> AbstractKernel:
     return _SAVED[name]
 
 
-def length_priors(width: int) -> list[tuple[float, float]]:
-    """Mean and sd of the log length of each of so many features."""
-    return [(math.log(LENGTH * math.sqrt(width)), LENGTH_SPREAD)] * width
-
-
-def prior_of(parameters: list[tuple[float, float]]) -> Prior:
-    """From the mean and sd of each log hyperparameter."""
-    mean, sd = np.array(parameters).T
-    return Prior(mean=mean, sd=sd)
-
-
-def _shape(
-    name: KernelName, squared: Float[np.ndarray, "row n"]
-) -> tuple[Float[np.ndarray, "row n"], Float[np.ndarray, "row n"]]:
-    """Correlation at a squared distance, and minus twice its derivative there."""
+def _covariance(
+    name: KernelName,
+    squared: Float[np.ndarray, "*batch row n"],
+    variance: Float[np.ndarray, "*batch 1 1"] | None,
+) -> tuple[Float[np.ndarray, "*batch row n"], Float[np.ndarray, "*batch row n"]]:
+    """At a squared distance, which is overwritten, and minus twice its derivative there."""
     if name == "squared-exponential":
-        correlation = np.exp(-0.5 * squared)
-        return correlation, correlation
-    if name == "matern-3/2":
-        far = np.sqrt(3.0 * squared)
-        decay = np.exp(-far)
-        return (1.0 + far) * decay, 3.0 * decay
-    far = np.sqrt(5.0 * squared)
+        squared *= -0.5
+        value = np.exp(squared, out=squared)
+        if variance is not None:
+            value *= variance
+        return value, value
+    far = np.sqrt((3.0 if name == "matern-3/2" else 5.0) * squared)
     decay = np.exp(-far)
+    if variance is not None:
+        decay *= variance
+    if name == "matern-3/2":
+        return (1.0 + far) * decay, 3.0 * decay
     return (1.0 + far + 5.0 / 3.0 * squared) * decay, 5.0 / 3.0 * (1.0 + far) * decay
 
 
 def _distance_squared(
-    x: Float[np.ndarray, "row feature"], z: Float[np.ndarray, "n feature"]
-) -> Float[np.ndarray, "row n"]:
-    squared = x @ (-2.0 * z.T)
-    squared += np.sum(x * x, axis=1)[:, None]
-    squared += np.sum(z * z, axis=1)
-    return np.maximum(squared, 0.0, out=squared)
+    z: Float[np.ndarray, "*batch n feature"],
+) -> Callable[[np.ndarray], np.ndarray]:
+    """From points to a function of other inputs: (row, n)."""
+    columns = np.swapaxes(z, -1, -2)
+    if z.shape[-1] == 1:
+        return lambda x: np.square(x - columns)
+    twice, square = -2.0 * columns, np.einsum("...f,...f->...", z, z)[..., None, :]
+
+    def evaluate(x: np.ndarray) -> np.ndarray:
+        squared = x @ twice
+        squared += np.einsum("...f,...f->...", x, x)[..., None]
+        squared += square
+        return np.maximum(squared, 0.0, out=squared)
+
+    return evaluate
 
 
-def correlation(
-    name: KernelName,
-    log_length: Float[np.ndarray, " feature"],
-    x: Float[np.ndarray, "row feature"],
-    z: Float[np.ndarray, "n feature"],
-) -> Float[np.ndarray, "row n"]:
-    """Of two sets of inputs, of unit variance."""
-    length = np.exp(log_length)
-    return _shape(name, _distance_squared(x / length, z / length))[0]
-
-
-def correlation_slope(
-    name: KernelName,
-    log_length: Float[np.ndarray, " feature"],
-    x: Float[np.ndarray, "row feature"],
-    z: Float[np.ndarray, "n feature"],
-    share: Float[np.ndarray, "_ n"],
-) -> Float[np.ndarray, "row feature"]:
-    """Gradient in each row of x of the sum over z of share times correlation."""
-    length = np.exp(log_length)
-    scaled_x, scaled_z = x / length, z / length
-    fall = share * _shape(name, _distance_squared(scaled_x, scaled_z))[1]
-    return (fall @ scaled_z - fall.sum(axis=1)[:, None] * scaled_x) / length
-
-
-def unit(
-    name: KernelName,
-    log_length: Float[np.ndarray, " feature"],
-    x: Float[np.ndarray, "n feature"],
-) -> tuple[Float[np.ndarray, "n n"], Pullback]:
-    """Correlation of the rows with one another, and its pullback to the log lengths."""
-    z = x / np.exp(log_length)
-    alike, fall = _shape(name, _distance_squared(z, z))
-    return alike, partial(_pull_lengths, z, fall)
-
-
-def _pull_lengths(
-    z: Float[np.ndarray, "n feature"],
-    fall: Float[np.ndarray, "n n"],
-    adjoint: Float[np.ndarray, "n n"],
-) -> Float[np.ndarray, " parameter"]:
-    # Sum of w_ab (z_a - z_b)^2 over the pairs, without the n x n differences per feature.
-    weight = adjoint * fall
-    return 2.0 * (weight.sum(axis=1) @ z**2 - np.sum(z * (weight @ z), axis=0))
-
-
-def stationary_covariance(
-    name: KernelName,
-    log_parameters: Float[np.ndarray, " parameter"],
-    x: Float[np.ndarray, "n feature"],
-) -> tuple[Float[np.ndarray, "n n"], Pullback]:
-    """Variance times correlation, and its pullback to the log variance and lengths."""
-    variance = float(np.exp(log_parameters[0]))
-    alike, pull_lengths = unit(name, log_parameters[1:], x)
-    covariance = variance * alike
-    return covariance, partial(_pull_scale, covariance, variance, pull_lengths)
-
-
-def _pull_scale(
-    covariance: Float[np.ndarray, "n n"],
-    variance: float,
-    pull_lengths: Pullback,
-    adjoint: Float[np.ndarray, "n n"],
-) -> Float[np.ndarray, " parameter"]:
-    return np.append(np.sum(adjoint * covariance), variance * pull_lengths(adjoint))
+def _join_values(operation: np.ufunc, one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """In the place of the larger one, as large arrays cost more than what is done with them."""
+    return operation(one, other, out=one if one.size >= other.size else other)

@@ -78,7 +78,7 @@ class WhiteNoise(AbstractNoise):
         return "white"
 
     def prior(self) -> Prior:
-        return _prior(1)
+        return Prior.of(NOISE_PRIOR)
 
     def variance(
         self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "row feature"]
@@ -130,7 +130,7 @@ class NoisePerOutput(AbstractNoise):
         return self.outputs
 
     def prior(self) -> Prior:
-        return _prior(self.outputs)
+        return Prior.of(*[NOISE_PRIOR] * self.outputs)
 
     def variance(
         self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "row feature"]
@@ -167,9 +167,7 @@ class NoiseByInput(AbstractNoise):
         return self.places
 
     def prior(self) -> Prior:
-        whitened = np.zeros(len(self.places)), np.ones(len(self.places))
-        size = _prior(1)
-        return Prior(mean=np.append(size.mean, whitened[0]), sd=np.append(size.sd, whitened[1]))
+        return Prior.of(NOISE_PRIOR, *[(0.0, 1.0)] * len(self.places))
 
     def variance(
         self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "row feature"]
@@ -279,10 +277,6 @@ def noise_factor_of_new(
             kept**2 * square + outputs * kept * variance, scale=scale, outputs=outputs
         )
     return noise_factor
-
-
-def _prior(parameters: int) -> Prior:
-    return Prior(mean=np.full(parameters, NOISE_PRIOR[0]), sd=np.full(parameters, NOISE_PRIOR[1]))
 
 
 def _spread_out(x: Float[np.ndarray, "n feature"]) -> Float[np.ndarray, "anchor feature"]:

@@ -16,6 +16,7 @@ from seacage.surrogates._gp._noise import (
     StudentNoise,
     noise_factor_of_new,
 )
+from seacage.surrogates._prediction import Moments
 
 CHUNK = 2**22
 """Covariances held at once while predicting: 32 MiB whatever the number of rows."""
@@ -151,30 +152,38 @@ class Posterior:
     def _predict(
         self, x: Float[np.ndarray, "row feature"]
     ) -> tuple[Float[np.ndarray, "row output"], Float[np.ndarray, "row shared"]]:
-        prior = self.kernel.variance(self.log_parameters, x)
-        cross = self.kernel.covariance(self.log_parameters, x, self.x)
+        return self._moments(self.kernel.diagonal(self.log_parameters, x).value, self.cross(x))
+
+    def _moments(
+        self, prior: Float[np.ndarray, " row"], cross: Float[np.ndarray, "row n"]
+    ) -> tuple[Float[np.ndarray, "row output"], Float[np.ndarray, "row shared"]]:
         # Rounding can explain a hair more than there is.
         variance = np.maximum(prior[:, None] - self.factor.variance_reduction(cross), 0.0)
         return cross @ self.weights, variance
+
+    def cross(self, x: Float[np.ndarray, "row feature"]) -> Float[np.ndarray, "row n"]:
+        """Covariance of rows with the points."""
+        return self.kernel.covariance(self.log_parameters, x, self.x)
 
     def mean_slope(
         self, x: Float[np.ndarray, "row feature"]
     ) -> Float[np.ndarray, "row output feature"]:
         """Jacobian of the mean."""
-        slopes = [
-            self.kernel.slope(self.log_parameters, x, self.x, weight[None])
-            for weight in self.weights.T
-        ]
-        return np.stack(slopes, axis=1)
+        cross = self.kernel.evaluate(self.log_parameters, x, self.x)
+        return np.stack([cross.slope(weight[None]) for weight in self.weights.T], axis=1)
 
-    def variance_slope(
-        self, x: Float[np.ndarray, "row feature"]
-    ) -> Float[np.ndarray, "row feature"]:
-        """Gradient of the variance without noise, where all outputs share it."""
-        cross = self.kernel.covariance(self.log_parameters, x, self.x)
-        share = self.factor.solve(cross.T).T
-        of_explained = self.kernel.slope(self.log_parameters, x, self.x, share)
-        return self.kernel.variance_slope(self.log_parameters, x) - 2.0 * of_explained
+    def moments(self, x: Float[np.ndarray, "row feature"]) -> Moments:
+        """Mean and variance without noise of the one output, with their gradients."""
+        prior = self.kernel.diagonal(self.log_parameters, x)
+        cross = self.kernel.evaluate(self.log_parameters, x, self.x)
+        mean, variance = self._moments(prior.value, cross.value)
+        share = self.factor.solve(cross.value.T).T
+        return Moments(
+            mean=mean[:, 0],
+            variance=variance[:, 0],
+            mean_slope=cross.slope(self.weights.T),
+            variance_slope=prior.slope(np.ones(len(x))) - 2.0 * cross.slope(share),
+        )
 
     def leave_one_out(self) -> tuple[Float[np.ndarray, "n output"], Float[np.ndarray, "n shared"]]:
         """Residual of each point against all the others, and its variance with noise.
@@ -227,7 +236,7 @@ class Posterior:
             return None
         try:
             return self.factor.extended(
-                self.kernel.covariance(self.log_parameters, x, self.x),
+                self.cross(x),
                 self.kernel.covariance(self.log_parameters, x, x),
                 self.noise.with_pullback(self.log_noise, x)[0] * noise_factor,
             )

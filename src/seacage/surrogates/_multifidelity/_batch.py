@@ -3,19 +3,27 @@
 A row of one level is little arithmetic and many calls. Here the calls are made once for all.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Self, assert_never
+from functools import partial
+from itertools import groupby
+from typing import Self
 
 import numpy as np
 from jaxtyping import Float, Int
 
-from seacage.surrogates._gp import FittedGaussianProcess, Posterior, chunks
+from seacage.surrogates._gp import (
+    AbstractKernel,
+    Columns,
+    Evaluation,
+    FittedGaussianProcess,
+    Leaf,
+    Posterior,
+    chunks,
+)
 from seacage.surrogates._multifidelity._kernel import (
-    RANGE,
-    AutoregressiveKernel,
-    LinkKernel,
-    StraightKernel,
+    LOCAL,
+    bend_of,
 )
 from seacage.surrogates._multifidelity._quadrature import node_counts, rule, total_moments
 from seacage.surrogates._prediction import Prediction, check_inputs
@@ -25,146 +33,61 @@ CELLS = 2**17
 """Covariances held at once, of all levels together: 1 MiB, which stays near the processor."""
 
 
-EachMember = Float[np.ndarray, "member 1 1"]
-EachPoint = Float[np.ndarray, "member 1 1 n"]
-
-
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class BatchedLinkKernels:
-    """Link kernels with the points that each has learned from.
+class BatchedLinks:
+    """One kernel with the hyperparameters and the points of several members.
 
-    A member that has fewer points than the most has some at 0 in the end.
+    The level below may have several values for each row of features: what depends on the
+    features alone is evaluated once for all of them.
 
     Parameters
     ----------
-    local_length, link_length
-        Over which rho and delta vary with the features, and k_f with the level below.
-    curve, held, offset, left, line, constant
-        Of the formula.
-    local_point
-        The points' features for rho and for delta, as ``_squared_distance`` takes them.
-    link_point
-        The level below at the points, in its length.
-    held_point, line_point
-        The factors of the formula's parts that the points make.
+    members
+        How many.
+    covariance
+        From features (member, row, feature) and values below (member, row, node) to covariances
+        with the points (member, row, node, n).
+    variance
+        From the same to variances (member, row, node).
     """
 
-    local_length: Float[np.ndarray, "2 member 1 feature"]
-    link_length: EachMember
-    curve: EachMember
-    held: EachMember
-    offset: EachMember
-    left: EachMember
-    line: EachMember
-    constant: EachMember
-    local_point: Float[np.ndarray, "2 member column n"]
-    link_point: EachPoint
-    held_point: EachPoint
-    line_point: EachPoint
+    members: int
+    covariance: Callable[[np.ndarray, np.ndarray], np.ndarray]
+    variance: Callable[[np.ndarray, np.ndarray], np.ndarray]
 
     @classmethod
-    def of(cls, posteriors: Sequence[Posterior]) -> Self:
-        """Of processes whose kernels are links over the same features."""
-        terms = [_terms(one) for one in posteriors]
-        each = {
-            name: np.array([getattr(one, name) for one in terms]).reshape(-1, 1, 1)
-            for name in ("link_length", "curve", "held", "offset", "left", "line", "constant")
-        }
-        lengths = [[one.rho_length for one in terms], [one.delta_length for one in terms]]
-        local_length = np.array(lengths)[:, :, None]
-        most = max(len(one.x) for one in posteriors)
-        points = np.stack([np.pad(one.x, ((0, most - len(one.x)), (0, 0))) for one in posteriors])
-        below = points[:, None, None, :, -1]
-        link_point = below / each["link_length"][..., None]
+    def of(cls, members: Sequence[Posterior], *, most: int) -> Self:
+        """Of members with one kernel; those with fewer points than the most get some at 0."""
+        padded = [np.pad(one.x, ((0, most - len(one.x)), (0, 0))) for one in members]
+        points = np.stack(padded)
+        log_parameters = np.stack([one.log_parameters for one in members])
+
+        def covariance(leaf: AbstractKernel, own: np.ndarray) -> Leaf:
+            assert isinstance(leaf, Columns)
+            return _nest(leaf, leaf.part.at(own, points[..., leaf.columns]))
+
+        def variance(leaf: AbstractKernel, own: np.ndarray) -> Leaf:
+            assert isinstance(leaf, Columns)
+            return _nest(leaf, partial(leaf.part.diagonal, own))
+
+        kernel, width = members[0].kernel, points.shape[-1]
         return cls(
-            **each,
-            local_length=local_length,
-            local_point=_as_columns(points[..., :-1] / local_length),
-            link_point=link_point,
-            held_point=each["held"][..., None] * np.exp(-0.5 * link_point**2),
-            line_point=each["line"][..., None] * below,
+            members=len(members),
+            covariance=kernel.combine(log_parameters, width, covariance),
+            variance=kernel.combine(log_parameters, width, variance),
         )
 
-    def covariance(
-        self,
-        x: Float[np.ndarray, "member row feature"],
-        below: Float[np.ndarray, "member row node"],
-    ) -> Float[np.ndarray, "member row node n"]:
-        """With the points, where the level below has several values for each row of features."""
-        rho, delta = np.exp(-0.5 * _distance_squared(x / self.local_length, self.local_point))
-        link = (below / self.link_length)[..., None]
-        covariance = np.exp(-0.5 * (link - self.link_point) ** 2)
-        covariance -= np.exp(-0.5 * link**2) * self.held_point
-        covariance *= self.curve[..., None]
-        covariance += self.offset[..., None]
-        covariance *= rho[:, :, None]
-        covariance += (self.left * delta + self.constant)[:, :, None]
-        covariance += below[..., None] * self.line_point
-        return covariance
 
-    def variance(
-        self, below: Float[np.ndarray, "member row node"]
-    ) -> Float[np.ndarray, "member row node"]:
-        """Beforehand, where the level below has these values."""
-        known = self.held * np.exp(-((below / self.link_length) ** 2))
-        bent = self.curve * (1.0 - known) + self.offset
-        return bent + self.left + self.constant + self.line * below**2
+def _nest(leaf: Columns, evaluate: Callable[[np.ndarray], Evaluation]) -> Leaf:
+    """Value of a leaf of the features, or of the level below, with an axis for the nodes."""
+    if leaf.columns == LOCAL:
+        return lambda local, _: np.expand_dims(evaluate(local).value, 2)
 
+    def at_nodes(_: np.ndarray, below: np.ndarray) -> np.ndarray:
+        value = evaluate(below.reshape(len(below), -1, 1)).value
+        return value.reshape(*below.shape, *value.shape[2:])
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Terms:
-    """What the formula holds for one kernel."""
-
-    rho_length: Sequence[float]
-    delta_length: Sequence[float]
-    link_length: float = np.inf
-    curve: float = 0.0
-    held: float = 0.0
-    offset: float = 0.0
-    left: float
-    line: float
-    constant: float = 0.0
-
-
-def _terms(posterior: Posterior) -> _Terms:
-    kernel, size = posterior.kernel, np.exp(posterior.log_parameters).tolist()
-    assert isinstance(kernel, LinkKernel)
-    features = posterior.x.shape[1] - 1
-    match kernel:
-        case AutoregressiveKernel(linear=linear):
-            rho, link, left = size[0], size[features + 1], size[features + 2]
-            line = size[-1] if linear else 0.0
-            return _Terms(
-                rho_length=size[1 : features + 1],
-                delta_length=size[features + 3 : 2 * features + 3],
-                link_length=link,
-                curve=rho * link**2 if linear else rho,
-                held=float(linear),
-                offset=rho * RANGE**2 if linear else 0.0,
-                left=left,
-                line=line,
-                constant=line,
-            )
-        case StraightKernel():
-            line, left, *length = size
-            return _Terms(rho_length=length, delta_length=length, left=left, line=line)
-        case _:
-            assert_never(kernel)
-
-
-def _as_columns(point: Float[np.ndarray, "2 member n feature"]) -> np.ndarray:
-    """Points that a product with rows (x, |x|^2, 1) makes squared distances of."""
-    square = np.sum(point**2, axis=-1, keepdims=True)
-    columns = np.concatenate([-2.0 * point, np.ones_like(square), square], axis=-1)
-    return np.ascontiguousarray(np.swapaxes(columns, -1, -2))
-
-
-def _distance_squared(
-    x: Float[np.ndarray, "2 member row feature"], point: Float[np.ndarray, "2 member column n"]
-) -> Float[np.ndarray, "2 member row n"]:
-    square = np.sum(x**2, axis=-1, keepdims=True)
-    squared = np.concatenate([x, square, np.ones_like(square)], axis=-1) @ point
-    return np.maximum(squared, 0.0, out=squared)
+    return at_nodes
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -180,7 +103,7 @@ class BatchedLevels:
     share
         Probability of each member within its level, 0 in the others.
     links
-        The members' covariances with their points.
+        The members' covariances with their points, a kernel after the other.
     weights
         By which each member's mean is summed; 0 for points that it does not have.
     line
@@ -197,7 +120,7 @@ class BatchedLevels:
     members: tuple[Posterior, ...]
     owner: Int[np.ndarray, " member"]
     share: Float[np.ndarray, "level member"]
-    links: BatchedLinkKernels
+    links: tuple[BatchedLinks, ...]
     weights: Float[np.ndarray, "member n 1"]
     line: Float[np.ndarray, "member feature 1"]
     centre: Float[np.ndarray, "member 1 feature"]
@@ -208,31 +131,33 @@ class BatchedLevels:
     @classmethod
     def of(cls, levels: Sequence[FittedGaussianProcess]) -> Self:
         """Put together; each has one output and a link kernel."""
-        members = tuple(member for level in levels for member in level.members)
-        owner = np.repeat(np.arange(len(levels)), [len(level.members) for level in levels])
+        order = sorted(range(len(levels)), key=lambda level: levels[level].posterior.kernel.name)
+        members = tuple(member for level in order for member in levels[level].members)
+        owner = np.repeat(order, [len(levels[level].members) for level in order])
         share = np.zeros((len(levels), len(members)))
-        share[owner, np.arange(len(members))] = np.concatenate([level.share for level in levels])
-        links = BatchedLinkKernels.of(members)
-        weights = np.zeros((len(members), links.local_point.shape[-1], 1))
+        share[owner, np.arange(len(members))] = np.concatenate(
+            [levels[level].share for level in order]
+        )
+        most = max(len(member.x) for member in members)
+        alike = groupby(members, key=lambda member: member.kernel.name)
+        weights = np.zeros((len(members), most, 1))
         for index, member in enumerate(members):
             weights[index, : len(member.weights)] = member.weights
-        unit = np.stack([level.inputs.unit for level in levels])[owner, None]
-        length = links.link_length[:, 0, 0] * unit[:, 0, -1]
         return cls(
             levels=tuple(levels),
             members=members,
             owner=owner,
             share=share,
-            links=links,
+            links=tuple(BatchedLinks.of(list(group), most=most) for _, group in alike),
             weights=weights,
             line=np.stack([level.line for level in levels])[owner],
             centre=np.stack([level.inputs.centre for level in levels])[owner, None],
-            unit=unit,
+            unit=np.stack([level.inputs.unit for level in levels])[owner, None],
             outputs=Scaling(
                 centre=np.concatenate([level.centre for level in levels]),
                 spread=np.concatenate([level.amplitude for level in levels]),
             ),
-            bend=np.array([length[own].min() for own in share > 0.0]),
+            bend=np.array([bend_of(level) for level in levels]),
         )
 
     def predict(self, x: Float[np.ndarray, "row feature"], below: Prediction) -> Prediction:
@@ -280,19 +205,34 @@ class BatchedLevels:
         """Mean and variance of each level where the one below has these values."""
         local = (x - self.centre[..., :-1]) / self.unit[..., :-1]
         link = (below[self.owner] - self.centre[..., -1:]) / self.unit[..., -1:]
-        cross = self.links.covariance(local, link)
-        cross = cross.reshape(len(cross), -1, cross.shape[-1])
+        cross, prior = self._evaluate(local, link)
         known = [
             member.factor.variance_reduction(own[:, : len(member.x)])
             for member, own in zip(self.members, cross, strict=True)
         ]
-        prior = self.links.variance(link).reshape(len(cross), -1)
         # Rounding can explain a hair more than there is.
         variances = np.maximum(prior - np.stack(known)[..., 0], 0.0)
         means = (local @ self.line[:, :-1] + link * self.line[:, -1:]).reshape(len(cross), -1)
         means += (cross @ self.weights)[..., 0]
         mean, variance = self._mix(means, variances)
         return mean.reshape(below.shape), variance.reshape(below.shape)
+
+    def _evaluate(
+        self,
+        local: Float[np.ndarray, "member row feature"],
+        below: Float[np.ndarray, "member row node"],
+    ) -> tuple[Float[np.ndarray, "member value n"], Float[np.ndarray, "member value"]]:
+        """Covariance of each value with the points, and its variance."""
+        covariances, variances, start = [], [], 0
+        for link in self.links:
+            own = slice(start, start + link.members)
+            covariances.append(link.covariance(local[own], below[own]))
+            variances.append(link.variance(local[own], below[own]))
+            start = own.stop
+        if len(self.links) > 1:
+            covariances, variances = [np.concatenate(covariances)], [np.concatenate(variances)]
+        members, points = len(self.members), self.weights.shape[1]
+        return covariances[0].reshape(members, -1, points), variances[0].reshape(members, -1)
 
     def _mix(
         self, means: Float[np.ndarray, "member value"], variances: Float[np.ndarray, "member value"]

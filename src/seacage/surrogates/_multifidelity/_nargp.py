@@ -23,9 +23,10 @@ from seacage.surrogates._gp import (
     kernel_named,
 )
 from seacage.surrogates._multifidelity._kernel import (
-    AutoregressiveKernel,
     LinkKernel,
-    StraightKernel,
+    autoregressive,
+    bend_of,
+    straight,
 )
 from seacage.surrogates._multifidelity._quadrature import propagate_moments, propagate_slope
 from seacage.surrogates._prediction import (
@@ -180,7 +181,7 @@ class NARGP(AbstractMultifidelity):
     linear: bool = True
 
     def link(self, lengths: tuple[float, ...], *, alike: bool) -> LinkKernel:
-        return AutoregressiveKernel(linear=self.linear, lengths=lengths, alike=alike)
+        return autoregressive(linear=self.linear, lengths=lengths, alike=alike)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -204,7 +205,7 @@ class AR1(AbstractMultifidelity):
     """
 
     def link(self, lengths: tuple[float, ...], *, alike: bool) -> LinkKernel:  # noqa: ARG002
-        return StraightKernel()
+        return straight()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -248,29 +249,37 @@ class FittedNARGP:
         *,
         level: int | None = None,
         noisy: bool = False,
+        below: Prediction | None = None,
     ) -> Prediction:
         """Answer at each row of features.
 
         Parameters
         ----------
         x
-            One row per case, the features of the training.
+            One row per case.
         level
             From 1, the lowest, to ``levels``, which None means.
         noisy
             Of a new observation at this level: adds its noise.
+        below
+            Of level 1 at these rows, where it is known already; None predicts it.
         """
-        level = self._level(level, lowest=1, what="predict")
+        level = self._level(level, lowest=1 if below is None else 2, what="predict")
         if level == 1:
             return self._lowest(x, noisy=noisy)
-        upper = self.upper[: level - 1]
         x = check_inputs(x, what="predict", width=self._width)
-        below = self.lower.predict(x)
+        if below is None:
+            below = self.lower.predict(x)
+        elif below.mean.shape != (len(x),):
+            raise InputError(
+                f"predict: level 1 is given for {below.mean.shape}, but there are {len(x)} rows. "
+                "Give one mean and one standard deviation per row."
+            )
         mean, variance = propagate_moments(self._steps(level), x, below.mean, below.std**2)
         if noisy:
             # Where the noise changes with the level below, it is that at its mean.
-            at = below.mean if level == 2 else self.predict(x, level=level - 1).mean
-            variance = variance + upper[-1].noise_at(np.column_stack([x, at]))
+            at = below if level == 2 else self.predict(x, level=level - 1, below=below)
+            variance += self.upper[level - 2].noise_at(np.column_stack([x, at.mean]))
         return Prediction(mean=mean, std=np.sqrt(variance))
 
     def jacobian(
@@ -418,11 +427,7 @@ class _Step:
 
     @property
     def bend(self) -> float:
-        kernel = self.process.posterior.kernel
-        assert isinstance(kernel, LinkKernel)
-        members = self.process.members
-        length = min(kernel.link_length(member.log_parameters) for member in members)
-        return length * float(self.process.inputs.unit[-1])
+        return bend_of(self.process)
 
     def moments(
         self, x: Float[np.ndarray, "row feature"], below: Float[np.ndarray, " row"]

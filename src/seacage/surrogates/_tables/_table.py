@@ -125,12 +125,20 @@ class Table:
             The tolerance cannot be met within the size.
         """
         std_tolerance = tolerance if std_tolerance is None else std_tolerance
+        shape = (START,) * len(region.periodic)
         for one in (tolerance, std_tolerance):
-            _check_tolerance(one)
-        _check_size(most_nodes, axes=len(region.periodic))
+            if not (isfinite(one) and one > 0.0):
+                raise InputError(
+                    f"Table.of: tolerance = {one:g} is not above 0. "
+                    "Give the largest error in predictive standard deviations, e.g. 1e-3."
+                )
+        if most_nodes < prod(shape):
+            raise InputError(
+                f"Table.of: most_nodes = {most_nodes} is fewer than the {prod(shape)} of the "
+                "first grid. Allow more."
+            )
         query = _Query(predict=fitted.predict, level=level, noise=noise)
         random = np.random.default_rng(seed)
-        shape = (START,) * len(region.periodic)
         while True:
             table = _tabulate(query, region, shape, least_std=least_std)
             table = replace(table, tolerance=tolerance, std_tolerance=std_tolerance)
@@ -347,22 +355,6 @@ def _excess_along(axis: int, table: Table, query: _Query, random: np.random.Gene
 
 def _flat(values: Float[np.ndarray, "row *rest"]) -> Float[np.ndarray, "row output"]:
     return values.reshape(len(values), -1)
-
-
-def _check_tolerance(tolerance: float) -> None:
-    if not (isfinite(tolerance) and tolerance > 0.0):
-        raise InputError(
-            f"Table.of: tolerance = {tolerance:g} is not above 0. "
-            "Give the largest error in predictive standard deviations, e.g. 1e-3."
-        )
-
-
-def _check_size(most_nodes: int, *, axes: int) -> None:
-    if most_nodes < START**axes:
-        raise InputError(
-            f"Table.of: most_nodes = {most_nodes} is fewer than the {START**axes} of the first "
-            "grid. Allow more."
-        )
 
 
 def _counts(settings: Mapping[str, object], name: str, *, least: int) -> tuple[int, ...]:

@@ -6,6 +6,7 @@ from datetime import datetime, timedelta
 from seacage.conventions import Flag
 from seacage.twin._alarms._alarm import AlarmInput
 from seacage.twin._events import Answered
+from seacage.twin._pairs import reading_of
 from seacage.twin._state import Stream, TwinState
 from seacage.twin._twin import Twin
 
@@ -70,8 +71,8 @@ def _recent_load(stream: Stream, now: datetime, timeout_s: float) -> float | Non
         one for one in known[-1:] if one.t >= now - timedelta(seconds=timeout_s)
     ]
     # A suspect reading never wakes anyone.
-    good = [one.values["tension_kn"] for one in recent if one.flags["tension_kn"] == Flag.GOOD]
-    return 1000.0 * sum(good) / len(good) if good else None
+    good = [load for load, flag in map(reading_of, recent) if flag == Flag.GOOD]
+    return sum(good) / len(good) if good else None
 
 
 def _volume(answered: Answered) -> AlarmInput:

@@ -8,7 +8,7 @@ from typing import Any, Self, cast
 from seacage.cage import Cage
 from seacage.conventions import InputError
 from seacage.twin._alarms._alarm import Limit
-from seacage.twin._state import StreamTimeouts
+from seacage.twin._settings import StreamTimeouts
 
 DEFAULT_LIMITS: Mapping[str, Limit] = {
     # Of the capacity, which the material factor has divided already: reached, the line has used

@@ -10,24 +10,7 @@ from jaxtyping import Float
 from seacage.twin._faults._residuals import ResidualBlock
 from seacage.twin._faults._student_t import kalman_update
 from seacage.twin._json_keys import json_keys
-
-OFFSET_SD, DRAG_SD = 0.5, 0.1
-"""Prior standard deviations of a sensor's offset, in its own ones, and of the relative change of
-the drag that it responds to [-]. Training windows are short and nets get fouled."""
-
-BASELINE_MEMORY = 5376
-"""Blocks after which the baseline forgets: sixteen weeks. A change within days is none of it."""
-
-MEAN_SQUARE, MEAN_SQUARE_MEMORY = 0.5, 168
-"""Prior mean square of a sensor's own residuals, in its own variances; and the blocks over which
-it is estimated: half a week."""
-
-MOST_SQUARE = 9.0
-"""Largest square of a residual that one block adds to that."""
-
-INFLATION = 2.0
-"""Factor on that mean square, because residuals last from one block to the next; the twin's own
-variance is the least."""
+from seacage.twin._settings import FaultDetectorSettings
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -67,27 +50,32 @@ class Baseline:
 
     __pydantic_config__ = json_keys(mean_square="restless")
 
-    def of(self, sensors: tuple[str, ...]) -> Self:
+    def of(self, sensors: tuple[str, ...], settings: FaultDetectorSettings) -> Self:
         """Return the same, or the prior of these sensors where it was estimated of others."""
         if sensors == self.sensors:
             return self
-        size, mean_square = (0.0,) * (2 * len(sensors)), (MEAN_SQUARE,) * len(sensors)
-        return replace(self, sensors=sensors, size=size, mean_square=mean_square).widened()
+        size, mean_square = (0.0,) * (2 * len(sensors)), (settings.mean_square,) * len(sensors)
+        other = replace(self, sensors=sensors, size=size, mean_square=mean_square)
+        return other.widened(settings)
 
-    def widened(self) -> Self:
+    def widened(self, settings: FaultDetectorSettings) -> Self:
         """Return a copy with the prior covariance, as the cage has changed."""
-        return replace(self, covariance=_as_tuples(self._prior()))
+        return replace(self, covariance=_as_tuples(self._prior(settings)))
 
-    def shift(self, block: ResidualBlock) -> Shift:
+    def shift(self, block: ResidualBlock, settings: FaultDetectorSettings) -> Shift:
         """Return the shift of the readings in a block, with the covariance of its residuals."""
         response = self._response(block)
         covariance = response @ np.array(self.covariance) @ response.T
-        own = block.own_sd**2 * self._inflation()
+        own = block.own_sd**2 * self._inflation(settings)
+        # The current that the buoy did not measure, which all sensors share.
+        water = settings.water_sd**2 * block.gradient @ block.gradient.T
         return Shift(
-            mean=response @ np.array(self.size), covariance=covariance + np.diag(own) + block.water
+            mean=response @ np.array(self.size), covariance=covariance + np.diag(own) + water
         )
 
-    def updated(self, block: ResidualBlock, faults: Iterable[Shift]) -> Self:
+    def updated(
+        self, block: ResidualBlock, faults: Iterable[Shift], settings: FaultDetectorSettings
+    ) -> Self:
         """Return a copy updated by a block, less the shifts of active faults.
 
         Parameters
@@ -96,23 +84,30 @@ class Baseline:
             Of sensors of the same names.
         faults
             The shifts of active faults.
+        settings
+            Of the fault detector.
         """
         received = block.received
-        shift = self.shift(block).plus(faults)
+        shift = self.shift(block, settings).plus(faults)
         residual = (block.residual - shift.mean)[received]
         spread = shift.covariance[np.ix_(received, received)]
         size, covariance = np.array(self.size), np.array(self.covariance)
         response = self._response(block)[received]
         noise = spread - response @ covariance @ response.T
-        covariance = covariance + (self._prior() - covariance) / BASELINE_MEMORY
+        covariance = covariance + (self._prior(settings) - covariance) / settings.baseline_memory
         size, covariance = kalman_update(
-            size, covariance, response=response, residual=residual, noise=noise
+            size,
+            covariance,
+            response=response,
+            residual=residual,
+            noise=noise,
+            degrees_of_freedom=settings.degrees_of_freedom,
         )
         return replace(
             self,
             size=tuple(size.tolist()),
             covariance=_as_tuples(covariance),
-            mean_square=self._next_mean_square(block, residual, spread),
+            mean_square=self._next_mean_square(block, residual, spread, settings),
         )
 
     def _next_mean_square(
@@ -120,22 +115,23 @@ class Baseline:
         block: ResidualBlock,
         residual: Float[np.ndarray, " row"],
         spread: Float[np.ndarray, "row row"],
+        settings: FaultDetectorSettings,
     ) -> tuple[float, ...]:
         """Estimate the square of each sensor's residual given those of the others."""
         after, received = np.array(self.mean_square), block.received
         known = np.linalg.inv(spread)
-        alone = np.minimum((known @ residual) ** 2 / np.diag(known), MOST_SQUARE)
-        after[received] += (
-            alone * self._inflation()[received] - after[received]
-        ) / MEAN_SQUARE_MEMORY
+        alone = np.minimum((known @ residual) ** 2 / np.diag(known), settings.most_square)
+        square = alone * self._inflation(settings)[received]
+        after[received] += (square - after[received]) / settings.mean_square_memory
         return tuple(after.tolist())
 
-    def _inflation(self) -> Float[np.ndarray, " sensor"]:
+    def _inflation(self, settings: FaultDetectorSettings) -> Float[np.ndarray, " sensor"]:
         """Factor on the twin's variance of each sensor [-]."""
-        return np.maximum(1.0, INFLATION * np.array(self.mean_square))
+        return np.maximum(1.0, settings.inflation * np.array(self.mean_square))
 
-    def _prior(self) -> Float[np.ndarray, "size size"]:
-        return np.diag(np.repeat([OFFSET_SD, DRAG_SD], len(self.sensors)) ** 2)
+    def _prior(self, settings: FaultDetectorSettings) -> Float[np.ndarray, "size size"]:
+        sd = np.repeat([settings.offset_sd, settings.drag_sd], len(self.sensors))
+        return np.diag(sd**2)
 
     @staticmethod
     def _response(block: ResidualBlock) -> Float[np.ndarray, "sensor size"]:

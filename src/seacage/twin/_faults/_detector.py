@@ -17,25 +17,11 @@ from seacage.twin._faults._evidence import (
 )
 from seacage.twin._faults._hypotheses import hypotheses
 from seacage.twin._faults._residuals import BlockSums, ResidualBlock, close_block
-from seacage.twin._faults._sensor import STUCK_S, SensorMonitor, new_samples
+from seacage.twin._faults._sensor import SensorMonitor, new_samples
 from seacage.twin._json_keys import json_keys
+from seacage.twin._settings import FaultDetectorSettings
 from seacage.twin._state import TwinState
 from seacage.twin._twin import Twin
-
-LIMIT = 20.0
-"""Log-likelihood ratio (CUSUM) at which the alarm of a hypothesis is raised."""
-
-LEAD = 10.0
-"""Least difference to the CUSUM of the next alarm; with less, none is raised yet."""
-
-LEAD_BLOCKS = 48
-"""Blocks after which the best is raised without that lead, its detail naming the next: a day."""
-
-MOST_LIMITS = 2.0
-"""Largest CUSUM over the limit, so that an alarm clears soon after the repair."""
-
-CALM = 0.25
-"""Share of the limit below which the baseline is updated."""
 
 _KINDS = ("irregular", "bridle", "net")
 _LOSS = "A large hole does that, and so does a cleaning."
@@ -89,7 +75,7 @@ class FaultDetector:
         active
             The alarms that are raised: residuals that they explain count for no other.
         """
-        sums = self.sums.extended(answered)
+        sums = self.sums.extended(answered, twin.fault_detector.block_s)
         over = self.sums.number is not None and sums.number != self.sums.number
         after = self._closed(twin, answered, active) if over else self
         monitors = _next_monitors(after.monitors, state, answered.t)
@@ -100,42 +86,61 @@ class FaultDetector:
         monitors = {name: monitor.restarted() for name, monitor in self.monitors.items()}
         restarted = replace(self, monitors=monitors)
         buoy = self.monitors.get(twin.buoy)
-        if block is None or (buoy is not None and buoy.stuck):
+        if block is None or (buoy is not None and buoy.is_stuck(twin.fault_detector)):
             return restarted
-        return restarted.updated(block, twin.cage, active=active)
+        return restarted.updated(block, twin.cage, twin.fault_detector, active=active)
 
-    def updated(self, block: ResidualBlock, cage: Cage, *, active: frozenset[str]) -> Self:
+    def updated(
+        self,
+        block: ResidualBlock,
+        cage: Cage,
+        settings: FaultDetectorSettings,
+        *,
+        active: frozenset[str],
+    ) -> Self:
         """Return a copy with the evidence of one more block for all hypotheses.
 
         Parameters
         ----------
         block, cage
             The residuals, and the cage they are of.
+        settings
+            Of the twin.
         active
             The alarms that are raised.
         """
         ours = tuple(sorted(name for name in active if name.partition(".")[0] in _KINDS))
-        before = self._beside(ours, block)
-        among = list(hypotheses(block, cage))
-        evidence = update_evidence(before.evidence, block, before.baseline, among, ours)
-        after = replace(before, evidence=_limit(evidence, ours))
+        before = self._beside(ours, block, settings)
+        among = list(hypotheses(block, cage, settings))
+        evidence = update_evidence(before.evidence, block, before.baseline, among, ours, settings)
+        after = replace(before, evidence=_limit(evidence, ours, settings))
         best = max((value for _, value in after.ranking()), default=0.0)
-        if best < CALM * LIMIT:
-            shifts = shifts_of_active(evidence, among, ours)
-            after = replace(after, baseline=before.baseline.updated(block, shifts.values()))
-        return replace(after, waited=before.waited + 1 if best >= LIMIT else 0)
+        if best < settings.calm * settings.limit:
+            shifts = shifts_of_active(evidence, among, ours, settings).values()
+            after = replace(after, baseline=before.baseline.updated(block, shifts, settings))
+        return replace(after, waited=before.waited + 1 if best >= settings.limit else 0)
 
-    def _beside(self, active: tuple[str, ...], block: ResidualBlock) -> Self:
+    def _beside(
+        self, active: tuple[str, ...], block: ResidualBlock, settings: FaultDetectorSettings
+    ) -> Self:
         """Drop the evidence of what is not active where that, or the sensors, have changed."""
-        baseline = self.baseline.of(block.sensors)
+        baseline = self.baseline.of(block.sensors, settings)
         if baseline is not self.baseline:
             return replace(self, baseline=baseline, evidence={}, active=active, waited=0)
         if active == self.active:
             return replace(self, baseline=baseline)
         if any(not name.startswith("irregular") for name in {*active} ^ {*self.active}):
-            baseline = baseline.widened()
+            baseline = baseline.widened(settings)
         evidence = {name: one for name, one in self.evidence.items() if _alarm_of(name) in active}
         return replace(self, baseline=baseline, evidence=evidence, active=active, waited=0)
+
+    def faulty_streams(
+        self, active: frozenset[str], settings: FaultDetectorSettings
+    ) -> frozenset[str]:
+        """Name the streams that are stuck, or whose alarm of irregular readings is active."""
+        stuck = {name for name, monitor in self.monitors.items() if monitor.is_stuck(settings)}
+        wrong = {name.partition(".")[2] for name in active if name.startswith("irregular.")}
+        return frozenset(stuck | wrong)
 
     def cusums(self) -> dict[str, float]:
         """Return for each alarm the CUSUM of its best hypothesis."""
@@ -149,69 +154,58 @@ class FaultDetector:
         found = ((name, value) for name, value in self.cusums().items() if name not in self.active)
         return sorted(found, key=lambda one: -one[1])
 
-    def inputs(self, cage: Cage) -> Iterator[AlarmInput]:
+    def inputs(self, cage: Cage, settings: FaultDetectorSettings) -> Iterator[AlarmInput]:
         """Return the inputs of all its alarms at the end of a block.
 
         Parameters
         ----------
         cage
             Has the bridles and sensors.
+        settings
+            Of the twin.
         """
+        stuck = {one.alarm: one for one in self.stuck_inputs(settings)}
         for name in (
             *(f"bridle.{bridle}" for bridle in cage.bridle_names),
             "net.net",
             *(f"irregular.{stream}" for stream in self.monitors),
         ):
-            yield self._stuck_input(name) or self._input(name)
+            yield stuck.get(name) or self._input(name, settings)
 
-    def stuck_inputs(self) -> Iterator[AlarmInput]:
+    def stuck_inputs(self, settings: FaultDetectorSettings) -> Iterator[AlarmInput]:
         """Return the inputs of stuck sensors' alarms, at any time."""
-        for stream in self.monitors:
-            if (one := self._stuck_input(f"irregular.{stream}")) is not None:
-                yield one
+        for stream, monitor in self.monitors.items():
+            if monitor.is_stuck(settings):
+                constant_s = monitor.constant_s(settings)
+                yield AlarmInput(
+                    alarm=f"irregular.{stream}",
+                    value=constant_s / settings.stuck_s,
+                    detail=f"It has repeated the same reading for {constant_s / 60.0:.0f} min.",
+                )
 
-    def _input(self, name: str) -> AlarmInput:
-        value = self.cusums().get(name, 0.0)
-        detail = self._detail(name)
+    def _input(self, name: str, settings: FaultDetectorSettings) -> AlarmInput:
+        cusum = self.cusums().get(name, 0.0)
+        value, detail = cusum / settings.limit, self._detail(name)
         if name in self.active:
-            return AlarmInput(alarm=name, value=value / LIMIT, detail=detail)
+            return AlarmInput(alarm=name, value=value, detail=detail)
         others = [(other, least) for other, least in self.ranking() if other != name]
         second, next_best = others[0] if others else ("", 0.0)
-        lead = (value - next_best) / LEAD
-        if lead < 1.0 and value >= max(LIMIT, next_best) and self.waited >= LEAD_BLOCKS:
-            return AlarmInput(
-                alarm=name, value=value / LIMIT, detail=f"{detail} {_alternative(second)}".strip()
-            )
-        return AlarmInput(alarm=name, value=max(0.0, min(value / LIMIT, lead)), detail=detail)
+        lead = (cusum - next_best) / settings.lead
+        best = cusum >= max(settings.limit, next_best)
+        if lead < 1.0 and best and self.waited >= settings.lead_blocks:
+            detail = f"{detail} {_alternative(second)}".strip()
+            return AlarmInput(alarm=name, value=value, detail=detail)
+        return AlarmInput(alarm=name, value=max(0.0, min(value, lead)), detail=detail)
 
     def _detail(self, name: str) -> str:
+        """Describe the best hypothesis of an alarm further."""
         kind = name.partition(".")[0]
-        if kind == "irregular":
-            return self._direction(name)
+        here = [one for key, one in self.evidence.items() if _alarm_of(key) == name]
+        if kind == "irregular" and here:
+            (size, *_) = max(here, key=lambda one: one.cusum).size
+            way = "more" if size > 0.0 else "less"
+            return f"It reads {way} than the twin and the other sensors let expect."
         return _LOSS if kind == "net" else ""
-
-    def _direction(self, alarm: str) -> str:
-        here = [one for name, one in self.evidence.items() if _alarm_of(name) == alarm]
-        if not here:
-            return ""
-        (size, *_) = max(here, key=lambda one: one.cusum).size
-        way = "more" if size > 0.0 else "less"
-        return f"It reads {way} than the twin and the other sensors let expect."
-
-    def _stuck_input(self, name: str) -> AlarmInput | None:
-        kind, _, stream = name.partition(".")
-        monitor = self.monitors.get(stream)
-        if kind != "irregular" or monitor is None or not monitor.stuck:
-            return None
-        detail = f"It has repeated the same reading for {monitor.constant_s / 60.0:.0f} min."
-        return AlarmInput(alarm=name, value=monitor.constant_s / STUCK_S, detail=detail)
-
-
-def faulty_streams(monitors: Mapping[str, SensorMonitor], active: frozenset[str]) -> frozenset[str]:
-    """Name the streams that are stuck or read irregularly."""
-    stuck = {name for name, monitor in monitors.items() if monitor.stuck}
-    wrong = {name.partition(".")[2] for name in active if name.startswith("irregular.")}
-    return frozenset(stuck | wrong)
 
 
 def _next_monitors(
@@ -229,17 +223,19 @@ def _next_monitors(
     return after
 
 
-def _limit(evidence: EvidenceByName, active: tuple[str, ...]) -> dict[str, Evidence]:
+def _limit(
+    evidence: EvidenceByName, active: tuple[str, ...], settings: FaultDetectorSettings
+) -> dict[str, Evidence]:
     """Limit the CUSUM of active alarms, and reduce all others by one excess, so that leads stay."""
-    most = MOST_LIMITS * LIMIT
+    most = settings.most_limits * settings.limit
     others = (one.cusum for name, one in evidence.items() if _alarm_of(name) not in active)
     best = max(others, default=0.0)
     after = dict[str, Evidence]()
     for name, one in evidence.items():
         ahead = one.cusum if _alarm_of(name) in active else best
-        reduced = one.reduced(max(0.0, ahead - most))
-        if reduced.cusum > 0.0:
-            after[name] = reduced
+        cusum = one.cusum - max(0.0, ahead - most)
+        if cusum > 0.0:
+            after[name] = replace(one, cusum=cusum)
     return after
 
 

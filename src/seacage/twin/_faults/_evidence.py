@@ -1,8 +1,7 @@
 """Evidence for each hypothesis: the CUSUM of its log-likelihood ratio against no fault."""
 
-from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass, replace
-from typing import Self
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
@@ -12,16 +11,7 @@ from seacage.twin._faults._hypotheses import Hypothesis
 from seacage.twin._faults._residuals import ResidualBlock
 from seacage.twin._faults._student_t import kalman_update, log_density
 from seacage.twin._json_keys import json_keys
-
-BLOCK_WEIGHT = 0.6
-"""Weight of a block's log-likelihood ratio, as residuals of neighbouring blocks are correlated."""
-
-EVIDENCE_MEMORY = 144
-"""Blocks after which evidence is forgotten: three days. A fault goes on showing."""
-
-ACTIVE_WIDENING = 3.0
-"""Factor on the prior standard deviation of an active alarm's shift [-], so that no other alarm is
-raised for residuals that it may explain."""
+from seacage.twin._settings import FaultDetectorSettings
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,10 +32,6 @@ class Evidence:
 
     __pydantic_config__ = json_keys(cusum="evidence")
 
-    def reduced(self, by: float) -> Self:
-        """Return a copy with a smaller sum."""
-        return replace(self, cusum=self.cusum - by)
-
 
 EvidenceByName = Mapping[str, Evidence]
 """By the hypothesis' name; those with a sum of zero are left out."""
@@ -55,8 +41,9 @@ def update_evidence(
     evidence: EvidenceByName,
     block: ResidualBlock,
     baseline: Baseline,
-    among: Iterable[Hypothesis],
+    among: Sequence[Hypothesis],
     active: Collection[str],
+    settings: FaultDetectorSettings,
 ) -> dict[str, Evidence]:
     """Add a block's log-likelihood ratio of each hypothesis.
 
@@ -72,15 +59,17 @@ def update_evidence(
         The residuals, and the hypotheses.
     active
         Alarms that are raised; a hypothesis of one of them is compared with the others.
+    settings
+        Of the fault detector.
 
     References
     ----------
     Page (1954), Continuous inspection schemes; Lorden (1971), Procedures for reacting to a
     change in distribution, for sizes that are not known.
     """
-    among, received = list(among), block.received
-    normal = baseline.shift(block)
-    shifts = shifts_of_active(evidence, among, active)
+    received = block.received
+    normal = baseline.shift(block, settings)
+    shifts = shifts_of_active(evidence, among, active, settings)
     usual = normal.plus(shifts.values())
     beside = {
         alarm: normal.plus(one for other, one in shifts.items() if other != alarm)
@@ -95,25 +84,36 @@ def update_evidence(
     residual = without - scale * np.array([size for size, _ in prior])
     noise = np.array([one.covariance for one in against])
     both = np.ix_(np.arange(len(among)), received, received)
-    ratio = log_density(residual[:, received], (noise + added)[both])
-    ratio -= log_density(without[:, received], noise[both])
+    tails = settings.degrees_of_freedom
+    ratio = log_density(residual[:, received], (noise + added)[both], tails)
+    ratio -= log_density(without[:, received], noise[both], tails)
     after = dict[str, Evidence]()
     for row, one in enumerate(among):
         before = evidence[one.name].cusum if one.name in evidence else 0.0
-        cusum = (1.0 - 1.0 / EVIDENCE_MEMORY) * before + BLOCK_WEIGHT * float(ratio[row])
+        kept = (1.0 - 1.0 / settings.evidence_memory) * before
+        cusum = kept + settings.block_weight * float(ratio[row])
         if cusum > 0.0:
             size, covariance = kalman_update(
                 *prior[row],
                 response=np.diag(one.scale)[received],
                 residual=residual[row][received],
                 noise=noise[row][np.ix_(received, received)],
+                degrees_of_freedom=tails,
             )
-            after[one.name] = _evidence(one, cusum, size, covariance)
+            responds = one.sd > 0.0
+            after[one.name] = Evidence(
+                cusum=cusum,
+                size=tuple(size[responds].tolist()),
+                covariance=tuple(map(tuple, covariance[np.ix_(responds, responds)].tolist())),
+            )
     return after
 
 
 def shifts_of_active(
-    evidence: EvidenceByName, among: Iterable[Hypothesis], active: Collection[str]
+    evidence: EvidenceByName,
+    among: Iterable[Hypothesis],
+    active: Collection[str],
+    settings: FaultDetectorSettings,
 ) -> dict[str, Shift]:
     """Return the shift by each active alarm, of its hypothesis with the widest prior.
 
@@ -124,7 +124,7 @@ def shifts_of_active(
     for one in among:
         if one.alarm in active and one.alarm not in found:
             size, _ = _prior(evidence.get(one.name), one)
-            covariance = np.diag((ACTIVE_WIDENING * one.scale * one.sd) ** 2)
+            covariance = np.diag((settings.active_widening * one.scale * one.sd) ** 2)
             found[one.alarm] = Shift(mean=one.scale * size, covariance=covariance)
     return found
 
@@ -138,18 +138,3 @@ def _prior(
         size[responds] = evidence.size
         covariance[np.ix_(responds, responds)] = evidence.covariance
     return size, covariance + np.diag(responds * one.walk**2)
-
-
-def _evidence(
-    one: Hypothesis,
-    cusum: float,
-    size: Float[np.ndarray, " sensor"],
-    covariance: Float[np.ndarray, "sensor sensor"],
-) -> Evidence:
-    """Keep the sizes of the sensors that respond."""
-    responds = one.sd > 0.0
-    return Evidence(
-        cusum=cusum,
-        size=tuple(size[responds].tolist()),
-        covariance=tuple(map(tuple, covariance[np.ix_(responds, responds)].tolist())),
-    )

@@ -8,27 +8,7 @@ from jaxtyping import Float
 
 from seacage.cage import Cage
 from seacage.twin._faults._residuals import ResidualBlock
-
-DRIFT, DRIFT_SD, DRIFT_WALK = 1.0, 0.5, 0.05
-"""A sensor that begins to drift: prior mean and standard deviation of its offset, and the standard
-deviation of the offset's change in half an hour, in the sensor's standard deviations."""
-
-WIDE_SD, OFFSET_WALK = 10.0, 0.1
-"""A faulty sensor with any offset: its prior standard deviation; and that of its change in half an
-hour where the offset is constant, in the sensor's standard deviations."""
-
-OWN_LOAD_SD, CORNER_LOAD_SD, FAR_LOAD_SD = 0.15, 0.25, 0.15
-"""Standard deviations of the change of load at a parted bridle's own shackle, those of its corner
-and the others, about the change by balance of forces, over the bridle's load [-]."""
-
-CORNER_STIFFNESS = 0.05
-"""Stiffness that holds a corner in its place when a bridle parts, over a bridle's [-].
-The frame's own is larger, but the collar moves too, and slack lines do not hold it."""
-
-DRAG_LOSS, DRAG_LOSS_SD = 0.25, 0.15
-"""Mean and standard deviation, from sensor to sensor, of the relative loss of drag by a hole large
-enough for an alarm [-]: a hole acts on the sensors near it and on the lines that bear the load
-there. Fouling adds drag and never takes any away."""
+from seacage.twin._settings import FaultDetectorSettings
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -67,60 +47,67 @@ class Hypothesis:
         return f"{self.alarm} {self.variant}".strip()
 
 
-def hypotheses(block: ResidualBlock, cage: Cage) -> Iterator[Hypothesis]:
+def hypotheses(
+    block: ResidualBlock, cage: Cage, settings: FaultDetectorSettings
+) -> Iterator[Hypothesis]:
     """List the hypotheses: of each alarm the one with the widest prior first."""
     lines = {one.name: one.bridle for one in cage.shackles}
     for row, name in enumerate(block.sensors):
-        yield from _sensor_faults(block, row, f"irregular.{name}")
-        if name in lines:
-            load = max(float(block.tension[lines[name]]), 0.0)
-            yield _sensor_fault(
-                block, row, f"irregular.{name}", "nothing", load, -1.0, OWN_LOAD_SD, lasts=False
-            )
+        load = block.tension[lines[name]] if name in lines else None
+        yield from _sensor_faults(block, row, f"irregular.{name}", load, settings)
     for bridle, name in enumerate(cage.bridle_names):
         if _has_two_shackles(cage, block, bridle):
-            yield _bridle_fault(block, cage, bridle, f"bridle.{name}")
+            yield _bridle_fault(block, cage, bridle, f"bridle.{name}", settings)
     everywhere = np.ones(len(block.sensors))
     yield Hypothesis(
         alarm="net.net",
         scale=block.drag,
-        size=-DRAG_LOSS * everywhere,
-        sd=DRAG_LOSS_SD * everywhere,
+        size=-settings.drag_loss * everywhere,
+        sd=settings.drag_loss_sd * everywhere,
     )
 
 
-def _sensor_faults(block: ResidualBlock, row: int, alarm: str) -> Iterator[Hypothesis]:
-    """List the faults of a sensor: any reading, a constant offset, a beginning drift."""
-    own = float(block.own_sd[row])
-    yield _sensor_fault(block, row, alarm, "", own, 0.0, WIDE_SD, lasts=False)
-    yield _sensor_fault(block, row, alarm, "off", own, 0.0, WIDE_SD, walk=OFFSET_WALK)
-    yield _sensor_fault(block, row, alarm, "more", own, DRIFT, DRIFT_SD, walk=DRIFT_WALK)
-    yield _sensor_fault(block, row, alarm, "less", own, -DRIFT, DRIFT_SD, walk=DRIFT_WALK)
-
-
-def _sensor_fault(
+def _sensor_faults(
     block: ResidualBlock,
     row: int,
     alarm: str,
-    variant: str,
-    scale: float,
-    size: float,
-    sd: float,
-    *,
-    walk: float = 0.0,
-    lasts: bool = True,
-) -> Hypothesis:
-    """Make the hypothesis that one sensor alone is faulty."""
+    load: float | None,
+    settings: FaultDetectorSettings,
+) -> Iterator[Hypothesis]:
+    """List the faults of a sensor alone.
+
+    It reads anything, is off by a constant, has begun to drift up or down, or, if it bears a
+    load [N], reads nothing.
+    """
     here = np.eye(len(block.sensors))[row]
-    return Hypothesis(
-        alarm=alarm,
-        variant=variant,
-        scale=scale * here,
-        size=size * here,
-        sd=sd * here,
-        walk=walk,
-        lasts=lasts,
-    )
+
+    def fault(
+        variant: str,
+        size: float,
+        sd: float,
+        *,
+        scale: float = float(block.own_sd[row]),
+        walk: float = 0.0,
+        lasts: bool = True,
+    ) -> Hypothesis:
+        return Hypothesis(
+            alarm=alarm,
+            variant=variant,
+            scale=scale * here,
+            size=size * here,
+            sd=sd * here,
+            walk=walk,
+            lasts=lasts,
+        )
+
+    drift, sd, walk = settings.drift, settings.drift_sd, settings.drift_walk
+    yield fault("", 0.0, settings.wide_sd, lasts=False)
+    yield fault("off", 0.0, settings.wide_sd, walk=settings.offset_walk)
+    yield fault("more", drift, sd, walk=walk)
+    yield fault("less", -drift, sd, walk=walk)
+    if load is not None:
+        scale = max(float(load), 0.0)
+        yield fault("nothing", -1.0, settings.own_load_sd, scale=scale, lasts=False)
 
 
 def _has_two_shackles(cage: Cage, block: ResidualBlock, bridle: int) -> bool:
@@ -130,9 +117,11 @@ def _has_two_shackles(cage: Cage, block: ResidualBlock, bridle: int) -> bool:
     return len(mates) >= 2
 
 
-def _bridle_fault(block: ResidualBlock, cage: Cage, bridle: int, alarm: str) -> Hypothesis:
+def _bridle_fault(
+    block: ResidualBlock, cage: Cage, bridle: int, alarm: str, settings: FaultDetectorSettings
+) -> Hypothesis:
     """Make the hypothesis that a bridle has parted, and others bear its load."""
-    shares = load_shares(cage, bridle)
+    shares = load_shares(cage, bridle, settings)
     load = max(float(block.tension[bridle]), 0.0)
     scale, size, sd = np.zeros((3, len(block.sensors)))
     corner = cage.bridle_corner == cage.bridle_corner[bridle]
@@ -141,12 +130,14 @@ def _bridle_fault(block: ResidualBlock, cage: Cage, bridle: int, alarm: str) -> 
             continue
         row, line = block.sensors.index(shackle.name), shackle.bridle
         scale[row], size[row] = load, shares[line]
-        mate = CORNER_LOAD_SD if corner[line] else FAR_LOAD_SD
-        sd[row] = OWN_LOAD_SD if line == bridle else mate
+        mate = settings.corner_load_sd if corner[line] else settings.far_load_sd
+        sd[row] = settings.own_load_sd if line == bridle else mate
     return Hypothesis(alarm=alarm, scale=scale, size=size, sd=sd, lasts=False)
 
 
-def load_shares(cage: Cage, bridle: int) -> Float[np.ndarray, " line"]:
+def load_shares(
+    cage: Cage, bridle: int, settings: FaultDetectorSettings
+) -> Float[np.ndarray, " line"]:
     """Shares of a parted bridle's load that the other lines of its corner take over [-].
 
     The corner is pulled back until the remaining lines, and the stiffness that holds it in its
@@ -158,7 +149,7 @@ def load_shares(cage: Cage, bridle: int) -> Float[np.ndarray, " line"]:
     along = along / np.linalg.norm(along, axis=1, keepdims=True)
     others = np.flatnonzero(cage.bridle_corner == cage.bridle_corner[bridle])
     others = others[others != bridle]
-    stiffness = CORNER_STIFFNESS * np.eye(2) + along[others].T @ along[others]
+    stiffness = settings.corner_stiffness * np.eye(2) + along[others].T @ along[others]
     shares = np.zeros(cage.bridle_count)
     shares[others] = along[others] @ np.linalg.solve(stiffness, along[bridle])
     shares[bridle] = -1.0

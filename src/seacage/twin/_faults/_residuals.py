@@ -12,26 +12,6 @@ from seacage.twin._faults._sensor import SensorMonitor
 from seacage.twin._metocean import Metocean
 from seacage.twin._twin import Twin
 
-BLOCK_S = 1800.0
-"""Length of a block [s]; a mean over it holds little of eddies and waves."""
-
-LEAST_READINGS, LEAST_SENSORS = 3, 3
-"""Least readings of a sensor in a block, and least sensors: with fewer, the faulty one of them
-cannot be told apart."""
-
-WATER_SD = 0.1
-"""Standard deviation of each component of the current at the cage about the buoy's current, over
-half an hour [m/s]. Too large a value does little harm: the sensors then find the current."""
-
-CURRENT_STEP = 0.03
-"""Step of the central difference over the current, to either side [m/s]."""
-
-OWN_SHARE, CARRIED_SHARE = 0.5, 1.0
-"""Fraction of a sensor's residual standard deviation that is independent of the other sensors [-],
-where its interval was calibrated on its own readings and where it was carried over. The remainder
-is current that the buoy did not measure, which all sensors share. A training window of some hours
-does not show the independent fraction, so there all of it counts."""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BlockSums:
@@ -50,24 +30,15 @@ class BlockSums:
     east: float = 0.0
     north: float = 0.0
 
-    def extended(self, answered: Answered) -> Self:
+    def extended(self, answered: Answered, block_s: float) -> Self:
         """Add the current of one tick, unless it is outside the training domain."""
-        number = block_number(answered)
+        number = int(answered.t.timestamp() // block_s)
         sums = self if number == self.number else type(self)(number=number)
-        if answered.metocean is None or not is_comparable(answered):
+        answer = answered.answer
+        if answered.metocean is None or not (answer.valid[0] and answer.in_domain[0]):
             return sums
         east, north = answered.metocean.current_velocity[0].tolist()
         return replace(sums, ticks=sums.ticks + 1, east=sums.east + east, north=sums.north + north)
-
-
-def block_number(answered: Answered) -> int:
-    """Return the number of the block that a time belongs to."""
-    return int(answered.t.timestamp() // BLOCK_S)
-
-
-def is_comparable(answered: Answered) -> bool:
-    """Whether readings may be compared with an answer: it is valid and not extrapolated."""
-    return bool(answered.answer.valid[0] and answered.answer.in_domain[0])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -107,11 +78,6 @@ class ResidualBlock:
         """
         return self.gradient @ self.current / 2.0
 
-    @property
-    def water(self) -> Float[np.ndarray, "sensor sensor"]:
-        """Covariance by the current that the buoy did not measure, which all sensors share."""
-        return WATER_SD**2 * self.gradient @ self.gradient.T
-
 
 def close_block(
     sums: BlockSums, monitors: Mapping[str, SensorMonitor], twin: Twin, answered: Answered
@@ -125,13 +91,20 @@ def close_block(
     twin, answered
         Predicts once more, at the block's mean current and around it; its waves are the last.
     """
+    settings = twin.fault_detector
     names = tuple(name for name in twin.sensor_names if name in twin.models.upper)
     each = [monitors.get(name, SensorMonitor()) for name in names]
-    received = np.array([one.count >= LEAST_READINGS and not one.stuck for one in each], dtype=bool)
-    if np.count_nonzero(received) < LEAST_SENSORS or sums.ticks == 0 or answered.metocean is None:
+    received = np.array(
+        [one.count >= settings.least_readings and not one.is_stuck(settings) for one in each],
+        dtype=bool,
+    )
+    if np.count_nonzero(received) < settings.least_sensors:
+        return None
+    if sums.ticks == 0 or answered.metocean is None:
         return None
     current = np.array([sums.east, sums.north]) / sums.ticks
-    around = CURRENT_STEP * np.array([[0.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
+    ways = np.array([[0.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
+    around = settings.current_step * ways
     same = answered.metocean.rows(np.zeros(len(around), dtype=int))
     answer = twin.predict(
         Metocean(current_velocity=current + around, hs=same.hs, wave_direction=same.wave_direction)
@@ -140,15 +113,14 @@ def close_block(
         return None
     columns = [answer.sensor_names.index(name) for name in names]
     _, east, west, north, south = answer.sensor.mean[:, columns]
-    share = [
-        OWN_SHARE if twin.models.upper[name].spread.by == "own" else CARRIED_SHARE for name in names
-    ]
+    own = [twin.models.upper[name].spread.by == "own" for name in names]
+    share = np.where(own, settings.own_share, settings.carried_share)
     return ResidualBlock(
         sensors=names,
         received=received,
         residual=np.array([one.error / max(one.count, 1) for one in each]) * received,
         own_sd=answer.sensor.std[0, columns] * share,
-        gradient=np.column_stack([east - west, north - south]) / (2.0 * CURRENT_STEP),
+        gradient=np.column_stack([east - west, north - south]) / (2.0 * settings.current_step),
         current=current,
         tension=answer.bridle_tension.mean[0],
     )

@@ -9,14 +9,9 @@ from typing import Self
 from seacage.conventions import Flag
 from seacage.records import Sample
 from seacage.twin._json_keys import json_keys
-from seacage.twin._pairs import SI
+from seacage.twin._pairs import reading_of
+from seacage.twin._settings import FaultDetectorSettings
 from seacage.twin._state import Stream, latest_in
-
-STUCK_S = 1800.0
-"""Time after which a repeated value is a stuck sensor [s]: a live one is too noisy for it."""
-
-STUCK_READINGS = 6
-"""Least repetitions of a stuck sensor; one with a slow rate needs longer than ``STUCK_S``."""
 
 _COUNTED = (Flag.GOOD, Flag.NOT_EVALUATED)
 
@@ -72,23 +67,20 @@ class SensorMonitor:
             since=self.since if same else sample.t,
             repeats=self.repeats + 1 if same else 0,
         )
-        ((key, value),) = sample.values.items() if len(values) == 1 else (("", 0.0),)
-        if predicted is None or not key or sample.flags[key] not in _COUNTED:
+        reading, flag = reading_of(sample)
+        if predicted is None or flag not in _COUNTED:
             return monitor
-        reading = value * SI[key]
         return replace(monitor, count=self.count + 1, error=self.error + reading - predicted)
 
-    @property
-    def constant_s(self) -> float:
+    def constant_s(self, settings: FaultDetectorSettings) -> float:
         """Time for which the value has not changed [s]; 0 where it was not repeated enough."""
-        if self.latest is None or self.since is None or self.repeats < STUCK_READINGS:
+        if self.latest is None or self.since is None or self.repeats < settings.stuck_readings:
             return 0.0
         return (self.latest - self.since).total_seconds()
 
-    @property
-    def stuck(self) -> bool:
+    def is_stuck(self, settings: FaultDetectorSettings) -> bool:
         """Whether the value has not changed for too long."""
-        return self.constant_s >= STUCK_S
+        return self.constant_s(settings) >= settings.stuck_s
 
 
 def new_samples(stream: Stream, since: datetime | None, now: datetime) -> list[Sample]:

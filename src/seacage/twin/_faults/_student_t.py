@@ -3,33 +3,19 @@
 import numpy as np
 from jaxtyping import Float
 
-DEGREES_OF_FREEDOM = 8.0
-"""Of the t distribution of a block's residuals."""
-
 
 def log_density(
-    residual: Float[np.ndarray, "*case row"], covariance: Float[np.ndarray, "*case row row"]
+    residual: Float[np.ndarray, "*case row"],
+    covariance: Float[np.ndarray, "*case row row"],
+    degrees_of_freedom: float,
 ) -> Float[np.ndarray, "*case"]:
     """Logarithm of the density of residuals, but for a constant of their number."""
     count = residual.shape[-1]
     _, size = np.linalg.slogdet(covariance)
     far = np.sum(residual * np.linalg.solve(covariance, residual[..., None])[..., 0], axis=-1)
     return np.asarray(
-        -0.5 * size - 0.5 * (DEGREES_OF_FREEDOM + count) * np.log1p(far / DEGREES_OF_FREEDOM)
+        -0.5 * size - 0.5 * (degrees_of_freedom + count) * np.log1p(far / degrees_of_freedom)
     )
-
-
-def covariance_ratio(
-    residual: Float[np.ndarray, " row"], covariance: Float[np.ndarray, "row row"]
-) -> float:
-    """Estimated covariance of residuals over the assumed one [-].
-
-    References
-    ----------
-    Lange, Little & Taylor (1989), weights of the t distribution; this is one over theirs.
-    """
-    far = residual @ np.linalg.solve(covariance, residual)
-    return float((DEGREES_OF_FREEDOM + far) / (DEGREES_OF_FREEDOM + len(residual)))
 
 
 def kalman_update(
@@ -39,6 +25,7 @@ def kalman_update(
     response: Float[np.ndarray, "row size"],
     residual: Float[np.ndarray, " row"],
     noise: Float[np.ndarray, "row row"],
+    degrees_of_freedom: float,
 ) -> tuple[Float[np.ndarray, " size"], Float[np.ndarray, "size size"]]:
     """Update sizes and their covariance by residuals.
 
@@ -51,13 +38,17 @@ def kalman_update(
     residual, noise
         Readings less those expected with the sizes before, and the errors' covariance; it is
         widened where the residuals are larger than expected, and never narrowed.
+    degrees_of_freedom
+        Of the errors' t distribution [-].
 
     References
     ----------
-    Kalman (1960), the update by a measurement.
+    Kalman (1960), the update by a measurement; Lange, Little & Taylor (1989), weights of the t
+    distribution: the errors' covariance is widened by one over theirs.
     """
     known = response @ covariance @ response.T
-    noise = noise * max(1.0, covariance_ratio(residual, noise + known))
+    far = residual @ np.linalg.solve(noise + known, residual)
+    noise = noise * max(1.0, (degrees_of_freedom + far) / (degrees_of_freedom + len(residual)))
     gain = np.linalg.solve(noise + known, response @ covariance).T
     after = covariance - gain @ response @ covariance
     return size + gain @ residual, 0.5 * (after + after.T)

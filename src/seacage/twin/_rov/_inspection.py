@@ -6,7 +6,7 @@ from typing import Literal
 import numpy as np
 from jaxtyping import Float, Int
 
-from seacage.cage import Cage, Nearest
+from seacage.cage import Nearest
 from seacage.conventions import InputError, compass
 from seacage.twin._rov._clearance import Clearance
 from seacage.twin._rov._predicted_net import PredictedNet
@@ -111,26 +111,29 @@ def inspection_path(
         A size that is not above 0, too many waypoints, or none with room for the stand-off.
     """
     _check(stand_off=stand_off, row_spacing=row_spacing, step=step)
-    shape = net.expected_position
-    turn, spoke, row = _course(net.cage, shape, pattern, row_spacing, step, top)
-    sign = -1.0 if side == "inside" else 1.0
-    position = _offset_points(
-        net.cage, shape, _on_net(net.cage, shape, turn, spoke), stand_off, sign
-    )
-    near = net.cage.nearest(position, shape)
+    rings = _rings(net)
+    turn, spoke, row = _course(rings, pattern, row_spacing, step, top)
+    base, sign = _on_net(rings, turn, spoke), -1.0 if side == "inside" else 1.0
+    position = base + sign * stand_off * _nearest(net, base).normal
+    for _ in range(_ROUNDS):
+        near = _nearest(net, position)
+        position = position + sign * (stand_off - _room(near, sign))[:, None] * near.normal
+    near = _nearest(net, position)
     keep = (_room(near, sign) > _TOO_NEAR * stand_off) & (position[:, 2] <= -0.5 * top)
     if not keep.any():
         raise InputError(
             f"No waypoint {side} the net keeps {stand_off:g} m off it. Ask for a smaller stand-off."
         )
-    to_net = (near.position - position)[keep]
-    longest = _STRIDES * max(step, row_spacing)
+    position, to_net = position[keep], (near.position - position)[keep]
+    leg = np.diff(position, axis=0)
+    tight = _room(_nearest(net, position[:-1] + leg / 2.0), sign) < stand_off / 2.0
+    broken = tight | (np.linalg.norm(leg, axis=1) > _STRIDES * max(step, row_spacing))
     return InspectionPath(
-        position=position[keep],
+        position=position,
         facing=to_net / np.linalg.norm(to_net, axis=1, keepdims=True),
         row=row[keep],
-        part=_parts(net.cage, shape, position[keep], stand_off, sign, longest),
-        clearance=net.clearance(position[keep], below=below),
+        part=np.append(0, np.cumsum(broken)),
+        clearance=net.clearance(position, below=below),
         left_out=int(np.sum(~keep)),
     )
 
@@ -142,8 +145,7 @@ def _check(**sizes: float) -> None:
 
 
 def _course(
-    cage: Cage,
-    shape: Float[np.ndarray, "node 3"],
+    rings: Float[np.ndarray, "ring spoke 3"],
     pattern: Pattern,
     row_spacing: float,
     step: float,
@@ -152,7 +154,6 @@ def _course(
     Float[np.ndarray, " waypoint"], Float[np.ndarray, " waypoint"], Int[np.ndarray, " waypoint"]
 ]:
     """Position of each waypoint on the net, in rings down and spokes round, and its row."""
-    rings = _rings(cage, shape)
     middle = rings.mean(axis=1)
     down = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(rings, axis=0), axis=2).mean(axis=1)))
     start = float(np.interp(top, -middle[:, 2], down))
@@ -174,64 +175,38 @@ def _course(
         share = np.where(row % 2 == 1, 1.0 - share, share)
         deeper = np.zeros(len(row))
     turn = np.interp(at[row] + deeper, down, np.arange(len(down)))
-    return turn, cage.spokes * share, row
+    return turn, rings.shape[1] * share, row
 
 
-def _rings(cage: Cage, shape: Float[np.ndarray, "node 3"]) -> Float[np.ndarray, "ring spoke 3"]:
-    """Every ring's nodes, and the tip as a ring of its own."""
+def _rings(net: PredictedNet) -> Float[np.ndarray, "ring spoke 3"]:
+    """Every ring's expected nodes, and the tip as a ring of its own."""
+    cage, shape = net.cage, net.expected_position
     rings = shape[: cage.bottom_node].reshape(cage.rings, cage.spokes, 3)
     tip = np.broadcast_to(shape[cage.bottom_node], (1, cage.spokes, 3))
     return np.concatenate([rings, tip])
 
 
 def _on_net(
-    cage: Cage,
-    shape: Float[np.ndarray, "node 3"],
+    rings: Float[np.ndarray, "ring spoke 3"],
     turn: Float[np.ndarray, " waypoint"],
     spoke: Float[np.ndarray, " waypoint"],
 ) -> Float[np.ndarray, "waypoint 3"]:
     """Points of the net between its nodes, bilinearly."""
-    rings = _rings(cage, shape)
-    upper = np.minimum(turn.astype(int), cage.rings - 1)
-    left = spoke.astype(int) % cage.spokes
-    right = (left + 1) % cage.spokes
+    last_ring, spokes = len(rings) - 1, rings.shape[1]
+    upper = np.minimum(turn.astype(int), last_ring - 1)
+    left = spoke.astype(int) % spokes
+    right = (left + 1) % spokes
     down, over = (turn - upper)[:, None], (spoke - np.floor(spoke))[:, None]
     above = rings[upper, left] * (1.0 - over) + rings[upper, right] * over
     beneath = rings[upper + 1, left] * (1.0 - over) + rings[upper + 1, right] * over
     return above * (1.0 - down) + beneath * down
 
 
-def _offset_points(
-    cage: Cage,
-    shape: Float[np.ndarray, "node 3"],
-    base: Float[np.ndarray, "waypoint 3"],
-    stand_off: float,
-    sign: float,
-) -> Float[np.ndarray, "waypoint 3"]:
-    """Points beside the net, moved until each is as far from all of it as it should be."""
-    position = base + sign * stand_off * cage.nearest(base, shape).normal
-    for _ in range(_ROUNDS):
-        near = cage.nearest(position, shape)
-        position = position + sign * (stand_off - _room(near, sign))[:, None] * near.normal
-    return position
+def _nearest(net: PredictedNet, point: Float[np.ndarray, "point 3"]) -> Nearest:
+    """Nearest points of the expected net."""
+    return net.cage.nearest(point, net.expected_position)
 
 
 def _room(near: Nearest, sign: float) -> Float[np.ndarray, " point"]:
     """Distance to the net, negative on the wrong side of it [m]."""
     return -sign * np.where(near.inside, near.distance, -near.distance)
-
-
-def _parts(
-    cage: Cage,
-    shape: Float[np.ndarray, "node 3"],
-    position: Float[np.ndarray, "waypoint 3"],
-    stand_off: float,
-    sign: float,
-    longest: float,
-) -> Int[np.ndarray, " waypoint"]:
-    """Number the parts that can be swum from waypoint to waypoint."""
-    leg = np.diff(position, axis=0)
-    middle = position[:-1] + leg / 2.0
-    tight = _room(cage.nearest(middle, shape), sign) < stand_off / 2.0
-    broken = tight | (np.linalg.norm(leg, axis=1) > longest)
-    return np.append(0, np.cumsum(broken))

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.cage import Cage, Nearest
-from seacage.conventions import InputError, Origin, SeacageError
+from seacage.conventions import InputError, Origin, SeacageError, duration_text
 from seacage.ocean import SeaState
 from seacage.twin._answer import Answer
 from seacage.twin._discrepancy import ShapeError
@@ -230,8 +230,9 @@ def _check_fresh(answer: Answer, age_s: float, most_age_s: float | None) -> None
         )
     if most_age_s is not None and age_s > most_age_s:
         raise StaleError(
-            f"The net rests on a reading of {age_s:.0f} s ago; {most_age_s:.0f} s is the limit "
-            "given. Wait for the next reading, or allow a stale state."
+            f"The net rests on a reading of {duration_text(age_s)} ago; "
+            f"{duration_text(most_age_s)} is the limit given. Wait for the next reading, or "
+            "allow a stale state."
         )
 
 

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
 import numpy as np
@@ -26,10 +26,12 @@ from seacage.twin._json_keys import json_keys
 from seacage.twin._metocean import Input
 from seacage.twin._models import Models
 from seacage.twin._provenance import Provenance
-from seacage.twin._state import StreamTimeouts
+from seacage.twin._settings import FaultDetectorSettings, StreamTimeouts
 
 FORMAT = "seacage twin"
 VERSION = 2
+TUNED_VERSION = 3
+"""With a fault detector of other settings, which version 0.1.0 would ignore: it refuses these."""
 
 UPPER = "upper/"
 """Before the sensor's name, in the names of level 2's parts."""
@@ -58,15 +60,19 @@ class Header:
     buoy: str
     timeouts: StreamTimeouts
     provenance: Provenance
+    # Twins of 0.1.0 have none.
+    fault_detector: FaultDetectorSettings = field(default_factory=FaultDetectorSettings)
 
     __pydantic_config__ = json_keys(timeouts="watch")
 
 
 def to_parts(
+    *,
     models: Models,
     provenance: Provenance,
     buoy: str,
     timeouts: StreamTimeouts,
+    fault_detector: FaultDetectorSettings,
     discrepancy: Discrepancy | None,
 ) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
     """Return a twin's settings and arrays."""
@@ -74,7 +80,7 @@ def to_parts(
 
     header = Header(
         format=FORMAT,
-        version=VERSION,
+        version=VERSION if fault_detector == FaultDetectorSettings() else TUNED_VERSION,
         cage_toml=models.cage.to_toml(),
         inputs=models.inputs,
         domain=(tuple(models.domain.lower.tolist()), tuple(models.domain.upper.tolist())),
@@ -85,6 +91,7 @@ def to_parts(
         buoy=buoy,
         timeouts=timeouts,
         provenance=provenance,
+        fault_detector=fault_detector,
     )
     settings = TypeAdapter(Header).dump_python(header, mode="json", by_alias=True)
     parts: dict[str, Fitted] = {"bridles": models.bridles, "shape": models.shape}
@@ -114,10 +121,12 @@ def from_parts(
     """
     from pydantic import TypeAdapter
 
-    if (settings.get("format"), settings.get("version")) != (FORMAT, VERSION):
+    known = settings.get("version") in (VERSION, TUNED_VERSION)
+    if settings.get("format") != FORMAT or not known:
         raise ModelError(
             f"{source} is a {settings.get('format')!r} of version {settings.get('version')!r}; "
-            f"this seacage reads {FORMAT!r} of version {VERSION}. Train the twin anew."
+            f"this seacage reads {FORMAT!r} of versions {VERSION} and {TUNED_VERSION}. "
+            "Train the twin anew."
         )
     try:
         # Strictly, as in JSON: a text such as "nan" is no number.
@@ -134,6 +143,7 @@ def from_parts(
         "provenance": header.provenance,
         "buoy": header.buoy,
         "timeouts": header.timeouts,
+        "fault_detector": header.fault_detector,
         "discrepancy": discrepancy,
     }
 

@@ -1,16 +1,15 @@
 """Calibration of level-2 intervals: by a sensor's held-out readings, or by those of others."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from seacage.surrogates import conformal_factor, variance_components
 from seacage.twin._correction import LEAST_SHARE, Correction, Spread
-from seacage.twin._models import Models
 from seacage.twin._pairs import Pairs
-from seacage.twin._provenance import TrainingWindow
+from seacage.twin._training._data import CageTraining
 from seacage.twin._training._held_out import (
     DAY,
     HeldOut,
@@ -30,72 +29,6 @@ LEAST_REFERENCE_PAIRS = 20
 """Readings of another sensor within a short training window."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class SensorTraining:
-    """Training data of one sensor.
-
-    Parameters
-    ----------
-    window
-        Its training window.
-    pairs, selected
-        All its readings in the window, and those that level 2 is fitted to.
-    calibrates
-        Whether the remaining readings calibrate the intervals.
-    """
-
-    window: TrainingWindow
-    pairs: Pairs
-    selected: Pairs
-    calibrates: bool
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class CageTraining:
-    """Training data of all sensors of a cage, and the settings of their fits.
-
-    Parameters
-    ----------
-    models
-        Level 1.
-    sensors
-        The data by sensor.
-    restarts, seed
-        Of the searches for hyperparameters.
-    select
-        Selects the readings to fit to.
-    held_out
-        Held-out readings of models fitted within another sensor's short window, by sensor and
-        hours; filled on demand.
-    """
-
-    models: Models
-    sensors: Mapping[str, SensorTraining]
-    restarts: int
-    seed: int
-    select: Callable[[Pairs], Pairs]
-    held_out: dict[tuple[str, int, int], HeldOut] = field(
-        default_factory=dict[tuple[str, int, int], HeldOut]
-    )
-
-    def fit(self, sensor: str, selected: Pairs) -> Correction:
-        """Fit level 2 of a sensor to some of its readings, without calibration."""
-        x = selected.metocean.features(self.models.inputs)
-        lower = self.models.lower(sensor)
-        return Correction.fit(selected, x, lower, restarts=self.restarts, seed=self.seed)
-
-    def references(self, short: Pairs) -> list[str]:
-        """Sensors with readings in a short training window, and on a day at least beside it."""
-        return [
-            name
-            for name, one in self.sensors.items()
-            if one.calibrates
-            and span_s(one.pairs) >= SHORT
-            and len(_within(one.pairs, short)) >= LEAST_REFERENCE_PAIRS
-            and _days_outside(one.pairs, short) >= 1.0
-        ]
-
-
 def calibrate(model: Correction, training: CageTraining, sensor: str) -> Correction:
     """Calibrate the intervals of a sensor's level 2.
 
@@ -110,7 +43,7 @@ def calibrate(model: Correction, training: CageTraining, sensor: str) -> Correct
     """
     pairs = training.sensors[sensor].pairs
     model = _with_white_noise(model, training, pairs)
-    references = training.references(pairs) if span_s(pairs) < SHORT else []
+    references = _references(training, pairs) if span_s(pairs) < SHORT else []
     if references:
         others = [_reference_errors(training, name, pairs) for name in references]
         days = sum(_days_outside(training.sensors[name].pairs, pairs) for name in references)
@@ -119,8 +52,8 @@ def calibrate(model: Correction, training: CageTraining, sensor: str) -> Correct
     if count < 2:
         return model
     held_out = thin(pairs)
-    x = held_out.metocean.features(training.models.inputs)
-    mean, variance = cross_validate(model, training.sensors[sensor].selected, held_out, x)
+    x, selected = training.features(held_out), training.sensors[sensor].selected
+    mean, variance = cross_validate(model, selected, held_out, x)
     column = training.models.cage.sensor_names.index(sensor)
     errors = HeldOut(
         error=held_out.value - mean,
@@ -184,7 +117,7 @@ def spread_by_others(model: Correction, others: Sequence[HeldOut], days: float) 
 def _with_white_noise(model: Correction, training: CageTraining, pairs: Pairs) -> Correction:
     """Return a model with the variance of its instrument's noise."""
     rows = pairs.rows(stretch_rows(len(pairs)))
-    x = rows.metocean.features(training.models.inputs)
+    x = training.features(rows)
     error = rows.value - model.latent(x, model.rest.lower.predict(x)).mean
     return replace(model, spread=replace(model.spread, white=white_noise(error, rows.time)))
 
@@ -197,19 +130,31 @@ def _reference_errors(training: CageTraining, sensor: str, short: Pairs) -> Held
     key = sensor, first, last
     if key not in training.held_out:
         pairs = training.sensors[sensor].pairs
-        model = training.fit(sensor, training.select(_within(pairs, short)))
-        model = _with_white_noise(model, training, _within(pairs, short))
+        within = _within(pairs, short)
+        model = training.fit(sensor, training.training.select(within))
+        model = _with_white_noise(model, training, within)
         held_out = thin(outside(pairs, short))
-        x = held_out.metocean.features(training.models.inputs)
-        low = model.rest.lower.predict(x)
-        latent = model.latent(x, low)
+        x = training.features(held_out)
+        latent = model.latent(x, model.rest.lower.predict(x))
         training.held_out[key] = HeldOut(
             error=held_out.value - latent.mean,
             variance=latent.std**2,
-            steepness=0.0 * latent.std,
+            steepness=np.zeros(len(held_out)),
             white=model.spread.white,
         )
     return training.held_out[key]
+
+
+def _references(training: CageTraining, short: Pairs) -> list[str]:
+    """Name the sensors with readings in a short training window, and on a day at least beside."""
+    return [
+        name
+        for name, one in training.sensors.items()
+        if one.calibrates
+        and span_s(one.pairs) >= SHORT
+        and len(_within(one.pairs, short)) >= LEAST_REFERENCE_PAIRS
+        and _days_outside(one.pairs, short) >= 1.0
+    ]
 
 
 def _within(pairs: Pairs, short: Pairs) -> Pairs:

@@ -10,7 +10,7 @@ from seacage.surrogates import (
     Prediction,
     ResidualModel,
 )
-from seacage.twin._correction import Correction, FixedPrediction, Spread
+from seacage.twin._correction import Correction, Spread
 from seacage.twin._pairs import Pairs
 
 DAY = 86400.0
@@ -62,11 +62,11 @@ class HeldOut:
         return np.abs(self.error) / np.sqrt(spread.scale**2 * self.variance + water + self.white)
 
 
-def thin(pairs: Pairs, most: int = MOST_READINGS) -> Pairs:
-    """Return at most so many of the pairs, evenly taken."""
-    if len(pairs) <= most:
+def thin(pairs: Pairs) -> Pairs:
+    """Return at most ``MOST_READINGS`` of the pairs, evenly taken."""
+    if len(pairs) <= MOST_READINGS:
         return pairs
-    return pairs.rows(np.linspace(0, len(pairs) - 1, most).round().astype(int))
+    return pairs.rows(np.linspace(0, len(pairs) - 1, MOST_READINGS).round().astype(int))
 
 
 def span_s(pairs: Pairs) -> float:
@@ -135,8 +135,7 @@ def cross_validate(
         whole = model.rest.upper[-1]
         reduced = _condition(whole, kept) if kept.sum() > 1 else whole
         here = Prediction(mean=low.mean[rows], std=low.std[rows])
-        lent = FixedPrediction(prediction=here)
-        rest = replace(model.rest, own=(reduced,), lent=lent).predict(x[rows])
+        rest = replace(model.rest, own=(reduced,)).predict(x[rows], below=here)
         mean[rows] = rest.mean + model.gain * here.mean
         variance[rows] = model.latent_variance(rest.std, here.std)
     return mean, variance

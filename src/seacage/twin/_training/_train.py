@@ -1,10 +1,10 @@
 """Training: level 1 is fitted to simulations, level 2 of each sensor to its readings."""
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from datetime import datetime, timedelta
-from typing import Literal
+from collections.abc import Callable
+from dataclasses import replace
+from datetime import timedelta
+from importlib.metadata import version
 
 import numpy as np
 from jaxtyping import Float
@@ -21,11 +21,12 @@ from seacage.surrogates import (
     window_design,
 )
 from seacage.twin._correction import Correction
-from seacage.twin._metocean import INPUT_KEYS, Input, Metocean
+from seacage.twin._metocean import Input, Metocean, input_keys
 from seacage.twin._models import Models
 from seacage.twin._pairs import Pairs, align, spread_out, training_window
 from seacage.twin._provenance import Provenance, TrainingWindow
-from seacage.twin._training._calibration import CageTraining, SensorTraining, calibrate
+from seacage.twin._training._calibration import calibrate
+from seacage.twin._training._data import CageTraining, SensorTraining, Training
 from seacage.twin._twin import Twin
 
 KERNELS = ("matern-5/2", "squared-exponential")
@@ -39,42 +40,6 @@ PAPER_WINDOW_S = {"depth_m": 300.0, "tension_kn": 10.0}
 PAPER_LEAST = 5
 """The paper's "few minutes" of a depth sensor and "few seconds" of a shackle [s], whose readings it
 does not count; and the least consecutive readings of slow sensors."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Training:
-    """Settings of a twin's training.
-
-    Parameters
-    ----------
-    inputs
-        Inputs of the models; waves need a campaign and a buoy that have them.
-    high_fidelity_points
-        Readings of each sensor that level 2 is fitted to, at most.
-    choice
-        ``"spread"`` over currents and time, or ``"paper"``: the single readings of a few
-        minutes (depth) or a few seconds (shackles) from the first on. The latter gives the noise
-        of one hour and too narrow intervals; no readings remain to calibrate them on.
-    days
-        Longest training window [d]; later days remain to validate the twin.
-    pause_s
-        A longer silence of a sensor ends its training window [s].
-    mean_s
-        Time over which readings are averaged [s]; the intervals are of such means.
-    restarts
-        Random starts of each search for hyperparameters, beside the deterministic one.
-    seed
-        Of the choice of readings and of the searches.
-    """
-
-    inputs: tuple[Input, ...] = ("current",)
-    high_fidelity_points: int = 300
-    choice: Literal["spread", "paper"] = "spread"
-    days: float = 25.0
-    pause_s: float = 86400.0
-    mean_s: float = 60.0
-    restarts: int = 3
-    seed: int = 0
 
 
 def train(
@@ -117,43 +82,42 @@ def train(
         Inputs that the field's buoy or the campaign never had.
     """
     training = Training() if training is None else training
-    report: Progress = progress or no_progress
     _check_inputs(campaign, field, training)
-    base_twin = _start(cage, campaign, field, base, training, report)
-    kept = base_twin.models.upper
     sensors = [name for name in cage.sensor_names if field and name in field.sensors]
+
+    def report(stage: str, done: int) -> None:
+        (progress or no_progress)(f"train {stage}", done, 2 + len(sensors))
+
+    level_1 = _start(cage, campaign, base, training, report)
+    if field is None:
+        return level_1
+    models, provenance = level_1.models, level_1.provenance
+    found = {name: _sensor_training(field, name, training) for name in sensors}
     data = CageTraining(
-        models=base_twin.models,
-        sensors={
-            name: one
-            for name in sensors
-            if field and (one := _sensor_training(field, name, training)) is not None
-        },
-        restarts=training.restarts,
-        seed=training.seed,
-        select=lambda pairs: _select(pairs, training),
+        models=models,
+        sensors={name: one for name, one in found.items() if one is not None},
+        training=training,
     )
-    models, windows = base_twin.models, dict(base_twin.provenance.training_windows)
+    windows = dict(provenance.training_windows)
     for done, name in enumerate(sensors, start=3):
-        if name not in kept and (model := _fit_level_2(data, name)) is not None:
+        if name not in level_1.models.upper and (model := _fit_level_2(data, name)) is not None:
             models = models.with_level_2(name, model)
             windows[name] = replace(data.sensors[name].window, calibrated=model.spread.by)
-        report(f"train {name}", done, 2 + len(sensors))
-    new = field is not None and windows != base_twin.provenance.training_windows
+        report(name, done)
     provenance = replace(
-        base_twin.provenance,
-        origin=field.origin if field and new else base_twin.provenance.origin,
-        hidden_sha256=field.hidden_sha256 if field else base_twin.provenance.hidden_sha256,
-        seed=training.seed,
+        provenance,
+        origin=provenance.origin if windows == provenance.training_windows else field.origin,
+        hidden_sha256=field.hidden_sha256,
         training_windows=windows,
     )
-    return replace(base_twin, models=models, provenance=provenance)
+    buoy = base.buoy if base else field.buoy.stream
+    return replace(level_1, models=models, provenance=provenance, buoy=buoy)
 
 
 def _check_inputs(
     campaign: CampaignRecord | None, field: FieldRecord | None, training: Training
 ) -> None:
-    for key in (key for name in training.inputs for key in INPUT_KEYS[name]):
+    for key in input_keys(training.inputs):
         if field and not (key in field.buoy.values and np.any(field.buoy.usable(key))):
             raise NonsenseError(
                 f"train: {field.buoy.stream} has no {key}, which the inputs "
@@ -204,35 +168,20 @@ def update(twin: Twin, field: FieldRecord, *, points: int = 60, mean_s: float = 
 def _start(
     cage: Cage,
     campaign: CampaignRecord | None,
-    field: FieldRecord | None,
     base: Twin | None,
     training: Training,
-    report: Progress,
+    report: Callable[[str, int], None],
 ) -> Twin:
     """Level 1, and level 2 of the sensors that have not moved since the base."""
-    if (campaign is None) == (base is None):
+    if campaign is not None and base is None:
+        return _level_one(cage, campaign, training, report)
+    if base is None or campaign is not None:
         raise InputError(
             "train: give either a campaign, to fit level 1 to, or a base, whose level 1 is taken."
         )
-    if base is not None:
-        report("train bridles", 1, 2)
-        report("train shape", 2, 2)
-        return _from_base(cage, base, training)
-    assert campaign is not None
-    total = 2 + sum(name in field.sensors for name in cage.sensor_names) if field else 2
-    models, kernel = _level_one(cage, campaign, training, report, total)
-    provenance = Provenance(
-        version=_version(),
-        law=campaign.law,
-        campaign_seed=campaign.seed,
-        campaign_sha256=campaign.sha256,
-        cases=int(np.sum(campaign.converged)),
-        kernel=kernel,
-        origin=Origin.COMPUTED,
-        hidden_sha256=None,
-        seed=training.seed,
-    )
-    return Twin(models=models, provenance=provenance, buoy=field.buoy.stream if field else "buoy-1")
+    report("bridles", 1)
+    report("shape", 2)
+    return _from_base(cage, base, training)
 
 
 def _from_base(cage: Cage, base: Twin, training: Training) -> Twin:
@@ -247,8 +196,11 @@ def _from_base(cage: Cage, base: Twin, training: Training) -> Twin:
             f"train: the inputs of the base are {' and '.join(base.models.inputs)}, not "
             f"{' and '.join(training.inputs)}. Give the same, or give a campaign."
         )
-    places, now = _places(before), _places(cage)
-    stay = [name for name in base.models.upper if now.get(name) == places[name]]
+    places = {one.name: one for one in (*before.depth_sensors, *before.shackles)}
+    unmoved = {
+        one.name for one in (*cage.depth_sensors, *cage.shackles) if one == places.get(one.name)
+    }
+    stay = [name for name in base.models.upper if name in unmoved]
     windows = base.provenance.training_windows
     return replace(
         base,
@@ -259,18 +211,18 @@ def _from_base(cage: Cage, base: Twin, training: Training) -> Twin:
             base.provenance,
             training_windows={name: windows[name] for name in stay},
             origin=base.origin if stay else Origin.COMPUTED,
+            seed=training.seed,
         ),
     )
 
 
-def _places(cage: Cage) -> Mapping[str, tuple[str, int]]:
-    nodes = {one.name: ("node", one.node) for one in cage.depth_sensors}
-    return nodes | {one.name: ("bridle", one.bridle) for one in cage.shackles}
-
-
 def _level_one(
-    cage: Cage, campaign: CampaignRecord, training: Training, report: Progress, total: int
-) -> tuple[Models, str]:
+    cage: Cage,
+    campaign: CampaignRecord,
+    training: Training,
+    report: Callable[[str, int], None],
+) -> Twin:
+    """Fit level 1 to the cases of a campaign that converged."""
     rows = np.flatnonzero(campaign.converged)
     if len(rows) < LEAST_CASES:
         raise InputError(
@@ -285,11 +237,11 @@ def _level_one(
     water = Metocean.of(campaign.seas).rows(rows)
     x = water.features(training.inputs)
     bridles, kernel = _better_kernel(x, campaign.bridle_tension[rows], training)
-    report("train bridles", 1, total)
+    report("bridles", 1)
     shape = ShapeGP(restarts=training.restarts).fit(
         x, campaign.node_position[rows], seed=training.seed
     )
-    report("train shape", 2, total)
+    report("shape", 2)
     still = shape.predict(np.zeros((1, x.shape[1])))
     models = Models(
         cage=cage,
@@ -300,7 +252,18 @@ def _level_one(
         bridles=bridles,
         shape=shape,
     )
-    return models, kernel
+    provenance = Provenance(
+        version=version("seacage"),
+        law=campaign.law,
+        campaign_seed=campaign.seed,
+        campaign_sha256=campaign.sha256,
+        cases=len(rows),
+        kernel=kernel,
+        origin=Origin.COMPUTED,
+        hidden_sha256=None,
+        seed=training.seed,
+    )
+    return Twin(models=models, provenance=provenance)
 
 
 def _edge(water: Metocean) -> tuple[float, float]:
@@ -331,34 +294,26 @@ def _sensor_training(field: FieldRecord, sensor: str, training: Training) -> Sen
     window = training_window(record, days=training.days, pause_s=training.pause_s)
     if window is None:
         return None
-    start, end = window
-    if training.choice == "paper":
-        pairs = _complete(align(field, sensor, start=start, end=end), training.inputs)
+    (start, end), paper = window, training.choice == "paper"
+    mean_s = None if paper else training.mean_s
+    pairs = align(field, sensor, start=start, end=end, mean_s=mean_s)
+    pairs = _complete(pairs, training.inputs)
+    if paper:
         span = PAPER_WINDOW_S[next(iter(record.values))]
         second = (pairs.time - pairs.time[:1]) / np.timedelta64(1, "s")
         most = max(training.high_fidelity_points, PAPER_LEAST)
         rows = window_design(second, span_s=span, least=PAPER_LEAST, most=most)
         pairs = pairs.rows(rows)
-        if len(pairs) < PAPER_LEAST:
-            return None
-        end = _after(pairs)
-        own = TrainingWindow(start=start, end=end, points=len(pairs))
-        return SensorTraining(window=own, pairs=pairs, selected=pairs, calibrates=False)
-    pairs = align(field, sensor, start=start, end=end, mean_s=training.mean_s)
-    pairs = _complete(pairs, training.inputs)
-    if len(pairs) < LEAST_PAIRS:
+    if len(pairs) < (PAPER_LEAST if paper else LEAST_PAIRS):
         return None
-    selected = _select(pairs, training)
+    selected = pairs if paper else training.select(pairs)
+    end = moment(pairs.time[-1]) + timedelta(microseconds=1) if paper else end
     own = TrainingWindow(start=start, end=end, points=len(selected))
-    return SensorTraining(window=own, pairs=pairs, selected=selected, calibrates=True)
+    return SensorTraining(window=own, pairs=pairs, selected=selected, calibrates=not paper)
 
 
 def _complete(pairs: Pairs, inputs: tuple[Input, ...]) -> Pairs:
     return pairs.rows(pairs.metocean.known(inputs))
-
-
-def _after(pairs: Pairs) -> datetime:
-    return moment(pairs.time[-1]) + timedelta(microseconds=1)
 
 
 def _fit_level_2(data: CageTraining, sensor: str) -> Correction | None:
@@ -367,17 +322,7 @@ def _fit_level_2(data: CageTraining, sensor: str) -> Correction | None:
     if own is None:
         return None
     model = data.fit(sensor, own.selected)
-    x = own.selected.metocean.features(data.models.inputs)
-    if not model.beats_level_1(own.selected, data.models.lower(sensor).predict(x).mean):
+    level_1 = data.models.lower(sensor).predict(data.features(own.selected))
+    if not model.beats_level_1(own.selected, level_1.mean):
         return None
     return calibrate(model, data, sensor) if own.calibrates else model
-
-
-def _select(pairs: Pairs, training: Training) -> Pairs:
-    return spread_out(pairs, training.high_fidelity_points, seed=training.seed)
-
-
-def _version() -> str:
-    from importlib.metadata import version
-
-    return version("seacage")

@@ -57,7 +57,7 @@ def event(kind: str, target: str, at: datetime = NOON, **more: Any) -> Event:
         ),
     ],
 )
-def test_words_are_read_and_said_again(text: str, means: Event) -> None:
+def test_words_are_read_and_written_again(text: str, means: Event) -> None:
     assert Event.parse(text) == means
     assert Event.parse(str(means)) == means
 
@@ -125,16 +125,16 @@ def test_a_drift_grows_from_its_time_on() -> None:
 
 
 def test_what_is_stuck_says_one_thing_until_it_recovers() -> None:
-    said = event("stuck", "depth-2", until=NOON + timedelta(hours=6)).apply_to(DEPTH)
-    different = said.values["depth_m"] != DEPTH.values["depth_m"]
+    changed = event("stuck", "depth-2", until=NOON + timedelta(hours=6)).apply_to(DEPTH)
+    different = changed.values["depth_m"] != DEPTH.values["depth_m"]
     at = int(np.searchsorted(DEPTH.time, instant(NOON)))
     np.testing.assert_array_equal(np.flatnonzero(different), np.arange(at + 1, at + 6))
-    assert set(said.values["depth_m"][at : at + 6]) == {DEPTH.values["depth_m"][at]}
+    assert set(changed.values["depth_m"][at : at + 6]) == {DEPTH.values["depth_m"][at]}
 
 
 def test_what_is_silent_says_nothing_until_it_recovers() -> None:
-    said = event("silent", "buoy-1", until=NOON + timedelta(hours=6)).apply_to(BUOY)
-    missing = np.setdiff1d(BUOY.time, said.time)
+    changed = event("silent", "buoy-1", until=NOON + timedelta(hours=6)).apply_to(BUOY)
+    missing = np.setdiff1d(BUOY.time, changed.time)
     np.testing.assert_array_equal(missing, instant(NOON) + np.arange(6).astype("timedelta64[h]"))
     assert len(event("silent", "buoy-1", START).apply_to(BUOY)) == 0
 

@@ -60,10 +60,10 @@ def test_every_sensor_of_the_cage_speaks_and_the_truth_never_pauses(
 
 
 def test_the_truth_is_near_what_the_sensors_say(field: VirtualField) -> None:
-    for name, said in field.record.sensors.items():
-        (key,) = said.values
+    for name, outcome in field.record.sensors.items():
+        (key,) = outcome.values
         exact = field.truth.sensors[name]
-        error = said.values[key] - exact.values[key][np.isin(exact.time, said.time)]
+        error = outcome.values[key] - exact.values[key][np.isin(exact.time, outcome.time)]
         assert abs(np.median(error)) < (0.6 if key == "tension_kn" else 0.1)
 
 
@@ -84,5 +84,5 @@ def test_the_seed_changes_the_noise_and_neither_the_cage_nor_its_responses(
     assert len(stand_in.settled) == settled
     exact = [field.truth.sensors["depth-2"].values["depth_m"] for field in (one, two)]
     np.testing.assert_array_equal(*exact)
-    said = [field.record.sensors["depth-2"].values["depth_m"][0] for field in (one, two)]
-    assert said[0] != said[1]
+    reading = [field.record.sensors["depth-2"].values["depth_m"][0] for field in (one, two)]
+    assert reading[0] != reading[1]

@@ -68,14 +68,14 @@ def test_the_grid_is_settled_once_and_kept(
     small_cage: Cage, stand_in: StandIn, tmp_path: Path
 ) -> None:
     hidden = TruthParameters.read()
-    told: list[tuple[str, int, int]] = []
+    messages: list[tuple[str, int, int]] = []
     first, error = true_responses(
-        small_cage, hidden, store=tmp_path, workers=1, progress=lambda *step: told.append(step)
+        small_cage, hidden, store=tmp_path, workers=1, progress=lambda *step: messages.append(step)
     )
     settled = len(stand_in.settled)
     assert settled <= 600
-    assert told[-1] == ("virtual field", settled, settled)
-    assert [done for _, done, _ in told] == sorted(done for _, done, _ in told)
+    assert messages[-1] == ("virtual field", settled, settled)
+    assert [done for _, done, _ in messages] == sorted(done for _, done, _ in messages)
     assert np.abs(error[:, :3]).mean() < 0.01
     again, _ = true_responses(small_cage, hidden, store=tmp_path, workers=1)
     assert len(stand_in.settled) == settled

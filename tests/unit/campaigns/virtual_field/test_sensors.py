@@ -47,17 +47,17 @@ BUOY = Record(
 DEPTH, TENSION = truth("depth-1", "depth_m"), truth("shackle-1", "tension_kn")
 
 
-def errors(said: Record, exact: Record) -> np.ndarray:
+def errors(reported: Record, exact: Record) -> np.ndarray:
     (key,) = exact.values
-    return said.values[key] - exact.values[key][np.isin(exact.time, said.time)]
+    return reported.values[key] - exact.values[key][np.isin(exact.time, reported.time)]
 
 
 def test_a_shackle_lives_in_its_two_windows() -> None:
-    said = sense(TENSION, CALM, np.random.default_rng(1))
-    (silence,) = np.flatnonzero(np.diff(said.time) > np.timedelta64(300, "s"))
-    first, second = silence + 1, len(said) - silence - 1
+    reading = sense(TENSION, CALM, np.random.default_rng(1))
+    (silence,) = np.flatnonzero(np.diff(reading.time) > np.timedelta64(300, "s"))
+    first, second = silence + 1, len(reading) - silence - 1
     assert (first, second) == (12 * 12, 24 * 12)
-    days = (said.time[silence + 1] - said.time[silence]) / np.timedelta64(1, "D")
+    days = (reading.time[silence + 1] - reading.time[silence]) / np.timedelta64(1, "D")
     assert 20.0 < days < 35.0
 
 
@@ -78,9 +78,9 @@ def sensed_tension(seed: int) -> Record:
 
 
 def test_a_depth_sensor_drifts_and_is_noisy_all_the_time() -> None:
-    said = sense(DEPTH, CALM, np.random.default_rng(1))
-    assert len(said) == len(DEPTH)
-    error = errors(said, DEPTH)
+    reading = sense(DEPTH, CALM, np.random.default_rng(1))
+    assert len(reading) == len(DEPTH)
+    error = errors(reading, DEPTH)
     slope, _ = np.polyfit(SECONDS / 604800.0, error, 1)
     assert abs(slope) == pytest.approx(0.02, rel=0.1)
     assert np.std(error - np.polyval(np.polyfit(SECONDS, error, 1), SECONDS)) == pytest.approx(
@@ -89,23 +89,23 @@ def test_a_depth_sensor_drifts_and_is_noisy_all_the_time() -> None:
 
 
 def test_a_calm_sensor_is_good_throughout() -> None:
-    for said in (sense(DEPTH, CALM, np.random.default_rng(1)), sensed_tension(1)):
-        (flags,) = said.flags.values()
+    for outcome in (sense(DEPTH, CALM, np.random.default_rng(1)), sensed_tension(1)):
+        (flags,) = outcome.flags.values()
         assert np.mean(flags == Flag.GOOD) > 0.995
 
 
 def test_readings_are_lost_one_by_one_and_in_gaps() -> None:
-    said = sense(DEPTH, HIDDEN, np.random.default_rng(3))
-    lost = 1.0 - len(said) / len(DEPTH)
+    reading = sense(DEPTH, HIDDEN, np.random.default_rng(3))
+    lost = 1.0 - len(reading) / len(DEPTH)
     # Single losses are 0.3 %; a gap of two hours a week adds 1.2 % on average.
     assert 0.003 < lost < 0.08
-    assert np.diff(said.time).max() > np.timedelta64(30, "m")
+    assert np.diff(reading.time).max() > np.timedelta64(30, "m")
 
 
 def test_quality_control_sees_most_spikes_and_long_flat_lines() -> None:
-    said = sense(DEPTH, HIDDEN, np.random.default_rng(4))
-    wrong = np.abs(errors(said, DEPTH)) > 2.0
-    flagged = said.flags["depth_m"] != Flag.GOOD
+    reading = sense(DEPTH, HIDDEN, np.random.default_rng(4))
+    wrong = np.abs(errors(reading, DEPTH)) > 2.0
+    flagged = reading.flags["depth_m"] != Flag.GOOD
     assert 5 < wrong.sum() < 300
     assert flagged[wrong].mean() > 0.5
     assert flagged.mean() < 0.03
@@ -120,10 +120,10 @@ def test_chance_is_the_generators_alone() -> None:
 def test_a_depth_sensor_takes_waves_and_weather_for_depth() -> None:
     head = 0.4 * np.sin(SECONDS / 7.0)
     pressure = air_pressure(HIDDEN, TIME, np.random.default_rng(5))
-    said = sense(DEPTH, CALM, np.random.default_rng(1), wave_head=head, pressure=pressure)
+    reading = sense(DEPTH, CALM, np.random.default_rng(1), wave_head=head, pressure=pressure)
     plain = sense(DEPTH, CALM, np.random.default_rng(1))
     np.testing.assert_allclose(
-        errors(said, DEPTH) - errors(plain, DEPTH), head + 0.01 * pressure, atol=1e-12
+        errors(reading, DEPTH) - errors(plain, DEPTH), head + 0.01 * pressure, atol=1e-12
     )  # rounding
 
 
@@ -160,8 +160,8 @@ def test_a_dead_radio_silences_sensors_and_buoy_at_once() -> None:
     assert 0.001 < dead.mean() < 0.03
     depth = sense(DEPTH, CALM, np.random.default_rng(1), silence=silence)
     buoy = receive_buoy(BUOY, CALM, np.random.default_rng(1), silence=silence)
-    for heard in (depth, buoy):
-        np.testing.assert_array_equal(heard.time, TIME[~dead])
+    for received in (depth, buoy):
+        np.testing.assert_array_equal(received.time, TIME[~dead])
 
 
 def test_a_buoys_word_is_received_as_it_was_but_for_faults() -> None:

@@ -118,14 +118,15 @@ def test_the_truth_is_what_was_followed(small_cage: Cage, made: Maker) -> None:
 def test_sensors_have_their_errors_and_shackles_their_windows(
     field: VirtualField,
 ) -> None:
-    for name, said in field.record.sensors.items():
+    for name, outcome in field.record.sensors.items():
         exact = field.truth.sensors[name]
         error = (
-            values(field.record, name) - values(field.truth, name)[np.isin(exact.time, said.time)]
+            values(field.record, name)
+            - values(field.truth, name)[np.isin(exact.time, outcome.time)]
         )
         # gain and bias of a shackle; noise and the air's pressure of a depth sensor
         assert 0.0 < abs(np.median(error)) < (0.6 if name.startswith("shackle") else 0.4)
-    hours = {name: len(said) * STEP / 3600.0 for name, said in field.record.sensors.items()}
+    hours = {name: len(outcome) * STEP / 3600.0 for name, outcome in field.record.sensors.items()}
     assert hours["shackle-1"] < 6.5
     assert 20.0 < hours["depth-1"] < 24.0
 
@@ -144,15 +145,15 @@ def test_a_depth_sensor_takes_waves_for_depth_and_the_truth_does_not(
     assert jumps["depth-3"][1] == pytest.approx(jumps["depth-3"][0], rel=0.1)
 
 
-def test_the_buoy_carries_the_waves_held_and_is_not_always_heard(
+def test_the_buoy_carries_the_waves_held_and_is_not_always_received(
     rough: VirtualField,
 ) -> None:
-    whole, heard = rough.truth.buoy, rough.record.buoy
+    whole, received = rough.truth.buoy, rough.record.buoy
     np.testing.assert_array_equal(whole.time, BUOY.time)
     np.testing.assert_array_equal(whole.values["hs_m"][:6], WAVES.values["hs_m"][[0] * 5 + [1]])
     assert any("Generated waves" in note for note in whole.notes)
-    assert len(heard) < len(whole)
-    assert set(heard.values) == {*BUOY.values, "hs_m", "tp_s", "wave_from_deg"}
+    assert len(received) < len(whole)
+    assert set(received.values) == {*BUOY.values, "hs_m", "tp_s", "wave_from_deg"}
 
 
 @pytest.mark.slow
@@ -227,10 +228,10 @@ def test_a_stopped_field_goes_on_and_ends_with_the_same_bytes(
         if done == stop_after:
             raise StoppedError
 
-    asked = {"events": [CUT], "kept": tmp_path / "kept"}
+    body = {"events": [CUT], "kept": tmp_path / "kept"}
     with pytest.raises(StoppedError):
-        made(**asked, progress=stop)
-    made(**asked).write(tmp_path / "stopped")
+        made(**body, progress=stop)
+    made(**body).write(tmp_path / "stopped")
     assert contents(tmp_path / "stopped") == broken
 
 
@@ -242,10 +243,10 @@ def test_shares_leave_nothing_to_do(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(_stretches, "follow", made.follower.follow)
-    asked: dict[str, Any] = {"hidden": HIDDEN, "seed": 1, "every_s": STEP, "kept": tmp_path}
-    asked |= {"timetable": Timetable()}
+    body: dict[str, Any] = {"hidden": HIDDEN, "seed": 1, "every_s": STEP, "kept": tmp_path}
+    body |= {"timetable": Timetable()}
     for which in (2, 0, 1):
-        virtual_field_share(small_cage, BUOY, share=(which, 3), workers=1, **asked)
+        virtual_field_share(small_cage, BUOY, share=(which, 3), workers=1, **body)
     assert sorted(made.follower.starts) == [3600.0 * number for number in range(24)]
     made.follower.calls.clear()
     shared = made(kept=tmp_path)
@@ -264,7 +265,7 @@ def test_a_share_that_does_not_exist_is_refused(
         )
 
 
-def test_an_event_is_told_by_the_truth_and_not_by_the_record(
+def test_an_event_is_noted_by_the_truth_and_not_by_the_record(
     made: Maker,
 ) -> None:
     silent = Event.parse("silent buoy-1 2020-01-18T16:00Z until=2020-01-18T22:00Z")
@@ -275,14 +276,14 @@ def test_an_event_is_told_by_the_truth_and_not_by_the_record(
     assert f"Event: {CUT}." in field.truth.notes
     assert not any("vent" in note for note in field.record.notes)
     quiet = np.datetime64("2020-01-18T16:00"), np.datetime64("2020-01-18T22:00")
-    heard, told = (
+    received, report = (
         np.sum((one.buoy.time >= quiet[0]) & (one.buoy.time < quiet[1]))
         for one in (field.record, field.truth)
     )
-    assert (heard, told) == (0, 30)
+    assert (received, report) == (0, 30)
 
 
-def test_a_lost_stretch_is_a_gap_that_the_notes_tell(
+def test_a_lost_stretch_is_a_gap_that_the_notes_name(
     made: Maker,
 ) -> None:
     made.follower.loses = {5 * 3600.0}

@@ -41,7 +41,7 @@ def run(
     cage: Cage, weather: Weather, folder: Path, stretches: tuple[Stretch, ...] = DAY
 ) -> list[float]:
     """Simulate stretches into a folder; what was reported on the way."""
-    told: list[float] = []
+    messages: list[float] = []
     simulate_stretches(
         stretches,
         StretchStore.opened(folder, IDENTITY),
@@ -50,9 +50,9 @@ def run(
         timetable=HOUR,
         every=EVERY,
         workers=1,
-        report=told.append,
+        report=messages.append,
     )
-    return told
+    return messages
 
 
 def contents(folder: Path) -> dict[str, bytes]:
@@ -76,15 +76,15 @@ def test_the_true_cages_nodes_are_where_the_drawn_ones_are(small_cage: Cage) -> 
 def test_stretches_are_simulated_side_by_side_from_their_starts(
     small_cage: Cage, weather: Weather, follower: Follower, tmp_path: Path
 ) -> None:
-    told = run(small_cage, weather, tmp_path / "s")
+    result = run(small_cage, weather, tmp_path / "s")
     assert follower.starts == [3600.0 * number for number in range(24)]
     lanes = simulation_lanes()
     assert [len(call["starts"]) for call in follower.calls] == [lanes, 24 - lanes]
-    assert told == [0, lanes, 24, 24]
-    (asked, *_) = follower.calls
-    assert (asked["law"], asked["stiffening"]) == ("loland", (0.01, 0.5))
-    assert (asked["duration"], asked["every"], asked["spin_up"]) == (3600.0, EVERY, 300.0)
-    assert (asked["refined"], asked["time_step"], asked["shape_every"]) == (2, 0.001, 1200.0)
+    assert result == [0, lanes, 24, 24]
+    (query, *_) = follower.calls
+    assert (query["law"], query["stiffening"]) == ("loland", (0.01, 0.5))
+    assert (query["duration"], query["every"], query["spin_up"]) == (3600.0, EVERY, 300.0)
+    assert (query["refined"], query["time_step"], query["shape_every"]) == (2, 0.001, 1200.0)
 
 
 def test_a_stretch_meets_its_own_part_of_the_weather(
@@ -117,9 +117,9 @@ def test_what_is_kept_is_not_simulated_again_and_ends_in_the_same_bytes(
     run(small_cage, weather, tmp_path / "parts", DAY[3::2])
     (tmp_path / "parts" / ".00000000.safetensors.unborn").write_bytes(b"half of it")
     follower.calls.clear()
-    told = run(small_cage, weather, tmp_path / "parts")
+    result = run(small_cage, weather, tmp_path / "parts")
     assert follower.starts == [3600.0 * number for number in (0, 1, 2, *range(4, 24, 2))]
-    assert told[0] == 11
+    assert result[0] == 11
     assert contents(tmp_path / "parts") == contents(tmp_path / "whole")
 
 

@@ -24,13 +24,13 @@ def shapes(seeds=(0, 1), cases=40, **options):
 
 
 def test_every_case_has_a_report_and_a_shape_and_the_same_seeds_the_same_ones():
-    heard = []
-    once = shapes(progress=lambda *told: heard.append(told))
+    messages = []
+    once = shapes(progress=lambda *report: messages.append(report))
     again = shapes()
     assert once.node_position.shape == (80, SMALL.node_count, 3)
     np.testing.assert_array_equal(once.node_position, again.node_position)
     np.testing.assert_array_equal(once.current_velocity, again.current_velocity)
-    assert heard[-1] == ("shape error", 80, 80)
+    assert messages[-1] == ("shape error", 80, 80)
 
 
 def test_a_seed_is_the_same_among_others_and_others_are_not():
@@ -73,6 +73,6 @@ def test_the_growth_of_the_net_matters():
 
 
 @pytest.mark.parametrize(("seeds", "cases"), [((), 10), ((0,), 0)])
-def test_nothing_asked_is_nothing_answered(seeds, cases):
+def test_no_query_has_no_answer(seeds, cases):
     with pytest.raises(InputError, match="Ask for 1"):
         shapes(seeds=seeds, cases=cases)

@@ -170,7 +170,7 @@ def test_the_waves_are_as_high_and_long_as_the_record_says_then(whole: Weather) 
         assert peak == pytest.approx(tp, rel=0.15)
 
 
-def test_waves_come_from_where_they_are_said_to_and_currents_go_to() -> None:
+def test_waves_come_from_where_they_are_stated_to_and_currents_go_to() -> None:
     eastward = weather(CALM, waves=steady_sea(1.0, 6.0, 270.0), buoy=steady(0.5, 0.0))
     waves = eastward.waves(600.0)
     mean = (waves.amplitude**2 @ waves.direction) / np.sum(waves.amplitude**2)

@@ -9,6 +9,7 @@ from seacage.dynamics import settle
 from seacage.dynamics._equilibrium import _search
 from seacage.dynamics._equilibrium._search import AIM, APART, TOLERANCE, _choose
 from seacage.dynamics._kernel._balance import Balancing
+from seacage.dynamics._parts._assembly import Assembly
 from seacage.ocean import SeaState
 
 ACE = Cage.named("ace")
@@ -123,7 +124,7 @@ def chosen(signs, *, residual=None, apart=1.0):
     begun = Balancing.begun(shape, np.zeros((len(shape), 1)), barrier=1.0, shift=1.0)
     state = {name: getattr(begun, name) for name in begun.__slots__}
     state |= {"sign": np.ravel(signs), "residual": left.ravel()}
-    return _choose(COARSE, Balancing(**state), starts)
+    return _choose(Assembly.of(COARSE), Balancing(**state), starts)
 
 
 def test_what_newtons_method_does_not_finish_is_relaxed(monkeypatch):

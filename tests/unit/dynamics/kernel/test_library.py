@@ -22,7 +22,7 @@ def test_the_only_kernel_of_other_machines_is_chosen() -> None:
 
 
 @pytest.mark.parametrize("name", ALL)
-def test_a_kernel_that_is_asked_for_is_chosen(name: str) -> None:
+def test_a_kernel_that_is_requested_is_chosen(name: str) -> None:
     assert choose(ALL, 4, name) == name
 
 
@@ -43,9 +43,9 @@ def test_an_impossible_kernel_is_refused(
 
 
 def loaded(forced: str) -> subprocess.CompletedProcess[str]:
-    tell = "from seacage.dynamics._kernel._library import kernel; print(kernel().library._name)"
+    script = "from seacage.dynamics._kernel._library import kernel; print(kernel().library._name)"
     environment = os.environ | {"SEACAGE_KERNEL": forced}
-    command = [sys.executable, "-c", tell]
+    command = [sys.executable, "-c", script]
     return subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
 
 

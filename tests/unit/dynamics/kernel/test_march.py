@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from compiled import kernel_water
 from seacage.cage import Cage
 from seacage.conventions import InputError
 from seacage.dynamics import simulation_lanes
-from seacage.dynamics._kernel._march import March, Steps, kernel_water
+from seacage.dynamics._kernel._march import March, Steps
 from seacage.dynamics._kernel._march_inputs import (
     HELD,
     Ocean,
@@ -144,7 +145,7 @@ def test_nothing_counts_before_the_spin_up_is_over():
     assert np.all(np.isinf(one.account["bridle_most"]))
 
 
-def test_the_account_counts_every_refresh_and_samples_those_asked_for():
+def test_the_account_counts_every_refresh_and_samples_those_requested():
     one = march()
     one.go(12)
     assert one.account["counted"] == STEPS.counted
@@ -225,17 +226,17 @@ def test_cases_change_one_by_one():
     assert np.abs(one.position[1] - unchanged.position[1]).max() > 1e-5
 
 
-def test_waves_told_again_go_on_as_they_were():
-    whole, told = march(), march()
+def test_waves_given_again_go_on_as_they_were():
+    whole, report = march(), march()
     whole.go(12)
-    told.go(5)
-    assert told.now == pytest.approx(0.5)
-    told.set_current(np.tile(SEA.current_velocity, (2, 1, 1)))
-    told.set_waves([replace(w, phase=w.phase - 0.5 * w.angular_frequency) for w in drawn(2)])
-    told.go(7)
+    report.go(5)
+    assert report.now == pytest.approx(0.5)
+    report.set_current(np.tile(SEA.current_velocity, (2, 1, 1)))
+    report.set_waves([replace(w, phase=w.phase - 0.5 * w.angular_frequency) for w in drawn(2)])
+    report.go(7)
     # a phase's last bits are lost with the turns that are taken off
-    np.testing.assert_allclose(told.position, whole.position, atol=1e-5)
-    assert np.abs(told.velocity).max() > 0.05
+    np.testing.assert_allclose(report.position, whole.position, atol=1e-5)
+    assert np.abs(report.velocity).max() > 0.05
 
 
 def test_rebuilt_as_it_was_a_march_goes_on_as_before():
@@ -298,7 +299,7 @@ def test_the_sum_of_displacements_is_of_the_refreshes_that_count():
 
 
 @pytest.mark.parametrize("wrong", [np.nan, np.inf, 1e6])
-def test_a_case_out_of_bounds_is_put_back_and_its_time_told(wrong):
+def test_a_case_out_of_bounds_is_put_back_and_its_time_reported(wrong):
     start = np.repeat(ASSEMBLY.position[None], 3, axis=0)
     start[1, 5, 0] = wrong
     one, whole = march(cases=3, start=start), march(cases=3)

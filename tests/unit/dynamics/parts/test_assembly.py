@@ -24,7 +24,7 @@ def test_in_the_design_shape_every_bridle_bears_its_pretension():
     np.testing.assert_allclose(tension, 10e3)
 
 
-def test_strung_again_a_bridle_bears_what_it_is_told_but_for_its_offset():
+def test_strung_again_a_bridle_bears_what_it_is_set_to_but_for_its_offset():
     rng = np.random.default_rng(0)
     shape = PARTS.position + rng.normal(scale=0.3, size=PARTS.position.shape)
     offset = (0.01, -0.01, *10 * [0.0])
@@ -81,3 +81,16 @@ def test_a_cage_that_cannot_float_is_refused_with_both_forces():
 def test_a_chain_longer_than_its_bridle_is_refused():
     with pytest.raises(InputError, match=r"chain_length_m = 40 is longer than .*\(36 m\)"):
         Assembly.of(ACE.altered(bridles={"chain_length_m": 40.0}))
+
+
+def test_an_assembly_carries_its_scales():
+    net = ACE.design_position[ACE.edges]
+    assert PARTS.scales.length == 25.0
+    spans = np.linalg.norm(net[:, 1] - net[:, 0], axis=1)
+    assert PARTS.scales.mesh == pytest.approx(spans.mean())
+    assert PARTS.scales.force == pytest.approx((570.0 * 50.0 * np.pi + 980.0) / 32, rel=0.01)
+
+
+def test_a_held_collar_keeps_its_place_and_nothing_else_does():
+    np.testing.assert_array_equal(np.flatnonzero(PARTS.held().fixed), ACE.ring_nodes(0))
+    assert not PARTS.fixed.any()

@@ -148,9 +148,9 @@ def test_means_are_those_of_the_samples():
 
 
 def test_progress_ends_at_the_end():
-    told = []
-    follow(CAGE, [Tide()], [0.0], progress=lambda *at: told.append(at), **BRIEF)
-    assert told[-1] == ("follow", 80, 80)
+    messages = []
+    follow(CAGE, [Tide()], [0.0], progress=lambda *at: messages.append(at), **BRIEF)
+    assert messages[-1] == ("follow", 80, 80)
 
 
 @pytest.mark.parametrize(

@@ -19,6 +19,7 @@ from seacage.dynamics import (
     simulation_lanes,
 )
 from seacage.dynamics._time import _forcing, _simulate
+from seacage.dynamics._time._simulation import Simulation
 from seacage.ocean import CurrentProfile, SeaState, Waves, sample_waves, surface_elevation
 
 SMALL = Cage.named("ace").altered(
@@ -219,7 +220,7 @@ def test_a_case_does_not_depend_on_the_number_of_threads(workers, company):
     assert_same(quick(every, seed=5, second_moment=True, workers=workers), company)
 
 
-def test_a_case_does_not_depend_on_how_often_progress_is_told(company, monkeypatch):
+def test_a_case_does_not_depend_on_how_often_progress_is_reported(company, monkeypatch):
     monkeypatch.setattr(_simulate, "CHUNK", 7)
     assert_same(quick(seas(len(company.result)), seed=5, second_moment=True), company)
 
@@ -260,12 +261,12 @@ def test_in_a_steady_current_it_comes_to_rest_where_settle_does(law, monkeypatch
     currents = [SeaState(current_speed=u, current_to=200.0) for u in (0.2, 0.5)]
     settled = settle(SMALL, currents, law=law)
 
-    def at_rest(cage, assembly, seas, *_, **__):
+    def at_rest(simulation, assembly, seas):
         start = assembly.position.copy()
-        start[: cage.node_count] = rest_shape(cage, hold_collar=False)
+        start[: simulation.cage.node_count] = simulation.rest
         return np.repeat(start[None], len(seas), axis=0)
 
-    monkeypatch.setattr(_simulate, "_start", at_rest)
+    monkeypatch.setattr(Simulation, "start", at_rest)
     ended = simulate(SMALL, currents, law=law, duration=1.0, spin_up=400.0)
     # swinging on its mooring dies out slowly: 400 s leave some millimetres of 0.5 m
     np.testing.assert_allclose(ended.node.mean, settled.node_position, atol=0.01)
@@ -396,14 +397,14 @@ def test_a_series_ends_where_its_case_was_given_up(monkeypatch):
 
 
 def test_a_start_that_is_not_a_number_is_given_up_at_once_and_alone(monkeypatch):
-    plain = _simulate._start
+    plain = Simulation.start
 
     def started(*args, **options):
         start = plain(*args, **options)
         start[1, 4, 2] = np.nan
         return start
 
-    monkeypatch.setattr(_simulate, "_start", started)
+    monkeypatch.setattr(Simulation, "start", started)
     spoilt = quick([SEA] * 3, seed=[1, 2, 3])
     monkeypatch.undo()
     np.testing.assert_array_equal(spoilt.result == Result.DIVERGED, [False, True, False])
@@ -420,10 +421,10 @@ def test_a_start_that_is_not_a_number_is_given_up_at_once_and_alone(monkeypatch)
 @pytest.mark.parametrize("workers", [1, 3])
 def test_progress_grows_to_the_whole(workers, monkeypatch):
     monkeypatch.setattr(_simulate, "CHUNK", 10)
-    told = []
+    messages = []
     count = 2 * simulation_lanes() + 1
-    quick([SEA] * count, workers=workers, progress=lambda *words: told.append(words))
-    names, done, total = zip(*told, strict=True)
+    quick([SEA] * count, workers=workers, progress=lambda *words: messages.append(words))
+    names, done, total = zip(*messages, strict=True)
     assert set(names) == {"simulate"}
     assert set(total) == {count * 5}  # s: spin-up and what counts, of all cases
     assert list(done) == sorted(done)
@@ -518,16 +519,16 @@ def test_what_makes_no_sense_is_refused_with_its_value_and_what_to_do(what):
 )
 def test_an_unknown_name_is_answered_with_the_known_ones(option, words):
     """In a process of its own, as the tests' checks of types would refuse it first."""
-    asked = (
+    script = (
         "from seacage.cage import Cage; from seacage.dynamics import simulate; "
         "from seacage.ocean import SeaState; "
         "simulate(Cage.named('ace'), SeaState(current_speed=0.1, current_to=0.0), "
         f"duration=1.0, {option})"
     )
-    told = subprocess.run(
-        [sys.executable, "-c", asked], check=False, capture_output=True, text=True
+    result = subprocess.run(
+        [sys.executable, "-c", script], check=False, capture_output=True, text=True
     )
-    assert told.stderr.rstrip().endswith(words)
+    assert result.stderr.rstrip().endswith(words)
 
 
 def test_a_time_step_that_is_refused_names_one_that_is_not():

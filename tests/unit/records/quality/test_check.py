@@ -88,7 +88,7 @@ def test_a_calm_has_no_steepness():
     assert flags(check_record(record(hs_m=[0.0], tp_s=[0.0])), "tp_s") == ["GOOD"]
 
 
-def test_a_height_without_a_period_is_judged_alone():
+def test_a_height_without_a_period_is_checked_alone():
     checked = check_record(record(hs_m=[1.0], tp_s=[np.nan]))
     assert flags(checked, "hs_m") == ["GOOD"]
     assert flags(checked, "tp_s") == ["MISSING"]
@@ -169,7 +169,7 @@ def test_two_equal_readings_are_no_flat_line_however_far_apart():
     assert flags(checked, "current_speed_m_s") == ["GOOD", "GOOD"]
 
 
-def test_a_late_sample_is_judged_alone_and_leaves_the_state():
+def test_a_late_sample_is_checked_alone_and_leaves_the_state():
     def depth(minutes, value):
         return Sample(
             stream="depth-1", t=NOON + timedelta(minutes=minutes), values={"depth_m": value}
@@ -221,13 +221,13 @@ def test_a_spike_fails_once_the_next_reading_has_come_and_its_neighbours_stay():
 
 def test_a_live_spike_is_amended_by_the_sample_after_it():
     state = QualityState()
-    told = []
+    messages = []
     for minute, value in enumerate([7.0, 7.1, 30.0, 7.1]):
         t = NOON + timedelta(minutes=minute)
         state, _ = check_sample(state, Sample(stream="depth-1", t=t, values={"depth_m": value}))
-        told.append(state.amended)
-    assert told[:3] == [(), (), ()]
-    (amendment,) = told[3]
+        messages.append(state.amended)
+    assert messages[:3] == [(), (), ()]
+    (amendment,) = messages[3]
     assert amendment.t == NOON + timedelta(minutes=2)
     assert (amendment.key, amendment.flag) == ("depth_m", Flag.FAIL)
     assert amendment.remark.endswith("Flagged 4 (fail); the raw value is kept.")
@@ -309,8 +309,8 @@ def test_what_is_usual_in_winter_is_suspect_in_summer():
 
 def test_verdicts_say_which_test_found_what_and_where():
     found = verdicts_on(record(every_s=60.0, depth_m=[7.0, 7.1, 30.0, np.nan, 700.0, 7.1]))
-    said = {(one.test, one.flag.name): one.rows.tolist() for one in found}
-    assert said == {
+    body = {(one.test, one.flag.name): one.rows.tolist() for one in found}
+    assert body == {
         ("rate of change", "SUSPECT"): [2, 5],
         ("missing value", "MISSING"): [3],
         ("gross range", "FAIL"): [4],
@@ -319,5 +319,5 @@ def test_verdicts_say_which_test_found_what_and_where():
 
 
 @pytest.mark.parametrize("tp", [1e308, 1e-300, 5e-324])
-def test_an_absurd_period_is_judged_and_never_an_error(tp):
+def test_an_absurd_period_is_flagged_and_never_an_error(tp):
     assert flags(check_record(record(hs_m=[1.0], tp_s=[tp])), "tp_s") == ["FAIL"]

@@ -75,7 +75,7 @@ def rough(group: str, seed: int, *, size: int = 900) -> Record:
     return Record(stream="any-1", time=time, values=values, origin=Origin.MEASURED)
 
 
-def said(record: Record, limits: Limits) -> list[tuple[object, ...]]:
+def verdict_rows(record: Record, limits: Limits) -> list[tuple[object, ...]]:
     return [
         (one.key, one.test, one.flag, one.rows.tolist(), one.example)
         for one in verdicts_on(record, limits)
@@ -88,19 +88,19 @@ def test_verdicts_are_those_of_judging_every_row(
     group: str, seed: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     record, limits = rough(group, seed), impatient(group)
-    skipping = said(record, limits)
+    skipping = verdict_rows(record, limits)
 
     def everything(_: str, time: np.ndarray, *__: object) -> Candidates:
         return Candidates([slice(0, len(time))], np.ones(len(time), dtype=bool))
 
     monkeypatch.setattr("seacage.records._quality._check.candidate_rows", everything)
-    assert skipping == said(record, limits)
+    assert skipping == verdict_rows(record, limits)
     tests = {test for _, test, *_ in skipping}
     assert {"missing value", "gap", "flat line", "attenuated signal"} <= tests
     assert tests & {"spike", "rate of change"}
 
 
-def test_of_a_healthy_record_hardly_a_row_is_judged() -> None:
+def test_of_a_healthy_record_hardly_a_row_is_checked() -> None:
     rng = np.random.default_rng(1)
     depth = 7.0 + 0.5 * np.sin(np.arange(50_000) / 3.0) + rng.normal(scale=0.03, size=50_000)
     depth[20_000] += 20.0

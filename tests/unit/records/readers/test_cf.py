@@ -77,7 +77,7 @@ def test_currents_of_ndbc_are_read_at_the_upper_bin_towards(tmp_path):
         ("120  5.0  6.0    MM", "120  5.0  6.0", "line 4: 13 cells under a header of 14"),
     ],
 )
-def test_a_fault_in_a_file_of_ndbc_is_said(tmp_path, old, new, sentence):
+def test_a_fault_in_a_file_of_ndbc_is_reported(tmp_path, old, new, sentence):
     assert old in NDBC
     with pytest.raises(RecordError, match=sentence):
         read_record(written(tmp_path / "46097.txt", NDBC.replace(old, new)))
@@ -287,7 +287,7 @@ def test_a_hindcast_is_read_by_standard_names_and_turned(tmp_path, engine):
     assert "wave_direction is read from thq [deg, towards]." in record.notes
 
 
-def test_a_hindcasts_origin_is_said_by_the_user(tmp_path):
+def test_a_hindcasts_origin_is_reported_by_the_user(tmp_path):
     with pytest.raises(RecordError, match="nothing says how its numbers were made"):
         read_record(stored(tmp_path / "nora3.nc", hindcast()), columns=NetcdfMap())
 
@@ -373,7 +373,7 @@ def test_a_depth_of_a_profile_is_chosen_and_never_interpolated(tmp_path):
         ("days since 2018-01-01", "360_day", "the calendar '360_day' is not the world's"),
     ],
 )
-def test_a_time_that_cannot_be_told_is_refused(tmp_path, units, calendar, sentence):
+def test_a_time_that_cannot_be_determined_is_refused(tmp_path, units, calendar, sentence):
     dataset = hindcast()
     dataset["time"].attrs.update(units=units, calendar=calendar)
     with pytest.raises(RecordError, match=sentence):

@@ -99,7 +99,7 @@ def test_a_cell_without_a_value_is_missing_in_its_row(table, cell):
 
 
 @pytest.mark.parametrize("cell", ["abc", "1_8", "18 cm/s", "0x12"])
-def test_text_that_is_no_number_is_missing_and_said(table, cell):
+def test_text_that_is_no_number_is_missing_and_reported(table, cell):
     record = read_record(table(HEADER + ROW + f"2018-01-26T23:26:00Z,{cell},52\n"))
     assert flags(record, "current_speed_m_s") == [Flag.GOOD, Flag.MISSING]
     assert (

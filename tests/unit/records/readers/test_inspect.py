@@ -53,7 +53,7 @@ def test_once_filled_in_the_map_reads_the_file(logger, tmp_path):
     assert str(record.time[0]) == "2018-01-26T22:08:00.000000"
 
 
-def test_days_and_months_that_cannot_be_told_apart_are_asked_for(tmp_path):
+def test_days_and_months_that_cannot_be_distinguished_are_requested(tmp_path):
     (tmp_path / "x.csv").write_text("t,hs\n01/02/2018 00:00,1.0\n02/02/2018 00:00,1.1\n")
     found = inspect_file(tmp_path / "x.csv")
     assert 'format = "?"  # %d/%m/%Y %H:%M or %m/%d/%Y %H:%M' in found.map_text
@@ -61,7 +61,7 @@ def test_days_and_months_that_cannot_be_told_apart_are_asked_for(tmp_path):
 
 
 @pytest.mark.parametrize("name", PUBLIC)
-def test_a_file_that_is_known_is_said_to_be(tmp_path, name):
+def test_a_file_that_is_known_is_reported_to_be(tmp_path, name):
     found = inspect_file(public_file(tmp_path, name, rows=3))
     assert "It fits a known map and needs none" in " ".join(found.findings)
 

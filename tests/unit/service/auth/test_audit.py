@@ -3,9 +3,9 @@ import stat
 
 import httpx
 
+from running_service import buoy, running
 from seacage.service._auth._audit import Audit
 from seacage.service._auth._limits import Limits
-from serviced import buoy, running
 
 
 def lines(path):
@@ -59,13 +59,13 @@ def test_refusals_and_signing_in_are_written_down_and_samples_and_questions_are_
         secret = one.service.tokens.mint(["read"], keep=True, name="ada")
         httpx.post(f"{one.address}/session", json={"token": secret})
         httpx.get(f"{one.address}/api/v1/cages", headers={"Authorization": "Bearer guess"})
-    told = [(line["did"], line["who"], line["status"]) for line in lines(path)]
-    assert told[0][0] == "POST /api/v1/cages/ace/samples"
-    assert told[0][2] == 403
-    assert told[1:] == [("POST /session", "ada", 201), ("GET /api/v1/cages", "", 401)]
+    report = [(line["did"], line["who"], line["status"]) for line in lines(path)]
+    assert report[0][0] == "POST /api/v1/cages/ace/samples"
+    assert report[0][2] == 403
+    assert report[1:] == [("POST /session", "ada", 201), ("GET /api/v1/cages", "", 401)]
     assert secret not in path.read_text()
 
 
-def test_a_service_can_be_told_how_much_a_body_may_hold(tmp_path):
+def test_a_service_can_be_set_how_much_a_body_may_hold(tmp_path):
     with running(tmp_path, limits=Limits(body_bytes=1000)) as one:
         assert one.post(*[buoy(minutes=-n) for n in range(20)]).status_code == 413

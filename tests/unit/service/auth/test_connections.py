@@ -11,6 +11,7 @@ import uvicorn
 from starlette.requests import HTTPConnection
 from websockets.sync.client import connect
 
+from running_service import Running, buoy, eventually, running
 from seacage.service._assembly import server
 from seacage.service._auth import _connections
 from seacage.service._auth._connections import Connections
@@ -18,7 +19,6 @@ from seacage.service._auth._limits import Limits
 from seacage.service._auth._protocols import LimitedHttp
 from seacage.service._live._metrics import Metrics
 from seacage.service._settings import Settings
-from serviced import Running, buoy, eventually, running
 
 HEADS = b"POST /session HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\n"
 BODY = HEADS + b"Content-Length: 90\r\n\r\n{"

@@ -23,7 +23,7 @@ def test_one_asker_does_not_use_up_the_bucket_of_another():
     assert rates.wait_s("ada", 0.0) > 0.0
 
 
-def test_those_who_asked_longest_ago_are_forgotten(monkeypatch):
+def test_those_who_called_longest_ago_are_forgotten(monkeypatch):
     monkeypatch.setattr("seacage.service._auth._rates._MOST_ASKERS", 2)
     rates = Rates(per_s=1e-6, burst=1.0)
     for asker in ("ada", "bob", "cy"):

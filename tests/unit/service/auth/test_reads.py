@@ -13,8 +13,8 @@ def _no_pause(monkeypatch):
     monkeypatch.setattr("seacage.service._auth._reads._PAUSE_S", 0.0)
 
 
-def take(reads, *asked):
-    asyncio.run(reads.take(*asked))
+def take(reads, *amounts):
+    asyncio.run(reads.take(*amounts))
 
 
 def test_one_token_cannot_have_all_the_budget():

@@ -3,7 +3,7 @@ from datetime import UTC, datetime, timedelta
 import pytest
 
 from seacage.service._auth._sessions import Sessions
-from seacage.service._auth._tokens import Tokens
+from seacage.service._auth._token_store import Tokens
 
 NOON = datetime(2020, 2, 1, 12, tzinfo=UTC)
 

@@ -9,13 +9,11 @@ from typer.testing import CliRunner
 
 from seacage.campaigns import CampaignStatus, Plan
 from seacage.service._cli._app import app
-from seacage.service._cli._plans import plan_of
-
-NOTHING = dict.fromkeys(("ranges", "grid", "listed", "cases", "duration", "seed"))
+from seacage.service._cli._plans import PlanOptions
 
 
-def asked(**given):
-    return plan_of(**{"plan": "default", **NOTHING, **given})
+def planned(**given):
+    return PlanOptions(**given).read()
 
 
 def run(*words):
@@ -31,11 +29,13 @@ def refusal(*words):
 
 @pytest.mark.parametrize("name", ["paper", "default", "current"])
 def test_a_plan_by_name_draws_a_thousand_half_hours(name):
-    assert asked(plan=name) == Plan.named(name, 0, 1000)
+    assert planned(plan=name) == Plan.named(name, 0, 1000)
 
 
 def test_ranges_replace_the_plans_own():
-    plan = asked(ranges=["hs_m=0.5,1", "current_speed_m_s=0.2,0.4"], cases=8, seed=3, duration=60.0)
+    plan = planned(
+        ranges=["hs_m=0.5,1", "current_speed_m_s=0.2,0.4"], cases=8, seed=3, duration=60.0
+    )
     ranges = {"hs": (0.5, 1.0), "current_speed": (0.2, 0.4)}
     assert plan == Plan.named("default", 3, 8, duration=60.0, ranges=ranges)
     assert plan.name == "default, other hs and current_speed"
@@ -43,7 +43,7 @@ def test_ranges_replace_the_plans_own():
 
 def test_a_grid_is_spanned_by_numbers_or_by_their_count():
     grid = ["current_speed_m_s=0:1:3", "current_to_deg=10,20", "hs_m=1", "period_ratio=1.5"]
-    plan = asked(grid=grid)
+    plan = planned(grid=grid)
     assert [(sea.current_speed, sea.current_to) for sea in plan.seas] == [
         (0.0, 10.0), (0.0, 20.0), (0.5, 10.0), (0.5, 20.0), (1.0, 10.0), (1.0, 20.0)
     ]  # fmt: skip
@@ -52,15 +52,15 @@ def test_a_grid_is_spanned_by_numbers_or_by_their_count():
 
 def test_a_table_of_seas_is_a_plan(tmp_path: Path):
     (tmp_path / "winter.csv").write_text("current_speed_m_s,current_to_deg\n0.3,90\n")
-    plan = asked(listed=tmp_path / "winter.csv", seed=2, duration=60.0)
+    plan = planned(listed=tmp_path / "winter.csv", seed=2, duration=60.0)
     assert (plan.name, len(plan), plan.seed, plan.duration) == ("winter", 1, 2, 60.0)
 
 
-def test_a_written_plan_is_taken_as_it_is_but_for_what_is_said(tmp_path: Path):
+def test_a_written_plan_is_taken_as_it_is_but_for_what_is_given(tmp_path: Path):
     plan = Plan.sample(7, 5, duration=600.0)
     plan.write(tmp_path / "plan.json")
-    assert asked(plan=str(tmp_path / "plan.json")) == plan
-    longer = asked(plan=str(tmp_path / "plan.json"), duration=900.0, seed=0)
+    assert planned(plan=str(tmp_path / "plan.json")) == plan
+    longer = planned(plan=str(tmp_path / "plan.json"), duration=900.0, seed=0)
     assert (longer.seas, longer.duration, longer.seed) == (plan.seas, 900.0, 0)
 
 
@@ -84,13 +84,13 @@ def test_a_written_plan_is_taken_as_it_is_but_for_what_is_said(tmp_path: Path):
         (("--method", "settle", "--law", "morison"), "an equilibrium knows no law"),
     ],
 )
-def test_what_cannot_be_asked_is_refused_in_one_sentence(words, says, tmp_path, monkeypatch):
+def test_what_cannot_be_simulated_is_refused_in_one_sentence(words, says, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert says in refusal(*words)
     assert not list(tmp_path.iterdir())
 
 
-def test_the_status_tells_the_first_failures_and_json_all(tmp_path, monkeypatch):
+def test_the_status_reports_the_first_failures_and_json_all(tmp_path, monkeypatch):
     failures = {case: f"current {case} m/s: lost" for case in range(30)}
     reached = CampaignStatus(
         plan="paper",
@@ -106,18 +106,18 @@ def test_the_status_tells_the_first_failures_and_json_all(tmp_path, monkeypatch)
         finished=False,
     )
     monkeypatch.setattr("seacage.campaigns.campaign_status", lambda _: reached)
-    said = run("campaign", "status", tmp_path).stdout
-    assert "100 of 100, not summed: say `seacage campaign finish`" in said
-    assert "2 core-seconds, 1050 simulated seconds in each" in said
-    assert "current 19 m/s: lost" in said
-    assert "current 20 m/s: lost" not in said
-    assert "and 10 more" in said
+    result = run("campaign", "status", tmp_path).stdout
+    assert "100 of 100, not summed: say `seacage campaign finish`" in result
+    assert "2 core-seconds, 1050 simulated seconds in each" in result
+    assert "current 19 m/s: lost" in result
+    assert "current 20 m/s: lost" not in result
+    assert "and 10 more" in result
     whole = json.loads(run("campaign", "status", tmp_path, "--json").stdout)
     assert whole["failures"][29] == {"case": 29, "reason": "current 29 m/s: lost"}
     assert whole["simulated_s_per_core_second"] == 1050.0
 
 
-def test_a_job_array_is_valid_bash_that_repeats_what_was_asked():
+def test_a_job_array_is_valid_bash_that_repeats_the_command():
     words = ("my campaign.zarr", "--plan", "paper", "--cases", 100, "--range", "hs_m=0,2")
     script = run("campaign", "slurm", "--tasks", 50, *words).stdout
     assert subprocess.run(["bash", "-n"], input=script, text=True, check=False).returncode == 0
@@ -131,7 +131,7 @@ def test_a_job_array_is_valid_bash_that_repeats_what_was_asked():
     }
 
 
-def test_a_job_array_takes_as_many_cores_as_workers_were_asked_for():
+def test_a_job_array_takes_as_many_cores_as_workers_were_requested():
     script = run("campaign", "slurm", "--tasks", 1, "a.zarr", "--workers", 4).stdout
     assert "#SBATCH --cpus-per-task=4\n" in script
     assert script.count("--workers") == 1

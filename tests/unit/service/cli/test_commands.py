@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 
 import seacage
 from seacage.cage import Cage
-from seacage.service._auth._tokens import Tokens
+from seacage.service._auth._token_store import Tokens
 from seacage.service._cli._app import app
 from seacage.service._store._store import open_store
 from seacage.testing import stand_in_campaign, stand_in_field, stand_in_seas, stand_in_twin
@@ -103,10 +103,10 @@ def buoy(tmp_path):
 
 @pytest.mark.parametrize("command", COMMANDS)
 def test_help_teaches_with_an_example_and_offers_json(command):
-    said = run(*command.split(), "--help").stdout
-    assert "Example" in said
-    assert f"seacage {command}" in said
-    assert "--json" in said
+    result = run(*command.split(), "--help").stdout
+    assert "Example" in result
+    assert f"seacage {command}" in result
+    assert "--json" in result
 
 
 def test_no_command_is_left_out_of_these_tests():
@@ -115,6 +115,15 @@ def test_no_command_is_left_out_of_these_tests():
         inner = getattr(command, "commands", None)
         named |= {f"{name} {one}" for one in inner} if inner else {name}
     assert named == set(COMMANDS)
+
+
+def test_every_option_and_argument_has_its_help():
+    groups = [typer.main.get_command(app)]
+    for group in groups:
+        for command in group.commands.values():
+            groups += [command] if getattr(command, "commands", None) else []
+            unexplained = [one.name for one in command.params if not one.help]
+            assert unexplained == [], command.name
 
 
 def test_the_exit_codes_are_documented():
@@ -130,14 +139,14 @@ def test_a_sea_state_settles_into_a_summary_and_a_file(small_cage, tmp_path):
 
     out = tmp_path / "response.nc"
     sea = ("--current-speed", 0.4, "--current-to", 90)
-    said = answer("settle", *sea, "--cage", small_cage, "--out", out)
-    assert said["result"] == 0
-    assert said["origin"] == "computed"
-    assert said["net_force_kn"][0] > 5.0
+    reply = answer("settle", *sea, "--cage", small_cage, "--out", out)
+    assert reply["result"] == 0
+    assert reply["origin"] == "computed"
+    assert reply["net_force_kn"][0] > 5.0
     with xarray.open_dataset(out) as kept:
         assert kept.bridle_tension.attrs["units"] == "N"
         assert float(kept.bridle_tension[0]) == pytest.approx(
-            1000.0 * said["bridle_tension_kn"]["bridle-1"], abs=1.0
+            1000.0 * reply["bridle_tension_kn"]["bridle-1"], abs=1.0
         )
 
 
@@ -150,7 +159,7 @@ def test_a_refused_sea_state_ends_with_1_and_one_sentence(small_cage):
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "said"),
+    ("old", "new", "message"),
     [
         ("water_depth_m = 191.0", "water_depth_m = 6.0", "hangs 31 m deep in water of 6 m"),
         ("side_m = 85.0", "side_m = 45.0", "no room for a collar"),
@@ -160,14 +169,14 @@ def test_a_refused_sea_state_ends_with_1_and_one_sentence(small_cage):
 )
 @pytest.mark.parametrize("command", ["settle", "simulate"])
 def test_a_cage_file_that_makes_no_sense_ends_with_2_and_its_name(
-    small_cage, command, old, new, said
+    small_cage, command, old, new, message
 ):
     small_cage.write_text(small_cage.read_text().replace(old, new))
     sea = ("--current-speed", 0.4, "--current-to", 90)
     result = run(command, *sea, "--cage", small_cage)
     assert result.exit_code == 2
     assert result.stderr.startswith(f"seacage: {small_cage}")
-    assert said in result.stderr
+    assert message in result.stderr
     assert result.stderr.count("\n") == 1
 
 
@@ -221,14 +230,14 @@ def test_settings_with_a_limit_that_is_no_number_end_with_2_and_the_files_name(t
         assert "farm.toml: alarms.load.raise_at = inf is no finite number" in result.stderr
 
 
-def test_a_campaign_runs_tells_how_far_it_is_and_becomes_netcdf(small_cage, tmp_path):
+def test_a_campaign_runs_reports_how_far_it_is_and_becomes_netcdf(small_cage, tmp_path):
     store, out = tmp_path / "small.zarr", tmp_path / "small.nc"
     short = ("--duration", 10, "--spin-up", 5, "--ramp", 5, "--cage", small_cage, "--workers", 1)
-    said = answer("campaign", "run", store, "--cases", 3, "--seed", 1, *short)
-    assert (said["total"], said["done"], said["plan"]) == (3, 3, "default")
-    assert said["simulated_s_per_core_second"] > 0.0
-    assert answer("campaign", "status", store) == said
-    assert answer("campaign", "finish", store) == said
+    reply = answer("campaign", "run", store, "--cases", 3, "--seed", 1, *short)
+    assert (reply["total"], reply["done"], reply["plan"]) == (3, 3, "default")
+    assert reply["simulated_s_per_core_second"] > 0.0
+    assert answer("campaign", "status", store) == reply
+    assert answer("campaign", "finish", store) == reply
     assert answer("campaign", "export", store, out) == {"written": str(out)}
     assert out.stat().st_size > 1000
 
@@ -239,10 +248,10 @@ def test_the_status_of_no_campaign_is_refused(tmp_path):
 
 def test_a_foreign_table_is_imported_and_its_bad_values_are_counted(buoy, tmp_path):
     out = tmp_path / "buoy-1.nc"
-    said = answer("field", "import", buoy, out)
-    assert said["written"] == str(out)
-    assert said["streams"]["buoy-1"]["flags"]["current_to_deg"]["fail"] == 1
-    assert answer("field", "check", out)["streams"] == said["streams"]
+    reply = answer("field", "import", buoy, out)
+    assert reply["written"] == str(out)
+    assert reply["streams"]["buoy-1"]["flags"]["current_to_deg"]["fail"] == 1
+    assert answer("field", "check", out)["streams"] == reply["streams"]
 
 
 def test_a_field_record_is_checked_stream_by_stream(tmp_path):
@@ -261,9 +270,9 @@ def test_an_empty_file_is_refused_with_its_name(tmp_path):
 
 def test_every_row_of_a_record_is_answered_or_says_why_not(buoy, twin, tmp_path):
     out = tmp_path / "answers.csv"
-    said = answer("replay", buoy, "--twin", twin, "--out", out)
-    assert (said["rows"], said["valid"], said["extrapolating"]) == (4, 3, 1)
-    assert said["ticks_per_second"] > 0.0
+    reply = answer("replay", buoy, "--twin", twin, "--out", out)
+    assert (reply["rows"], reply["valid"], reply["extrapolating"]) == (4, 3, 1)
+    assert reply["ticks_per_second"] > 0.0
     with out.open() as file:
         rows = list(csv.DictReader(file))
     computed = [name for name in rows[0] if name.endswith(("_kn", "_m")) or "fraction" in name]
@@ -369,8 +378,8 @@ def test_a_twin_is_trained_and_scored_on_what_did_not_teach_it(tmp_path, monkeyp
     two = {name: whole.sensors[name] for name in ("depth-1", "shackle-1")}
     replace(whole, sensors=two).write(tmp_path / "field")
     field, out = ("--field", tmp_path / "field"), ("--out", tmp_path / "twin")
-    said = answer("train", "--campaign", tmp_path, *field, *out, "--points", 30, "--days", 2)
-    assert [name for name, level in said["level"].items() if level == 2] == list(two)
+    reply = answer("train", "--campaign", tmp_path, *field, *out, "--points", 30, "--days", 2)
+    assert [name for name, level in reply["level"].items() if level == 2] == list(two)
     scores = tmp_path / "scores"
     scored = answer("score", "--twin", tmp_path / "twin", *field, "--out", scores)
     assert [one["sensor"] for one in scored["sensors"]] == list(two)
@@ -382,7 +391,7 @@ def test_a_twin_is_trained_and_scored_on_what_did_not_teach_it(tmp_path, monkeyp
     answer("train", "--campaign", tmp_path, "--out", alone, "--points", 30)
     words = ("train", "--base", alone, *field, "--out", added, "--points", 30, "--days", 2)
     again = answer(*words)
-    assert again["level"] == said["level"]
+    assert again["level"] == reply["level"]
     assert set(again["calibrated"]) == set(two)
     arrays = [load_file(one / "arrays.safetensors") for one in (alone, added)]
     assert arrays[0]
@@ -413,9 +422,9 @@ def test_a_token_for_nothing_that_exists_is_refused(tmp_path):
 
 
 def test_the_doctor_finds_the_physics_sound(tmp_path):
-    said = answer("doctor", "--data", tmp_path)
-    assert said["ok"]
-    physics = next(one for one in said["findings"] if one["what"] == "Physics kernel")
+    reply = answer("doctor", "--data", tmp_path)
+    assert reply["ok"]
+    physics = next(one for one in reply["findings"] if one["what"] == "Physics kernel")
     assert physics["state"] == "ok"
 
 
@@ -444,7 +453,7 @@ def test_the_doctor_counts_the_rows_that_nobody_can_verify(tmp_path):
     assert copy.read_bytes() == before
 
 
-def test_the_doctor_tells_of_a_row_that_the_disk_has_changed(tmp_path):
+def test_the_doctor_reports_a_row_that_the_disk_has_changed(tmp_path):
     place = tmp_path / "samples.sqlite"
     with closing(open_store(place)) as store:
         put(store, sample(0), sample(1))
@@ -459,8 +468,8 @@ def test_the_doctor_tells_of_a_row_that_the_disk_has_changed(tmp_path):
 @pytest.mark.postgres
 def test_the_doctor_says_whether_the_server_keeps_checksums(postgres, tmp_path):
     with schema(postgres) as url:
-        said = answer("doctor", "--data", tmp_path, "--store", url)["findings"]
-    (rows,) = [one["said"] for one in said if one["what"] == "Stored rows"]
+        reply = answer("doctor", "--data", tmp_path, "--store", url)["findings"]
+    (rows,) = [one["said"] for one in reply if one["what"] == "Stored rows"]
     assert "data_checksums of the server are o" in rows
 
 

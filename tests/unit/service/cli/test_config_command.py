@@ -70,7 +70,7 @@ def test_what_cannot_be_is_named(tmp_path, twin, text, what, why):
     assert why in findings[what]["said"]
 
 
-def test_a_broker_that_is_not_there_is_noticed_only_when_asked_for(tmp_path):
+def test_a_broker_that_is_not_there_is_noticed_only_on_request(tmp_path):
     text = '[mqtt]\nurl = "mqtt://127.0.0.1:1"'
     assert checked(tmp_path, text)[0] == 0
     code, findings = checked(tmp_path, text, "--reach")
@@ -93,17 +93,17 @@ def test_settings_are_shown_as_they_would_be_taken_without_secrets(tmp_path, mon
 
 
 def test_a_token_is_made_listed_and_revoked_by_name(tmp_path):
-    def told(*words):
+    def output_of(*words):
         result = CliRunner().invoke(app, ["token", *words, "--data", str(tmp_path)])
         assert result.exit_code == 0, result.stderr
         return result.stdout
 
-    token = told("new", "--scope", "read,ack", "--name", "Night shift").splitlines()[-1]
-    (listed,) = json.loads(told("list", "--json"))["tokens"]
+    token = output_of("new", "--scope", "read,ack", "--name", "Night shift").splitlines()[-1]
+    (listed,) = json.loads(output_of("list", "--json"))["tokens"]
     assert (listed["name"], listed["scope"]) == ("Night shift", ["read", "ack"])
-    assert token not in told("list")
-    told("revoke", "Night shift")
-    assert json.loads(told("list", "--json"))["tokens"] == []
+    assert token not in output_of("list")
+    output_of("revoke", "Night shift")
+    assert json.loads(output_of("list", "--json"))["tokens"] == []
     audited = [json.loads(line) for line in (tmp_path / "audit.jsonl").read_text().splitlines()]
     assert [line["did"] for line in audited] == ["token new", "token revoke"]
     assert {line["about"] for line in audited} == {listed["id"]}

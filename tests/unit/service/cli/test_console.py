@@ -1,12 +1,16 @@
+import json
 import math
 import subprocess
 import sys
+from dataclasses import dataclass
+from typing import Annotated
 
 import pytest
 import typer
+from typer.testing import CliRunner
 
 from seacage.conventions import InputError, ModelError, NonsenseError, SeacageError
-from seacage.service._cli._console import Exit, guard, progress_bar, without_nan
+from seacage.service._cli._console import Exit, guard, progress_bar, report, without_nan
 
 
 @pytest.mark.parametrize(
@@ -48,15 +52,56 @@ def test_numbers_that_json_does_not_have_become_null():
     }
 
 
+@dataclass(frozen=True, kw_only=True)
+class Colours:
+    """Two colours.
+
+    Parameters
+    ----------
+    left
+        On the left, of a name that
+        goes over two lines.
+    """
+
+    left: str
+    right: Annotated[str, typer.Option(help="On the right.")] = "green"
+
+
+def test_a_dataclass_becomes_options_with_the_help_of_its_docstring():
+    app = typer.Typer(rich_markup_mode=None)
+
+    @app.command()
+    @guard
+    def paint(size: Annotated[int, typer.Argument()], *, colours: Colours, fast: bool = False):
+        """Paint a net.
+
+        Example:
+            paint 3
+
+        Parameters
+        ----------
+        size
+            In metres.
+        """
+        report({"size": size, "colours": [colours.left, colours.right], "fast": fast})
+
+    said = CliRunner().invoke(app, ["--help"]).stdout
+    assert "Parameters" not in said
+    for words in ("Paint a net.", "paint 3", "In metres.", "two lines.", "On the right."):
+        assert words in said
+    said = CliRunner().invoke(app, ["3", "--left", "red", "--json"]).stdout
+    assert json.loads(said) == {"size": 3, "colours": ["red", "green"], "fast": False}
+
+
 def test_a_log_gets_the_first_and_the_last_line_of_a_stage(capsys):
     with progress_bar() as progress:
         for done in range(101):
             progress("settle", done, 100)
-    said = capsys.readouterr().err.splitlines()
-    assert said == ["settle: 0 of 100", "settle: 100 of 100"]
+    output = capsys.readouterr().err.splitlines()
+    assert output == ["settle: 0 of 100", "settle: 100 of 100"]
 
 
-def test_a_reader_who_stops_reading_is_told_nothing():
+def test_a_reader_who_stops_reading_is_sent_nothing():
     script = (
         "from seacage.service._cli._console import guard\n"
         "import typer\n"

@@ -45,9 +45,9 @@ def test_a_field_is_made_with_its_truth_and_its_waves(
 ) -> None:
     result = run(*words, "--json")
     assert result.exit_code == 0, result.stderr
-    said = json.loads(result.stdout)
-    assert said["origin"] == "virtual field"
-    assert said["streams"]["depth-1"] > 5000
+    answer = json.loads(result.stdout)
+    assert answer["origin"] == "virtual field"
+    assert answer["streams"]["depth-1"] > 5000
     record = FieldRecord.read(tmp_path / "out")
     assert record.buoy.values.keys() >= {"current_speed_m_s", "hs_m"}
     assert len(TrueMeans.read(tmp_path / "out" / "truth").time) == 18

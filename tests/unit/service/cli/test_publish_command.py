@@ -4,8 +4,8 @@ from datetime import timedelta
 import pytest
 from typer.testing import CliRunner
 
+from running_service import Running, at
 from seacage.service._cli._app import app
-from serviced import Running, at
 
 HEADER = "time,current_speed_m_s,current_to_deg\n"
 
@@ -34,19 +34,19 @@ def to(live: Running, tmp_path):
 
 
 def test_a_record_reaches_the_service_once(live: Running, record, to):
-    told = json.loads(publish(record, *to).stdout)
-    assert (told["read"], told["acknowledged"], told["spooled"]) == (20, 20, 0)
+    answer = json.loads(publish(record, *to).stdout)
+    assert (answer["read"], answer["acknowledged"], answer["spooled"]) == (20, 20, 0)
     assert len(live.cage.store.samples("ace", limit=100)) == 20
     again = json.loads(publish(record, *to).stdout)
     assert again["read"] == 1, "but for the last time, all was read before"
 
 
-def test_a_sample_that_is_refused_is_said_and_the_code_is_1(live: Running, record, to):
+def test_a_sample_that_is_refused_is_reported_and_the_code_is_1(live: Running, record, to):
     result = publish(record, *to, "--stream", "buoy-9")
     assert result.exit_code == 1
-    told = json.loads(result.stdout)
-    assert told["rejected"] == 20
-    assert "No stream is called 'buoy-9'" in told["reasons"][0]
+    answer = json.loads(result.stdout)
+    assert answer["rejected"] == 20
+    assert "No stream is called 'buoy-9'" in answer["reasons"][0]
     assert "20 samples were refused" in result.stderr
 
 
@@ -55,8 +55,8 @@ def test_what_is_ahead_of_the_services_clock_waits_for_the_next_run(live: Runnin
     record.write_text(HEADER + "".join(f"{at(minute)},0.5,90\n" for minute in range(40, 60)))
     result = publish(record, *to)
     assert result.exit_code == 3
-    told = json.loads(result.stdout)
-    assert (told["acknowledged"], told["rejected"], told["ahead"]) == (0, 0, 20)
+    answer = json.loads(result.stdout)
+    assert (answer["acknowledged"], answer["rejected"], answer["ahead"]) == (0, 0, 20)
     assert "20 samples are ahead of the service's clock" in result.stderr
     live.clock.at += timedelta(hours=1)
     result = publish(record, *to)

@@ -34,6 +34,6 @@ def test_the_link_of_a_demonstration_may_acknowledge_and_that_of_a_cage_may_not(
     words = ["serve", "--data", str(tmp_path), "--port", "0", "--json", *options]
     done = CliRunner().invoke(app, words)
     assert done.exit_code == 0, done.output
-    service, said = services[0], json.loads(done.stdout)
+    service, outcome = services[0], json.loads(done.stdout)
     service.store.close()
-    assert service.tokens.grant(said["token"]).scopes == scopes
+    assert service.tokens.grant(outcome["token"]).scopes == scopes

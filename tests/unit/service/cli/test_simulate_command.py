@@ -29,17 +29,17 @@ def test_a_sea_becomes_a_summary_a_file_and_an_animation(small_cage, tmp_path):
     files = ("--out", out, "--animation", gif)
     result = run(*SEA, *SHORT, "--cage", small_cage, "--seed", 3, *files, "--json")
     assert result.exit_code == 0, result.stderr
-    said = json.loads(result.stdout)
+    tensions = json.loads(result.stdout)
     history = read_history(out)
-    assert said["origin"] == "computed"
-    assert said["result"] == 0
-    assert said["written"] == str(out)
-    tension = said["bridle_tension_kn"]["bridle-7"]
+    assert tensions["origin"] == "computed"
+    assert tensions["result"] == 0
+    assert tensions["written"] == str(out)
+    tension = tensions["bridle_tension_kn"]["bridle-7"]
     # Printed to the newton.
     assert tension["minimum"] - 1e-3 <= tension["mean"] <= tension["maximum"] + 1e-3
     mean = history.statistics["bridle_tension_mean"][6] / 1e3
     assert tension["mean"] == pytest.approx(mean, abs=1e-3)
-    assert said["depth_m"]["depth-3"]["mean"] > 0.0
+    assert tensions["depth_m"]["depth-3"]["mean"] > 0.0
     assert history.settings["seed"] == 3
     assert history.sea.hs == 1.5
     assert Cage.from_toml(history.cage_toml).spokes == 8
@@ -48,12 +48,12 @@ def test_a_sea_becomes_a_summary_a_file_and_an_animation(small_cage, tmp_path):
 
 
 def test_the_same_seed_gives_the_same_numbers_and_another_does_not(small_cage):
-    def said(seed):
+    def tensions(seed):
         words = (*SEA, *SHORT, "--cage", small_cage, "--seed", seed, "--json")
         return json.loads(run(*words).stdout)["bridle_tension_kn"]
 
-    assert said(1) == said(1)
-    assert said(1) != said(2)
+    assert tensions(1) == tensions(1)
+    assert tensions(1) != tensions(2)
 
 
 def test_a_person_sees_a_table_and_the_progress_apart_from_it(small_cage):
@@ -82,9 +82,9 @@ def test_what_cannot_be_is_refused_in_one_sentence_before_anything_is_simulated(
     result = run(*SEA, *SHORT, "--cage", small_cage, *words)
     assert result.exit_code == 1
     assert result.stdout == ""
-    said = [line for line in result.stderr.splitlines() if "warning: Cage" not in line]
-    assert len(said) == 1
-    assert why in said[0]
+    tensions = [line for line in result.stderr.splitlines() if "warning: Cage" not in line]
+    assert len(tensions) == 1
+    assert why in tensions[0]
 
 
 def test_a_case_that_diverges_ends_with_3_and_says_when(small_cage, monkeypatch):

@@ -15,7 +15,7 @@ from seacage.studies._claim import Claim
 
 
 @pytest.fixture
-def asked(monkeypatch):
+def study_options(monkeypatch):
     """What the study was asked for; it answers with two verdicts at once."""
     given = {}
 
@@ -34,25 +34,25 @@ def asked(monkeypatch):
     return given
 
 
-def test_the_study_is_asked_for_what_the_words_say(asked, tmp_path):
+def test_the_study_is_run_as_the_words_say(study_options, tmp_path):
     words = ["study", "benchmarks", "--out", str(tmp_path), "--seeds", "5-6", "--quick", "--json"]
     result = CliRunner().invoke(app, words, catch_exceptions=False)
     assert result.exit_code == 0
-    said = json.loads(result.stdout)
-    assert said["report"] == str(tmp_path / "report.html")
-    assert [one["holds"] for one in said["verdicts"]] == [True, None]
-    assert asked["out"] == Path(tmp_path)
-    assert list(asked["seeds"]) == [5, 6]
-    assert asked["quick"]
-    assert asked["peers"] is None
+    answer = json.loads(result.stdout)
+    assert answer["report"] == str(tmp_path / "report.html")
+    assert [one["holds"] for one in answer["verdicts"]] == [True, None]
+    assert study_options["out"] == Path(tmp_path)
+    assert list(study_options["seeds"]) == [5, 6]
+    assert study_options["quick"]
+    assert study_options["peers"] is None
 
 
-def test_verdicts_are_told_in_words(asked, tmp_path):
+def test_verdicts_are_put_in_words(study_options, tmp_path):
     words = ["study", "benchmarks", "--out", str(tmp_path)]
-    said = CliRunner().invoke(app, words, catch_exceptions=False).stdout
-    assert "holds" in said
-    assert "not evaluated" in said
-    assert list(asked["seeds"]) == list(range(10))
+    result = CliRunner().invoke(app, words, catch_exceptions=False).stdout
+    assert "holds" in result
+    assert "not evaluated" in result
+    assert list(study_options["seeds"]) == list(range(10))
 
 
 def test_seeds_are_a_range_or_one():

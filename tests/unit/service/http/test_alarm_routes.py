@@ -3,7 +3,7 @@ from datetime import timedelta
 import httpx
 import pytest
 
-from serviced import Running, at, buoy, eventually, running
+from running_service import Running, at, buoy, eventually, running
 
 ALARMS = "/api/v1/cages/ace/alarms"
 NAME = "domain.input"

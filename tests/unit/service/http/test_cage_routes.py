@@ -4,12 +4,12 @@ import httpx
 import numpy as np
 import pytest
 
-from framed import decoded
+from page_frames import decode_frame
+from running_service import Running, at, buoy, depth, eventually
 from seacage.ocean import SeaState
 from seacage.service._live._answers import summary_of
 from seacage.service._live._frame import Flags
 from seacage.service._schemas._state import AlarmBrief
-from serviced import Running, at, buoy, depth, eventually
 
 JSON = {"Content-Type": "application/json"}
 
@@ -79,8 +79,8 @@ def measured(live: Running):
 
 def test_samples_come_back_in_time_order_and_within_their_span(live: Running):
     live.post(buoy(-10), depth(-30), buoy(-20), depth(0))
-    asked = {"from": at(-20), "to": at(0)}
-    samples = live.reader.get("/api/v1/cages/ace/samples", params=asked).json()["samples"]
+    body = {"from": at(-20), "to": at(0)}
+    samples = live.reader.get("/api/v1/cages/ace/samples", params=body).json()["samples"]
     assert [sample["t"] for sample in samples] == ["2020-02-01T11:40:00Z", "2020-02-01T11:50:00Z"]
 
 
@@ -277,7 +277,7 @@ def test_history_has_one_answer_per_reading_and_what_the_sensors_read(live: Runn
     assert past["bridles"]["bridle-1"]["level"] == 1
 
 
-def test_the_period_of_the_waves_is_said_with_their_height(live: Running):
+def test_the_period_of_the_waves_is_reported_with_their_height(live: Running):
     waves = {"hs_m": 1.2, "tp_s": 6.5, "wave_from_deg": 270.0}
     live.post(buoy(-10) | {"values": buoy()["values"] | waves})
     state = eventually(live.state, lambda one: one["valid"])
@@ -331,10 +331,10 @@ def test_the_worst_alarm_that_is_not_shelved_stands_for_its_cage(idle: Running):
 def frame_of(answer):
     assert answer.status_code == 200, answer.text
     assert answer.headers["content-type"] == "application/vnd.seacage.frame"
-    return decoded(answer.content)
+    return decode_frame(answer.content)
 
 
-def test_the_pages_message_can_be_asked_for_now_and_in_the_past(live: Running):
+def test_the_pages_message_can_be_requested_now_and_in_the_past(live: Running):
     live.post(buoy(-120, speed=0.2), buoy(0, speed=0.6))
     ask = lambda **at: frame_of(live.reader.get("/api/v1/cages/ace/frame", params=at))  # noqa: E731
     now = eventually(ask, lambda frame: frame.state["valid"])
@@ -346,8 +346,8 @@ def test_the_pages_message_can_be_asked_for_now_and_in_the_past(live: Running):
 
 
 def test_water_that_is_only_imagined_is_answered_and_leaves_no_trace(live: Running):
-    asked = {"current_speed_m_s": 0.5, "current_to_deg": 90.0}
-    frame = frame_of(live.reader.post("/api/v1/cages/ace/whatif", json=asked))
+    body = {"current_speed_m_s": 0.5, "current_to_deg": 90.0}
+    frame = frame_of(live.reader.post("/api/v1/cages/ace/whatif", json=body))
     assert frame.flags == Flags.VALID | Flags.IN_DOMAIN | Flags.WHAT_IF | Flags.NO_SPREAD
     expected = live.cage.twin.predict(SeaState(current_speed=0.5, current_to=90.0))
     assert frame.state["bridles"][0]["tension_kn"]["mean"] == pytest.approx(
@@ -355,7 +355,7 @@ def test_water_that_is_only_imagined_is_answered_and_leaves_no_trace(live: Runni
     )
     assert not live.state()["valid"]
     faster = frame_of(
-        live.reader.post("/api/v1/cages/ace/whatif", json=asked | {"current_speed_m_s": 1.4})
+        live.reader.post("/api/v1/cages/ace/whatif", json=body | {"current_speed_m_s": 1.4})
     )
     assert not faster.flags & Flags.IN_DOMAIN
 

@@ -7,9 +7,9 @@ from rosbags.rosbag2 import Reader
 from rosbags.typesys import Stores, get_typestore
 
 from brute import brute_distance
-from netted import CAGE, erring_twin
+from predicted_nets import CAGE, erring_twin
+from running_service import Running, at, buoy, eventually
 from seacage.cage import TangentPlane
-from serviced import Running, at, buoy, eventually
 
 CALL = "/api/v1/cages/ace/clearance"
 POINTS = [[0.0, 0.0, -5.0], [21.0, 3.0, -8.0], [40.0, 0.0, -5.0]]
@@ -31,47 +31,47 @@ def swum(idle: Running) -> Running:
     return idle
 
 
-def asked(live: Running, **body) -> dict:
+def query_clearance(live: Running, **body) -> dict:
     answer = live.reader.post(CALL, json=body)
     assert answer.status_code == 200, answer.text
     return answer.json()
 
 
 def test_distances_are_to_the_net_that_the_shape_call_shows(swum):
-    said = asked(swum, points_m=POINTS)
-    distance = [one["distance_m"] for one in said["points"]]
+    reply = query_clearance(swum, points_m=POINTS)
+    distance = [one["distance_m"] for one in reply["points"]]
     slow = brute_distance(np.array(POINTS), shape_of(swum), CAGE.panels)
     # The shape's nodes are rounded to the millimetre.
     np.testing.assert_allclose(distance, slow, atol=1e-3)
-    assert [one["inside"] for one in said["points"]] == [True, True, False]
-    for point, one in zip(POINTS, said["points"], strict=True):
+    assert [one["inside"] for one in reply["points"]] == [True, True, False]
+    for point, one in zip(POINTS, reply["points"], strict=True):
         away = np.subtract(point, one["nearest_m"])
         assert np.linalg.norm(away) == pytest.approx(one["distance_m"], abs=1e-3)
-        assert one["state_age_s"] == said["state_age_s"] == 120.0
+        assert one["state_age_s"] == reply["state_age_s"] == 120.0
         assert 0.0 <= one["p_below_1m"] <= 1.0
         assert one["sigma_m"] > 0.5
-    assert said["shape_error"] == "virtual field"
-    assert said["path"] is None
+    assert reply["shape_error"] == "virtual field"
+    assert reply["path"] is None
 
 
 def test_without_a_known_error_of_the_shape_there_are_distances_and_no_probability(live):
     live.post(buoy(-1))
     eventually(live.state, lambda state: state["valid"])
-    said = asked(live, points_m=POINTS, as_path=True)
-    assert said["shape_error"] is None
+    reply = query_clearance(live, points_m=POINTS, as_path=True)
+    assert reply["shape_error"] is None
     probabilities = ("p_below_1m", "p_below")
-    for one in said["points"]:
+    for one in reply["points"]:
         assert one["distance_m"] > 0.0
         assert one["expected_m"] == pytest.approx(one["distance_m"], abs=2e-4)
         assert {one[key] for key in ("sigma_m", "p_through", *probabilities)} == {None}
-    assert {said["path"][key] for key in ("p_least", "p_most", *probabilities)} == {None}
+    assert {reply["path"][key] for key in ("p_least", "p_most", *probabilities)} == {None}
     way = live.reader.post("/api/v1/cages/ace/inspection", json={"row_spacing_m": 5.0}).json()
     assert {(one["sigma_m"], one["p_below"]) for one in way["waypoints"]} == {(None, None)}
 
 
 def test_north_east_down_is_the_same_answer_turned(swum):
-    enu = asked(swum, points_m=POINTS)
-    ned = asked(swum, frame="ned", points_m=[[n, e, -u] for e, n, u in POINTS])
+    enu = query_clearance(swum, points_m=POINTS)
+    ned = query_clearance(swum, frame="ned", points_m=[[n, e, -u] for e, n, u in POINTS])
     for one, other in zip(enu["points"], ned["points"], strict=True):
         assert other["distance_m"] == one["distance_m"]
         for key in ("nearest_m", "normal"):
@@ -85,7 +85,10 @@ def test_latitude_and_longitude_are_the_same_answer_somewhere_on_earth(swum):
         {"latitude_deg": a, "longitude_deg": b, "depth_m": c}
         for a, b, c in zip(*plane.geographic(np.array(POINTS)), strict=True)
     ]
-    enu, wgs = asked(swum, points_m=POINTS), asked(swum, frame="wgs84", places=places)
+    enu, wgs = (
+        query_clearance(swum, points_m=POINTS),
+        query_clearance(swum, frame="wgs84", places=places),
+    )
     for one, other in zip(enu["points"], wgs["points"], strict=True):
         assert other["distance_m"] == pytest.approx(one["distance_m"], abs=1e-3)
         assert other["nearest_m"] == pytest.approx(one["nearest_m"], abs=1e-3)
@@ -95,10 +98,10 @@ def test_latitude_and_longitude_are_the_same_answer_somewhere_on_earth(swum):
 
 
 def test_a_path_says_where_it_comes_nearest_and_how_likely_it_is_too_near(swum):
-    said = asked(swum, points_m=POINTS, as_path=True, below_m=2.0)
-    path = said["path"]
+    reply = query_clearance(swum, points_m=POINTS, as_path=True, below_m=2.0)
+    path = reply["path"]
     # Distances are given to the millimetre; bounds and probability are sums in another order.
-    nearest = min(one["distance_m"] for one in said["points"])
+    nearest = min(one["distance_m"] for one in reply["points"])
     rounding = 1.0 + 1e-12
     assert path["closest"]["distance_m"] <= nearest + 1e-3
     assert path["p_least"] <= path["p_below"] * rounding <= path["p_most"] * rounding**2
@@ -157,31 +160,31 @@ def test_an_old_reading_is_a_conflict_unless_it_is_allowed(live):
     body = {"points_m": POINTS}
     refused = live.reader.post(CALL, json=body)
     assert refused.status_code == 409
-    assert "36000 s old" in refused.json()["detail"]
-    said = asked(live, **body, allow_stale=True)
-    assert said["points"][0]["state_age_s"] == 36000.0
-    assert said["shape_error"] is None
+    assert "10 h old" in refused.json()["detail"]
+    reply = query_clearance(live, **body, allow_stale=True)
+    assert reply["points"][0]["state_age_s"] == 36000.0
+    assert reply["shape_error"] is None
 
 
 def test_a_pilot_may_ask_for_a_fresher_reading_than_the_twin_does(swum):
     body = {"points_m": POINTS, "max_age_s": 60.0}
     answer = swum.reader.post(CALL, json=body)
     assert answer.status_code == 409
-    assert "120 s ago" in answer.json()["detail"]
+    assert "2 min ago" in answer.json()["detail"]
 
 
 def test_the_past_is_answered_too(live):
     live.post(buoy(-90, speed=0.1), buoy(-1, speed=0.6))
     eventually(live.state, lambda state: state["age_s"] == 60.0)
-    said = [
+    answer = [
         live.reader.post(CALL, json={"points_m": POINTS}, params=when).json()["points"][1]
         for when in ({}, {"at": at(-80)})
     ]
-    assert said[1]["state_age_s"] == 600.0
-    assert said[0]["distance_m"] != said[1]["distance_m"]
+    assert answer[1]["state_age_s"] == 600.0
+    assert answer[0]["distance_m"] != answer[1]["distance_m"]
 
 
-def test_a_way_along_the_net_can_be_asked_for_in_any_frame(swum):
+def test_a_way_along_the_net_can_be_requested_in_any_frame(swum):
     call = "/api/v1/cages/ace/inspection"
     body = {"row_spacing_m": 4.0, "step_m": 3.0, "side": "outside"}
     enu = swum.reader.post(call, json=body).json()
@@ -232,7 +235,7 @@ def test_the_net_is_read_back_from_mcap(swum, tmp_path):
     assert cloud.header.stamp.sec == 1580558400
 
 
-def test_a_time_that_ros_cannot_tell_is_refused(swum):
+def test_a_time_that_ros_cannot_hold_is_refused(swum):
     answer = swum.reader.get(
         "/api/v1/cages/ace/shape.mcap", params={"at": "2868-01-03T00:00:00Z", "allow_stale": True}
     )
@@ -289,7 +292,7 @@ def test_a_cage_that_does_not_say_where_it_lies_has_no_map(live):
     assert "latitude_deg" in answer.json()["detail"]
 
 
-def test_without_a_token_nobody_is_told(swum):
+def test_without_a_token_nobody_is_answered(swum):
     for call in (CALL, "/api/v1/cages/ace/inspection"):
         assert swum.logger.post(call, json={"points_m": POINTS}).status_code == 403
     assert swum.logger.get("/api/v1/cages/ace/shape.mcap").status_code == 403

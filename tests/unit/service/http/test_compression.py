@@ -2,8 +2,8 @@
 
 import pytest
 
+from running_service import Running, buoy, depth, eventually
 from seacage.service._http._api import PAGE
-from serviced import Running, buoy, depth, eventually
 
 
 @pytest.fixture

@@ -6,8 +6,8 @@ import tempfile
 import pytest
 import xarray
 
+from running_service import Running, at, buoy, depth, eventually
 from seacage.service._auth._limits import Limits
-from serviced import Running, at, buoy, depth, eventually
 
 PATIENCE_S = 60.0  # the first NetCDF loads xarray
 
@@ -50,8 +50,8 @@ def test_a_table_of_many_pages_holds_each_sample_once(fed: Running, monkeypatch,
 
 
 def test_a_span_and_a_stream_choose_the_rows(fed: Running):
-    asked = {"stream": "buoy-1", "from": at(-20), "to": at(-10)}
-    rows = table(fed.reader.get("/api/v1/cages/ace/samples.csv", params=asked))
+    body = {"stream": "buoy-1", "from": at(-20), "to": at(-10)}
+    rows = table(fed.reader.get("/api/v1/cages/ace/samples.csv", params=body))
     assert {row["t"] for row in rows} == {"2020-02-01T11:40:00Z"}
 
 
@@ -156,7 +156,7 @@ def test_who_leaves_in_the_middle_gives_the_budget_back(fed: Running, monkeypatc
 
 
 @pytest.mark.parametrize("name", ["samples.csv", "history.csv", "history.nc"])
-def test_where_nothing_was_heard_a_file_is_empty_and_whole(idle: Running, name):
+def test_where_nothing_was_received_a_file_is_empty_and_whole(idle: Running, name):
     assert idle.reader.get(f"/api/v1/cages/ace/{name}", timeout=PATIENCE_S).status_code == 200
 
 
@@ -179,9 +179,9 @@ def test_the_latest_of_all_streams_comes_in_one_call(fed: Running):
 
 
 def test_aggregates_leave_out_what_failed_its_checks(fed: Running):
-    asked = {"stream": "buoy-1", "key": "current_speed_m_s", "width_s": 600}
-    said = fed.reader.get("/api/v1/cages/ace/aggregates", params=asked).json()
-    assert said["aggregates"] == [
+    body = {"stream": "buoy-1", "key": "current_speed_m_s", "width_s": 600}
+    answer = fed.reader.get("/api/v1/cages/ace/aggregates", params=body).json()
+    assert answer["aggregates"] == [
         {"t": f"2020-02-01T11:{minute}:00Z", "count": 1, "mean": 0.5, "least": 0.5, "most": 0.5}
         for minute in (30, 50)
     ]
@@ -191,8 +191,8 @@ def test_aggregates_leave_out_what_failed_its_checks(fed: Running):
     "odd", [{"width_s": 61}, {"key": "current_to_deg"}, {"key": "mood"}, {"limit": 10_001}]
 )
 def test_aggregates_that_are_not_kept_are_refused(idle: Running, odd):
-    asked = {"stream": "buoy-1", "key": "current_speed_m_s"} | odd
-    assert idle.reader.get("/api/v1/cages/ace/aggregates", params=asked).status_code == 422
+    body = {"stream": "buoy-1", "key": "current_speed_m_s"} | odd
+    assert idle.reader.get("/api/v1/cages/ace/aggregates", params=body).status_code == 422
 
 
 @pytest.mark.parametrize("at", ["0001-01-01T00:00:00Z", "9999-12-31T23:59:59.999999Z"])

@@ -56,7 +56,7 @@ def history(twin, store, limit, **span):
     return history_between(twin, store, "ace", limit=limit, **span)
 
 
-def test_a_span_that_holds_no_more_than_was_asked_for_is_told_whole(twin, store):
+def test_a_span_that_holds_no_more_than_was_requested_is_given_whole(twin, store):
     past = history(twin, store, 180)
     assert len(past.t) == 180
     assert not past.thinned
@@ -80,7 +80,7 @@ def test_very_few_points_are_the_ends_of_the_span(twin, store, limit):
     assert len(past.t) == min(limit, 2)
 
 
-def test_a_sensor_that_read_more_often_is_told_by_the_means_of_minutes(twin, store):
+def test_a_sensor_that_read_more_often_is_given_by_the_means_of_minutes(twin, store):
     plain = history(twin, store, 720).measured["depth-1"]
     assert (len(plain.t), plain.width_s) == (720, None)
     minutes = history(twin, store, 180, end=NOON + timedelta(hours=2)).measured["depth-1"]
@@ -126,7 +126,7 @@ def test_of_very_many_readings_none_at_the_beginning_is_lost_and_no_storm(twin, 
     assert [one.bridles["bridle-1"].mean[0] for one in whole] == past.bridles["bridle-1"].mean[:3]
 
 
-def test_of_very_many_readings_none_lies_outside_the_span_that_was_asked_for(twin, store, few):
+def test_of_very_many_readings_none_lies_outside_the_span_that_was_requested(twin, store, few):
     start, end = NOON + timedelta(minutes=13), NOON + timedelta(minutes=12 * 100 + 1)
     past = history(twin, store, 30, start=start, end=end)
     assert past.thinned
@@ -150,7 +150,7 @@ def test_of_very_many_readings_those_that_failed_stand_for_nothing(twin, store, 
     assert NOON + STORM in past.t
 
 
-def test_the_sensors_are_told_from_where_the_span_begins_even_before_the_buoy(twin, store):
+def test_the_sensors_are_given_from_where_the_span_begins_even_before_the_buoy(twin, store):
     start = NOON + timedelta(minutes=5)
     past = history(twin, store, 720, start=start)
     assert past.measured["depth-1"].t[0] == start

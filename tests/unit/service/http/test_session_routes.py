@@ -3,9 +3,9 @@ from collections.abc import Iterator
 import httpx
 import pytest
 
-from seacage.service._auth._guard import COOKIE
+from running_service import Running, buoy, running
+from seacage.service._auth._authorization import COOKIE
 from seacage.service._auth._limits import Limits
-from serviced import Running, buoy, running
 
 
 @pytest.fixture

@@ -7,10 +7,10 @@ import pytest
 from websockets.exceptions import ConnectionClosedError, InvalidStatus
 from websockets.sync.client import connect
 
-from framed import decoded
-from seacage.service._auth._guard import COOKIE
+from page_frames import decode_frame
+from running_service import Running, buoy, eventually, running
+from seacage.service._auth._authorization import COOKIE
 from seacage.service._auth._limits import Limits
-from serviced import Running, buoy, eventually, running
 
 
 def opened(live: Running, *, cage="ace", **how):
@@ -23,7 +23,7 @@ def token(live: Running, *scopes):
 
 def received(socket):
     message = socket.recv(timeout=5)
-    return json.loads(message) if isinstance(message, str) else decoded(message)
+    return json.loads(message) if isinstance(message, str) else decode_frame(message)
 
 
 def closed_with(socket):
@@ -67,7 +67,7 @@ def test_a_topology_that_changes_is_sent_again_before_the_next_frame(live: Runni
     with opened(live) as socket:
         socket.send(token(live, "read"))
         first = received(socket)
-        live.cage._topology = live.cage.topology.model_copy(update={"topology_id": "another"})
+        live.cage.topology = live.cage.topology.model_copy(update={"topology_id": "another"})
         end = time.monotonic() + 5
         while not isinstance(again := received(socket), dict):
             assert time.monotonic() < end
@@ -180,13 +180,13 @@ def test_a_first_message_that_comes_too_late_costs_nobody_the_token(
         assert closed_with(socket) == 4408
 
 
-def test_a_token_that_may_not_read_is_told_so(idle: Running):
+def test_a_token_that_may_not_read_is_answered_so(idle: Running):
     with opened(idle) as socket:
         socket.send(token(idle, "ingest"))
         assert closed_with(socket) == 4403
 
 
-def test_a_cage_that_is_not_there_is_told_so(idle: Running):
+def test_a_cage_that_is_not_there_is_answered_so(idle: Running):
     with opened(idle, cage="ice") as socket:
         socket.send(token(idle, "read"))
         assert closed_with(socket) == 4404

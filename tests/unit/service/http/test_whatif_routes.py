@@ -2,12 +2,12 @@ from dataclasses import replace
 
 import pytest
 
-from framed import decoded
+from page_frames import decode_frame
+from running_service import Running
 from seacage.ocean import SeaState
 from seacage.service._http._whatif_routes import effective_water, training_domain_of
 from seacage.service._schemas._state import Water
 from seacage.testing import stand_in_twin
-from serviced import Running
 
 WAVES = {"hs_m": 1.0, "wave_from_deg": 270.0}
 
@@ -25,7 +25,7 @@ def of_waves(twin):
     return replace(twin, models=models)
 
 
-def test_a_twin_names_the_inputs_it_was_taught_with_and_those_it_does_not_know(idle: Running):
+def test_a_twin_names_the_inputs_it_was_trained_with_and_those_it_does_not_know(idle: Running):
     learned = idle.reader.get("/api/v1/cages/ace/whatif").json()
     speed, direction = learned["inputs"]
     assert (speed["key"], direction["key"]) == ("current_speed_m_s", "current_to_deg")
@@ -40,7 +40,7 @@ def test_beyond_what_a_twin_names_it_extrapolates_whichever_way_the_water_runs(i
         assert bool(idle.cage.twin.predict(seas).in_domain.any()) is somewhere
 
 
-def test_a_twin_that_was_taught_with_waves_names_them(of_waves):
+def test_a_twin_that_was_trained_with_waves_names_them(of_waves):
     learned = training_domain_of(of_waves)
     assert [(one.key, one.most) for one in learned.inputs if one.most] == [
         ("current_speed_m_s", 1.1),
@@ -49,10 +49,10 @@ def test_a_twin_that_was_taught_with_waves_names_them(of_waves):
     assert learned.unknown == ["tp_s"]
 
 
-def test_waves_that_the_twin_knows_nothing_of_are_not_said_to_have_counted(idle: Running):
+def test_waves_that_the_twin_knows_nothing_of_are_not_reported_to_have_counted(idle: Running):
     calm = {"current_speed_m_s": 0.5, "current_to_deg": 90.0}
     with_waves, without = (
-        decoded(idle.reader.post("/api/v1/cages/ace/whatif", json=sea).content).state
+        decode_frame(idle.reader.post("/api/v1/cages/ace/whatif", json=sea).content).state
         for sea in (calm | WAVES, calm)
     )
     assert with_waves["bridles"] == without["bridles"]
@@ -60,7 +60,7 @@ def test_waves_that_the_twin_knows_nothing_of_are_not_said_to_have_counted(idle:
     assert (water["hs_m"], water["tp_s"], water["wave_from_deg"]) == (None, None, None)
 
 
-def test_the_period_that_goes_with_the_height_is_said(of_waves):
+def test_the_period_that_goes_with_the_height_is_reported(of_waves):
     water = Water(
         current_speed_m_s=0.5, current_to_deg=90.0, hs_m=1.0, tp_s=None, wave_from_deg=270.0
     )

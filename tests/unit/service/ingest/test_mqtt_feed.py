@@ -6,7 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from garbled import SEEDS, mutated
+from broken_messages import SEEDS, mutate
+from running_service import HandClock, at, buoy
 from seacage.service._ingest._mqtt_feed import MqttFeed
 from seacage.service._live._cage import LiveCage
 from seacage.service._live._metrics import Metrics
@@ -14,8 +15,7 @@ from seacage.service._mqtt._link import Received
 from seacage.service._quarantine import Quarantine
 from seacage.service._store._store import StoreError, open_store
 from seacage.testing import stand_in_twin
-from serviced import HandClock, at, buoy
-from sized import sized
+from sizes import pick_size
 
 OBS = "seacage/v1/south/ace/buoy-1/obs"
 
@@ -87,8 +87,8 @@ def settled(one, *, within_s=20.0):
 
 
 def reading(minutes=0.0, **rest):
-    said = buoy(minutes, **rest)
-    return {key: said[key] for key in ("t", "values")}
+    sample = buoy(minutes, **rest)
+    return {key: sample[key] for key in ("t", "values")}
 
 
 def test_what_is_on_disk_is_acknowledged_to_broker_and_sender(one):
@@ -98,24 +98,24 @@ def test_what_is_on_disk_is_acknowledged_to_broker_and_sender(one):
     settled(one)
     assert one.acknowledged == [True, True]
     assert len(one.kept()) == 3
-    (topic, told), *more = one.sent
+    (topic, report), *more = one.sent
     assert topic == "seacage/v1/south/ace/buoy-1/ack"
-    assert [line["t"] for line in told] == [at(-1), at(-2), at(-3)]
+    assert [line["t"] for line in report] == [at(-1), at(-2), at(-3)]
     assert not more
 
 
-def test_the_metrics_tell_of_the_broker_and_of_what_waits(one):
+def test_the_metrics_report_the_broker_and_what_waits(one):
     say(one, reading(-1))
     say(one, reading(-2))
     labels = '{broker="mqtt://127.0.0.1:1883"}'
-    told = one.metrics.text().decode()
-    assert f"seacage_broker_messages_total{labels} 2.0" in told
-    assert f"seacage_broker_waiting{labels} 2.0" in told
+    report = one.metrics.text().decode()
+    assert f"seacage_broker_messages_total{labels} 2.0" in report
+    assert f"seacage_broker_waiting{labels} 2.0" in report
     settled(one)
     one.sent.fault = "It is away."
-    told = one.metrics.text().decode()
-    assert f"seacage_broker_waiting{labels} 0.0" in told
-    assert f"seacage_broker_connected{labels} 0.0" in told
+    report = one.metrics.text().decode()
+    assert f"seacage_broker_waiting{labels} 0.0" in report
+    assert f"seacage_broker_connected{labels} 0.0" in report
     one.sent.fault = None
     assert f"seacage_broker_connected{labels} 1.0" in one.metrics.text().decode()
 
@@ -184,22 +184,22 @@ def test_what_cannot_be_read_is_set_aside_with_its_reason_and_forgotten(
     assert line["reason"]
 
 
-def test_a_refused_sample_is_told_to_its_sender_which_would_send_it_for_ever(one):
+def test_a_refused_sample_is_reported_to_its_sender_which_would_send_it_for_ever(one):
     say(one, reading(-60 * 24 * 365 * 51))
     settled(one)
-    ((_, told),) = one.sent
-    assert "is before 1970" in told["rejected"]
-    assert "retry" not in told
+    ((_, report),) = one.sent
+    assert "is before 1970" in report["rejected"]
+    assert "retry" not in report
 
 
-def test_of_a_sample_ahead_of_the_clock_the_sender_is_told_to_retry_and_its_stream_is_named(
+def test_of_a_sample_ahead_of_the_clock_the_sender_is_ordered_to_retry_and_its_stream_is_named(
     one, tmp_path
 ):
     say(one, reading(60))
     settled(one)
-    ((_, told),) = one.sent
-    assert "ahead of the cage's clock" in told["rejected"]
-    assert told["retry"]
+    ((_, report),) = one.sent
+    assert "ahead of the cage's clock" in report["rejected"]
+    assert report["retry"]
     assert "clock.buoy-1" in one.cage.live.clocks.faults()
     assert not (tmp_path / "quarantine.jsonl").exists(), "it comes again every minute"
 
@@ -325,12 +325,12 @@ def test_journal_lines_wait_for_a_broker(one):
 
 
 @pytest.mark.long
-@pytest.mark.timeout(sized(120, 3600))
+@pytest.mark.timeout(pick_size(120, 3600))
 def test_no_mutated_message_stops_the_feed(one, tmp_path):
-    count = sized(5_000, 100_000)
+    count = pick_size(5_000, 100_000)
     random = np.random.default_rng(3)
     for number in range(count):
-        say(one, mutated(random, SEEDS[number % len(SEEDS)]))
+        say(one, mutate(random, SEEDS[number % len(SEEDS)]))
     settled(one, within_s=count / 100)
     assert all(one.acknowledged)
     assert one.feed._quarantine.count > count / 4

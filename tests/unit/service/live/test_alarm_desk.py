@@ -39,15 +39,15 @@ def test_alarms_that_cannot_be_read_back_are_an_alarm_themselves(store: Store):
     assert "cannot be read" in desk.alarms["history.store"].detail
 
 
-def test_what_happens_is_told_to_who_listens(store: Store):
+def test_what_happens_is_announced_to_who_listens(store: Store):
     store.keep_alarms("ace", book="none", journal=()).result()
-    desk, told = desk_of(store), []
-    desk.subscribe(told.append)
+    desk, report = desk_of(store), []
+    desk.subscribe(report.append)
     looked(desk)
-    assert [(one.cage, one.alarm.name, one.happened.action) for one in told] == [
+    assert [(one.cage, one.alarm.name, one.happened.action) for one in report] == [
         ("ace", "history.store", "raised")
     ]
-    assert told[0].text.title
+    assert report[0].text.title
     assert [one.alarm.name for one in desk.standing()] == ["history.store"]
 
 

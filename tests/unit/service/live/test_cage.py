@@ -2,13 +2,13 @@ import asyncio
 from contextlib import closing
 from datetime import timedelta
 
+from running_service import NOON, HandClock
 from seacage.records import Sample
 from seacage.service._live import _cage
 from seacage.service._live._cage import LiveCage
 from seacage.service._live._metrics import Metrics
 from seacage.service._store._store import Store
 from seacage.testing import stand_in_twin
-from serviced import NOON, HandClock
 
 
 def depth(minutes, metres):
@@ -16,7 +16,7 @@ def depth(minutes, metres):
     return Sample(stream="depth-2", t=t, values={"depth_m": metres})
 
 
-def test_a_cage_that_is_told_to_stop_as_something_arrives_stops(tmp_path):
+def test_a_cage_that_is_ordered_to_stop_as_something_arrives_stops(tmp_path):
     async def work(cage):
         for _ in range(5):
             running = asyncio.create_task(cage.run())

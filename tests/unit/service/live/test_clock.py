@@ -2,9 +2,9 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
+from running_service import NOON, HandClock
 from seacage.service._live._clock import FollowingClock, ReplayClock, WallClock, latest_allowed
-from seacage.service._live._clock_watch import ClockWatch
-from serviced import NOON, HandClock
+from seacage.service._live._clock_faults import ClockFaults
 
 
 @pytest.fixture
@@ -66,7 +66,7 @@ def test_a_clock_that_follows_is_not_moved_past_the_wall_by_any_sample(monotonic
 @pytest.mark.parametrize("set_s", [-400 * 86400.0, -3600.0, -6.0, 6.0, 3600.0, 400 * 86400.0])
 def test_a_clock_that_is_set_is_noticed_and_named_for_ten_minutes(set_s):
     clock = HandClock()
-    watch = ClockWatch(clock, streams=2)
+    watch = ClockFaults(clock, streams=2)
     for _ in range(3):
         clock.at += timedelta(seconds=2)
         assert watch.look() is None
@@ -82,10 +82,10 @@ def test_a_clock_that_is_set_is_noticed_and_named_for_ten_minutes(set_s):
 
 def test_a_stream_ahead_of_the_clock_is_named_until_it_is_right_again():
     clock = HandClock()
-    watch = ClockWatch(clock, streams=2)
+    watch = ClockFaults(clock, streams=2)
     watch.note_refusal("buoy-1", NOON + timedelta(hours=3))
     assert watch.faults() == {
-        "clock.buoy-1": "The last sample of buoy-1 was 3.0 h ahead of the service's clock; such "
+        "clock.buoy-1": "The last sample of buoy-1 was 3 h ahead of the service's clock; such "
         "samples wait until their time has come."
     }
     watch.note_acceptance("buoy-1")
@@ -93,7 +93,7 @@ def test_a_stream_ahead_of_the_clock_is_named_until_it_is_right_again():
 
 
 def test_where_all_streams_are_ahead_it_is_the_services_clock_that_is_named():
-    watch = ClockWatch(HandClock(), streams=2)
+    watch = ClockFaults(HandClock(), streams=2)
     for stream in ("buoy-1", "depth-1"):
         watch.note_refusal(stream, NOON + timedelta(hours=1))
     assert watch.faults().keys() == {"clock.service"}

@@ -3,6 +3,7 @@ from datetime import timedelta
 
 import pytest
 
+from running_service import NOON
 from seacage.conventions import Flag
 from seacage.records import Sample
 from seacage.service._live._answers import state_of, summary_of
@@ -10,7 +11,6 @@ from seacage.service._live._concerns import concerns_of
 from seacage.service._schemas._state import AlarmBrief
 from seacage.testing import stand_in_twin
 from seacage.twin import AlarmPolicy, Answered
-from serviced import NOON
 
 SEA = {"current_speed_m_s": 0.5, "current_to_deg": 90.0}
 
@@ -54,8 +54,8 @@ def test_a_net_below_the_least_volume_is_a_concern_with_its_limit():
 def test_a_measured_load_at_its_alarms_limit_is_a_concern_before_any_alarm_is_raised():
     state, concerns = seen(shackle(0, 128.0))
     assert state.alarms == []
-    said = "bridle-8 bears 80 % of its capacity, measured by shackle-2; 80 % is the limit."
-    assert concerns["load"].message == said
+    text = "bridle-8 bears 80 % of its capacity, measured by shackle-2; 80 % is the limit."
+    assert concerns["load"].message == text
     assert summary_of("ace", state).max_utilisation == pytest.approx(0.8)
 
 

@@ -4,7 +4,7 @@ from datetime import UTC, datetime
 import numpy as np
 import pytest
 
-from framed import decoded
+from page_frames import decode_frame
 from seacage.ocean import SeaState
 from seacage.service._live._answers import state_of, topology_of
 from seacage.service._live._frame import Flags, frame_of
@@ -38,7 +38,7 @@ def framed(twin, rest, answered, **how):
 def test_a_frame_holds_the_net_to_half_a_unit(twin, rest, speed):
     answered = answered_by(twin, speed)
     state, message = framed(twin, rest, answered)
-    frame = decoded(message)
+    frame = decode_frame(message)
     # Half a unit, and what single precision loses of the unit over 32,767 of them.
     near = {"rtol": 1e-6, "atol": 0.501 * frame.unit}
     np.testing.assert_allclose(frame.displacement, answered.answer.node_position[0] - rest, **near)
@@ -50,7 +50,7 @@ def test_a_frame_holds_the_net_to_half_a_unit(twin, rest, speed):
 
 def test_a_net_that_no_sensor_trained_has_no_spread_in_a_frame(twin, rest):
     state, message = framed(twin, rest, answered_by(twin, 0.5))
-    frame = decoded(message)
+    frame = decode_frame(message)
     assert frame.flags & Flags.NO_SPREAD
     assert frame.sigma.size == 0
     assert len(frame.displacement) == len(rest)
@@ -60,7 +60,7 @@ def test_a_net_that_no_sensor_trained_has_no_spread_in_a_frame(twin, rest):
 def test_a_spread_that_is_known_is_in_the_frame(twin, rest):
     answered = answered_by(twin, 0.5)
     answered = replace(answered, answer=replace(answered.answer, shape_level=2))
-    frame = decoded(framed(twin, rest, answered)[1])
+    frame = decode_frame(framed(twin, rest, answered)[1])
     assert not frame.flags & Flags.NO_SPREAD
     near = {"rtol": 1e-6, "atol": 0.501 * frame.sigma_unit}
     np.testing.assert_allclose(frame.sigma, answered.answer.node_sigma[0], **near)
@@ -70,14 +70,14 @@ def test_a_spread_that_is_known_is_in_the_frame(twin, rest):
 def test_a_net_however_far_is_never_cut_off(twin, rest, metres):
     answered = answered_by(twin, 0.5)
     _, message = framed(twin, answered.answer.node_position[0] - metres, answered)
-    frame = decoded(message)
+    frame = decode_frame(message)
     np.testing.assert_allclose(frame.displacement, metres, rtol=1e-6)
 
 
 def test_without_valid_input_a_frame_holds_no_net(twin, rest):
     unknown = Metocean.from_columns({}, 1)
     answered = Answered(t=NOON, answer=twin.predict(unknown), metocean=None, input_age_s=None)
-    frame = decoded(framed(twin, rest, answered)[1])
+    frame = decode_frame(framed(twin, rest, answered)[1])
     assert not frame.flags & Flags.VALID
     assert frame.displacement.size == frame.sigma.size == 0
 
@@ -85,7 +85,7 @@ def test_without_valid_input_a_frame_holds_no_net(twin, rest):
 def test_a_frame_says_that_it_is_of_the_past_or_of_what_would_be(twin, rest):
     _, message = framed(twin, rest, answered_by(twin, 0.5), about=Flags.PAST | Flags.WHAT_IF)
     about = Flags.PAST | Flags.WHAT_IF | Flags.NO_SPREAD
-    assert decoded(message).flags == Flags.VALID | Flags.IN_DOMAIN | about
+    assert decode_frame(message).flags == Flags.VALID | Flags.IN_DOMAIN | about
 
 
 def test_a_topology_is_known_by_a_hash_of_all_it_says(twin):

@@ -1,7 +1,7 @@
 import httpx
 
+from running_service import Running, buoy, eventually
 from seacage.service._live._metrics import Metrics
-from serviced import Running, buoy, eventually
 
 
 def test_alarms_are_counted_by_how_bad_they_are():

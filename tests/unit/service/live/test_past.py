@@ -2,15 +2,15 @@ from datetime import timedelta
 
 import pytest
 
-from lived import Lived
+from cage_harness import CageHarness
+from running_service import NOON, buoy, eventually, running
 from seacage.records import Sample
 from seacage.service._store._database._checksum import with_checksum
-from serviced import NOON, buoy, eventually, running
 
 
 @pytest.fixture
 def one(tmp_path):
-    lived = Lived(tmp_path / "samples.sqlite")
+    lived = CageHarness(tmp_path / "samples.sqlite")
     yield lived
     lived.close()
 

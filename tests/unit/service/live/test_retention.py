@@ -76,7 +76,7 @@ def test_midnight_is_that_of_utc():
     assert midnight(NOON) == NOON - timedelta(hours=12)
 
 
-def test_a_service_that_is_told_to_archives_and_lets_go(tmp_path):
+def test_a_service_that_is_set_to_archives_and_lets_go(tmp_path):
     kept = {"keep_days": 30.0, "archive": tmp_path / "archive"}
     service = assemble(Settings(data=tmp_path, store=kept), {"ace": stand_in_twin()})
     put(service.store, sample(), sample(60 * 24))

@@ -4,7 +4,7 @@ from datetime import timedelta
 
 import pytest
 
-from serviced import NOON, Running, buoy, depth, eventually
+from running_service import NOON, Running, buoy, depth, eventually
 
 
 def shackle(minutes, tension):
@@ -15,8 +15,8 @@ def shackle(minutes, tension):
 
 
 def active(live: Running):
-    said = live.reader.get("/api/v1/cages/ace/alarms").json()["alarms"]
-    return {one["id"] for one in said if one["active"]}
+    answer = live.reader.get("/api/v1/cages/ace/alarms").json()["alarms"]
+    return {one["id"] for one in answer if one["active"]}
 
 
 def happened(live: Running):

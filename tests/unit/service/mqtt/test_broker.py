@@ -37,7 +37,7 @@ def test_a_ca_file_needs_tls(tmp_path):
         Broker.parse("mqtt://broker", ca=tmp_path / "ca.pem")
 
 
-def test_a_ca_file_that_is_none_is_said(tmp_path):
+def test_a_ca_file_that_is_none_is_reported(tmp_path):
     (tmp_path / "ca.pem").write_text("nothing")
     for name in ("ca.pem", "missing.pem"):
         broker = Broker.parse("mqtts://broker", ca=tmp_path / name)
@@ -45,6 +45,6 @@ def test_a_ca_file_that_is_none_is_said(tmp_path):
             broker.client("me")
 
 
-def test_the_broker_is_told_how_far_it_may_run_ahead():
-    asked = connecting(receive_maximum=7, session_s=60)
-    assert (asked.ReceiveMaximum, asked.SessionExpiryInterval) == (7, 60)
+def test_the_broker_is_sent_how_far_it_may_run_ahead():
+    query = connecting(receive_maximum=7, session_s=60)
+    assert (query.ReceiveMaximum, query.SessionExpiryInterval) == (7, 60)

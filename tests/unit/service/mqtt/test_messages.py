@@ -6,7 +6,7 @@ from datetime import UTC, datetime, timedelta
 import numpy as np
 import pytest
 
-from garbled import SEEDS, mutated
+from broken_messages import SEEDS, mutate
 from seacage.conventions import InputError
 from seacage.records import Sample
 from seacage.service._mqtt._messages import (
@@ -17,7 +17,7 @@ from seacage.service._mqtt._messages import (
     read_settled,
     samples_text,
 )
-from sized import sized
+from sizes import pick_size
 
 NOON = datetime(2020, 2, 1, 12, tzinfo=UTC)
 STREAMS = {"buoy-1": ("current_speed_m_s", "current_to_deg"), "depth-2": ("depth_m",)}
@@ -96,18 +96,18 @@ def test_acknowledgements_come_back_as_they_went():
     assert read_settled("buoy-1", acknowledgement_text(settled)) == settled
 
 
-def test_an_acknowledgement_that_is_none_is_said():
+def test_an_acknowledgement_that_is_none_is_reported():
     with pytest.raises(InputError, match="buoy-1: an acknowledgement cannot be read"):
         read_settled("buoy-1", b"thanks")
 
 
 @pytest.mark.long
-@pytest.mark.timeout(sized(120, 3600))
+@pytest.mark.timeout(pick_size(120, 3600))
 def test_whatever_comes_is_read_or_refused_and_never_raises():
     random = np.random.default_rng(7)
     outcomes = Counter()
-    for number in range(sized(20_000, 1_000_000)):
-        answer = read(mutated(random, SEEDS[number % len(SEEDS)]))
+    for number in range(pick_size(20_000, 1_000_000)):
+        answer = read(mutate(random, SEEDS[number % len(SEEDS)]))
         assert answer.fault or answer.samples or answer.refused
         outcomes[bool(answer.fault), bool(answer.samples), bool(answer.refused)] += 1
     assert len(outcomes) >= 4, "the mutations reach every way out"

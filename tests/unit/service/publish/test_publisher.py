@@ -68,7 +68,7 @@ def test_a_source_is_sent_to_its_end(spool):
     assert (done.read, done.acknowledged, done.waiting) == (3, 3, 0)
 
 
-def test_what_the_service_refuses_is_told_and_not_sent_again(spool):
+def test_what_the_service_refuses_is_reported_and_not_sent_again(spool):
     done = Publisher(spool, Service()).run([batch(0), batch(1, 2, metres=200.0)])
     assert (done.acknowledged, done.rejected, done.waiting) == (1, 2, 0)
     assert done.reasons == ("Too deep.", "Too deep.")
@@ -119,7 +119,7 @@ def test_patience_ends_and_the_samples_wait_for_the_next_run(spool):
     assert (done.read, done.acknowledged) == (0, 3)
 
 
-def test_a_source_that_fails_is_said_after_what_it_gave_has_arrived(spool):
+def test_a_source_that_fails_is_reported_after_what_it_gave_has_arrived(spool):
     def source():
         yield batch(0)
         raise InputError("The file is no table.")

@@ -5,11 +5,11 @@ from http.server import BaseHTTPRequestHandler, HTTPServer
 
 import pytest
 
+from running_service import NOON, Running
 from seacage.conventions import InputError
 from seacage.records import Sample
-from seacage.service._publish._courier import HttpCourier
 from seacage.service._publish._sender import Sender, SendError
-from serviced import NOON, Running
+from seacage.service._publish._transport import HttpTransport
 
 
 def sample(minute=0, metres=14.0, stream="depth-2"):
@@ -54,7 +54,7 @@ def sender(server, *pauses):
 
 
 @pytest.mark.parametrize("code", [429, 503])
-def test_a_service_that_is_busy_is_asked_again(busy, code):
+def test_a_service_that_is_busy_is_called_again(busy, code):
     busy.codes = [code, code]
     assert sender(busy, 0.0, 0.0).send([sample()]).accepted == 1
 
@@ -65,22 +65,22 @@ def test_one_that_stays_away_is_given_up(busy):
         sender(busy, 0.0).send([sample()])
 
 
-def test_a_refusal_is_not_asked_again(busy):
+def test_a_refusal_is_not_repeated(busy):
     busy.codes = [403]
     with pytest.raises(InputError, match="403"):
         sender(busy, 0.0).send([sample()])
     assert not busy.codes
 
 
-def test_a_courier_says_which_samples_arrived_and_which_were_refused(live: Running):
+def test_a_transport_says_which_samples_arrived_and_which_were_refused(live: Running):
     token = live.service.tokens.mint(["ingest"], keep=False)
-    courier = HttpCourier(Sender(address=live.address, cage="ace", token=token))
-    kept, refused = courier.send([sample(1), sample(2, stream="depth-99")])
+    transport = HttpTransport(Sender(address=live.address, cage="ace", token=token))
+    kept, refused = transport.send([sample(1), sample(2, stream="depth-99")])
     assert (kept.stream, kept.t, kept.rejected) == ("depth-2", sample(1).t, None)
     assert "No stream is called" in refused.rejected
 
 
-def test_a_courier_hears_nothing_where_nobody_is(monkeypatch):
-    monkeypatch.setattr("seacage.service._publish._courier._PAUSE_S", 0.0)
+def test_a_transport_settles_nothing_where_nobody_is(monkeypatch):
+    monkeypatch.setattr("seacage.service._publish._transport._PAUSE_S", 0.0)
     nobody = Sender(address="http://127.0.0.1:9", cage="ace", token="t", patience_s=())
-    assert HttpCourier(nobody).send([sample()]) == []
+    assert HttpTransport(nobody).send([sample()]) == []

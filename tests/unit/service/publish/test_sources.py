@@ -66,8 +66,8 @@ def lines(*texts):
 
 
 def line(**changed):
-    said = {"stream": "depth-2", "t": "2020-02-01T12:00:00Z", "values": {"depth_m": 14.2}}
-    return json.dumps(said | changed).encode() + b"\n"
+    body = {"stream": "depth-2", "t": "2020-02-01T12:00:00Z", "values": {"depth_m": 14.2}}
+    return json.dumps(body | changed).encode() + b"\n"
 
 
 def test_each_line_is_a_sample():

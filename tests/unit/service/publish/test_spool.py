@@ -10,12 +10,12 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
+from running_service import HandClock
 from seacage.conventions import InputError
 from seacage.records import Sample
 from seacage.service._mqtt._messages import Settled
 from seacage.service._publish._sources import line_batches
 from seacage.service._publish._spool import Spool, SpoolError
-from serviced import HandClock
 
 NOON = datetime(2020, 2, 1, 12, tzinfo=UTC)
 
@@ -71,7 +71,7 @@ def test_a_sample_waits_once_until_it_is_settled(spool):
     assert times(spool.next(9, live_after=0)) == [2]
 
 
-def test_samples_of_one_time_are_told_apart_by_their_number(spool):
+def test_samples_of_one_time_are_distinguished_by_their_number(spool):
     put(spool, sample(0, seq=1), sample(0, seq=2), sample(0))
     spool.settle(settled(sample(0, seq=2)))
     assert [one.seq for one in spool.next(9, live_after=0)] == [1, None]
@@ -218,7 +218,7 @@ def test_two_publishers_never_share_a_spool(spool, tmp_path):
         Spool(tmp_path / "spool", to="here")
 
 
-def test_a_file_that_is_no_spool_is_said(tmp_path):
+def test_a_file_that_is_no_spool_is_reported(tmp_path):
     (tmp_path / "spool").write_text("time,depth_m\n" * 100)
     with pytest.raises(SpoolError, match="does not open as a spool"):
         Spool(tmp_path / "spool", to="here")
@@ -241,15 +241,15 @@ while True:
 
 
 def test_a_kill_loses_nothing_that_was_put_in_and_repeats_nothing(tmp_path):
-    said = 0
+    answer = 0
     for _ in range(3):
         command = [sys.executable, "-c", WRITER, str(tmp_path / "spool")]
         with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
             for _ in range(20):
-                said = json.loads(process.stdout.readline())
+                answer = json.loads(process.stdout.readline())
             process.send_signal(signal.SIGKILL)
     spool = Spool(tmp_path / "spool", to="here")
     number = int(spool.place("file"))
-    assert number >= said >= 60
+    assert number >= answer >= 60
     assert len(spool) == number
     spool.close()

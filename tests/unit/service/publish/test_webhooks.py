@@ -34,7 +34,7 @@ class Desk:
         return self.open
 
 
-def said(action=Action.RAISED, severity=700, **how):
+def announcement(action=Action.RAISED, severity=700, **how):
     alarm = Alarm(name="load.bridle-3", active=True, acknowledged=False, since=NOON)
     return Announcement(
         cage="ace",
@@ -48,12 +48,12 @@ def said(action=Action.RAISED, severity=700, **how):
 @contextmanager
 def listening(*answers: int) -> Iterator[tuple[str, list]]:
     """A receiver that answers with these codes in turn, the last one for ever."""
-    heard, codes = [], list(answers or (204,))
+    received, codes = [], list(answers or (204,))
 
     class Receiver(BaseHTTPRequestHandler):
         def do_POST(self):
             body = self.rfile.read(int(self.headers["Content-Length"]))
-            heard.append((json.loads(body), self.headers, body))
+            received.append((json.loads(body), self.headers, body))
             self.send_response(codes.pop(0) if len(codes) > 1 else codes[0])
             self.end_headers()
 
@@ -64,14 +64,16 @@ def listening(*answers: int) -> Iterator[tuple[str, list]]:
     thread = threading.Thread(target=server.serve_forever)
     thread.start()
     try:
-        yield f"http://127.0.0.1:{server.server_port}/hook?to=night", heard
+        yield f"http://127.0.0.1:{server.server_port}/hook?to=night", received
     finally:
         server.shutdown()
         thread.join()
         server.server_close()
 
 
-def told(hook: Webhook, heard: list, *announced: Announcement, now=NOON, standing=(), count=1):
+def received_by(
+    hook: Webhook, heard: list, *announced: Announcement, now=NOON, standing=(), count=1
+):
     """What a hook hears, once it has heard so much or a second has passed."""
     desk = Desk()
     desk.open = list(standing)
@@ -100,49 +102,59 @@ def no_patience(monkeypatch):
 
 
 def test_a_hook_hears_what_is_raised_in_words_and_can_check_who_speaks():
-    with listening() as (url, heard):
-        (body,) = told(Webhook(url=url, secret="s3"), heard, said())
+    with listening() as (url, received):
+        (body,) = received_by(Webhook(url=url, secret="s3"), received, announcement())
     assert (body["cage"], body["alarm"], body["action"]) == ("ace", "load.bridle-3", "raised")
     assert body["title"] == "Bridle 3 is loaded"
-    _, headers, raw = heard[0]
+    _, headers, raw = received[0]
     signature = hmac.new(b"s3", raw, hashlib.sha256).hexdigest()
     assert headers["X-Seacage-Signature"] == signature
 
 
-def test_what_is_quiet_or_mild_or_a_remark_is_not_told():
-    with listening() as (url, heard):
-        bodies = told(
+def test_what_is_quiet_or_mild_or_a_remark_is_not_announced():
+    with listening() as (url, received):
+        bodies = received_by(
             Webhook(url=url, severity=500),
-            heard,
-            said(severity=499),
-            said(quiet=True),
-            said(Action.COMMENTED),
-            said(Action.CLEARED),
+            received,
+            announcement(severity=499),
+            announcement(quiet=True),
+            announcement(Action.COMMENTED),
+            announcement(Action.CLEARED),
         )
     assert [body["action"] for body in bodies] == ["cleared"]
 
 
 def test_a_hook_that_fails_is_tried_again_and_in_order():
-    with listening(503, 503, 204) as (url, heard):
-        bodies = told(Webhook(url=url), heard, said(), said(Action.CLEARED), count=4)
+    with listening(503, 503, 204) as (url, received):
+        bodies = received_by(
+            Webhook(url=url), received, announcement(), announcement(Action.CLEARED), count=4
+        )
     assert [body["action"] for body in bodies] == ["raised", "raised", "raised", "cleared"]
 
 
-def test_the_next_on_duty_is_told_once_when_nobody_acknowledges():
-    with listening() as (url, heard):
+def test_the_next_on_duty_is_notified_once_when_nobody_acknowledges():
+    with listening() as (url, received):
         hook = Webhook(url=url, after_s=600.0)
-        assert not told(hook, heard, said(), standing=[said()], now=NOON + timedelta(minutes=9))
-        bodies = told(hook, heard, standing=[said()], now=NOON + timedelta(minutes=10))
+        assert not received_by(
+            hook,
+            received,
+            announcement(),
+            standing=[announcement()],
+            now=NOON + timedelta(minutes=9),
+        )
+        bodies = received_by(
+            hook, received, standing=[announcement()], now=NOON + timedelta(minutes=10)
+        )
     assert [body["action"] for body in bodies] == ["escalated"]
 
 
-def test_an_alarm_that_comes_again_and_again_is_told_each_time_and_remembered_once():
+def test_an_alarm_that_comes_again_and_again_is_announced_each_time_and_remembered_once():
     hook, desk = Webhook(url="http://x", after_s=600.0), Desk()
     now = [NOON]
     cage = SimpleNamespace(desk=desk, clock=SimpleNamespace(now=lambda: now[0]))
     herald = WebhookNotifier([hook], {"ace": cage})
     for times in range(1, 51):
-        raised = said()
+        raised = announcement()
         desk.open = [replace(raised, alarm=replace(raised.alarm, since=now[0]))]
         now[0] += timedelta(minutes=11)
         herald._overdue(hook)

@@ -21,11 +21,11 @@ from seacage.service._store._archive import (
     encode_parquet,
     key_of,
 )
+from seacage.service._store._database._rows import Bounds
 from seacage.service._store._store import StoreError, open_store
 from stores import NOON, put, sample
 
 DAY = NOON.date()
-WHOLE = {"start": -(2**62), "end": 2**62, "limit": 10**6, "newest": False}
 
 
 @pytest.fixture
@@ -59,18 +59,18 @@ def test_what_is_read_back_equals_what_was_written(drawn):
             stream="buoy-1",
             t=NOON + timedelta(microseconds=us),
             seq=seq,
-            values={key: value for key, (value, _) in said.items()},
-            flags={key: flag for key, (_, flag) in said.items()},
+            values={key: value for key, (value, _) in outcome.items()},
+            flags={key: flag for key, (_, flag) in outcome.items()},
             remarks=tuple(remarks),
         )
-        for us, seq, said, remarks in sorted(drawn, key=lambda one: one[0])
+        for us, seq, outcome, remarks in sorted(drawn, key=lambda one: one[0])
     ]
     assert list(
-        map(told, decode_parquet(encode_parquet("ace", "buoy-1", samples), "buoy-1", **WHOLE))
-    ) == list(map(told, samples))
+        map(fields_of, decode_parquet(encode_parquet("ace", "buoy-1", samples), "buoy-1", Bounds()))
+    ) == list(map(fields_of, samples))
 
 
-def told(one):
+def fields_of(one):
     """All that a sample says, where a number that is none equals itself."""
     values = {key: repr(value) for key, value in one.values.items()}
     return one.stream, one.t, one.seq, values, one.flags, one.remarks
@@ -79,13 +79,13 @@ def told(one):
 def test_a_day_is_read_within_bounds_from_either_end(archive):
     archive.write("ace", "depth-1", DAY, [sample(k) for k in range(6)])
     read = {"start": sample(1).t, "end": sample(5).t}
-    assert archive.read("ace", "depth-1", DAY, **read) == [sample(k) for k in range(1, 5)]
-    assert archive.read("ace", "depth-1", DAY, limit=2, **read) == [sample(1), sample(2)]
-    assert archive.read("ace", "depth-1", DAY, limit=2, newest=True, **read) == [
+    assert archive.read("ace", "depth-1", DAY, Bounds(**read)) == [sample(k) for k in range(1, 5)]
+    assert archive.read("ace", "depth-1", DAY, Bounds(limit=2, **read)) == [sample(1), sample(2)]
+    assert archive.read("ace", "depth-1", DAY, Bounds(limit=2, newest=True, **read)) == [
         sample(3),
         sample(4),
     ]
-    assert archive.read("ace", "depth-1", DAY, end=NOON) == []
+    assert archive.read("ace", "depth-1", DAY, Bounds(end=NOON)) == []
     assert archive.read("ace", "depth-1", date(1999, 1, 1)) == []
 
 
@@ -260,8 +260,8 @@ def test_the_shell_writes_reads_and_checks(tmp_path):
     put(store, *HOURLY, sample(1, metres=math.nan, flags={"depth_m": Flag.MISSING}))
     folder = tmp_path / "archive"
     words = ("write", folder, "--store", tmp_path / "samples.sqlite")
-    told = run(*words, "--before", "2020-02-03", "--json")
-    assert json.loads(told.stdout) == {"folder": str(folder), "files": 4, "samples": 73}
+    fields_of = run(*words, "--before", "2020-02-03", "--json")
+    assert json.loads(fields_of.stdout) == {"folder": str(folder), "files": 4, "samples": 73}
     store.close()
 
     bounds = ("--start", "2020-02-01", "--end", "2020-02-02")
@@ -292,5 +292,5 @@ def test_without_pyarrow_the_extra_is_named(monkeypatch, archive):
         archive.write("ace", "depth-1", DAY, [sample()])
 
 
-def test_two_samples_of_one_time_are_told_apart_by_number():
+def test_two_samples_of_one_time_are_distinguished_by_number():
     assert key_of(sample(seq=0)) != key_of(sample())

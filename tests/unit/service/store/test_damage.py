@@ -6,14 +6,14 @@ from pathlib import Path
 
 import pytest
 
+from running_service import depth, eventually, running
 from seacage.records import DEFAULT_LIMITS
 from seacage.service._store import _caretaker
 from seacage.service._store._adaptations import Adaptation
 from seacage.service._store._aggregates import renew_rested
 from seacage.service._store._store import StoreError
 from seacage.twin import Action, AlarmEvent
-from serviced import depth, eventually, running
-from sized import sized
+from sizes import pick_size
 from stores import NOON, opened, put, sample
 
 STREAMS = ("depth-1", "depth-2", "depth-3")
@@ -101,12 +101,12 @@ def looked_at(path):
 
 
 @pytest.mark.long
-@pytest.mark.timeout(sized(120, 3600))
+@pytest.mark.timeout(pick_size(120, 3600))
 def test_no_flipped_bit_changes_or_hides_anything_in_silence(path, record_property):
-    flips = sized(12, 300)
+    flips = pick_size(12, 300)
     fill(path, count=120, lines=40)
-    truth, said, _ = looked_at(path)
-    assert said is None
+    truth, output, _ = looked_at(path)
+    assert output is None
     whole = path.read_bytes()
     chance = random.Random(flips)
     outcome = {"harmless": 0, "damage told": 0, "read refused": 0}
@@ -117,12 +117,12 @@ def test_no_flipped_bit_changes_or_hides_anything_in_silence(path, record_proper
         at, bit = chance.randrange(len(spoilt)), chance.randrange(8)
         spoilt[at] ^= 1 << bit
         path.write_bytes(spoilt)
-        found, said, refused = looked_at(path)
-        where = f"bit {bit} of byte {at} of {len(whole)}: {said}"
+        found, output, refused = looked_at(path)
+        where = f"bit {bit} of byte {at} of {len(whole)}: {output}"
         assert all(truth.get(key) == one for key, one in found.items()), where
         missing = truth.keys() - found.keys()
-        assert said or refused or not missing, f"{len(missing)} silently gone by {where}"
-        kind = "read refused" if refused else "damage told" if said else "harmless"
+        assert output or refused or not missing, f"{len(missing)} silently gone by {where}"
+        kind = "read refused" if refused else "damage told" if output else "harmless"
         outcome[kind] += 1
     record_property("outcome", outcome)
     assert outcome["read refused"] == 0
@@ -212,7 +212,7 @@ def test_a_reader_who_meets_damage_is_answered_from_a_new_file(path):
         assert "damaged" in store.lost
 
 
-def test_a_served_store_is_verified_and_tells_by_alarm_and_metric(tmp_path):
+def test_a_served_store_is_verified_and_reports_by_alarm_and_metric(tmp_path):
     with running(tmp_path) as live:
         live.post(depth(0), depth(1))
         store = live.cage.store

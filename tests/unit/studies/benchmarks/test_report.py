@@ -10,7 +10,7 @@ from seacage.studies import benchmark_study
 from seacage.studies._benchmarks import _study
 from seacage.studies._benchmarks._methods import HIGH_ONLY, OURS, own_methods
 from seacage.studies._benchmarks._problems import problem_named
-from seacage.studies._benchmarks._report import BenchmarkReport
+from seacage.studies._benchmarks._report import benchmark_page
 from seacage.studies._benchmarks._runs import Runs
 from seacage.studies._benchmarks._scores import RunScore, summary
 from seacage.studies._benchmarks._study import _read_lock, _split_seeds
@@ -39,30 +39,29 @@ def scores(problem: str, method: str, rmse: float, *, error: str | None = None):
     )
 
 
-def report(**changed) -> BenchmarkReport:
+FOUND = {
+    (problem, method): scores(problem, method, size)
+    for problem in ("currin", "park")
+    for method, size in ((OURS, 0.1), (HIGH_ONLY, 0.7))
+}
+
+
+def page(**changed) -> str:
     problems = [problem_named("currin"), problem_named("park")]
     methods = [one for one in own_methods() if one.name in {OURS, HIGH_ONLY}]
-    found = {
-        (problem.name, method.name): scores(problem.name, method.name, size)
-        for problem in problems
-        for method, size in zip(methods, (0.1, 0.7), strict=True)
-    }
     parts = {
-        "verdicts": verdicts(found),
-        "problems": problems,
-        "methods": methods,
-        "report": found,
+        "report": FOUND,
         "tuning": {},
         "seeds": [5, 6],
         "tuning_seeds": [],
         "missing": "No other package was run.",
         "provenance": {"Python": "3"},
     }
-    return BenchmarkReport(**{**parts, **changed})
+    return benchmark_page(verdicts(FOUND), problems, methods, **{**parts, **changed})
 
 
 def test_the_page_says_who_is_best_and_what_was_not_run():
-    html = report().html()
+    html = page()
     assert "No other package was run." in html
     # 0.1 times seeds 5 and 6: mean and median 0.55.
     assert '<span class="better">0.550<small> 0.550</small></span>' in html
@@ -72,16 +71,14 @@ def test_the_page_says_who_is_best_and_what_was_not_run():
 
 
 def test_a_method_that_failed_is_on_the_page_with_its_error():
-    plain = report()
     failed = scores("park", HIGH_ONLY, 0.0, error="ValueError: no <pivot>")
-    html = report(report={**plain.report, ("park", HIGH_ONLY): failed}).html()
+    html = page(report={**FOUND, ("park", HIGH_ONLY): failed})
     assert "What failed" in html
     assert "2 failed: ValueError: no &lt;pivot&gt;" in html
 
 
 def test_tuning_seeds_have_a_table_of_their_own():
-    plain = report()
-    html = report(tuning=plain.report, tuning_seeds=[0, 1]).html()
+    html = page(tuning=FOUND, tuning_seeds=[0, 1])
     assert "Seeds 0 and 1. They decide no verdict." in html
 
 
@@ -105,11 +102,11 @@ def test_a_study_of_one_problem_ends_in_a_page_and_goes_on_where_it_was(tmp_path
     monkeypatch.setattr(_study, "PROBLEMS", (problem_named("currin"),))
     own = tuple(one for one in own_methods() if one.name in {OURS, HIGH_ONLY})
     monkeypatch.setattr(_study, "own_methods", lambda: own)
-    told = []
+    messages = []
     study = benchmark_study(
-        tmp_path, seeds=[5], quick=True, progress=lambda *where: told.append(where)
+        tmp_path, seeds=[5], quick=True, progress=lambda *where: messages.append(where)
     )
-    assert told[-1] == ("Currin", 2, 2)
+    assert messages[-1] == ("Currin", 2, 2)
     assert study.report.read_text("utf-8").startswith("<!doctype html>")
     kept = json.loads(study.scores.read_text("utf-8"))
     assert [one["method"] for one in kept["summaries"]] == [OURS, HIGH_ONLY]

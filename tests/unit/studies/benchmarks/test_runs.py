@@ -57,18 +57,18 @@ def method(folder: Path, name: str) -> Method:
 
 
 def test_a_method_answers_every_seed_once(tmp_path, problem):
-    runs, told = Runs(folder=tmp_path / "runs"), []
+    runs, reported = Runs(folder=tmp_path / "runs"), []
     mean = method(tmp_path, "mean")
-    first = runs.ensure(problem, mean, [0, 3], on_done=told.append)
+    first = runs.ensure(problem, mean, [0, 3], on_done=reported.append)
     # A report counts what is there when it is read: on a busy machine the next seed too.
-    assert told in ([0, 1, 2], [0, 2, 2])
+    assert reported in ([0, 1, 2], [0, 2, 2])
     assert [run.seed for run in first] == [0, 3]
     sample = problem.sample(3)
     np.testing.assert_allclose(first[1].mean, sample.levels[-1][1].mean())
     assert first[1].fit_s > 0.0
 
     made = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.json")}
-    again = runs.ensure(problem, mean, [3, 0], on_done=told.append)
+    again = runs.ensure(problem, mean, [3, 0], on_done=reported.append)
     assert [run.seed for run in again] == [3, 0]
     assert {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.json")} == made
 
@@ -93,7 +93,7 @@ def test_a_failure_is_kept_with_its_words_and_has_no_score(tmp_path, problem):
     assert (whole.seeds, whole.failures) == (0, 2)
 
 
-def test_a_process_that_dies_is_told_of(tmp_path, problem):
+def test_a_process_that_dies_is_reported(tmp_path, problem):
     (run,) = Runs(folder=tmp_path).ensure(
         problem, method(tmp_path, "vanish"), [0], on_done=lambda _: None
     )

@@ -48,10 +48,10 @@ def test_a_clear_winner_holds_every_promise():
     assert words(contest(emukit_nargp=1.0, smt_mfk=1.0)) == ["holds"] * 10
 
 
-def test_without_peers_only_the_coverage_is_judged():
-    judged = verdicts(contest())
-    assert [one.holds for one in judged if one.holds is not None] == [True]
-    assert "Not run: emukit-nargp." in judged[0].finding
+def test_without_peers_only_the_coverage_is_scored():
+    scores = verdicts(contest())
+    assert [one.holds for one in scores if one.holds is not None] == [True]
+    assert "Not run: emukit-nargp." in scores[0].finding
 
 
 def test_a_ratio_above_its_limit_is_missed_with_its_numbers():
@@ -97,7 +97,7 @@ def test_narrow_intervals_are_missed_and_named():
     assert kept.coverage == pytest.approx(0.93)
 
 
-def test_a_peer_that_failed_is_no_rival_and_its_words_are_told():
+def test_a_peer_that_failed_is_no_rival_and_its_words_are_reported():
     found = contest(emukit_nargp=1.0, smt_mfk=0.1)
     found |= ensure("park", "emukit-nargp", 0.0, error="LinAlgError: not positive definite")
     found |= ensure("park", "smt-mfk", 0.0, error="ValueError: no")

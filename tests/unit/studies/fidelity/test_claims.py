@@ -61,7 +61,7 @@ FOULING = FoulingGap(
 )
 
 
-def judged(*, gaps=GAPS, rescalings=(RESCALING,), null=NULL, fouling=FOULING):
+def claims_of(*, gaps=GAPS, rescalings=(RESCALING,), null=NULL, fouling=FOULING):
     return claims(gaps, rescalings, null, fouling)
 
 
@@ -71,46 +71,48 @@ def with_null(gain: Interval, together: Interval = AROUND) -> NullCase:
 
 
 def test_all_claims_hold_where_all_numbers_say_so():
-    assert [claim.verdict for claim in judged()] == ["holds"] * 5
+    assert [claim.verdict for claim in claims_of()] == ["holds"] * 5
 
 
 def test_one_depth_sensor_that_is_overestimated_misses_the_first_claim():
     over = (*GAPS[:2], replace(GAPS[2], low=2.5, bias=ABOVE))
-    assert judged(gaps=over)[0].verdict == "missed"
+    assert claims_of(gaps=over)[0].verdict == "missed"
 
 
 def test_a_shackle_that_is_overestimated_does_not():
     shackle = replace(GAPS[0], sensor="shackle-1", unit="kN", bias=ABOVE)
-    assert judged(gaps=(*GAPS, shackle))[0].holds
+    assert claims_of(gaps=(*GAPS, shackle))[0].holds
 
 
 def test_a_rescaling_that_leaves_too_little_is_named():
-    claim = judged(rescalings=(RESCALING, replace(RESCALING, sensor="shackle-4", left_mae=0.09)))[1]
+    claim = claims_of(
+        rescalings=(RESCALING, replace(RESCALING, sensor="shackle-4", left_mae=0.09))
+    )[1]
     assert claim.verdict == "missed"
     assert "at shackle-4." in claim.finding
 
 
 def test_a_gain_where_there_is_nothing_to_gain_misses_both_claims_of_the_null_case():
-    gained, covered = judged(null=with_null(ABOVE))[2:4]
+    gained, covered = claims_of(null=with_null(ABOVE))[2:4]
     assert (gained.verdict, covered.verdict) == ("missed", "missed")
     assert "It gains at depth-1" in gained.finding
 
 
-def test_a_loss_there_is_told_as_the_price_of_learning_from_noise():
-    gained, covered = judged(null=with_null(BELOW))[2:4]
+def test_a_loss_there_is_reported_as_the_price_of_learning_from_noise():
+    gained, covered = claims_of(null=with_null(BELOW))[2:4]
     assert (gained.verdict, covered.verdict) == ("holds", "missed")
     assert "Below zero: depth-1." in covered.finding
     assert "most at depth-1, 500 mm, where the field's gain is 500 mm" in covered.finding
 
 
 def test_all_sensors_together_may_miss_zero_where_none_does_alone():
-    gained, covered = judged(null=with_null(AROUND, together=BELOW))[2:4]
+    gained, covered = claims_of(null=with_null(AROUND, together=BELOW))[2:4]
     assert (gained.verdict, covered.verdict) == ("holds", "missed")
     assert "All together lie below zero" in covered.finding
 
 
-def test_sensors_that_could_not_be_judged_are_named():
-    claim = judged(null=replace(NULL, unjudged=("shackle-1", "shackle-2")))[2]
+def test_sensors_that_could_not_be_scored_are_named():
+    claim = claims_of(null=replace(NULL, unjudged=("shackle-1", "shackle-2")))[2]
     assert "shackle-1 and shackle-2 had too few readings" in claim.finding
 
 
@@ -118,4 +120,4 @@ def test_a_gap_that_narrows_at_one_current_misses_the_last_claim():
     narrowing = replace(
         FOULING, speed=np.array([0.3, 0.5]), gap=np.array([[[1.0], [1.0]], [[0.9], [2.0]]])
     )
-    assert judged(fouling=narrowing)[4].verdict == "missed"
+    assert claims_of(fouling=narrowing)[4].verdict == "missed"

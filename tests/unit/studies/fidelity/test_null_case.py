@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from field_windows import START, make_windows
 from seacage.conventions import Origin
 from seacage.records import FieldRecord, Record
 from seacage.studies._fidelity._null_case import SensorTrial, noise, null_case
 from seacage.twin import Metocean
-from windowed import START, made_windows
 
 
 def field_of(windows, *, sensors) -> FieldRecord:
@@ -37,7 +37,7 @@ def field_of(windows, *, sensors) -> FieldRecord:
 
 @pytest.fixture(scope="module")
 def case():
-    windows = made_windows(days=16, each=6)
+    windows = make_windows(days=16, each=6)
     return null_case(
         windows, field_of(windows, sensors=[1, 4]), points=60, seed=0, progress=lambda *_: None
     )
@@ -58,7 +58,7 @@ def test_multifidelity_does_not_gain_where_the_truth_is_the_low_fidelity(case):
     assert case.null.together.low <= 0.0
 
 
-def test_both_cases_are_taught_and_judged_alike(case):
+def test_both_cases_are_trained_and_scored_alike(case):
     for null, real in zip(case.null.sensors, case.real.sensors, strict=True):
         assert (null.sensor, null.teaching, null.judging) == (
             real.sensor,
@@ -68,14 +68,14 @@ def test_both_cases_are_taught_and_judged_alike(case):
         assert null.teaching == 48, "six windows of each of the first eight days"
 
 
-def test_a_sensor_that_was_never_there_is_not_judged(case):
+def test_a_sensor_that_was_never_there_is_not_scored(case):
     assert len(case.unjudged) == 6
     assert {one.sensor for one in case.null.sensors} == {"depth-2", "shackle-2"}
 
 
 @pytest.mark.slow
-def test_a_sensor_that_lived_shortly_is_judged_on_shorter_means():
-    windows = made_windows(days=4, each=6)
+def test_a_sensor_that_lived_shortly_is_scored_on_shorter_means():
+    windows = make_windows(days=4, each=6)
     field = field_of(windows, sensors=[0])
     case = null_case(windows, field, points=60, seed=0, progress=lambda *_: None)
     assert case.mean_s == {"depth-1": 60.0}, "twelve windows teach"
@@ -114,8 +114,8 @@ def test_a_fault_that_no_check_found_is_no_noise():
 
 
 @pytest.mark.slow
-def test_waves_are_heard_where_the_buoy_reports_them():
-    windows = made_windows(days=16, each=6)
+def test_waves_are_used_where_the_buoy_reports_them():
+    windows = make_windows(days=16, each=6)
     wavy = replace(
         windows,
         water=Metocean(

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from field_windows import answers, make_windows
 from seacage.studies._fidelity import _rescaling
 from seacage.studies._fidelity._rescaling import (
     Moving,
@@ -15,7 +16,6 @@ from seacage.studies._fidelity._rescaling import (
 )
 from seacage.studies._stages import Stages
 from seacage.surrogates import GaussianProcess, current_features
-from windowed import answers, made_windows
 
 
 @pytest.fixture(scope="module")
@@ -34,11 +34,11 @@ def learned(smooth, monkeypatch):
 
 
 def found(windows):
-    def unheard(stage, done, total):
+    def check_stage(stage, done, total):
         assert stage == "rescaling"
 
     return rescalings(
-        windows, Stages(folder=Path("unused")), seed=0, workers=1, progress=unheard
+        windows, Stages(folder=Path("unused")), seed=0, workers=1, progress=check_stage
     ).sensors
 
 
@@ -51,7 +51,7 @@ def changed(windows, *, factor, turn, gain, offset):
 
 
 def test_a_truth_that_is_a_rescaling_leaves_almost_nothing(learned):
-    windows = changed(made_windows(), factor=1.2, turn=14.0, gain=0.9, offset=0.3)
+    windows = changed(make_windows(), factor=1.2, turn=14.0, gain=0.9, offset=0.3)
     for one in found(windows):
         assert one.left < 0.05, "the formula is learned to within a hundredth"
         assert not one.enough
@@ -59,7 +59,7 @@ def test_a_truth_that_is_a_rescaling_leaves_almost_nothing(learned):
 
 
 def test_noise_that_no_rescaling_knows_is_left(learned):
-    windows = made_windows()
+    windows = make_windows()
     for one in found(windows):
         assert one.left_mae == pytest.approx(0.08, rel=0.25), "of a normal error of sd 0.1"
         assert one.low_mae > one.left_mae
@@ -67,7 +67,7 @@ def test_noise_that_no_rescaling_knows_is_left(learned):
 
 
 def test_what_waves_add_stays(smooth):
-    windows = made_windows(days=2)
+    windows = make_windows(days=2)
     shifted = replace(windows, low=windows.low + 7.0)
     calm, wavy = (Moving(windows=some, settled=smooth[0]) for some in (windows, shifted))
     assert wavy.answers_at(1.3, 20.0) - calm.answers_at(1.3, 20.0) == pytest.approx(7.0)
@@ -83,6 +83,6 @@ def test_the_fit_of_least_absolute_error_does_not_hear_outliers():
 
 
 def test_every_other_day_teaches_and_a_lone_day_is_halved():
-    windows = made_windows(days=4, each=6)
+    windows = make_windows(days=4, each=6)
     assert teaching_days(windows).reshape(4, 6).all(axis=1).tolist() == [True, False, True, False]
-    assert teaching_days(made_windows(days=1, each=6)).tolist() == [True] * 3 + [False] * 3
+    assert teaching_days(make_windows(days=1, each=6)).tolist() == [True] * 3 + [False] * 3

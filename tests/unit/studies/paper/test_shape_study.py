@@ -24,7 +24,7 @@ from stand_in import StandIn
 CAGE = Cage.named("ace").altered(mesh={"ring_depths_m": [0.0, 15.0, 23.0], "spokes": 8})
 
 
-def unheard(*_):
+def no_progress(*_):
     pass
 
 
@@ -65,7 +65,7 @@ def _pushed(record):
 def study(trial, tmp_path_factory):
     models, left_out = shape_models(CAGE, waves=True, networks=False)
     stages = Stages(folder=tmp_path_factory.mktemp("stages"))
-    return shape_study(models, trial, stages, left_out=left_out, progress=unheard), stages
+    return shape_study(models, trial, stages, left_out=left_out, progress=no_progress), stages
 
 
 @pytest.mark.slow
@@ -87,13 +87,13 @@ def test_a_second_study_trains_nothing_again_and_says_the_same(study, trial):
     assert again.scores[SHAPE].fit_cpu_s == study[0].scores[SHAPE].fit_cpu_s
 
 
-def test_a_cage_without_the_symmetry_is_told_of_and_the_rest_goes_on(trial, tmp_path):
+def test_a_cage_without_the_symmetry_is_reported_and_the_rest_goes_on(trial, tmp_path):
     models, _ = shape_models(CAGE, waves=True, networks=False)
     moved = trial.campaign.node_position.copy()
     moved[:, CAGE.node(2, 0), 2] += 3.0  # one node hangs higher, whatever the current
     uneven = replace(trial, campaign=replace(trial.campaign, node_position=moved))
     few = [model for model in models if model.name in (SHAPE, SHAPE_FOLDED)]
-    study = shape_study(few, uneven, Stages(folder=tmp_path), progress=unheard)
+    study = shape_study(few, uneven, Stages(folder=tmp_path), progress=no_progress)
     assert list(study.scores) == [SHAPE]
     assert study.best.model == SHAPE
     assert study.left_out[0].startswith("ShapeGP, folded is missing")
@@ -119,7 +119,7 @@ def test_the_variance_is_counted_over_cases_and_over_all_time_steps(study):
     assert shares["all time steps, not centred"] > shares["all time steps, centred"]
 
 
-def test_networks_that_cannot_be_had_are_told_of(monkeypatch):
+def test_networks_that_cannot_be_had_are_reported(monkeypatch):
     models, (why,) = shape_models(CAGE, waves=False, networks=False)
     assert [model.name for model in models][-2:] == [SHAPE, SHAPE_FOLDED]
     assert "full study" in why

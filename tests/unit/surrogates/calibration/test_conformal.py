@@ -11,7 +11,7 @@ def test_honest_scores_of_many_need_no_widening():
     assert conformal_factor(score, independent=20000.0) == pytest.approx(1.0, abs=0.02)
 
 
-def test_errors_twice_as_large_as_said_double_the_interval():
+def test_errors_twice_as_large_as_stated_double_the_interval():
     score = 2.0 * np.abs(np.random.default_rng(0).standard_normal(20000))
     assert conformal_factor(score, independent=20000.0) == pytest.approx(2.0, abs=0.04)
 
@@ -23,7 +23,7 @@ def test_few_independent_scores_widen_as_student_says():
     assert few / many == pytest.approx(3.182 / 1.960, rel=1e-3)
 
 
-def test_blocks_that_err_alike_are_covered_when_their_number_is_told():
+def test_blocks_that_err_alike_are_covered_when_their_number_is_given():
     random = np.random.default_rng(1)
     covered = {"blocks": 0, "readings": 0}
     for _ in range(2000):
@@ -89,7 +89,7 @@ def test_an_adaptation_that_cannot_be_is_refused(wrong):
         AdaptiveConformal(**wrong)
 
 
-def test_the_causes_of_an_error_are_told_apart_by_where_it_is_large():
+def test_the_causes_of_an_error_are_distinguished_by_where_it_is_large():
     random = np.random.default_rng(4)
     terms = np.column_stack([np.ones(4000), random.uniform(0.0, 10.0, 4000)])
     square = (terms @ [2.0, 0.5]) * random.standard_normal(4000) ** 2

@@ -85,7 +85,7 @@ def test_cases_of_ones_own_can_be_held_out() -> None:
 
 
 @pytest.mark.parametrize(("share", "expected"), [(None, 12), (0.25, 30), (0.001, 2)])
-def test_the_share_held_out_is_what_was_asked_for(share: float | None, expected: int) -> None:
+def test_the_share_held_out_is_what_was_requested(share: float | None, expected: int) -> None:
     held_out = _draw_held_out(120, share, seed=0)
     assert len(set(held_out.tolist())) == expected
     assert set(held_out.tolist()) <= set(range(120))

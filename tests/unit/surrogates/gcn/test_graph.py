@@ -24,20 +24,20 @@ def test_three_nodes_in_a_row_hear_each_other_as_kipf_and_welling_say() -> None:
 
 def test_the_papers_net_has_321_nodes_and_a_tip_that_hears_the_tenth_layer() -> None:
     graph = ace()
-    heard = graph.propagation() > 0.0
-    assert heard.shape == (321, 321)
-    assert (heard == heard.T).all()
-    np.testing.assert_array_equal(np.flatnonzero(heard[320]), np.arange(288, 321))
+    received = graph.propagation() > 0.0
+    assert received.shape == (321, 321)
+    assert (received == received.T).all()
+    np.testing.assert_array_equal(np.flatnonzero(received[320]), np.arange(288, 321))
     # A node, the two beside it and those above and below; the top layer has none above.
-    assert set(heard[:32].sum(axis=1)) == {4}
-    assert set(heard[32:320].sum(axis=1)) == {5}
+    assert set(received[:32].sum(axis=1)) == {4}
+    assert set(received[32:320].sum(axis=1)) == {5}
 
 
 def test_the_sparse_propagation_is_the_dense_one() -> None:
     graph = ace()
-    told = np.random.default_rng(0).standard_normal((3, graph.nodes, 5))
-    dense = np.einsum("ij,rjc->ric", graph.propagation(), told)
-    np.testing.assert_allclose(graph.propagate(told), dense, atol=1e-13)  # order of the sums
+    noise = np.random.default_rng(0).standard_normal((3, graph.nodes, 5))
+    dense = np.einsum("ij,rjc->ric", graph.propagation(), noise)
+    np.testing.assert_allclose(graph.propagate(noise), dense, atol=1e-13)  # order of the sums
 
 
 def test_an_edge_given_twice_counts_once() -> None:

@@ -85,7 +85,7 @@ def test_numpy_and_jax_answer_alike(kind: Kind) -> None:
         single,
         jnp.asarray(REST, jnp.float32),
         jnp.asarray(X, jnp.float32),
-        lambda told: jnp.einsum("ij,rjc->ric", matrix, told),
+        lambda report: jnp.einsum("ij,rjc->ric", matrix, report),
     )
     # Single precision has seven digits, and the sums lose one or two.
     np.testing.assert_allclose(other, exact, atol=1e-5 * np.abs(exact).max())

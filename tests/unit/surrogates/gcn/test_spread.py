@@ -7,11 +7,11 @@ from seacage.surrogates._gcn._spread import Spread
 
 RANDOM = np.random.default_rng(0)
 X = RANDOM.uniform(-1.0, 1.0, (600, 2))
-TAUGHT, HELD_OUT = np.arange(300), np.arange(300, 600)
+TRAINED, HELD_OUT = np.arange(300), np.arange(300, 600)
 
 
 def spread_of(residual: np.ndarray) -> Spread:
-    return Spread.of(X, residual, train=TAUGHT, held_out=HELD_OUT)
+    return Spread.of(X, residual, train=TRAINED, held_out=HELD_OUT)
 
 
 def heavy(rows: int) -> np.ndarray:
@@ -71,5 +71,5 @@ def test_two_held_out_cases_are_enough() -> None:
 
 def test_equal_cases_are_no_division_by_nothing() -> None:
     x = np.zeros((600, 2))
-    same = Spread.of(x, heavy(600), train=TAUGHT, held_out=HELD_OUT)
+    same = Spread.of(x, heavy(600), train=TRAINED, held_out=HELD_OUT)
     assert np.isfinite(same.std(x + 1.0, noisy=False)).all()

@@ -53,18 +53,18 @@ def test_a_node_that_weighs_nothing_is_not_learned() -> None:
 def test_training_ends_when_the_held_out_cases_no_longer_gain() -> None:
     # What is held out is the opposite of what is taught, so the first epoch is the best.
     turned = np.concatenate([TARGET[:32], -3.0 * TARGET[:8]])
-    told: list[tuple[str, int, int]] = []
+    messages: list[tuple[str, int, int]] = []
     recipe = Recipe(width=6, epochs=400, patience=5, learning_rate=1e-2)
-    _, epochs = train(turned, recipe=recipe, progress=lambda *step: told.append(step))
+    _, epochs = train(turned, recipe=recipe, progress=lambda *step: messages.append(step))
     assert epochs < 40
-    assert told[0] == ("gcn", 1, 400)
-    assert told[-2:] == [("gcn", epochs, 400), ("gcn", 400, 400)]
+    assert messages[0] == ("gcn", 1, 400)
+    assert messages[-2:] == [("gcn", epochs, 400), ("gcn", 400, 400)]
 
 
-def test_every_epoch_is_told_and_the_last_one_once() -> None:
-    told: list[tuple[str, int, int]] = []
-    train(progress=lambda *step: told.append(step))
-    assert told == [("gcn", epoch, 40) for epoch in range(1, 41)]
+def test_every_epoch_is_reported_and_the_last_one_once() -> None:
+    messages: list[tuple[str, int, int]] = []
+    train(progress=lambda *step: messages.append(step))
+    assert messages == [("gcn", epoch, 40) for epoch in range(1, 41)]
 
 
 def test_the_learning_rate_rises_a_twentieth_of_the_way_and_falls_to_nothing() -> None:

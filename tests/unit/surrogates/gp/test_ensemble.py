@@ -144,7 +144,7 @@ def test_many_points_are_given_what_their_posterior_says(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     x = some(FEW + 1)
-    said = GaussianProcess().fit(x, wave(x)).predict(some(20, seed=1))
+    predicted = GaussianProcess().fit(x, wave(x)).predict(some(20, seed=1))
     monkeypatch.setattr(_gaussian_process, "widening", lambda _: 2.0)
     same = GaussianProcess().fit(x, wave(x)).predict(some(20, seed=1))
-    np.testing.assert_array_equal(said.std, same.std)
+    np.testing.assert_array_equal(predicted.std, same.std)

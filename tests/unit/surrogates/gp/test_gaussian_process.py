@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from seacage.conventions import InputError
-from seacage.surrogates import GaussianProcess, coverage, rmse
+from seacage.surrogates import FittedGaussianProcess, GaussianProcess, coverage, rmse
+from seacage.surrogates._gp import Columns, StationaryKernel, fit_process, register_kernels
 from seacage.surrogates._gp._ensemble import Ensemble
 from seacage.surrogates._gp._gaussian_process import SHARED_POINTS, condense
 
@@ -75,7 +76,7 @@ def test_a_rougher_output_is_less_sure_of_itself() -> None:
     assert rough > 2.0 * smooth
 
 
-def test_a_constant_output_is_answered_without_doubt() -> None:
+def test_a_constant_output_is_answered_without_variance() -> None:
     x, y = bumps(30, seed=0)
     answer = GaussianProcess(restarts=0).fit(x, np.stack([y, np.full(30, 0.1)], axis=1)).predict(x)
     np.testing.assert_allclose(answer.mean[:, 1], 0.1, rtol=1e-12)
@@ -125,12 +126,12 @@ def test_an_output_that_does_not_exist_is_refused() -> None:
             fitted.output(index)
 
 
-def test_leaving_one_out_is_a_fair_judge_of_itself() -> None:
+def test_leaving_one_out_is_a_fair_test_of_itself() -> None:
     x, y = bumps(100, seed=0, noise=0.05)
-    judged = GaussianProcess(restarts=0).fit(x, y).leave_one_out()
-    assert judged.mean.shape == judged.std.shape == (100,)
-    assert 0.88 < coverage(y, judged.mean, judged.std) <= 1.0
-    assert rmse(y, judged.mean) == pytest.approx(0.055, rel=0.3)
+    scores = GaussianProcess(restarts=0).fit(x, y).leave_one_out()
+    assert scores.mean.shape == scores.std.shape == (100,)
+    assert 0.88 < coverage(y, scores.mean, scores.std) <= 1.0
+    assert rmse(y, scores.mean) == pytest.approx(0.055, rel=0.3)
 
 
 def test_condensed_outputs_have_the_same_products_between_cases() -> None:
@@ -186,3 +187,32 @@ def test_few_points_leave_the_variance_of_a_students_t() -> None:
     scale = (SHARED_POINTS * y.var() + rough) / freedom
     expected = scale * freedom / (freedom - 2.0)
     np.testing.assert_allclose(fitted.amplitude**2, expected, rtol=1e-9)
+
+
+def test_a_sum_of_two_kernels_is_fitted_saved_and_opened() -> None:
+    # A rough function of one feature and a smooth one of both, as decision 0022 looked for.
+    random = np.random.default_rng(0)
+    x, new = random.uniform(-1.0, 1.0, (80, 2)), random.uniform(-0.9, 0.9, (200, 2))
+
+    def truth(at: np.ndarray) -> np.ndarray:
+        return 2.0 * np.abs(np.sin(4.0 * at[:, 0])) + 0.3 * at[:, 0] * at[:, 1]
+
+    both = StationaryKernel("squared-exponential")
+    kernel = both + Columns(StationaryKernel("matern-3/2"), slice(0, 1))
+    y = truth(x)[:, None]
+    fits = [
+        fit_process(one, x, y, likelihood_outputs=(y - y.mean()) / y.std(), restarts=1, seed=0)
+        for one in (both, kernel)
+    ]
+    assert len(fits[1].posterior.log_parameters) == 3 + 2
+    alone, summed = (rmse(truth(new), one.predict(new).mean) for one in fits)
+    assert summed < 0.7 * alone
+    step = 1e-5 * np.eye(2)
+    moved = [fits[1].mean(new + one) - fits[1].mean(new - one) for one in step]
+    # Central differences; the rough part bends at the cases.
+    np.testing.assert_allclose(
+        fits[1].jacobian(new), np.transpose(moved) / 2e-5, rtol=1e-3, atol=1e-3
+    )
+    register_kernels(kernel)
+    opened = FittedGaussianProcess.from_arrays(*fits[1].to_arrays())
+    np.testing.assert_array_equal(opened.predict(new).std, fits[1].predict(new).std)

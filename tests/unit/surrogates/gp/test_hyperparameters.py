@@ -13,15 +13,15 @@ from seacage.surrogates._gp._noise import (
     StudentNoise,
     WhiteNoise,
 )
-from seacage.surrogates._multifidelity._kernel import AutoregressiveKernel, StraightKernel
+from seacage.surrogates._multifidelity._kernel import autoregressive, straight
 
 SMOOTH = StationaryKernel("squared-exponential")
 KERNELS = [
     SMOOTH,
     StationaryKernel("matern-5/2"),
     StationaryKernel("matern-3/2"),
-    AutoregressiveKernel(linear=True),
-    StraightKernel(),
+    autoregressive(linear=True),
+    straight(),
 ]
 NOISES = [WhiteNoise(), NoisePerOutput(2), NoiseByInput(np.eye(2)), StudentNoise()]
 
@@ -51,13 +51,13 @@ def agrees_with_differences(of: Evidence, at: np.ndarray) -> None:
 @pytest.mark.parametrize("kernel", KERNELS, ids=lambda kernel: kernel.name)
 def test_the_gradient_of_the_loss_agrees_with_finite_differences(kernel: AbstractKernel) -> None:
     of = evidence(kernel)
-    agrees_with_differences(of, np.append(of.prior().mean[:-1] + 0.2, np.log(0.02)))
+    agrees_with_differences(of, np.append(of.prior.mean[:-1] + 0.2, np.log(0.02)))
 
 
 @pytest.mark.parametrize("noise", NOISES, ids=lambda noise: noise.name)
 def test_so_does_that_of_every_noise(noise: AbstractNoise) -> None:
     of = evidence(noise=noise)
-    at = of.prior().mean + 0.2
+    at = of.prior.mean + 0.2
     count = len(noise.prior().mean)
     at[-count:] += np.linspace(0.0, 0.5, count)
     # Where there is some noise, as differences of an all but singular covariance are coarse.
@@ -69,10 +69,10 @@ def test_the_loss_is_the_gaussian_log_density_of_each_output_and_of_the_prior() 
     from scipy.stats import multivariate_normal, norm
 
     of = evidence()
-    at = np.append(of.prior().mean[:-1] + 0.3, np.log(0.02))
+    at = np.append(of.prior.mean[:-1] + 0.3, np.log(0.02))
     covariance = SMOOTH.covariance(at[:-1], of.x, of.x) + np.exp(at[-1]) * np.eye(len(of.x))
     outputs = sum(multivariate_normal(cov=covariance).logpdf(one) for one in of.y.T)
-    prior = of.prior()
+    prior = of.prior
     beliefs = np.sum(norm.logpdf(at, prior.mean, prior.sd))
     constants = 0.5 * of.y.size * np.log(2.0 * np.pi)
     constants += np.sum(np.log(prior.sd * np.sqrt(2.0 * np.pi)))
@@ -81,7 +81,7 @@ def test_the_loss_is_the_gaussian_log_density_of_each_output_and_of_the_prior() 
 
 
 def test_alike_noise_of_each_output_is_white_noise() -> None:
-    at = np.append(evidence().prior().mean[:-1] + 0.3, np.log(0.02))
+    at = np.append(evidence().prior.mean[:-1] + 0.3, np.log(0.02))
     each = np.append(at, at[-1])
     prior = WhiteNoise().prior()
     priors = float(0.5 * ((at[-1] - prior.mean[0]) / prior.sd[0]) ** 2)

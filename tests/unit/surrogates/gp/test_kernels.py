@@ -6,24 +6,36 @@ import pytest
 from seacage.conventions import InputError, ModelError
 from seacage.surrogates._gp._kernels import (
     AbstractKernel,
+    Columns,
+    Constant,
     StationaryKernel,
     kernel_named,
     restore_kernel,
 )
 from seacage.surrogates._multifidelity._kernel import (
-    AutoregressiveKernel,
-    StraightKernel,
+    LOCAL,
+    LinearKernel,
+    autoregressive,
+    straight,
 )
 
 KERNELS = [
     StationaryKernel("squared-exponential"),
     StationaryKernel("matern-5/2"),
     StationaryKernel("matern-3/2"),
-    AutoregressiveKernel(linear=True),
-    AutoregressiveKernel(linear=False),
-    StraightKernel(),
+    autoregressive(linear=True),
+    autoregressive(linear=False),
+    straight(),
 ]
-every_kernel = pytest.mark.parametrize("kernel", KERNELS, ids=lambda kernel: kernel.name)
+COMPOSED = [
+    StationaryKernel("squared-exponential") + Columns(StationaryKernel("matern-5/2"), LOCAL),
+    Constant() * StationaryKernel("matern-3/2") + Constant(),
+    Columns(LinearKernel(offset=0.5), slice(0, 2)) * StationaryKernel("matern-5/2"),
+]
+registered_kernel = pytest.mark.parametrize("kernel", KERNELS, ids=lambda kernel: kernel.name)
+every_kernel = pytest.mark.parametrize(
+    "kernel", [*KERNELS, *COMPOSED], ids=lambda kernel: kernel.name
+)
 
 
 def some(kernel: AbstractKernel) -> tuple[np.ndarray, np.ndarray]:
@@ -46,7 +58,9 @@ def test_a_covariance_is_symmetric_and_positive_definite(kernel: AbstractKernel)
 def test_the_variance_is_the_diagonal_of_the_covariance(kernel: AbstractKernel) -> None:
     x, log_parameters = some(kernel)
     covariance = kernel.covariance(log_parameters, x, x)
-    np.testing.assert_allclose(kernel.variance(log_parameters, x), np.diag(covariance), rtol=1e-12)
+    np.testing.assert_allclose(
+        kernel.diagonal(log_parameters, x).value, np.diag(covariance), rtol=1e-12
+    )
 
 
 @every_kernel
@@ -54,8 +68,8 @@ def test_the_pullback_agrees_with_finite_differences(kernel: AbstractKernel) -> 
     x, log_parameters = some(kernel)
     slope = np.random.default_rng(5).standard_normal((20, 20))
     slope += slope.T
-    covariance, pullback = kernel.with_pullback(log_parameters, x)
-    np.testing.assert_allclose(covariance, kernel.covariance(log_parameters, x, x), rtol=1e-12)
+    at = kernel.evaluate(log_parameters, x, x)
+    np.testing.assert_allclose(at.value, kernel.covariance(log_parameters, x, x), rtol=1e-12)
     step = 1e-6
     moved = [
         np.sum(
@@ -69,7 +83,7 @@ def test_the_pullback_agrees_with_finite_differences(kernel: AbstractKernel) -> 
         for one in step * np.eye(len(log_parameters))
     ]
     # Central differences of sums of 400 terms of order 1.
-    np.testing.assert_allclose(pullback(slope), moved, rtol=1e-6, atol=1e-6)
+    np.testing.assert_allclose(at.pull(slope), moved, rtol=1e-6, atol=1e-6)
 
 
 @every_kernel
@@ -90,12 +104,11 @@ def test_the_slope_agrees_with_finite_differences(kernel: AbstractKernel) -> Non
         / (2.0 * step)
         for one in step * np.eye(3)
     ]
-    slope = kernel.slope(log_parameters, x, z, share)
+    at = kernel.evaluate(log_parameters, x, z)
+    slope = at.slope(share)
     np.testing.assert_allclose(slope, np.transpose(moved), rtol=1e-6, atol=1e-6)
-    alike = kernel.slope(log_parameters, x, z, share[:1])
-    np.testing.assert_allclose(
-        alike, kernel.slope(log_parameters, x, z, np.tile(share[:1], (7, 1))), rtol=1e-12
-    )
+    alike = at.slope(share[:1])
+    np.testing.assert_allclose(alike, at.slope(np.tile(share[:1], (7, 1))), rtol=1e-12)
 
 
 @every_kernel
@@ -103,11 +116,14 @@ def test_the_variance_slope_agrees_with_finite_differences(kernel: AbstractKerne
     x, log_parameters = some(kernel)
     step = 1e-6
     moved = [
-        (kernel.variance(log_parameters, x + one) - kernel.variance(log_parameters, x - one))
+        (
+            kernel.diagonal(log_parameters, x + one).value
+            - kernel.diagonal(log_parameters, x - one).value
+        )
         / (2.0 * step)
         for one in step * np.eye(3)
     ]
-    slope = kernel.variance_slope(log_parameters, x)
+    slope = kernel.diagonal(log_parameters, x).slope(np.ones(len(x)))
     np.testing.assert_allclose(slope, np.transpose(moved), rtol=1e-6, atol=1e-6)
 
 
@@ -133,7 +149,7 @@ def test_the_matern_has_its_published_values() -> None:
 
 
 def test_the_autoregressive_kernel_is_what_the_paper_composes() -> None:
-    kernel = AutoregressiveKernel(linear=False)
+    kernel = autoregressive(linear=False)
     rho, length, delta = (1.5, 0.7), 0.9, (0.3, 2.0)
     log_parameters = np.log([*rho, length, *delta])
     x, z = np.array([[0.2, -1.0]]), np.array([[0.9, 0.5]])
@@ -148,16 +164,16 @@ def test_the_autoregressive_kernel_is_what_the_paper_composes() -> None:
 def test_the_published_kernel_has_as_many_hyperparameters_as_the_paper_counts() -> None:
     # 2 d + 3: two variances, 2 d lengths in x and one in f.
     for features in (1, 2, 5):
-        kernel = AutoregressiveKernel(linear=False)
+        kernel = autoregressive(linear=False)
         assert len(kernel.prior(features + 1).mean) == 2 * features + 3
 
 
 def test_coinciding_inputs_are_at_distance_zero() -> None:
     x = np.full((3, 2), 1e3) / 3.0
     kernel = StationaryKernel("matern-5/2")
-    covariance, pullback = kernel.with_pullback(np.zeros(3), x)
-    np.testing.assert_array_equal(covariance, 1.0)
-    np.testing.assert_allclose(pullback(np.ones((3, 3)))[1:], 0.0, atol=1e-6)
+    at = kernel.evaluate(np.zeros(3), x, x)
+    np.testing.assert_array_equal(at.value, 1.0)
+    np.testing.assert_allclose(at.pull(np.ones((3, 3)))[1:], 0.0, atol=1e-6)
 
 
 def test_an_unknown_kernel_is_refused() -> None:
@@ -169,6 +185,24 @@ def test_an_unknown_kernel_is_refused() -> None:
         restore_kernel("cubic")
 
 
-@every_kernel
+@registered_kernel
 def test_a_saved_kernel_is_found_by_its_name(kernel: AbstractKernel) -> None:
     assert restore_kernel(kernel.name) == kernel
+
+
+def test_kernels_add_and_multiply_as_their_covariances_do() -> None:
+    one, other = StationaryKernel("squared-exponential"), StationaryKernel("matern-3/2")
+    x, log_parameters = some(one + other)
+    first, second = log_parameters[:4], log_parameters[4:]
+    k_one, k_other = one.covariance(first, x, x), other.covariance(second, x, x)
+    added = (one + other).covariance(log_parameters, x, x)
+    np.testing.assert_allclose(added, k_one + k_other, rtol=1e-14)
+    multiplied = (one * other).covariance(log_parameters, x, x)
+    np.testing.assert_allclose(multiplied, k_one * k_other, rtol=1e-14)
+
+
+def test_the_prior_of_a_composition_is_that_of_its_parts() -> None:
+    part = Columns(StationaryKernel("matern-5/2"), LOCAL)
+    whole = (Constant() + part).prior(3)
+    np.testing.assert_array_equal(whole.mean[1:], StationaryKernel("matern-5/2").prior(2).mean)
+    assert len(whole.sd) == (Constant() + part).size(3) == 4

@@ -189,7 +189,7 @@ def test_noise_per_output_is_one_number_for_each() -> None:
     np.testing.assert_allclose(at, np.tile([1.0, 2.0, 3.0], (4, 1)))
 
 
-def test_a_doubt_is_settled_where_its_own_residual_calls_for_it() -> None:
+def test_an_uncertain_noise_is_settled_where_its_own_residual_calls_for_it() -> None:
     square, variance = np.array([0.0, 1.0, 100.0]), np.array([0.2, 0.0, 0.2])
     noise_factor = noise_factor_of_new(square, variance, scale=0.5, outputs=1)
     noise = 0.5 * noise_factor

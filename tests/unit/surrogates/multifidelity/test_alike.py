@@ -38,7 +38,7 @@ def alike() -> FittedNARGP:
     return NARGP(restarts=0).fit([(X1, low(X1)), (X2, high(X2))])
 
 
-def test_the_ratio_is_expected_at_1_where_the_level_below_tells_most(alike: FittedNARGP) -> None:
+def test_the_ratio_is_expected_at_1_where_the_level_below_carries_most(alike: FittedNARGP) -> None:
     assert ratio(alike) == pytest.approx(1.0, rel=1e-12)
 
 
@@ -130,13 +130,13 @@ def test_a_model_saved_without_a_line_has_none(alike: FittedNARGP) -> None:
 
 
 @pytest.mark.slow
-def test_levels_asked_together_keep_their_lines(alike: FittedNARGP) -> None:
+def test_levels_predicted_together_keep_their_lines(alike: FittedNARGP) -> None:
     other = NARGP(restarts=0).fit([(X1, low(X1)), (X2, far(X2))])
     below = alike.predict(NEW, level=1)
     both = Prediction(
         mean=np.column_stack([below.mean, below.mean]), std=np.column_stack([below.std, below.std])
     )
-    said = BatchedLevels.of([alike.upper[0], other.upper[0]]).predict(NEW, both)
+    predicted = BatchedLevels.of([alike.upper[0], other.upper[0]]).predict(NEW, both)
     for column, model in enumerate((alike, other)):
-        np.testing.assert_allclose(said.mean[:, column], model.predict(NEW).mean, rtol=1e-9)
-        np.testing.assert_allclose(said.std[:, column], model.predict(NEW).std, rtol=1e-6)
+        np.testing.assert_allclose(predicted.mean[:, column], model.predict(NEW).mean, rtol=1e-9)
+        np.testing.assert_allclose(predicted.std[:, column], model.predict(NEW).std, rtol=1e-6)

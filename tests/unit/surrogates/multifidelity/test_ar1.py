@@ -36,7 +36,7 @@ def test_what_is_no_ratio_needs_more_than_a_line() -> None:
 
 
 @pytest.mark.slow
-def test_its_ratio_carries_doubt_up_exactly() -> None:
+def test_its_ratio_carries_variance_up_exactly() -> None:
     # Where level 2 is a ratio of level 1 and nothing else, so is its spread.
     few = X1[::5]
     base = GaussianProcess(restarts=0).fit(few, low(few))

@@ -1,7 +1,5 @@
 """Levels that are asked together answer what each answers alone."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -22,30 +20,20 @@ def low(x: np.ndarray) -> np.ndarray:
 def models() -> tuple[FittedNARGP, ...]:
     base = GaussianProcess(restarts=0).fit(X1, low(X1))
 
-    def taught(model: AbstractMultifidelity, points: int, size: float) -> FittedNARGP:
+    def fitted_level(model: AbstractMultifidelity, points: int, size: float) -> FittedNARGP:
         x = X1[:points]
         noise = 0.05 * np.random.default_rng(points).standard_normal(points)
         value = size * (1.3 * low(x) + 0.4 * low(x) ** 2 - x[:, 1] + noise)
         return model.fit([(x, value)], lower=base)
 
     return (
-        taught(NARGP(restarts=0, ensemble="never"), 45, 1.0),
-        taught(NARGP(restarts=0, ensemble="never", linear=False), 30, 2e4),
-        taught(AR1(restarts=0, ensemble="never"), 38, 5.0),
-        taught(NARGP(restarts=0, noise="by-input", ensemble="never"), 41, 0.1),
-        taught(NARGP(restarts=0, noise="per-output", ensemble="never"), 41, 0.1),
-        taught(NARGP(restarts=0, ensemble="always"), 12, 1.0),
+        fitted_level(NARGP(restarts=0, ensemble="never"), 45, 1.0),
+        fitted_level(NARGP(restarts=0, ensemble="never", linear=False), 30, 2e4),
+        fitted_level(AR1(restarts=0, ensemble="never"), 38, 5.0),
+        fitted_level(NARGP(restarts=0, noise="by-input", ensemble="never"), 41, 0.1),
+        fitted_level(NARGP(restarts=0, noise="per-output", ensemble="never"), 41, 0.1),
+        fitted_level(NARGP(restarts=0, ensemble="always"), 12, 1.0),
     )
-
-
-class Known:
-    """A level below that answers what it is told."""
-
-    def __init__(self, prediction: Prediction) -> None:
-        self.prediction = prediction
-
-    def predict(self, _: np.ndarray, /) -> Prediction:
-        return self.prediction
 
 
 def levels_of(models: tuple[FittedNARGP, ...]) -> BatchedLevels:
@@ -56,12 +44,12 @@ def agree(models: tuple[FittedNARGP, ...], x: np.ndarray, below: Prediction) -> 
     answer = levels_of(models).predict(x, below)
     for column, model in enumerate(models):
         own = Prediction(mean=below.mean[:, column], std=below.std[:, column])
-        alone = replace(model, lent=Known(own)).predict(x)
+        alone = model.predict(x, below=own)
         np.testing.assert_allclose(answer.mean[:, column], alone.mean, rtol=1e-9)
         np.testing.assert_allclose(answer.std[:, column], alone.std, rtol=1e-7)
 
 
-def said(rows: int, models: int, spread: float) -> Prediction:
+def made_prediction(rows: int, models: int, spread: float) -> Prediction:
     random = np.random.default_rng(rows)
     std = spread * random.uniform(0.0, 1.0, (rows, models))
     return Prediction(mean=random.normal(0.0, 0.8, (rows, models)), std=std)
@@ -71,7 +59,7 @@ def said(rows: int, models: int, spread: float) -> Prediction:
 def test_one_level_answers_what_its_model_answers(
     which: int, models: tuple[FittedNARGP, ...]
 ) -> None:
-    agree((models[which],), NEW, said(len(NEW), 1, 0.01))
+    agree((models[which],), NEW, made_prediction(len(NEW), 1, 0.01))
 
 
 @pytest.mark.parametrize("rows", [0, 1, 9])
@@ -80,11 +68,11 @@ def test_unlike_levels_answer_what_each_answers_alone(
     rows: int, spread: float, models: tuple[FittedNARGP, ...]
 ) -> None:
     # With the largest spread their rules differ, from row to row and from level to level.
-    agree(models, NEW[:rows], said(rows, len(models), spread))
+    agree(models, NEW[:rows], made_prediction(rows, len(models), spread))
 
 
 def test_rows_that_are_too_many_to_hold_at_once_are_answered_alike(
     monkeypatch: pytest.MonkeyPatch, models: tuple[FittedNARGP, ...]
 ) -> None:
     monkeypatch.setattr(batch, "CELLS", 2000)
-    agree(models, NEW, said(len(NEW), len(models), 0.5))
+    agree(models, NEW, made_prediction(len(NEW), len(models), 0.5))

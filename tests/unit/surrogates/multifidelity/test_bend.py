@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from seacage.surrogates._multifidelity._kernel import RANGE, FreeBend, HeldBend
+from seacage.surrogates._multifidelity._kernel import FREE, RANGE, HeldBend
 
 GRID = np.linspace(-1.75, 1.75, 15)[:, None]
 MEAN = np.zeros((1, 1))
@@ -42,6 +42,6 @@ def test_a_long_length_leaves_a_line_and_a_short_one_bends() -> None:
 @lengths
 def test_a_held_bend_is_the_free_one_given_nothing_at_the_mean(length: float) -> None:
     at = np.log([length])
-    free, known = FreeBend().covariance(at, GRID, GRID), FreeBend().covariance(at, GRID, MEAN)
+    free, known = FREE.covariance(at, GRID, GRID), FREE.covariance(at, GRID, MEAN)
     expected = length**2 * (free - known @ known.T) + RANGE**2
     np.testing.assert_allclose(HeldBend().covariance(at, GRID, GRID), expected, rtol=1e-9)

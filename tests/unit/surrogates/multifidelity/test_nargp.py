@@ -161,7 +161,7 @@ def test_an_update_in_the_middle_moves_only_what_stands_on_it() -> None:
     assert top.own[:2] == fitted.own[:2]
 
 
-def test_an_update_leaves_what_was_taught_nested() -> None:
+def test_an_update_leaves_what_was_trained_nested() -> None:
     levels = [(X1, low(X1)), (X2, high(X2)), (X2[:10], highest(X2[:10]))]
     fitted = NARGP(restarts=0, ensemble="never").fit(levels, nested=True)
     updated = fitted.updated(X2 + 0.01, high(X2 + 0.01), level=2)
@@ -287,3 +287,18 @@ def test_a_constant_level_below_teaches_nothing_and_harms_nothing() -> None:
         [(X1, np.full(50, 4.0)), (X1, np.sin(4.0 * X1[:, 0]))], seed=0
     )
     assert rmse(np.sin(4.0 * NEW[:, 0]), fitted.predict(NEW).mean) < 1e-2
+
+
+@pytest.mark.parametrize("noisy", [False, True])
+def test_level_1_can_be_given_where_it_is_known(noisy: bool) -> None:
+    random = np.random.default_rng(2)
+    x = random.uniform(-1.0, 1.0, (20, 1))
+    cases = [(x[:points], np.sin(3.0 * x[:points, 0])) for points in (20, 12, 8)]
+    fitted = NARGP(restarts=0, ensemble="never").fit(cases)
+    below = fitted.predict(x, level=1)
+    given, own = (fitted.predict(x, noisy=noisy, below=one) for one in (below, None))
+    np.testing.assert_array_equal([given.mean, given.std], [own.mean, own.std])
+    with pytest.raises(InputError, match="19 rows"):
+        fitted.predict(x[:19], below=below)
+    with pytest.raises(InputError, match="levels 2 to 3"):
+        fitted.predict(x, level=1, below=below)

@@ -60,7 +60,7 @@ def test_a_straight_level_is_carried_exactly() -> None:
     np.testing.assert_allclose([mean[0], variance[0]], [6.0, 9.0 * 4.0 + 0.5], rtol=1e-12)
 
 
-def test_a_straight_level_hands_its_doubt_to_the_bent_one_above() -> None:
+def test_a_straight_level_hands_its_variance_to_the_bent_one_above() -> None:
     # The line itself would need three nodes, the wave above it far more.
     levels = [Line(slope=2.0, variance=0.09), Wave(bend=1.0)]
     mean, variance = propagate_moments(levels, ONE, np.array([0.4]), np.array([0.25]))
@@ -96,14 +96,14 @@ def test_working_in_pieces_changes_nothing(monkeypatch: pytest.MonkeyPatch) -> N
 
 
 def test_a_good_level_below_costs_three_evaluations() -> None:
-    asked = []
+    requests = []
 
     class Counted(Line):
         def moments(self, x: np.ndarray, below: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-            asked.append(len(below))
+            requests.append(len(below))
             return super().moments(x, below)
 
     propagate_moments(
         [Counted(slope=1.0, bend=1.0)], np.zeros((10, 1)), np.zeros(10), np.full(10, 0.05**2)
     )
-    assert asked == [30]
+    assert requests == [30]

@@ -52,8 +52,8 @@ def test_the_fewest_modes_that_explain_the_variance_are_kept(modes: int) -> None
 
 def test_the_paper_keeps_93_percent() -> None:
     x, shapes = swaying()
-    told, default = PcaGP(variance=0.93, restarts=0), PcaGP(restarts=0)
-    assert default.fit(x, shapes).modes == told.fit(x, shapes).modes
+    report, default = PcaGP(variance=0.93, restarts=0), PcaGP(restarts=0)
+    assert default.fit(x, shapes).modes == report.fit(x, shapes).modes
 
 
 def test_encoding_and_decoding_lose_only_what_the_modes_leave_out() -> None:
@@ -67,7 +67,7 @@ def test_encoding_and_decoding_lose_only_what_the_modes_leave_out() -> None:
     assert left_out.max() > 0.01
 
 
-def test_the_doubt_includes_what_the_modes_leave_out() -> None:
+def test_the_variance_includes_what_the_modes_leave_out() -> None:
     x, shapes = swaying()
     fitted = PcaGP(modes=1, restarts=0).fit(x, shapes)
     answer = fitted.predict(x)
@@ -161,9 +161,9 @@ def test_a_campaigns_second_moment_stands_for_its_snapshots() -> None:
     rest = shapes[0, 0] + 0.5
     moved = (shapes - rest).reshape(-1, 15)
     kept = OverTime.of_moment(shapes.mean(axis=1), moved.T @ moved / len(moved), rest_position=rest)
-    told = OverTime.of_snapshots(shapes.reshape(-1, 5, 3))
-    np.testing.assert_allclose(kept.mean, told.mean, atol=1e-12)
-    np.testing.assert_allclose(kept.scatter, told.scatter, atol=1e-9)
+    snapshots = OverTime.of_snapshots(shapes.reshape(-1, 5, 3))
+    np.testing.assert_allclose(kept.mean, snapshots.mean, atol=1e-12)
+    np.testing.assert_allclose(kept.scatter, snapshots.scatter, atol=1e-9)
 
 
 def test_uncentred_modes_of_displacements_start_from_the_shape_at_rest() -> None:

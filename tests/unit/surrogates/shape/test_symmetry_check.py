@@ -30,7 +30,7 @@ def test_a_symmetric_net_passes() -> None:
     assert check_symmetry(symmetry, *swaying(200)) < 0.02
 
 
-def test_a_held_side_is_found_out_and_its_size_told() -> None:
+def test_a_held_side_is_found_out_and_its_size_reported() -> None:
     symmetry = Symmetry.of(REST, fold=4, mirror=0.0)
     x, position = swaying(200, pull=1.0)
     with pytest.raises(InputError, match=r"they are .* m from symmetric, above the tolerance"):
@@ -40,7 +40,7 @@ def test_a_held_side_is_found_out_and_its_size_told() -> None:
     assert found == pytest.approx(np.sqrt(6.0 / 7.0 * 2.0 / 8.0), rel=0.02)
 
 
-def test_too_few_cases_and_too_poor_a_model_cannot_tell() -> None:
+def test_too_few_cases_and_too_poor_a_model_cannot_decide() -> None:
     symmetry = Symmetry.of(REST, fold=4)
     x, position = swaying(60)
     with pytest.raises(InputError, match="10 cases are too few"):

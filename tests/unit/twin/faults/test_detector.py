@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from seacage.cage import Cage
-from seacage.conventions import Flag
+from seacage.conventions import Flag, InputError
 from seacage.records import Sample
-from seacage.twin import AlarmBook
-from seacage.twin._faults._detector import LEAD, LEAD_BLOCKS, LIMIT, FaultDetector
+from seacage.twin import AlarmBook, FaultDetectorSettings
+from seacage.twin._faults._detector import FaultDetector
 from seacage.twin._faults._evidence import Evidence
 from seacage.twin._faults._hypotheses import hypotheses, load_shares
 from seacage.twin._faults._residuals import ResidualBlock
@@ -32,6 +32,8 @@ TENSION = 1e3 * np.array([1.0, 5.0, 1.0, 1.0, 5.0, 1.0, 40.0, 20.0, 42.0, 41.0, 
 NORTH = np.array([0.1, 0.5])
 NOON = datetime(2020, 2, 1, 12, tzinfo=UTC)
 DAY = 48
+SETTINGS = FaultDetectorSettings()
+LIMIT, LEAD = SETTINGS.limit, SETTINGS.lead
 
 
 def block(error, names: Iterable[str] = NAMES, *, tide: float = 1.0) -> ResidualBlock:
@@ -74,14 +76,15 @@ def only(name: str, size: float) -> np.ndarray:
 
 def cut(bridle: int) -> np.ndarray:
     """Shift of the shackles' readings when a bridle has parted, a little off."""
-    shift = 0.9 * load_shares(ACE, bridle) * TENSION[bridle]
+    shift = 0.9 * load_shares(ACE, bridle, SETTINGS) * TENSION[bridle]
     return np.array([0.0] * 3 + [shift[one.bridle] for one in ACE.shackles])
 
 
 class Watched:
     """A detector fed block by block, with an operator who changes nothing."""
 
-    def __init__(self) -> None:
+    def __init__(self, settings: FaultDetectorSettings = SETTINGS) -> None:
+        self.settings = settings
         self.detector = FaultDetector(monitors={name: SensorMonitor() for name in NAMES})
         self.active = frozenset[str]()
         self.raised: list[str] = []
@@ -96,8 +99,8 @@ class Watched:
             self.blocks += 1
             seen = block(error, names, tide=0.6 + 0.4 * np.sin(2.0 * np.pi * self.blocks / 12.4))
             seen = replace(seen, residual=seen.residual - lost * seen.drag * seen.received)
-            self.detector = self.detector.updated(seen, ACE, active=self.active)
-            for one in self.detector.inputs(ACE):
+            self.detector = self.detector.updated(seen, ACE, self.settings, active=self.active)
+            for one in self.detector.inputs(ACE, self.settings):
                 assert one.value is not None
                 if one.alarm in self.active and one.value <= 0.5:
                     self.active -= {one.alarm}
@@ -169,12 +172,12 @@ def test_sensors_that_fail_one_after_the_other_each_raise_an_alarm():
 
 def test_the_other_bridles_of_a_corner_take_over_what_one_bore():
     for bridle in range(ACE.bridle_count):
-        shares = load_shares(ACE, bridle)
+        shares = load_shares(ACE, bridle, SETTINGS)
         assert shares[bridle] == -1.0
         assert (shares[ACE.bridle_corner != ACE.bridle_corner[bridle]] == 0.0).all()
     # Near settled cages with that bridle cut, whose neighbours take 0.49 each, or 1.2 and -0.26.
-    assert load_shares(ACE, 7)[[6, 8]] == pytest.approx([0.49, 0.49], abs=0.05)
-    assert load_shares(ACE, 8)[[7, 6]] == pytest.approx([1.2, -0.26], abs=0.3)
+    assert load_shares(ACE, 7, SETTINGS)[[6, 8]] == pytest.approx([0.49, 0.49], abs=0.05)
+    assert load_shares(ACE, 8, SETTINGS)[[7, 6]] == pytest.approx([1.2, -0.26], abs=0.3)
 
 
 @pytest.mark.parametrize("bridle", [6, 7, 8, 9, 10])
@@ -196,7 +199,7 @@ def test_the_alarm_of_a_repaired_bridle_clears_within_two_days():
 
 def test_one_shackle_at_a_corner_says_nothing_about_its_bridles():
     alone = replace(block(np.zeros(8)), sensors=(*NAMES[:4], *"abcd"))
-    named = {one.alarm for one in hypotheses(alone, ACE)}
+    named = {one.alarm for one in hypotheses(alone, ACE, SETTINGS)}
     assert not any(name.startswith("bridle") for name in named)
     assert "net.net" in named
 
@@ -205,6 +208,28 @@ def test_a_hole_that_some_sensors_feel_is_the_net_s_and_no_sensor_s():
     felt = np.array([0.35, 0.35, 0.1, 0.0, 0.0, 0.25, 0.3, 0.3])
     watch = learned().through(quiet(25, 2.0), lost=felt)
     assert watch.raised == ["net.net"]
+
+
+def test_a_higher_limit_raises_nothing_and_a_larger_weight_raises_sooner():
+    off = quiet(3, 0.5) + only("depth-1", 8.0 * OWN[0])
+    watch = learned()
+    watch.settings = replace(SETTINGS, limit=1e4)
+    assert watch.through(off).raised == []
+    blocks = []
+    for weight in (SETTINGS.block_weight, 1.0):
+        watch = learned()
+        watch.settings = replace(SETTINGS, block_weight=weight)
+        before = watch.blocks
+        while not watch.raised:
+            watch.through([off[watch.blocks - before]])
+        blocks.append(watch.blocks - before)
+    assert blocks[1] < blocks[0]
+
+
+@pytest.mark.parametrize("value", [0.0, -1.0, np.nan, np.inf])
+def test_a_setting_that_is_no_size_is_refused_by_its_name(value):
+    with pytest.raises(InputError, match=r"water_sd = .* the default, 0\.1"):
+        FaultDetectorSettings(water_sd=value)
 
 
 def test_growth_that_adds_drag_raises_nothing():
@@ -231,7 +256,7 @@ def detector(**cusums: float) -> FaultDetector:
 
 
 def raised(state: FaultDetector) -> dict[str, str]:
-    found = ((one.alarm, one.value, one.detail) for one in state.inputs(ACE))
+    found = ((one.alarm, one.value, one.detail) for one in state.inputs(ACE, SETTINGS))
     return {alarm: detail for alarm, value, detail in found if value is not None and value >= 1.0}
 
 
@@ -245,8 +270,8 @@ def test_a_hypothesis_that_leads_is_raised_at_the_limit_and_one_that_does_not_wa
 
 def test_hypotheses_that_stay_close_raise_one_alarm_that_names_both():
     near = detector(bridle__bridle_12=LIMIT + 3.0, irregular__shackle_5=LIMIT + 1.0)
-    assert raised(replace(near, waited=LEAD_BLOCKS - 1)) == {}
-    details = raised(replace(near, waited=LEAD_BLOCKS))
+    assert raised(replace(near, waited=SETTINGS.lead_blocks - 1)) == {}
+    details = raised(replace(near, waited=SETTINGS.lead_blocks))
     assert [*details] == ["bridle.bridle-12"]
     assert "shackle-5" in details["bridle.bridle-12"]
 
@@ -258,7 +283,7 @@ def test_evidence_starts_again_where_other_sensors_have_level_2():
         name: getattr(seen, name)[:4] for name in ("received", "residual", "own_sd", "gradient")
     }
     fewer = replace(seen, sensors=NAMES[:4], **four)
-    after = before.updated(fewer, ACE, active=frozenset({"irregular.depth-1"}))
+    after = before.updated(fewer, ACE, SETTINGS, active=frozenset({"irregular.depth-1"}))
     assert before.cusums()["irregular.depth-1"] > LIMIT
     assert after.cusums().get("irregular.depth-1", 0.0) == 0.0
     assert after.baseline.sensors == NAMES[:4]
@@ -286,9 +311,9 @@ def test_a_sensor_that_repeats_itself_is_stuck_and_one_that_does_not_is_not():
         moving = moving.extended(reading(minutes, 14.0 + 0.01 * (minutes % 3)), 14.0)
     for minutes in (0, 20, 40):
         seldom = seldom.extended(reading(minutes, 14.0), 14.0)
-    assert still.stuck
-    assert not moving.stuck
-    assert not seldom.stuck
+    assert still.is_stuck(SETTINGS)
+    assert not moving.is_stuck(SETTINGS)
+    assert not seldom.is_stuck(SETTINGS)
 
 
 def test_a_reading_that_failed_its_checks_is_the_latest_and_not_averaged():

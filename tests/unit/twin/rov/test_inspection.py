@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from netted import erring_twin, net_in
+from predicted_nets import erring_twin, net_in
 from seacage.conventions import InputError
 from seacage.testing import stand_in_twin
 from seacage.twin import inspection_path

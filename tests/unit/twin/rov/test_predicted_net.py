@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from brute import brute_distance
-from netted import CAGE, NOW, answered, currents, drifting, erring_twin, net_in
+from predicted_nets import CAGE, NOW, answered, currents, drifting, erring_twin, net_in
 from seacage.conventions import InputError
 from seacage.ocean import SeaState
 from seacage.testing import stand_in_twin
@@ -161,7 +161,7 @@ def test_a_path_in_millimetres_is_refused():
         net_in(erring_twin(), 0.4, 0.0).along(np.array([[0.0, 0.0, 0.0], [25000.0, 0.0, 0.0]]))
 
 
-def test_a_net_may_be_asked_for_in_water_that_is_only_imagined():
+def test_a_net_may_be_requested_in_water_that_is_only_imagined():
     sea = SeaState(current_speed=0.5, current_to=90.0)
     imagined, read = PredictedNet.under(erring_twin(), sea, t=NOW), net_in(erring_twin(), 0.5, 0.0)
     np.testing.assert_allclose(imagined.node_position, read.node_position, atol=1e-9)

@@ -1,6 +1,7 @@
 import hmac
 import json
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 
 from seacage.conventions import InputError, ModelError
 from seacage.testing import stand_in_seas, stand_in_twin
-from seacage.twin import Twin, read_key
+from seacage.twin import FaultDetectorSettings, Twin, read_key
 
 
 @pytest.fixture(scope="module")
@@ -44,6 +45,28 @@ def test_a_twin_read_back_is_the_same_twin(written):
     assert after.buoy == before.buoy
     assert after.cage == before.cage
     assert after.models.edge == before.models.edge
+
+
+def test_settings_of_the_fault_detector_are_read_back(tmp_path):
+    settings = FaultDetectorSettings(limit=30.0, least_sensors=4)
+    replace(stand_in_twin(), fault_detector=settings).write(tmp_path / "twin")
+    assert Twin.read(tmp_path / "twin").fault_detector == settings
+
+
+def test_only_a_tuned_fault_detector_makes_a_twin_that_version_0_1_0_refuses(written, tmp_path):
+    replace(stand_in_twin(), fault_detector=FaultDetectorSettings(limit=30.0)).write(tmp_path / "t")
+    versions = [
+        json.loads((folder / "model.json").read_text())["version"]
+        for folder in (written, tmp_path / "t")
+    ]
+    assert versions == [2, 3]
+
+
+def test_a_twin_saved_without_settings_of_the_fault_detector_has_the_defaults(copy):
+    settings = json.loads((copy / "model.json").read_text())
+    del settings["fault_detector"]
+    resealed(copy, settings)
+    assert Twin.read(copy).fault_detector == FaultDetectorSettings()
 
 
 def test_a_twin_written_twice_is_the_same_bytes(written, tmp_path):
@@ -101,8 +124,8 @@ def resealed(folder, settings):
 
 def test_another_version_is_refused_by_its_number(copy):
     settings = json.loads((copy / "model.json").read_text())
-    resealed(copy, settings | {"version": 3})
-    with pytest.raises(ModelError, match="of version 3"):
+    resealed(copy, settings | {"version": 4})
+    with pytest.raises(ModelError, match="of version 4"):
         Twin.read(copy)
 
 
@@ -165,6 +188,8 @@ def changed(settings, path, value):
         (("spreads", "shackle-1", "scale"), -0.5, "no spreads"),
         (("edge",), ["0", "inf"], "Input should be a valid number"),
         (("watch", "future_s"), "inf", "Input should be a valid number"),
+        (("fault_detector", "block_s"), 0.0, "block_s = 0 is not finite or not above 0"),
+        (("fault_detector", "lead_blocks"), 1.5, "Input should be a valid integer"),
         (("buoy",), "../../etc/passwd", "no stream's name"),
     ],
 )

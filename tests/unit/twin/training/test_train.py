@@ -291,7 +291,7 @@ def test_the_cage_must_be_the_one_that_was_simulated():
         train(Cage.named("ace"), campaign)
 
 
-def test_training_tells_how_far_it_is():
+def test_training_reports_how_far_it_is():
     steps = []
     campaign = stand_in_campaign(coarse(), stand_in_seas(40))
     train(coarse(), campaign, training=FEW, progress=lambda *step: steps.append(step))

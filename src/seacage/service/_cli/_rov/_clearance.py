@@ -5,23 +5,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from seacage.service._cli._console import Exit, Json, exit_with, guard, report
-from seacage.service._cli._rov._options import (
-    AllowStale,
-    Below,
-    CageThere,
-    Hs,
-    MaxAge,
-    Speed,
-    To,
-    Token,
-    Towards,
-    TwinFolder,
-    WaveFrom,
-    about_rows,
-    asker_of,
-    net_of,
-)
+from seacage.service._cli._console import Exit, exit_with, guard, report
+from seacage.service._cli._options import OutFile
+from seacage.service._cli._rov._options import Below, NetOptions, about_rows
 
 if TYPE_CHECKING:
     from seacage.service._rov._table import Row
@@ -35,41 +21,14 @@ if TYPE_CHECKING:
 
 @guard
 def clearance(
-    points: Annotated[
-        Path | None,
-        typer.Argument(
-            exists=True,
-            dir_okay=False,
-            help="CSV with east_m,north_m,up_m or north_m,east_m,down_m or "
-            "latitude_deg,longitude_deg,depth_m.",
-        ),
-    ] = None,
+    points: Annotated[Path | None, typer.Argument(exists=True, dir_okay=False)] = None,
     *,
-    point: Annotated[
-        list[str] | None, typer.Option(help='One point, "EAST,NORTH,UP" in m; may be repeated.')
-    ] = None,
-    path: Annotated[
-        bool, typer.Option("--path", help="Look at the straight lines between the points, too.")
-    ] = False,
+    point: list[str] | None = None,
+    path: Annotated[bool, typer.Option("--path")] = False,
     below: Below = 1.0,
-    most: Annotated[
-        float | None,
-        typer.Option(min=0.0, max=1.0, help="End with 4 where the probability is higher."),
-    ] = None,
-    twin: TwinFolder = None,
-    current_speed: Speed = None,
-    current_to: Towards = None,
-    hs: Hs = 0.0,
-    wave_from: WaveFrom = 0.0,
-    to: To = None,
-    cage: CageThere = "ace",
-    token: Token = "",
-    allow_stale: AllowStale = False,
-    max_age: MaxAge = None,
-    out: Annotated[
-        Path | None, typer.Option(dir_okay=False, help="Write one line per point as CSV.")
-    ] = None,
-    as_json: Json = False,
+    most: Annotated[float | None, typer.Option(min=0.0, max=1.0)] = None,
+    net: NetOptions,
+    out: OutFile = None,
 ) -> None:
     """Say how far points or a path are from the net, and how surely.
 
@@ -81,9 +40,21 @@ def clearance(
     Example:
         seacage clearance way.csv --path --most 0.05 --to http://127.0.0.1:8000 --token TOKEN
         seacage clearance --point 20,0,-8 --twin twin --current-speed 0.4 --current-to 90
+
+    Parameters
+    ----------
+    points
+        CSV with east_m,north_m,up_m or north_m,east_m,down_m or latitude_deg,longitude_deg,depth_m.
+    point
+        One point, "EAST,NORTH,UP" in m; may be repeated.
+    path
+        Look at the straight lines between the points, too.
+    most
+        End with 4 where the probability is higher.
+    out
+        Write one line per point as CSV.
     """
     from seacage.conventions import InputError
-    from seacage.service._rov._clearance import clearance_answer
     from seacage.service._rov._table import query_of, write_clearances
 
     frame, rows = _points(points, point or [])
@@ -92,18 +63,15 @@ def clearance(
         rows,
         as_path=path,
         below_m=below,
-        allow_stale=allow_stale,
-        max_age_s=max_age,
+        allow_stale=net.allow_stale,
+        max_age_s=net.max_age,
     )
-    net = net_of(twin, to, current_speed, current_to, hs, wave_from)
-    answer = (
-        asker_of(to, cage, token).clearance(query) if net is None else clearance_answer(net, query)
-    )
+    answer = net.asker().clearance(query)
     if out is not None:
         write_clearances(out, rows, answer)
     known = [one.p_below for one in answer.points if one.p_below is not None]
     p = answer.path.p_below if answer.path else max(known, default=None)
-    report(answer.model_dump(mode="json"), as_json=as_json, rows=_clearance_rows(answer, out))
+    report(answer.model_dump(mode="json"), rows=_clearance_rows(answer, out))
     if most is not None and p is None:
         raise InputError(
             f"clearance: whether the net is nearer than {below:g} m cannot be held against --most "
@@ -140,10 +108,7 @@ def _points(path: Path | None, given: list[str]) -> "tuple[FrameName, list[Row]]
 
 def _clearance_rows(answer: "ClearanceAnswer", out: Path | None) -> list[tuple[str, str]]:
     rows = [
-        (
-            f"Point {number}",
-            _point_row(one, answer.below_m),
-        )
+        (f"Point {number}", _point_row(one, answer.below_m))
         for number, one in enumerate(answer.points[:20], start=1)
     ]
     if len(answer.points) > len(rows):

@@ -5,60 +5,28 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from seacage.service._cli._console import Json, guard, report
-from seacage.service._cli._rov._options import (
-    AllowStale,
-    Below,
-    CageThere,
-    Hs,
-    MaxAge,
-    Speed,
-    To,
-    Token,
-    Towards,
-    TwinFolder,
-    WaveFrom,
-    about_rows,
-    asker_of,
-    net_of,
-)
+from seacage.service._cli._console import guard, report
+from seacage.service._cli._options import OutFile
+from seacage.service._cli._rov._options import Below, NetOptions, about_rows
 
 if TYPE_CHECKING:
-    from seacage.service._rov._client import Asker
+    from seacage.service._rov._client import AbstractAsker
     from seacage.service._schemas._clearance import InspectionAnswer, InspectionQuery
-    from seacage.twin import PredictedNet
 
 
 @guard
 def inspect_path(
     *,
-    stand_off: Annotated[float, typer.Option(min=0.1, help="Distance to keep, m.")] = 2.0,
-    side: Annotated[Literal["inside", "outside"], typer.Option(help="Of the net.")] = "inside",
-    pattern: Annotated[
-        Literal["rows", "spiral"], typer.Option(help="Rows there and back, or one spiral.")
-    ] = "rows",
-    row_spacing: Annotated[float, typer.Option(min=0.1, help="Between rows, m.")] = 2.0,
-    step: Annotated[float, typer.Option(min=0.1, help="Between waypoints, m.")] = 1.0,
-    top: Annotated[float, typer.Option(min=0.0, help="Depth of the first row, m.")] = 1.0,
-    frame: Annotated[
-        Literal["enu", "ned", "wgs84"], typer.Option(help="Of the waypoints.")
-    ] = "enu",
+    stand_off: Annotated[float, typer.Option(min=0.1)] = 2.0,
+    side: Literal["inside", "outside"] = "inside",
+    pattern: Literal["rows", "spiral"] = "rows",
+    row_spacing: Annotated[float, typer.Option(min=0.1)] = 2.0,
+    step: Annotated[float, typer.Option(min=0.1)] = 1.0,
+    top: Annotated[float, typer.Option(min=0.0)] = 1.0,
+    frame: Literal["enu", "ned", "wgs84"] = "enu",
     below: Below = 1.0,
-    twin: TwinFolder = None,
-    current_speed: Speed = None,
-    current_to: Towards = None,
-    hs: Hs = 0.0,
-    wave_from: WaveFrom = 0.0,
-    to: To = None,
-    cage: CageThere = "ace",
-    token: Token = "",
-    allow_stale: AllowStale = False,
-    max_age: MaxAge = None,
-    out: Annotated[
-        Path | None,
-        typer.Option(dir_okay=False, help="Write the way as .csv, .mcap or .geojson."),
-    ] = None,
-    as_json: Json = False,
+    net: NetOptions,
+    out: OutFile = None,
 ) -> None:
     """Lay an ROV's way along the net, facing it.
 
@@ -68,8 +36,26 @@ def inspect_path(
     Example:
         seacage inspect-path --to http://127.0.0.1:8000 --token TOKEN --out way.csv
         seacage inspect-path --twin twin --current-speed 0.4 --current-to 90 --out way.mcap
+
+    Parameters
+    ----------
+    stand_off
+        Distance to keep, m.
+    side
+        Of the net.
+    pattern
+        Rows there and back, or one spiral.
+    row_spacing
+        Between rows, m.
+    step
+        Between waypoints, m.
+    top
+        Depth of the first row, m.
+    frame
+        Of the waypoints.
+    out
+        Write the way as .csv, .mcap or .geojson.
     """
-    from seacage.service._rov._clearance import inspection_answer
     from seacage.service._schemas._clearance import InspectionQuery
 
     query = InspectionQuery(
@@ -81,44 +67,29 @@ def inspect_path(
         step_m=step,
         top_m=top,
         below_m=below,
-        allow_stale=allow_stale,
-        max_age_s=max_age,
+        allow_stale=net.allow_stale,
+        max_age_s=net.max_age,
     )
-    net = net_of(twin, to, current_speed, current_to, hs, wave_from)
-    asker = asker_of(to, cage, token) if net is None else None
-    answer = asker.inspection(query) if asker else inspection_answer(_here(net), query)
+    asker = net.asker()
+    answer = asker.inspection(query)
     if out is not None:
-        _write_way(out, query, answer, net, asker)
-    report(answer.model_dump(mode="json"), as_json=as_json, rows=_inspection_rows(answer, out))
-
-
-def _here(net: "PredictedNet | None") -> "PredictedNet":
-    assert net is not None  # whoever is not asked over there is asked here
-    return net
+        _write_way(out, query, answer, asker)
+    report(answer.model_dump(mode="json"), rows=_inspection_rows(answer, out))
 
 
 def _write_way(
-    out: Path,
-    query: "InspectionQuery",
-    answer: "InspectionAnswer",
-    net: "PredictedNet | None",
-    asker: "Asker | None",
+    out: Path, query: "InspectionQuery", answer: "InspectionAnswer", asker: "AbstractAsker"
 ) -> None:
     from seacage.conventions import InputError
-    from seacage.service._rov._clearance import inspection_of
-    from seacage.service._rov._files import inspection_geojson, inspection_mcap
     from seacage.service._rov._table import write_waypoints
 
     form = out.suffix.lower()
     if form == ".csv":
         write_waypoints(out, answer)
-    elif form not in {".mcap", ".geojson"}:
-        raise InputError(f"{out}: a way is written as .csv, .mcap or .geojson.")
-    elif asker is not None:
-        out.write_bytes(asker.ask(f"inspection{form}", query.model_dump_json(exclude_none=True)))
+    elif form in {".mcap", ".geojson"}:
+        out.write_bytes(asker.inspection_file(form, query))
     else:
-        write = inspection_mcap if form == ".mcap" else inspection_geojson
-        out.write_bytes(write(_here(net), inspection_of(_here(net), query)))
+        raise InputError(f"{out}: a way is written as .csv, .mcap or .geojson.")
 
 
 def _inspection_rows(answer: "InspectionAnswer", out: Path | None) -> list[tuple[str, str]]:

@@ -1,77 +1,89 @@
 """What the commands for ROV pilots share: whom to ask, and what an answer rests on."""
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-if TYPE_CHECKING:
-    from seacage.service._rov._client import Asker
-    from seacage.service._schemas._clearance import ClearanceAnswer, InspectionAnswer
-    from seacage.twin import PredictedNet
+from seacage.service._cli._options import InFolder, ServedCage
 
-TwinFolder = Annotated[
-    Path | None,
-    typer.Option(exists=True, file_okay=False, help="Folder of a twin, to be asked here."),
-]
-Speed = Annotated[float | None, typer.Option(min=0.0, help="With --twin: the current, m/s.")]
-Towards = Annotated[
-    float | None,
-    typer.Option(help="With --twin: where it goes, degrees clockwise from north."),
-]
-Hs = Annotated[float, typer.Option(min=0.0, help="With --twin: significant wave height, m.")]
-WaveFrom = Annotated[float, typer.Option(help="With --twin: where the waves come from, degrees.")]
-To = Annotated[
-    str | None, typer.Option(help="Address of a running service, as http://127.0.0.1:8000.")
-]
-CageThere = Annotated[str, typer.Option("--cage", help="The cage's name there.")]
-Token = Annotated[
-    str, typer.Option(envvar="SEACAGE_TOKEN", help="For the service, with the scope read.")
-]
-AllowStale = Annotated[
-    bool, typer.Option("--allow-stale", help="Take the last reading however old it is.")
-]
-MaxAge = Annotated[
-    float | None, typer.Option("--max-age", min=0.0, help="Refuse a reading older than this, s.")
-]
+if TYPE_CHECKING:
+    from seacage.service._rov._client import AbstractAsker
+    from seacage.service._schemas._clearance import ClearanceAnswer, InspectionAnswer
+
 Below = Annotated[float, typer.Option(min=0.0, max=100.0, help="Distance asked about, m.")]
 
 
-def net_of(
-    folder: Path | None,
-    to: str | None,
-    speed: float | None,
-    towards: float | None,
-    hs: float,
-    wave_from: float,
-) -> "PredictedNet | None":
-    """Return the net of a twin's folder in a current; None where a service is asked."""
-    from seacage.conventions import InputError
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NetOptions:
+    """The net that is asked about: of a twin's folder in a current, or of a running service.
 
-    if (folder is None) == (to is None):
-        raise InputError("Say whom to ask: --twin for a folder, or --to for a service.")
-    if folder is None:
-        return None
-    if speed is None or towards is None:
-        raise InputError(
-            "With --twin the current has to be said: --current-speed in m/s and --current-to in "
-            "degrees."
+    Parameters
+    ----------
+    twin
+        Folder of a twin, to be asked here.
+    current_speed
+        With --twin: the current, m/s.
+    current_to
+        With --twin: where it goes, degrees clockwise from north.
+    hs
+        With --twin: significant wave height, m.
+    wave_from
+        With --twin: where the waves come from, degrees.
+    to
+        Address of a running service, as http://127.0.0.1:8000.
+    token
+        For the service, with the scope read.
+    allow_stale
+        Take the last reading however old it is.
+    max_age
+        Refuse a reading older than this, s.
+    """
+
+    twin: InFolder = None
+    current_speed: Annotated[float | None, typer.Option(min=0.0)] = None
+    current_to: float | None = None
+    hs: Annotated[float, typer.Option(min=0.0)] = 0.0
+    wave_from: float = 0.0
+    to: str | None = None
+    cage: ServedCage = "ace"
+    token: Annotated[str, typer.Option(envvar="SEACAGE_TOKEN")] = ""
+    allow_stale: Annotated[bool, typer.Option("--allow-stale")] = False
+    max_age: Annotated[float | None, typer.Option("--max-age", min=0.0)] = None
+
+    def asker(self) -> "AbstractAsker":
+        """Answers from the twin's folder, or from the service.
+
+        Raises
+        ------
+        InputError
+            Both or neither was named, or the twin without a current.
+        """
+        from seacage.conventions import InputError
+        from seacage.service._rov._client import LocalAsker, ServiceAsker
+
+        if (self.twin is None) == (self.to is None):
+            raise InputError("Say whom to ask: --twin for a folder, or --to for a service.")
+        if self.to is not None:
+            return ServiceAsker(address=self.to, cage=self.cage, token=self.token)
+        if self.twin is None or self.current_speed is None or self.current_to is None:
+            raise InputError(
+                "With --twin the current has to be said: --current-speed in m/s and --current-to "
+                "in degrees."
+            )
+        from datetime import UTC, datetime
+
+        from seacage.ocean import SeaState
+        from seacage.twin import PredictedNet, Twin
+
+        sea = SeaState(
+            current_speed=self.current_speed,
+            current_to=self.current_to,
+            hs=self.hs,
+            wave_from=self.wave_from,
         )
-    from datetime import UTC, datetime
-
-    from seacage.ocean import SeaState
-    from seacage.twin import PredictedNet, Twin
-
-    sea = SeaState(current_speed=speed, current_to=towards, hs=hs, wave_from=wave_from)
-    return PredictedNet.under(Twin.read(folder), sea, t=datetime.now(UTC))
-
-
-def asker_of(to: str | None, cage: str, token: str) -> "Asker":
-    """Return who asks the service."""
-    from seacage.service._rov._client import Asker
-
-    assert to is not None  # `net_of` refused both and neither
-    return Asker(address=to, cage=cage, token=token)
+        return LocalAsker(PredictedNet.under(Twin.read(self.twin), sea, t=datetime.now(UTC)))
 
 
 def about_rows(

@@ -166,7 +166,7 @@ class _Answer:
     """
 
     def __init__(self, catalogue: Catalogue) -> None:
-        self._catalogue = catalogue
+        self.catalogue = catalogue
         self._left = _AT_ONCE
 
     def page(self, of: str, found: list[Entity], query: QueryOptions, address: str) -> Entity:
@@ -192,8 +192,9 @@ class _Answer:
             body |= entities
         return body
 
-    def observations(self, datastream: str, query: QueryOptions, address: str) -> Entity:
+    def observations(self, stream: Entity, query: QueryOptions) -> Entity:
         """Tell readings of a Datastream's quantity in the order of their times."""
+        datastream, address = stream["@iot.id"], f"{stream['@iot.selfLink']}/{OBSERVATIONS}"
         if query.expand:
             raise InputError("$expand: Observations lead to nothing more.")
         _select(OBSERVATIONS, dict.fromkeys(OBSERVED), query)  # refused where there are none too
@@ -208,18 +209,23 @@ class _Answer:
             body["@iot.nextLink"] = _address(address, _onward(query, read[:reach], newest=newest))
         return body
 
+    def follow(self, of: str, entity: Entity, name: str, query: QueryOptions) -> Entity:
+        """Tell what a relation of an entity leads to: a page of entities, or the one there is."""
+        relation = RELATIONS[of][name]
+        found = self.catalogue.list_related(of, entity["@iot.id"], name)
+        if relation.many:
+            return self.page(relation.to, found, query, f"{entity['@iot.selfLink']}/{name}")
+        return self.one(relation.to, found[0], query)
+
     def _expand(self, of: str, entity: Entity, name: str, query: QueryOptions) -> Entity:
-        id, address = entity["@iot.id"], f"{entity['@iot.selfLink']}/{name}"  # noqa: A001
         if (of, name) == ("Datastreams", OBSERVATIONS):
-            page = self.observations(id, query, address)
+            page = self.observations(entity, query)
         elif name not in RELATIONS[of]:
             raise InputError(f"$expand: {of} lead to no {name!r}. {_there(of)}")
         else:
-            relation = RELATIONS[of][name]
-            found = self._catalogue.list_related(of, id, name)
-            if not relation.many:
-                return {name: self.one(relation.to, found[0], query)}
-            page = self.page(relation.to, found, query, address)
+            page = self.follow(of, entity, name, query)
+            if not RELATIONS[of][name].many:
+                return {name: page}
         value = page.pop("value")
         return {name: value} | {f"{name}{key}": one for key, one in page.items()}
 
@@ -234,7 +240,7 @@ class _Answer:
     def _samples(self, datastream: str, span: Span, *, limit: int, newest: bool) -> list[Sample]:
         """Read a stream's samples in the order that is asked for."""
         cage, stream, _ = datastream.split(":")
-        read = self._catalogue.cages[cage].store.samples(
+        read = self.catalogue.cages[cage].store.samples(
             cage, stream=stream, start=span[0], end=span[1], limit=limit, newest=newest
         )
         self._spend(len(read))
@@ -266,41 +272,41 @@ async def get_root() -> Root:
     )
 
 
+def _answer(request: Request) -> _Answer:
+    """An answer from what the token may read; the guard knew it a moment ago."""
+    address = str(request.base_url).rstrip("/")
+    return _Answer(Catalogue(cages=cages_of(request), address=address))
+
+
+Answering = Annotated[_Answer, Depends(_answer)]
+
+
 def _list_call(name: str) -> Callable[..., Entity]:
-    def list_all(request: Request, options: Listing) -> Entity:
-        catalogue = _catalogue(request)
+    def list_all(answer: Answering, options: Listing) -> Entity:
+        catalogue = answer.catalogue
         address = f"{catalogue.address}{ROOT}/{name}"
-        return _Answer(catalogue).page(name, catalogue.all(name), options, address)
+        return answer.page(name, catalogue.all(name), options, address)
 
     list_all.__doc__ = f"List the {name} of all cages that the token may read."
     return list_all
 
 
 def _single(name: str) -> Callable[..., Entity]:
-    def single(request: Request, id: Id, options: Telling) -> Entity:  # noqa: A002
-        catalogue = _catalogue(request)
-        return _Answer(catalogue).one(name, catalogue.one(name, id), options)
+    def single(answer: Answering, id: Id, options: Telling) -> Entity:  # noqa: A002
+        return answer.one(name, answer.catalogue.one(name, id), options)
 
     single.__doc__ = f"Say one of the {name}."
     return single
 
 
 def _leading(name: str, relation: str) -> Callable[..., Entity]:
-    to = RELATIONS[name][relation]
+    def many(answer: Answering, id: Id, options: Listing) -> Entity:  # noqa: A002
+        return answer.follow(name, answer.catalogue.one(name, id), relation, options)
 
-    def many(request: Request, id: Id, options: Listing) -> Entity:  # noqa: A002
-        catalogue = _catalogue(request)
-        address = f"{catalogue.one(name, id)['@iot.selfLink']}/{relation}"
-        found = catalogue.list_related(name, id, relation)
-        return _Answer(catalogue).page(to.to, found, options, address)
+    def single(answer: Answering, id: Id, options: Telling) -> Entity:  # noqa: A002
+        return answer.follow(name, answer.catalogue.one(name, id), relation, options)
 
-    def single(request: Request, id: Id, options: Telling) -> Entity:  # noqa: A002
-        catalogue = _catalogue(request)
-        catalogue.one(name, id)
-        found = catalogue.list_related(name, id, relation)
-        return _Answer(catalogue).one(to.to, found[0], options)
-
-    leading = many if to.many else single
+    leading = many if RELATIONS[name][relation].many else single
     leading.__doc__ = f"Say what one of the {name} leads to as its {relation}."
     return leading
 
@@ -324,19 +330,12 @@ for _name in SETS:
 
 
 @things.get("/Datastreams('{id}')/Observations", responses=READ, **_PAGED)
-def get_observations(request: Request, id: Id, options: Listing) -> Entity:  # noqa: A002
+def get_observations(answer: Answering, id: Id, options: Listing) -> Entity:  # noqa: A002
     """Give stored readings of one quantity, raw, with their flags; null where there was none.
 
     ``$skip`` and ``$top`` count the stream's samples, of which some may lack the quantity.
     """
-    catalogue = _catalogue(request)
-    address = f"{catalogue.one('Datastreams', id)['@iot.selfLink']}/{OBSERVATIONS}"
-    return _Answer(catalogue).observations(id, options, address)
-
-
-def _catalogue(request: Request) -> Catalogue:
-    """What the token may read; the guard knew it a moment ago."""
-    return Catalogue(cages=cages_of(request), address=str(request.base_url).rstrip("/"))
+    return answer.observations(answer.catalogue.one("Datastreams", id), options)
 
 
 def _order(of: str, found: list[Entity], query: QueryOptions) -> list[Entity]:

@@ -78,12 +78,13 @@ _PATIENCE_S = 5
 class PostgresSession(AbstractSession):
     """A transaction of one connection."""
 
-    locking = " FOR UPDATE"
     passing = " FOR UPDATE SKIP LOCKED"
     lateral = True
 
-    def __init__(self, connection: "Connection[tuple[Any, ...]]", damage: Damage) -> None:
-        self._connection, self.damage = connection, damage
+    def __init__(
+        self, connection: "Connection[tuple[Any, ...]]", database: "PostgresDatabase"
+    ) -> None:
+        self._connection, self._database, self.damage = connection, database, database.damage
 
     def rows(self, sql: str, values: Sequence[object] = ()) -> Answer:
         """Run one statement."""
@@ -101,9 +102,10 @@ class PostgresSession(AbstractSession):
             cursor.executemany(_spelt(sql), rows)
 
     def insert(self, rows: Sequence[Row]) -> tuple[bool, ...]:
-        """Insert all by one statement."""
+        """Insert all by one statement, each into its month, whose partition is made before."""
         if not rows:
             return ()
+        self._database.part({_month(row[2]) for row in rows})
         written = [(*row, checksum("sample", row)) for row in rows]
         columns = [list(column) for column in zip(*written, strict=True)]
         new = set(self.rows(_INSERT, columns))
@@ -159,7 +161,7 @@ class PostgresDatabase(AbstractDatabase):
             if self._writer.closed:
                 self._reach()
             with self._writer.transaction():
-                yield _Parting(self._writer, self)
+                yield PostgresSession(self._writer, self)
 
     @contextmanager
     def reading(self) -> Generator[AbstractSession]:
@@ -169,7 +171,7 @@ class PostgresDatabase(AbstractDatabase):
             self._readers.lend() as connection,
             connection.transaction(),
         ):
-            yield PostgresSession(connection, self.damage)
+            yield PostgresSession(connection, self)
 
     shared = True
 
@@ -225,7 +227,7 @@ class PostgresDatabase(AbstractDatabase):
         self._tried = time.monotonic()
         connection = self._connect()
         with self._close_on_error(connection):
-            session = PostgresSession(connection, self.damage)
+            session = PostgresSession(connection, self)
             gone = [cage for cage in sorted(self._claimed) if not self.claim(session, cage)]
             if gone:
                 raise StoreError(
@@ -270,21 +272,6 @@ class PostgresDatabase(AbstractDatabase):
                 f"{place} {what} ({' '.join(str(error).split())}). "
                 "Check the server, its disk and its rights."
             ) from error
-
-
-class _Parting(PostgresSession):
-    """A session that makes a month's partition before the month's first sample."""
-
-    def __init__(
-        self, connection: "Connection[tuple[Any, ...]]", database: PostgresDatabase
-    ) -> None:
-        super().__init__(connection, database.damage)
-        self._database = database
-
-    def insert(self, rows: Sequence[Row]) -> tuple[bool, ...]:
-        """Insert all by one statement, each into its month."""
-        self._database.part({_month(row[2]) for row in rows})
-        return super().insert(rows)
 
 
 def _spelt(sql: str) -> bytes:

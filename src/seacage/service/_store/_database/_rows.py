@@ -2,8 +2,8 @@
 
 import json
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
-from types import MappingProxyType
 from typing import Any
 
 from seacage.conventions import Flag, InputError, SeacageError
@@ -11,11 +11,11 @@ from seacage.records import Amendment, Sample
 
 DAY_US = 86_400_000_000
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
-_MICROSECOND = timedelta(microseconds=1)
+MICROSECOND = timedelta(microseconds=1)
 _NO_SEQ = -1
 _SEQS = range(2**63)
 
-_BEFORE_ALL = -(2**62)
+_ALL = 2**62
 
 Row = tuple[str, str, int, int, str, str, int]
 """Cage, stream, t, seq, readings, remarks, t_ingest: as in the schema."""
@@ -27,9 +27,31 @@ Own = tuple[int, int]
 """The flag that a value got from its own check, and when the sample came that amended it [us]."""
 
 
-def row_of(
-    cage: str, sample: Sample, ingested: datetime, amended: Mapping[str, Own] = MappingProxyType({})
-) -> Row:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Bounds:
+    """Times of the rows that are read, start <= t < end, and how many are read at most.
+
+    Parameters
+    ----------
+    start, end
+        Open where None.
+    limit, newest
+        At most so many, the first; with ``newest`` the last.
+    """
+
+    start: datetime | None = None
+    end: datetime | None = None
+    limit: int = _ALL
+    newest: bool = False
+
+    @property
+    def us(self) -> tuple[int, int]:
+        """Start and end in microseconds since 1970 UTC."""
+        start = -_ALL if self.start is None else microseconds(self.start)
+        return start, _ALL if self.end is None else microseconds(self.end)
+
+
+def row_of(cage: str, sample: Sample, ingested: datetime, amended: Mapping[str, Own]) -> Row:
     """Write a sample as a row.
 
     Parameters
@@ -118,7 +140,7 @@ def readable(rows: Iterable[SampleRow]) -> Iterator[tuple[SampleRow, Sample]]:
 def own_flags(readings: str) -> dict[str, Flag]:
     """Read the flags that a sample got from its own check, before any amendment."""
     pairs: dict[str, list[Any]] = json.loads(readings)
-    return {key: _flag(flag, own, _BEFORE_ALL) for key, (_, flag, *own) in pairs.items()}
+    return {key: _flag(flag, own, -_ALL) for key, (_, flag, *own) in pairs.items()}
 
 
 def amendments_of_row(row: SampleRow, *, until: int) -> Iterator[Amendment]:
@@ -157,9 +179,9 @@ def pairs_of(readings: str) -> dict[str, tuple[float, int]]:
 
 def microseconds(t: datetime) -> int:
     """Since 1970 UTC."""
-    return (t - _EPOCH) // _MICROSECOND
+    return (t - _EPOCH) // MICROSECOND
 
 
 def moment_of(t: int) -> datetime:
     """From microseconds since 1970 UTC."""
-    return _EPOCH + t * _MICROSECOND
+    return _EPOCH + t * MICROSECOND

@@ -33,11 +33,8 @@ class AbstractSession(ABC):
 
     damage: Damage
 
-    locking: str = ""
-    """What a SELECT ends with, so that no other process changes its rows until the commit."""
-
     passing: str = ""
-    """The same, but rows that another process holds are left to it."""
+    """What a SELECT ends with to lock its rows, but for those that another process holds."""
 
     lateral: bool = False
     """Whether a subquery of FROM may look at its neighbours."""

@@ -60,43 +60,18 @@ _LOOK_S = 2.0
 _text = partial(str, encoding="utf-8", errors="replace")  # a flipped bit must not stop a query
 
 
-class FileClaim:
-    """A lock that the system lets go when its process ends, however it ends.
+def _lock_file(path: Path) -> TextIO | None:
+    """Take a lock that the system lets go when its process ends; None where another has it.
 
     It lies beside the file that it is about, for SQLite has locks of its own on that.
-
-    Parameters
-    ----------
-    path
-        Of the lock; made where there is none, and left.
     """
-
-    def __init__(self, path: Path) -> None:
-        self._path = path
-        self._file: TextIO | None = None
-
-    @property
-    def is_held(self) -> bool:
-        """Whether this process has it."""
-        return self._file is not None
-
-    def take(self) -> bool:
-        """Take the lock; False where another has it."""
-        if self._file is None:
-            file = self._path.open("a", encoding="utf-8")
-            try:
-                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                file.close()
-                return False
-            self._file = file
-        return True
-
-    def release(self) -> None:
-        """Let it go, if it was taken."""
-        if self._file is not None:
-            self._file.close()
-            self._file = None
+    file = path.open("a", encoding="utf-8")
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        file.close()
+        return None
+    return file
 
 
 class SqliteSession(AbstractSession):
@@ -153,7 +128,7 @@ class SqliteDatabase(AbstractDatabase):
     def __init__(self, path: Path) -> None:
         self._path, self.damage = path, Damage()
         self._readers = Pool(self._reader)
-        self._claim = FileClaim(path.with_name(path.name + "-lock"))
+        self._claim: TextIO | None = None
         self._reserve = Reserve(path.with_name(path.name + "-reserve"))
         self.damaged = [
             one
@@ -199,16 +174,18 @@ class SqliteDatabase(AbstractDatabase):
         """Claim the whole file: it has one writer."""
         del session, cage
         with _translate_errors(self._path, "cannot be locked"):
-            return self._claim.take()
+            lock = self._path.with_name(self._path.name + "-lock")
+            self._claim = self._claim or _lock_file(lock)
+        return self._claim is not None
 
     def hold_reserve(self) -> None:
         """Hold room beside the file, if this process is the one that serves from it."""
-        if self._claim.is_held:
+        if self._claim is not None:
             self._reserve.hold()
 
     def give_up_reserve(self) -> None:
         """Leave that room to the file and its log."""
-        if self._claim.is_held:
+        if self._claim is not None:
             self._reserve.give_up()
 
     def close(self) -> None:
@@ -216,7 +193,9 @@ class SqliteDatabase(AbstractDatabase):
         self.give_up_reserve()
         self._readers.close()
         self._writer.close()
-        self._claim.release()
+        if self._claim is not None:
+            self._claim.close()
+            self._claim = None
 
     def _begin_anew(self, error: DamageError) -> None:
         aside = _move_aside(self._path)

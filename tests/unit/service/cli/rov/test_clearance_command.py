@@ -3,11 +3,11 @@ import json
 import pytest
 from typer.testing import CliRunner
 
-from netted import erring_twin
+from predicted_nets import erring_twin
+from running_service import Running, buoy, eventually
 from seacage.conventions import InputError
 from seacage.service._cli._app import app
 from seacage.service._rov._table import read_points
-from serviced import Running, buoy, eventually
 
 CURRENT = ["--current-speed", "0.4", "--current-to", "90"]
 
@@ -32,12 +32,12 @@ def run(*args, code=0):
     return result
 
 
-def told(*args, code=0) -> dict:
+def answer_of(*args, code=0) -> dict:
     return json.loads(run(*args, "--json", code=code).stdout.splitlines()[0])
 
 
-def test_a_folder_is_asked_about_points_in_a_current(twin):
-    answer = told("clearance", "--point", "18,0,-8", "--point=-60,0,-5", *twin)
+def test_a_folder_is_queried_about_points_in_a_current(twin):
+    answer = answer_of("clearance", "--point", "18,0,-8", "--point=-60,0,-5", *twin)
     near, far = answer["points"]
     assert near["inside"]
     assert not far["inside"]
@@ -48,7 +48,7 @@ def test_a_folder_is_asked_about_points_in_a_current(twin):
 
 
 def test_a_path_that_is_too_likely_to_be_too_near_ends_with_four(twin, way):
-    answer = told("clearance", way, "--path", "--most", "1", *twin)
+    answer = answer_of("clearance", way, "--path", "--most", "1", *twin)
     p = answer["path"]["p_below"]
     assert 0.0 < p < 1.0
     result = run("clearance", way, "--path", "--most", p / 2.0, *twin, code=4)
@@ -58,7 +58,7 @@ def test_a_path_that_is_too_likely_to_be_too_near_ends_with_four(twin, way):
 
 def test_without_a_path_the_likeliest_point_decides(twin):
     there = ["--point", "18,0,-8", "--point", "0,0,-5"]
-    answer = told("clearance", *there, "--below", "8", *twin)
+    answer = answer_of("clearance", *there, "--below", "8", *twin)
     most = max(one["p_below"] for one in answer["points"])
     assert 0.0 < most < 1.0
     run("clearance", *there, "--below", "8", "--most", most, *twin)
@@ -67,7 +67,7 @@ def test_without_a_path_the_likeliest_point_decides(twin):
 
 def test_clearances_are_written_beside_their_points(twin, way, tmp_path):
     out = tmp_path / "out.csv"
-    answer = told("clearance", way, "--out", out, *twin)
+    answer = answer_of("clearance", way, "--out", out, *twin)
     head, *lines = out.read_text().splitlines()
     assert head.startswith("east_m,north_m,up_m,distance_m,inside,expected_m")
     assert len(lines) == 3
@@ -91,7 +91,7 @@ def test_a_files_header_says_in_which_frame_it_is(tmp_path, head, line, frame):
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         ("x,y,z\n1,2,3\n", "names no frame"),
         ("east_m,north_m,up_m\n", "no point"),
@@ -100,10 +100,10 @@ def test_a_files_header_says_in_which_frame_it_is(tmp_path, head, line, frame):
         ("", "names no frame"),
     ],
 )
-def test_a_file_that_is_no_table_of_points_is_refused(tmp_path, text, said):
+def test_a_file_that_is_no_table_of_points_is_refused(tmp_path, text, message):
     path = tmp_path / "points.csv"
     path.write_text(text)
-    with pytest.raises(InputError, match=said):
+    with pytest.raises(InputError, match=message):
         read_points(path)
 
 
@@ -127,7 +127,7 @@ def test_a_question_that_is_not_whole_is_refused(twin, args):
 def test_a_way_along_the_net_is_laid_and_written(twin, tmp_path, form):
     out = tmp_path / f"way{form}"
     sizes = ["--row-spacing", "5", "--step", "3", "--side", "outside"]
-    answer = told("inspect-path", *sizes, "--out", out, *twin)
+    answer = answer_of("inspect-path", *sizes, "--out", out, *twin)
     assert len(answer["waypoints"]) > 50
     assert out.stat().st_size > 1000
     if form == ".csv":
@@ -142,14 +142,14 @@ def test_a_way_is_not_written_in_another_form_nor_on_a_map_that_is_not_known(twi
     assert "latitude_deg" in result.stderr
 
 
-def test_a_running_service_is_asked_about_its_net_now(live: Running, way, tmp_path):
+def test_a_running_service_is_queried_about_its_net_now(live: Running, way, tmp_path):
     token = live.reader.headers["authorization"].removeprefix("Bearer ")
     to = ["--to", live.address, "--token", token]
     refused = run("clearance", way, *to, code=3)
     assert "buoy-1" in refused.stderr
     live.post(buoy(-1))
     eventually(live.state, lambda state: state["valid"])
-    answer = told("clearance", way, "--path", *to)
+    answer = answer_of("clearance", way, "--path", *to)
     body = {"points_m": [[0, 0, -5], [18, 0, -8], [18, 9, -8]], "as_path": True}
     assert answer == live.reader.post("/api/v1/cages/ace/clearance", json=body).json()
     assert answer["shape_error"] is None
@@ -157,7 +157,7 @@ def test_a_running_service_is_asked_about_its_net_now(live: Running, way, tmp_pa
     unheld = run("clearance", way, "--path", "--most", "0.5", *to, code=1)
     assert "shape error is not known" in unheld.stderr
     out = tmp_path / "way.mcap"
-    told("inspect-path", "--row-spacing", "5", "--step", "3", "--out", out, *to)
+    answer_of("inspect-path", "--row-spacing", "5", "--step", "3", "--out", out, *to)
     assert out.read_bytes().startswith(b"\x89MCAP")
     run("clearance", way, "--to", live.address, "--token", "none", code=1)
     run("clearance", way, "--cage", "ice", *to, code=1)

@@ -1,13 +1,13 @@
 import httpx
 import pytest
 
-from serviced import Running, at, buoy, depth, running
+from running_service import Running, at, buoy, depth, running
 
 ROOT = "/sta/v1.1"
 SPEED = f"{ROOT}/Datastreams('ace:buoy-1:current_speed_m_s')"
 
 
-def asked(live, path, **options):
+def get_path(live, path, **options):
     """The answer to a path; options go without their dollar."""
     params = {f"${name}": value for name, value in options.items()}
     answer = live.reader.get(path, params=params or None)
@@ -16,16 +16,16 @@ def asked(live, path, **options):
 
 
 def value(live, path, **options):
-    return asked(live, path, **options)["value"]
+    return get_path(live, path, **options)["value"]
 
 
 def walked(live, path, **options):
     """All that a list holds, page by page along its links."""
-    page = asked(live, path, **options)
+    page = get_path(live, path, **options)
     found, pages = [*page["value"]], 1
     while link := page.get("@iot.nextLink"):
         assert pages < 100
-        page, pages = asked(live, link), pages + 1
+        page, pages = get_path(live, link), pages + 1
         found += page["value"]
     return found, pages
 
@@ -53,12 +53,12 @@ def test_the_root_names_sets_that_are_there(idle: Running):
 @pytest.mark.parametrize("name", ["Things", "Sensors", "ObservedProperties", "Datastreams"])
 def test_every_link_of_an_entity_leads_to_what_belongs_to_it(idle: Running, name):
     entity = value(idle, f"{ROOT}/{name}")[0]
-    assert asked(idle, entity["@iot.selfLink"]) == entity
+    assert get_path(idle, entity["@iot.selfLink"]) == entity
     links = {key: link for key, link in entity.items() if key.endswith("navigationLink")}
     assert links
     for key, link in links.items():
         assert link.startswith(idle.address), "a client asks for it as it is"
-        found = asked(idle, link)
+        found = get_path(idle, link)
         for one in found.get("value", [found]):
             ids = {one["@iot.id"], entity["@iot.id"]}
             assert any(a in b for a in ids for b in ids), (key, ids)
@@ -116,7 +116,7 @@ def test_the_pages_of_observations_hold_each_once_and_in_order(live: Running, or
     assert minutes(found) == sorted(minutes(found), reverse=order.endswith("desc"))
 
 
-def test_pages_keep_to_the_span_that_was_asked_for(live: Running):
+def test_pages_keep_to_the_span_that_was_requested(live: Running):
     live.post(*(buoy(-50 + 5 * k) for k in range(10)))
     span = f"phenomenonTime ge {at(-40)} and phenomenonTime lt {at(-10)}"
     for order in ("phenomenonTime", "phenomenonTime desc"):
@@ -126,19 +126,19 @@ def test_pages_keep_to_the_span_that_was_asked_for(live: Running):
 
 
 def test_a_list_has_pages_and_a_count(farm: Running):
-    page = asked(farm, f"{ROOT}/Things", top=2, count="true")
+    page = get_path(farm, f"{ROOT}/Things", top=2, count="true")
     assert page["@iot.count"] == 3
     found, pages = walked(farm, f"{ROOT}/Things", top=2, orderby="name desc", select="name")
     assert (found, pages) == ([{"name": "cove"}, {"name": "bay"}, {"name": "ace"}], 2)
-    whole = asked(farm, f"{ROOT}/Things")
+    whole = get_path(farm, f"{ROOT}/Things")
     assert whole.keys() == {"value"}
 
 
 def test_observations_are_counted_over_their_span_and_not_over_their_page(live: Running):
     live.post(buoy(-30), buoy(-20), buoy(-10))
-    page = asked(live, f"{SPEED}/Observations", top=1, count="true")
+    page = get_path(live, f"{SPEED}/Observations", top=1, count="true")
     assert (len(page["value"]), page["@iot.count"]) == (1, 3)
-    later = asked(live, f"{SPEED}/Observations", count="true", filter=f"resultTime gt {at(-25)}")
+    later = get_path(live, f"{SPEED}/Observations", count="true", filter=f"resultTime gt {at(-25)}")
     assert later["@iot.count"] == 2
 
 
@@ -157,7 +157,7 @@ def test_an_expansion_may_look_at_so_many_samples(farm: Running, monkeypatch, in
     monkeypatch.setattr("seacage.service._http._sensorthings._routes._AT_ONCE", 4)
     expand = f"Datastreams($top=1;$expand=Observations({inner}))"  # three samples of one stream
     if fits:
-        assert asked(farm, f"{ROOT}/Things('ace')", expand=expand)["Datastreams"]
+        assert get_path(farm, f"{ROOT}/Things('ace')", expand=expand)["Datastreams"]
     else:
         assert "expand less" in refused(farm, f"{ROOT}/Things('ace')", expand=expand)
 
@@ -194,8 +194,8 @@ def test_what_is_expanded_in_part_says_where_its_rest_is(farm: Running):
     assert len(thing["Datastreams"]) + len(rest) == thing["Datastreams@iot.count"]
 
 
-def test_a_datastream_is_told_with_what_it_leads_to(idle: Running):
-    stream = asked(idle, SPEED, expand="Sensor,ObservedProperty,Thing/Datastreams($top=1)")
+def test_a_datastream_is_given_with_what_it_leads_to(idle: Running):
+    stream = get_path(idle, SPEED, expand="Sensor,ObservedProperty,Thing/Datastreams($top=1)")
     assert stream["Sensor"]["name"] == "buoy-1"
     assert stream["ObservedProperty"]["name"] == "current_speed_m_s"
     assert len(stream["Thing"]["Datastreams"]) == 1
@@ -203,8 +203,8 @@ def test_a_datastream_is_told_with_what_it_leads_to(idle: Running):
     assert "Observations@iot.navigationLink" in stream
 
 
-def test_only_what_is_selected_is_told(idle: Running):
-    assert asked(idle, f"{ROOT}/Things('ace')", select="id,name,Datastreams") == {
+def test_only_what_is_selected_is_given(idle: Running):
+    assert get_path(idle, f"{ROOT}/Things('ace')", select="id,name,Datastreams") == {
         "@iot.id": "ace",
         "name": "ace",
         "Datastreams@iot.navigationLink": f"{idle.address}{ROOT}/Things('ace')/Datastreams",

@@ -30,7 +30,7 @@ def pair(url):
         store.close()
 
 
-def asked(url, sql):
+def rows_of(url, sql):
     with psycopg.connect(url, autocommit=True) as connection:
         cursor = connection.execute(sql)
         return cursor.fetchall() if cursor.description else []
@@ -39,14 +39,14 @@ def asked(url, sql):
 def test_each_month_has_its_partition(url, pair):
     put(pair[0], sample(), sample(35 * A_DAY), sample(-18_000 * A_DAY))
     tables = "SELECT tablename FROM pg_tables WHERE tablename LIKE 'sample_%' AND schemaname = "
-    names = {name for (name,) in asked(url, tables + "current_schema()")}
+    names = {name for (name,) in rows_of(url, tables + "current_schema()")}
     assert names == {"sample_2020_02", "sample_2020_03", "sample_early"}
-    assert asked(url, "SELECT count(*) FROM sample_2020_02") == [(1,)]
+    assert rows_of(url, "SELECT count(*) FROM sample_2020_02") == [(1,)]
 
 
 def test_times_are_found_by_brin(url, pair):
     put(pair[0], sample())
-    (kind,) = asked(
+    (kind,) = rows_of(
         url,
         "SELECT indexdef FROM pg_indexes WHERE tablename = 'sample_2020_02' "
         "AND indexdef LIKE '%brin%' AND schemaname = current_schema()",
@@ -56,10 +56,10 @@ def test_times_are_found_by_brin(url, pair):
 
 def test_two_workers_with_the_same_samples_store_each_once(pair):
     months = [sample(15 * A_DAY * k + j) for k in range(6) for j in range(20)]
-    told = {}
+    messages = {}
 
     def send(worker, order):
-        told[worker] = sum(put(pair[worker], *order))
+        messages[worker] = sum(put(pair[worker], *order))
 
     threads = [
         threading.Thread(target=send, args=(worker, months[:: 1 - 2 * worker]))
@@ -69,7 +69,7 @@ def test_two_workers_with_the_same_samples_store_each_once(pair):
         thread.start()
     for thread in threads:
         thread.join()
-    assert sum(told.values()) == len(months)
+    assert sum(messages.values()) == len(months)
     assert pair[0].samples("ace", limit=999) == months
 
 
@@ -96,7 +96,7 @@ def test_a_connection_that_is_cut_is_made_again(url, pair):
     store = pair[0]
     put(store, sample())
     store.samples("ace", limit=9)
-    asked(
+    rows_of(
         url,
         "SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE application_name = 'seacage'",
     )
@@ -126,7 +126,7 @@ def test_a_cage_that_went_to_another_while_the_server_was_away_stays_there(url, 
     # Between the cut and here's next attempt, there is the one who asks.
     monkeypatch.setattr(here._database, "_tried", time.monotonic() + 2.0)
     writer = here._database._writer.info.backend_pid
-    asked(url, f"SELECT pg_terminate_backend({writer})")
+    rows_of(url, f"SELECT pg_terminate_backend({writer})")
     there.claim("ace")
     for _ in range(2):
         with pytest.raises(StoreError, match="ace went to another process"):
@@ -151,13 +151,13 @@ def put_until_cut(store):
 
 def test_an_opening_that_fails_leaves_no_connection(url):
     here = "SELECT count(*) FROM pg_stat_activity WHERE application_name = 'seacage'"
-    before = asked(url, here)
+    before = rows_of(url, here)
     with pytest.raises(StoreError, match="read-only transaction") as refused:
         open_store(f"{url}%20-cdefault_transaction_read_only%3Don")
     end = time.monotonic() + 5
-    while asked(url, here) != before and time.monotonic() < end:
+    while rows_of(url, here) != before and time.monotonic() < end:
         time.sleep(0.05)
-    assert asked(url, here) == before
+    assert rows_of(url, here) == before
     assert refused.value  # which holds all that the attempt made, so that nothing closes by itself
 
 
@@ -184,10 +184,12 @@ def test_without_the_driver_the_extra_is_named(monkeypatch):
 
 
 def test_a_file_needs_no_driver_of_a_server(tmp_path):
-    tells = (
+    script = (
         "import sys; from pathlib import Path; "
         "from seacage.service._store._store import open_store; "
         f"open_store(Path({str(tmp_path)!r}, 's.sqlite')).close(); print('psycopg' in sys.modules)"
     )
-    told = subprocess.run([sys.executable, "-c", tells], check=True, capture_output=True, text=True)
-    assert told.stdout.strip() == "False"
+    result = subprocess.run(
+        [sys.executable, "-c", script], check=True, capture_output=True, text=True
+    )
+    assert result.stdout.strip() == "False"

@@ -80,7 +80,7 @@ def test_a_path_that_cannot_be_opened_is_refused_plainly(tmp_path):
         open_store(tmp_path)
 
 
-def test_a_file_that_is_no_database_is_moved_aside_and_said_to_be_lost(path):
+def test_a_file_that_is_no_database_is_moved_aside_and_reported_to_be_lost(path):
     path.write_text("no database, and long enough to be taken for one")
     with opened(path) as store:
         assert put(store, sample()) == (True,)

@@ -1,0 +1,101 @@
+"""Settings of a simulation in time, and the assembly and the start that follow from them."""
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from seacage.cage import Cage, Structure
+from seacage.conventions import InputError
+from seacage.dynamics._kernel import Ocean, Steps
+from seacage.dynamics._moored import anchor_assembly, assemble, scale_mass
+from seacage.dynamics._parts import Assembly, assemble_structure
+from seacage.dynamics._physics import MovingLaw, NetLaw
+from seacage.dynamics._settle import rest_shape, settle
+from seacage.dynamics._time._forcing import wakes
+from seacage.ocean import SeaState
+
+Mooring = Literal["springs", "catenary"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Simulation:
+    """Settings of a simulation; ``simulate`` explains those that are not below.
+
+    Attributes
+    ----------
+    steps
+        Time steps, refreshes and samples.
+    nodes, series
+        Nodes of the series, and whether there are any series.
+    """
+
+    cage: Cage | Structure
+    law: MovingLaw
+    twine_drag: tuple[float, float] | None
+    mooring: Mooring
+    wake: bool
+    hold_collar: bool
+    collar_drag: bool
+    steps: Steps
+    nodes: Int[np.ndarray, " kept"]
+    series: bool
+    quantile_levels: Float[np.ndarray, " quantile"]
+    second_moment: bool
+
+    def assembly(self) -> Assembly:
+        """The cage on its mooring, with masses that the time step can follow."""
+        assembly = self._moored()
+        if self.hold_collar:
+            assembly = assembly.held()
+        if not self.collar_drag:
+            nothing = np.zeros_like(assembly.cylinders.drag_width)
+            pipes = replace(assembly.cylinders, drag_width=nothing)
+            assembly = replace(assembly, cylinders=pipes)
+        return scale_mass(assembly, self.steps.time_step)[0]
+
+    def _moored(self) -> Assembly:
+        if self.mooring not in ("springs", "catenary"):
+            raise InputError(
+                f"simulate: no mooring {self.mooring!r}; there are: springs, catenary."
+            )
+        if isinstance(self.cage, Cage):
+            on_anchors = self.mooring == "catenary"
+            return anchor_assembly(self.cage) if on_anchors else assemble(self.cage)
+        if self.mooring != "springs":
+            raise InputError(
+                f"simulate: mooring = {self.mooring!r}, but structure {self.cage.name} has lines "
+                "and anchors of its own. Leave it out."
+            )
+        return assemble_structure(self.cage)
+
+    def net_law(self, assembly: Assembly, ocean: Ocean) -> NetLaw:
+        """The law of the netting in each case's current."""
+        share = wakes(assembly, self.law, ocean, wake=self.wake)
+        return NetLaw(name=self.law, wake=share, twine_drag=self.twine_drag)
+
+    @property
+    def rest(self) -> Float[np.ndarray, "node 3"]:
+        """Shape in still water; a structure's is the design [m]."""
+        if isinstance(self.cage, Structure):
+            return self.cage.design_position
+        return rest_shape(self.cage, hold_collar=self.hold_collar)
+
+    def start(self, assembly: Assembly, seas: list[SeaState]) -> Float[np.ndarray, "case node 3"]:
+        """Equilibria in the sea's surface current; it is only a start, so any will do."""
+        start = np.repeat(assembly.position[None], len(seas), axis=0)
+        if isinstance(self.cage, Structure):
+            return start
+        still = [SeaState(current_speed=s.current_speed, current_to=s.current_to) for s in seas]
+        settled = settle(
+            self.cage,
+            still,
+            law="loland" if self.law == "morison" else self.law,
+            wake=self.wake,
+            hold_collar=self.hold_collar,
+            starts=1,
+        ).node_position
+        known = np.isfinite(settled).all(axis=(1, 2), keepdims=True)
+        start[:, : self.cage.node_count] = np.where(known, settled, self.rest)
+        return start

@@ -1,0 +1,129 @@
+"""NetCDF files: written whole or not at all, and opened once what they declare is bounded."""
+
+# xarray leaves parts of its signatures untyped.
+# pyright: reportUnknownMemberType=false
+
+import importlib
+import math
+from collections.abc import Generator, Iterable
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from seacage.conventions import check_file
+
+if TYPE_CHECKING:
+    import xarray
+
+NETCDF_TROUBLE = (
+    OSError,
+    KeyError,
+    ValueError,
+    TypeError,
+    RuntimeError,
+    AttributeError,
+    IndexError,
+    OverflowError,
+    MemoryError,
+    NotImplementedError,
+)
+"""Errors that the libraries raise at a damaged file."""
+
+_FILE_BYTES = 4 << 30
+_DECLARED_BYTES = 2 << 30
+_INFLATION = 1100
+"""Deflate makes at most 1032 bytes of one; more was never written [-]."""
+_SMALL_BYTES = 16 << 20
+"""What any file may ask for, however small."""
+_MOST_TEXTS = 4096
+"""Texts of any length that one variable may hold: each of them can be the same long one."""
+
+
+_PACKED = {"zlib": True, "complevel": 4, "shuffle": True, "dtype": "float32"}
+
+
+def write_netcdf(dataset: "xarray.Dataset", path: Path, *, packed: Iterable[str] = ()) -> None:
+    """Write a NetCDF file in the place of what is there, at once.
+
+    Parameters
+    ----------
+    dataset, path
+        What, and where.
+    packed
+        Variables to compress, in single precision.
+    """
+    unborn = path.with_name(f".{path.name}.unborn")
+    dataset.to_netcdf(unborn, engine="h5netcdf", encoding=dict.fromkeys(packed, _PACKED))
+    unborn.replace(path)
+
+
+@contextmanager
+def open_netcdf(path: Path, schema: str) -> "Generator[xarray.Dataset]":
+    """Open a file that seacage wrote, its times as numbers.
+
+    Raises
+    ------
+    OSError, KeyError, ValueError
+        As ``check_netcdf``, or for another schema; what else the libraries raise.
+    """
+    import xarray
+
+    check_netcdf(path, whole=True)
+    with xarray.open_dataset(path, engine="h5netcdf", decode_times=False) as dataset:
+        found = dataset.attrs.get("schema")
+        if found is None:
+            raise ValueError("it does not say seacage's schema")
+        if found != schema:
+            raise ValueError(f"its schema is {found!r}, not {schema!r}")
+        yield dataset
+
+
+def check_netcdf(path: Path, *, whole: bool) -> None:
+    """Refuse a NetCDF file that would fill the memory, or reads from other files.
+
+    Parameters
+    ----------
+    path
+        Of NetCDF 4; the classic format holds nothing that its size does not show.
+    whole
+        Whether all of it will be read; else its axes are, and parts of the rest.
+
+    Raises
+    ------
+    OSError
+        No regular file, too large a one, or no HDF5.
+    ValueError
+        It declares too much, or links to another file.
+    """
+    size = check_file(path, most=_FILE_BYTES).st_size
+    with path.open("rb") as stream:
+        if stream.read(3) == b"CDF":
+            return
+    h5py: Any = importlib.import_module("h5py")  # which has no types
+    links: list[tuple[str, Any]] = []
+
+    def keep(name: str, link: Any) -> None:
+        links.append((name, link))
+
+    with h5py.File(path, "r") as file:
+        file.visititems_links(keep)
+        declared = sum(_size_of(name, file, link, whole=whole) for name, link in links)
+    most = min(_DECLARED_BYTES, _SMALL_BYTES + _INFLATION * size)
+    if declared > most:
+        raise ValueError(f"it has {size} bytes, declares {declared}, and at most {most} are read")
+
+
+def _size_of(name: str, file: Any, link: Any, *, whole: bool) -> int:
+    """Bytes that reading what a link leads to takes at once."""
+    h5py: Any = importlib.import_module("h5py")
+    if isinstance(link, h5py.ExternalLink):
+        raise ValueError(f"its {name} is a link to another file")
+    dataset: Any = file[name] if isinstance(link, h5py.HardLink) else None
+    if not isinstance(dataset, h5py.Dataset):
+        return 0
+    if dataset.external or dataset.is_virtual:
+        raise ValueError(f"the values of its {name} lie in other files")
+    if dataset.dtype.kind == "O" and (dataset.size or 0) > _MOST_TEXTS:
+        raise ValueError(f"its {name} holds {dataset.size} texts, and at most {_MOST_TEXTS} do")
+    shape = dataset.shape if whole or dataset.ndim < 2 else dataset.chunks
+    return math.prod(shape or ()) * dataset.dtype.itemsize

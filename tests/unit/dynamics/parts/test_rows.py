@@ -1,0 +1,35 @@
+"""Arrays with one row for each part: some of them, taken back, and put together."""
+
+import numpy as np
+
+from seacage.dynamics._parts import Bends, Floats
+
+BENDS = Bends(nodes=np.arange(12).reshape(4, 3), stiffness=np.array([1.0, 2.0, 3.0, 4.0]))
+
+
+def test_some_rows_are_copies_in_the_order_requested():
+    some = BENDS.rows(np.array([2, 0]))
+    np.testing.assert_array_equal(some.nodes, [[6, 7, 8], [0, 1, 2]])
+    some.stiffness[:] = 0.0
+    np.testing.assert_array_equal(BENDS.stiffness, [1.0, 2.0, 3.0, 4.0])
+    np.testing.assert_array_equal(BENDS.rows(BENDS.stiffness > 2.5).stiffness, [3.0, 4.0])
+
+
+def test_rows_that_are_taken_back_leave_the_others_alone():
+    whole = BENDS.rows(np.arange(4))
+    other = Bends(nodes=np.full((2, 3), 9), stiffness=np.array([30.0, 10.0]))
+    whole.take(np.array([2, 0]), other)
+    np.testing.assert_array_equal(whole.stiffness, [10.0, 2.0, 30.0, 4.0])
+    np.testing.assert_array_equal(whole.nodes[:, 0], [9, 3, 9, 9])
+
+
+def test_several_are_joined_in_their_order():
+    box = Floats(
+        nodes=np.array([3]),
+        stiffness=np.array([1.0]),
+        draft=np.array([0.1]),
+        height=np.array([0.2]),
+    )
+    joined = Floats.joined(box, box.rows(np.array([], dtype=int)), box)
+    np.testing.assert_array_equal(joined.nodes, [3, 3])
+    np.testing.assert_array_equal(joined.height, [0.2, 0.2])
