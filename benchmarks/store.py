@@ -96,10 +96,16 @@ def inserted(place: str) -> None:
     per_row: dict[str, float] = {}
     with closing(database_at(place)) as database:
         for what, size in (("all rows at once", COUNT), ("row by row", 1)):
-            ready = [[row_of("ice", one, NOON) for one in fresh(COUNT)] for _ in range(ROUNDS + 1)]
+            ready = [
+                [row_of("ice", one, NOON, {}) for one in fresh(COUNT)] for _ in range(ROUNDS + 1)
+            ]
             took = seconds(lambda r=ready, n=size: insert(database, r.pop(), n), rounds=ROUNDS)
             per_row[what] = took / COUNT
     print_times("insert in one transaction, per row", per_row)
+
+
+def rows(samples: list[Sample]) -> list[Row]:
+    return [row_of("ice", one, NOON, {}) for one in samples]
 
 
 def insert(database: AbstractDatabase, rows: list[Row], size: int) -> None:

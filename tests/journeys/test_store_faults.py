@@ -14,6 +14,7 @@ from disks import FILLER, filled, log_not_written, small_disk
 from running_service import Running, depth, eventually, running
 from seacage.service._store._alarms import journal_between
 from seacage.service._store._database._reserve import SIZE
+from seacage.service._store._database._rows import Bounds
 from seacage.service._store._store import StoreError, look_into, open_store
 from seacage.twin import Action, AlarmEvent
 from stores import NOON, put, sample
@@ -54,7 +55,7 @@ FAULTS = {
 def journal(place):
     """What is on disk of the alarm, as another process reads it."""
     with look_into(place) as session:
-        lines = journal_between(session, "ace", start=None, end=None, limit=99, newest=False)
+        lines = journal_between(session, "ace", Bounds())
     return [line.action for line in lines if line.alarm == ALARM]
 
 

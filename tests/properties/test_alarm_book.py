@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from seacage.conventions import InputError
 from seacage.twin import Alarm, AlarmBook
 from seacage.twin._faults._baseline import Baseline
+from seacage.twin._faults._cusum import Evidence
 from seacage.twin._faults._detector import FaultDetector
-from seacage.twin._faults._evidence import Evidence
 from seacage.twin._faults._residuals import BlockSums
 from seacage.twin._faults._sensor import SensorMonitor
 

@@ -1,7 +1,7 @@
 """What a live cage shows depends on its samples and its clock, and on nothing that it went through.
 
 Histories hold streams that stand still, spike, repeat themselves, fall silent and lack values;
-samples come shuffled within ten minutes, twice, or hours late.
+samples come shuffled within ten minutes, twice, or half an hour late.
 """
 
 import random

@@ -21,7 +21,7 @@ from seacage.twin import AlarmPolicy, Twin
 STREAMS = {"buoy-1": 3.0, "depth-1": 1.5, "shackle-1": 2.0}
 """Those that send something, and how often [min]."""
 
-HURRY = 9.0
+HURRY = 12.0
 """Streams stand still, fall silent and go stale so much sooner: histories can be short."""
 
 
@@ -131,10 +131,10 @@ class History:
     @property
     def ticks(self) -> int:
         """Until all has arrived and what came late has rested."""
-        return int((self.hours + 1.3) * 3600.0 / self.tick_s)
+        return int((self.hours + 0.9) * 3600.0 / self.tick_s)
 
     @classmethod
-    def drawn(cls, seed: int, *, hours: float = 1.5, late: bool = True) -> "History":
+    def drawn(cls, seed: int, *, hours: float = 0.75, late: bool = True) -> "History":
         draw = random.Random(seed)
         samples = sorted(_samples(draw, hours), key=lambda one: (one.t, one.stream))
         arrivals = list[tuple[float, int]]()
@@ -142,13 +142,13 @@ class History:
             at_s = (sample.t - NOON).total_seconds()
             delay_s = draw.choice((0.0, 0.0, 30.0, draw.uniform(0.0, 600.0))) if late else 0.0
             if late and draw.random() < 0.03:
-                delay_s = draw.uniform(600.0, 4000.0)
+                delay_s = draw.uniform(600.0, 1500.0)
             arrivals.append((at_s + delay_s, place))
             if draw.random() < 0.1:
-                arrivals.append((at_s + delay_s + draw.choice((0.0, 60.0, 3000.0)), place))
+                arrivals.append((at_s + delay_s + draw.choice((0.0, 60.0, 1500.0)), place))
         return cls(
             hours=hours,
-            tick_s=draw.choice((30.0, 60.0, 120.0)),
+            tick_s=draw.choice((60.0, 120.0, 300.0)),
             samples=tuple(samples),
             arrivals=tuple(sorted(arrivals)),
         )

@@ -2,8 +2,8 @@
 
 from seacage.campaigns._cases import Simulator
 from seacage.campaigns._current import generated_current
-from seacage.campaigns._plan import Plan
 from seacage.campaigns._run import run_campaign, run_share
+from seacage.campaigns._sea_state_plan import Plan
 from seacage.campaigns._status import CampaignStatus, campaign_status
 from seacage.campaigns._virtual_field import (
     Event,

@@ -14,8 +14,8 @@ from jaxtyping import Int
 from seacage.cage import Cage
 from seacage.campaigns._cases import Answers, CaseBlock, Simulator, answer_block, software_version
 from seacage.campaigns._cluster import map_on_cluster
-from seacage.campaigns._plan import Plan
 from seacage.campaigns._pool import map_tasks
+from seacage.campaigns._sea_state_plan import Plan
 from seacage.conventions import InputError, Origin, Progress, no_progress
 from seacage.dynamics import PHYSICS, Mooring, MovingLaw
 from seacage.records import (

@@ -8,8 +8,8 @@ from jaxtyping import Float
 
 from seacage.cage import Cage
 from seacage.campaigns._cases import Simulator
-from seacage.campaigns._plan import Plan
 from seacage.campaigns._run import campaign_key, run_campaign
+from seacage.campaigns._sea_state_plan import Plan
 from seacage.campaigns._virtual_field._truth_parameters import TruthParameters
 from seacage.conventions import Progress, Result, SeacageError
 from seacage.ocean import SeaState

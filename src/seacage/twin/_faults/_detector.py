@@ -9,7 +9,7 @@ from seacage.cage import Cage
 from seacage.twin._alarms import AlarmInput
 from seacage.twin._events import Answered
 from seacage.twin._faults._baseline import Baseline
-from seacage.twin._faults._evidence import (
+from seacage.twin._faults._cusum import (
     Evidence,
     EvidenceByName,
     shifts_of_active,

@@ -13,8 +13,8 @@ from seacage.cage import Cage
 from seacage.conventions import Flag, InputError
 from seacage.records import Sample
 from seacage.twin import AlarmBook, FaultDetectorSettings
+from seacage.twin._faults._cusum import Evidence
 from seacage.twin._faults._detector import FaultDetector
-from seacage.twin._faults._evidence import Evidence
 from seacage.twin._faults._hypotheses import hypotheses, load_shares
 from seacage.twin._faults._residuals import ResidualBlock
 from seacage.twin._faults._sensor import SensorMonitor
