@@ -1,11 +1,13 @@
 """The point of a net that is nearest to a point in the water."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
+
+from seacage.conventions import Rows
 
 CHUNK = 1000
 """Points answered at once: their distances to all triangles stay in the cache."""
@@ -15,7 +17,7 @@ ROUNDING = 1e-6
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Nearest:
+class Nearest(Rows):
     """Where a net is nearest to each of some points.
 
     Parameters
@@ -39,14 +41,6 @@ class Nearest:
     inside: Bool[np.ndarray, " point"]
     node: Int[np.ndarray, "point 3"]
     weight: Float[np.ndarray, "point 3"]
-
-    @classmethod
-    def joined(cls, parts: "list[Nearest]") -> Self:
-        """Of several sets of points, one after another."""
-        names = [field.name for field in fields(cls)]
-        return cls(
-            **{name: np.concatenate([getattr(one, name) for one in parts]) for name in names}
-        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -121,7 +115,7 @@ def nearest_on_net(
     """
     surface = _Surface.of(node_position, _triangles(panels))
     parts = [_nearest(point[rows], surface) for rows in _chunks(len(point))]
-    return Nearest.joined(parts)
+    return Nearest.joined(*parts)
 
 
 def _chunks(count: int) -> Iterator[slice]:
@@ -164,7 +158,7 @@ def _candidates(
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class _Touch:
+class _Touch(Rows):
     """Where one triangle is nearest to one point: ``spot`` 0-2 an edge, 3-5 a corner, 6 within."""
 
     triangle: Int[np.ndarray, " pair"]
@@ -222,10 +216,6 @@ class _Touch:
         self.weight[within] = np.roll(towards[within], -1, axis=1) / area
         self.spot[within] = 6
         return self
-
-    def rows(self, index: Int[np.ndarray, " point"]) -> Self:
-        """These pairs alone."""
-        return type(self)(**{one.name: getattr(self, one.name)[index] for one in fields(self)})
 
     def answer(self, point: Float[np.ndarray, "point 3"], surface: _Surface) -> Nearest:
         """One nearest triangle to each point, in full."""

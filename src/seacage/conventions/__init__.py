@@ -22,6 +22,7 @@ from seacage.conventions._intake import (
 )
 from seacage.conventions._origin import Origin
 from seacage.conventions._progress import Progress, no_progress
+from seacage.conventions._rows import Rows
 
 __all__ = [
     "GRAVITY",
@@ -38,6 +39,7 @@ __all__ = [
     "Progress",
     "RecordError",
     "Result",
+    "Rows",
     "SeacageError",
     "check_file",
     "compass",

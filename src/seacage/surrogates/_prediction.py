@@ -1,17 +1,17 @@
 """What every surrogate answers, and the checks of what it is asked."""
 
 from dataclasses import dataclass, replace
-from typing import Protocol, Self, runtime_checkable
+from typing import Protocol, runtime_checkable
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Float
 from numpy.typing import ArrayLike
 
-from seacage.conventions import InputError
+from seacage.conventions import InputError, Rows
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Prediction:
+class Prediction(Rows):
     """Mean and standard deviation, in the unit of what was learned.
 
     Parameters
@@ -25,23 +25,13 @@ class Prediction:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Moments:
+class Moments(Rows):
     """Mean and variance of one output, and their gradient in the features, at each row."""
 
     mean: Float[np.ndarray, " row"]
     variance: Float[np.ndarray, " row"]
     mean_slope: Float[np.ndarray, "row feature"]
     variance_slope: Float[np.ndarray, "row feature"]
-
-    def rows(self, chosen: Int[np.ndarray, " chosen"]) -> Self:
-        """Of some of the rows."""
-        return replace(
-            self,
-            mean=self.mean[chosen],
-            variance=self.variance[chosen],
-            mean_slope=self.mean_slope[chosen],
-            variance_slope=self.variance_slope[chosen],
-        )
 
     def at(
         self, node: Float[np.ndarray, " node"]

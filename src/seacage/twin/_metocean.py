@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from typing import Literal, Self
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Bool, Float
 
-from seacage.conventions import towards
+from seacage.conventions import Rows, towards
 from seacage.ocean import SeaState
 from seacage.records import Record
 from seacage.surrogates import Domain, current_features, wave_features
@@ -27,7 +27,7 @@ def input_keys(inputs: Iterable[Input]) -> list[str]:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Metocean:
+class Metocean(Rows):
     """The water at the buoy, NaN where it is not known.
 
     Parameters
@@ -76,14 +76,6 @@ class Metocean:
 
     def __len__(self) -> int:
         return len(self.hs)
-
-    def rows(self, index: Int[np.ndarray, " row"] | Bool[np.ndarray, " case"]) -> Self:
-        """Return these rows alone, repeated where an index is."""
-        return type(self)(
-            current_velocity=self.current_velocity[index],
-            hs=self.hs[index],
-            wave_direction=self.wave_direction[index],
-        )
 
     @property
     def table(self) -> Float[np.ndarray, "case 5"]:

@@ -3,12 +3,11 @@
 import math
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
-from typing import Self
 
 import numpy as np
-from jaxtyping import Bool, Float, Int, Shaped
+from jaxtyping import Bool, Float, Shaped
 
-from seacage.conventions import Flag, InputError
+from seacage.conventions import Flag, InputError, Rows
 from seacage.records import FieldRecord, Record, Sample, instant
 from seacage.surrogates import block_means, spread_design
 from seacage.twin._metocean import Metocean, input_keys
@@ -29,7 +28,7 @@ def reading_of(sample: Sample) -> tuple[float, Flag]:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Pairs:
+class Pairs(Rows):
     """Readings of one sensor, each with the water that the buoy had reported.
 
     Parameters
@@ -48,12 +47,6 @@ class Pairs:
 
     def __len__(self) -> int:
         return len(self.value)
-
-    def rows(self, index: Int[np.ndarray, " row"] | Bool[np.ndarray, " pair"]) -> Self:
-        """Return these pairs alone."""
-        return type(self)(
-            time=self.time[index], metocean=self.metocean.rows(index), value=self.value[index]
-        )
 
 
 def align(

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float
 
-from seacage.dynamics._parts import Rows
+from seacage.conventions import Rows
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 import numpy as np
 from jaxtyping import Float
 
-from seacage.conventions import SeacageError
+from seacage.conventions import Rows, SeacageError
 from seacage.dynamics._kernel._balance import Balance, Balancing
 from seacage.dynamics._kernel._sparsity import Pattern
 from seacage.dynamics._kernel._structs import (
@@ -30,7 +30,7 @@ from seacage.dynamics._kernel._structs import (
     check_layout,
     pointer,
 )
-from seacage.dynamics._parts import Assembly, Rows
+from seacage.dynamics._parts import Assembly
 from seacage.dynamics._physics import SteadyFlow
 
 SUFFIX = {"Darwin": ".dylib", "Windows": ".dll"}.get(platform.system(), ".so")

@@ -11,7 +11,6 @@ from seacage.dynamics._parts._assembly import (
     Scales,
     Springs,
 )
-from seacage.dynamics._parts._rows import Rows
 from seacage.dynamics._parts._structure import SINKING, assemble_structure, no_springs
 
 __all__ = [
@@ -23,7 +22,6 @@ __all__ = [
     "Floats",
     "Ground",
     "Panels",
-    "Rows",
     "Scales",
     "Springs",
     "assemble_structure",

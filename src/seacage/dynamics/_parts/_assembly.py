@@ -6,8 +6,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from seacage.cage import Cage
-from seacage.conventions import GRAVITY, WATER_DENSITY, InputError
-from seacage.dynamics._parts._rows import Rows
+from seacage.conventions import GRAVITY, WATER_DENSITY, InputError, Rows
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float, Int
 
-from seacage.conventions import WATER_DENSITY
-from seacage.dynamics._parts import Assembly, Bars, Bends, Cylinders, Floats, Panels, Rows, Springs
+from seacage.conventions import WATER_DENSITY, Rows
+from seacage.dynamics._parts import Assembly, Bars, Bends, Cylinders, Floats, Panels, Springs
 
 Nodal = Float[np.ndarray, "case node 3"]
 

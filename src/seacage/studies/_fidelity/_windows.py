@@ -9,7 +9,7 @@ from jaxtyping import Bool, Float, Shaped
 
 from seacage.cage import Cage
 from seacage.campaigns import Plan
-from seacage.conventions import GRAVITY, Flag, InputError, Progress, Result, compass
+from seacage.conventions import GRAVITY, Flag, InputError, Progress, Result, Rows, compass
 from seacage.dynamics import rest_shape
 from seacage.ocean import SeaState
 from seacage.records import (
@@ -89,7 +89,7 @@ class Sensors:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Windows:
+class Windows(Rows):
     """Some 10-minute windows of a field record.
 
     Parameters
@@ -130,18 +130,6 @@ class Windows:
     def waves(self) -> bool:
         """Whether the low fidelity is asked with waves."""
         return bool(np.any(self.water.hs > 0.0))
-
-    def rows(self, chosen: Bool[np.ndarray, " window"]) -> Self:
-        """Some of the windows."""
-        return replace(
-            self,
-            end=self.end[chosen],
-            water=self.water.rows(chosen),
-            period=self.period[chosen],
-            surveyed=self.surveyed[chosen],
-            truth=self.truth[chosen],
-            low=self.low[chosen],
-        )
 
     def seas(self) -> list[SeaState]:
         """The water as sea states; a sea too steep to stand gets the shortest period it may."""

@@ -6,8 +6,9 @@ from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Float
 
+from seacage.conventions import Rows
 from seacage.surrogates._gp._factor import JITTERS, Cholesky, Spectrum, inverse
 from seacage.surrogates._gp._kernels import AbstractKernel, Prior
 from seacage.surrogates._gp._noise import (
@@ -47,7 +48,7 @@ ROUND = 4
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Evidence:
+class Evidence(Rows):
     """Posterior of hyperparameters, given points.
 
     Parameters
@@ -95,12 +96,6 @@ class Evidence:
         """Those of the kernel, and those of the noise."""
         count = self.kernel.size(self.x.shape[1])
         return log_parameters[:count], log_parameters[count:]
-
-    def rows(self, chosen: Int[np.ndarray, " row"]) -> Self:
-        """Of some of the points."""
-        return replace(
-            self, x=self.x[chosen], y=self.y[chosen], noise_factor=self.noise_factor[chosen]
-        )
 
     def loss(
         self, log_parameters: Float[np.ndarray, " parameter"]

@@ -1,13 +1,11 @@
 """Clearance of points and paths from a net whose shape is uncertain."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, fields
-from typing import Self
+from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Bool, Float
 
-from seacage.conventions import InputError
+from seacage.conventions import InputError, Rows
 
 SPACING = 0.25
 """Largest distance between two sampled points of a path [m]."""
@@ -17,7 +15,7 @@ MOST_POINTS = 8_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Clearance:
+class Clearance(Rows):
     """Clearance of points from a net.
 
     Parameters
@@ -55,20 +53,6 @@ class Clearance:
 
     def __len__(self) -> int:
         return len(self.distance)
-
-    @classmethod
-    def joined(cls, parts: "Sequence[Clearance]") -> Self:
-        """Of several sets of points, one after another."""
-        names = [one.name for one in fields(cls) if one.name != "below"]
-        arrays = {name: np.concatenate([getattr(one, name) for one in parts]) for name in names}
-        return cls(below=parts[0].below, **arrays)
-
-    def rows(self, index: Int[np.ndarray, " row"] | Bool[np.ndarray, " point"]) -> Self:
-        """Return these points alone."""
-        picked = {
-            one.name: getattr(self, one.name)[index] for one in fields(self) if one.name != "below"
-        }
-        return type(self)(below=self.below, **picked)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -160,7 +160,7 @@ class PredictedNet:
         """
         _check(point, below)
         blocks = np.array_split(np.arange(len(point)), 1 + len(point) // POINTS_AT_ONCE)
-        return Clearance.joined([self._clearance(point[rows], below) for rows in blocks])
+        return Clearance.joined(*(self._clearance(point[rows], below) for rows in blocks))
 
     def along(self, path: Float[np.ndarray, "corner 3"], *, below: float = 1.0) -> PathClearance:
         """Clearance of a path of straight lines from the net, sampled all along.

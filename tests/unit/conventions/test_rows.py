@@ -1,7 +1,10 @@
 """Arrays with one row for each part: some of them, taken back, and put together."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
+from seacage.conventions import Rows
 from seacage.dynamics._parts import Bends, Floats
 
 BENDS = Bends(nodes=np.arange(12).reshape(4, 3), stiffness=np.array([1.0, 2.0, 3.0, 4.0]))
@@ -33,3 +36,26 @@ def test_several_are_joined_in_their_order():
     joined = Floats.joined(box, box.rows(np.array([], dtype=int)), box)
     np.testing.assert_array_equal(joined.nodes, [3, 3])
     np.testing.assert_array_equal(joined.height, [0.2, 0.2])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Moored(Rows):
+    name: str
+    floats: Floats
+    load: np.ndarray
+
+
+def test_rows_within_rows_follow_and_other_fields_stay():
+    box = Floats(
+        nodes=np.array([3, 4]),
+        stiffness=np.array([1.0, 2.0]),
+        draft=np.array([0.1, 0.1]),
+        height=np.array([0.2, 0.3]),
+    )
+    moored = Moored(name="ace", floats=box, load=np.array([5.0, 6.0]))
+    last = moored.rows(slice(1, None))
+    assert last.name == "ace"
+    np.testing.assert_array_equal(last.floats.nodes, [4])
+    both = Moored.joined(last, moored)
+    np.testing.assert_array_equal(both.floats.height, [0.3, 0.2, 0.3])
+    np.testing.assert_array_equal(both.load, [6.0, 5.0, 6.0])
