@@ -171,9 +171,7 @@ def half_a_tide():
     (process,) = model.rest.upper
     west = process.cases()[:, 1] < -0.1
     members = tuple(
-        one.reconditioned(
-            one.x[west], one.observations()[west], noise_factor=one.noise_factor[west]
-        )
+        one.condition(one.x[west], one.observations()[west], noise_factor=one.noise_factor[west])
         for one in process.members
     )
     trained = replace(model, rest=replace(model.rest, own=(replace(process, members=members),)))

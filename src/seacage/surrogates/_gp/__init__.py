@@ -1,10 +1,10 @@
 """Gaussian processes: kernels, noise, hyperparameters, posteriors and ensembles."""
 
-from seacage.surrogates._gp._ensemble import Ensemble, check_ensemble
+from seacage.surrogates._gp._ensemble import Ensemble
 from seacage.surrogates._gp._gaussian_process import (
     FittedGaussianProcess,
     GaussianProcess,
-    check_restarts,
+    check_options,
     condense,
     fit_process,
     select_likelihood_outputs,
@@ -23,10 +23,9 @@ from seacage.surrogates._gp._kernels import (
     Product,
     StationaryKernel,
     Sum,
-    kernel_named,
     register_kernels,
 )
-from seacage.surrogates._gp._noise import NoiseName, check_noise
+from seacage.surrogates._gp._noise import NoiseName
 from seacage.surrogates._gp._posterior import Posterior, chunks
 
 __all__ = [
@@ -48,13 +47,10 @@ __all__ = [
     "Product",
     "StationaryKernel",
     "Sum",
-    "check_ensemble",
-    "check_noise",
-    "check_restarts",
+    "check_options",
     "chunks",
     "condense",
     "fit_process",
-    "kernel_named",
     "register_kernels",
     "select_likelihood_outputs",
 ]

@@ -1,12 +1,11 @@
 """Hyperparameters drawn from their posterior, where few points leave them open."""
 
 import math
-from typing import Literal, get_args
+from typing import Literal
 
 import numpy as np
 from jaxtyping import Float
 
-from seacage.conventions import InputError
 from seacage.surrogates._gp._hyperparameters import Evidence, Mode
 
 Ensemble = Literal["auto", "always", "never"]
@@ -44,14 +43,6 @@ def widening(points: int) -> float:
     tuning samples of published problems the largest likelihood.
     """
     return 1.0 + 1.0 / points
-
-
-def check_ensemble(ensemble: str) -> None:
-    """Refuse a choice that is not known."""
-    if ensemble not in get_args(Ensemble):
-        raise InputError(
-            f"ensemble = {ensemble!r} is not known. Choose one of {', '.join(get_args(Ensemble))}."
-        )
 
 
 def draw_members(mode: Mode, *, seed: int) -> Float[np.ndarray, "member parameter"]:

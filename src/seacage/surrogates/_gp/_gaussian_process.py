@@ -2,24 +2,23 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import ClassVar, Self
+from typing import ClassVar, Self, get_args
 
 import numpy as np
 from jaxtyping import Float
 
 from seacage.conventions import InputError
 from seacage.surrogates._arrays import Arrays, Settings, array, setting
-from seacage.surrogates._gp._ensemble import (
-    Ensemble,
-    check_ensemble,
-    draw_members,
-    is_drawn,
-    widening,
-)
+from seacage.surrogates._gp._ensemble import Ensemble, draw_members, is_drawn, widening
 from seacage.surrogates._gp._hyperparameters import Evidence, most_probable
-from seacage.surrogates._gp._kernels import AbstractKernel, KernelName, kernel_named, restore_kernel
-from seacage.surrogates._gp._noise import NoiseName, check_noise, noise_named, restore_noise
-from seacage.surrogates._gp._posterior import Posterior
+from seacage.surrogates._gp._kernels import (
+    AbstractKernel,
+    KernelName,
+    StationaryKernel,
+    restore_kernel,
+)
+from seacage.surrogates._gp._noise import NoiseName, noise_named, restore_noise
+from seacage.surrogates._gp._posterior import Posterior, Process
 from seacage.surrogates._prediction import Moments, Prediction, check_inputs, check_outputs
 from seacage.surrogates._scaling import Scaling
 
@@ -72,10 +71,9 @@ class GaussianProcess:
     restarts: int = 3
 
     def __post_init__(self) -> None:
-        kernel_named(self.kernel)
-        check_noise(self.noise)
-        check_ensemble(self.ensemble)
-        check_restarts(self.restarts)
+        check_options(
+            kernel=self.kernel, noise=self.noise, ensemble=self.ensemble, restarts=self.restarts
+        )
 
     def fit(
         self, x: Float[np.ndarray, "n feature"], y: Float[np.ndarray, "n *output"], *, seed: int = 0
@@ -97,7 +95,7 @@ class GaussianProcess:
         y = check_outputs(y, what=what, rows=len(x), shape=shape)
         table = y.reshape(len(y), -1)
         fitted = fit_process(
-            kernel_named(self.kernel),
+            StationaryKernel(self.kernel),
             x,
             table,
             likelihood_outputs=select_likelihood_outputs(table, unlike=self.noise == "per-output"),
@@ -251,7 +249,7 @@ class FittedGaussianProcess:
         """Conditioned on the same outputs at other inputs, one row for each case."""
         x = self.inputs.standardise(x)
         members = [
-            member.reconditioned(
+            member.condition(
                 x,
                 member.observations() + (member.x - x) @ self.line,
                 noise_factor=member.noise_factor,
@@ -347,12 +345,10 @@ class FittedGaussianProcess:
         log_noise = array(arrays, "log_noise", len(share), len(noise.prior().mean))
         noise_factor = array(arrays, "doubt", rows)
         members = [
-            Posterior.restored(
-                kernel, *hyperparameters, x, weight, noise=noise, noise_factor=noise_factor
+            Process(kernel=kernel, log_parameters=own, noise=noise, log_noise=own_noise).restore(
+                x, weight, noise_factor=noise_factor
             )
-            for hyperparameters, weight in zip(
-                zip(parameters, log_noise, strict=True), weights, strict=True
-            )
+            for own, own_noise, weight in zip(parameters, log_noise, weights, strict=True)
         ]
         inputs = Scaling(
             centre=array(arrays, "input_centre", width), spread=array(arrays, "input_spread", width)
@@ -455,13 +451,8 @@ def fit_process(
     if is_drawn(ensemble, observations=likelihood_outputs.size):
         hyperparameters, wider = draw_members(mode, seed=seed), widening(len(y))
     members = [
-        Posterior.conditioned(
-            kernel,
-            *evidence.split(log_parameters),
-            standardised,
-            rest,
-            noise=scatter,
-            noise_factor=mode.evidence.noise_factor,
+        evidence.process(log_parameters).condition(
+            standardised, rest, noise_factor=mode.evidence.noise_factor
         )
         for log_parameters in hyperparameters
     ]
@@ -515,7 +506,20 @@ def condense(y: Float[np.ndarray, "n output"]) -> Float[np.ndarray, "n some"]:
     return scores / (np.sqrt(np.mean(scores**2)) or 1.0)
 
 
-def check_restarts(restarts: int) -> None:
-    """Refuse a negative number of restarts."""
+def check_options(
+    *,
+    kernel: str = "squared-exponential",
+    noise: str = "white",
+    ensemble: str = "auto",
+    restarts: int,
+) -> None:
+    """Refuse options of ``GaussianProcess`` that do not exist."""
+    for name, value, known in (
+        ("kernel", kernel, get_args(KernelName)),
+        ("noise", noise, get_args(NoiseName)),
+        ("ensemble", ensemble, get_args(Ensemble)),
+    ):
+        if value not in known:
+            raise InputError(f"{name} = {value!r} is not known. Choose one of {', '.join(known)}.")
     if restarts < 0:
         raise InputError(f"restarts = {restarts} is negative. Give the number of extra starts.")

@@ -18,6 +18,7 @@ from seacage.surrogates._gp._noise import (
     StudentNoise,
     noise_factor_of,
 )
+from seacage.surrogates._gp._posterior import Process
 
 SUBSET = 250
 """Points that the hyperparameters are first learned from."""
@@ -96,6 +97,11 @@ class Evidence(Rows):
         """Those of the kernel, and those of the noise."""
         count = self.kernel.size(self.x.shape[1])
         return log_parameters[:count], log_parameters[count:]
+
+    def process(self, log_parameters: Float[np.ndarray, " parameter"]) -> Process:
+        """The process with these hyperparameters."""
+        own, noise = self.split(log_parameters)
+        return Process(kernel=self.kernel, log_parameters=own, noise=self.noise, log_noise=noise)
 
     def loss(
         self, log_parameters: Float[np.ndarray, " parameter"]

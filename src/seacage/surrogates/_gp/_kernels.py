@@ -9,7 +9,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 from jaxtyping import Float
 
-from seacage.conventions import InputError, ModelError
+from seacage.conventions import ModelError
 
 KernelName = Literal["squared-exponential", "matern-5/2", "matern-3/2"]
 
@@ -98,9 +98,9 @@ class AbstractKernel(ABC):
     """A positive definite function of two inputs, and the prior of its hyperparameters."""
 
     @property
-    @abstractmethod
     def name(self) -> str:
-        """Under which a saved model finds it again."""
+        """Under which a saved model finds it again; without one of its own that of its class."""
+        return type(self).__name__
 
     @abstractmethod
     def prior(self, width: int) -> Prior:
@@ -181,10 +181,6 @@ class Constant(AbstractKernel):
     """The same variance everywhere: an offset, or in a product a scale."""
 
     variance: Normal = VARIANCE_PRIOR
-
-    @property
-    def name(self) -> str:
-        return "constant"
 
     def prior(self, width: int) -> Prior:  # noqa: ARG002
         return Prior.of(self.variance)
@@ -279,10 +275,6 @@ class Columns(AbstractKernel):
     part: AbstractKernel
     columns: slice
 
-    @property
-    def name(self) -> str:
-        return f"{self.part.name}[{self.columns.start}:{self.columns.stop}]"
-
     def prior(self, width: int) -> Prior:
         return self.part.prior(self._width(width))
 
@@ -351,10 +343,6 @@ class AbstractComposition(AbstractKernel):
 class Sum(AbstractComposition):
     """The sum of two kernels: of independent processes that add."""
 
-    @property
-    def name(self) -> str:
-        return f"({self.one.name} + {self.other.name})"
-
     @staticmethod
     def join(one: Any, other: Any) -> Any:
         return one + other if isinstance(one, Evaluation) else _join_values(np.add, one, other)
@@ -364,21 +352,9 @@ class Sum(AbstractComposition):
 class Product(AbstractComposition):
     """The product of two kernels: of a process whose size changes as another one does."""
 
-    @property
-    def name(self) -> str:
-        return f"({self.one.name} * {self.other.name})"
-
     @staticmethod
     def join(one: Any, other: Any) -> Any:
         return one * other if isinstance(one, Evaluation) else _join_values(np.multiply, one, other)
-
-
-def kernel_named(name: str) -> StationaryKernel:
-    """Kernel that a user asks for by name."""
-    for known in PUBLIC:
-        if name == known:
-            return StationaryKernel(known)
-    raise InputError(f"kernel = {name!r} is not known. Choose one of {', '.join(PUBLIC)}.")
 
 
 _SAVED: dict[str, AbstractKernel] = {name: StationaryKernel(name) for name in PUBLIC}

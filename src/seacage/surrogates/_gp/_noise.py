@@ -4,12 +4,12 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import ClassVar, Literal
 
 import numpy as np
 from jaxtyping import Float
 
-from seacage.conventions import InputError, ModelError
+from seacage.conventions import ModelError
 from seacage.surrogates._gp._kernels import Prior, StationaryKernel
 
 NoiseName = Literal["white", "per-output", "by-input", "student-t"]
@@ -37,10 +37,8 @@ PullDiagonal = Callable[[Float[np.ndarray, " n"]], Float[np.ndarray, " parameter
 class AbstractNoise(ABC):
     """Variance of independent noise, as a share of the outputs' unit variance."""
 
-    @property
-    @abstractmethod
-    def name(self) -> NoiseName:
-        """Under which a user asks for it and a saved model finds it again."""
+    name: ClassVar[NoiseName]
+    """Under which a user asks for it and a saved model finds it again."""
 
     @abstractmethod
     def prior(self) -> Prior:
@@ -73,9 +71,7 @@ class AbstractNoise(ABC):
 class WhiteNoise(AbstractNoise):
     """The same everywhere, for all outputs alike."""
 
-    @property
-    def name(self) -> NoiseName:
-        return "white"
+    name: ClassVar[NoiseName] = "white"
 
     def prior(self) -> Prior:
         return Prior.of(NOISE_PRIOR)
@@ -105,9 +101,7 @@ class StudentNoise(WhiteNoise):
     69:123-141.
     """
 
-    @property
-    def name(self) -> NoiseName:
-        return "student-t"
+    name: ClassVar[NoiseName] = "student-t"
 
     def variance(
         self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "row feature"]
@@ -119,11 +113,9 @@ class StudentNoise(WhiteNoise):
 class NoisePerOutput(AbstractNoise):
     """The same everywhere, of another size for each output."""
 
-    outputs: int
+    name: ClassVar[NoiseName] = "per-output"
 
-    @property
-    def name(self) -> NoiseName:
-        return "per-output"
+    outputs: int
 
     @property
     def sizes(self) -> int:
@@ -156,11 +148,9 @@ class NoiseByInput(AbstractNoise):
     the noise held by a few inducing inputs, at its most probable value.
     """
 
-    places: Float[np.ndarray, "anchor feature"]
+    name: ClassVar[NoiseName] = "by-input"
 
-    @property
-    def name(self) -> NoiseName:
-        return "by-input"
+    places: Float[np.ndarray, "anchor feature"]
 
     @property
     def anchor(self) -> Float[np.ndarray, "anchor feature"]:
@@ -224,14 +214,6 @@ def restore_noise(
             raise ModelError(
                 f"The saved model has noise {name!r}, which this version does not know."
             )
-
-
-def check_noise(name: str) -> None:
-    """Refuse a noise that is not known."""
-    if name not in get_args(NoiseName):
-        raise InputError(
-            f"noise = {name!r} is not known. Choose one of {', '.join(get_args(NoiseName))}."
-        )
 
 
 def noise_factor_of(

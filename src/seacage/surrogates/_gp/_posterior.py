@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Self
 
 import numpy as np
 from jaxtyping import Float
@@ -23,8 +22,8 @@ CHUNK = 2**22
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Posterior:
-    """A zero-mean Gaussian process conditioned on standardised points.
+class Process:
+    """A zero-mean Gaussian process with its noise, for standardised inputs.
 
     Parameters
     ----------
@@ -32,38 +31,21 @@ class Posterior:
         The covariance.
     noise, log_noise
         What the outputs scatter by, as a share of their unit variance.
-    x
-        Standardised inputs.
-    noise_factor
-        Factor on the noise of each point; other than 1 for Student's t alone.
-    weights
-        Inverse covariance times outputs, so that the mean is one product.
-    factor
-        Of the covariance with noise.
     """
 
     kernel: AbstractKernel
     log_parameters: Float[np.ndarray, " parameter"]
     noise: AbstractNoise
     log_noise: Float[np.ndarray, " noise"]
-    x: Float[np.ndarray, "n feature"]
-    noise_factor: Float[np.ndarray, " n"]
-    weights: Float[np.ndarray, "n output"]
-    factor: Factor
 
-    @classmethod
-    def conditioned(
-        cls,
-        kernel: AbstractKernel,
-        log_parameters: Float[np.ndarray, " parameter"],
-        log_noise: Float[np.ndarray, " noise"],
+    def condition(
+        self,
         x: Float[np.ndarray, "n feature"],
         y: Float[np.ndarray, "n output"],
         *,
-        noise: AbstractNoise,
-        noise_factor: Float[np.ndarray, " n"] | None = None,
-    ) -> Self:
-        """Condition on outputs of zero mean.
+        noise_factor: Float[np.ndarray, " n"],
+    ) -> "Posterior":
+        """Condition on outputs of zero mean; a posterior forgets the points that it had.
 
         Raises
         ------
@@ -72,38 +54,23 @@ class Posterior:
         """
         from scipy.linalg import LinAlgError
 
-        noise_factor = np.ones(len(x)) if noise_factor is None else noise_factor
         try:
-            factor = factorise(kernel, log_parameters, noise, log_noise, x, noise_factor)
+            factor = self._factorise(x, noise_factor)
         except LinAlgError as error:
             raise InputError(
                 f"{len(x)} cases give a covariance that is not positive definite. Look for "
                 "features or outputs that are too large by many orders of magnitude."
             ) from error
-        return cls(
-            kernel=kernel,
-            log_parameters=log_parameters,
-            noise=noise,
-            log_noise=log_noise,
-            x=x,
-            noise_factor=noise_factor,
-            weights=factor.solve(y),
-            factor=factor,
-        )
+        return self._posterior(x, noise_factor, factor.solve(y), factor)
 
-    @classmethod
-    def restored(
-        cls,
-        kernel: AbstractKernel,
-        log_parameters: Float[np.ndarray, " parameter"],
-        log_noise: Float[np.ndarray, " noise"],
+    def restore(
+        self,
         x: Float[np.ndarray, "n feature"],
         weights: Float[np.ndarray, "n output"],
         *,
-        noise: AbstractNoise,
         noise_factor: Float[np.ndarray, " n"],
-    ) -> Self:
-        """The same again from what was saved; the factor is cheaper to make than to store.
+    ) -> "Posterior":
+        """The posterior that was saved; the factor is cheaper to make than to store.
 
         Raises
         ------
@@ -115,22 +82,67 @@ class Posterior:
         broken = "The saved model's covariance is not positive definite. Train the model again."
         try:
             with np.errstate(over="ignore", invalid="ignore"):
-                factor = factorise(kernel, log_parameters, noise, log_noise, x, noise_factor)
-                known = factor.variance_reduction(kernel.covariance(log_parameters, x[:1], x))
+                factor = self._factorise(x, noise_factor)
+                cross = self.kernel.covariance(self.log_parameters, x[:1], x)
+                known = factor.variance_reduction(cross)
         except (LinAlgError, ValueError) as error:
             raise ModelError(broken) from error
         if not np.isfinite(known).all():
             raise ModelError(broken)
-        return cls(
-            kernel=kernel,
-            log_parameters=log_parameters,
-            noise=noise,
-            log_noise=log_noise,
+        return self._posterior(x, noise_factor, weights, factor)
+
+    def _factorise(
+        self, x: Float[np.ndarray, "n feature"], noise_factor: Float[np.ndarray, " n"]
+    ) -> Factor:
+        """Of the covariance of points with noise."""
+        covariance = self.kernel.covariance(self.log_parameters, x, x)
+        if isinstance(self.noise, NoisePerOutput):
+            return Spectrum.of(covariance, np.exp(self.log_noise))
+        return Cholesky.of(
+            covariance, self.noise.with_pullback(self.log_noise, x)[0] * noise_factor
+        )
+
+    def _posterior(
+        self,
+        x: Float[np.ndarray, "n feature"],
+        noise_factor: Float[np.ndarray, " n"],
+        weights: Float[np.ndarray, "n output"],
+        factor: Factor,
+    ) -> "Posterior":
+        return Posterior(
+            kernel=self.kernel,
+            log_parameters=self.log_parameters,
+            noise=self.noise,
+            log_noise=self.log_noise,
             x=x,
             noise_factor=noise_factor,
             weights=weights,
             factor=factor,
         )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Posterior(Process):
+    """The process conditioned on standardised points.
+
+    Parameters
+    ----------
+    kernel, log_parameters, noise, log_noise
+        As in ``Process``.
+    x
+        Standardised inputs.
+    noise_factor
+        Factor on the noise of each point; other than 1 for Student's t alone.
+    weights
+        Inverse covariance times outputs, so that the mean is one product.
+    factor
+        Of the covariance with noise.
+    """
+
+    x: Float[np.ndarray, "n feature"]
+    noise_factor: Float[np.ndarray, " n"]
+    weights: Float[np.ndarray, "n output"]
+    factor: Factor
 
     def noise_at(self, x: Float[np.ndarray, "row feature"]) -> Float[np.ndarray, "row output"]:
         """Variance of the noise of a new measurement; one column stands for all outputs."""
@@ -205,7 +217,7 @@ class Posterior:
         y: Float[np.ndarray, "new output"],
         *,
         amplitude: Float[np.ndarray, " output"],
-    ) -> Self:
+    ) -> "Posterior":
         """Conditioned on more points, with the same hyperparameters.
 
         The Cholesky factor is extended, in O(n^2) per point; noise unlike between the outputs
@@ -222,7 +234,7 @@ class Posterior:
         all_x, all_y = np.concatenate([self.x, x]), np.concatenate([self.observations(), y])
         factor = self._extend(x, noise_factor[len(self.x) :])
         if factor is None:
-            return self.reconditioned(all_x, all_y, noise_factor=noise_factor)
+            return self.condition(all_x, all_y, noise_factor=noise_factor)
         return replace(
             self, x=all_x, noise_factor=noise_factor, weights=factor.solve(all_y), factor=factor
         )
@@ -243,27 +255,9 @@ class Posterior:
         except LinAlgError:
             return None  # The whole can afford a larger jitter.
 
-    def reconditioned(
-        self,
-        x: Float[np.ndarray, "n feature"],
-        y: Float[np.ndarray, "n output"],
-        *,
-        noise_factor: Float[np.ndarray, " n"],
-    ) -> Self:
-        """Conditioned on other points, with the same hyperparameters."""
-        return self.conditioned(
-            self.kernel,
-            self.log_parameters,
-            self.log_noise,
-            x,
-            y,
-            noise=self.noise,
-            noise_factor=noise_factor,
-        )
-
     def combined(
         self, share: Float[np.ndarray, " output"], *, amplitude: Float[np.ndarray, " output"]
-    ) -> Self:
+    ) -> "Posterior":
         """With one output: the sum of the outputs times their share.
 
         Parameters
@@ -297,21 +291,6 @@ class Posterior:
         square = np.sum(((y - mean)[:, known] / amplitude[known]) ** 2, axis=1)
         scale, outputs = float(np.exp(self.log_noise[0])), int(np.sum(known))
         return noise_factor_of_new(square, variance[:, 0], scale=scale, outputs=outputs)
-
-
-def factorise(
-    kernel: AbstractKernel,
-    log_parameters: Float[np.ndarray, " parameter"],
-    noise: AbstractNoise,
-    log_noise: Float[np.ndarray, " noise"],
-    x: Float[np.ndarray, "n feature"],
-    noise_factor: Float[np.ndarray, " n"],
-) -> Factor:
-    """Of the covariance of points with noise."""
-    covariance = kernel.covariance(log_parameters, x, x)
-    if isinstance(noise, NoisePerOutput):
-        return Spectrum.of(covariance, np.exp(log_noise))
-    return Cholesky.of(covariance, noise.with_pullback(log_noise, x)[0] * noise_factor)
 
 
 def chunks(rows: int, size: int) -> Iterator[slice]:

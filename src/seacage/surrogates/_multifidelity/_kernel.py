@@ -1,7 +1,6 @@
 """Covariance functions of a fidelity over its inputs and the fidelity below."""
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,10 +12,10 @@ from seacage.surrogates._gp import (
     Covariances,
     Evaluation,
     FittedGaussianProcess,
-    Leaf,
     Normal,
     Prior,
     StationaryKernel,
+    Sum,
     register_kernels,
 )
 
@@ -74,10 +73,6 @@ class HeldBend(AbstractKernel):
     Rasmussen & Williams (2006), eq. (2.19), for a process that is known at a point.
     """
 
-    @property
-    def name(self) -> str:
-        return "held"
-
     def prior(self, width: int) -> Prior:
         return FREE.prior(width)
 
@@ -132,10 +127,6 @@ class LinearKernel(AbstractKernel):
     offset: float = 0.0
     variance: Normal = VARIANCE_PRIOR
 
-    @property
-    def name(self) -> str:
-        return "linear"
-
     def prior(self, width: int) -> Prior:  # noqa: ARG002
         return Prior.of(self.variance)
 
@@ -166,15 +157,15 @@ class LinearKernel(AbstractKernel):
 
 
 @dataclass(frozen=True, slots=True)
-class LinkKernel(AbstractKernel):
+class LinkKernel(Sum):
     """Covariance of a level over (x, f), f being the level below: the last feature.
 
     Parameters
     ----------
+    one, other
+        What it is composed of.
     kind
         Name under which a saved model finds it again.
-    formula
-        What it is composed of.
     ratio
         Expected change of the level per change of the one below.
     bends
@@ -183,33 +174,12 @@ class LinkKernel(AbstractKernel):
     """
 
     kind: str
-    formula: AbstractKernel
     ratio: float = 0.0
     bends: bool = True
 
     @property
     def name(self) -> str:
         return self.kind
-
-    def prior(self, width: int) -> Prior:
-        return self.formula.prior(width)
-
-    def size(self, width: int) -> int:
-        return self.formula.size(width)
-
-    def at(self, log_parameters: np.ndarray, z: np.ndarray) -> Covariances:
-        return self.formula.at(log_parameters, z)
-
-    def diagonal(self, log_parameters: np.ndarray, x: np.ndarray) -> Evaluation:
-        return self.formula.diagonal(log_parameters, x)
-
-    def combine(
-        self,
-        log_parameters: np.ndarray,
-        width: int,
-        leaf: Callable[[AbstractKernel, np.ndarray], Leaf],
-    ) -> Leaf:
-        return self.formula.combine(log_parameters, width, leaf)
 
 
 def autoregressive(
@@ -250,11 +220,11 @@ def autoregressive(
         lengths=tuple(_delta_length(known, features=len(lengths)) for known in lengths),
     )
     bend = HeldBend() if linear else FREE
-    formula = Columns(rho, LOCAL) * Columns(bend, BELOW) + Columns(delta, LOCAL)
+    curve, rest = Columns(rho, LOCAL) * Columns(bend, BELOW), Columns(delta, LOCAL)
     if not linear:
-        return LinkKernel("autoregressive", formula)
+        return LinkKernel(curve, rest, "autoregressive")
     line = LinearKernel(offset=1.0, variance=ALIKE_LINE if alike else VARIANCE_PRIOR)
-    return LinkKernel("line-and-bend", formula + Columns(line, BELOW), ratio=float(alike))
+    return LinkKernel(curve + rest, Columns(line, BELOW), "line-and-bend", ratio=float(alike))
 
 
 def straight() -> LinkKernel:
@@ -268,8 +238,8 @@ def straight() -> LinkKernel:
     Kennedy & O'Hagan (2000), Biometrika 87:1-13, eq. (1), the ratio being integrated out under
     a Gaussian prior; one level at a time as in Le Gratiet & Garnier (2014).
     """
-    formula = Columns(LinearKernel(), BELOW) + Columns(StationaryKernel(BELL), LOCAL)
-    return LinkKernel("straight", formula, bends=False)
+    line, rest = Columns(LinearKernel(), BELOW), Columns(StationaryKernel(BELL), LOCAL)
+    return LinkKernel(line, rest, "straight", bends=False)
 
 
 def bend_of(level: FittedGaussianProcess) -> float:

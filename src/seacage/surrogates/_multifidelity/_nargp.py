@@ -16,11 +16,9 @@ from seacage.surrogates._gp import (
     Ensemble,
     FittedGaussianProcess,
     NoiseName,
-    check_ensemble,
-    check_noise,
-    check_restarts,
+    StationaryKernel,
+    check_options,
     fit_process,
-    kernel_named,
 )
 from seacage.surrogates._multifidelity._kernel import (
     LinkKernel,
@@ -58,9 +56,7 @@ class AbstractMultifidelity(ABC):
     restarts: int = 3
 
     def __post_init__(self) -> None:
-        check_noise(self.noise)
-        check_ensemble(self.ensemble)
-        check_restarts(self.restarts)
+        check_options(noise=self.noise, ensemble=self.ensemble, restarts=self.restarts)
 
     @abstractmethod
     def link(self, lengths: tuple[float, ...], *, alike: bool) -> LinkKernel:
@@ -113,7 +109,7 @@ class AbstractMultifidelity(ABC):
         seeds = np.random.SeedSequence(seed).generate_state(len(cases)).tolist()
         fitted = FittedNARGP(own=(), lent=lower, nested=nested)
         for index, (x, y) in enumerate(cases):
-            kernel: AbstractKernel = kernel_named("squared-exponential")
+            kernel: AbstractKernel = StationaryKernel("squared-exponential")
             inputs, slope = x, np.zeros(x.shape[1])
             if fitted.levels:
                 if nested:

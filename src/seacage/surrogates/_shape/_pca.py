@@ -12,9 +12,9 @@ from seacage.surrogates._arrays import Arrays, Settings, array, join, setting, s
 from seacage.surrogates._gp import (
     FittedGaussianProcess,
     KernelName,
-    check_restarts,
+    StationaryKernel,
+    check_options,
     fit_process,
-    kernel_named,
     select_likelihood_outputs,
 )
 from seacage.surrogates._prediction import Prediction, check_inputs, check_outputs
@@ -206,8 +206,7 @@ class PcaGP:
     restarts: int = 3
 
     def __post_init__(self) -> None:
-        kernel_named(self.kernel)
-        check_restarts(self.restarts)
+        check_options(kernel=self.kernel, restarts=self.restarts)
         if self.modes is not None and self.variance is not None:
             raise InputError("PcaGP: both modes and variance are given. Choose one of them.")
         if self.modes is not None and self.modes < 1:
@@ -261,7 +260,7 @@ class PcaGP:
         modes = modes.truncated(shape, count)
         scores = tuple(
             fit_process(
-                kernel_named(self.kernel),
+                StationaryKernel(self.kernel),
                 x,
                 score[:, None],
                 likelihood_outputs=select_likelihood_outputs(score[:, None]),

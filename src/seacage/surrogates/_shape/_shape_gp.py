@@ -13,10 +13,10 @@ from seacage.surrogates._features import check_turnable
 from seacage.surrogates._gp import (
     FittedGaussianProcess,
     KernelName,
-    check_restarts,
+    StationaryKernel,
+    check_options,
     condense,
     fit_process,
-    kernel_named,
 )
 from seacage.surrogates._prediction import Prediction, check_inputs, check_outputs
 from seacage.surrogates._shape._pca import Modes, modes_from_arrays, modes_to_arrays, modes_within
@@ -65,8 +65,7 @@ class ShapeGP:
     asymmetry: float = 0.05
 
     def __post_init__(self) -> None:
-        kernel_named(self.kernel)
-        check_restarts(self.restarts)
+        check_options(kernel=self.kernel, restarts=self.restarts)
         for name in ("tolerance", "asymmetry"):
             if not getattr(self, name) > 0.0:
                 raise InputError(
@@ -109,7 +108,7 @@ class ShapeGP:
         modes = modes_within(displacement, self.tolerance)
         scores = modes.encode(displacement)
         process = fit_process(
-            kernel_named(self.kernel),
+            StationaryKernel(self.kernel),
             x,
             scores,
             likelihood_outputs=condense(scores),

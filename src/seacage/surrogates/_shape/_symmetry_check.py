@@ -5,7 +5,7 @@ from jaxtyping import Float
 
 from seacage.conventions import InputError
 from seacage.surrogates._features import check_turnable
-from seacage.surrogates._gp import condense, fit_process, kernel_named
+from seacage.surrogates._gp import StationaryKernel, condense, fit_process
 from seacage.surrogates._prediction import check_inputs, check_outputs
 from seacage.surrogates._shape._pca import modes_within
 from seacage.surrogates._shape._symmetry import Symmetry
@@ -107,7 +107,7 @@ def _errors_by_image(
     shape = node_position.reshape(len(x), -1)
     modes = modes_within(shape[training], COMPRESSION)
     scores = modes.encode(shape[training])
-    kernel = kernel_named("matern-5/2")
+    kernel = StationaryKernel("matern-5/2")
     model = fit_process(
         kernel, x[training], scores, likelihood_outputs=condense(scores), restarts=0, seed=seed
     )

@@ -153,7 +153,7 @@ def _condition(
 ) -> FittedGaussianProcess:
     """Return a process conditioned on some of its cases alone."""
     members = [
-        member.reconditioned(
+        member.condition(
             member.x[kept], member.observations()[kept], noise_factor=member.noise_factor[kept]
         )
         for member in process.members

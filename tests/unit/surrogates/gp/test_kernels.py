@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from seacage.conventions import InputError, ModelError
+from seacage.surrogates import GaussianProcess
 from seacage.surrogates._gp._kernels import (
     AbstractKernel,
     Columns,
     Constant,
     StationaryKernel,
-    kernel_named,
     restore_kernel,
 )
 from seacage.surrogates._multifidelity._kernel import (
@@ -177,10 +177,11 @@ def test_coinciding_inputs_are_at_distance_zero() -> None:
 
 
 def test_an_unknown_kernel_is_refused() -> None:
+    unchecked = getattr(GaussianProcess.__init__, "__wrapped__", GaussianProcess.__init__)
     with pytest.raises(InputError, match="'cubic' is not known"):
-        kernel_named("cubic")
+        unchecked(object.__new__(GaussianProcess), kernel="cubic")
     with pytest.raises(InputError, match="is not known"):
-        kernel_named("autoregressive")
+        unchecked(object.__new__(GaussianProcess), kernel="autoregressive")
     with pytest.raises(ModelError, match="'cubic'"):
         restore_kernel("cubic")
 

@@ -8,7 +8,7 @@ import pytest
 from seacage.surrogates._gp import _posterior
 from seacage.surrogates._gp._kernels import StationaryKernel
 from seacage.surrogates._gp._noise import AbstractNoise, NoisePerOutput, StudentNoise, WhiteNoise
-from seacage.surrogates._gp._posterior import Posterior
+from seacage.surrogates._gp._posterior import Posterior, Process
 
 SMOOTH = StationaryKernel("squared-exponential")
 AT = SMOOTH.prior(2).mean
@@ -30,9 +30,9 @@ def conditioned(
 ) -> Posterior:
     noise = noise or WhiteNoise()
     log_noise = np.full(noise.sizes, np.log(NOISE)) + np.arange(noise.sizes)
-    return Posterior.conditioned(
-        SMOOTH, AT, log_noise, x, y, noise=noise, noise_factor=noise_factor
-    )
+    process = Process(kernel=SMOOTH, log_parameters=AT, noise=noise, log_noise=log_noise)
+    ones = np.ones(len(x))
+    return process.condition(x, y, noise_factor=ones if noise_factor is None else noise_factor)
 
 
 def test_a_prediction_is_the_textbook_formula() -> None:
@@ -102,7 +102,7 @@ def test_a_point_that_comes_again_is_no_trouble() -> None:
     x, y = cases()
     sure = replace(conditioned(x, y), log_noise=np.array([-30.0]))
     smooth = np.sin(x)
-    exact = sure.reconditioned(x, smooth, noise_factor=np.ones(len(x)))
+    exact = sure.condition(x, smooth, noise_factor=np.ones(len(x)))
     again = exact.updated(x[:3], smooth[:3], amplitude=np.ones(2))
     # Repeated without noise, only a jitter keeps the points apart.
     np.testing.assert_allclose(again.predict(x)[0], smooth, atol=1e-3)

@@ -139,7 +139,7 @@ def test_an_update_answers_as_if_all_cases_had_been_there(two_levels: FittedNARG
     below = two_levels.predict(whole, level=1).mean
     x = process.inputs.standardise(np.column_stack([whole, below]))
     y = (high(whole) - process.centre)[:, None]
-    anew = process.posterior.reconditioned(x, y, noise_factor=np.ones(len(x)))
+    anew = process.posterior.condition(x, y, noise_factor=np.ones(len(x)))
     for one, other in zip(updated.own[1].posterior.predict(x), anew.predict(x), strict=True):
         np.testing.assert_allclose(one, other, rtol=1e-6, atol=1e-9)
     truth = high(NEW)

@@ -112,7 +112,7 @@ def test_a_reading_is_predicted_without_the_days_around_it():
     gain, process = fitted.gain, fitted.rest.own[0]
     low = lower.predict(chosen.metocean.features(("current",))).mean
     moved = process.members[0]
-    moved = moved.reconditioned(
+    moved = moved.condition(
         moved.x,
         (wrong.value - gain * low - process.centre)[:, None],
         noise_factor=moved.noise_factor,
