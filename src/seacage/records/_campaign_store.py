@@ -8,7 +8,6 @@ import uuid
 import warnings
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from glob import escape
 from pathlib import Path
 from typing import Any
@@ -18,6 +17,8 @@ from jaxtyping import Float, Int
 
 from seacage.conventions import RecordError, Result
 from seacage.ocean import SeaState
+from seacage.records._keys import KEYS
+from seacage.records._netcdf_file import CELL_METHODS, Variable
 
 NOT_RUN = -1
 """Stands in ``result`` for a case that has not been run yet."""
@@ -26,133 +27,64 @@ _BLOCKS = "blocks"
 """Group of the second moments of single blocks, there until the campaign is finished."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Variable:
-    """A variable of the store: where it varies, its CF attributes and its type."""
-
-    dims: tuple[str, ...]
-    units: str
-    long_name: str
-    standard_name: str = ""
-    cell_methods: str = ""
-    comment: str = ""
-    dtype: str = "float64"
-
-    @property
-    def attributes(self) -> dict[str, Any]:
-        """Attributes of CF, those that it has."""
-        names = ("units", "long_name", "standard_name", "cell_methods", "comment")
-        return {name: value for name in names if (value := getattr(self, name))}
-
+_CASE = ("case",)
 
 SEA = {
-    "current_speed": Variable(
-        dims=("case",),
-        units="m s-1",
-        long_name="speed of the current",
-        standard_name="sea_water_speed",
-    ),
-    "current_to": Variable(
-        dims=("case",),
-        units="degree",
-        long_name="where the current goes, clockwise from true north",
-        standard_name="sea_water_velocity_to_direction",
-    ),
-    "hs": Variable(
-        dims=("case",),
-        units="m",
-        long_name="significant wave height",
-        standard_name="sea_surface_wave_significant_height",
-    ),
-    "tp": Variable(
-        dims=("case",),
-        units="s",
-        long_name="peak period of the waves, 0 without waves",
-        standard_name="sea_surface_wave_period_at_variance_spectral_density_maximum",
-    ),
-    "wave_from": Variable(
-        dims=("case",),
-        units="degree",
-        long_name="where the waves come from, clockwise from true north",
-        standard_name="sea_surface_wave_from_direction",
-    ),
+    name: Variable(_CASE, KEYS[key].cf_unit, meaning, KEYS[key].standard_name or "")
+    for name, key, meaning in (
+        ("current_speed", "current_speed_m_s", "speed of the current"),
+        ("current_to", "current_to_deg", "where the current goes, clockwise from true north"),
+        ("hs", "hs_m", "significant wave height"),
+        ("tp", "tp_s", "peak period of the waves, 0 without waves"),
+        ("wave_from", "wave_from_deg", "where the waves come from, clockwise from true north"),
+    )
 }
 """The sea state of each case, with the names of ``SeaState``."""
 
 MEAN = {
-    "node_position": Variable(
-        dims=("case", "node", "axis"), units="m", long_name="mean position of the net's nodes"
-    ),
-    "bridle_tension": Variable(
-        dims=("case", "line"), units="N", long_name="mean tension of the bridles"
-    ),
-    "net_force": Variable(
-        dims=("case", "axis"), units="N", long_name="load of the water on the netting"
-    ),
-    "volume": Variable(dims=("case",), units="m3", long_name="volume inside the net"),
+    "node_position": Variable(("case", "node", "axis"), "m", "mean position of the net's nodes"),
+    "bridle_tension": Variable(("case", "line"), "N", "mean tension of the bridles"),
+    "net_force": Variable(("case", "axis"), "N", "load of the water on the netting"),
+    "volume": Variable(_CASE, "m3", "volume inside the net"),
 }
 """What every campaign answers."""
 
-_RESULT = Variable(dims=("case",), units="1", long_name="how the case ended", dtype="int8")
-
-_RESIDUAL = Variable(dims=("case",), units="N", long_name="largest unbalanced force at a node")
-
+_RESULT = Variable(_CASE, "1", "how the case ended", dtype="int8")
+_RESIDUAL = Variable(_CASE, "N", "largest unbalanced force at a node")
 _WAVE_SEED = Variable(
-    dims=("case",),
-    units="1",
-    long_name="seed of the waves: a simulation with it repeats the case",
-    dtype="int64",
+    _CASE, "1", "seed of the waves: a simulation with it repeats the case", dtype="int64"
 )
-
-_QUANTILE = Variable(dims=("quantile",), units="1", long_name="probability of not exceeding")
-
+_QUANTILE = Variable(("quantile",), "1", "probability of not exceeding")
 _SECOND_MOMENT = Variable(
-    dims=("coordinate", "other_coordinate"),
-    units="m2",
-    long_name="mean product of two coordinates' displacements from the design shape",
+    ("coordinate", "other_coordinate"),
+    "m2",
+    "mean product of two coordinates' displacements from the design shape",
     comment="coordinate 3 n + a is axis a of node n; over time and all converged cases",
 )
-
-_CORE_SECONDS = Variable(
-    dims=("block",), units="s", long_name="processor time that a block of cases took"
-)
+_CORE_SECONDS = Variable(("block",), "s", "processor time that a block of cases took")
 
 
-def _spread(name: str, statistic: str, method: str) -> Variable:
+def _spread(name: str, statistic: str) -> Variable:
     """A statistic over time beside a mean; four bytes are finer than any sensor."""
     whole = MEAN[name]
-    dims = (
-        ("case", "quantile", *whole.dims[1:])
-        if statistic == "quantile"
-        else ("case", *whole.dims[1:])
-    )
-    return Variable(
-        dims=dims,
-        units=whole.units,
-        long_name=f"{statistic.replace('_', ' ')} of {name.replace('_', ' ')} over time",
-        cell_methods=method,
+    along = ("case", "quantile") if statistic == "quantile" else _CASE
+    return whole._replace(
+        dims=(*along, *whole.dims[1:]),
+        long_name=f"{statistic} of {name.replace('_', ' ')} over time",
+        cell_methods=CELL_METHODS.get(statistic, ""),
         dtype="float32",
     )
 
 
-_STATISTICS = {
-    "std": "time: standard_deviation",
-    "minimum": "time: minimum",
-    "maximum": "time: maximum",
-    "quantile": "",
-}
-
 SPREAD = {
     **{
-        f"{name}_{statistic}": _spread(name, statistic, method)
+        f"{name}_{statistic}": _spread(name, statistic)
         for name in ("node_position", "bridle_tension")
-        for statistic, method in _STATISTICS.items()
+        for statistic in ("std", "minimum", "maximum", "quantile")
     },
-    **{f"{name}_std": _spread(name, "std", _STATISTICS["std"]) for name in ("net_force", "volume")},
+    **{f"{name}_std": _spread(name, "std") for name in ("net_force", "volume")},
     "diverged_at": Variable(
-        dims=("case",),
-        units="s",
-        long_name="simulated time at which the case was given up, spin-up included",
+        _CASE, "s", "simulated time at which the case was given up, spin-up included"
     ),
 }
 """What a campaign in time answers beside the means."""

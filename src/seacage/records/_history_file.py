@@ -15,8 +15,8 @@ from jaxtyping import Float, Int
 from seacage.conventions import Origin, RecordError, Result, parse_json
 from seacage.ocean import SeaState
 from seacage.records._brief import brief
-from seacage.records._campaign_store import SEA, Variable
-from seacage.records._netcdf_file import open_netcdf, write_netcdf
+from seacage.records._campaign_store import SEA
+from seacage.records._netcdf_file import CELL_METHODS, Variable, open_netcdf, write_netcdf
 
 if TYPE_CHECKING:
     import xarray
@@ -29,39 +29,32 @@ STATISTICS = ("mean", "std", "minimum", "maximum", "quantile")
 # No date: CF's standard name "time" would ask for one.
 _TIME = {"units": "s", "long_name": "time from the end of the spin-up", "axis": "T"}
 
-_CELL_METHODS = {
-    "mean": "time: mean",
-    "std": "time: standard_deviation",
-    "minimum": "time: minimum",
-    "maximum": "time: maximum",
-}
-"""By CF's words; it has none for quantiles but the median."""
-
-
 _QUANTITIES = {
-    "node_position": Variable(
-        dims=("node", "axis"), units="m", long_name="position of the net's nodes"
-    ),
-    "bridle_tension": Variable(dims=("bridle",), units="N", long_name="tension of the bridles"),
-    "net_force": Variable(dims=("axis",), units="N", long_name="load of the water on the netting"),
-    "volume": Variable(dims=(), units="m3", long_name="volume inside the net"),
+    "node_position": Variable(("node", "axis"), "m", "position of the net's nodes"),
+    "bridle_tension": Variable(("bridle",), "N", "tension of the bridles"),
+    "net_force": Variable(("axis",), "N", "load of the water on the netting"),
+    "volume": Variable((), "m3", "volume inside the net"),
 }
 
 _SERIES = {
     "node_position": Variable(
-        dims=("time", "kept_node", "axis"),
-        units="m",
-        long_name="position of the nodes that the series kept",
+        ("time", "kept_node", "axis"), "m", "position of the nodes that the series kept"
     ),
-    "bridle_tension": Variable(
-        dims=("time", "bridle"), units="N", long_name="tension of the bridles"
-    ),
+    "bridle_tension": Variable(("time", "bridle"), "N", "tension of the bridles"),
     "surface_elevation": Variable(
-        dims=("time",),
-        units="m",
-        long_name="height of the water's surface at the cage's centre",
-        standard_name="sea_surface_height_above_mean_sea_level",
+        ("time",),
+        "m",
+        "height of the water's surface at the cage's centre",
+        "sea_surface_height_above_mean_sea_level",
     ),
+}
+
+_ENDING = {
+    "node_displacement": Variable(
+        ("node", "axis"), "m", "mean position less the shape in still water"
+    ),
+    "volume_fraction": Variable((), "1", "mean volume over that in still water"),
+    "diverged_at": Variable((), "s", "when the case was given up, from the start"),
 }
 
 
@@ -179,8 +172,7 @@ def _dataset(record: HistoryRecord) -> "xarray.Dataset":
     import xarray
 
     series = {
-        f"{name}_series": (known.dims, getattr(record, name), known.attributes)
-        for name, known in _SERIES.items()
+        f"{name}_series": known.holding(getattr(record, name)) for name, known in _SERIES.items()
     }
     return xarray.Dataset(
         {**series, **_statistics(record), **_scalars(record)},
@@ -212,48 +204,30 @@ def _statistics(record: HistoryRecord) -> dict[str, Any]:
     variables: dict[str, Any] = {}
     for quantity, known in _QUANTITIES.items():
         for kind in STATISTICS:
-            attributes = {"units": known.units, "long_name": f"{kind} of the {known.long_name}"}
-            dims = known.dims
-            if kind == "quantile":
-                dims = ("quantile_level", *dims)
-            else:
-                attributes["cell_methods"] = _CELL_METHODS[kind]
-            name = f"{quantity}_{kind}"
-            variables[name] = (dims, record.statistics[name], attributes)
+            name, axis = f"{quantity}_{kind}", ("quantile_level",) if kind == "quantile" else ()
+            statistic = known._replace(
+                dims=(*axis, *known.dims),
+                long_name=f"{kind} of the {known.long_name}",
+                cell_methods=CELL_METHODS.get(kind, ""),
+            )
+            variables[name] = statistic.holding(record.statistics[name])
     return variables
 
 
 def _scalars(record: HistoryRecord) -> dict[str, Any]:
-    variables: dict[str, Any] = {
-        "node_displacement": (
-            ("node", "axis"),
-            record.node_displacement,
-            {"units": "m", "long_name": "mean position less the shape in still water"},
-        ),
-        "volume_fraction": (
-            (),
-            record.volume_fraction,
-            {"units": "1", "long_name": "mean volume over that in still water"},
-        ),
-        "result": (
-            (),
-            np.int8(record.result),
-            {
-                "long_name": "how the case ended",
-                "flag_values": np.array(list(Result), dtype=np.int8),
-                "flag_meanings": " ".join(code.name.lower() for code in Result),
-            },
-        ),
-        "diverged_at": (
-            (),
-            record.diverged_at,
-            {"units": "s", "long_name": "when the case was given up, from the start"},
-        ),
+    result = {
+        "long_name": "how the case ended",
+        "flag_values": np.array(list(Result), dtype=np.int8),
+        "flag_meanings": " ".join(code.name.lower() for code in Result),
     }
-    for name, known in SEA.items():
-        attributes = {"units": known.units, "standard_name": known.standard_name}
-        variables[name] = ((), float(getattr(record.sea, name)), attributes)
-    return variables
+    return {
+        **{name: known.holding(getattr(record, name)) for name, known in _ENDING.items()},
+        "result": ((), np.int8(record.result), result),
+        **{
+            name: known._replace(dims=(), long_name="").holding(float(getattr(record.sea, name)))
+            for name, known in SEA.items()
+        },
+    }
 
 
 def _record(dataset: "xarray.Dataset") -> HistoryRecord:

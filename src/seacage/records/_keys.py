@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from seacage.conventions import InputError
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Key:
     """A quantity at the door: its unit is in its name.
 
@@ -32,55 +32,31 @@ class Key:
 KEYS: Mapping[str, Key] = {
     key.name: key
     for key in (
+        Key("current_speed_m_s", "m/s", "m s-1", "sea_water_speed", "Current speed"),
         Key(
-            name="current_speed_m_s",
-            unit="m/s",
-            cf_unit="m s-1",
-            standard_name="sea_water_speed",
-            long_name="Current speed",
+            "current_to_deg",
+            "deg",
+            "degree",
+            "sea_water_velocity_to_direction",
+            "Direction the current goes to, clockwise from true north",
+        ),
+        Key("hs_m", "m", "m", "sea_surface_wave_significant_height", "Significant wave height"),
+        Key(
+            "tp_s",
+            "s",
+            "s",
+            "sea_surface_wave_period_at_variance_spectral_density_maximum",
+            "Peak period",
         ),
         Key(
-            name="current_to_deg",
-            unit="deg",
-            cf_unit="degree",
-            standard_name="sea_water_velocity_to_direction",
-            long_name="Direction the current goes to, clockwise from true north",
+            "wave_from_deg",
+            "deg",
+            "degree",
+            "sea_surface_wave_from_direction",
+            "Direction the waves come from, clockwise from true north",
         ),
-        Key(
-            name="hs_m",
-            unit="m",
-            cf_unit="m",
-            standard_name="sea_surface_wave_significant_height",
-            long_name="Significant wave height",
-        ),
-        Key(
-            name="tp_s",
-            unit="s",
-            cf_unit="s",
-            standard_name="sea_surface_wave_period_at_variance_spectral_density_maximum",
-            long_name="Peak period",
-        ),
-        Key(
-            name="wave_from_deg",
-            unit="deg",
-            cf_unit="degree",
-            standard_name="sea_surface_wave_from_direction",
-            long_name="Direction the waves come from, clockwise from true north",
-        ),
-        Key(
-            name="tension_kn",
-            unit="kN",
-            cf_unit="kN",
-            standard_name=None,
-            long_name="Tension of a bridle, by its shackle",
-        ),
-        Key(
-            name="depth_m",
-            unit="m",
-            cf_unit="m",
-            standard_name="depth",
-            long_name="Depth of a sensor on the net below still water",
-        ),
+        Key("tension_kn", "kN", "kN", None, "Tension of a bridle, by its shackle"),
+        Key("depth_m", "m", "m", "depth", "Depth of a sensor on the net below still water"),
     )
 }
 """Every quantity that a sample or a record may carry, by its door key."""

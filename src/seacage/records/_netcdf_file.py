@@ -5,10 +5,13 @@
 
 import importlib
 import math
-from collections.abc import Generator, Iterable
+from collections.abc import Callable, Generator, Iterable
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from jaxtyping import Shaped
 
 from seacage.conventions import check_file
 
@@ -39,10 +42,62 @@ _MOST_TEXTS = 4096
 """Texts of any length that one variable may hold: each of them can be the same long one."""
 
 
+CELL_METHODS = {
+    "mean": "time: mean",
+    "std": "time: standard_deviation",
+    "minimum": "time: minimum",
+    "maximum": "time: maximum",
+}
+"""Of statistics over time, by CF's words; it has none for quantiles but the median."""
+
 _PACKED = {"zlib": True, "complevel": 4, "shuffle": True, "dtype": "float32"}
 
 
-def write_netcdf(dataset: "xarray.Dataset", path: Path, *, packed: Iterable[str] = ()) -> None:
+class Variable(NamedTuple):
+    """A variable of a file or a store: where it varies, its CF attributes and its type."""
+
+    dims: tuple[str, ...]
+    units: str
+    long_name: str
+    standard_name: str = ""
+    cell_methods: str = ""
+    comment: str = ""
+    dtype: str = "float64"
+
+    @property
+    def attributes(self) -> dict[str, Any]:
+        """Attributes of CF, those that it has."""
+        names = ("units", "long_name", "standard_name", "cell_methods", "comment")
+        return {name: value for name in names if (value := getattr(self, name))}
+
+    def holding(self, values: Any) -> tuple[tuple[str, ...], Any, dict[str, Any]]:
+        """The variable with its values, as xarray takes it."""
+        return self.dims, values, self.attributes
+
+
+def encode_times(time: Shaped[np.ndarray, " t"], long_name: str) -> tuple[str, Any, dict[str, str]]:
+    """Times as a file's axis, to the microsecond."""
+    attributes = {
+        "standard_name": "time",
+        "long_name": long_name,
+        "units": "microseconds since 1970-01-01 00:00:00",
+        "calendar": "standard",
+    }
+    return "time", time.astype("datetime64[us]").astype(np.int64), attributes
+
+
+def decode_times(dataset: "xarray.Dataset") -> Shaped[np.ndarray, " t"]:
+    """Times of a file that ``encode_times`` encoded."""
+    return np.asarray(dataset["time"].values, dtype=np.int64).view("datetime64[us]")
+
+
+def write_netcdf(
+    dataset: "xarray.Dataset",
+    path: Path,
+    *,
+    packed: Iterable[str] = (),
+    finish: Callable[[Path], None] | None = None,
+) -> None:
     """Write a NetCDF file in the place of what is there, at once.
 
     Parameters
@@ -51,9 +106,13 @@ def write_netcdf(dataset: "xarray.Dataset", path: Path, *, packed: Iterable[str]
         What, and where.
     packed
         Variables to compress, in single precision.
+    finish
+        What is done to the file before it takes its place.
     """
     unborn = path.with_name(f".{path.name}.unborn")
     dataset.to_netcdf(unborn, engine="h5netcdf", encoding=dict.fromkeys(packed, _PACKED))
+    if finish is not None:
+        finish(unborn)
     unborn.replace(path)
 
 

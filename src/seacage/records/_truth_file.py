@@ -3,6 +3,7 @@
 # xarray leaves parts of its signatures untyped.
 # pyright: reportUnknownMemberType=false
 
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
@@ -12,26 +13,41 @@ from jaxtyping import Float, Shaped
 
 from seacage.conventions import Origin, RecordError
 from seacage.records._brief import brief
-from seacage.records._netcdf_file import NETCDF_TROUBLE, open_netcdf, write_netcdf
+from seacage.records._netcdf_file import (
+    CELL_METHODS,
+    NETCDF_TROUBLE,
+    Variable,
+    decode_times,
+    encode_times,
+    open_netcdf,
+    write_netcdf,
+)
 
 if TYPE_CHECKING:
     import xarray
 
 _SCHEMA = "seacage true means 1"
-_FILES: dict[str, tuple[str, ...]] = {
-    "bridles.nc": ("bridle_tension_mean", "bridle_tension_std", "bridle_tension_max"),
-    "shape.nc": ("node_position",),
-    "water.nc": ("current_velocity", "hs", "growth"),
+_BRIDLE = ("time", "bridle")
+_FILES = {
+    "bridles.nc": {
+        "bridle_tension_mean": Variable(_BRIDLE, "N", "mean tension of each bridle"),
+        "bridle_tension_std": Variable(_BRIDLE, "N", "standard deviation of each bridle's tension"),
+        "bridle_tension_max": Variable(_BRIDLE, "N", "greatest tension of each bridle"),
+    },
+    "shape.nc": {
+        "node_position": Variable(
+            ("time", "node", "axis"), "m", "mean position of each node of the drawn mesh"
+        )
+    },
+    "water.nc": {
+        "current_velocity": Variable(
+            ("time", "level", "heading"), "m s-1", "mean current at the cage, to"
+        ),
+        "hs": Variable(("time",), "m", "significant wave height at the cage"),
+        "growth": Variable(("time",), "1", "growth on the netting, 0 just cleaned, 1 grown out"),
+    },
 }
-_VARIABLES: dict[str, tuple[tuple[str, ...], str, str]] = {
-    "bridle_tension_mean": (("bridle",), "N", "mean tension of each bridle"),
-    "bridle_tension_std": (("bridle",), "N", "standard deviation of each bridle's tension"),
-    "bridle_tension_max": (("bridle",), "N", "greatest tension of each bridle"),
-    "node_position": (("node", "axis"), "m", "mean position of each node of the drawn mesh"),
-    "current_velocity": (("level", "heading"), "m s-1", "mean current at the cage, to"),
-    "hs": ((), "m", "significant wave height at the cage"),
-    "growth": ((), "1", "growth on the netting, 0 just cleaned, 1 grown out"),
-}
+_STATISTICS = {"std": CELL_METHODS["std"], "max": CELL_METHODS["maximum"]}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -78,8 +94,8 @@ class TrueMeans:
         """Write ``bridles.nc``, ``shape.nc`` and ``water.nc``, in single precision."""
         folder = Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
-        for file, names in _FILES.items():
-            write_netcdf(self._dataset(names), folder / file, packed=names)
+        for file, variables in _FILES.items():
+            write_netcdf(self._dataset(variables), folder / file, packed=variables)
 
     @classmethod
     def read(cls, folder: Path | str) -> Self:
@@ -106,20 +122,27 @@ class TrueMeans:
                 ) from error
         return cls(**values)
 
-    def _dataset(self, names: tuple[str, ...]) -> "xarray.Dataset":
+    def _dataset(self, variables: Mapping[str, Variable]) -> "xarray.Dataset":
         import xarray
 
-        variables: dict[str, Any] = {}
-        for name in names:
-            dims, units, meaning = _VARIABLES[name]
-            attributes = {"units": units, "long_name": meaning, "cell_methods": _method(name)}
-            variables[name] = (("time", *dims), getattr(self, name), attributes)
-        axes = {dim for name in names for dim in _VARIABLES[name][0]}
+        depth = {"units": "m", "long_name": "depth", "positive": "down"}
+        axes = {
+            "bridle": np.array(self.bridle_names, dtype=object),
+            "axis": np.array(["x", "y", "z"], dtype=object),
+            "heading": np.array(["east", "north"], dtype=object),
+            "level": ("level", self.level_depth, depth),
+        }
+        along = {dim for variable in variables.values() for dim in variable.dims}
         return xarray.Dataset(
-            variables,
+            {
+                name: variable._replace(
+                    cell_methods=_STATISTICS.get(name.rsplit("_", 1)[-1], CELL_METHODS["mean"])
+                ).holding(getattr(self, name))
+                for name, variable in variables.items()
+            },
             coords={
-                "time": ("time", self.time.astype("datetime64[us]").astype(np.int64), _TIME),
-                **{name: axis for name, axis in self._axes().items() if name in axes},
+                "time": encode_times(self.time, "when the mean begins, UTC"),
+                **{name: axis for name, axis in axes.items() if name in along},
             },
             attrs={
                 "Conventions": "CF-1.11, ACDD-1.3",
@@ -130,32 +153,10 @@ class TrueMeans:
             },
         )
 
-    def _axes(self) -> dict[str, Any]:
-        depth = {"units": "m", "long_name": "depth", "positive": "down"}
-        return {
-            "bridle": np.array(self.bridle_names, dtype=object),
-            "axis": np.array(["x", "y", "z"], dtype=object),
-            "heading": np.array(["east", "north"], dtype=object),
-            "level": ("level", self.level_depth, depth),
-        }
 
-
-_TIME = {
-    "standard_name": "time",
-    "long_name": "when the mean begins, UTC",
-    "units": "microseconds since 1970-01-01 00:00:00",
-    "calendar": "standard",
-}
-
-
-def _method(name: str) -> str:
-    kind = {"std": "standard_deviation", "max": "maximum"}.get(name.rsplit("_", 1)[-1], "mean")
-    return f"time: {kind}"
-
-
-def _values(dataset: "xarray.Dataset", names: tuple[str, ...]) -> dict[str, Any]:
+def _values(dataset: "xarray.Dataset", names: Iterable[str]) -> dict[str, Any]:
     values: dict[str, Any] = {name: np.asarray(dataset[name].values) for name in names}
-    values["time"] = np.asarray(dataset["time"].values, dtype=np.int64).view("datetime64[us]")
+    values["time"] = decode_times(dataset)
     values["length"] = float(dataset.attrs["mean_length_s"])
     if "bridle" in dataset.coords:
         values["bridle_names"] = tuple(str(name) for name in dataset["bridle"].values)

@@ -11,7 +11,13 @@ import numpy as np
 
 from seacage.conventions import Flag, Origin, RecordError, read_bytes
 from seacage.records._keys import KEYS
-from seacage.records._netcdf_file import NETCDF_TROUBLE, open_netcdf
+from seacage.records._netcdf_file import (
+    NETCDF_TROUBLE,
+    decode_times,
+    encode_times,
+    open_netcdf,
+    write_netcdf,
+)
 from seacage.records._record import Record
 
 if TYPE_CHECKING:
@@ -23,12 +29,6 @@ _SEAL = b"seacage sha256:\n"
 _SEALED_BYTES = 1 << 30
 _DIGEST = hashlib.sha256().digest_size
 _SEALED = -(len(_SEAL) + _DIGEST)
-_TIME = {
-    "standard_name": "time",
-    "long_name": "time of the source, UTC",
-    "units": "microseconds since 1970-01-01 00:00:00",
-    "calendar": "standard",
-}
 
 
 def write_record(record: Record, path: Path | str) -> None:
@@ -41,11 +41,7 @@ def write_record(record: Record, path: Path | str) -> None:
     path
         Ends in ``.nc``. What is there is replaced at once, by the whole file.
     """
-    path = Path(path)
-    unborn = path.with_name(f".{path.name}.unborn")
-    _dataset(record).to_netcdf(unborn, engine="h5netcdf")
-    _seal(unborn)
-    unborn.replace(path)
+    write_netcdf(_dataset(record), Path(path), finish=_seal)
 
 
 def read_netcdf(path: Path) -> Record:
@@ -95,7 +91,7 @@ def _dataset(record: Record) -> "xarray.Dataset":
         variables[key + _FLAG] = ("time", record.flags[key], _flag_attributes(key))
     return xarray.Dataset(
         variables,
-        coords={"time": ("time", record.time.astype(np.int64), _TIME)},
+        coords={"time": encode_times(record.time, "time of the source, UTC")},
         attrs={
             "Conventions": "CF-1.11, ACDD-1.3",
             "title": f"Stream {record.stream}, {record.origin}",
@@ -138,7 +134,7 @@ def _record(dataset: "xarray.Dataset") -> Record:
     comment = str(attributes["comment"])
     return Record(
         stream=str(attributes["stream"]),
-        time=np.asarray(dataset["time"].values, dtype=np.int64).view("datetime64[us]"),
+        time=decode_times(dataset),
         values={key: np.asarray(dataset[key].values, dtype=np.float64) for key in keys},
         flags={key: np.asarray(dataset[key + _FLAG].values) for key in keys},
         origin=Origin(attributes["origin"]),
