@@ -57,11 +57,11 @@ def map_tasks(
     spawn = multiprocessing.get_context("spawn")
     board = spawn.RawArray("d", max(len(tasks), 1))
     if workers <= 1:
-        _PLACE.take(board, progress)
+        _PLACE.board, _PLACE.listener = board, progress
         try:
             yield from ((task, _at(number, work, task)) for number, task in enumerate(tasks))
         finally:
-            _PLACE.leave()
+            _PLACE.number, _PLACE.board, _PLACE.listener = 0, [0.0], None
         return
     others = set(multiprocessing.active_children())
     pool = ProcessPoolExecutor(workers, spawn, initializer=_begin, initargs=(board,))
@@ -90,31 +90,15 @@ def map_tasks(
         pool.shutdown(cancel_futures=True)
 
 
+_PLACE = types.SimpleNamespace(number=0, board=[0.0], listener=None)
+"""Where the task of this process writes how far it is: each at its own number, unlocked."""
+
+
 def report_progress(amount: float) -> None:
     """Report, from within a task, how much of it is done, in the unit that the caller sums."""
-    _PLACE.report_progress(amount)
-
-
-class _Place:
-    """Where the task of this process writes how far it is: each at its own number, unlocked."""
-
-    def __init__(self) -> None:
-        self.leave()
-
-    def leave(self) -> None:
-        self.number = 0
-        self.take([0.0])
-
-    def take(self, board: Any, progress: Callable[[float], None] | None = None) -> None:
-        self._board, self._listener = board, progress
-
-    def report_progress(self, amount: float) -> None:
-        self._board[self.number] = amount
-        if self._listener is not None:
-            self._listener(sum(self._board))
-
-
-_PLACE = _Place()
+    _PLACE.board[_PLACE.number] = amount
+    if _PLACE.listener is not None:
+        _PLACE.listener(sum(_PLACE.board))
 
 
 def _at(number: int, work: Callable[[Task], Answer], task: Task) -> Answer:
@@ -144,15 +128,8 @@ def one_thread() -> Iterator[None]:
                 _LIMITED.limits.restore_original_limits()
 
 
-class _Limited:
-    """How many threads of this process are within ``one_thread``, and what it was before."""
-
-    def __init__(self) -> None:
-        self.lock, self.inside = threading.Lock(), 0
-        self.limits: Any = None
-
-
-_LIMITED = _Limited()
+_LIMITED = types.SimpleNamespace(lock=threading.Lock(), inside=0, limits=None)
+"""How many threads of this process are within ``one_thread``, and what it was before."""
 
 
 @contextmanager
@@ -177,7 +154,7 @@ def _clean_start() -> Iterator[None]:
 
 def _begin(board: Any) -> None:
     """End this worker when its parent is gone: killed, it could not say goodbye."""
-    _PLACE.take(board)
+    _PLACE.board = board
     threading.Thread(target=_await_parent, daemon=True).start()
 
 

@@ -124,15 +124,15 @@ def virtual_field(
         a timetable for a settled field.
     """
     if method == "simulate":
-        request = FieldRequest.of(
-            cage,
-            buoy,
+        request = FieldRequest(
+            cage=cage,
+            buoy=buoy,
+            time=reading_times(buoy, every_s, usual_s=2.0),
             hidden=hidden,
             seed=seed,
             waves=waves,
             events=events,
-            every_s=every_s,
-            timetable=timetable,
+            timetable=timetable or Timetable.over(buoy),
         )
         with _folder(kept) as folder:
             stretches = simulate_share(request, folder, workers=workers, progress=progress)
@@ -142,7 +142,7 @@ def virtual_field(
             "virtual_field: a settled field has no waves, no events and no timetable. "
             'Leave them out, or take method="simulate".'
         )
-    time = reading_times(buoy, 60.0 if every_s is None else every_s)
+    time = reading_times(buoy, every_s, usual_s=60.0)
     with _folder(kept) as folder:
         answers, error = true_responses(
             cage, hidden, store=folder, workers=workers, progress=progress
@@ -178,15 +178,15 @@ def virtual_field_share(
     share
         Which share, from 0, and of how many.
     """
-    request = FieldRequest.of(
-        cage,
-        buoy,
+    request = FieldRequest(
+        cage=cage,
+        buoy=buoy,
+        time=reading_times(buoy, every_s, usual_s=2.0),
         hidden=hidden,
         seed=seed,
         waves=waves,
         events=events,
-        every_s=every_s,
-        timetable=timetable,
+        timetable=timetable or Timetable.over(buoy),
     )
     simulate_share(request, Path(kept), share=share, workers=workers, progress=progress)
 

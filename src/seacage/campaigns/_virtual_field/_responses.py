@@ -8,12 +8,12 @@ from jaxtyping import Float
 
 from seacage.cage import Cage
 from seacage.campaigns._cases import Simulator
-from seacage.campaigns._run import campaign_key, run_campaign
+from seacage.campaigns._run import campaign_key, run_share
 from seacage.campaigns._sea_state_plan import Plan
 from seacage.campaigns._virtual_field._truth_parameters import TruthParameters
-from seacage.conventions import Progress, Result, SeacageError
+from seacage.conventions import Progress, Result, SeacageError, no_progress
 from seacage.ocean import SeaState
-from seacage.records import CampaignRecord
+from seacage.records import CampaignRecord, read_campaign
 
 _SPEEDS = (0.1, 0.2, 0.3, 0.42, 0.55, 0.7, 0.9, 1.1, 1.35, 1.6)
 _DIRECTIONS = tuple(22.5 * number for number in range(16))
@@ -125,23 +125,19 @@ def true_responses(
     others = Plan.listed((still, *between.seas), name="still and held out")
     runs = [(growth, grid) for growth in _GROWTHS] + [(_HELD_OUT_GROWTH, others)]
     total = sum(len(plan) for _, plan in runs)
-    campaigns: list[CampaignRecord] = []
-    by = Simulator(method="settle", law=hidden.law)
+    by, report, before = Simulator(method="settle", law=hidden.law), progress or no_progress, 0
+
+    def report_part(_stage: str, done: int, _part: int) -> None:
+        report("virtual field", before + done, total)
+
+    answers: list[Float[np.ndarray, "case sensor"]] = []
     for growth, plan in runs:
-        before = sum(map(len, campaigns))
         truth = hidden.true_cage(cage, growth)
-        campaigns.append(
-            run_campaign(
-                truth,
-                plan,
-                store / campaign_key(truth, plan, by),
-                workers=workers,
-                law=by.law,
-                method=by.method,
-                progress=_part_of_whole(progress, before, total),
-            )
-        )
-    *moving, settled = [_readings(cage, campaign) for campaign in campaigns]
+        out = store / campaign_key(truth, plan, by)
+        run_share(truth, plan, out, by=by, workers=workers, progress=report_part)
+        answers.append(_readings(cage, read_campaign(out)))
+        before += len(plan)
+    *moving, settled = answers
     responses = Responses(
         sensor_names=cage.sensor_names,
         speed=np.array([0.0, *_SPEEDS]),
@@ -175,13 +171,8 @@ def _on_grid(
     still: Float[np.ndarray, " sensor"], moving: Float[np.ndarray, "case sensor"]
 ) -> Float[np.ndarray, "speed direction sensor"]:
     """Cases in the order of the grid's plan; still water looks the same in all directions."""
-    sensors = len(still)
-    return np.concatenate(
-        [
-            np.broadcast_to(still, (1, len(_DIRECTIONS), sensors)),
-            moving.reshape(len(_SPEEDS), len(_DIRECTIONS), sensors),
-        ]
-    )
+    by_speed = moving.reshape(len(_SPEEDS), len(_DIRECTIONS), len(still))
+    return np.concatenate([np.broadcast_to(still, (1, *by_speed.shape[1:])), by_speed])
 
 
 def _lagrange(
@@ -193,9 +184,3 @@ def _lagrange(
         for other in np.delete(grid, i):
             weights[i] *= (at - other) / (own - other)
     return weights
-
-
-def _part_of_whole(progress: Progress | None, before: int, total: int) -> Progress | None:
-    if progress is None:
-        return None
-    return lambda _stage, done, _part: progress("virtual field", before + done, total)

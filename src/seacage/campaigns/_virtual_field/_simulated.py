@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Self
 
 import numpy as np
 from jaxtyping import Bool, Float, Int, Shaped
@@ -14,7 +13,7 @@ from seacage.cage import Cage
 from seacage.campaigns._virtual_field._events import Event, check_events
 from seacage.campaigns._virtual_field._spells import Spells
 from seacage.campaigns._virtual_field._stretches import StretchStore, TrueCage, simulate_stretches
-from seacage.campaigns._virtual_field._timetable import Stretch, Timetable, cut, reading_times
+from seacage.campaigns._virtual_field._timetable import Stretch, Timetable, cut
 from seacage.campaigns._virtual_field._truth_parameters import TruthParameters
 from seacage.campaigns._virtual_field._weather import Weather, true_weather
 from seacage.campaigns._waves import usable_waves
@@ -34,49 +33,27 @@ class FieldRequest:
 
     Parameters
     ----------
-    cage, buoy, waves, hidden, seed, events, timetable
-        As for ``virtual_field``.
+    cage, buoy, hidden, seed, waves, events, timetable
+        As for ``virtual_field``; the buoy's record takes up the waves.
     time
         Of the readings, in even steps.
     """
 
     cage: Cage
     buoy: Record
-    waves: Record | None
+    time: Shaped[np.ndarray, " reading"]
     hidden: TruthParameters
     seed: int
-    events: tuple[Event, ...]
+    waves: Record | None
+    events: Sequence[Event]
     timetable: Timetable
-    time: Shaped[np.ndarray, " reading"]
 
-    @classmethod
-    def of(
-        cls,
-        cage: Cage,
-        buoy: Record,
-        *,
-        hidden: TruthParameters,
-        seed: int,
-        waves: Record | None,
-        events: Sequence[Event],
-        every_s: float | None,
-        timetable: Timetable | None,
-    ) -> Self:
-        """A field that can be made, its waves on the buoy's record."""
-        time = reading_times(buoy, 2.0 if every_s is None else every_s)
-        check_events(events, cage, buoy, hidden)
-        if waves is None and buoy.values.keys() >= set(_WAVES):
-            waves = buoy
-        return cls(
-            cage=cage,
-            buoy=buoy if waves is None else _with_waves(buoy, waves),
-            waves=waves,
-            hidden=hidden,
-            seed=seed,
-            events=tuple(events),
-            timetable=timetable or Timetable.over(buoy),
-            time=time,
-        )
+    def __post_init__(self) -> None:
+        check_events(self.events, self.cage, self.buoy, self.hidden)
+        if self.waves is None and self.buoy.values.keys() >= set(_WAVES):
+            object.__setattr__(self, "waves", self.buoy)
+        if self.waves is not None:
+            object.__setattr__(self, "buoy", _with_waves(self.buoy, self.waves))
 
     @property
     def every(self) -> float:

@@ -95,15 +95,17 @@ class Stretch:
         return slice(self.first, self.first + self.readings)
 
 
-def reading_times(buoy: Record, every_s: float) -> Shaped[np.ndarray, " t"]:
-    """Even times over a buoy's record.
+def reading_times(
+    buoy: Record, every_s: float | None, *, usual_s: float = 2.0
+) -> Shaped[np.ndarray, " t"]:
+    """Even times over a buoy's record; a step of None is the usual one.
 
     Raises
     ------
     InputError
         A record or a step that leaves no two.
     """
-    span = _span(buoy)
+    span, every_s = _span(buoy), usual_s if every_s is None else every_s
     if not 0.0 < every_s < span:
         raise InputError(
             f"virtual_field: {buoy.stream} spans {span:g} s, which holds no two readings "
