@@ -14,12 +14,11 @@ from seacage.dynamics._kernel._march import March, Steps
 from seacage.dynamics._kernel._march_inputs import Ocean
 from seacage.dynamics._moored._mass_scaling import scale_mass
 from seacage.dynamics._parts._assembly import Assembly, Ground
-from seacage.dynamics._physics._loads import DYNAMIC, _gather, bend_force, spring_force
+from seacage.dynamics._physics._loads import DYNAMIC, _gather, bend_force, float_force, spring_force
 from seacage.dynamics._physics._motion import (
     NetLaw,
     Water,
     _spring_damping,
-    _surface_force,
     bar_damping,
     damped_bar_force,
     moving_cylinder_force,
@@ -344,7 +343,7 @@ class Stepper:
         """Symplectic Euler, drag taken at the new speed."""
         a, x, v, h = self.assembly, self.position, self.velocity, self.steps.time_step
         force = self.load + damped_bar_force(a.bars, a.mass, x, v) + bend_force(a.bends, x)
-        force += _surface_force(a, self.present(since), x)
+        force += float_force(a.floats, x, self.present(since).elevation)
         force += spring_force(a.springs, a.position, x) + _spring_damping(a.springs, v)
         mass = a.mass[:, None]
         self.velocity = (mass * v + h * force) / (mass + h * self.drag[..., None])

@@ -20,6 +20,11 @@ class Rows:
             one[some] = getattr(other, name)
 
     @classmethod
+    def none(cls) -> Self:
+        """No rows, of the shapes and the kinds that the fields declare, all arrays."""
+        return cls(**{one.name: _empty(one.type) for one in fields(cls)})
+
+    @classmethod
     def joined(cls, *several: Self) -> Self:
         """All rows of several, one after another."""
         names = _columns(several[0])
@@ -30,6 +35,11 @@ class Rows:
 def _columns(rows: Rows) -> dict[str, Any]:
     found = {one.name: getattr(rows, one.name) for one in fields(rows)}
     return {name: one for name, one in found.items() if isinstance(one, np.ndarray | Rows)}
+
+
+def _empty(declared: Any) -> np.ndarray:
+    kind = next(name for name in ("bool", "int64", "float64") if name in declared.dtypes)
+    return np.zeros((0, *map(int, declared.dim_str.split()[1:])), dtype=kind)
 
 
 def _some(column: Any, some: np.ndarray | slice) -> Any:

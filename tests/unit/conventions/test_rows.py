@@ -59,3 +59,9 @@ def test_rows_within_rows_follow_and_other_fields_stay():
     both = Moored.joined(last, moored)
     np.testing.assert_array_equal(both.floats.height, [0.3, 0.2, 0.3])
     np.testing.assert_array_equal(both.load, [6.0, 5.0, 6.0])
+
+
+def test_no_rows_have_the_shapes_and_kinds_that_are_declared():
+    none = Bends.none()
+    assert (none.nodes.shape, none.nodes.dtype) == ((0, 3), np.int64)
+    assert (none.stiffness.shape, none.stiffness.dtype) == ((0,), np.float64)

@@ -24,7 +24,7 @@ from seacage.dynamics._parts import (
     Cylinders,
     Floats,
     Ground,
-    no_springs,
+    Springs,
 )
 
 ROPE_DRAG = 1.2
@@ -52,7 +52,7 @@ def anchor_assembly(cage: Cage) -> Assembly:
     base = assemble(cage)
     shape = resting_line(cage)
     lines = _lines(cage, shape)
-    bridles = _bridle_pull(cage, base)
+    bridles = -base.springs.preload  # what they pull the corners by in still water
     lift = _buoy_load(cage, shape, bridles)
     position = np.vstack([base.position, lines.position])
     frame = _frame(cage, shape, bridles)
@@ -67,7 +67,7 @@ def anchor_assembly(cage: Cage) -> Assembly:
         bars=Bars.joined(base.bars, frame, lines.bars),
         cylinders=_cylinders(cage, base, frame, lines),
         floats=_floats(cage, base, lift),
-        springs=no_springs(),
+        springs=Springs.none(),
         ground=_ground(cage, base, lines, mass),
     )
 
@@ -122,16 +122,6 @@ def _directions(cage: Cage) -> tuple[Float[np.ndarray, "line 2"], Int[np.ndarray
     outward = np.arctan2(cage.corner_position[:, 1], cage.corner_position[:, 0])
     angle = (outward[:, None] + spread).ravel()
     return np.column_stack([np.cos(angle), np.sin(angle)]), np.repeat(np.arange(4), per_corner)
-
-
-def _bridle_pull(cage: Cage, base: Assembly) -> Float[np.ndarray, "corner 3"]:
-    """Pull of the bridles on the corners in still water [N]."""
-    ends = base.bars.ends[base.bridles]
-    along = base.position[ends[:, 1]] - base.position[ends[:, 0]]
-    along /= np.linalg.norm(along, axis=1, keepdims=True)
-    pull = np.zeros((4, 3))
-    np.add.at(pull, cage.bridle_corner, cage.bridles.pretension * along)
-    return pull
 
 
 def _buoy_load(

@@ -11,7 +11,7 @@ from seacage.dynamics._parts._assembly import (
     Scales,
     Springs,
 )
-from seacage.dynamics._parts._structure import SINKING, assemble_structure, no_springs
+from seacage.dynamics._parts._structure import SINKING, assemble_structure
 
 __all__ = [
     "SINKING",
@@ -25,5 +25,4 @@ __all__ = [
     "Scales",
     "Springs",
     "assemble_structure",
-    "no_springs",
 ]

@@ -47,6 +47,12 @@ class Bends(Rows):
     nodes: Int[np.ndarray, "bend 3"]
     stiffness: Float[np.ndarray, " bend"]  # EI over the joint's share of length [N m]
 
+    @classmethod
+    def ring(cls, around: Int[np.ndarray, " spoke"], stiffness: float) -> "Bends":
+        """Joints of a pipe that closes on itself, all alike."""
+        nodes = np.column_stack([np.roll(around, 1), around, np.roll(around, -1)])
+        return cls(nodes=nodes, stiffness=np.full(len(around), stiffness))
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Panels(Rows):
@@ -261,12 +267,9 @@ def _bridle_bars(cage: Cage, position: Float[np.ndarray, "node 3"]) -> Bars:
 def _bends(cage: Cage) -> Bends:
     collar = cage.collar.pipes * cage.collar.pipe_bending_stiffness
     rings = ((0, collar), (cage.tube_ring, cage.sinker_tube.bending_stiffness))
-    nodes, stiffness = [], []
-    for ring, bending in rings:
-        around = cage.ring_nodes(ring)
-        nodes.append(np.column_stack([np.roll(around, 1), around, np.roll(around, -1)]))
-        stiffness.append(np.full(cage.spokes, bending / _chord(cage, ring)))
-    return Bends(nodes=np.concatenate(nodes), stiffness=np.concatenate(stiffness))
+    return Bends.joined(
+        *(Bends.ring(cage.ring_nodes(ring), stiff / _chord(cage, ring)) for ring, stiff in rings)
+    )
 
 
 def _panels(cage: Cage) -> Panels:

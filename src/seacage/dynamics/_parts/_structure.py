@@ -50,8 +50,8 @@ def assemble_structure(structure: Structure) -> Assembly:
     members = _members(structure)
     position = structure.design_position
     wet_nets = [index for index, net in enumerate(structure.net) if not structure.is_dry(net)]
-    panels = _join_panels([_panels(structure, index) for index in wet_nets])
-    bars = Bars.joined(*_net_bars(structure), *(_bars(member) for member in members))
+    panels = Panels.joined(Panels.none(), *(_panels(structure, index) for index in wet_nets))
+    bars = Bars.joined(Bars.none(), *_net_bars(structure), *(_bars(member) for member in members))
     lumps = _lumps(structure, members)
     _check_floats(structure, members)
     _check_masses(structure, lumps)
@@ -75,17 +75,13 @@ def assemble_structure(structure: Structure) -> Assembly:
         bridles=len(bars.length) - np.cumsum(pieces[::-1])[::-1],
         bends=_bends(structure),
         panels=panels,
-        cylinders=_cylinders(position, members),
+        cylinders=Cylinders.joined(
+            Cylinders.none(), *(_cylinders(member, position) for member in members)
+        ),
         floats=lumps.floats(),
-        springs=no_springs(),
+        springs=Springs.none(),
         ground=_ground(structure, lumps.mass),
     )
-
-
-def no_springs() -> Springs:
-    """Nothing held to the ground."""
-    none = np.zeros((0, 3))
-    return Springs(nodes=np.zeros(0, dtype=np.int64), stiffness=none, preload=none, damping=none)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -198,16 +194,13 @@ def _net_bars(structure: Structure) -> list[Bars]:
 
 
 def _bends(structure: Structure) -> Bends:
-    nodes: list[np.ndarray] = [np.zeros((0, 3), dtype=np.int64)]
-    stiffness: list[np.ndarray] = [np.zeros(0)]
+    rings = [Bends.none()]
     for index, ring in enumerate(structure.ring):
         bending = structure.section_of(ring).bending_stiffness if ring.section else 0.0
         if bending > 0.0:
-            around = structure.ring_nodes(index)
             chord = 2.0 * ring.radius * np.sin(np.pi / structure.spokes)
-            nodes.append(np.column_stack([np.roll(around, 1), around, np.roll(around, -1)]))
-            stiffness.append(np.full(structure.spokes, bending / chord))
-    return Bends(nodes=np.concatenate(nodes), stiffness=np.concatenate(stiffness))
+            rings.append(Bends.ring(structure.ring_nodes(index), bending / chord))
+    return Bends.joined(*rings)
 
 
 # Netting
@@ -241,22 +234,6 @@ def _panels(structure: Structure, index: int) -> Panels:
         area=area,
         twine_spacing=np.full(count, twine.half_mesh),
         diamond=np.full(count, net.twines == "diagonal"),
-    )
-
-
-def _join_panels(several: list[Panels]) -> Panels:
-    shapes = {"corners": (0, 4), "share": (0, 4), "outward": (0, 2)}
-    kinds = {"corners": np.int64, "diamond": np.bool_}
-    return Panels(
-        **{
-            name: np.concatenate(
-                [
-                    np.zeros(shapes.get(name, (0,)), dtype=kinds.get(name, np.float64)),
-                    *(getattr(panels, name) for panels in several),
-                ]
-            )
-            for name in Panels.__slots__
-        }
     )
 
 
@@ -344,9 +321,7 @@ def _put_net(structure: Structure, index: int, lumps: _Lumps) -> None:
     twine = structure.twine_of(net)
     row, chord = structure.design_net(index)
     area = np.repeat((chord[:-1] + chord[1:]) / 2.0 * row, structure.spokes)
-    volume = (twine.volume * area)[:, None] / 4.0
-    triangle = corners[:, 2] == corners[:, 3]
-    share = np.where(triangle[:, None], [4 / 3, 4 / 3, 2 / 3, 2 / 3], [1.0, 1.0, 1.0, 1.0])
+    volume, share = (twine.volume * area)[:, None], corner_shares(corners)
     lumps.put(
         corners.ravel(),
         (twine.density * volume * share).ravel(),
@@ -355,20 +330,17 @@ def _put_net(structure: Structure, index: int, lumps: _Lumps) -> None:
     )
 
 
-def _cylinders(position: Float[np.ndarray, "node 3"], members: list[_Member]) -> Cylinders:
-    """Pipes with the share of their diameter that is wet in still water, and ropes."""
-    ends, drag, skin = [np.zeros((0, 2), dtype=np.int64)], [np.zeros(0)], [np.zeros(0)]
-    for member in members:
-        section = member.section
-        wet = np.full(len(member.ends), float(member.weighs))
-        if section.is_pipe:
-            wet *= wet_share(position[member.ends, 2], section.box_height).mean(axis=1)
-        met = wet > 0.0
-        ends.append(member.ends[met])
-        drag.append(section.drag_coefficient * section.diameter * wet[met])
-        skin.append(section.skin_coefficient * section.diameter * wet[met])
+def _cylinders(member: _Member, position: Float[np.ndarray, "node 3"]) -> Cylinders:
+    """A pipe with the share of its diameter that is wet in still water, or a rope."""
+    section = member.section
+    wet = np.full(len(member.ends), float(member.weighs))
+    if section.is_pipe:
+        wet *= wet_share(position[member.ends, 2], section.box_height).mean(axis=1)
+    met = wet > 0.0
     return Cylinders(
-        ends=np.concatenate(ends), drag_width=np.concatenate(drag), skin_width=np.concatenate(skin)
+        ends=member.ends[met],
+        drag_width=section.drag_coefficient * section.diameter * wet[met],
+        skin_width=section.skin_coefficient * section.diameter * wet[met],
     )
 
 

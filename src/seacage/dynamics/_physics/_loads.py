@@ -155,9 +155,16 @@ def cylinder_force(cylinders: Cylinders, flow: SteadyFlow, position: Nodal) -> N
     return _gather(position, cylinders.ends, np.stack([load, load], axis=2) / 2.0)
 
 
-def float_force(floats: Floats, position: Nodal) -> Nodal:
-    """Buoyancy of the collar: none out of the water, no more than all when drowned [N]."""
-    draft = np.clip(floats.draft - position[:, floats.nodes, 2], 0.0, floats.height)
+def float_force(
+    floats: Floats, position: Nodal, elevation: Float[np.ndarray, "case node"] | None = None
+) -> Nodal:
+    """Buoyancy of floats: none out of the water, no more than all when drowned [N].
+
+    The surface lies at its elevation at each node [m]; still water at 0.
+    """
+    surface = 0.0 if elevation is None else elevation[:, floats.nodes]
+    height = position[:, floats.nodes, 2] - surface
+    draft = np.clip(floats.draft - height, 0.0, floats.height)
     force = np.zeros_like(position)
     force[:, floats.nodes, 2] = floats.stiffness * draft
     return force

@@ -19,6 +19,7 @@ from seacage.dynamics._physics._loads import (
     _gather,
     bar_tension,
     bend_force,
+    float_force,
     screen_load,
     spring_force,
 )
@@ -119,7 +120,7 @@ def moving_force(
     force += damped_bar_force(assembly.bars, assembly.mass, position, velocity)
     force += bend_force(assembly.bends, position)
     force += moving_cylinder_force(assembly.cylinders, water, position, velocity)
-    force += _surface_force(assembly, water, position)
+    force += float_force(assembly.floats, position, water.elevation)
     force += spring_force(assembly.springs, assembly.position, position)
     force += _spring_damping(assembly.springs, velocity)
     force += _ground_force(assembly.ground, assembly.mass, position, velocity)
@@ -243,16 +244,6 @@ def moving_cylinder_force(
     load += cylinders.skin_width[:, None] * np.abs(slide) * slide * tangent
     load *= DYNAMIC * length
     return _gather(position, ends, np.stack([load, load], axis=2) / 2.0)
-
-
-def _surface_force(assembly: Assembly, water: Water, position: Nodal) -> Nodal:
-    """Buoyancy of floats by their draft below the moving surface [N]."""
-    floats = assembly.floats
-    height = position[:, floats.nodes, 2] - water.elevation[:, floats.nodes]
-    draft = np.clip(floats.draft - height, 0.0, floats.height)
-    force = np.zeros_like(position)
-    force[:, floats.nodes, 2] = floats.stiffness * draft
-    return force
 
 
 def _spring_damping(springs: Springs, velocity: Nodal) -> Nodal:

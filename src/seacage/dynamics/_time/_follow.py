@@ -107,67 +107,34 @@ def follow(
     _check(weathers, starts)
     build = Build(cage=cage, law=law, stiffening=stiffening, refined=refined)
     segments = SegmentBatch(build, weathers, np.array(starts, dtype=np.float64), course, damaged)
-    seen = _Seen(segments, course, watched, shape_nodes)
+    march, kept = segments.march, _nodes(cage, watched)
+    shaped = _nodes(cage, range(cage.node_count) if shape_nodes is None else shape_nodes)
+    place = np.empty((len(starts), course.samples, len(kept), 3))
+    tension = np.empty((len(starts), course.samples, cage.bridle_count))
+    shape: list[Float[np.ndarray, "stretch node 3"]] = []
+    before = march.node_sum(shaped)
     for step in range(-course.spin_up, course.samples):
         if step == 0 and breaking:
             segments.breaks(damaged + breaking)
         segments.meets(step)
         if step >= 0:
-            seen.takes(step)
-        segments.march.go(course.refreshes)
-        if step >= 0:
-            seen.adds(step)
+            place[:, step], tension[:, step] = march.position_of(kept), segments.bridle_tension
+        march.go(course.refreshes)
+        if step >= 0 and (step + 1) % course.shape_samples == 0:
+            now = march.node_sum(shaped)
+            moved = (now - before) / (course.shape_samples * course.refreshes)
+            shape.append(segments.assembly.position[shaped] + moved)
+            before = now
         if progress is not None:
             done = (step + 1 + course.spin_up) * every * len(starts)
             progress("follow", round(done), round((spin_up + duration) * len(starts)))
-    return seen.result()
-
-
-class _Seen:
-    """Samples of some segments so far."""
-
-    def __init__(
-        self,
-        segments: SegmentBatch,
-        course: Course,
-        watched: Sequence[int],
-        shape_nodes: Sequence[int] | None,
-    ) -> None:
-        cage, stretches = segments.cage, len(segments.starts)
-        self._segments, self._course = segments, course
-        self._watched = _nodes(cage, watched)
-        self._shaped = _nodes(cage, range(cage.node_count) if shape_nodes is None else shape_nodes)
-        self._place = np.empty((stretches, course.samples, len(self._watched), 3))
-        self._tension = np.empty((stretches, course.samples, cage.bridle_count))
-        self._shape: list[Float[np.ndarray, "stretch node 3"]] = []
-        self._sum = segments.march.node_sum(self._shaped)
-
-    def takes(self, step: int) -> None:
-        """One sample."""
-        self._place[:, step] = self._segments.march.position_of(self._watched)
-        self._tension[:, step] = self._segments.bridle_tension
-
-    def adds(self, step: int) -> None:
-        """One mean, where its time is over."""
-        if (step + 1) % self._course.shape_samples:
-            return
-        now = self._segments.march.node_sum(self._shaped)
-        count = self._course.shape_samples * self._course.refreshes
-        self._shape.append(
-            self._segments.assembly.position[self._shaped] + (now - self._sum) / count
-        )
-        self._sum = now
-
-    def result(self) -> Followed:
-        """All of it."""
-        starts, course = self._segments.starts, self._course
-        return Followed(
-            time=starts[:, None] + course.every * np.arange(course.samples),
-            watched_position=self._place,
-            bridle_tension=self._tension,
-            shape=np.stack(self._shape, axis=1),
-            lost_at=starts - course.spin_up * course.every + self._segments.march.lost_at,
-        )
+    return Followed(
+        time=segments.starts[:, None] + course.every * np.arange(course.samples),
+        watched_position=place,
+        bridle_tension=tension,
+        shape=np.stack(shape, axis=1),
+        lost_at=segments.starts - course.spin_up * course.every + march.lost_at,
+    )
 
 
 def _nodes(cage: Cage, numbers: Sequence[int]) -> Int[np.ndarray, " kept"]:

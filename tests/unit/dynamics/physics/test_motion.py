@@ -9,10 +9,10 @@ from seacage.cage import Cage
 from seacage.conventions import WATER_DENSITY, WATER_VISCOSITY, InputError
 from seacage.dynamics import loland
 from seacage.dynamics._parts._assembly import Assembly, Bars, Panels
+from seacage.dynamics._physics._loads import float_force
 from seacage.dynamics._physics._motion import (
     NetLaw,
     Water,
-    _surface_force,
     bar_damping,
     damped_bar_force,
     damped_tension,
@@ -264,6 +264,6 @@ def test_a_float_follows_the_surface_and_can_neither_fly_nor_drown_deeper():
     ):
         water = flow((0.0, 0.0, 0.0), nodes=len(assembly.position))
         water.elevation[:] = rise
-        force = _surface_force(assembly, water, position)
+        force = float_force(assembly.floats, position, water.elevation)
         np.testing.assert_allclose(force[0, nodes, 2], assembly.floats.stiffness * share)
         assert force.sum() == pytest.approx(force[0, nodes, 2].sum())
