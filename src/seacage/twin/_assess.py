@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from datetime import datetime
 from types import MappingProxyType
 
 from seacage.twin._alarm_book import AlarmBook
@@ -12,7 +11,6 @@ from seacage.twin._alarms import (
     AlarmEvent,
     AlarmInput,
     AlarmPolicy,
-    Changed,
     alarm_inputs,
     evaluate,
 )
@@ -61,44 +59,33 @@ def assess(
     ended = detector.sums.number != book.detector.sums.number
     settings = twin.fault_detector
     distrusted = detector.faulty_streams(active, settings)
-    alarms, lines = dict(book.alarms), list[AlarmEvent]()
-    without_input = set(alarms)
-    for one in (
+    inputs = [
         *alarm_inputs(twin, state, answered, distrusted=distrusted),
         *(detector.inputs(twin.cage, settings) if ended else detector.stuck_inputs(settings)),
         *_faults(book, trouble),
-    ):
-        alarm, changed = _evaluate(alarms, one, policy, now)
+    ]
+    named = {one.alarm for one in inputs}
+    inputs += [  # shelving ends, and an alarm that nobody has acknowledged repeats
+        AlarmInput(alarm=name, value=None)
+        for name, alarm in book.alarms.items()
+        if name not in named and (alarm.active or alarm.shelved)
+    ]
+    alarms, lines = dict(book.alarms), list[AlarmEvent]()
+    for one in inputs:
+        before = alarms.get(one.alarm, Alarm(name=one.alarm))
+        alarm, changed = evaluate(before, one.value, policy.limit(one.alarm), now)
+        # The detail of the time when it was raised stays: the cause, not the latest weather.
+        if alarm.active and not before.active:
+            alarm = replace(alarm, detail=one.detail)
         alarms[alarm.name] = alarm
-        without_input.discard(alarm.name)
         lines += changed
-    for name in without_input:  # shelving ends, and an alarm that nobody has acknowledged repeats
-        if alarms[name].active or alarms[name].shelved:
-            alarms[name], changed = evaluate(alarms[name], None, policy.limit(name), now)
-            lines += changed
     return replace(book, alarms=alarms, detector=detector), tuple(lines)
-
-
-def _evaluate(
-    alarms: Mapping[str, Alarm], given: AlarmInput, policy: AlarmPolicy, now: datetime
-) -> Changed:
-    alarm = alarms.get(given.alarm) or Alarm(name=given.alarm)
-    before = alarm.active
-    alarm, changed = evaluate(alarm, given.value, policy.limit(alarm.name), now)
-    # The detail of the time when it was raised stays: the cause, not the latest weather.
-    if alarm.active and not before and given.detail != alarm.detail:
-        alarm = replace(alarm, detail=given.detail)
-    return alarm, changed
 
 
 def _faults(book: AlarmBook, trouble: Mapping[str, str]) -> Iterator[AlarmInput]:
     for name, sentence in trouble.items():
         yield AlarmInput(alarm=name, value=1.0, detail=sentence)
+    ours = DEFAULT_LIMITS.keys() - {"history", "clock"}  # the service has all other alarms
     for name, alarm in book.alarms.items():
-        if name not in trouble and _is_fault(alarm):
+        if name not in trouble and alarm.kind not in ours:
             yield AlarmInput(alarm=name, value=0.0)
-
-
-def _is_fault(alarm: Alarm) -> bool:
-    """Whether an alarm is the service's: the twin has no condition for it."""
-    return alarm.kind in {"history", "clock"} or alarm.kind not in DEFAULT_LIMITS

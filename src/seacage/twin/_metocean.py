@@ -1,7 +1,7 @@
 """Input of a twin: currents and waves at the buoy as vectors, one row per sample."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, Self
 
 import numpy as np
@@ -105,11 +105,21 @@ class Metocean(Rows):
         """
         speed = np.linalg.norm(self.current_velocity, axis=-1, keepdims=True)
         slower = np.minimum(1.0, current_speed / np.maximum(speed, current_speed))
-        return type(self)(
-            current_velocity=self.current_velocity * slower,
-            hs=np.minimum(self.hs, hs),
-            wave_direction=self.wave_direction,
-        )
+        velocity = self.current_velocity * slower
+        return replace(self, current_velocity=velocity, hs=np.minimum(self.hs, hs))
+
+    def sides(self, step: float) -> Self:
+        """Return the water with a little more current to the east, west, north and south in turn.
+
+        Parameters
+        ----------
+        step
+            Of the current [m/s].
+        """
+        ways = step * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
+        around = self.rows(np.tile(np.arange(len(self)), len(ways)))
+        velocity = around.current_velocity + np.repeat(ways, len(self), axis=0)
+        return replace(around, current_velocity=velocity)
 
     def features(self, inputs: tuple[Input, ...]) -> Float[np.ndarray, "case feature"]:
         """Features of the surrogates.

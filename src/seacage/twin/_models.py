@@ -116,15 +116,12 @@ class Models:
 
     def steepness(self, water: Metocean) -> Float[np.ndarray, "case sensor"]:
         """Length of the gradient of each sensor's level 1 over the current [N s/m] or [s]."""
-        ways = STRIDE * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
-        around = water.rows(np.tile(np.arange(len(water)), len(ways)))
-        velocity = around.current_velocity + np.repeat(ways, len(water), axis=0)
-        x = replace(around, current_velocity=velocity).features(self.inputs)
+        x = water.sides(STRIDE).features(self.inputs)
         nodes = np.array([one.node for one in self.cage.depth_sensors], dtype=int)
         lines = [one.bridle for one in self.cage.shackles]
         depth = -self.shape.mean_of_nodes(x, nodes)[:, :, 2]
         low = np.hstack([depth, self.bridles.mean(x)[:, lines]])
-        east, west, north, south = low.reshape(len(ways), len(water), low.shape[1])
+        east, west, north, south = low.reshape(4, len(water), low.shape[1])
         return np.hypot(east - west, north - south) / (2.0 * STRIDE)
 
     def answer(self, water: Metocean, trouble: Sequence[str]) -> Answer:

@@ -26,27 +26,28 @@ def alarm_inputs(
     distrusted
         Streams whose readings are not to be used.
     """
-    yield from _loads(twin, state, answered, distrusted)
-    yield _volume(answered)
-    yield from _silences(state, answered.t)
-    yield _input(twin, state, answered, distrusted)
-    yield _domain(answered)
-
-
-def _loads(
-    twin: Twin, state: TwinState, answered: Answered, distrusted: frozenset[str]
-) -> Iterator[AlarmInput]:
-    answer = answered.answer
+    answer, now = answered.answer, answered.t
     valid = bool(answer.valid[0])
-    detail = answer.reason[0] if valid and not answer.in_domain[0] else ""
-    mean = answer.bridle_tension.mean[0]
-    capacity = twin.cage.bridle_capacity
-    measured = shackle_loads(twin, state, answered.t, distrusted=distrusted)
+    detail = answer.reason[0] if valid else ""  # why the answer extrapolates, if it does
+    measured = shackle_loads(twin, state, now, distrusted=distrusted)
+    mean, capacity = answer.bridle_tension.mean[0], twin.cage.bridle_capacity
     for bridle, name in enumerate(twin.bridle_names):
         known = [float(mean[bridle])] if valid else []
         known += [measured[bridle]] if bridle in measured else []
         value = max(known) / float(capacity[bridle]) if known else None
         yield AlarmInput(alarm=f"load.{name}", value=value, detail=detail)
+    lost = 1.0 - float(answer.volume_fraction[0]) if valid else None
+    yield AlarmInput(alarm="volume.net", value=lost, detail=detail)
+    for name in state.streams:
+        latest = state.latest(name, now)
+        age_s = (now - latest.t).total_seconds() if latest else 0.0
+        yield AlarmInput(alarm=f"silent.{name}", value=age_s)
+    # Whether there is no input; unknown where the buoy is silent or stuck, which has an alarm.
+    absent = None if twin.buoy in state.silent | distrusted and not valid else float(not valid)
+    why = "" if valid else answer.reason[0]
+    yield AlarmInput(alarm=f"input.{twin.buoy}", value=absent, detail=why)
+    outside = float(not answer.in_domain[0]) if valid else None
+    yield AlarmInput(alarm="domain.input", value=outside, detail=detail)
 
 
 def shackle_loads(
@@ -73,39 +74,3 @@ def _recent_load(stream: Stream, now: datetime, timeout_s: float) -> float | Non
     # A suspect reading never wakes anyone.
     good = [load for load, flag in map(reading_of, recent) if flag == Flag.GOOD]
     return sum(good) / len(good) if good else None
-
-
-def _volume(answered: Answered) -> AlarmInput:
-    answer = answered.answer
-    if not answer.valid[0]:
-        return AlarmInput(alarm="volume.net", value=None)
-    detail = "" if answer.in_domain[0] else answer.reason[0]
-    return AlarmInput(
-        alarm="volume.net", value=1.0 - float(answer.volume_fraction[0]), detail=detail
-    )
-
-
-def _silences(state: TwinState, now: datetime) -> Iterator[AlarmInput]:
-    for name in state.streams:
-        latest = state.latest(name, now)
-        age_s = (now - latest.t).total_seconds() if latest else 0.0
-        yield AlarmInput(alarm=f"silent.{name}", value=age_s)
-
-
-def _input(
-    twin: Twin, state: TwinState, answered: Answered, distrusted: frozenset[str]
-) -> AlarmInput:
-    """Whether there is no input; unknown where the buoy is silent or stuck, which has an alarm."""
-    name, answer = f"input.{twin.buoy}", answered.answer
-    if answer.valid[0]:
-        return AlarmInput(alarm=name, value=0.0)
-    value = None if twin.buoy in state.silent | distrusted else 1.0
-    return AlarmInput(alarm=name, value=value, detail=answer.reason[0])
-
-
-def _domain(answered: Answered) -> AlarmInput:
-    answer = answered.answer
-    if not answer.valid[0]:
-        return AlarmInput(alarm="domain.input", value=None)
-    inside = bool(answer.in_domain[0])
-    return AlarmInput(alarm="domain.input", value=0.0 if inside else 1.0, detail=answer.reason[0])

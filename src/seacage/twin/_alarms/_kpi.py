@@ -82,7 +82,12 @@ def alarm_kpi(journal: Iterable[AlarmEvent], *, start: datetime, end: datetime) 
     raises = [line for line in lines if line.action is Action.RAISED and line.t >= start]
     notified = [line for line in raises if not line.quiet]
     stood = _stood(lines, end)
-    within = [(name, max(since, start), until) for name, since, until in stood if until > start]
+    standing = {name: since for name, since, until in stood if until == end}
+    longest = dict[str, float]()
+    for name, since, until in stood:
+        if until > start:
+            within_s = (until - max(since, start)).total_seconds()
+            longest[name] = max(longest.get(name, 0.0), within_s)
     waited = [_time_to_acknowledge(line, lines) for line in notified]
     seen = [one for one in waited if one is not None]
     return AlarmKpi(
@@ -91,13 +96,8 @@ def alarm_kpi(journal: Iterable[AlarmEvent], *, start: datetime, end: datetime) 
         raised=dict(Counter(line.alarm for line in raises).most_common()),
         per_day=len(notified) / ((end - start) / _DAY),
         most_in_an_hour=_most_in_an_hour([line.t for line in notified]),
-        standing=dict(
-            sorted(
-                ((name, since) for name, since, until in stood if until == end),
-                key=lambda one: one[1],
-            )
-        ),
-        longest_s=_longest(within),
+        standing=dict(sorted(standing.items(), key=lambda one: one[1])),
+        longest_s=dict(sorted(longest.items(), key=lambda one: -one[1])),
         chattering=_chattering(raises),
         to_acknowledge_s=median(seen) if seen else None,
         unacknowledged=len(waited) - len(seen),
@@ -113,13 +113,6 @@ def _stood(lines: Sequence[AlarmEvent], end: datetime) -> list[tuple[str, dateti
         elif line.action is Action.CLEARED and line.alarm in since:
             spells.append((line.alarm, since.pop(line.alarm), line.t))
     return spells + [(name, t, end) for name, t in since.items()]
-
-
-def _longest(spells: Sequence[tuple[str, datetime, datetime]]) -> dict[str, float]:
-    longest = dict[str, float]()
-    for name, since, until in spells:
-        longest[name] = max(longest.get(name, 0.0), (until - since).total_seconds())
-    return dict(sorted(longest.items(), key=lambda one: -one[1]))
 
 
 def _time_to_acknowledge(raised: AlarmEvent, lines: Sequence[AlarmEvent]) -> float | None:

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from datetime import datetime, timedelta
+from typing import Any
 
 from seacage.conventions import InputError
 from seacage.twin._alarms._alarm import Action, Alarm, Changed, Limit
@@ -24,20 +25,24 @@ def evaluate(alarm: Alarm, value: float | None, limit: Limit, now: datetime) -> 
     now
         The twin's clock.
     """
-    alarm, ended = _end_shelf(alarm, now)
+    ended = changed = ()
+    if alarm.shelved_until is not None and now >= alarm.shelved_until:
+        alarm, ended = end_shelving(alarm, now)
     if value is not None:
         alarm = _with_value(alarm, value, limit, now)
-        if _has_stayed(alarm, limit, now):
-            alarm, changed = _switch(alarm, now)
-            return alarm, (*ended, *changed)
-    alarm, repeated = _repeat(alarm, limit, now)
-    return alarm, (*ended, *repeated)
+    delay_s = limit.off_delay_s if alarm.active else limit.on_delay_s
+    waits = alarm.active and not alarm.acknowledged and not alarm.quiet
+    if value is not None and _is_over(alarm.crossed, delay_s, now):
+        alarm, changed = _switch(alarm, now)
+    elif waits and _is_over(alarm.notified, limit.repeat_after_s, now):
+        alarm, changed = _change(alarm, Action.REPEATED, now, notified=now)
+    return alarm, (*ended, *changed)
 
 
 def end_shelving(alarm: Alarm, now: datetime, *, who: str = "", why: str = "") -> Changed:
     """End the shelving; an alarm that is not acknowledged is repeated from now on."""
-    alarm = replace(alarm, shelved_until=None, shelved_once=False, notified=now)
-    return alarm, (alarm.line(Action.UNSHELVED, now, who=who, why=why),)
+    ended = {"shelved_until": None, "shelved_once": False, "notified": now}
+    return _change(alarm, Action.UNSHELVED, now, who, why, **ended)
 
 
 def acknowledge(alarm: Alarm, *, who: str, now: datetime, why: str = "") -> Changed:
@@ -50,8 +55,8 @@ def acknowledge(alarm: Alarm, *, who: str, now: datetime, why: str = "") -> Chan
     """
     if alarm.acknowledged:
         raise InputError(f"{alarm.name}: there is nothing to acknowledge.")
-    alarm = replace(alarm, acknowledged=True, comment=why or alarm.comment)
-    return alarm, (alarm.line(Action.ACKNOWLEDGED, now, who=who, why=why),)
+    after = {"acknowledged": True, "comment": why or alarm.comment}
+    return _change(alarm, Action.ACKNOWLEDGED, now, who, why, **after)
 
 
 def remark(alarm: Alarm, *, who: str, now: datetime, why: str) -> Changed:
@@ -63,8 +68,7 @@ def remark(alarm: Alarm, *, who: str, now: datetime, why: str) -> Changed:
         The comment is empty.
     """
     _demand(alarm, why, "a comment without words is refused")
-    alarm = replace(alarm, comment=why)
-    return alarm, (alarm.line(Action.COMMENTED, now, who=who, why=why),)
+    return _change(alarm, Action.COMMENTED, now, who, why, comment=why)
 
 
 def shelve(
@@ -88,8 +92,8 @@ def shelve(
             f"{LONGEST_SHELF_S:g} s, or take it out of service."
         )
     until = None if seconds is None else now + timedelta(seconds=seconds)
-    alarm = replace(alarm, shelved_until=until, shelved_once=seconds is None)
-    return alarm, (alarm.line(Action.SHELVED, now, who=who, why=why),)
+    shelf = {"shelved_until": until, "shelved_once": seconds is None}
+    return _change(alarm, Action.SHELVED, now, who, why, **shelf)
 
 
 def unshelve(alarm: Alarm, *, who: str, now: datetime, why: str = "") -> Changed:
@@ -114,8 +118,7 @@ def take_out_of_service(alarm: Alarm, *, who: str, now: datetime, why: str) -> C
         Without a reason.
     """
     _demand(alarm, why, "a change of service needs a reason")
-    alarm = replace(alarm, in_service=False)
-    return alarm, (alarm.line(Action.OUT_OF_SERVICE, now, who=who, why=why),)
+    return _change(alarm, Action.OUT_OF_SERVICE, now, who, why, in_service=False)
 
 
 def put_in_service(alarm: Alarm, *, who: str, now: datetime, why: str) -> Changed:
@@ -127,8 +130,7 @@ def put_in_service(alarm: Alarm, *, who: str, now: datetime, why: str) -> Change
         Without a reason.
     """
     _demand(alarm, why, "a change of service needs a reason")
-    alarm = replace(alarm, in_service=True)
-    return alarm, (alarm.line(Action.IN_SERVICE, now, who=who, why=why),)
+    return _change(alarm, Action.IN_SERVICE, now, who, why, in_service=True)
 
 
 def _with_value(alarm: Alarm, value: float, limit: Limit, now: datetime) -> Alarm:
@@ -140,37 +142,29 @@ def _with_value(alarm: Alarm, value: float, limit: Limit, now: datetime) -> Alar
     return replace(alarm, value=value, worst=worst, crossed=crossed)
 
 
-def _has_stayed(alarm: Alarm, limit: Limit, now: datetime) -> bool:
-    delay_s = limit.off_delay_s if alarm.active else limit.on_delay_s
-    return alarm.crossed is not None and (now - alarm.crossed).total_seconds() >= delay_s
+def _is_over(since: datetime | None, delay_s: float | None, now: datetime) -> bool:
+    if since is None or delay_s is None:
+        return False
+    return (now - since).total_seconds() >= delay_s
 
 
 def _switch(alarm: Alarm, now: datetime) -> Changed:
-    alarm = replace(alarm, active=not alarm.active, since=now, crossed=None)
-    if alarm.active:
-        alarm = replace(alarm, acknowledged=False, notified=now, worst=alarm.value)
-        return alarm, (alarm.line(Action.RAISED, now),)
-    line = alarm.line(Action.CLEARED, now)
+    switched = {"active": not alarm.active, "since": now, "crossed": None}
+    if not alarm.active:
+        switched |= {"acknowledged": False, "notified": now, "worst": alarm.value}
+        return _change(alarm, Action.RAISED, now, **switched)
+    alarm, lines = _change(alarm, Action.CLEARED, now, **switched)
     if not alarm.shelved_once:
-        return alarm, (line,)
-    alarm, lines = end_shelving(alarm, now)
-    return alarm, (line, *lines)
+        return alarm, lines
+    alarm, ended = end_shelving(alarm, now)
+    return alarm, (*lines, *ended)
 
 
-def _repeat(alarm: Alarm, limit: Limit, now: datetime) -> Changed:
-    after_s = limit.repeat_after_s
-    unacknowledged = alarm.active and not alarm.acknowledged and not alarm.quiet
-    if not unacknowledged or after_s is None or alarm.notified is None:
-        return alarm, ()
-    if (now - alarm.notified).total_seconds() < after_s:
-        return alarm, ()
-    return replace(alarm, notified=now), (alarm.line(Action.REPEATED, now),)
-
-
-def _end_shelf(alarm: Alarm, now: datetime) -> Changed:
-    if alarm.shelved_until is None or now < alarm.shelved_until:
-        return alarm, ()
-    return end_shelving(alarm, now)
+def _change(
+    alarm: Alarm, action: Action, now: datetime, who: str = "", why: str = "", /, **changes: Any
+) -> Changed:
+    alarm = replace(alarm, **changes)
+    return alarm, (alarm.line(action, now, who=who, why=why),)
 
 
 def _demand(alarm: Alarm, why: str, otherwise: str) -> None:

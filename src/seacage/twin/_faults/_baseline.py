@@ -60,7 +60,7 @@ class Baseline:
 
     def widened(self, settings: FaultDetectorSettings) -> Self:
         """Return a copy with the prior covariance, as the cage has changed."""
-        return replace(self, covariance=_as_tuples(self._prior(settings)))
+        return replace(self, covariance=as_tuples(self._prior(settings)))
 
     def shift(self, block: ResidualBlock, settings: FaultDetectorSettings) -> Shift:
         """Return the shift of the readings in a block, with the covariance of its residuals."""
@@ -103,27 +103,17 @@ class Baseline:
             noise=noise,
             degrees_of_freedom=settings.degrees_of_freedom,
         )
+        # The square of each sensor's residual given those of the others.
+        mean_square, known = np.array(self.mean_square), np.linalg.inv(spread)
+        alone = np.minimum((known @ residual) ** 2 / np.diag(known), settings.most_square)
+        square = alone * self._inflation(settings)[received]
+        mean_square[received] += (square - mean_square[received]) / settings.mean_square_memory
         return replace(
             self,
             size=tuple(size.tolist()),
-            covariance=_as_tuples(covariance),
-            mean_square=self._next_mean_square(block, residual, spread, settings),
+            covariance=as_tuples(covariance),
+            mean_square=tuple(mean_square.tolist()),
         )
-
-    def _next_mean_square(
-        self,
-        block: ResidualBlock,
-        residual: Float[np.ndarray, " row"],
-        spread: Float[np.ndarray, "row row"],
-        settings: FaultDetectorSettings,
-    ) -> tuple[float, ...]:
-        """Estimate the square of each sensor's residual given those of the others."""
-        after, received = np.array(self.mean_square), block.received
-        known = np.linalg.inv(spread)
-        alone = np.minimum((known @ residual) ** 2 / np.diag(known), settings.most_square)
-        square = alone * self._inflation(settings)[received]
-        after[received] += (square - after[received]) / settings.mean_square_memory
-        return tuple(after.tolist())
 
     def _inflation(self, settings: FaultDetectorSettings) -> Float[np.ndarray, " sensor"]:
         """Factor on the twin's variance of each sensor [-]."""
@@ -138,5 +128,6 @@ class Baseline:
         return np.hstack([np.diag(block.own_sd), np.diag(block.drag)])
 
 
-def _as_tuples(matrix: Float[np.ndarray, "size size"]) -> tuple[tuple[float, ...], ...]:
-    return tuple(tuple(row) for row in matrix.tolist())
+def as_tuples(matrix: Float[np.ndarray, "size size"]) -> tuple[tuple[float, ...], ...]:
+    """Return the rows of a matrix."""
+    return tuple(map(tuple, matrix.tolist()))

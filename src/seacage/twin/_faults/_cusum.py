@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from seacage.twin._faults._baseline import Baseline, Shift
+from seacage.twin._faults._baseline import Baseline, Shift, as_tuples
 from seacage.twin._faults._hypotheses import Hypothesis
 from seacage.twin._faults._residuals import ResidualBlock
 from seacage.twin._faults._student_t import kalman_update, log_density
@@ -104,7 +104,7 @@ def update_evidence(
             after[one.name] = Evidence(
                 cusum=cusum,
                 size=tuple(size[responds].tolist()),
-                covariance=tuple(map(tuple, covariance[np.ix_(responds, responds)].tolist())),
+                covariance=as_tuples(covariance[np.ix_(responds, responds)]),
             )
     return after
 

@@ -186,16 +186,16 @@ class FaultDetector:
     def _input(self, name: str, settings: FaultDetectorSettings) -> AlarmInput:
         cusum = self.cusums().get(name, 0.0)
         value, detail = cusum / settings.limit, self._detail(name)
-        if name in self.active:
-            return AlarmInput(alarm=name, value=value, detail=detail)
-        others = [(other, least) for other, least in self.ranking() if other != name]
-        second, next_best = others[0] if others else ("", 0.0)
-        lead = (cusum - next_best) / settings.lead
-        best = cusum >= max(settings.limit, next_best)
-        if lead < 1.0 and best and self.waited >= settings.lead_blocks:
-            detail = f"{detail} {_alternative(second)}".strip()
-            return AlarmInput(alarm=name, value=value, detail=detail)
-        return AlarmInput(alarm=name, value=max(0.0, min(value, lead)), detail=detail)
+        if name not in self.active:
+            others = (one for one in self.ranking() if one[0] != name)
+            second, next_best = next(others, ("", 0.0))
+            lead = (cusum - next_best) / settings.lead
+            best = cusum >= max(settings.limit, next_best)
+            if lead < 1.0 and best and self.waited >= settings.lead_blocks:
+                detail = f"{detail} {_alternative(second)}".strip()
+            else:
+                value = max(0.0, min(value, lead))
+        return AlarmInput(alarm=name, value=value, detail=detail)
 
     def _detail(self, name: str) -> str:
         """Describe the best hypothesis of an alarm further."""
@@ -246,8 +246,6 @@ def _alarm_of(hypothesis: str) -> str:
 def _alternative(alarm: str) -> str:
     """Name the other cause that is possible."""
     kind, _, source = alarm.partition(".")
-    if kind == "bridle":
-        return f"Or {source} has parted: the sensors do not tell which."
-    if kind == "net":
-        return "Or the net is torn: the sensors do not tell which."
-    return f"Or {source} reads irregularly: the sensors do not tell which."
+    causes = {"bridle": f"{source} has parted", "net": "the net is torn"}
+    cause = causes.get(kind, f"{source} reads irregularly")
+    return f"Or {cause}: the sensors do not tell which."

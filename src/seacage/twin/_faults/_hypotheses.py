@@ -1,6 +1,6 @@
 """Hypotheses of the fault detector, each with the shift of the readings that it predicts."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -51,13 +51,18 @@ def hypotheses(
     block: ResidualBlock, cage: Cage, settings: FaultDetectorSettings
 ) -> Iterator[Hypothesis]:
     """List the hypotheses: of each alarm the one with the widest prior first."""
-    lines = {one.name: one.bridle for one in cage.shackles}
+    lines = {
+        block.sensors.index(one.name): one.bridle
+        for one in cage.shackles
+        if one.name in block.sensors
+    }
     for row, name in enumerate(block.sensors):
-        load = block.tension[lines[name]] if name in lines else None
+        load = float(block.tension[lines[row]]) if row in lines else None
         yield from _sensor_faults(block, row, f"irregular.{name}", load, settings)
     for bridle, name in enumerate(cage.bridle_names):
-        if _has_two_shackles(cage, block, bridle):
-            yield _bridle_fault(block, cage, bridle, f"bridle.{name}", settings)
+        corner = cage.bridle_corner == cage.bridle_corner[bridle]
+        if np.count_nonzero(corner[list(lines.values())]) >= 2:
+            yield _bridle_fault(block, cage, lines, bridle, f"bridle.{name}", settings)
     everywhere = np.ones(len(block.sensors))
     yield Hypothesis(
         alarm="net.net",
@@ -79,59 +84,47 @@ def _sensor_faults(
     It reads anything, is off by a constant, has begun to drift up or down, or, if it bears a
     load [N], reads nothing.
     """
-    here = np.eye(len(block.sensors))[row]
-
-    def fault(
-        variant: str,
-        size: float,
-        sd: float,
-        *,
-        scale: float = float(block.own_sd[row]),
-        walk: float = 0.0,
-        lasts: bool = True,
-    ) -> Hypothesis:
-        return Hypothesis(
+    here, own = np.eye(len(block.sensors))[row], float(block.own_sd[row])
+    drift, sd, walk = settings.drift, settings.drift_sd, settings.drift_walk
+    faults = [
+        ("", own, 0.0, settings.wide_sd, 0.0),
+        ("off", own, 0.0, settings.wide_sd, settings.offset_walk),
+        ("more", own, drift, sd, walk),
+        ("less", own, -drift, sd, walk),
+    ]
+    if load is not None:
+        faults.append(("nothing", max(load, 0.0), -1.0, settings.own_load_sd, 0.0))
+    for variant, scale, size, sd, walk in faults:
+        yield Hypothesis(
             alarm=alarm,
             variant=variant,
             scale=scale * here,
             size=size * here,
             sd=sd * here,
             walk=walk,
-            lasts=lasts,
+            lasts=walk > 0.0,
         )
-
-    drift, sd, walk = settings.drift, settings.drift_sd, settings.drift_walk
-    yield fault("", 0.0, settings.wide_sd, lasts=False)
-    yield fault("off", 0.0, settings.wide_sd, walk=settings.offset_walk)
-    yield fault("more", drift, sd, walk=walk)
-    yield fault("less", -drift, sd, walk=walk)
-    if load is not None:
-        scale = max(float(load), 0.0)
-        yield fault("nothing", -1.0, settings.own_load_sd, scale=scale, lasts=False)
-
-
-def _has_two_shackles(cage: Cage, block: ResidualBlock, bridle: int) -> bool:
-    """Whether at least two shackles with a level-2 model are at a bridle's corner."""
-    corner = cage.bridle_corner == cage.bridle_corner[bridle]
-    mates = [one for one in cage.shackles if corner[one.bridle] and one.name in block.sensors]
-    return len(mates) >= 2
 
 
 def _bridle_fault(
-    block: ResidualBlock, cage: Cage, bridle: int, alarm: str, settings: FaultDetectorSettings
+    block: ResidualBlock,
+    cage: Cage,
+    lines: Mapping[int, int],
+    bridle: int,
+    alarm: str,
+    settings: FaultDetectorSettings,
 ) -> Hypothesis:
-    """Make the hypothesis that a bridle has parted, and others bear its load."""
-    shares = load_shares(cage, bridle, settings)
-    load = max(float(block.tension[bridle]), 0.0)
+    """Make the hypothesis that a bridle has parted, and others bear its load.
+
+    ``lines`` has the bridle of each shackle's row.
+    """
+    rows, line = list(lines), np.array(list(lines.values()))
     scale, size, sd = np.zeros((3, len(block.sensors)))
-    corner = cage.bridle_corner == cage.bridle_corner[bridle]
-    for shackle in cage.shackles:
-        if shackle.name not in block.sensors:
-            continue
-        row, line = block.sensors.index(shackle.name), shackle.bridle
-        scale[row], size[row] = load, shares[line]
-        mate = settings.corner_load_sd if corner[line] else settings.far_load_sd
-        sd[row] = settings.own_load_sd if line == bridle else mate
+    scale[rows] = max(float(block.tension[bridle]), 0.0)
+    size[rows] = load_shares(cage, bridle, settings)[line]
+    corner = cage.bridle_corner[line] == cage.bridle_corner[bridle]
+    others = np.where(corner, settings.corner_load_sd, settings.far_load_sd)
+    sd[rows] = np.where(line == bridle, settings.own_load_sd, others)
     return Hypothesis(alarm=alarm, scale=scale, size=size, sd=sd, lasts=False)
 
 

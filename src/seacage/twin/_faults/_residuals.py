@@ -9,7 +9,6 @@ from jaxtyping import Bool, Float
 
 from seacage.twin._events import Answered
 from seacage.twin._faults._sensor import SensorMonitor
-from seacage.twin._metocean import Metocean
 from seacage.twin._twin import Twin
 
 
@@ -103,12 +102,8 @@ def close_block(
     if sums.ticks == 0 or answered.metocean is None:
         return None
     current = np.array([sums.east, sums.north]) / sums.ticks
-    ways = np.array([[0.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
-    around = settings.current_step * ways
-    same = answered.metocean.rows(np.zeros(len(around), dtype=int))
-    answer = twin.predict(
-        Metocean(current_velocity=current + around, hs=same.hs, wave_direction=same.wave_direction)
-    )
+    here = replace(answered.metocean, current_velocity=current[None])
+    answer = twin.predict(here.joined(here, here.sides(settings.current_step)))
     if not answer.valid.all():
         return None
     columns = [answer.sensor_names.index(name) for name in names]
