@@ -23,34 +23,34 @@ class TomlFile:
 
     @classmethod
     def from_toml(cls, text: str, *, source: str = "") -> Self:
-        """Read TOML text; ``source`` names it in errors."""
-        return parse(cls, text, source=source or cls.__name__.lower())
+        """Read TOML text; ``source`` names it in errors.
+
+        Raises
+        ------
+        InputError
+            Text that is no TOML, and any key that is unknown, missing or of the wrong type.
+        NonsenseError
+            Values that each may be, and not together.
+        """
+        source = source or cls.__name__.lower()
+        table = parse_toml(text, source)
+        try:
+            return _build(cls, table, source)
+        except InputError as error:
+            message = str(error)
+            raise NonsenseError(message if source in message else f"{source}: {message}") from error
 
     def to_toml(self) -> str:
         """TOML text with the unit in every key and the meaning beside it."""
-        return to_text(self)
+        own: Any = self  # a dataclass, whose fields are what the file holds
+        entries = [(key_of(parameter), getattr(self, parameter.name)) for parameter in fields(own)]
+        head = [f"{key} = {_literal(value)}" for key, value in entries if not _parts(value)]
+        sections = [_section(key, value) for key, value in entries if _parts(value)]
+        return "\n".join([*head, "", *sections])
 
     def write(self, path: str | Path) -> None:
         """Write a TOML file that ``read`` takes back."""
         Path(path).write_text(self.to_toml(), "utf-8")
-
-
-def parse(kind: type, text: str, *, source: str) -> Any:
-    """A cage (or any nest of parts) from TOML text.
-
-    Raises
-    ------
-    InputError
-        Text that is no TOML, and any key that is unknown, missing or of the wrong type.
-    NonsenseError
-        Values that each may be, and not together.
-    """
-    table = parse_toml(text, source)
-    try:
-        return _build(kind, table, source)
-    except InputError as error:
-        message = str(error)
-        raise NonsenseError(message if source in message else f"{source}: {message}") from error
 
 
 def _build(kind: type, table: dict[str, Any], where: str) -> Any:
@@ -114,14 +114,6 @@ def _check_type(kind: type, value: Any, where: str) -> Any:
     if not isinstance(value, accepted) or isinstance(value, bool):
         raise InputError(f"{where}: must be {meant}, not {value!r}.")
     return value
-
-
-def to_text(cage: Any) -> str:
-    """TOML text of a cage; ``parse`` gives the same cage back."""
-    entries = [(key_of(parameter), getattr(cage, parameter.name)) for parameter in fields(cage)]
-    head = [f"{key} = {_literal(value)}" for key, value in entries if not _parts(value)]
-    sections = [_section(key, value) for key, value in entries if _parts(value)]
-    return "\n".join([*head, "", *sections])
 
 
 def _parts(value: Any) -> tuple[Any, ...]:

@@ -121,8 +121,7 @@ def _average(
 ) -> tuple[dict[str, Float[np.ndarray, " time"]], Shaped[np.ndarray, " time"]]:
     kept = np.logical_and.reduce([_usable(record, key, clock) for key in keys])
     doubtful = np.logical_or.reduce([record.flags[key] == Flag.SUSPECT for key in keys])[kept]
-    first, last = _windows(record.time[kept], times, clock)
-    whole = _whole(record.time[kept], times, first, last, clock)
+    first, last, whole = _windows(record.time[kept], times, clock)
     count = np.where(whole, last - first, 1)
 
     def mean(column: Float[np.ndarray, " reading"]) -> Float[np.ndarray, " time"]:
@@ -158,37 +157,23 @@ def _usable(record: Record, key: str, clock: Clock) -> Bool[np.ndarray, " t"]:
 
 
 def _windows(
-    spoken: Shaped[np.ndarray, " reading"], times: Shaped[np.ndarray, " time"], clock: Clock
-) -> tuple[Int[np.ndarray, " time"], Int[np.ndarray, " time"]]:
-    """First reading of each window, and the one after its last."""
+    read: Shaped[np.ndarray, " reading"], times: Shaped[np.ndarray, " time"], clock: Clock
+) -> tuple[Int[np.ndarray, " time"], Int[np.ndarray, " time"], Bool[np.ndarray, " time"]]:
+    """First reading of each window, the one after its last, and whether it has them throughout."""
     close = times - _span(clock.lag_s)
-    open_ = close - _span(clock.window_s)
-    return (
-        np.searchsorted(spoken, open_, side="right"),
-        np.searchsorted(spoken, close, side="right"),
-    )
-
-
-def _whole(
-    spoken: Shaped[np.ndarray, " reading"],
-    times: Shaped[np.ndarray, " time"],
-    first: Int[np.ndarray, " time"],
-    last: Int[np.ndarray, " time"],
-    clock: Clock,
-) -> Bool[np.ndarray, " time"]:
-    """Which windows have readings throughout."""
-    if not len(spoken):
-        return np.zeros(len(times), dtype=bool)
-    longest = _span(clock.max_gap_s)
-    gaps = np.concatenate([[0, 0], np.cumsum(np.diff(spoken) > longest)])
-    close = times - _span(clock.lag_s)
-    inside = np.minimum(first, len(spoken) - 1), np.maximum(last - 1, 0)
-    return (
+    open_, longest = close - _span(clock.window_s), _span(clock.max_gap_s)
+    first, last = (np.searchsorted(read, at, side="right") for at in (open_, close))
+    if not len(read):
+        return first, last, np.zeros(len(times), dtype=bool)
+    gaps = np.concatenate([[0, 0], np.cumsum(np.diff(read) > longest)])
+    begin, end = np.minimum(first, len(read) - 1), np.maximum(last - 1, 0)
+    whole = (
         (last > first)
-        & (spoken[inside[0]] - (close - _span(clock.window_s)) <= longest)
-        & (close - spoken[inside[1]] <= longest)
-        & (gaps[inside[1] + 1] == gaps[inside[0] + 1])
+        & (read[begin] - open_ <= longest)
+        & (close - read[end] <= longest)
+        & (gaps[end + 1] == gaps[begin + 1])
     )
+    return first, last, whole
 
 
 def _span(seconds: float) -> np.timedelta64:

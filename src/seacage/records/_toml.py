@@ -43,9 +43,9 @@ def check_filled(table: Table, *, where: str) -> None:
             )
 
 
-def table_of(table: Table, name: str, *, where: str) -> Table:
-    """A table in a table; refused where it is missing."""
-    value = table.get(name)
+def table_of(table: Table, name: str, *, where: str, default: Table | None = None) -> Table:
+    """A table in a table; refused where it is missing and there is no default."""
+    value = table.get(name, default)
     if not isinstance(value, dict):
         raise RecordError(f"{where}: the table [{name}] is missing.")
     return cast("Table", value)

@@ -1,7 +1,7 @@
 """A site's own limits, from TOML."""
 
 import math
-from dataclasses import fields, replace
+from dataclasses import replace
 from pathlib import Path
 
 from seacage.conventions import RecordError, parse_toml, read_text
@@ -33,20 +33,16 @@ def read_limits(path: Path | str) -> Limits:
     """
     where = str(path)
     table = parse_toml(read_text(path, refusal=RecordError), where, refusal=RecordError)
-    check_names(table, ("ranges", "steadiness", "climatology"), where=where)
-    return replace(
-        DEFAULT_LIMITS,
-        ranges={**DEFAULT_LIMITS.ranges, **_ranges(_part(table, "ranges", where), where)},
-        steadiness={
-            **DEFAULT_LIMITS.steadiness,
-            **_steadiness(_part(table, "steadiness", where), where),
-        },
-        climatology=_climatology(_part(table, "climatology", where), where),
+    names = ("ranges", "steadiness", "climatology")
+    check_names(table, names, where=where)
+    ranges, steadiness, climatology = (
+        table_of(table, name, where=where, default={}) for name in names
     )
-
-
-def _part(table: Table, name: str, where: str) -> Table:
-    return table_of(table, name, where=where) if name in table else {}
+    return Limits(
+        ranges={**DEFAULT_LIMITS.ranges, **_ranges(ranges, where)},
+        steadiness={**DEFAULT_LIMITS.steadiness, **_steadiness(steadiness, where)},
+        climatology=_climatology(climatology, where),
+    )
 
 
 def _ranges(table: Table, where: str) -> dict[str, Range]:
@@ -83,15 +79,13 @@ def _pair(table: Table, name: str, where: str) -> tuple[float, float] | None:
 
 def _steadiness(table: Table, where: str) -> dict[str, Steadiness]:
     check_names(table, DEFAULT_LIMITS.steadiness, where=f"{where}, [steadiness]")
-    names = [one.name for one in fields(Steadiness)]
     changed: dict[str, Steadiness] = {}
     for group in table:
         inside = f"{where}, [steadiness.{group}]"
         given = table_of(table, group, where=where)
-        check_names(given, names, where=inside)
-        numbers = {name: number_of(given, name, where=inside) for name in given}
-        known = {name: number for name, number in numbers.items() if number is not None}
-        changed[group] = replace(DEFAULT_LIMITS.steadiness[group], **known)
+        check_names(given, Steadiness.__slots__, where=inside)
+        numbers = {name: number_of(given, name, where=inside) or 0.0 for name in given}
+        changed[group] = replace(DEFAULT_LIMITS.steadiness[group], **numbers)
     return changed
 
 
@@ -101,7 +95,6 @@ def _climatology(table: Table, where: str) -> dict[str, tuple[Season, ...]]:
     seasons: dict[str, tuple[Season, ...]] = {}
     for key in table:
         inside = f"{where}, [[climatology.{key}]]"
-        given = tables_of(table, key, where=inside)
         seasons[key] = tuple(
             Season(
                 months=_months(one, inside),
@@ -111,7 +104,7 @@ def _climatology(table: Table, where: str) -> dict[str, tuple[Season, ...]]:
                     inside,
                 ),
             )
-            for one in given
+            for one in tables_of(table, key, where=inside)
         )
     return seasons
 

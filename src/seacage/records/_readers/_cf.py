@@ -26,7 +26,7 @@ from seacage.records._readers._column_map import (
 )
 from seacage.records._readers._csv import in_order
 from seacage.records._record import Record
-from seacage.records._toml import Table, check_filled, check_names, number_of, table_of, text_of
+from seacage.records._toml import check_filled, check_names, number_of, table_of, text_of
 
 if TYPE_CHECKING:
     import xarray
@@ -57,7 +57,6 @@ _UNITS: Mapping[str, str] = {
     **dict.fromkeys(("cm", "centimeter", "centimetre"), "cm"),
 }
 _SPEEDS = frozenset({"m/s", "cm/s", "mm/s", "knot"})
-_NONE: Table = {}
 _COMPASS = {"E": "current_east", "N": "current_north"}
 _SECONDS = {"microsecond": 1e-6, "millisecond": 1e-3, "second": 1.0, "sec": 1.0, "s": 1.0} | {
     "minute": 60.0,
@@ -157,10 +156,7 @@ class NetcdfMap:
         check_filled(table, where=where)
         known = ("kind", "title", "origin", "time_zone", "depth_m", "range_m", "at", "columns")
         check_names(table, known, where=where)
-        columns, at = (
-            table_of(table, name, where=where) if name in table else _NONE
-            for name in ("columns", "at")
-        )
+        columns, at = (table_of(table, name, where=where, default={}) for name in ("columns", "at"))
         return cls(
             title=text_of(table, "title", where=where, default="NetCDF file"),
             origin=parse_origin(text_of(table, "origin", where=where), where),

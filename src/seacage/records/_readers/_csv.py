@@ -12,7 +12,7 @@ from seacage.records._keys import KEYS
 from seacage.records._readers._column_map import Column, ColumnMap, vectors_joined
 from seacage.records._readers._ndbc import is_ndbc, ndbc_table
 from seacage.records._readers._shipped import shipped_maps
-from seacage.records._readers._table import Table, read_table, read_text
+from seacage.records._readers._table import PLAIN, Table, read_table, read_text, text_table
 from seacage.records._record import Record
 from seacage.records._times import microseconds
 
@@ -53,11 +53,63 @@ def split_table(path: Path, columns: ColumnMap | None) -> tuple[Table, ColumnMap
         text = read_text(path)
         if is_ndbc(text):
             return ndbc_table(path, text)
-    table = read_table(path, columns)
-    if columns is None:
-        return table, recognise(table)
-    check_header(table, columns)
-    return table, columns
+    table = read_table(path, columns or PLAIN)
+    return table, _map_of(table, columns)
+
+
+def read_rows(
+    path: Path,
+    header: str,
+    rows: str,
+    *,
+    columns: ColumnMap | None = None,
+    first_line: int = 2,
+    stream: str = "buoy-1",
+) -> Record:
+    """Read some rows of a text table under its header, as ``read_record`` reads all of them.
+
+    The values are not checked, for what went before is not at hand.
+
+    Parameters
+    ----------
+    path
+        Of the file, for messages.
+    header, rows
+        The header's line, and whole lines from anywhere below it.
+    columns
+        What the columns mean; by the header where None.
+    first_line
+        On which line of the file the rows begin, for messages.
+    stream
+        What to call the stream.
+
+    Raises
+    ------
+    RecordError
+        As ``read_record``; also where there is no row. A header that does not fit its map is
+        not looked at, see ``check_rows``.
+    """
+    between = "\n" * max(1, first_line - 1)  # blank lines are skipped, and counted
+    table = text_table(
+        path, header.rstrip("\r\n") + between + rows, delimiter=(columns or PLAIN).delimiter
+    )
+    return record_in(table, columns or recognise(table), stream=stream)
+
+
+def check_rows(path: Path, header: str, *, columns: ColumnMap | None = None) -> None:
+    """Refuse a table whose rows could not be read, by its header alone.
+
+    Raises
+    ------
+    RecordError
+        The header is not that of the map; without one, of no shipped map. An encoding that
+        cannot be read in parts.
+    """
+    if columns is not None and columns.encoding == "utf-16":
+        raise RecordError(f"{path}: UTF-16 cannot be read in parts. Let the logger write UTF-8.")
+    # A table needs a row to be one.
+    table = text_table(path, f"{header.rstrip()}\n{header}", delimiter=(columns or PLAIN).delimiter)
+    _map_of(table, columns)
 
 
 def _constants_doubted(record: Record) -> Record:
@@ -129,12 +181,16 @@ def recognise(table: Table) -> ColumnMap:
     )
 
 
-def check_header(table: Table, columns: ColumnMap) -> None:
+def _map_of(table: Table, columns: ColumnMap | None) -> ColumnMap:
+    """The map that was given, which the header must fit, or the one that it fits."""
+    if columns is None:
+        return recognise(table)
     if columns.names != frozenset(table.header):
         raise RecordError(
             f"{table.path}, line 1: the map {columns.title!r} {_difference(table, columns)}. "
             "Give the map of this file; a column that is not to be read goes under ignored."
         )
+    return columns
 
 
 def _difference(table: Table, columns: ColumnMap) -> str:

@@ -2,7 +2,7 @@
 
 import json
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -16,7 +16,15 @@ from seacage.records._readers._cf import is_netcdf
 from seacage.records._readers._csv import number_in, recognise
 from seacage.records._readers._inspect_netcdf import inspect_netcdf
 from seacage.records._readers._ndbc import is_ndbc
-from seacage.records._readers._table import WHITESPACE, Table, read_table, read_text, text_table
+from seacage.records._readers._table import (
+    PLAIN,
+    WHITESPACE,
+    Layout,
+    Table,
+    read_table,
+    read_text,
+    text_table,
+)
 from seacage.records._times import microseconds
 
 _ROWS = 20_000
@@ -62,16 +70,14 @@ _SPELLED: tuple[tuple[str, str], ...] = (
     (r"[_\[( ]m[\])]?$", "m"),
     (r"[_\[( ]s(ec)?[\])]?$", "s"),
 )
-_UNITS_OF = {
-    "current_speed": ("m/s", "cm/s", "mm/s", "km/h", "knot"),
-    "current_east": ("m/s", "cm/s", "mm/s", "km/h", "knot"),
-    "current_north": ("m/s", "cm/s", "mm/s", "km/h", "knot"),
-    "current_direction": ("deg",),
-    "wave_direction": ("deg",),
-    "hs": ("m", "cm"),
+_UNITS_OF: Mapping[str, tuple[str, ...]] = {
+    **dict.fromkeys(
+        ("current_speed", "current_east", "current_north"), ("m/s", "cm/s", "mm/s", "km/h", "knot")
+    ),
+    **dict.fromkeys(("current_direction", "wave_direction"), ("deg",)),
+    **dict.fromkeys(("hs", "depth"), ("m", "cm")),
     "tp": ("s",),
     "tension": ("kN", "tf"),
-    "depth": ("m", "cm"),
 }
 
 
@@ -96,13 +102,6 @@ class Inspection:
     def open_questions(self) -> int:
         """How many values only the user can fill in."""
         return len(re.findall(r'= "\?"', self.map_text))
-
-
-class _Layout(NamedTuple):
-    encoding: str
-    delimiter: str
-    decimal: str
-    skip_lines: int
 
 
 class _Guess(NamedTuple):
@@ -134,29 +133,21 @@ def inspect_file(path: Path | str) -> Inspection:
     if not path.is_file():
         raise RecordError(f"{path}: there is no such file.")
     if is_netcdf(path):
-        return Inspection(**inspect_netcdf(path))
+        findings, map_text = inspect_netcdf(path)
+        return Inspection(findings=findings, map_text=map_text)
     if path.suffix.lower() in {".parquet", ".json"}:
-        layout = _Layout("utf-8", ",", ".", 0)
-        table = read_table(path, None)
+        layout, table = PLAIN, read_table(path, PLAIN)
     else:
         layout, text = _layout(path)
         if is_ndbc(text):
-            return _ndbc(path)
+            finding = "is a file of NDBC, whose names, units, senses and zone are documented."
+            advice = "It needs no map: import it as it is."
+            return Inspection(findings=(f"{path.name} {finding}", advice), map_text="")
         table = text_table(path, text, delimiter=layout.delimiter, skip_lines=layout.skip_lines)
     return _inspect_table(table, layout)
 
 
-def _ndbc(path: Path) -> Inspection:
-    return Inspection(
-        findings=(
-            f"{path.name} is a file of NDBC, whose names, units, senses and zone are documented.",
-            "It needs no map: import it as it is.",
-        ),
-        map_text="",
-    )
-
-
-def _layout(path: Path) -> tuple[_Layout, str]:
+def _layout(path: Path) -> tuple[Layout, str]:
     """How the text is written: the first encoding that fits, the delimiter that parts evenly."""
     with path.open("rb") as file:
         mark = file.read(2)
@@ -166,11 +157,11 @@ def _layout(path: Path) -> tuple[_Layout, str]:
     counted = {d: _count(lines, d) for d in (";", "\t", ",", "|", WHITESPACE)}
     delimiter = next((one for one, count in counted.items() if count > 1), ",")
     width = counted[delimiter]
-    first = next((at for at, line in enumerate(lines) if _width(line, delimiter) == width), 0)
+    first = next((at for at, line in enumerate(lines) if len(_split(line, delimiter)) == width), 0)
     cells = [cell for line in lines[first + 1 :] for cell in _split(line, delimiter)]
     comma = delimiter != "," and any(re.fullmatch(r"\s*-?\d+,\d+\s*", cell) for cell in cells)
     skip = text.splitlines().index(lines[first]) if lines else 0
-    return _Layout(encoding, delimiter, "," if comma else ".", skip), text
+    return Layout(encoding, delimiter, "," if comma else ".", skip), text
 
 
 def _decode(path: Path, encodings: tuple[str, ...]) -> tuple[str, str]:
@@ -185,20 +176,16 @@ def _split(line: str, delimiter: str) -> list[str]:
     return line.split() if delimiter == WHITESPACE else line.split(delimiter)
 
 
-def _width(line: str, delimiter: str) -> int:
-    return len(_split(line, delimiter))
-
-
 def _count(lines: Sequence[str], delimiter: str) -> int:
     """Cells per line where most lines have as many, else 0."""
-    widths = [_width(line, delimiter) for line in lines]
+    widths = [len(_split(line, delimiter)) for line in lines]
     if not widths:
         return 0
     common = max(set(widths), key=widths.count)
     return common if widths.count(common) > 0.8 * len(widths) else 0
 
 
-def _inspect_table(table: Table, layout: _Layout) -> Inspection:
+def _inspect_table(table: Table, layout: Layout) -> Inspection:
     findings = [
         f"{table.path.name} is a table of {len(table.rows)} rows and {len(table.header)} columns.",
         f"Its cells are parted by {layout.delimiter!r}, its decimals by {layout.decimal!r}.",
@@ -372,7 +359,7 @@ def _depth(name: str) -> float | None:
 
 def _toml(
     table: Table,
-    layout: _Layout,
+    layout: Layout,
     time_names: tuple[str, ...],
     format_line: str,
     zone_line: str,

@@ -5,7 +5,7 @@
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, TypedDict
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,15 +21,8 @@ if TYPE_CHECKING:
     import xarray
 
 
-class Found(TypedDict):
-    """What becomes an inspection."""
-
-    findings: tuple[str, ...]
-    map_text: str
-
-
-def inspect_netcdf(path: Path) -> Found:
-    """Look at a NetCDF file's variables and begin its map.
+def inspect_netcdf(path: Path) -> tuple[tuple[str, ...], str]:
+    """Look at a NetCDF file's variables and begin its map: findings, and the map's text.
 
     Raises
     ------
@@ -40,7 +33,7 @@ def inspect_netcdf(path: Path) -> Found:
         return _find(path, dataset)
 
 
-def _find(path: Path, dataset: "xarray.Dataset") -> Found:
+def _find(path: Path, dataset: "xarray.Dataset") -> tuple[tuple[str, ...], str]:
     sizes = ", ".join(f"{name} {size}" for name, size in dataset.sizes.items())
     findings = [f"{path.name} is a NetCDF file with the dimensions {sizes}."]
     lines = [
@@ -74,7 +67,7 @@ def _find(path: Path, dataset: "xarray.Dataset") -> Found:
             'quantity = "?"  # current_east, current_north, hs, …',
             'unit = "?"',
         ]
-    return {"findings": tuple(findings), "map_text": "\n".join(lines) + "\n"}
+    return tuple(findings), "\n".join(lines) + "\n"
 
 
 def _tells(dataset: "xarray.Dataset", name: str) -> bool:

@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 from seacage.conventions import TABLE_BYTES, RecordError, check_file, parse_json, read_bytes
 
@@ -24,6 +24,19 @@ _MOST_CELLS = 10_000_000
 """Most cells of a Parquet file, whose size says nothing of them; as text they take 2 GB."""
 
 _COOPS_NAMES = {"t": "Date Time", "s": "Speed", "d": "Direction", "b": "Bin"}
+
+
+class Layout(NamedTuple):
+    """How the text of a table is written; a column map says so too."""
+
+    encoding: str = "utf-8"
+    delimiter: str = ","
+    decimal: str = "."
+    skip_lines: int = 0
+
+
+PLAIN = Layout()
+"""Of a table of which nothing else is known."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,7 +72,7 @@ class Table:
         return [row[at] for row in self.rows]
 
 
-def read_table(path: Path, columns: "ColumnMap | None") -> Table:
+def read_table(path: Path, layout: "ColumnMap | Layout") -> Table:
     """Read a table by its ending: ``.parquet``, ``.json`` (NOAA CO-OPS), else text.
 
     Raises
@@ -69,16 +82,10 @@ def read_table(path: Path, columns: "ColumnMap | None") -> Table:
     """
     if path.suffix.lower() == ".parquet":
         return _read_parquet(path)
-    encoding = "utf-8" if columns is None else columns.encoding
-    text = read_text(path, encoding)
+    text = read_text(path, layout.encoding)
     if path.suffix.lower() == ".json":
         return _coops_table(path, text)
-    return text_table(
-        path,
-        text,
-        delimiter="," if columns is None else columns.delimiter,
-        skip_lines=0 if columns is None else columns.skip_lines,
-    )
+    return text_table(path, text, delimiter=layout.delimiter, skip_lines=layout.skip_lines)
 
 
 def read_text(path: Path, encoding: str = "utf-8") -> str:
