@@ -1,7 +1,7 @@
 """Simulator of a campaign's cases, and the work of one block of them."""
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import lru_cache
 from importlib.metadata import version
 from typing import Any, Literal
@@ -154,19 +154,14 @@ def _simulate_block(
     block: CaseBlock,
 ) -> tuple[dict[str, np.ndarray], Float[np.ndarray, "coordinate coordinate"] | None]:
     by = block.simulator
+    settings = {one.name: getattr(by, one.name) for one in fields(by) if one.name != "method"}
     history = simulate(
         _cage(block.cage_toml),
         block.seas,
         duration=block.duration,
         seed=block.wave_seeds,
-        law=by.law,
-        mooring=by.mooring,
-        ramp=by.ramp,
-        spin_up=by.spin_up,
-        time_step=by.time_step,
         sample_every=None,
-        quantile_levels=by.quantile_levels,
-        second_moment=by.second_moment,
+        **settings,
     )
     return _statistics(history), _moment(history) if by.second_moment else None
 

@@ -1,12 +1,12 @@
 """Progress of a campaign, its failed cases and its cost."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Int
 
 from seacage.conventions import Result
 from seacage.records import NOT_RUN, campaign_results, campaign_unsummed, campaign_variable
@@ -71,8 +71,14 @@ def campaign_status(out: str | Path) -> CampaignStatus:
     """
     store = Path(out)
     attributes, result, block = campaign_results(store)
-    diverged_at = campaign_variable(store, "diverged_at")
-    simulated_s = 0.0 if diverged_at is None else _simulation_s(attributes, result, diverged_at)
+    diverged_at, taken = (campaign_variable(store, one) for one in ("diverged_at", "core_seconds"))
+    simulated_s, core_seconds = 0.0, math.nan
+    if diverged_at is not None:
+        whole = float(attributes["spin_up_s"]) + float(attributes["duration_s"])
+        each = np.where(np.isnan(diverged_at), whole, diverged_at)
+        simulated_s = float(np.sum(each[result != NOT_RUN]))
+    if taken is not None:  # a block being written has its seconds before its results
+        core_seconds = float(np.sum(taken[result[::block] != NOT_RUN]))
     return CampaignStatus(
         plan=attributes["plan"],
         law=attributes["law"],
@@ -83,7 +89,7 @@ def campaign_status(out: str | Path) -> CampaignStatus:
         diverged=int(np.sum(result == Result.DIVERGED)),
         failures=_failures(store, result),
         simulated_s=simulated_s,
-        core_seconds=_core_seconds(store, result[::block]),
+        core_seconds=core_seconds,
         finished=not (campaign_unsummed(store) or np.any(result == NOT_RUN)),
     )
 
@@ -117,19 +123,3 @@ def _reason(result: Result, row: Mapping[str, float]) -> str:
     when = row["diverged_at"]
     after = "" if np.isnan(when) else f" after {when:.4g} s of simulated time"
     return f"its positions left the finite numbers{after}, so it carries no answer"
-
-
-def _simulation_s(
-    attributes: dict[str, Any],
-    result: Int[np.ndarray, " case"],
-    diverged_at: Float[np.ndarray, " case"],
-) -> float:
-    whole = float(attributes["spin_up_s"]) + float(attributes["duration_s"])
-    each = np.where(np.isnan(diverged_at), whole, diverged_at)
-    return float(np.sum(each[result != NOT_RUN]))
-
-
-def _core_seconds(store: Path, result: Int[np.ndarray, " block"]) -> float:
-    """Of the blocks that are done: one being written has its seconds before its results."""
-    taken = campaign_variable(store, "core_seconds")
-    return float("nan") if taken is None else float(np.sum(taken[result != NOT_RUN]))

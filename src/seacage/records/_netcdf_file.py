@@ -159,14 +159,10 @@ def check_netcdf(path: Path, *, whole: bool) -> None:
         if stream.read(3) == b"CDF":
             return
     h5py: Any = importlib.import_module("h5py")  # which has no types
-    links: list[tuple[str, Any]] = []
-
-    def keep(name: str, link: Any) -> None:
-        links.append((name, link))
-
+    links: dict[str, Any] = {}
     with h5py.File(path, "r") as file:
-        file.visititems_links(keep)
-        declared = sum(_size_of(name, file, link, whole=whole) for name, link in links)
+        file.visititems_links(links.__setitem__)
+        declared = sum(_size_of(name, file, link, whole=whole) for name, link in links.items())
     most = min(_DECLARED_BYTES, _SMALL_BYTES + _INFLATION * size)
     if declared > most:
         raise ValueError(f"it has {size} bytes, declares {declared}, and at most {most} are read")

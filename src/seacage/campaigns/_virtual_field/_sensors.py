@@ -90,10 +90,9 @@ def sense(
         values += 0.0 if wave_head is None else wave_head
         values += 0.0 if pressure is None else hidden.depth.m_per_hpa * pressure
         size, alive = hidden.depth.spike_m, None
-    sent = _apply_events(replace(truth, values={key: values}, flags={}), events)
-    return _receive(
-        sent, truth.time, {key: size}, hidden.outages, faults, silence=silence, alive=alive
-    )
+    sent = replace(truth, values={key: values}, flags={})
+    outages = hidden.outages
+    return _receive(sent, events, {key: size}, outages, faults, silence=silence, alive=alive)
 
 
 def receive_buoy(
@@ -117,18 +116,12 @@ def receive_buoy(
         As of ``sense``.
     """
     sizes = {"current_speed_m_s": hidden.buoy.spike_m_s}
-    sent = _apply_events(replace(buoy, flags={}), events)
-    return _receive(sent, buoy.time, sizes, hidden.outages, rng, silence=silence)
+    sent = replace(buoy, flags={})
+    return _receive(sent, events, sizes, hidden.outages, rng, silence=silence)
 
 
 def _seconds(time: Times) -> Values:
     return (time - time[0]) / np.timedelta64(1, "s")
-
-
-def _apply_events(sent: Record, events: Sequence[Event]) -> Record:
-    for event in events:
-        sent = event.apply_to(sent)
-    return sent
 
 
 def _load_cell(exact: Values, errors: ShackleTruth, rng: np.random.Generator) -> Values:
@@ -144,7 +137,7 @@ def _sunk(exact: Values, seconds: Values, errors: DepthTruth, rng: np.random.Gen
 
 def _receive(
     sent: Record,
-    all_times: Times,
+    events: Sequence[Event],
     spike_sizes: Mapping[str, float],
     outages: OutagesTruth,
     rng: np.random.Generator,
@@ -157,7 +150,9 @@ def _receive(
     Spells are drawn over all its times, not those that an event left, so that an event that
     silences it moves no other fault.
     """
-    sticking, spiking, losing = rng.spawn(3)
+    all_times, (sticking, spiking, losing) = sent.time, rng.spawn(3)
+    for event in events:
+        sent = event.apply_to(sent)
     time, values = sent.time, {key: column.copy() for key, column in sent.values.items()}
     stuck = Spells.by_chance(
         all_times, sticking, per_week=outages.stuck_per_week, mean_h=outages.stuck_mean_h

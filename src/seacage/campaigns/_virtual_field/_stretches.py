@@ -3,7 +3,7 @@
 import json
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 from typing import Self
@@ -99,9 +99,6 @@ class Passed:
     lost: bool
 
 
-_NAMES = tuple(field.name for field in fields(Passed))
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StretchStore:
     """A folder of finished stretches of one field.
@@ -150,7 +147,7 @@ class StretchStore:
         from safetensors.numpy import save
 
         # safetensors takes the memory as it lies
-        arrays = {name: np.ascontiguousarray(getattr(passed, name)) for name in _NAMES}
+        arrays = {name: np.ascontiguousarray(getattr(passed, name)) for name in Passed.__slots__}
         _write(self._path(stretch), save(arrays))
 
     def read(self, stretch: Stretch) -> Passed:
@@ -167,7 +164,7 @@ class StretchStore:
         path = self._path(stretch)
         try:
             found = load(path.read_bytes())
-            arrays = {name: found[name] for name in _NAMES}
+            arrays = {name: found[name] for name in Passed.__slots__}
         except (OSError, KeyError, SafetensorError) as error:
             raise RecordError(
                 f"{path}: this is no finished stretch ({error}). "

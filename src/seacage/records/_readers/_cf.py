@@ -58,31 +58,26 @@ _UNITS: Mapping[str, str] = {
 }
 _SPEEDS = frozenset({"m/s", "cm/s", "mm/s", "knot"})
 _COMPASS = {"E": "current_east", "N": "current_north"}
-_SECONDS = {"microsecond": 1e-6, "millisecond": 1e-3, "second": 1.0, "sec": 1.0, "s": 1.0} | {
-    "minute": 60.0,
-    "min": 60.0,
-    "hour": 3600.0,
-    "h": 3600.0,
-    "hr": 3600.0,
-    "day": 86400.0,
-    "d": 86400.0,
+_SECONDS: Mapping[str, float] = {
+    "microsecond": 1e-6,
+    "millisecond": 1e-3,
+    **dict.fromkeys(("second", "sec", "s"), 1.0),
+    **dict.fromkeys(("minute", "min"), 60.0),
+    **dict.fromkeys(("hour", "hr", "h"), 3600.0),
+    **dict.fromkeys(("day", "d"), 86400.0),
 }
 _ZONED = re.compile(
     r"\b(times?|clock|zone)\b[^.;\n]{0,40}?\b([PMCE][DS]T|CES?T|BST|local|LST)\b", re.IGNORECASE
 )
 
-_OFFSETS = {
-    "PDT": "-07:00",
+_OFFSETS: Mapping[str, str] = {
     "PST": "-08:00",
-    "MDT": "-06:00",
-    "MST": "-07:00",
-    "CDT": "-05:00",
-    "CST": "-06:00",
+    **dict.fromkeys(("PDT", "MST"), "-07:00"),
+    **dict.fromkeys(("MDT", "CST"), "-06:00"),
+    **dict.fromkeys(("CDT", "EST"), "-05:00"),
     "EDT": "-04:00",
-    "EST": "-05:00",
-    "CET": "+01:00",
+    **dict.fromkeys(("CET", "BST"), "+01:00"),
     "CEST": "+02:00",
-    "BST": "+01:00",
 }
 
 

@@ -1,17 +1,48 @@
-"""The one reader of files that hold a stream."""
+"""The one reader of files that hold a stream, and of the maps that say what they mean."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from seacage.conventions import Flag, RecordError
+from seacage.conventions import Flag, RecordError, read_text
 from seacage.records._quality import DEFAULT_LIMITS, Limits, check_record
 from seacage.records._readers._cf import NetcdfMap, is_netcdf, read_cf
 from seacage.records._readers._column_map import ColumnMap
 from seacage.records._readers._csv import read_csv, split_table
 from seacage.records._readers._netcdf import read_netcdf
+from seacage.records._readers._shipped import shipped_maps
 from seacage.records._record import Record
+
+_NETCDF = re.compile(r'^\s*kind\s*=\s*"netcdf"', re.MULTILINE)
+
+
+def read_map(source: Path | str) -> ColumnMap | NetcdfMap:
+    """Read what a foreign file's columns or variables mean.
+
+    Parameters
+    ----------
+    source
+        A TOML file, with ``kind = "netcdf"`` where it is a ``NetcdfMap``'s; or the name of a
+        shipped column map.
+
+    Raises
+    ------
+    RecordError
+        No such file and no such name, or a map that is refused.
+    """
+    if str(source) in shipped_maps():
+        return shipped_maps()[str(source)]
+    path = Path(source)
+    try:
+        text = read_text(path, refusal=RecordError)
+    except RecordError as error:
+        names = ", ".join(shipped_maps())
+        raise RecordError(f"{error} Give a map, or the name of a shipped one: {names}.") from error
+    if _NETCDF.search(text):
+        return NetcdfMap.from_toml(text, where=str(path))
+    return ColumnMap.from_toml(text, where=str(path))
 
 
 def read_record(

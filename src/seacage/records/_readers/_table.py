@@ -215,8 +215,8 @@ def _read_parquet(path: Path) -> Table:
         columns = [_list(column) for column in content.columns]
     except (OSError, ValueError, TypeError, NotImplementedError, OverflowError) as error:
         raise RecordError(
-            f"{path}: this is no Parquet file that can be read ({_one_line(error)}). "
-            "Write it anew, or give the table as text."
+            f"{path}: this is no Parquet file that can be read "
+            f"({' '.join(str(error).split())[:200]}). Write it anew, or give the table as text."
         ) from error
     rows = [tuple(_cell(value) for value in row) for row in zip(*columns, strict=True)]
     return make_table(path, [tuple(names), *rows], range(len(rows) + 1))
@@ -276,7 +276,3 @@ def _coops_table(path: Path, text: str) -> Table:
 
 def _is_table(value: object) -> bool:
     return isinstance(value, dict)
-
-
-def _one_line(error: Exception) -> str:
-    return " ".join(str(error).split())[:200]
