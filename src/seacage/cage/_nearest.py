@@ -1,6 +1,5 @@
 """The point of a net that is nearest to a point in the water."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Self
 
@@ -114,12 +113,8 @@ def nearest_on_net(
     pseudonormal", for what is inside.
     """
     surface = _Surface.of(node_position, _triangles(panels))
-    parts = [_nearest(point[rows], surface) for rows in _chunks(len(point))]
-    return Nearest.joined(*parts)
-
-
-def _chunks(count: int) -> Iterator[slice]:
-    return (slice(start, start + CHUNK) for start in range(0, max(count, 1), CHUNK))
+    starts = range(0, max(len(point), 1), CHUNK)
+    return Nearest.joined(*(_nearest(point[at : at + CHUNK], surface) for at in starts))
 
 
 def _nearest(point: Float[np.ndarray, "point 3"], surface: _Surface) -> Nearest:

@@ -3,6 +3,7 @@
 import difflib
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import accumulate
 from typing import TypeVar
 
 import numpy as np
@@ -95,17 +96,17 @@ class Structure(TomlFile):
     @property
     def node_count(self) -> int:
         """All nodes, those of the lines and the anchors included."""
-        return self._first_line_node + sum(line.segments - 1 for line in self.line)
+        return self._starts["line"][-1]
 
     @property
     def point_nodes(self) -> Int[np.ndarray, " point"]:
         """The nodes of the points."""
-        return self._first_point + np.arange(len(self.point))
+        return self._starts["tie"][-1] + np.arange(len(self.point))
 
     @property
     def anchor_nodes(self) -> Int[np.ndarray, " anchor"]:
         """The nodes of the anchors."""
-        return self._first_point + len(self.point) + np.arange(len(self.anchor))
+        return self._starts["tie"][-1] + len(self.point) + np.arange(len(self.anchor))
 
     def ring_nodes(self, ring: int | str) -> Int[np.ndarray, " spoke"]:
         """Nodes of a ring, by its name or number, counter-clockwise seen from above."""
@@ -117,8 +118,7 @@ class Structure(TomlFile):
 
         The last level of a disc is its centre, as often as there are spokes.
         """
-        net = self.net[index]
-        first = self._first_net_node + sum(_inner_nodes(n, self.spokes) for n in self.net[:index])
+        net, first = self.net[index], self._starts["net"][index]
         inner = first + np.arange((net.rows - 1) * self.spokes).reshape(-1, self.spokes)
         last = (
             self.ring_nodes(net.lower)
@@ -129,10 +129,7 @@ class Structure(TomlFile):
 
     def tie_nodes(self, index: int) -> Int[np.ndarray, "tie node"]:
         """Nodes of each member of a tie, by its number, from the upper end."""
-        tie = self.tie[index]
-        first = self._first_tie_node + sum(
-            self._members(t) * (t.segments - 1) for t in self.tie[:index]
-        )
+        tie, first = self.tie[index], self._starts["tie"][index]
         count, inner = self._members(tie), tie.segments - 1
         upper, lower = (self.ring_nodes(ring)[:: tie.every] for ring in (tie.upper, tie.lower))
         between = first + np.arange(count * inner).reshape(count, inner)
@@ -140,8 +137,7 @@ class Structure(TomlFile):
 
     def line_nodes(self, index: int) -> Int[np.ndarray, " node"]:
         """Nodes of a line, by its number, from its start."""
-        line = self.line[index]
-        first = self._first_line_node + sum(n.segments - 1 for n in self.line[:index])
+        line, first = self.line[index], self._starts["line"][index]
         start, end = (self._place(where, line.name) for where in (line.start, line.end))
         return np.concatenate([[start], first + np.arange(line.segments - 1), [end]])
 
@@ -247,23 +243,16 @@ class Structure(TomlFile):
 
     # Within
 
-    @property
-    def _first_net_node(self) -> int:
-        return self.spokes * len(self.ring)
-
-    @property
-    def _first_tie_node(self) -> int:
-        return self._first_net_node + sum(_inner_nodes(net, self.spokes) for net in self.net)
-
-    @property
-    def _first_point(self) -> int:
-        return self._first_tie_node + sum(
-            self._members(tie) * (tie.segments - 1) for tie in self.tie
-        )
-
-    @property
-    def _first_line_node(self) -> int:
-        return self._first_point + len(self.point) + len(self.anchor)
+    @cached_property
+    def _starts(self) -> dict[str, list[int]]:
+        """First inner node of each net, tie and line, and of what follows the last of them."""
+        inner = [(net.rows - 1) * self.spokes + (not net.lower) for net in self.net]
+        between = [self._members(tie) * (tie.segments - 1) for tie in self.tie]
+        nets = list(accumulate(inner, initial=self.spokes * len(self.ring)))
+        ties = list(accumulate(between, initial=nets[-1]))
+        places = ties[-1] + len(self.point) + len(self.anchor)
+        lines = list(accumulate((line.segments - 1 for line in self.line), initial=places))
+        return {"net": nets, "tie": ties, "line": lines}
 
     def _members(self, tie: Tie) -> int:
         return -(-self.spokes // tie.every)
@@ -294,7 +283,7 @@ class Structure(TomlFile):
             )
         places = (*self.point, *self.anchor)
         found = self._find(places, where, "point, anchor or ring/spoke", line)
-        return self._first_point + places.index(found)
+        return self._starts["tie"][-1] + places.index(found)
 
     def _ring_index(self, name: str, part: str) -> int:
         return self.ring.index(self._find(self.ring, name, "ring", part))
@@ -309,10 +298,6 @@ class Structure(TomlFile):
                 f"{hint}"
             )
         return known[name]
-
-
-def _inner_nodes(net: Net, spokes: int) -> int:
-    return (net.rows - 1) * spokes + (0 if net.lower else 1)
 
 
 def _fill(position: Float[np.ndarray, "node 3"], chains: Int[np.ndarray, "chain link"]) -> None:

@@ -119,8 +119,9 @@ def _parts(keys: tuple[str, ...]) -> tuple[tuple[str, ...], ...]:
 def _average(
     record: Record, keys: tuple[str, ...], times: Shaped[np.ndarray, " time"], clock: Clock
 ) -> tuple[dict[str, Float[np.ndarray, " time"]], Shaped[np.ndarray, " time"]]:
-    kept = np.logical_and.reduce([_usable(record, key, clock) for key in keys])
-    doubtful = np.logical_or.reduce([record.flags[key] == Flag.SUSPECT for key in keys])[kept]
+    usable = np.logical_and.reduce([record.usable(key) for key in keys])
+    doubtful = np.logical_or.reduce([record.flags[key] == Flag.SUSPECT for key in keys])
+    kept = usable if clock.suspect else usable & ~doubtful
     first, last, whole = _windows(record.time[kept], times, clock)
     count = np.where(whole, last - first, 1)
 
@@ -129,7 +130,7 @@ def _average(
         return np.where(whole, (total[last] - total[first]) / count, np.nan)
 
     columns = {key: record.values[key][kept] for key in keys}
-    suspected = mean(doubtful.astype(np.float64)) > 0.0
+    suspected = mean(doubtful[kept].astype(np.float64)) > 0.0
     return _means(columns, mean), np.where(suspected, Flag.SUSPECT, Flag.GOOD).astype(np.uint8)
 
 
@@ -149,11 +150,6 @@ def _means(
         "current_speed_m_s": np.hypot(east, north),
         "current_to_deg": np.degrees(np.arctan2(east, north)) % 360.0,
     }
-
-
-def _usable(record: Record, key: str, clock: Clock) -> Bool[np.ndarray, " t"]:
-    usable = record.usable(key)
-    return usable if clock.suspect else usable & (record.flags[key] != Flag.SUSPECT)
 
 
 def _windows(
