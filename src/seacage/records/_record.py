@@ -93,15 +93,18 @@ class Record:
         """
         return np.isin(self.flags[key], _USABLE) & np.isfinite(self.values[key])
 
-    def between(self, start: datetime, end: datetime) -> "Record":
-        """The part with start <= time < end; both times say their zone."""
-        rows = slice(*np.searchsorted(self.time, [instant(start), instant(end)]))
+    def rows(self, some: np.ndarray | slice) -> "Record":
+        """Some rows, by their numbers in order, by a mask or from one to another."""
         return replace(
             self,
-            time=self.time[rows],
-            values={key: column[rows] for key, column in self.values.items()},
-            flags={key: column[rows] for key, column in self.flags.items()},
+            time=self.time[some],
+            values={key: column[some] for key, column in self.values.items()},
+            flags={key: column[some] for key, column in self.flags.items()},
         )
+
+    def between(self, start: datetime, end: datetime) -> "Record":
+        """The part with start <= time < end; both times say their zone."""
+        return self.rows(slice(*np.searchsorted(self.time, [instant(start), instant(end)])))
 
     def samples(self) -> Iterator[Sample]:
         """The record as the stream of samples that it was, in order of time."""

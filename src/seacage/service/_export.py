@@ -90,13 +90,7 @@ def check_form(path: Path) -> None:
 def replay_in_blocks(twin: Twin, buoy: Record) -> Iterator[Replayed]:
     """Answer a buoy's record block by block; at least one, which may be empty."""
     for first in range(0, max(len(buoy), 1), BLOCK):
-        rows = slice(first, first + BLOCK)
-        some = replace(
-            buoy,
-            time=buoy.time[rows],
-            values={key: column[rows] for key, column in buoy.values.items()},
-            flags={key: column[rows] for key, column in buoy.flags.items()},
-        )
+        some = buoy.rows(slice(first, first + BLOCK))
         answer = twin.predict_record(some)
         yield Replayed(buoy=some, answer=answer, cage=twin.cage, origin=str(twin.origin))
 
@@ -113,8 +107,7 @@ def join_answers(answers: list[Answer]) -> Answer:
 
 def _join(parts: list[Any]) -> Any:
     if isinstance(parts[0], Prediction):
-        mean, std = ([getattr(part, name) for part in parts] for name in ("mean", "std"))
-        return Prediction(mean=np.concatenate(mean), std=np.concatenate(std))
+        return Prediction.joined(*parts)
     if isinstance(parts[0], np.ndarray):
         return np.concatenate(parts)
     return tuple(chain.from_iterable(parts))

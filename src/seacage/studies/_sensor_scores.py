@@ -4,9 +4,9 @@ from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
-from jaxtyping import Bool, Float, Shaped
+from jaxtyping import Float, Shaped
 
-from seacage.conventions import InputError, Origin
+from seacage.conventions import InputError, Origin, Rows
 from seacage.records import FieldRecord
 from seacage.surrogates import block_bootstrap, block_means, coverage, crps, mae
 from seacage.twin import Answer, align
@@ -27,7 +27,7 @@ _PEOPLE = {"m": ("m", 1.0), "N": ("kN", 1e-3)}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Readings:
+class Readings(Rows):
     """Readings of one sensor and the twin's predictions of them, in the unit that people read.
 
     Parameters
@@ -52,17 +52,6 @@ class Readings:
     low: Float[np.ndarray, " t"]
     multi: Float[np.ndarray, " t"]
     multi_std: Float[np.ndarray, " t"]
-
-    def at(self, rows: Bool[np.ndarray, " t"]) -> Self:
-        """Some of the readings."""
-        return replace(
-            self,
-            time=self.time[rows],
-            reading=self.reading[rows],
-            low=self.low[rows],
-            multi=self.multi[rows],
-            multi_std=self.multi_std[rows],
-        )
 
     def averaged(self, length: float) -> Self:
         """Means over windows that begin at whole multiples of a length [s] since 1970.
@@ -206,7 +195,7 @@ def score_sensor(readings: Readings, *, seed: int, truth: Readings | None = None
         Predictions beside the noise-free truth, at the readings' times and perhaps at others.
     """
     if truth is not None:
-        truth = truth.at(np.isin(truth.time, readings.time))
+        truth = truth.rows(np.isin(truth.time, readings.time))
     blocks = max(_LEAST_BLOCKS, len(np.unique(readings.time.astype("datetime64[D]"))))
     raw, minutes, means = (
         _errors(some, blocks=blocks, seed=seed)

@@ -71,14 +71,18 @@ def stand_in_field(
     depth = -_position(cage, felt)[:, :, 2]
     tension = 1.2 * _tension(cage, felt) / 1000.0
     spoken = (at < 43200.0) | (at >= (days - 1.0) * 86400.0)
+    everywhere = np.ones(len(at), dtype=bool)
+    readings = [
+        (one.name, "depth_m", depth[:, one.node], 0.03, everywhere) for one in cage.depth_sensors
+    ] + [(one.name, "tension_kn", tension[:, one.bridle], 0.15, spoken) for one in cage.shackles]
     sensors = {
-        one.name: _sensor(one.name, "depth_m", at, depth[:, one.node], 0.03, random)
-        for one in cage.depth_sensors
-    } | {
-        one.name: _sensor(
-            one.name, "tension_kn", at[spoken], tension[spoken, one.bridle], 0.15, random
+        name: Record(
+            stream=name,
+            time=_times(at[rows]),
+            values={key: value[rows] + noise * random.standard_normal(rows.sum())},
+            origin=Origin.VIRTUAL_FIELD,
         )
-        for one in cage.shackles
+        for name, key, value, noise, rows in readings
     }
     return FieldRecord(cage=cage.name, buoy=buoy, sensors=sensors, origin=Origin.VIRTUAL_FIELD)
 
@@ -123,22 +127,6 @@ def _tide(at: Float[np.ndarray, " t"]) -> Float[np.ndarray, "t 2"]:
     slow = 2.0 * np.pi * at / 250000.0
     return np.column_stack(
         [0.45 * np.cos(phase) + 0.15 * np.sin(slow), 0.3 * np.sin(phase) + 0.1 * np.cos(slow)]
-    )
-
-
-def _sensor(
-    name: str,
-    key: str,
-    at: Float[np.ndarray, " t"],
-    value: Float[np.ndarray, " t"],
-    noise: float,
-    random: np.random.Generator,
-) -> Record:
-    return Record(
-        stream=name,
-        time=_times(at),
-        values={key: value + noise * random.standard_normal(len(at))},
-        origin=Origin.VIRTUAL_FIELD,
     )
 
 

@@ -1,6 +1,7 @@
 """The models of every level, and their prediction in known water."""
 
 from collections.abc import Mapping, Sequence
+from copy import deepcopy
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Self
@@ -171,15 +172,15 @@ class Models:
             edge_speed, edge_hs = self.edge
             milder = water.rows(~inside).limited(current_speed=edge_speed, hs=edge_hs)
             edge = self._predict(milder, milder.features(self.inputs))
-            parts = {name: _widen(one, edge[name], ~inside) for name, one in parts.items()}
-        bridle_low, shape, sensor_low, bridle, sensor = parts.values()
+            parts = [_widen(one, end, ~inside) for one, end in zip(parts, edge, strict=True)]
+        bridle_low, shape, sensor_low, bridle, sensor = parts
         bridle_in_domain, sensor_in_domain = self._own_domains(x, inside)
         return {
             "in_domain": inside,
             "bridle_in_domain": bridle_in_domain,
             "sensor_in_domain": sensor_in_domain,
             # A rope never pushes, though a Gaussian has negative values.
-            "bridle_tension": Prediction(mean=np.maximum(bridle.mean, 0.0), std=bridle.std),
+            "bridle_tension": replace(bridle, mean=np.maximum(bridle.mean, 0.0)),
             "bridle_low": np.maximum(bridle_low.mean, 0.0),
             "sensor": sensor,
             "sensor_low": sensor_low,
@@ -199,29 +200,19 @@ class Models:
         bridle[:, list(self._lines.values())] = sensor[:, list(self._lines)]
         return bridle, sensor
 
-    def _predict(self, water: Metocean, x: Features) -> dict[str, Prediction]:
-        """Predict by both levels in water and its features."""
-        bridle, shape = self.bridles.predict(x), self.shape.predict(x)
-        low = self._sensor_low(bridle, shape)
-        parts = {"bridle_low": bridle, "shape": shape, "sensor_low": low}
-        return parts | self._level_2(water, x, bridle, low)
-
-    def _sensor_low(self, bridle: Prediction, shape: Prediction) -> Prediction:
-        nodes = [one.node for one in self.cage.depth_sensors]
-        lines = [one.bridle for one in self.cage.shackles]
-        return Prediction(
-            mean=np.hstack([-shape.mean[:, nodes, 2], bridle.mean[:, lines]]),
-            std=np.hstack([shape.std[:, nodes, 2], bridle.std[:, lines]]),
-        )
-
-    def _level_2(
-        self, water: Metocean, x: Features, bridle_low: Prediction, sensor_low: Prediction
-    ) -> dict[str, Prediction]:
-        """Predict tensions and readings by the best level.
+    def _predict(self, water: Metocean, x: Features) -> list[Prediction]:
+        """Predict bridles, shape and sensors at level 1, bridles and sensors by the best level.
 
         A reading has the instrument's noise; the tension of a shackle's bridle has none.
         """
-        bridle, sensor = _copy(bridle_low), _copy(sensor_low)
+        bridle_low, shape = self.bridles.predict(x), self.shape.predict(x)
+        nodes = [one.node for one in self.cage.depth_sensors]
+        lines = [one.bridle for one in self.cage.shackles]
+        sensor_low = Prediction(
+            mean=np.hstack([-shape.mean[:, nodes, 2], bridle_low.mean[:, lines]]),
+            std=np.hstack([shape.std[:, nodes, 2], bridle_low.std[:, lines]]),
+        )
+        bridle, sensor = deepcopy((bridle_low, sensor_low))
         if self.together is not None:
             columns = list(self.corrections)
             low = Prediction(mean=sensor_low.mean[:, columns], std=sensor_low.std[:, columns])
@@ -235,7 +226,7 @@ class Models:
             bridle.mean[:, lines] = sensor.mean[:, here]
             bridle.std[:, lines] = sensor.std[:, here]
             sensor.std[:, columns] = np.sqrt(sensor.std[:, columns] ** 2 + self.together.noise)
-        return {"bridle": bridle, "sensor": sensor}
+        return [bridle_low, shape, sensor_low, bridle, sensor]
 
     def _widen_outside(
         self, x: Features, latent: Prediction
@@ -266,11 +257,7 @@ def _widen(here: Prediction, edge: Prediction, beyond: Bool[np.ndarray, " case"]
     """Add in quadrature how far the mean moved between the edge and the rows beyond it."""
     std = here.std.copy()
     std[beyond] = np.hypot(std[beyond], here.mean[beyond] - edge.mean)
-    return Prediction(mean=here.mean, std=std)
-
-
-def _copy(prediction: Prediction) -> Prediction:
-    return Prediction(mean=prediction.mean.copy(), std=prediction.std.copy())
+    return replace(here, std=std)
 
 
 def _fill(parts: Sequence[Any], valid: Bool[np.ndarray, " case"]) -> Any:

@@ -1,9 +1,10 @@
 """State of a twin between two steps: its clock and the last minutes of each stream."""
 
-from bisect import bisect_left
+from bisect import bisect_left, bisect_right
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from datetime import datetime, timedelta
+from itertools import chain
 
 from seacage.conventions import Flag
 from seacage.records import Amendment, QualityState, Sample, check_sample, is_evaluated
@@ -104,10 +105,8 @@ class TwinState:
     @property
     def amended(self) -> tuple[Amendment, ...]:
         """Flags that were made worse by later samples, of the last minutes."""
-        return (
-            *self.amendments,
-            *(one for stream in self.streams.values() for one in amendments_in(stream)),
-        )
+        checked = map(amendments_in, self.streams.values())
+        return (*self.amendments, *chain.from_iterable(checked))
 
     def with_factors(self, adapted: str | None) -> "TwinState":
         """Return a copy with other factors of the intervals; see ``adapted``."""
@@ -121,7 +120,7 @@ class TwinState:
         for one in amendments:
             streams[one.stream] = _apply(streams.get(one.stream, ()), one)
             kept.pop(_place(one), None)
-            if one.was is None or one.flag > one.was:
+            if is_worse(one):
                 kept[_place(one)] = one
         streams = {name: stream for name, stream in streams.items() if stream}
         return replace(self, streams=streams, amendments=tuple(kept.values()))
@@ -156,12 +155,9 @@ def insert(stream: Stream, sample: Sample, *, horizon: datetime, disorder_s: flo
     stream
         The same one where the sample is known.
     """
-    place = len(stream)
-    if stream and _key(sample) <= _key(stream[-1].sample):
-        keys = [_key(taken.sample) for taken in stream]
-        place = bisect_left(keys, _key(sample))
-        if keys[place] == _key(sample):
-            return stream
+    place = bisect_left(stream, _key(sample), key=lambda taken: _key(taken.sample))
+    if place < len(stream) and _key(stream[place].sample) == _key(sample):
+        return stream
     quality = None
     after = list(stream[place:])
     if not is_evaluated(sample):
@@ -180,10 +176,9 @@ def trim(stream: Stream, horizon: datetime, *, disorder_s: float) -> Stream:
     """Forget samples older than a time and than late ones may be, but for the last of them."""
     if not stream:
         return stream
-    root, horizon = 0, min(horizon, stream[-1].sample.t - timedelta(seconds=disorder_s))
-    while root + 1 < len(stream) and stream[root + 1].sample.t <= horizon:
-        root += 1
-    return stream[root:] if root else stream
+    horizon = min(horizon, stream[-1].sample.t - timedelta(seconds=disorder_s))
+    older = bisect_right(stream, horizon, key=lambda taken: taken.sample.t)
+    return stream[max(older - 1, 0) :]
 
 
 def amendments_in(stream: Stream) -> tuple[Amendment, ...]:
@@ -196,6 +191,11 @@ def amendments_in(stream: Stream) -> tuple[Amendment, ...]:
 def is_flagged(sample: Sample) -> bool:
     """Whether a value has a flag worse than good."""
     return any(flag in {Flag.SUSPECT, Flag.FAIL, Flag.MISSING} for flag in sample.flags.values())
+
+
+def is_worse(one: Amendment) -> bool:
+    """Whether a flag was made worse, as far as is known."""
+    return one.was is None or one.flag > one.was
 
 
 def _check_again(after: list[Taken], quality: QualityState) -> list[Taken]:
@@ -214,12 +214,11 @@ def _check_again(after: list[Taken], quality: QualityState) -> list[Taken]:
 
 def _newest(newest: Mapping[str, Sample], sample: Sample) -> dict[str, Sample]:
     """Return the last samples that carried each key, with one more that may be older."""
-    fresh = {
+    return {**newest} | {
         key: sample
         for key in sample.values
         if key not in newest or _key(newest[key]) < _key(sample)
     }
-    return {**newest, **fresh}
 
 
 def _apply(stream: Stream, one: Amendment) -> Stream:

@@ -1,5 +1,6 @@
 """The live loop's bookkeeping: which streams sent something, and which are silent."""
 
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from datetime import datetime, timedelta
@@ -15,6 +16,7 @@ from seacage.twin._state import (
     amendments_in,
     insert,
     is_flagged,
+    is_worse,
     trim,
 )
 
@@ -136,29 +138,25 @@ def _new_spikes(before: Stream, after: Stream) -> list[Flagged]:
         return []
     known = amendments_in(before)
     new = [one for one in amendments_in(after) if one not in known]
-    return _with_amendments([taken.sample for taken in after], new) if new else []
+    return _with_amendments([taken.sample for taken in after], new)
 
 
 def _report_worse(state: TwinState, amendments: Sequence[Amendment]) -> list[Flagged]:
     """Report the samples whose flags have become worse."""
-    worse = [one for one in amendments if one.was is None or one.flag > one.was]
+    worse = list(filter(is_worse, amendments))
     streams = {one.stream for one in worse} & state.streams.keys()
     samples = [taken.sample for name in streams for taken in state.streams[name]]
     return _with_amendments(samples, worse)
 
 
 def _with_amendments(samples: Sequence[Sample], amendments: Sequence[Amendment]) -> list[Flagged]:
-    times = {(one.stream, one.t) for one in amendments}
+    of = defaultdict[tuple[str, datetime], list[Amendment]](list)
+    for one in amendments:
+        of[one.stream, one.t].append(one)
     return [
-        Flagged(
-            sample=amended(sample, amendments),
-            reason=" ".join(
-                one.remark for one in amendments if (one.stream, one.t) == (sample.stream, sample.t)
-            ),
-            used=True,
-        )
+        Flagged(sample=amended(sample, own), reason=" ".join(one.remark for one in own), used=True)
         for sample in samples
-        if (sample.stream, sample.t) in times
+        if (own := of.get((sample.stream, sample.t)))
     ]
 
 

@@ -1,15 +1,13 @@
 """A twin whose only input is the current, as one table: a whole winter in seconds."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
 from jaxtyping import Bool, Float
 
-from seacage.cage import Cage
 from seacage.conventions import InputError
 from seacage.surrogates import Disc, Prediction, Table
-from seacage.twin._answer import Answer
 from seacage.twin._metocean import Metocean
 from seacage.twin._twin import Twin
 
@@ -130,33 +128,24 @@ class TabulatedTwin:
         valid = metocean.known(("current",))
         inside = valid.copy()
         inside[valid] = self.table.region.contains(x[valid])
-        mean, std = (np.full((len(x), *self.table.output_shape), np.nan) for _ in range(2))
+        mean, std = np.full((2, len(x), *self.table.output_shape), np.nan)
         beyond = valid & ~inside
         for rows, model in ((inside, self.table), (beyond, _DirectTwin(twin=self.twin))):
             if rows.any():
                 part = model.predict(x[rows])
                 mean[rows], std[rows] = part.mean, part.std
-        return self._loads(valid, inside, mean, std)
-
-    def _loads(
-        self,
-        valid: Bool[np.ndarray, " case"],
-        inside: Bool[np.ndarray, " case"],
-        mean: Float[np.ndarray, "case output"],
-        std: Float[np.ndarray, "case output"],
-    ) -> Loads:
         lines, sensors = len(self.twin.bridle_names), len(self.twin.sensor_names)
         ends = np.cumsum([lines, lines, sensors])
-        low, best, sensor_low, sensor = np.split(mean, ends, axis=1)
-        _, best_std, sensor_low_std, sensor_std = np.split(std, ends, axis=1)
+        columns = zip(*(np.split(one, ends, axis=1) for one in (mean, std)), strict=True)
+        low, best, sensor_low, sensor = (Prediction(mean=mean, std=std) for mean, std in columns)
         return Loads(
             valid=valid,
             in_domain=inside,
             # A rope never pushes, though a Gaussian has negative values.
-            bridle_tension=Prediction(mean=np.maximum(best, 0.0), std=best_std),
-            bridle_low=np.maximum(low, 0.0),
-            sensor=Prediction(mean=sensor, std=sensor_std),
-            sensor_low=Prediction(mean=sensor_low, std=sensor_low_std),
+            bridle_tension=replace(best, mean=np.maximum(best.mean, 0.0)),
+            bridle_low=np.maximum(low.mean, 0.0),
+            sensor=sensor,
+            sensor_low=sensor_low,
         )
 
 
@@ -167,41 +156,19 @@ class _DirectTwin:
     twin: Twin
 
     def predict(self, x: Float[np.ndarray, "row feature"], /) -> Prediction:
-        parts = [
-            self._block(x[start : start + ROWS_AT_ONCE]) for start in range(0, len(x), ROWS_AT_ONCE)
-        ]
-        return Prediction(
-            mean=np.concatenate([one.mean for one in parts]),
-            std=np.concatenate([one.std for one in parts]),
-        )
+        starts = range(0, len(x), ROWS_AT_ONCE)
+        return Prediction.joined(*(self._block(x[one : one + ROWS_AT_ONCE]) for one in starts))
 
     def _block(self, x: Float[np.ndarray, "row feature"]) -> Prediction:
-        unknown = np.full(len(x), np.nan)
-        water = Metocean(
-            current_velocity=x[:, 1:], hs=unknown, wave_direction=np.full((len(x), 2), np.nan)
-        )
-        answer = self.twin.predict(water)
-        low = self.twin.models.bridles.predict(x)
+        water = replace(Metocean.from_columns({}, len(x)), current_velocity=x[:, 1:])
+        answer, low = self.twin.predict(water), self.twin.models.bridles.predict(x)
+        # The best mean of each tension, also where a rope that goes slack holds it at zero.
+        best = Prediction(mean=low.mean.copy(), std=answer.bridle_tension.std)
+        for shackle in self.twin.cage.shackles:
+            if answer.bridle_level[shackle.bridle] > 1:
+                column = answer.sensor_names.index(shackle.name)
+                best.mean[:, shackle.bridle] = answer.sensor.mean[:, column]
+        parts = low, best, answer.sensor_low, answer.sensor
         return Prediction(
-            mean=np.hstack(
-                [
-                    low.mean,
-                    _free_mean(answer, low, self.twin.cage),
-                    answer.sensor_low.mean,
-                    answer.sensor.mean,
-                ]
-            ),
-            std=np.hstack(
-                [low.std, answer.bridle_tension.std, answer.sensor_low.std, answer.sensor.std]
-            ),
+            mean=np.hstack([one.mean for one in parts]), std=np.hstack([one.std for one in parts])
         )
-
-
-def _free_mean(answer: Answer, low: Prediction, cage: Cage) -> Float[np.ndarray, "case line"]:
-    """Best mean of each tension, also where a rope that goes slack holds it at zero."""
-    best = low.mean.copy()
-    for shackle in cage.shackles:
-        if answer.bridle_level[shackle.bridle] > 1:
-            column = answer.sensor_names.index(shackle.name)
-            best[:, shackle.bridle] = answer.sensor.mean[:, column]
-    return best

@@ -60,7 +60,7 @@ def test_means_begin_at_whole_ten_minutes_and_average_the_noise_away():
 
 
 def test_the_truth_is_taken_at_the_readings_times_alone():
-    some = readings(1440).at(np.arange(1440) < 700)
+    some = readings(1440).rows(np.arange(1440) < 700)
     truth = readings(1440, reading=readings(1440).multi)
     truth.low[700:] = np.nan  # would spoil the mean if it were taken
     score = score_run(some, truth=truth)

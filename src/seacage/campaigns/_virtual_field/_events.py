@@ -154,7 +154,7 @@ class Event:
         if first == last:
             return record
         if self.kind == "silent":
-            return _without(record, slice(first, last))
+            return record.rows(np.delete(np.arange(len(record)), slice(first, last)))
         values = {key: column.copy() for key, column in record.values.items()}
         for column in values.values():
             if self.kind == "stuck":
@@ -298,12 +298,3 @@ def _hole(event: Event, cage: Cage) -> tuple[int, int, int]:
             f"spoke-{cage.spokes - 1}."
         )
     return ring, spoke, size
-
-
-def _without(record: Record, rows: slice) -> Record:
-    return replace(
-        record,
-        time=np.delete(record.time, rows),
-        values={key: np.delete(column, rows) for key, column in record.values.items()},
-        flags={key: np.delete(column, rows) for key, column in record.flags.items()},
-    )

@@ -138,4 +138,4 @@ def compare_ways(chain: Chain, ways: Sequence[Way]) -> ScoredWays:
 
 
 def _at(readings: Readings, time: Shaped[np.ndarray, " t"]) -> Readings:
-    return readings.at(np.isin(readings.time, time))
+    return readings.rows(np.isin(readings.time, time))

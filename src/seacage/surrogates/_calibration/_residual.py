@@ -84,12 +84,18 @@ class ResidualModel:
         """
         time, residual = _check_series(time_s, value)
         size = math.sqrt(float(np.mean(residual**2)))
-        if size == 0.0:
-            return self._start(time, residual, np.log([1e-12, self.memory_s, 1e-12]))
-        centre = np.log([size, self.memory_s, NOISE_SHARE * size])
+        sd, noise_sd = (size, NOISE_SHARE * size) if size > 0.0 else (1e-12, 1e-12)
+        centre = np.log([sd, self.memory_s, noise_sd])
         spread = np.array([SD_PRIOR_SD, math.log(self.memory_factor), SD_PRIOR_SD])
-        fitted = self._start(time, residual, centre)
-        for _ in range(self.rounds if self.degrees_of_freedom else 1):
+        fitted = FittedResidual(
+            **_sizes(centre),
+            degrees_of_freedom=self.degrees_of_freedom,
+            time_s=time,
+            value=residual,
+            weight=np.ones(len(time)),
+        )
+        rounds = self.rounds if self.degrees_of_freedom else 1
+        for _ in range(rounds if size > 0.0 else 0):  # there is nothing to search in zeros
             fitted = _search(fitted, centre, spread)
             weight = fitted.mean_weight()
             settled = np.max(np.abs(weight - fitted.weight)) < SETTLED
@@ -97,20 +103,6 @@ class ResidualModel:
             if settled:
                 break
         return fitted
-
-    def _start(
-        self, time: Series, residual: Series, log_sizes: Float[np.ndarray, " 3"]
-    ) -> "FittedResidual":
-        sd, memory_s, noise_sd = np.exp(log_sizes).tolist()
-        return FittedResidual(
-            sd=sd,
-            memory_s=memory_s,
-            noise_sd=noise_sd,
-            degrees_of_freedom=self.degrees_of_freedom,
-            time_s=time,
-            value=residual,
-            weight=np.ones(len(time)),
-        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -260,8 +252,7 @@ def _search(
     from scipy.optimize import minimize
 
     def with_sizes(offset: Float[np.ndarray, " 3"]) -> FittedResidual:
-        sd, memory_s, noise_sd = np.exp(centre + spread * offset).tolist()
-        return replace(fitted, sd=sd, memory_s=memory_s, noise_sd=noise_sd)
+        return replace(fitted, **_sizes(centre + spread * offset))
 
     now = np.log([fitted.sd, fitted.memory_s, fitted.noise_sd])
     end = minimize(
@@ -272,6 +263,10 @@ def _search(
         options={"maxiter": 40, "ftol": 1e-7},
     )
     return with_sizes(end.x)
+
+
+def _sizes(logarithm: Float[np.ndarray, " 3"]) -> dict[str, float]:
+    return dict(zip(("sd", "memory_s", "noise_sd"), np.exp(logarithm).tolist(), strict=True))
 
 
 def _check_series(time_s: ArrayLike, value: ArrayLike) -> tuple[Series, Series]:

@@ -1,5 +1,6 @@
 """The net as a twin predicts it, and the clearance of points and paths from it."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import datetime
 from typing import Self
@@ -31,6 +32,7 @@ class StaleError(SeacageError):
 # The expected net and its error's spread at some points, case by case.
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _ExpectedNet:
+    point: Float[np.ndarray, "point 3"]
     near: Nearest
     room: Float[np.ndarray, "point case"]
     scatter: Float[np.ndarray, " point"]
@@ -159,8 +161,7 @@ class PredictedNet:
             Distance of ``p_below`` [m].
         """
         _check(point, below)
-        blocks = np.array_split(np.arange(len(point)), 1 + len(point) // POINTS_AT_ONCE)
-        return Clearance.joined(*(self._clearance(point[rows], below) for rows in blocks))
+        return Clearance.joined(*(self._clearance(net, below) for net in self._expect(point)))
 
     def along(self, path: Float[np.ndarray, "corner 3"], *, below: float = 1.0) -> PathClearance:
         """Clearance of a path of straight lines from the net, sampled all along.
@@ -174,15 +175,14 @@ class PredictedNet:
         """
         _check(path, below)
         point, along = sample_path(path)
+        nets = list(self._expect(point))
+        p = np.concatenate([net.p_below(below) for net in nets])
+        patch = np.concatenate([self._patch(net.near) for net in nets])
         weight = self.error.weight
-        p, patch = np.empty((len(point), len(weight))), np.empty(len(point), dtype=int)
-        for rows in np.array_split(np.arange(len(point)), 1 + len(point) // POINTS_AT_ONCE):
-            expected = self._expect(point[rows])
-            p[rows], patch[rows] = expected.p_below(below), self._patch(expected.near)
         return PathClearance(
             point=point,
             along=along,
-            clearance=self.clearance(point, below=below),
+            clearance=Clearance.joined(*(self._clearance(net, below) for net in nets)),
             p_below=float(_any(_by_patch(p, patch)) @ weight),
             p_least=float(p.max(axis=0) @ weight),
             p_most=float(_any(p) @ weight),
@@ -194,18 +194,20 @@ class PredictedNet:
         quarter = 4 * (node % self.cage.spokes) // self.cage.spokes
         return 4 * (self.error.ring_of[node] // PATCH_RINGS) + quarter
 
-    def _expect(self, point: Float[np.ndarray, "point 3"]) -> _ExpectedNet:
-        near = self.cage.nearest(point, self.expected_position)
-        room = np.where(near.inside, near.distance, -near.distance)
-        return _ExpectedNet(
-            near=near,
-            room=room[:, None] + self.error.displacement(near),
-            scatter=self.error.scatter(near, self.node_sigma),
-        )
+    def _expect(self, point: Float[np.ndarray, "point 3"]) -> Iterator[_ExpectedNet]:
+        for some in np.array_split(point, 1 + len(point) // POINTS_AT_ONCE):
+            near = self.cage.nearest(some, self.expected_position)
+            room = np.where(near.inside, near.distance, -near.distance)
+            yield _ExpectedNet(
+                point=some,
+                near=near,
+                room=room[:, None] + self.error.displacement(near),
+                scatter=self.error.scatter(near, self.node_sigma),
+            )
 
-    def _clearance(self, point: Float[np.ndarray, "point 3"], below: float) -> Clearance:
-        near = self.cage.nearest(point, self.node_position)
-        expected, weight = self._expect(point), self.error.weight
+    def _clearance(self, expected: _ExpectedNet, below: float) -> Clearance:
+        near = self.cage.nearest(expected.point, self.node_position)
+        weight = self.error.weight
         room = expected.room @ weight
         variance = (expected.room - room[:, None]) ** 2 @ weight
         p_inside = expected.p_inside() @ weight

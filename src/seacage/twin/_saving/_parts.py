@@ -40,6 +40,9 @@ DISCREPANCY = "discrepancy:"
 """Before the names of the arrays of the shapes' errors."""
 
 _ERRORS = ("current_velocity", "ring", "rest")
+_OF_TWIN = ("provenance", "buoy", "timeouts", "fault_detector")
+_OF_MODELS = ("inputs", "edge", "still_volume")
+"""Fields that the header has as they are."""
 
 Kind = TypeVar("Kind", FittedGaussianProcess, FittedNARGP, FittedShapeGP)
 
@@ -67,31 +70,20 @@ class Header:
 
 
 def to_parts(
-    *,
-    models: Models,
-    provenance: Provenance,
-    buoy: str,
-    timeouts: StreamTimeouts,
-    fault_detector: FaultDetectorSettings,
-    discrepancy: Discrepancy | None,
+    *, models: Models, discrepancy: Discrepancy | None, **others: Any
 ) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
-    """Return a twin's settings and arrays."""
+    """Return a twin's settings and arrays, from its fields."""
     from pydantic import TypeAdapter
 
     header = Header(
         format=FORMAT,
-        version=VERSION if fault_detector == FaultDetectorSettings() else TUNED_VERSION,
+        version=VERSION if others["fault_detector"] == FaultDetectorSettings() else TUNED_VERSION,
         cage_toml=models.cage.to_toml(),
-        inputs=models.inputs,
         domain=(tuple(models.domain.lower.tolist()), tuple(models.domain.upper.tolist())),
-        edge=models.edge,
-        still_volume=models.still_volume,
         gains={name: model.gain for name, model in models.upper.items()},
         spreads={name: model.spread for name, model in models.upper.items()},
-        buoy=buoy,
-        timeouts=timeouts,
-        provenance=provenance,
-        fault_detector=fault_detector,
+        **{name: getattr(models, name) for name in _OF_MODELS},
+        **others,
     )
     settings = TypeAdapter(Header).dump_python(header, mode="json", by_alias=True)
     parts: dict[str, Fitted] = {"bridles": models.bridles, "shape": models.shape}
@@ -138,14 +130,8 @@ def from_parts(
         raise ModelError(
             f"{source}: its parts do not fit together ({error}). Train the twin anew."
         ) from error
-    return {
-        "models": models,
-        "provenance": header.provenance,
-        "buoy": header.buoy,
-        "timeouts": header.timeouts,
-        "fault_detector": header.fault_detector,
-        "discrepancy": discrepancy,
-    }
+    others = {name: getattr(header, name) for name in _OF_TWIN}
+    return {"models": models, "discrepancy": discrepancy, **others}
 
 
 def _discrepancy(
@@ -155,10 +141,8 @@ def _discrepancy(
         return None
     own = {key: arrays[f"{DISCREPANCY}{key}"] for key in _ERRORS}
     cases = len(own["ring"])
-    shapes = {"current_velocity": (cases, 2)} | dict.fromkeys(
-        ("ring", "rest"), (cases, cage.rings + 1, 3)
-    )
-    for key, shape in shapes.items():
+    by_ring = cases, cage.rings + 1, 3
+    for key, shape in zip(_ERRORS, ((cases, 2), by_ring, by_ring), strict=True):
         if own[key].shape != shape:
             raise ModelError(f"its {key} is {own[key].shape}, not {shape}.")
     return Discrepancy(origin=Origin(settings["origin"]), **own)
@@ -180,12 +164,10 @@ def _models(
 
     models = Models(
         cage=Cage.from_toml(header.cage_toml),
-        inputs=header.inputs,
         domain=Domain(lower=np.array(header.domain[0]), upper=np.array(header.domain[1])),
-        edge=header.edge,
-        still_volume=header.still_volume,
         bridles=part("bridles", FittedGaussianProcess),
         shape=part("shape", FittedShapeGP),
+        **{name: getattr(header, name) for name in _OF_MODELS},
     )
     for sensor, gain in header.gains.items():
         rest = part(f"{UPPER}{sensor}", FittedNARGP, lower=models.lower(sensor))

@@ -5,11 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Bool, Float, Int, Shaped
 
-from seacage.surrogates import (
-    FittedGaussianProcess,
-    Prediction,
-    ResidualModel,
-)
+from seacage.surrogates import FittedGaussianProcess, ResidualModel
 from seacage.twin._correction import Correction, Spread
 from seacage.twin._pairs import Pairs
 
@@ -125,7 +121,8 @@ def cross_validate(
     x
         Features of the water at the held-out pairs.
     """
-    edges = _edges(held_out)
+    start, end = held_out.time[[0, -1]]
+    edges = start + (end - start) / FOLDS * np.arange(1, FOLDS)
     fold_of = np.searchsorted(edges, held_out.time, side="right")
     fold_of_selected = np.searchsorted(edges, selected.time, side="right")
     low = model.rest.lower.predict(x)
@@ -134,7 +131,7 @@ def cross_validate(
         rows, kept = fold_of == fold, fold_of_selected != fold
         whole = model.rest.upper[-1]
         reduced = _condition(whole, kept) if kept.sum() > 1 else whole
-        here = Prediction(mean=low.mean[rows], std=low.std[rows])
+        here = low.rows(rows)
         rest = replace(model.rest, own=(reduced,)).predict(x[rows], below=here)
         mean[rows] = rest.mean + model.gain * here.mean
         variance[rows] = model.latent_variance(rest.std, here.std)
@@ -159,9 +156,3 @@ def _condition(
         for member in process.members
     ]
     return replace(process, members=tuple(members))
-
-
-def _edges(pairs: Pairs) -> Shaped[np.ndarray, " edge"]:
-    """Inner edges of the parts that are held out in turn."""
-    start, end = pairs.time[0], pairs.time[-1]
-    return start + (end - start) / FOLDS * np.arange(1, FOLDS)

@@ -88,7 +88,16 @@ def train(
     def report(stage: str, done: int) -> None:
         (progress or no_progress)(f"train {stage}", done, 2 + len(sensors))
 
-    level_1 = _start(cage, campaign, base, training, report)
+    if campaign is not None and base is None:
+        level_1 = _level_one(cage, campaign, training, report)
+    elif base is not None and campaign is None:
+        report("bridles", 1)
+        report("shape", 2)
+        level_1 = _from_base(cage, base, training)
+    else:
+        raise InputError(
+            "train: give either a campaign, to fit level 1 to, or a base, whose level 1 is taken."
+        )
     if field is None:
         return level_1
     models, provenance = level_1.models, level_1.provenance
@@ -165,26 +174,8 @@ def update(twin: Twin, field: FieldRecord, *, points: int = 60, mean_s: float = 
     )
 
 
-def _start(
-    cage: Cage,
-    campaign: CampaignRecord | None,
-    base: Twin | None,
-    training: Training,
-    report: Callable[[str, int], None],
-) -> Twin:
-    """Level 1, and level 2 of the sensors that have not moved since the base."""
-    if campaign is not None and base is None:
-        return _level_one(cage, campaign, training, report)
-    if base is None or campaign is not None:
-        raise InputError(
-            "train: give either a campaign, to fit level 1 to, or a base, whose level 1 is taken."
-        )
-    report("bridles", 1)
-    report("shape", 2)
-    return _from_base(cage, base, training)
-
-
 def _from_base(cage: Cage, base: Twin, training: Training) -> Twin:
+    """Take level 1, and level 2 of the sensors that have not moved."""
     before = base.cage
     if replace(cage, shackle=before.shackle, depth_sensor=before.depth_sensor) != before:
         raise InputError(
@@ -196,10 +187,8 @@ def _from_base(cage: Cage, base: Twin, training: Training) -> Twin:
             f"train: the inputs of the base are {' and '.join(base.models.inputs)}, not "
             f"{' and '.join(training.inputs)}. Give the same, or give a campaign."
         )
-    places = {one.name: one for one in (*before.depth_sensors, *before.shackles)}
-    unmoved = {
-        one.name for one in (*cage.depth_sensors, *cage.shackles) if one == places.get(one.name)
-    }
+    places = (*before.depth_sensors, *before.shackles)
+    unmoved = {one.name for one in (*cage.depth_sensors, *cage.shackles) if one in places}
     stay = [name for name in base.models.upper if name in unmoved]
     windows = base.provenance.training_windows
     return replace(
