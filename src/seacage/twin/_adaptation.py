@@ -49,7 +49,7 @@ def adapt(
     if before is None or until <= before or timeouts.adapt_rate == 0.0:
         return state
     start, end = before - ADAPTATION_BLOCK, until - ADAPTATION_BLOCK
-    counted, water = list[tuple[str, Sample]](), list[Metocean]()
+    counted = list[tuple[str, Sample, Metocean]]()
     for name in models.upper:
         tracked = state.tracked.get(name, Tracked())
         for taken in state.streams.get(name, ()):
@@ -58,16 +58,14 @@ def adapt(
                 reading = reading_at(sample.t)
                 if reading.metocean is not None and not reading.trouble:
                     tracked = replace(tracked, counted=sample.t)
-                    counted.append((name, sample))
-                    water.append(reading.metocean)
+                    counted.append((name, sample, reading.metocean))
     if not counted:
         return state
-    table, row = np.unique(
-        np.concatenate([one.table for one in water]), axis=0, return_inverse=True
-    )
+    water = Metocean.joined(*(one for _, _, one in counted))
+    table, row = np.unique(water.table, axis=0, return_inverse=True)
     answer = models.answer(Metocean.from_table(table), [""] * len(table))
     factors = dict(state.tracked)
-    for (name, sample), place in zip(counted, row.ravel(), strict=True):
+    for (name, sample, _), place in zip(counted, row.ravel(), strict=True):
         column = answer.sensor_names.index(name)
         mean, std = (float(one[place, column]) for one in (answer.sensor.mean, answer.sensor.std))
         factors[name] = adapt_factor(

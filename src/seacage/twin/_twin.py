@@ -227,17 +227,14 @@ class Twin:
 
     def _answer(self, state: TwinState, now: datetime) -> tuple[TwinState, Answered]:
         reading = self._reading_at(state, now)
-        unknown = Metocean.from_columns({}, 1)
-        water = unknown if reading.metocean is None else reading.metocean
-        held = None if reading.trouble else state.held
-        if held is not None and held.answers(self.models, water):
-            answer = held.answer
-        else:
+        water = Metocean.from_columns({}, 1) if reading.metocean is None else reading.metocean
+        held = state.held
+        if reading.trouble or held is None or not held.answers(self.models, water):
             answer = self.models.answer(water, [reading.trouble])
             held = Held(models=self.models, water=water, answer=answer)
-        tracked = with_predictions(state.tracked, self._predictions(answer))
+        tracked = with_predictions(state.tracked, self._predictions(held.answer))
         state = replace(state, tracked=tracked, held=None if reading.trouble else held)
-        answer = self._adapt(answer, state)
+        answer = self._adapt(held.answer, state)
         return state, Answered(
             t=now, answer=answer, metocean=reading.metocean, input_age_s=reading.age_s
         )

@@ -1,6 +1,6 @@
 """Key figures of the alarms over a span of time, counted from the journal."""
 
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta
@@ -118,12 +118,11 @@ def _stood(lines: Sequence[AlarmEvent], end: datetime) -> list[tuple[str, dateti
 def _time_to_acknowledge(raised: AlarmEvent, lines: Sequence[AlarmEvent]) -> float | None:
     """Time from a raise to its acknowledgement [s]; the next raise of the alarm ends the wait."""
     for line in lines:
-        if line.alarm != raised.alarm or line.t < raised.t or line is raised:
-            continue
-        if line.action is Action.ACKNOWLEDGED:
+        after = line.alarm == raised.alarm and line.t >= raised.t and line is not raised
+        if after and line.action is Action.ACKNOWLEDGED:
             return (line.t - raised.t).total_seconds()
-        if line.action is Action.RAISED:
-            return None
+        if after and line.action is Action.RAISED:
+            break
     return None
 
 
@@ -132,9 +131,7 @@ def _most_in_an_hour(times: Sequence[datetime]) -> int:
 
 
 def _chattering(raises: Sequence[AlarmEvent]) -> tuple[str, ...]:
-    names = dict.fromkeys(line.alarm for line in raises)
-    return tuple(
-        name
-        for name in names
-        if _most_in_an_hour([line.t for line in raises if line.alarm == name]) >= CHATTERING
-    )
+    times = defaultdict[str, list[datetime]](list)
+    for line in raises:
+        times[line.alarm].append(line.t)
+    return tuple(name for name, own in times.items() if _most_in_an_hour(own) >= CHATTERING)

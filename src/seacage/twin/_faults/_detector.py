@@ -75,20 +75,17 @@ class FaultDetector:
         active
             The alarms that are raised: residuals that they explain count for no other.
         """
-        sums = self.sums.extended(answered, twin.fault_detector.block_s)
-        over = self.sums.number is not None and sums.number != self.sums.number
-        after = self._closed(twin, answered, active) if over else self
+        after, settings = self, twin.fault_detector
+        sums = self.sums.extended(answered, settings.block_s)
+        if self.sums.number is not None and sums.number != self.sums.number:
+            block = close_block(self.sums, self.monitors, twin, answered)
+            buoy = self.monitors.get(twin.buoy, SensorMonitor())
+            monitors = {name: monitor.restarted() for name, monitor in self.monitors.items()}
+            after = replace(self, monitors=monitors)
+            if block is not None and not buoy.is_stuck(settings):
+                after = after.updated(block, twin.cage, settings, active=active)
         monitors = _next_monitors(after.monitors, state, answered.t)
         return replace(after, monitors=monitors, sums=sums)
-
-    def _closed(self, twin: Twin, answered: Answered, active: frozenset[str]) -> Self:
-        block = close_block(self.sums, self.monitors, twin, answered)
-        monitors = {name: monitor.restarted() for name, monitor in self.monitors.items()}
-        restarted = replace(self, monitors=monitors)
-        buoy = self.monitors.get(twin.buoy)
-        if block is None or (buoy is not None and buoy.is_stuck(twin.fault_detector)):
-            return restarted
-        return restarted.updated(block, twin.cage, twin.fault_detector, active=active)
 
     def updated(
         self,

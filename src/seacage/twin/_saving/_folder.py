@@ -73,12 +73,6 @@ def read_folder(
         A file is missing, foreign, changed, too large or a link, an array is not plain numbers,
         or the signature is missing or another's.
     """
-    contents = _read_sealed(folder, key)
-    settings = _settings(contents[SETTINGS], folder / SETTINGS)
-    return settings, _arrays(contents[ARRAYS], folder / ARRAYS)
-
-
-def _read_sealed(folder: Path, key: bytes | None) -> dict[str, bytes]:
     expected = {SETTINGS, ARRAYS, MANIFEST}
     found = {path.name for path in folder.iterdir()} if folder.is_dir() else set[str]()
     if found - {SIGNATURE} != expected:
@@ -88,8 +82,12 @@ def _read_sealed(folder: Path, key: bytes | None) -> dict[str, bytes]:
             f"It holds {', '.join(sorted(expected))} and nothing else."
         )
     manifest = _content(folder, MANIFEST)
-    if key is not None:
-        _check_signature(folder, key, manifest, signed=SIGNATURE in found)
+    signed = SIGNATURE in found
+    if key is not None and not (signed and is_signed(key, manifest, _content(folder, SIGNATURE))):
+        raise ModelError(
+            f"{folder} is {'signed by another key' if signed else 'not signed'}, and only twins "
+            "that the key of the settings signs are taken. Train it with --sign KEYFILE."
+        )
     contents = {name: _content(folder, name) for name in (SETTINGS, ARRAYS)}
     seal = {name: _sha256(contents[name]) for name in (SETTINGS, ARRAYS)}
     # Compared as bytes, so that a changed blank in the manifest counts too.
@@ -98,19 +96,14 @@ def _read_sealed(folder: Path, key: bytes | None) -> dict[str, bytes]:
             f"{folder}: its files are not those that its manifest was written for, so at least "
             "one byte has changed. Copy the twin again, or train it anew."
         )
-    return contents
+    settings: object = parse_json(contents[SETTINGS], str(folder / SETTINGS), refusal=ModelError)
+    if not isinstance(settings, dict):
+        raise ModelError(f"{folder / SETTINGS} holds no settings.")
+    return cast("dict[str, object]", settings), _arrays(contents[ARRAYS], folder / ARRAYS)
 
 
 def _content(folder: Path, name: str) -> bytes:
     return read_bytes(folder / name, most=_MOST_BYTES[name], refusal=ModelError, links=False)
-
-
-def _check_signature(folder: Path, key: bytes, manifest: bytes, *, signed: bool) -> None:
-    if not signed or not is_signed(key, manifest, _content(folder, SIGNATURE)):
-        raise ModelError(
-            f"{folder} is {'signed by another key' if signed else 'not signed'}, and only twins "
-            "that the key of the settings signs are taken. Train it with --sign KEYFILE."
-        )
 
 
 def _arrays(content: bytes, path: Path) -> dict[str, np.ndarray]:
@@ -127,13 +120,6 @@ def _arrays(content: bytes, path: Path) -> dict[str, np.ndarray]:
                 f"{path}: {name} is {values.dtype}; expected finite float64. Train the twin anew."
             )
     return arrays
-
-
-def _settings(content: bytes, path: Path) -> dict[str, object]:
-    settings: object = parse_json(content, str(path), refusal=ModelError)
-    if not isinstance(settings, dict):
-        raise ModelError(f"{path} holds no settings.")
-    return cast("dict[str, object]", settings)
 
 
 def _json(settings: Mapping[str, object]) -> bytes:
