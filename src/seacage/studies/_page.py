@@ -42,8 +42,23 @@ def embed(figure: "Figure") -> str:
     return f"data:image/svg+xml;base64,{base64.b64encode(svg_text(figure).encode()).decode()}"
 
 
-def write_report(out: Path, page: str, scores: Mapping[str, object]) -> tuple[Path, Path]:
-    """Write the page and the scores of a study into a folder, and name both files."""
+def write_report(
+    out: Path, template: str, scores: Mapping[str, object], values: Mapping[str, object]
+) -> tuple[Path, Path]:
+    """Write the page and the scores of a study into a folder, and name both files.
+
+    Parameters
+    ----------
+    out
+        The folder.
+    template
+        Of the page, which shows the scores.
+    scores
+        By name, as programs read them.
+    values
+        Of the page alone.
+    """
+    page = render(template, **{**scores, **values})
     out.mkdir(parents=True, exist_ok=True)
     report, numbers = out / "report.html", out / "scores.json"
     report.write_text(page, encoding="utf-8")

@@ -1,6 +1,6 @@
 """A fitted model as plain settings and named arrays, and the checks on the way back."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import TypeVar
 
 import numpy as np
@@ -33,10 +33,9 @@ def setting(settings: Mapping[str, object], name: str, kind: type[Kind]) -> Kind
     return value
 
 
-def sub_settings(settings: Mapping[str, object], name: str) -> list[Settings]:
-    """The settings of the models inside this one."""
-    parts = setting(settings, name, list)
-    return [setting({name: part}, name, dict) for part in parts]
+def setting_list(settings: Mapping[str, object], name: str, kind: type[Kind]) -> tuple[Kind, ...]:
+    """Entries of a list among the settings, each of the kind that the model needs."""
+    return tuple(setting({name: one}, name, kind) for one in setting(settings, name, list))
 
 
 def array(arrays: Mapping[str, np.ndarray], name: str, *shape: int | None) -> np.ndarray:
@@ -62,22 +61,3 @@ def array(arrays: Mapping[str, np.ndarray], name: str, *shape: int | None) -> np
         )
     # Conditioning wants C order, and an array read from a file may be read-only or misaligned.
     return np.require(values, requirements=["C", "A"])
-
-
-def join(parts: Sequence[Arrays]) -> Arrays:
-    """The arrays of several models in one, each named by its place."""
-    return {
-        f"{place}.{name}": values
-        for place, arrays in enumerate(parts)
-        for name, values in arrays.items()
-    }
-
-
-def within(place: int, arrays: Mapping[str, np.ndarray]) -> Arrays:
-    """The arrays of the model in this place."""
-    start = f"{place}."
-    return {
-        name.removeprefix(start): values
-        for name, values in arrays.items()
-        if name.startswith(start)
-    }

@@ -139,6 +139,14 @@ def check_outputs(
     return outputs
 
 
+def check_shapes(
+    x: ArrayLike, node_position: ArrayLike, *, what: str
+) -> tuple[Float[np.ndarray, "row feature"], Float[np.ndarray, "row node 3"]]:
+    """Features and shapes of the same cases, by ``check_inputs`` and ``check_outputs``."""
+    x = check_inputs(x, what=what)
+    return x, check_outputs(node_position, what=what, rows=len(x), shape="(rows, nodes, 3)")
+
+
 def _refuse_missing(values: Float[np.ndarray, "row *rest"], *, name: str, what: str) -> None:
     finite = np.isfinite(values)
     if not finite.all():

@@ -1,6 +1,6 @@
 """The benchmarks study's page: its figures, for the template ``benchmarks.html``."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
@@ -8,39 +8,26 @@ from seacage.figures import Contest, cost_figure, coverage_figure, error_figure
 from seacage.studies._benchmarks._methods import OURS, Method
 from seacage.studies._benchmarks._problems import CAGE_SIZE, Problem
 from seacage.studies._benchmarks._verdicts import COVERAGE, Summaries
-from seacage.studies._claim import Claim
-from seacage.studies._page import embed, render
+from seacage.studies._page import embed
 
 
-def benchmark_page(
-    promises: Sequence[Claim],
+def page_values(
     problems: Sequence[Problem],
     methods: Sequence[Method],
-    *,
     report: Summaries,
-    tuning: Summaries,
+    *,
     seeds: Sequence[int],
-    tuning_seeds: Sequence[int],
-    missing: str | None,
-    provenance: Mapping[str, str],
-) -> str:
-    """The whole page.
+) -> dict[str, object]:
+    """Figures and tables of the page.
 
     Parameters
     ----------
-    promises
-        With their verdicts.
     problems, methods
         What was run, by whom.
-    report, tuning
-        Summaries by problem and method, over the seeds that count and over those that the
-        settings were chosen on; the second may be empty.
-    seeds, tuning_seeds
+    report
+        Summaries by problem and method, over the seeds that count.
+    seeds
         Which those are.
-    missing
-        Why there are no peers, where there are none.
-    provenance
-        With what it was done, as name and value.
     """
     timed = CAGE_SIZE if CAGE_SIZE in problems else problems[-1]
     titles = [method.title for method in methods]
@@ -59,31 +46,25 @@ def benchmark_page(
         "coverage": coverage_figure(titles, contests, ours=ours, wanted=COVERAGE),
         "costs": cost_figure(titles, costs, ours=ours),
     }
-    return render(
-        "benchmarks.html",
-        promises=promises,
-        problems=problems,
-        methods=methods,
-        report=report,
-        tuning=tuning,
-        seeds=seeds,
-        tuning_seeds=tuning_seeds,
-        missing=missing,
-        provenance=provenance,
-        timed=timed,
-        nargp=OURS,
-        wanted=COVERAGE,
-        least={
+    return {
+        "problems": problems,
+        "methods": methods,
+        "report": report,
+        "seeds": seeds,
+        "timed": timed,
+        "nargp": OURS,
+        "wanted": COVERAGE,
+        "least": {
             problem.name: _least(_of(report, problem, method, "rmse") for method in methods)
             for problem in problems
         },
-        answered={
+        "answered": {
             problem.name: [one for one in methods if (problem.name, one.name) in report]
             for problem in problems
         },
-        failed=[one for one in report.values() if one.failures],
-        pictures={name: embed(figure) for name, figure in figures.items()},
-    )
+        "failed": [one for one in report.values() if one.failures],
+        "pictures": {name: embed(figure) for name, figure in figures.items()},
+    }
 
 
 def _contest(problem: Problem, methods: Sequence[Method], report: Summaries, seeds: int) -> Contest:

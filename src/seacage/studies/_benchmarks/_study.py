@@ -7,7 +7,7 @@ from pathlib import Path
 from seacage.conventions import InputError, Progress, no_progress
 from seacage.studies._benchmarks._methods import OURS, Method, own_methods, peer_methods
 from seacage.studies._benchmarks._problems import CAGE_SIZE, PROBLEMS, Problem
-from seacage.studies._benchmarks._report import benchmark_page
+from seacage.studies._benchmarks._report import page_values
 from seacage.studies._benchmarks._runs import Runs
 from seacage.studies._benchmarks._scores import RunScore, Summary, score_run, summary
 from seacage.studies._benchmarks._verdicts import verdicts
@@ -101,21 +101,16 @@ def benchmark_study(
             f"study benchmarks: our own answers to {join_names(lost)} are not there. Leave out "
             "`kept`, and they are made."
         )
-    evaluated = verdicts(found)
-    page = benchmark_page(
-        evaluated,
-        problems,
-        methods,
-        report=found,
-        tuning=tuned,
-        seeds=report,
-        tuning_seeds=tuning,
-        missing=_NO_PEERS if peers is None else None,
-        provenance=_provenance(methods),
-    )
-    summaries = tuple(found.values())
+    evaluated, summaries = verdicts(found), tuple(found.values())
     everything = {"verdicts": evaluated, "summaries": summaries, "runs": scores}
-    written, numbers = write_report(out, page, everything)
+    values = {
+        **page_values(problems, methods, found, seeds=report),
+        "tuning": tuned,
+        "tuning_seeds": tuning,
+        "missing": _NO_PEERS if peers is None else None,
+        "provenance": _provenance(methods),
+    }
+    written, numbers = write_report(out, "benchmarks.html", everything, values)
     return BenchmarkStudy(report=written, scores=numbers, verdicts=evaluated, summaries=summaries)
 
 

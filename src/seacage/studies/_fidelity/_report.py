@@ -1,19 +1,18 @@
 """The fidelity study's page: its figures, for the template ``fidelity.html``."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from jaxtyping import Float
 
 from seacage.conventions import Origin
 from seacage.figures import Panel, fouling_figure, gain_figure, left_figure, sector_figure
-from seacage.studies._claim import Claim
 from seacage.studies._fidelity._claims import THOUSANDTH
 from seacage.studies._fidelity._fouling import FoulingGap
 from seacage.studies._fidelity._gap import SECTORS, SensorGap
 from seacage.studies._fidelity._null_case import Gains, NullCase
 from seacage.studies._fidelity._rescaling import LEAST_LEFT, Rescalings
-from seacage.studies._page import embed, render
+from seacage.studies._page import embed
 
 ORIGIN = Origin.VIRTUAL_FIELD
 """Of every truth and every reading here."""
@@ -21,27 +20,10 @@ ORIGIN = Origin.VIRTUAL_FIELD
 _QUANTITIES = {"m": "Rise", "kN": "Tension"}
 
 
-def fidelity_page(
-    *,
-    claims: Sequence[Claim],
-    gaps: Sequence[SensorGap],
-    rescalings: Rescalings,
-    null: NullCase,
-    fouling: FoulingGap,
-    recipe: Mapping[str, str],
-    provenance: Mapping[str, str],
-) -> str:
-    """The whole page.
-
-    Parameters
-    ----------
-    claims
-        With their verdicts.
-    gaps, rescalings, null, fouling
-        The four parts.
-    recipe, provenance
-        What was done and with what, as name and value.
-    """
+def page_values(
+    gaps: Sequence[SensorGap], rescalings: Rescalings, null: NullCase, fouling: FoulingGap
+) -> dict[str, object]:
+    """Figures and names of the page besides the scores."""
     panels = [
         Panel(sensor=gap.sensor, quantity=_QUANTITIES[gap.unit], unit=gap.unit) for gap in gaps
     ]
@@ -71,22 +53,15 @@ def fidelity_page(
             origin=ORIGIN,
         ),
     }
-    return render(
-        "fidelity.html",
-        claims=claims,
-        gaps=gaps,
-        rescalings=rescalings,
-        null=null,
-        fouling=fouling,
-        sectors=list(SECTORS),
-        by_sector=by_sector,
-        growths=[f"{growth:g}" for growth in fouling.growth],
-        pictures={name: embed(figure) for name, figure in figures.items()},
-        thousandth=THOUSANDTH,
-        origin=ORIGIN,
-        recipe=recipe,
-        provenance=provenance,
-    )
+    return {
+        "emulation_mae": rescalings.emulation_mae,
+        "sectors": list(SECTORS),
+        "by_sector": by_sector,
+        "growths": [f"{growth:g}" for growth in fouling.growth],
+        "pictures": {name: embed(figure) for name, figure in figures.items()},
+        "thousandth": THOUSANDTH,
+        "origin": ORIGIN,
+    }
 
 
 def _by_sector(gap: SensorGap, name: str) -> list[float]:

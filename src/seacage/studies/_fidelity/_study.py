@@ -15,7 +15,7 @@ from seacage.studies._fidelity._claims import claims
 from seacage.studies._fidelity._fouling import FoulingGap, fouling_gap
 from seacage.studies._fidelity._gap import SensorGap, sensor_gaps
 from seacage.studies._fidelity._null_case import NullCase, null_case
-from seacage.studies._fidelity._report import fidelity_page
+from seacage.studies._fidelity._report import page_values
 from seacage.studies._fidelity._rescaling import Rescaling, rescalings
 from seacage.studies._fidelity._windows import Sensors, Windows, answer_windows, choose_windows
 from seacage.studies._page import write_report
@@ -117,27 +117,17 @@ def fidelity_study(
         survey, hidden, stages, begin=record.buoy.time[0], workers=workers, progress=report
     )
     found = claims(gaps, scaled.sensors, null, fouling)
-    recipe = _recipe(record, whole, lost=len(chosen) - len(whole))
-    provenance = _provenance(record, cage, seed)
-    page = fidelity_page(
-        claims=found,
-        gaps=gaps,
-        rescalings=scaled,
-        null=null,
-        fouling=fouling,
-        recipe=recipe,
-        provenance=provenance,
-    )
     scores = {
-        "recipe": recipe,
-        "provenance": provenance,
+        "recipe": _recipe(record, whole, lost=len(chosen) - len(whole)),
+        "provenance": _provenance(record, cage, seed),
         "claims": found,
         "sensors": gaps,
         "rescalings": scaled.sensors,
         "null_case": null,
         "fouling": fouling,
     }
-    written, numbers = write_report(out, page, scores)
+    values = page_values(gaps, scaled, null, fouling)
+    written, numbers = write_report(out, "fidelity.html", scores, values)
     return FidelityStudy(
         report=written,
         scores=numbers,

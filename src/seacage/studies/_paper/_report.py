@@ -1,6 +1,6 @@
 """The paper study's page: its figures, for the template ``paper.html``."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -18,9 +18,7 @@ from seacage.figures import (
 from seacage.ocean import SeaState
 from seacage.studies._chain import Chain
 from seacage.studies._held_out import comparison, display_span
-from seacage.studies._page import embed, render
-from seacage.studies._paper._claims import PaperClaim
-from seacage.studies._paper._level_one import LevelOneScore
+from seacage.studies._page import embed
 from seacage.studies._paper._shape_models import (
     GCN_OURS,
     GCN_PAPER,
@@ -44,17 +42,8 @@ _DRAWN_MODELS = (PCA_PAPER, GCN_PAPER, GCN_OURS, SHAPE_CURRENT)
 _NETS = (PCA_PAPER, GCN_PAPER)
 
 
-def paper_page(
-    chain: Chain,
-    *,
-    scored: ScoredWays,
-    level_one: LevelOneScore,
-    shapes: ShapeStudy,
-    claims: Sequence[PaperClaim],
-    recipe: Mapping[str, str],
-    provenance: Mapping[str, str],
-) -> str:
-    """The whole page.
+def page_values(chain: Chain, scored: ScoredWays, shapes: ShapeStudy) -> dict[str, object]:
+    """Figures and names of the page besides the scores.
 
     Parameters
     ----------
@@ -63,39 +52,30 @@ def paper_page(
         figures of sensors.
     scored
         Ways of training and their scores, with the readings of the first.
-    level_one, shapes
-        Scores of level 1 and of models of the whole shape on held-out simulations.
-    claims
-        Of the paper, with their verdicts.
-    recipe, provenance
-        What was done and with what, as name and value.
+    shapes
+        Scores of models of the whole shape on held-out simulations.
     """
     sea = SeaState(current_speed=_SHOWN_SPEED, current_to=chain.cage.site.current_to)
-    return render(
-        "paper.html",
-        cage=chain.cage,
-        sea=sea,
-        scored=scored,
-        level_one=level_one,
-        shapes=shapes,
-        claims=claims,
-        recipe=recipe,
-        provenance=provenance,
-        in_time=chain.recipe.in_time,
-        computed=Origin.COMPUTED,
+    return {
+        "cage": chain.cage,
+        "sea": sea,
+        "scored": scored,
+        "shapes": shapes,
+        "in_time": chain.recipe.in_time,
+        "computed": Origin.COMPUTED,
         **finding_values(scored),
-        drawn=_draw_sensors(chain, scored),
-        trained=[
+        "drawn": _draw_sensors(chain, scored),
+        "trained": [
             (way, one)
             for row in zip(*(way.sensors for way in scored.ways), strict=True)
             for way, one in zip(scored.ways, row, strict=True)
         ],
-        pictures={
+        "pictures": {
             "net": _draw_net(chain, scored, sea),
             "ways": _draw_ways(scored.ways),
             **_draw_shapes(chain, shapes),
         },
-    )
+    }
 
 
 def finding_values(scored: ScoredWays) -> dict[str, object]:

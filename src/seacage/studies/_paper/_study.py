@@ -13,7 +13,7 @@ from seacage.studies._chain import Chain, Recipe
 from seacage.studies._page import write_report
 from seacage.studies._paper._claims import PaperClaim, paper_claims
 from seacage.studies._paper._level_one import LevelOneScore, score_level_one
-from seacage.studies._paper._report import paper_page
+from seacage.studies._paper._report import page_values
 from seacage.studies._paper._shape_models import shape_models
 from seacage.studies._paper._shape_scores import ShapeScore
 from seacage.studies._paper._shape_study import ShapeStudy, ShapeTrial, shape_study
@@ -126,20 +126,10 @@ def study_chain(chain: Chain, out: Path, *, networks: bool = False) -> PaperStud
     level_one = score_level_one(scored.twin, chain.held_out)
     shapes = _shapes(chain, networks=networks)
     claims = paper_claims(scored, shapes)
-    recipe, provenance = _recipe(chain, scored, shapes), _provenance(chain, scored)
-    page = paper_page(
-        chain,
-        scored=scored,
-        level_one=level_one,
-        shapes=shapes,
-        claims=claims,
-        recipe=recipe,
-        provenance=provenance,
-    )
     shape_scores = tuple(shapes.scores.values())
     scores = {
-        "recipe": recipe,
-        "provenance": provenance,
+        "recipe": _recipe(chain, scored, shapes),
+        "provenance": _provenance(chain, scored),
         "origin": Origin.VIRTUAL_FIELD,
         "sensors": scored.sensors,
         "level_one": level_one,
@@ -148,7 +138,8 @@ def study_chain(chain: Chain, out: Path, *, networks: bool = False) -> PaperStud
         "variance_of_three_modes": shapes.variance,
         "claims": claims,
     }
-    written, numbers = write_report(out, page, scores)
+    values = page_values(chain, scored, shapes)
+    written, numbers = write_report(out, "paper.html", scores, values)
     return PaperStudy(
         report=written,
         scores=numbers,

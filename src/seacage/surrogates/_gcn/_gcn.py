@@ -16,7 +16,7 @@ from seacage.surrogates._gcn._layers import Kind, first_parameters, parameter_sh
 from seacage.surrogates._gcn._network import Network, standard_rest
 from seacage.surrogates._gcn._recipe import Recipe, recipe_of
 from seacage.surrogates._gcn._spread import Spread
-from seacage.surrogates._prediction import Prediction, check_inputs, check_outputs
+from seacage.surrogates._prediction import Prediction, check_inputs, check_shapes
 from seacage.surrogates._scaling import Scaling
 from seacage.surrogates._shape import all_modes
 
@@ -304,8 +304,7 @@ def _cases(
 
 
 def _check_cases(x: np.ndarray, node_position: np.ndarray, graph: Graph, *, what: str) -> Cases:
-    x = check_inputs(x, what=what)
-    shape = check_outputs(node_position, what=what, rows=len(x), shape="(rows, nodes, 3)")
+    x, shape = check_shapes(x, node_position, what=what)
     if shape.shape[1] != graph.nodes:
         raise InputError(
             f"{what}: the shapes have {shape.shape[1]} nodes, but the graph has {graph.nodes}. "

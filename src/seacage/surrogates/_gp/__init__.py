@@ -7,6 +7,8 @@ from seacage.surrogates._gp._gaussian_process import (
     check_options,
     condense,
     fit_process,
+    processes_from_arrays,
+    processes_to_arrays,
     select_likelihood_outputs,
 )
 from seacage.surrogates._gp._kernels import (
@@ -51,6 +53,8 @@ __all__ = [
     "chunks",
     "condense",
     "fit_process",
+    "processes_from_arrays",
+    "processes_to_arrays",
     "register_kernels",
     "select_likelihood_outputs",
 ]

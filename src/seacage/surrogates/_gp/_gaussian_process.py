@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.conventions import InputError
-from seacage.surrogates._arrays import Arrays, Settings, array, setting
+from seacage.surrogates._arrays import Arrays, Settings, array, setting, setting_list
 from seacage.surrogates._gp._ensemble import Ensemble, draw_members, is_drawn, widening
 from seacage.surrogates._gp._hyperparameters import Evidence, most_probable
 from seacage.surrogates._gp._kernels import (
@@ -406,6 +406,31 @@ class FittedGaussianProcess:
         self, values: Float[np.ndarray, "row output *rest"]
     ) -> Float[np.ndarray, "row *answer"]:
         return values[:, 0] if self.single else values
+
+
+def processes_to_arrays(
+    processes: Sequence[FittedGaussianProcess],
+) -> tuple[list[Settings], Arrays]:
+    """Settings of the processes that a model holds, and all their arrays, named by their place."""
+    saved = [process.to_arrays() for process in processes]
+    return [settings for settings, _ in saved], {
+        f"{place}.{name}": values
+        for place, (_, arrays) in enumerate(saved)
+        for name, values in arrays.items()
+    }
+
+
+def processes_from_arrays(
+    settings: Mapping[str, object], name: str, arrays: Mapping[str, np.ndarray]
+) -> tuple[FittedGaussianProcess, ...]:
+    """The processes whose settings are listed under a name."""
+    return tuple(
+        FittedGaussianProcess.from_arrays(
+            part, {key[len(start) :]: one for key, one in arrays.items() if key.startswith(start)}
+        )
+        for place, part in enumerate(setting_list(settings, name, dict))
+        for start in [f"{place}."]
+    )
 
 
 def fit_process(

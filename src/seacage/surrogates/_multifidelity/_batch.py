@@ -176,16 +176,14 @@ class BatchedLevels:
         for count in sorted(set(counts.ravel().tolist())):
             same_rule = counts == count
             rows, levels = (np.flatnonzero(same_rule.any(axis=axis)) for axis in (1, 0))
-            some = self if len(levels) == len(self.levels) else self._chosen(levels)
+            every = len(levels) == len(self.levels)
+            some = self if every else self.of([self.levels[level] for level in levels])
             for piece in chunks(len(rows), CELLS // (count * some.weights.size)):
                 at = np.ix_(rows[piece], levels)
                 parts = some._with_rule(count, x[rows[piece]], below.mean[at], below.std[at])  # noqa: SLF001
                 for whole, part in zip((mean, variance), parts, strict=True):
                     whole[at] = np.where(same_rule[at], part, whole[at])
         return Prediction(mean=mean, std=np.sqrt(variance))
-
-    def _chosen(self, levels: Int[np.ndarray, " chosen"]) -> Self:
-        return self.of([self.levels[level] for level in levels])
 
     def _with_rule(
         self,

@@ -10,7 +10,7 @@ from jaxtyping import Float
 from numpy.typing import ArrayLike
 
 from seacage.conventions import InputError, ModelError
-from seacage.surrogates._arrays import Arrays, Settings, join, setting, sub_settings, within
+from seacage.surrogates._arrays import Arrays, Settings, setting
 from seacage.surrogates._gp import (
     AbstractKernel,
     Ensemble,
@@ -19,6 +19,8 @@ from seacage.surrogates._gp import (
     StationaryKernel,
     check_options,
     fit_process,
+    processes_from_arrays,
+    processes_to_arrays,
 )
 from seacage.surrogates._multifidelity._kernel import (
     LinkKernel,
@@ -371,14 +373,14 @@ class FittedNARGP:
 
     def to_arrays(self) -> tuple[Settings, Arrays]:
         """Everything that ``from_arrays`` needs; a lent level 1 is left out."""
-        saved = [process.to_arrays() for process in self.own]
+        levels, arrays = processes_to_arrays(self.own)
         settings: Settings = {
             "model": self.MODEL,
             "lent": self.lent is not None,
             "nested": self.nested,
-            "levels": [settings for settings, _ in saved],
+            "levels": levels,
         }
-        return settings, join([arrays for _, arrays in saved])
+        return settings, arrays
 
     @classmethod
     def from_arrays(
@@ -406,10 +408,7 @@ class FittedNARGP:
         if lent != (lower is not None):
             need = "needs its level 1 given" if lent else "has its own level 1"
             raise ModelError(f"The saved NARGP {need}. Check what is passed as `lower`.")
-        own = tuple(
-            FittedGaussianProcess.from_arrays(part, within(index, arrays))
-            for index, part in enumerate(sub_settings(settings, "levels"))
-        )
+        own = processes_from_arrays(settings, "levels", arrays)
         fitted = cls(own=own, lent=lower, nested=setting(settings, "nested", bool))
         _check_chain(fitted)
         return fitted

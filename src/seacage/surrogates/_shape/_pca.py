@@ -8,16 +8,18 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.conventions import InputError
-from seacage.surrogates._arrays import Arrays, Settings, array, join, setting, sub_settings, within
+from seacage.surrogates._arrays import Arrays, Settings, array, setting
 from seacage.surrogates._gp import (
     FittedGaussianProcess,
     KernelName,
     StationaryKernel,
     check_options,
     fit_process,
+    processes_from_arrays,
+    processes_to_arrays,
     select_likelihood_outputs,
 )
-from seacage.surrogates._prediction import Prediction, check_inputs, check_outputs
+from seacage.surrogates._prediction import Prediction, check_inputs, check_outputs, check_shapes
 
 PAPER_VARIANCE = 0.93
 """Share of the variance that the paper keeps, in three modes."""
@@ -241,10 +243,7 @@ class PcaGP:
         seed
             Of the subsets of points and of the random starts.
         """
-        x = check_inputs(x, what="PcaGP.fit")
-        node_position = check_outputs(
-            node_position, what="PcaGP.fit", rows=len(x), shape="(rows, nodes, 3)"
-        )
+        x, node_position = check_shapes(x, node_position, what="PcaGP.fit")
         shape = node_position.reshape(len(x), -1)
         about = self._about(rest_position, coordinates=shape.shape[1])
         if over_time is None:
@@ -351,13 +350,13 @@ class FittedPcaGP:
 
     def to_arrays(self) -> tuple[Settings, Arrays]:
         """Everything that ``from_arrays`` needs, as plain values and float64 arrays."""
-        saved = [score.to_arrays() for score in self.scores]
+        scores, arrays = processes_to_arrays(self.scores)
         settings: Settings = {
             "model": self.MODEL,
             "explained_variance": self.explained_variance,
-            "scores": [settings for settings, _ in saved],
+            "scores": scores,
         }
-        return settings, modes_to_arrays(self.basis) | join([arrays for _, arrays in saved])
+        return settings, modes_to_arrays(self.basis) | arrays
 
     @classmethod
     def from_arrays(cls, settings: Mapping[str, object], arrays: Mapping[str, np.ndarray]) -> Self:
@@ -368,10 +367,7 @@ class FittedPcaGP:
         ModelError
             A setting or an array is missing, of another kind or shape, or not finite.
         """
-        scores = tuple(
-            FittedGaussianProcess.from_arrays(part, within(place, arrays))
-            for place, part in enumerate(sub_settings(settings, "scores"))
-        )
+        scores = processes_from_arrays(settings, "scores", arrays)
         return cls(
             basis=modes_from_arrays(arrays, modes=len(scores)),
             scores=scores,

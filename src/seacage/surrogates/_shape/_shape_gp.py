@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.conventions import InputError, ModelError
-from seacage.surrogates._arrays import Arrays, Settings, array, join, setting, sub_settings, within
+from seacage.surrogates._arrays import Arrays, Settings, array, setting
 from seacage.surrogates._features import check_turnable
 from seacage.surrogates._gp import (
     FittedGaussianProcess,
@@ -17,8 +17,10 @@ from seacage.surrogates._gp import (
     check_options,
     condense,
     fit_process,
+    processes_from_arrays,
+    processes_to_arrays,
 )
-from seacage.surrogates._prediction import Prediction, check_inputs, check_outputs
+from seacage.surrogates._prediction import Prediction, check_inputs, check_shapes
 from seacage.surrogates._shape._pca import Modes, modes_from_arrays, modes_to_arrays, modes_within
 from seacage.surrogates._shape._symmetry import Symmetry
 from seacage.surrogates._shape._symmetry_check import check_symmetry
@@ -91,18 +93,10 @@ class ShapeGP:
         seed
             Of the subset of points and of the random starts.
         """
-        x = check_inputs(x, what="ShapeGP.fit")
-        node_position = check_outputs(
-            node_position, what="ShapeGP.fit", rows=len(x), shape="(rows, nodes, 3)"
-        )
+        x, shape = check_shapes(x, node_position, what="ShapeGP.fit")
         if self.symmetry is not None:
-            check_symmetry(self.symmetry, x, node_position, tolerance=self.asymmetry, seed=seed)
-            x, node_position = _fold_cases(self.symmetry, x, node_position)
-        return self._fit(x, node_position, seed)
-
-    def _fit(
-        self, x: Float[np.ndarray, "n feature"], shape: Float[np.ndarray, "n node 3"], seed: int
-    ) -> "FittedShapeGP":
+            check_symmetry(self.symmetry, x, shape, tolerance=self.asymmetry, seed=seed)
+            x, shape = _fold_cases(self.symmetry, x, shape)
         centre = shape.mean(axis=0)
         displacement = (shape - centre).reshape(len(x), -1)
         modes = modes_within(displacement, self.tolerance)
@@ -270,17 +264,17 @@ class FittedShapeGP:
 
     def to_arrays(self) -> tuple[Settings, Arrays]:
         """Everything that ``from_arrays`` needs, as plain values and float64 arrays."""
-        settings, arrays = self.scores.to_arrays()
-        saved: Settings = {
+        scores, arrays = processes_to_arrays([self.scores])
+        settings: Settings = {
             "model": self.MODEL,
             "frame": "earth",
             "features": self.features,
             "symmetric": self.symmetry is not None,
-            "scores": [settings],
+            "scores": scores,
         }
         own = {"mean_shape": self.centre, "left_out": self.left_out, "scale": self.scale}
         symmetry = {} if self.symmetry is None else self.symmetry.to_arrays()
-        return saved, modes_to_arrays(self.basis) | own | symmetry | join([arrays])
+        return settings, modes_to_arrays(self.basis) | own | symmetry | arrays
 
     @classmethod
     def from_arrays(cls, settings: Mapping[str, object], arrays: Mapping[str, np.ndarray]) -> Self:
@@ -291,10 +285,10 @@ class FittedShapeGP:
         ModelError
             A setting or an array is missing, of another kind or shape, or not finite.
         """
-        parts = sub_settings(settings, "scores")
-        if len(parts) != 1:
-            raise ModelError(f"The saved ShapeGP holds {len(parts)} processes; expected 1.")
-        scores = FittedGaussianProcess.from_arrays(parts[0], within(0, arrays))
+        processes = processes_from_arrays(settings, "scores", arrays)
+        if len(processes) != 1:
+            raise ModelError(f"The saved ShapeGP holds {len(processes)} processes; expected 1.")
+        scores = processes[0]
         if (frame := setting(settings, "frame", str)) != "earth":
             raise ModelError(
                 f"The saved ShapeGP has frame {frame!r}, which this version does not know. "

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Float, Int
 
 from seacage.conventions import InputError, ModelError
 from seacage.surrogates._arrays import Arrays, array
@@ -183,7 +183,7 @@ def _match(
     image[:, :2] = centre + (position[:, :2] - centre) @ turn.T
     distance, nearest = KDTree(image).query(position)
     source = np.asarray(nearest)
-    if distance.max() > COINCIDE or _has_repeats(source):
+    if distance.max() > COINCIDE or len(np.unique(source)) < len(source):
         node = int(np.argmax(distance))
         angle = math.degrees(math.atan2(turn[1, 0], turn[0, 0]))
         act = f"turned by {angle:.4g} deg" if np.linalg.det(turn) > 0.0 else "mirrored"
@@ -192,12 +192,6 @@ def _match(
             f"{distance[node]:.3g} m from the nearest. Give another fold or mirror, or none."
         )
     return source
-
-
-def _has_repeats(source: Int[np.ndarray, " node"]) -> bool:
-    met: Bool[np.ndarray, " node"] = np.zeros(len(source), dtype=bool)
-    met[source] = True
-    return not met.all()
 
 
 def _smooth(share: Float[np.ndarray, "row _"]) -> Float[np.ndarray, "row _"]:

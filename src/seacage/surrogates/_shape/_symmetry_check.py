@@ -6,7 +6,7 @@ from jaxtyping import Float
 from seacage.conventions import InputError
 from seacage.surrogates._features import check_turnable
 from seacage.surrogates._gp import StationaryKernel, condense, fit_process
-from seacage.surrogates._prediction import check_inputs, check_outputs
+from seacage.surrogates._prediction import check_shapes
 from seacage.surrogates._shape._pca import modes_within
 from seacage.surrogates._shape._symmetry import Symmetry
 
@@ -60,12 +60,14 @@ def check_symmetry(
         The asymmetry is above the tolerance, or the cases are too few, or too hard for the trial
         model, to tell.
     """
-    x = check_inputs(x, what="check_symmetry")
+    x, node_position = check_shapes(x, node_position, what="check_symmetry")
     check_turnable(x, what="check_symmetry")
-    node_position = check_outputs(
-        node_position, what="check_symmetry", rows=len(x), shape="(rows, nodes, 3)"
-    )
-    _check_nodes(symmetry, node_position)
+    nodes = symmetry.source.shape[1]
+    if node_position.shape[1] != nodes:
+        raise InputError(
+            f"check_symmetry: the shapes have {node_position.shape[1]} nodes, the symmetry is of "
+            f"{nodes}. Make it of the same net."
+        )
     if len(x) < FEW:
         raise InputError(
             f"check_symmetry: {len(x)} cases are too few; give at least {FEW}, or learn without "
@@ -119,12 +121,3 @@ def _errors_by_image(
         distance = np.sum((moved_back - node_position[held_out]) ** 2, axis=2)
         missed[image] = np.sqrt(distance.mean(axis=1))
     return missed
-
-
-def _check_nodes(symmetry: Symmetry, node_position: Float[np.ndarray, "n node 3"]) -> None:
-    nodes = symmetry.source.shape[1]
-    if node_position.shape[1] != nodes:
-        raise InputError(
-            f"check_symmetry: the shapes have {node_position.shape[1]} nodes, the symmetry is of "
-            f"{nodes}. Make it of the same net."
-        )

@@ -4,15 +4,12 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import isfinite
-from typing import TypeVar
 
 import numpy as np
 from jaxtyping import Bool, Float
 
 from seacage.conventions import InputError, ModelError
-from seacage.surrogates._arrays import Settings, setting
-
-Number = TypeVar("Number", int, float)
+from seacage.surrogates._arrays import Settings, setting, setting_list
 
 MARGIN = 1e-9
 """Of an axis: what rounding may put outside it."""
@@ -210,9 +207,9 @@ def restore_region(settings: Mapping[str, object]) -> AbstractRegion:
             )
         if kind == "box":
             return Box(
-                lower=_numbers(settings, "lower", float),
-                upper=_numbers(settings, "upper", float),
-                closed=_numbers(settings, "closed", int),
+                lower=setting_list(settings, "lower", float),
+                upper=setting_list(settings, "upper", float),
+                closed=setting_list(settings, "closed", int),
             )
     except InputError as error:
         raise ModelError(f"The saved table's region is damaged. {error}") from error
@@ -236,7 +233,3 @@ def _check_length(
             f"{length[row]:g} long. Make features with `current_features`, or pass "
             "`length_first=False` for (east, north) alone."
         )
-
-
-def _numbers(settings: Mapping[str, object], name: str, kind: type[Number]) -> tuple[Number, ...]:
-    return tuple(setting({name: one}, name, kind) for one in setting(settings, name, list))

@@ -3,14 +3,14 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from math import isfinite, log, prod
-from typing import Any, ClassVar, Protocol, Self, runtime_checkable
+from typing import ClassVar, Protocol, Self, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float
 from numpy.typing import ArrayLike
 
 from seacage.conventions import InputError, ModelError
-from seacage.surrogates._arrays import Arrays, Settings, array, setting
+from seacage.surrogates._arrays import Arrays, Settings, array, setting, setting_list
 from seacage.surrogates._prediction import Prediction, Predicts, check_inputs
 from seacage.surrogates._tables._region import AbstractRegion, restore_region
 from seacage.surrogates._tables._spline import FEWEST, Spline, coefficient_count, nodes
@@ -29,6 +29,10 @@ GROWTH = (1.25, 3.0)
 
 ROUNDING = 1e-9
 """Share of the answers' size that a standard deviation has to reach to be worth following."""
+
+
+Query = Callable[[Float[np.ndarray, "row feature"]], tuple[Prediction, Prediction]]
+"""Answers of a model without and with noise; twice the same one where noise is not asked for."""
 
 
 @runtime_checkable
@@ -137,7 +141,13 @@ class Table:
                 f"Table.of: most_nodes = {most_nodes} is fewer than the {prod(shape)} of the "
                 "first grid. Allow more."
             )
-        query = _Query(predict=fitted.predict, level=level, noise=noise)
+        predict: Callable[..., Prediction] = fitted.predict
+        at = {} if level is None else {"level": level}
+
+        def query(x: Float[np.ndarray, "row feature"]) -> tuple[Prediction, Prediction]:
+            quiet = predict(x, **at)
+            return quiet, predict(x, noisy=True, **at) if noise else quiet
+
         random = np.random.default_rng(seed)
         while True:
             table = _tabulate(query, region, shape, least_std=least_std)
@@ -249,23 +259,8 @@ class Table:
         )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Query:
-    """The model, and how it is asked."""
-
-    predict: Callable[..., Prediction]
-    level: int | None
-    noise: bool
-
-    def __call__(self, x: Float[np.ndarray, "row feature"]) -> tuple[Prediction, Prediction]:
-        """What lies behind an observation, and a new observation; twice the one without noise."""
-        at: dict[str, Any] = {} if self.level is None else {"level": self.level}
-        quiet = self.predict(x, **at)
-        return quiet, self.predict(x, noisy=True, **at) if self.noise else quiet
-
-
 def _tabulate(
-    query: _Query,
+    query: Query,
     region: AbstractRegion,
     shape: tuple[int, ...],
     *,
@@ -274,7 +269,7 @@ def _tabulate(
     """Table through the model's answers at a grid's nodes, its errors not yet known."""
     quiet, noisy = query(region.inputs(nodes(shape, region.periodic)))
     mean, std, total = (_flat(one) for one in (quiet.mean, quiet.std, noisy.std))
-    fields = np.hstack([mean, std**2] + [total**2 - std**2] * query.noise)
+    fields = np.hstack([mean, std**2] + [total**2 - std**2] * (noisy is not quiet))
     least = np.broadcast_to(np.ravel(np.asarray(least_std, dtype=float)), mean.shape[1:])
     return Table(
         region=region,
@@ -288,7 +283,7 @@ def _tabulate(
     )
 
 
-def _verify(table: Table, query: _Query, random: np.random.Generator) -> Table:
+def _verify(table: Table, query: Query, random: np.random.Generator) -> Table:
     """Table with the larger of its errors so far and at fresh random inputs."""
     mean, std = _errors(table, query, random.uniform(size=(CHECKS, len(table.nodes))))
     return replace(
@@ -297,7 +292,7 @@ def _verify(table: Table, query: _Query, random: np.random.Generator) -> Table:
 
 
 def _errors(
-    table: Table, query: _Query, place: Float[np.ndarray, "row axis"]
+    table: Table, query: Query, place: Float[np.ndarray, "row axis"]
 ) -> tuple[float, float]:
     x = table.region.inputs(place)
     quiet, noisy = query(x)
@@ -314,7 +309,7 @@ def _errors(
 
 
 def _finer(
-    table: Table, query: _Query, random: np.random.Generator, *, most_nodes: int
+    table: Table, query: Query, random: np.random.Generator, *, most_nodes: int
 ) -> tuple[int, ...]:
     """Grid to try next: each axis finer by what its own error asks for.
 
@@ -342,7 +337,7 @@ def _finer(
     return shape
 
 
-def _excess_along(axis: int, table: Table, query: _Query, random: np.random.Generator) -> float:
+def _excess_along(axis: int, table: Table, query: Query, random: np.random.Generator) -> float:
     """Excess where every other coordinate is a node's, so that only this axis errs."""
     place = random.uniform(size=(PROBES, len(table.nodes)))
     for other, count in enumerate(table.nodes):
@@ -358,7 +353,7 @@ def _flat(values: Float[np.ndarray, "row *rest"]) -> Float[np.ndarray, "row outp
 
 
 def _counts(settings: Mapping[str, object], name: str, *, least: int) -> tuple[int, ...]:
-    counts = tuple(setting({name: one}, name, int) for one in setting(settings, name, list))
+    counts = setting_list(settings, name, int)
     if any(count < least for count in counts):
         raise ModelError(
             f"The saved table's {name} is {counts}. The file is damaged. Make the table again."

@@ -10,11 +10,12 @@ from seacage.studies import benchmark_study
 from seacage.studies._benchmarks import _study
 from seacage.studies._benchmarks._methods import HIGH_ONLY, OURS, own_methods
 from seacage.studies._benchmarks._problems import problem_named
-from seacage.studies._benchmarks._report import benchmark_page
+from seacage.studies._benchmarks._report import page_values
 from seacage.studies._benchmarks._runs import Runs
 from seacage.studies._benchmarks._scores import RunScore, summary
 from seacage.studies._benchmarks._study import _read_lock, _split_seeds
 from seacage.studies._benchmarks._verdicts import verdicts
+from seacage.studies._page import render
 
 
 def scores(problem: str, method: str, rmse: float, *, error: str | None = None):
@@ -52,12 +53,13 @@ def page(**changed) -> str:
     parts = {
         "report": FOUND,
         "tuning": {},
-        "seeds": [5, 6],
         "tuning_seeds": [],
         "missing": "No other package was run.",
         "provenance": {"Python": "3"},
     }
-    return benchmark_page(verdicts(FOUND), problems, methods, **{**parts, **changed})
+    values = {**parts, **changed}
+    drawn = page_values(problems, methods, values["report"], seeds=[5, 6])
+    return render("benchmarks.html", **{"verdicts": verdicts(FOUND), **values, **drawn})
 
 
 def test_the_page_says_who_is_best_and_what_was_not_run():
