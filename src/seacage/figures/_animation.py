@@ -1,6 +1,6 @@
 """A minute of a cage in waves as a looping picture."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,7 +15,7 @@ from seacage.ocean import SeaState, Waves, surface_elevation
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.collections import LineCollection, PolyCollection
+    from matplotlib.collections import Collection
     from matplotlib.colors import LinearSegmentedColormap
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
@@ -84,15 +84,9 @@ class Motion:
         count = int((self.time[-1] - self.time[0]) / every * (1.0 + 1e-9)) + 1
         moments = self.time[0] + every * np.arange(count)
         tension = CubicSpline(self.time, self.bridle_tension)(moments)
-        return Motion(
-            time=moments,
-            node_position=CubicSpline(self.time, self.node_position)(moments),
-            bridle_tension=np.maximum(tension, 0.0),
-            rest_position=self.rest_position,
-            sea=self.sea,
-            waves=self.waves,
-            origin=self.origin,
-        )
+        position = CubicSpline(self.time, self.node_position)(moments)
+        tension = np.maximum(tension, 0.0)
+        return replace(self, time=moments, node_position=position, bridle_tension=tension)
 
 
 def write_animation(
@@ -151,6 +145,7 @@ class _Scene:
 
     def __init__(self, cage: Cage, motion: Motion, bridle: int, width: int) -> None:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.collections import LineCollection, PolyCollection
         from matplotlib.figure import Figure
 
         self._cage, self._motion, self._bridle = cage, motion, bridle
@@ -163,8 +158,11 @@ class _Scene:
         _frame_axes(axes, reach, float(motion.rest_position[:, 2].min()))
         self._water = _Water(axes, self._eye, motion, reach)
         self._patches = _patches(cage)
-        self._net = _net_artists(axes, float(self._moved.max()))
-        self._lines = _line_artists(axes, float(motion.bridle_tension.max()))
+        self._net = PolyCollection([], edgecolors=_TWINE, linewidths=0.25, zorder=2)
+        self._lines = LineCollection([], linewidths=1.5, zorder=4)
+        _colour(axes, self._net, _NET, _NET_LEVELS, max(float(self._moved.max()), 0.1))
+        most = max(float(motion.bridle_tension.max()), 1.0)
+        _colour(axes, self._lines, _TENSION, _TENSION_LEVELS, most)
         (self._collar,) = axes.plot([], [], color=INK, lw=2.6, solid_joinstyle="round", zorder=5)
         (self._mark,) = axes.plot([], [], "o", color=MULTI, ms=5.5, mec="white", mew=0.8, zorder=6)
         _draw_frame(axes, cage, self._eye)
@@ -267,29 +265,18 @@ def _patches(cage: Cage) -> Int[np.ndarray, "patch corner"]:
     return np.column_stack([left[:, :2], right[:, 1:], left[:, 3]])
 
 
-def _net_artists(axes: "Axes", largest: float) -> "PolyCollection":
-    from matplotlib.collections import PolyCollection
+def _colour(
+    axes: "Axes", artists: "Collection", colours: tuple[str, ...], levels: int, largest: float
+) -> None:
+    """Add artists that take one of so many colours, from zero to the largest value."""
     from matplotlib.colors import BoundaryNorm
 
+    artists.set_cmap(_ramp(colours, levels))
+    artists.set_norm(BoundaryNorm(np.linspace(0.0, largest, levels + 1), levels))
     # Hard edges here and on what else is long and moves: each soft pixel costs the file more
     # than it gives the eye.
-    net = PolyCollection([], cmap=_ramp(_NET, _NET_LEVELS), antialiaseds=False, zorder=2)
-    net.set_norm(BoundaryNorm(np.linspace(0.0, max(largest, 0.1), _NET_LEVELS + 1), _NET_LEVELS))
-    net.set(edgecolors=_TWINE, linewidths=0.25)
-    axes.add_collection(net)
-    return net
-
-
-def _line_artists(axes: "Axes", largest: float) -> "LineCollection":
-    from matplotlib.collections import LineCollection
-    from matplotlib.colors import BoundaryNorm
-
-    lines = LineCollection([], cmap=_ramp(_TENSION, _TENSION_LEVELS), antialiaseds=False)
-    lines.set(linewidths=1.5, zorder=4)
-    bounds = np.linspace(0.0, max(largest, 1.0), _TENSION_LEVELS + 1)
-    lines.set_norm(BoundaryNorm(bounds, _TENSION_LEVELS))
-    axes.add_collection(lines)
-    return lines
+    artists.set_antialiased(False)
+    axes.add_collection(artists)
 
 
 def _ramp(colours: tuple[str, ...], levels: int) -> "LinearSegmentedColormap":
@@ -321,7 +308,7 @@ def _write_head(axes: "Axes", cage: Cage, motion: Motion) -> None:
     )
 
 
-def _write_legend(axes: "Axes", net: "PolyCollection", lines: "LineCollection") -> None:
+def _write_legend(axes: "Axes", net: "Collection", lines: "Collection") -> None:
     """Two slim colour bars in the corners of the deep water."""
     for left, artist, unit, label, scale in (
         (0.03, net, "m", "Net: displacement from rest", 1.0),

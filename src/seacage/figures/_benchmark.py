@@ -7,13 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from jaxtyping import Float
 
-from seacage.figures._style import FAINT, LOW, MULTI, MUTED, SENSOR, blank_figure, style
+from seacage.figures._style import FAINT, LOW, MULTI, MUTED, SENSOR, blank_figure, panel_grid, style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-_COLUMNS = 4
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -50,7 +48,7 @@ def error_figure(
         Which of the methods are ours, the first of them the one to look at.
     """
     with style():
-        figure, panels = _grid(methods, len(contests))
+        figure, panels = _grid(methods, contests, "Root mean square error")
         for axes, contest in zip(panels, contests, strict=True):
             for place, error in enumerate(contest.error):
                 colour = _colour(place, ours)
@@ -58,8 +56,6 @@ def error_figure(
                 axes.plot([np.mean(error)], [place], "d", color=colour, mec="white", ms=7.0)
             axes.set_xscale("log")
             _few_ticks(axes, contest.error)
-            axes.set_title(contest.title)
-            axes.set_xlabel("Root mean square error")
     return figure
 
 
@@ -80,7 +76,7 @@ def coverage_figure(
         The band that is promised, which is shaded [-].
     """
     with style():
-        figure, panels = _grid(methods, len(contests))
+        figure, panels = _grid(methods, contests, "Inside 95 % intervals")
         for axes, contest in zip(panels, contests, strict=True):
             axes.axvspan(*wanted, color=FAINT, lw=0, zorder=0)
             axes.axvline(0.95, color=MUTED, lw=0.9)
@@ -90,8 +86,6 @@ def coverage_figure(
                 axes.plot([share], [place], "o", color=colour, mec="white", ms=6.0)
             axes.set_xlim(0.0, 1.03)
             axes.xaxis.set_major_formatter(lambda share, _: f"{share:.0%}")
-            axes.set_title(contest.title)
-            axes.set_xlabel("Inside 95 % intervals")
     return figure
 
 
@@ -138,17 +132,17 @@ def cost_figure(
     return figure
 
 
-def _grid(methods: Sequence[str], count: int) -> "tuple[Figure, list[Axes]]":
-    columns = min(_COLUMNS, count)
-    rows = -(-count // columns)
-    figure = blank_figure(10.0, rows * (0.8 + 0.2 * len(methods)))
-    axes = figure.subplots(rows, columns, sharey=True, squeeze=False)
-    for empty in axes.ravel()[count:]:
-        empty.set_visible(False)
-    for one in axes.ravel():
-        one.grid(visible=False, axis="y")
-    _name_methods(axes[0, 0], methods)
-    return figure, axes.ravel()[:count].tolist()
+def _grid(
+    methods: Sequence[str], contests: Sequence[Contest], label: str
+) -> "tuple[Figure, list[Axes]]":
+    """One panel for each contest, with what lies along x."""
+    figure, panels = panel_grid(len(contests), 0.8 + 0.2 * len(methods), sharey=True)
+    for axes, contest in zip(panels, contests, strict=True):
+        axes.set_title(contest.title)
+        axes.set_xlabel(label)
+        axes.grid(visible=False, axis="y")
+    _name_methods(panels[0], methods)
+    return figure, panels
 
 
 def _name_methods(axes: "Axes", methods: Sequence[str]) -> None:

@@ -76,12 +76,7 @@ def density_figure(comparison: Comparison) -> "Figure":
     with style():
         figure = blank_figure(6.6, 3.35)
         left, right = figure.subplots(1, 2, sharex=True, sharey=True)
-        panels = [
-            density_panel(left, comparison, multi=False),
-            density_panel(right, comparison, multi=True),
-        ]
-        share_counts(panels)
-        left.set_ylabel(_prediction_label(comparison))
+        panels = density_panels(left, right, comparison)
         left.legend(loc="lower right", handlelength=1.8)
         right.legend(loc="lower right", handlelength=1.8)
         head(left, "Low fidelity")
@@ -124,21 +119,25 @@ def rows_figure(
         for (left, right, series), comparison, (start, end) in zip(
             grid, comparisons, spans, strict=True
         ):
-            panels += [
-                density_panel(left, comparison, multi=False),
-                density_panel(right, comparison, multi=True),
-            ]
-            left.set_ylabel(_prediction_label(comparison))
+            panels += density_panels(left, right, comparison)
             head(left, f"({next(letters)}) Low fidelity")
             head(right, f"({next(letters)}) Multifidelity")
             series_panel(series, comparison, start=start, end=end)
             title = f"({next(letters)}) {comparison.sensor}"
             head(series, title, origin=comparison.origin, legend=4 * (series is grid[0][2]))
         grid[0][0].legend(loc="lower right", handlelength=1.8)
-        share_counts(panels)
         scatters = [axes for row in grid for axes in row[:2]]
         count_bar(figure, panels, scatters, location="bottom", shrink=0.62, aspect=46, pad=0.012)
     return figure
+
+
+def density_panels(left: "Axes", right: "Axes", comparison: Comparison) -> "list[PolyCollection]":
+    """Low fidelity and multifidelity against the sensor, beside each other."""
+    left.set_ylabel(f"Predicted {comparison.quantity.lower()} [{comparison.unit}]")
+    return [
+        density_panel(left, comparison, multi=False),
+        density_panel(right, comparison, multi=True),
+    ]
 
 
 def density_panel(axes: "Axes", comparison: Comparison, *, multi: bool) -> "PolyCollection":
@@ -203,27 +202,25 @@ def series_panel(
     axes.margins(x=0.0)
     if comparison.quantity == "Depth":
         axes.invert_yaxis()  # a lifted net stands higher on the page
-    _date_axis(axes, start)
-
-
-def share_counts(panels: "Sequence[PolyCollection]") -> None:
-    """One scale of counts for several scatters."""
-    highest = max(float(np.max(np.asarray(panel.get_array()))) for panel in panels)
-    for panel in panels:
-        panel.set_clim(1.0, max(highest, 2.0))
+    date_axis(
+        axes,
+        f"Time [UTC], {np.datetime_as_string(start, unit='D')[:4]}",
+        formats=["%Y", "%b", "%d %b", "%H:%M", "%H:%M", "%S"],
+        zero_formats=["", "%Y", "%b", "%d %b", "%H:%M", "%H:%M"],
+        show_offset=False,
+    )
 
 
 def count_bar(
     figure: "Figure", panels: "Sequence[PolyCollection]", axes: "list[Axes]", **place: Any
 ) -> None:
-    """What the colours of scatters that share their counts mean."""
+    """One scale of counts for several scatters, and what its colours mean."""
+    highest = max(float(np.max(np.asarray(panel.get_array()))) for panel in panels)
+    for panel in panels:
+        panel.set_clim(1.0, max(highest, 2.0))
     bar = figure.colorbar(panels[0], ax=axes, **place)
     bar.set_label("Readings per cell (log)")
     bar.outline.set_visible(False)  # pyright: ignore[reportCallIssue]
-
-
-def _prediction_label(comparison: Comparison) -> str:
-    return f"Predicted {comparison.quantity.lower()} [{comparison.unit}]"
 
 
 def _draw_readings(
@@ -261,18 +258,11 @@ def _changes(*series: Float[np.ndarray, " t"]) -> Bool[np.ndarray, " t"]:
     return changed
 
 
-def _date_axis(axes: "Axes", start: np.datetime64) -> None:
+def date_axis(axes: "Axes", label: str, **look: Any) -> None:
+    """Dates along x, as ``ConciseDateFormatter`` writes them."""
     from matplotlib.dates import AutoDateLocator, ConciseDateFormatter
 
     locator = AutoDateLocator(minticks=4, maxticks=12)
-    day = ["", "%Y", "%b", "%d %b", "%H:%M", "%H:%M"]
     axes.xaxis.set_major_locator(locator)
-    axes.xaxis.set_major_formatter(
-        ConciseDateFormatter(
-            locator,
-            formats=["%Y", "%b", "%d %b", "%H:%M", "%H:%M", "%S"],
-            zero_formats=day,
-            show_offset=False,
-        )
-    )
-    axes.set_xlabel(f"Time [UTC], {np.datetime_as_string(start, unit='D')[:4]}")
+    axes.xaxis.set_major_formatter(ConciseDateFormatter(locator, **look))
+    axes.set_xlabel(label)

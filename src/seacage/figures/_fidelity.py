@@ -18,6 +18,7 @@ from seacage.figures._style import (
     SENSOR,
     blank_figure,
     head,
+    panel_grid,
     style,
 )
 
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_COLUMNS = 4
 _WIDTH = 10.0
 """Of a whole page [inch]."""
 
@@ -68,7 +68,7 @@ def sector_figure(
     """
     place = np.arange(len(sectors))
     with style():
-        figure, axes = _grid(len(panels), 2.05)
+        figure, axes = panel_grid(len(panels), 2.05, room=0.45, sharex=True)
         for number, (one, panel) in enumerate(zip(axes, panels, strict=True)):
             one.bar(place - 0.21, truth[number], 0.4, color=SENSOR, label="Truth")
             one.bar(place + 0.21, low[number], 0.4, color=LOW, label="Low fidelity")
@@ -195,7 +195,7 @@ def fouling_figure(
 
     shades = colormaps[AMOUNT](np.linspace(0.15, 0.8, len(speed)))
     with style():
-        figure, axes = _grid(len(panels), 2.0)
+        figure, axes = panel_grid(len(panels), 2.0, room=0.45, sharex=True)
         for number, (one, panel) in enumerate(zip(axes, panels, strict=True)):
             one.axhline(0.0, color=MUTED, lw=0.8)
             for shade, own, at in zip(shades, gap[..., number].T, speed.tolist(), strict=True):
@@ -204,21 +204,10 @@ def fouling_figure(
                 met_growth, met_gap[:, number], "o", color=FIT, ms=4.0, label="The record's mean"
             )
             _name_panel(one, panel)
-        for one in axes[-_COLUMNS:]:
+        for one in axes[-4:]:
             one.set_xlabel("Growth [-]")
         _explain(figure, axes[0], "Truth less low fidelity", origin)
     return figure
-
-
-def _grid(count: int, height: float) -> "tuple[Figure, list[Axes]]":
-    """As many axes as asked for, in rows of four."""
-    columns = min(_COLUMNS, count)
-    rows = -(-count // columns)
-    figure = blank_figure(_WIDTH, height * rows + 0.45)
-    axes = figure.subplots(rows, columns, sharex=True, squeeze=False).ravel().tolist()
-    for empty in axes[count:]:
-        empty.set_visible(False)
-    return figure, axes[:count]
 
 
 def _name_panel(axes: "Axes", panel: Panel) -> None:

@@ -6,6 +6,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Shaped
 
 from seacage.conventions import Flag
+from seacage.figures._comparison import date_axis
 from seacage.figures._style import FIT, SENSOR, blank_figure, head, style
 from seacage.records import KEYS, Record
 
@@ -42,7 +43,7 @@ def quality_figure(record: Record) -> "Figure":
         for axes, key in zip(panels, keys, strict=True):
             _panel(axes, record, key)
         head(panels[0], record.stream, origin=record.origin, legend=4)
-        _date_axis(panels[-1])
+        date_axis(panels[-1], "Time [UTC]")
     return figure
 
 
@@ -101,19 +102,9 @@ def _thin(
     if len(values) <= _DRAWN:
         return time, values
     span = -(-2 * len(values) // _DRAWN)
-    starts = range(0, len(values), span)
-    rows = np.array(
-        [
-            start + extreme
-            for start in starts
-            for extreme in sorted(
-                {
-                    int(np.argmin(values[start : start + span])),
-                    int(np.argmax(values[start : start + span])),
-                }
-            )
-        ]
-    )
+    spans = ((start, values[start : start + span]) for start in range(0, len(values), span))
+    ends = [(start + int(some.argmin()), start + int(some.argmax())) for start, some in spans]
+    rows = np.unique(ends)
     return time[rows], values[rows]
 
 
@@ -132,12 +123,3 @@ def _some(marked: Bool[np.ndarray, " t"]) -> Shaped[np.ndarray, " row"]:
     rows = np.flatnonzero(marked)
     begins = rows[np.diff(rows, prepend=-2) > 1]
     return np.union1d(begins, rows[:: -(-2 * len(rows) // _DRAWN) or 1])
-
-
-def _date_axis(axes: "Axes") -> None:
-    from matplotlib.dates import AutoDateLocator, ConciseDateFormatter
-
-    locator = AutoDateLocator(minticks=4, maxticks=12)
-    axes.xaxis.set_major_locator(locator)
-    axes.xaxis.set_major_formatter(ConciseDateFormatter(locator))
-    axes.set_xlabel("Time [UTC]")

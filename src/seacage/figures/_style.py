@@ -88,6 +88,19 @@ def head(axes: "Axes", title: str, *, origin: Origin | None = None, legend: int 
         axes.legend(loc="lower left", bbox_to_anchor=(-0.01, 0.985), ncols=legend, handlelength=1.6)
 
 
+def panel_grid(
+    count: int, height: float, *, room: float = 0.0, sharex: bool = False, sharey: bool = False
+) -> "tuple[Figure, list[Axes]]":
+    """A page's width of axes in rows of four, each so high, with room for a legend [inch]."""
+    columns = min(4, count)
+    rows = -(-count // columns)
+    figure = blank_figure(10.0, height * rows + room)
+    axes = figure.subplots(rows, columns, sharex=sharex, sharey=sharey, squeeze=False)
+    for empty in axes.flat[count:]:
+        empty.set_visible(False)
+    return figure, axes.flat[:count].tolist()
+
+
 def svg_text(figure: "Figure") -> str:
     """The figure as one SVG document; the same figure gives the same text."""
     buffer = io.StringIO()

@@ -84,5 +84,4 @@ def _with_discrepancy(chain: Chain) -> Path:
         "seeds": list(SEEDS),
         "cases": CASES,
     }
-    rooms = TRAINING
-    return chain.stages.ensure("demonstration", settings, make, rooms=rooms) / "twin"
+    return chain.stages.ensure("demonstration", settings, make, rooms=TRAINING) / "twin"

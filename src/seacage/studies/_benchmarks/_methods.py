@@ -49,12 +49,8 @@ class Method:
     def key(self) -> str:
         """A hash of the code that makes its answers."""
         digest = hashlib.sha256(harness().read_bytes())
-        if self.ours:
-            for path in (self.script, *_learners()):
-                digest.update(path.read_bytes())
-            return digest.hexdigest()[:10]
-        folder = self.script.parent
-        for path in (self.script, folder / "scaling.py", folder / "requirements.lock"):
+        theirs = [self.script.parent / name for name in ("scaling.py", "requirements.lock")]
+        for path in (self.script, *(_learners() if self.ours else theirs)):
             digest.update(path.read_bytes())
         return digest.hexdigest()[:10]
 

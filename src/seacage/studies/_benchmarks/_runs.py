@@ -4,7 +4,7 @@ import hashlib
 import json
 import os
 import subprocess
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -75,12 +75,16 @@ class Runs:
         out = self._answers(method)
         out.mkdir(parents=True, exist_ok=True)
         jobs = {seed: self._job(problem, seed) for seed in seeds}
-        missing = [job for job in jobs.values() if not _sign(out, job).is_file()]
+
+        def there(job: Path) -> bool:
+            return _sign(out, job).is_file()
+
+        missing = [job for job in jobs.values() if not there(job)]
         on_done(len(seeds) - len(missing))
         if missing:
-            error = _run(method, out, missing, lambda: on_done(_there(out, jobs.values())))
+            error = _run(method, out, missing, lambda: on_done(sum(map(there, jobs.values()))))
             for job in missing:
-                if not _sign(out, job).is_file():
+                if not there(job):
                     _sign(out, job).write_text(json.dumps({"error": error}), encoding="utf-8")
         return [_read(problem, method, seed, out, job) for seed, job in jobs.items()]
 
@@ -169,7 +173,3 @@ def _read(problem: Problem, method: Method, seed: int, out: Path, job: Path) -> 
 
 def _sign(out: Path, job: Path) -> Path:
     return out / f"{job.stem}.json"
-
-
-def _there(out: Path, jobs: Iterable[Path]) -> int:
-    return sum(_sign(out, job).is_file() for job in jobs)

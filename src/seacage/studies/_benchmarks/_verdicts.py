@@ -39,12 +39,12 @@ def verdicts(found: Summaries) -> tuple[Claim, ...]:
     )
 
 
-def ratio(found: Summaries, problem: str, rival: str) -> float | None:
-    """Our mean RMSE over a rival's; None where either is missing or failed."""
-    ours, theirs = found.get((problem, OURS)), found.get((problem, rival))
+def pair(found: Summaries, problem: str) -> tuple[Summary, Summary] | None:
+    """Ours and Emukit's; None where either is missing or failed."""
+    ours, theirs = found.get((problem, OURS)), found.get((problem, EMUKIT))
     if ours is None or theirs is None or ours.failures or theirs.failures:
         return None
-    return ours.rmse / theirs.rmse
+    return ours, theirs
 
 
 def best_rival(found: Summaries, problem: str) -> Summary | None:
@@ -57,10 +57,10 @@ def best_rival(found: Summaries, problem: str) -> Summary | None:
 def _ratio(found: Summaries, name: str, most: float) -> Claim:
     title = problem_named(name).title
     claim = f"{title}: mean RMSE at most {most:g} times that of Emukit's NARGP."
-    share = ratio(found, name, EMUKIT)
-    if share is None:
-        return _not_evaluated(claim, found, name, EMUKIT)
-    ours, theirs = found[name, OURS], found[name, EMUKIT]
+    if not (known := pair(found, name)):
+        return _not_evaluated(claim, found, name)
+    ours, theirs = known
+    share = ours.rmse / theirs.rmse
     return Claim(
         claim=claim,
         holds=share <= most,
@@ -120,9 +120,9 @@ def _coverage(found: Summaries) -> Claim:
 def _speed(found: Summaries, name: str) -> Claim:
     what, least = SPEEDS[name]
     claim = f"{CAGE_SIZE.title}: {what.lower()} at least {least:g} times faster than Emukit's."
-    if ratio(found, CAGE_SIZE.name, EMUKIT) is None:
-        return _not_evaluated(claim, found, CAGE_SIZE.name, EMUKIT)
-    ours, theirs = (getattr(found[CAGE_SIZE.name, one], name) for one in (OURS, EMUKIT))
+    if not (known := pair(found, CAGE_SIZE.name)):
+        return _not_evaluated(claim, found, CAGE_SIZE.name)
+    ours, theirs = (getattr(one, name) for one in known)
     return Claim(
         claim=claim,
         holds=theirs >= least * ours,
@@ -133,10 +133,10 @@ def _speed(found: Summaries, name: str) -> Claim:
 
 def _cage_accuracy(found: Summaries) -> Claim:
     claim = f"{CAGE_SIZE.title}: at no worse RMSE than Emukit's."
-    share = ratio(found, CAGE_SIZE.name, EMUKIT)
-    if share is None:
-        return _not_evaluated(claim, found, CAGE_SIZE.name, EMUKIT)
-    ours, theirs = found[CAGE_SIZE.name, OURS], found[CAGE_SIZE.name, EMUKIT]
+    if not (known := pair(found, CAGE_SIZE.name)):
+        return _not_evaluated(claim, found, CAGE_SIZE.name)
+    ours, theirs = known
+    share = ours.rmse / theirs.rmse
     return Claim(
         claim=claim,
         holds=share <= 1.0,
@@ -145,11 +145,11 @@ def _cage_accuracy(found: Summaries) -> Claim:
     )
 
 
-def _not_evaluated(claim: str, found: Summaries, problem: str, rival: str) -> Claim:
-    missing: Sequence[str] = [one for one in (OURS, rival) if (problem, one) not in found]
+def _not_evaluated(claim: str, found: Summaries, problem: str) -> Claim:
+    missing: Sequence[str] = [one for one in (OURS, EMUKIT) if (problem, one) not in found]
     if missing:
         return Claim(claim=claim, holds=None, finding=f"Not run: {join_names(missing)}.")
-    failed = [found[problem, one] for one in (OURS, rival) if found[problem, one].failures]
+    failed = [found[problem, one] for one in (OURS, EMUKIT) if found[problem, one].failures]
     words = [f"{one.method} failed on {one.failures} seeds: {one.error}" for one in failed]
     return Claim(claim=claim, holds=None, finding=f"{join_names(words)}.")
 

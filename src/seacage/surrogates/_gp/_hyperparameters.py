@@ -119,14 +119,11 @@ class Evidence(Rows):
         ----------
         Rasmussen & Williams (2006), eqs. (5.8) and (5.9).
         """
-        misfit = self._misfit_per_output if self._unlike else self._misfit
+        unlike = isinstance(self.noise, NoisePerOutput)
+        misfit = self._misfit_per_output if unlike else self._misfit
         value, gradient = misfit(*self.split(log_parameters))
         offset = (log_parameters - self.prior.mean) / self.prior.sd
         return float(value + 0.5 * offset @ offset), gradient + offset / self.prior.sd
-
-    @property
-    def _unlike(self) -> bool:
-        return isinstance(self.noise, NoisePerOutput)
 
     def _misfit(
         self, kernel: Float[np.ndarray, " kernel"], noise: Float[np.ndarray, " noise"]

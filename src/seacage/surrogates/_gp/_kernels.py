@@ -177,31 +177,6 @@ class AbstractKernel(ABC):
 
 
 @dataclass(frozen=True, slots=True)
-class Constant(AbstractKernel):
-    """The same variance everywhere: an offset, or in a product a scale."""
-
-    variance: Normal = VARIANCE_PRIOR
-
-    def prior(self, width: int) -> Prior:  # noqa: ARG002
-        return Prior.of(self.variance)
-
-    def size(self, width: int) -> int:  # noqa: ARG002
-        return 1
-
-    def at(self, log_parameters: np.ndarray, z: np.ndarray) -> Covariances:
-        variance = np.exp(log_parameters)[..., None]
-        return lambda x: Evaluation(
-            np.tile(variance, (x.shape[-2], z.shape[-2])),
-            lambda _: np.zeros_like(x),
-            lambda adjoint: np.sum(adjoint) * variance,
-        )
-
-    def diagonal(self, log_parameters: np.ndarray, x: np.ndarray) -> Evaluation:
-        value = np.tile(np.exp(log_parameters), x.shape[-2])
-        return Evaluation(value, lambda _: np.zeros_like(x))
-
-
-@dataclass(frozen=True, slots=True)
 class StationaryKernel(AbstractKernel):
     """Variance times a correlation that falls with distance, one length per feature (ARD).
 

@@ -174,28 +174,18 @@ class BatchedLevels:
         counts = node_counts(below.std / self.bend)
         mean, variance = np.empty(counts.shape), np.empty(counts.shape)
         for count in sorted(set(counts.ravel().tolist())):
-            same_rule = counts == count
+            same_rule, (node, weight) = counts == count, rule(count)
             rows, levels = (np.flatnonzero(same_rule.any(axis=axis)) for axis in (1, 0))
             every = len(levels) == len(self.levels)
             some = self if every else self.of([self.levels[level] for level in levels])
             for piece in chunks(len(rows), CELLS // (count * some.weights.size)):
                 at = np.ix_(rows[piece], levels)
-                parts = some._with_rule(count, x[rows[piece]], below.mean[at], below.std[at])  # noqa: SLF001
+                values = below.mean[at].T[..., None] + below.std[at].T[..., None] * node
+                at_nodes = some._moments(x[rows[piece]], values)  # noqa: SLF001
+                parts = total_moments(*at_nodes, weight)
                 for whole, part in zip((mean, variance), parts, strict=True):
-                    whole[at] = np.where(same_rule[at], part, whole[at])
+                    whole[at] = np.where(same_rule[at], part.T, whole[at])
         return Prediction(mean=mean, std=np.sqrt(variance))
-
-    def _with_rule(
-        self,
-        count: int,
-        x: Float[np.ndarray, "row feature"],
-        mean: Float[np.ndarray, "row level"],
-        std: Float[np.ndarray, "row level"],
-    ) -> tuple[Float[np.ndarray, "row level"], Float[np.ndarray, "row level"]]:
-        node, weight = rule(count)
-        at_nodes = self._moments(x, mean.T[..., None] + std.T[..., None] * node)
-        top_mean, top_variance = total_moments(*at_nodes, weight)
-        return top_mean.T, top_variance.T
 
     def _moments(
         self, x: Float[np.ndarray, "row feature"], below: Float[np.ndarray, "level row node"]

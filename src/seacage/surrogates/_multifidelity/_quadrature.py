@@ -80,8 +80,14 @@ def propagate_moments(
     """
     top_mean, top_variance = np.empty(len(x)), np.empty(len(x))
     for count, rows in _by_rule(levels, x, mean, variance):
-        top_mean[rows], top_variance[rows] = _with_rule(
-            count, levels, x[rows], mean[rows], variance[rows]
+        node, weight = rule(count)
+        below = mean[rows, None] + np.sqrt(variance[rows, None]) * node
+        inputs = np.repeat(x[rows], count, axis=0)
+        at_mean, at_variance = levels[0].moments(inputs, below.ravel())
+        if len(levels) > 1:
+            at_mean, at_variance = propagate_moments(levels[1:], inputs, at_mean, at_variance)
+        top_mean[rows], top_variance[rows] = total_moments(
+            at_mean.reshape(-1, count), at_variance.reshape(-1, count), weight
         )
     return top_mean, top_variance
 
@@ -100,19 +106,13 @@ def propagate_slope(
     """
     slope = np.empty_like(x)
     for count, rows in _by_rule(levels, x, below.mean, below.variance):
-        slope[rows] = _slope_with_rule(count, levels, x[rows], below.rows(rows))
+        node, weight = rule(count)
+        value, its_slope = below.rows(rows).at(node)
+        inputs = np.repeat(x[rows], count, axis=0)
+        at = levels[0].moments_with_slopes(inputs, value).through(its_slope)
+        above = at.mean_slope if len(levels) == 1 else propagate_slope(levels[1:], inputs, at)
+        slope[rows] = np.einsum("rnf,n->rf", above.reshape(len(rows), count, -1), weight)
     return slope
-
-
-def _slope_with_rule(
-    count: int, levels: Sequence[SlopedLevel], x: Float[np.ndarray, "row feature"], below: Moments
-) -> Float[np.ndarray, "row feature"]:
-    node, weight = rule(count)
-    value, its_slope = below.at(node)
-    inputs = np.repeat(x, count, axis=0)
-    at = levels[0].moments_with_slopes(inputs, value).through(its_slope)
-    slope = at.mean_slope if len(levels) == 1 else propagate_slope(levels[1:], inputs, at)
-    return np.einsum("rnf,n->rf", slope.reshape(len(x), count, -1), weight)
 
 
 def _by_rule(
@@ -127,22 +127,6 @@ def _by_rule(
         alike = np.flatnonzero(counts == count)
         for piece in chunks(len(alike), CHUNK // count):
             yield count, alike[piece]
-
-
-def _with_rule(
-    count: int,
-    levels: Sequence[Level],
-    x: Float[np.ndarray, "row feature"],
-    mean: Float[np.ndarray, " row"],
-    variance: Float[np.ndarray, " row"],
-) -> tuple[Float[np.ndarray, " row"], Float[np.ndarray, " row"]]:
-    node, weight = rule(count)
-    below = mean[:, None] + np.sqrt(variance)[:, None] * node
-    inputs = np.repeat(x, count, axis=0)
-    at_mean, at_variance = levels[0].moments(inputs, below.ravel())
-    if len(levels) > 1:
-        at_mean, at_variance = propagate_moments(levels[1:], inputs, at_mean, at_variance)
-    return total_moments(at_mean.reshape(-1, count), at_variance.reshape(-1, count), weight)
 
 
 def _largest_ratio(

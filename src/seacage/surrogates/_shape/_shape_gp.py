@@ -1,6 +1,6 @@
 """The whole shape of the net from one shared kernel."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import ClassVar, Self
 
@@ -216,10 +216,12 @@ class FittedShapeGP:
             mean, variance = self._in_sector(x, nodes, noisy=noisy)
             return Prediction(mean=mean, std=np.sqrt(np.swapaxes(variance[:, :3], 1, 2)))
         mean, std = np.zeros((2, len(x), len(self.centre[nodes]), 3))
-        for image, rows, share in _images_in_use(self.symmetry, x):
-            own = self._by_image(self.symmetry, image, x[rows], nodes, noisy=noisy)
-            mean[rows] += share * own.mean
-            std[rows] += share * own.std
+        for image, shares in enumerate(self.symmetry.shares(x).T):
+            rows = np.flatnonzero(shares)
+            if len(rows):
+                own = self._by_image(self.symmetry, image, x[rows], nodes, noisy=noisy)
+                mean[rows] += shares[rows, None, None] * own.mean
+                std[rows] += shares[rows, None, None] * own.std
         return Prediction(mean=mean, std=std)
 
     def mean_of_nodes(
@@ -229,7 +231,7 @@ class FittedShapeGP:
         if self.symmetry is not None:
             return self.predict_nodes(x, nodes).mean
         x = self._check(x, what="mean_of_nodes")
-        return self._mean(self.scores.mean(x).reshape(len(x), self.modes), nodes)
+        return self.render(self.scores.mean(x).reshape(len(x), self.modes), nodes)
 
     def coordinate(self, node: int, axis: int) -> "FittedCoordinate":
         """One coordinate of one node, answered without the rest of the shape.
@@ -249,9 +251,13 @@ class FittedShapeGP:
             )
         return FittedCoordinate(shape=self, node=node, axis=axis)
 
-    def render(self, score: Float[np.ndarray, "row mode"]) -> Float[np.ndarray, "row node 3"]:
+    def render(
+        self, score: Float[np.ndarray, "row mode"], nodes: Nodes = EVERY
+    ) -> Float[np.ndarray, "row node 3"]:
         """Shapes of scores [m], at home in the sector of the symmetry, if there is one."""
-        return self._mean(score, EVERY)
+        direction = self.basis.direction.reshape(self.modes, -1, 3)[:, nodes]
+        centre = self.basis.centre.reshape(-1, 3)[nodes]
+        return self.centre[nodes] + (centre + np.tensordot(score, direction, axes=1))
 
     def variance(
         self, score_std: Float[np.ndarray, "row mode"], nodes: Nodes
@@ -346,15 +352,8 @@ class FittedShapeGP:
     ) -> tuple[Float[np.ndarray, "row node 3"], Float[np.ndarray, "row 4 node"]]:
         score = self.scores.predict(x, noisy=noisy)
         rows = (len(x), self.modes)
-        mean = self._mean(score.mean.reshape(rows), nodes)
+        mean = self.render(score.mean.reshape(rows), nodes)
         return mean, self.variance(score.std.reshape(rows), nodes)
-
-    def _mean(
-        self, score: Float[np.ndarray, "row mode"], nodes: Nodes
-    ) -> Float[np.ndarray, "row node 3"]:
-        direction = self.basis.direction.reshape(self.modes, -1, 3)[:, nodes]
-        centre = self.basis.centre.reshape(-1, 3)[nodes]
-        return self.centre[nodes] + (centre + np.tensordot(score, direction, axes=1))
 
     def _moments(
         self, power: Float[np.ndarray, "row mode"], nodes: Nodes
@@ -412,17 +411,6 @@ def _fold_cases(
         home_x[rows] = symmetry.turned(x[rows], image)
         home_position[rows] = symmetry.moved(node_position[rows], image)
     return home_x, home_position
-
-
-def _images_in_use(
-    symmetry: Symmetry, x: Float[np.ndarray, "row feature"]
-) -> Iterator[tuple[int, Int[np.ndarray, " asked"], Float[np.ndarray, "asked 1 1"]]]:
-    """Each image that has a share in an answer, with the rows and its shares."""
-    shares = symmetry.shares(x)
-    for image in range(len(symmetry)):
-        rows = np.flatnonzero(shares[:, image])
-        if len(rows):
-            yield image, rows, shares[rows, image, None, None]
 
 
 def _turn_variance(

@@ -8,7 +8,6 @@ from seacage.surrogates import GaussianProcess
 from seacage.surrogates._gp._kernels import (
     AbstractKernel,
     Columns,
-    Constant,
     StationaryKernel,
     restore_kernel,
 )
@@ -29,7 +28,7 @@ KERNELS = [
 ]
 COMPOSED = [
     StationaryKernel("squared-exponential") + Columns(StationaryKernel("matern-5/2"), LOCAL),
-    Constant() * StationaryKernel("matern-3/2") + Constant(),
+    LinearKernel(offset=1.0) * StationaryKernel("matern-3/2") + LinearKernel(),
     Columns(LinearKernel(offset=0.5), slice(0, 2)) * StationaryKernel("matern-5/2"),
 ]
 registered_kernel = pytest.mark.parametrize("kernel", KERNELS, ids=lambda kernel: kernel.name)
@@ -204,6 +203,6 @@ def test_kernels_add_and_multiply_as_their_covariances_do() -> None:
 
 def test_the_prior_of_a_composition_is_that_of_its_parts() -> None:
     part = Columns(StationaryKernel("matern-5/2"), LOCAL)
-    whole = (Constant() + part).prior(3)
+    whole = (LinearKernel() + part).prior(3)
     np.testing.assert_array_equal(whole.mean[1:], StationaryKernel("matern-5/2").prior(2).mean)
-    assert len(whole.sd) == (Constant() + part).size(3) == 4
+    assert len(whole.sd) == (LinearKernel() + part).size(3) == 4
