@@ -22,7 +22,7 @@ from seacage.conventions import InputError, Progress, no_progress
 from seacage.records import CampaignRecord, FieldRecord, Record, read_campaign
 from seacage.studies._split import split
 from seacage.studies._stages import SIMULATION, Stages, code_sha256
-from seacage.twin import Training, Twin, train
+from seacage.twin import Training, train
 
 _OF_ALL = ("quantile", "second_moment")
 """Arrays that have no axis of cases."""
@@ -155,11 +155,6 @@ class Chain:
     def twin_folder(self) -> Path:
         """The twin trained on the campaign and on the field record's teaching days."""
         return self.ensure_twin(self.recipe.training)
-
-    @cached_property
-    def twin(self) -> Twin:
-        """The twin, read."""
-        return Twin.read(self.twin_folder)
 
     def ensure_twin(self, training: Training) -> Path:
         """The folder of a twin that learned so from the campaign and the teaching days."""

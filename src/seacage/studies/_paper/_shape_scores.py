@@ -1,6 +1,7 @@
 """How far predicted nets are from computed ones, in metres."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float
@@ -35,15 +36,15 @@ class ShapeScore:
     """
 
     model: str
-    inputs: str
-    modes: int | None
+    inputs: str = "current"
+    modes: int | None = None
     axis_mae: tuple[float, float, float]
     p99: float
     worst: float
     coverage: float
     crps: float
-    fit_cpu_s: float
-    predict_ms: float
+    fit_cpu_s: float = float("nan")
+    predict_ms: float = float("nan")
     case_axis_mae: Float[np.ndarray, "case 3"]
     case_worst: Float[np.ndarray, " case"]
 
@@ -57,35 +58,30 @@ def shape_score(
     model: str,
     predicted: Prediction,
     computed: Float[np.ndarray, "case node 3"],
-    *,
-    inputs: str = "current",
-    modes: int | None = None,
-    fit_cpu_s: float = float("nan"),
-    predict_ms: float = float("nan"),
+    **known: Any,
 ) -> ShapeScore:
     """Score a model's shapes.
 
     Parameters
     ----------
-    model, inputs, modes, fit_cpu_s, predict_ms
-        As in ``ShapeScore``.
+    model
+        Its name.
     predicted, computed
         One shape per case [m].
+    known
+        Inputs, modes and times, as in ``ShapeScore``.
     """
     difference = predicted.mean - computed
     error, distance = np.abs(difference), np.linalg.norm(difference, axis=-1)
     x, y, z = error.mean(axis=(0, 1)).tolist()
     return ShapeScore(
         model=model,
-        inputs=inputs,
-        modes=modes,
         axis_mae=(x, y, z),
         p99=float(np.quantile(distance, 0.99)),
         worst=float(distance.max()),
         coverage=coverage(computed, predicted.mean, predicted.std),
         crps=crps(computed, predicted.mean, predicted.std),
-        fit_cpu_s=fit_cpu_s,
-        predict_ms=predict_ms,
         case_axis_mae=error.mean(axis=1),
         case_worst=distance.max(axis=1),
+        **known,
     )

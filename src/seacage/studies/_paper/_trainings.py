@@ -1,6 +1,6 @@
 """Ways of training a twin, scored on the same readings."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import reduce
 
@@ -18,22 +18,6 @@ SPREAD, IN_A_ROW, HEARING = (
     "Current and waves, spread",
 )
 """Names of the ways: the page's own, the paper's minutes read as a row, and one with waves."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Way:
-    """One way of training a twin.
-
-    Parameters
-    ----------
-    name
-        In tables and figures.
-    training
-        What it is.
-    """
-
-    name: str
-    training: Training
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -79,20 +63,19 @@ class ScoredWays:
         return self.ways[0].sensors
 
 
-def ways_of(recipe: Recipe, *, waves: bool) -> tuple[Way, ...]:
-    """What a study compares: the page's own way first.
+def ways_of(recipe: Recipe, *, waves: bool) -> dict[str, Training]:
+    """Trainings that a study compares, by their names in tables: the page's own way first.
 
     Settled studies have one way; in time the paper's few minutes in a row stand beside it, and
     with waves at the buoy and in the campaign the twin that has them as inputs.
     """
     spread = recipe.training
-    ways = [Way(name=SPREAD, training=spread)]
+    ways = {SPREAD: spread}
     if recipe.in_time:
-        ways.append(Way(name=IN_A_ROW, training=replace(spread, choice="paper")))
+        ways[IN_A_ROW] = replace(spread, choice="paper")
     if waves:
-        hearing = replace(spread, inputs=("current", "waves"))
-        ways.append(Way(name=HEARING, training=hearing))
-    return tuple(ways)
+        ways[HEARING] = replace(spread, inputs=("current", "waves"))
+    return ways
 
 
 def has_waves(chain: Chain) -> bool:
@@ -100,13 +83,13 @@ def has_waves(chain: Chain) -> bool:
     return "hs_m" in chain.field.buoy.values and chain.in_waves
 
 
-def compare_ways(chain: Chain, ways: Sequence[Way]) -> ScoredWays:
+def compare_ways(chain: Chain, ways: Mapping[str, Training]) -> ScoredWays:
     """Train in each way, and score all on the same readings of the validation days."""
     days = chain.recipe.teaching_days
     _, judging = split(chain.field, teaching_days=days)
     _, truth = split(chain.truth, teaching_days=days)
     truth = replace(truth, buoy=judging.buoy)  # as reported, gaps and all
-    twins = [Twin.read(chain.ensure_twin(way.training)) for way in ways]
+    twins = [Twin.read(chain.ensure_twin(training)) for training in ways.values()]
     answers = [twin.predict_record(chain.field.buoy) for twin in twins]
     compared = [compare(answer, judging) for answer in answers]
     exact = compare(answers[0], truth)
@@ -127,7 +110,7 @@ def compare_ways(chain: Chain, ways: Sequence[Way]) -> ScoredWays:
             )
         scores.append(
             WayScore(
-                name=way.name,
+                name=way,
                 trained=tuple(twin.provenance.training_windows),
                 sensors=tuple(sensors),
             )
