@@ -122,34 +122,30 @@ def _quantiles(
 
 def _mask_lost(history: History, march: March) -> History:
     """A case that left the finite numbers: nothing of it can be trusted but what was before."""
-    spin_up = march.steps.spin_up * REFRESH
-    gone = history.time + spin_up >= float(history.diverged_at)
-
-    def mask(statistics: Statistics) -> Statistics:
-        return _each_field([statistics], lambda values: np.full_like(values[0], np.nan))
+    gone = history.time + march.steps.spin_up * REFRESH >= float(history.diverged_at)
 
     def after(series: np.ndarray) -> np.ndarray:
         return np.where(gone.reshape(-1, *(1,) * (series.ndim - 1)), np.nan, series)
 
+    lost = ("node", "bridle", "net_force", "volume")
+    lost += ("node_displacement", "volume_fraction", "second_moment")
     return replace(
         history,
         node_position=after(history.node_position),
         bridle_tension=after(history.bridle_tension),
-        node=mask(history.node),
-        bridle=mask(history.bridle),
-        net_force=mask(history.net_force),
-        volume=mask(history.volume),
-        node_displacement=np.full_like(history.node_displacement, np.nan),
-        volume_fraction=np.asarray(np.nan),
-        second_moment=np.full_like(history.second_moment, np.nan),
         result=np.asarray(Result.DIVERGED),
+        **{name: _each([getattr(history, name)], _nothing) for name in lost},
     )
 
 
-def _each_field(
-    several: list[Statistics], join: Callable[[list[np.ndarray]], np.ndarray]
-) -> Statistics:
-    """Several statistics joined to one, field by field."""
+def _nothing(values: list[np.ndarray]) -> np.ndarray:
+    return np.full_like(values[0], np.nan)
+
+
+def _each(several: list[Any], join: Callable[[list[np.ndarray]], np.ndarray]) -> Any:
+    """Several arrays joined to one, or several statistics, field by field."""
+    if not isinstance(several[0], Statistics):
+        return join(several)
     names = [f.name for f in fields(Statistics)]
     return Statistics(**{name: join([getattr(one, name) for one in several]) for name in names})
 
@@ -159,13 +155,10 @@ _SHARED = ("time", "nodes", "quantile_levels")
 
 def stack(cases: list[History]) -> History:
     """Several cases as one history, with a leading axis."""
-
-    def join(name: str) -> Any:
-        values = [getattr(case, name) for case in cases]
-        if name in _SHARED:
-            return values[0]
-        if isinstance(values[0], Statistics):
-            return _each_field(values, np.stack)
-        return np.stack(values)
-
-    return History(**{f.name: join(f.name) for f in fields(History)})
+    values = {f.name: [getattr(case, f.name) for case in cases] for f in fields(History)}
+    return History(
+        **{
+            name: several[0] if name in _SHARED else _each(several, np.stack)
+            for name, several in values.items()
+        }
+    )

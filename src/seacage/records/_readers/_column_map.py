@@ -336,12 +336,7 @@ class ColumnMap:
         ValueError
             Where the text is no time of the map's format, or does not say its zone and must.
         """
-        if self.time_format == "iso":
-            time = datetime.fromisoformat(text.strip())
-        elif self.time_format == "unix":
-            time = datetime.fromtimestamp(float(text), tz=UTC)
-        else:
-            time = datetime.strptime(text.strip(), self.time_format)  # noqa: DTZ007
+        time = parse_time(text, self.time_format)
         if time.tzinfo is None:
             zone = parse_zone(self.time_zone)
             if zone is None:
@@ -378,6 +373,20 @@ class ColumnMap:
         if not depths:
             return ""
         return f"; its profile has {', '.join(f'{depth:g}' for depth in depths)} m"
+
+
+def parse_time(text: str, form: str) -> datetime:
+    """A time as a cell says it, of a form that ``ColumnMap`` knows.
+
+    Raises
+    ------
+    ValueError
+        The text is no time of this form.
+    """
+    if form == "unix":
+        return datetime.fromtimestamp(float(text), tz=UTC)
+    text = text.strip()
+    return datetime.fromisoformat(text) if form == "iso" else datetime.strptime(text, form)  # noqa: DTZ007
 
 
 def parse_column(columns: Table, name: str, file: str) -> Column:

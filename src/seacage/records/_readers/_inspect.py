@@ -5,7 +5,7 @@ import re
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from datetime import UTC, datetime
+from datetime import UTC
 from pathlib import Path
 from typing import NamedTuple
 
@@ -13,6 +13,7 @@ import numpy as np
 
 from seacage.conventions import RecordError
 from seacage.records._readers._cf import is_netcdf
+from seacage.records._readers._column_map import parse_time
 from seacage.records._readers._csv import number_in, recognise
 from seacage.records._readers._inspect_netcdf import inspect_netcdf
 from seacage.records._readers._ndbc import is_ndbc
@@ -194,7 +195,7 @@ def _inspect_table(table: Table, layout: Layout) -> Inspection:
         findings.append(f"It fits a known map and needs none: {recognise(table).title}.")
     except RecordError:
         findings.append("No shipped map fits its columns.")
-    time_names, format_line, zone_line, time_findings = _time(table)
+    time_names, time_lines, time_findings = _time(table)
     findings += time_findings
     if table.cut:
         findings.append("Suspicious: it ends without a line end; the last row may be cut.")
@@ -206,19 +207,19 @@ def _inspect_table(table: Table, layout: Layout) -> Inspection:
     findings += [one.finding for one in guesses]
     return Inspection(
         findings=tuple(findings),
-        map_text=_toml(table, layout, time_names, format_line, zone_line, guesses),
+        map_text=_toml(table, layout, time_lines, guesses),
     )
 
 
-def _time(table: Table) -> tuple[tuple[str, ...], str, str, list[str]]:
+def _time(table: Table) -> tuple[tuple[str, ...], list[str], list[str]]:
     """The time's columns, their lines in the map, and what was found."""
     best = _time_column(table)
     if best is None:
         finding = "No column reads as a time; name it, or the several that make it, under [time]."
-        return (), 'format = "?"', 'zone = "?"', [finding]
+        return (), ['column = "?"', 'format = "?"', 'zone = "?"'], [finding]
     name, formats = best
     cells = table.column(name)[:_ROWS]
-    stated = _parse(cells[0], formats[0]).tzinfo is not None
+    stated = parse_time(cells[0], formats[0]).tzinfo is not None
     zone = 'zone = "stated"  # each time says it' if stated else 'zone = "?"  # "UTC", "+01:00"'
     form = f"format = {_quote(formats[0])}"
     stated_where = "stated in each" if stated else "not said"
@@ -228,7 +229,8 @@ def _time(table: Table) -> tuple[tuple[str, ...], str, str, list[str]]:
     if len(formats) > 1:
         form = f'format = "?"  # {" or ".join(formats)}: the days do not tell'
         findings.append("Suspicious: day and month cannot be told apart in it.")
-    return (name,), form, zone, findings + _cadence(cells, formats[0])
+    lines = [f"column = {_quote(name)}", form, zone]
+    return (name,), lines, findings + _cadence(cells, formats[0])
 
 
 def _time_column(table: Table) -> tuple[str, list[str]] | None:
@@ -246,24 +248,17 @@ def _time_column(table: Table) -> tuple[str, list[str]] | None:
 
 def _fits(cell: str, form: str) -> bool:
     try:
-        _parse(cell, form)
+        parse_time(cell, form)
     except ValueError:
         return False
     return True
-
-
-def _parse(cell: str, form: str) -> datetime:
-    text = cell.strip()
-    if form == "iso":
-        return datetime.fromisoformat(text)
-    return datetime.strptime(text, form)  # noqa: DTZ007
 
 
 def _cadence(cells: Sequence[str], form: str) -> list[str]:
     times = np.array(
         [
             microseconds(t if t.tzinfo else t.replace(tzinfo=UTC))
-            for t in (_parse(c, form) for c in cells)
+            for t in (parse_time(c, form) for c in cells)
         ]
     )
     if times.size < 3:
@@ -360,9 +355,7 @@ def _depth(name: str) -> float | None:
 def _toml(
     table: Table,
     layout: Layout,
-    time_names: tuple[str, ...],
-    format_line: str,
-    zone_line: str,
+    time_lines: Sequence[str],
     guesses: Sequence[_Guess],
 ) -> str:
     ignored = ", ".join(_quote(one.name) for one in guesses if not one.quantity)
@@ -387,8 +380,7 @@ def _toml(
     ]
     if layout.skip_lines:
         lines.append(f"skip_lines = {layout.skip_lines}")
-    column = _quote(time_names[0]) if time_names else '"?"'
-    lines += ["", "[time]", f"column = {column}", format_line, zone_line]
+    lines += ["", "[time]", *time_lines]
     for one in guesses:
         if one.quantity:
             lines += ["", f"[columns.{_quote(one.name)}]", *one.lines]
