@@ -3,7 +3,7 @@
 from seacage.conventions._codes import RESULTS, Flag, Result
 from seacage.conventions._constants import GRAVITY, WATER_DENSITY, WATER_VISCOSITY
 from seacage.conventions._directions import compass, fold_degrees, towards
-from seacage.conventions._durations import duration_text
+from seacage.conventions._durations import count_times, duration_text
 from seacage.conventions._errors import (
     InputError,
     ModelError,
@@ -43,6 +43,7 @@ __all__ = [
     "SeacageError",
     "check_file",
     "compass",
+    "count_times",
     "duration_text",
     "fold_degrees",
     "no_progress",

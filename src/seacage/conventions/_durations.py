@@ -1,4 +1,8 @@
-"""Durations as people read them."""
+"""Durations as people read them, and how often one fits into another."""
+
+import math
+
+from seacage.conventions._errors import InputError
 
 
 def duration_text(seconds: float) -> str:
@@ -15,3 +19,26 @@ def duration_text(seconds: float) -> str:
         if seconds >= 2.0 * length:
             return f"{seconds / length:.1f}".removesuffix(".0") + f" {unit}"
     return f"{seconds:.0f} s"
+
+
+def count_times(whole: float, part: float, what: str, *, least: int = 1) -> int:
+    """Number of times that one time fits into another, to the last bit of a step.
+
+    Parameters
+    ----------
+    whole, part
+        [s].
+    what
+        Of the whole, for the message, such as "follow: duration".
+    least
+        Smallest number that is allowed.
+
+    Raises
+    ------
+    InputError
+        No whole number, or too small a one.
+    """
+    count = round(whole / part) if part > 0.0 and math.isfinite(whole) else -1
+    if count < least or not math.isclose(count * part, whole, rel_tol=1e-9, abs_tol=1e-9):
+        raise InputError(f"{what} = {whole:g} s is no whole number of {part:g} s. Give a multiple.")
+    return count

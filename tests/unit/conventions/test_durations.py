@@ -2,7 +2,7 @@
 
 import pytest
 
-from seacage.conventions import duration_text
+from seacage.conventions import InputError, count_times, duration_text
 
 
 @pytest.mark.parametrize(
@@ -23,3 +23,11 @@ from seacage.conventions import duration_text
 )
 def test_a_duration_is_written_in_the_unit_that_keeps_it_short(seconds, text):
     assert duration_text(seconds) == text
+
+
+def test_a_time_that_does_not_fit_a_whole_number_of_times_is_refused():
+    assert count_times(0.3, 0.1, "x") == 3
+    assert count_times(0.0, 0.1, "x", least=0) == 0
+    for whole, part in ((0.25, 0.1), (0.0, 0.1), (1.0, 0.0), (float("inf"), 1.0)):
+        with pytest.raises(InputError, match=r"x = .* s is no whole number of .* s\."):
+            count_times(whole, part, "x")

@@ -9,7 +9,7 @@ from typing import Self
 import numpy as np
 from jaxtyping import Bool, Shaped
 
-from seacage.conventions import InputError
+from seacage.conventions import InputError, count_times
 from seacage.dynamics import Damage, simulation_lanes
 from seacage.records import Record
 
@@ -43,7 +43,7 @@ class Timetable:
     def __post_init__(self) -> None:
         if self.one_in < 1:
             raise InputError(f"Timetable: one stretch in {self.one_in} is none. Give 1 or more.")
-        _times(self.stretch, self.mean, "stretch")
+        count_times(self.stretch, self.mean, "Timetable: stretch")
 
     @classmethod
     def over(cls, buoy: Record, *, one_in: int = 1) -> Self:
@@ -66,8 +66,8 @@ class Timetable:
         InputError
             A mean that is no whole number of readings.
         """
-        of_mean = _times(self.mean, every, "mean")
-        return of_mean * _times(self.stretch, self.mean, "stretch"), of_mean
+        of_mean = count_times(self.mean, every, "Timetable: mean")
+        return of_mean * count_times(self.stretch, self.mean, "Timetable: stretch"), of_mean
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -163,15 +163,6 @@ def side_by_side(stretches: Sequence[Stretch], most: int) -> list[tuple[Stretch,
     alike = groupby(stretches, key=lambda one: (one.damaged, one.breaking))
     groups = [tuple(group) for _, group in alike]
     return [group[at : at + most] for group in groups for at in range(0, len(group), most)]
-
-
-def _times(whole: float, part: float, name: str) -> int:
-    count = round(whole / part) if part > 0.0 and math.isfinite(whole) else 0
-    if count < 1 or not math.isclose(count * part, whole, rel_tol=1e-9):
-        raise InputError(
-            f"Timetable: {name} = {whole:g} s is no whole number of {part:g} s. Give a multiple."
-        )
-    return count
 
 
 def _span(buoy: Record) -> float:

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.cage import Cage
-from seacage.conventions import InputError, Progress
+from seacage.conventions import InputError, Progress, count_times
 from seacage.dynamics._kernel import REFRESH, simulation_lanes
 from seacage.dynamics._moored import Damage
 from seacage.dynamics._physics import MovingLaw
@@ -161,27 +161,17 @@ def _check(weathers: Sequence[AbstractWeather], starts: Sequence[float]) -> None
 def _course(
     duration: float, every: float, spin_up: float, shape_every: float, time_step: float
 ) -> Course:
-    refreshes = _times(every, REFRESH, "every")
-    shape_samples = _times(shape_every, every, "shape_every")
-    samples = _times(duration, shape_every, "duration") * shape_samples
+    refreshes = count_times(every, REFRESH, "follow: every")
+    shape_samples = count_times(shape_every, every, "follow: shape_every")
+    samples = count_times(duration, shape_every, "follow: duration") * shape_samples
     each = math.ceil(REFRESH / time_step - 1e-9) if time_step > 0.0 else 0
     if each < 1:
         raise InputError(f"follow: time_step = {time_step:g} s is no step. Give 0.001 s or less.")
     return Course(
         every=every,
         refreshes=refreshes,
-        spin_up=_times(spin_up, every, "spin_up", least=0),
+        spin_up=count_times(spin_up, every, "follow: spin_up", least=0),
         samples=samples,
         shape_samples=shape_samples,
         steps=each,
     )
-
-
-def _times(whole: float, part: float, name: str, *, least: int = 1) -> int:
-    """Number of times that one time fits in another, to the last bit of a step."""
-    count = round(whole / part) if math.isfinite(whole) else -1
-    if count < least or not math.isclose(count * part, whole, rel_tol=1e-9, abs_tol=1e-9):
-        raise InputError(
-            f"follow: {name} = {whole:g} s is no whole number of {part:g} s. Give a multiple."
-        )
-    return count
