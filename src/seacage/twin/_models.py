@@ -135,7 +135,7 @@ class Models:
         valid = np.array([not one for one in trouble], dtype=bool)
         known = water.rows(valid)
         blocks = [
-            self._block(known.rows(np.arange(first, min(first + BLOCK_ROWS, len(known)))))
+            self._block(known.rows(slice(first, first + BLOCK_ROWS)))
             for first in range(0, max(len(known), 1), BLOCK_ROWS)
         ]
         of_rows = {name: _fill([block[name] for block in blocks], valid) for name in blocks[0]}

@@ -3,29 +3,54 @@
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, fields, replace
 from datetime import datetime
-from functools import partial
 from pathlib import Path
 from typing import Self
 
 import numpy as np
 
 from seacage.cage import Cage
-from seacage.conventions import InputError, Origin
+from seacage.conventions import Flag, InputError, Origin, duration_text
 from seacage.ocean import SeaState
 from seacage.records import Amendment, Record, Sample
-from seacage.twin._adaptation import adapt
 from seacage.twin._answer import Answer
 from seacage.twin._discrepancy import Discrepancy
 from seacage.twin._events import Answered, Event
-from seacage.twin._interval_factors import MeanStd, factors_from_json, with_predictions
+from seacage.twin._interval_factors import (
+    ADAPTATION_BLOCK,
+    MeanStd,
+    Tracked,
+    adapt_factor,
+    block_begin,
+    counts,
+    factors_from_json,
+    with_predictions,
+)
 from seacage.twin._metocean import Metocean, input_keys
 from seacage.twin._models import Models
 from seacage.twin._provenance import Provenance
-from seacage.twin._reading import Reading, fault_of, reading_at
 from seacage.twin._saving import from_parts, read_folder, to_parts, write_folder
 from seacage.twin._settings import FaultDetectorSettings, StreamTimeouts
 from seacage.twin._state import Held, TwinState
 from seacage.twin._step import forget, receive
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Reading:
+    """The input in force at a time: the buoy's newest reading that is not ahead of it.
+
+    Parameters
+    ----------
+    metocean
+        One row; None before the first.
+    age_s
+        Of its oldest part [s].
+    trouble
+        Why it cannot be used, in one sentence; "" where it can.
+    """
+
+    metocean: Metocean | None
+    age_s: float | None
+    trouble: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -137,7 +162,7 @@ class Twin:
         trouble = [""] * len(buoy)
         for key in keys:
             for row in np.flatnonzero(~buoy.usable(key)):
-                trouble[row] = trouble[row] or fault_of(buoy.stream, key, int(buoy.flags[key][row]))
+                trouble[row] = trouble[row] or _fault(buoy.stream, key, int(buoy.flags[key][row]))
         return self.models.answer(Metocean.of_record(buoy), trouble)
 
     def start(self, adapted: str | None = None, *, until: datetime | None = None) -> TwinState:
@@ -216,14 +241,42 @@ class Twin:
             limits=self.timeouts,
             amendments=amendments,
         )
-        state = adapt(
-            state,
-            now,
-            models=self.models,
-            timeouts=self.timeouts,
-            reading_at=partial(self._reading_at, state),
-        )
+        state = self._adapt(state, now)
         return forget(state, now, disorder_s=self.timeouts.disorder_s), notices
+
+    def _adapt(self, state: TwinState, now: datetime) -> TwinState:
+        """Adapt the intervals to the readings of the blocks that are due at a time.
+
+        Readings count where there is a valid prediction to compare with. Where the clock has
+        stepped back nothing is due.
+        """
+        until, before = block_begin(now), state.adapted_until
+        state, rate = replace(state, adapted_until=until), self.timeouts.adapt_rate
+        if before is None or until <= before or rate == 0.0:
+            return state
+        start, end = before - ADAPTATION_BLOCK, until - ADAPTATION_BLOCK
+        counted = list[tuple[str, Sample, Metocean]]()
+        for name in self.models.upper:
+            tracked = state.tracked.get(name, Tracked())
+            for sample in (taken.sample for taken in state.streams.get(name, ())):
+                due = start <= sample.t < end
+                if due and counts(tracked, sample, every_s=self.timeouts.adapt_every_s):
+                    reading = self._reading_at(state, sample.t)
+                    if reading.metocean is not None and not reading.trouble:
+                        tracked = replace(tracked, counted=sample.t)
+                        counted.append((name, sample, reading.metocean))
+        if not counted:
+            return state
+        water = Metocean.joined(*(one for _, _, one in counted))
+        table, row = np.unique(water.table, axis=0, return_inverse=True)
+        answer = self.models.answer(Metocean.from_table(table), [""] * len(table))
+        factors = dict(state.tracked)
+        for (name, sample, _), place in zip(counted, row.ravel(), strict=True):
+            at = place, answer.sensor_names.index(name)
+            expected = float(answer.sensor.mean[at]), float(answer.sensor.std[at])
+            tracked = factors.get(name, Tracked())
+            factors[name] = adapt_factor(tracked, sample, expected, rate=rate)
+        return replace(state, tracked=factors)
 
     def _answer(self, state: TwinState, now: datetime) -> tuple[TwinState, Answered]:
         reading = self._reading_at(state, now)
@@ -234,7 +287,7 @@ class Twin:
             held = Held(models=self.models, water=water, answer=answer)
         tracked = with_predictions(state.tracked, self._predictions(held.answer))
         state = replace(state, tracked=tracked, held=None if reading.trouble else held)
-        answer = self._adapt(held.answer, state)
+        answer = self._scale(held.answer, state)
         return state, Answered(
             t=now, answer=answer, metocean=reading.metocean, input_age_s=reading.age_s
         )
@@ -247,7 +300,7 @@ class Twin:
             for column in self.models.corrections
         }
 
-    def _adapt(self, answer: Answer, state: TwinState) -> Answer:
+    def _scale(self, answer: Answer, state: TwinState) -> Answer:
         """Scale the intervals of sensors that are not silent, and of the lines they are on."""
         factor = {
             name: 1.0 if name in state.silent else tracked.factor
@@ -260,13 +313,32 @@ class Twin:
         return answer.widened(bridle=bridle, sensor=sensor)
 
     def _reading_at(self, state: TwinState, t: datetime) -> Reading:
-        return reading_at(
-            state.newest(self.buoy, t),
-            t,
-            buoy=self.buoy,
-            keys=input_keys(self.models.inputs),
-            stale_after_s=self.timeouts.stale_after_s,
-        )
+        """Return the buoy's newest value of each input, if it is sound and fresh.
+
+        The newest reading governs: where it failed its checks there is no input until the next
+        good one, as an older value is no measurement of the water since.
+        """
+        newest, keys = state.newest(self.buoy, t), input_keys(self.models.inputs)
+        missing = [key for key in keys if key not in newest]
+        if missing:
+            trouble = f"{self.buoy} has not sent {missing[0]} yet."
+            return Reading(metocean=None, age_s=None, trouble=trouble)
+        columns = {
+            key: np.array([sample.values[key] if _is_usable(sample, key) else np.nan])
+            for key, sample in newest.items()
+        }
+        age_s = max((t - newest[key].t).total_seconds() for key in keys)
+        bad = [key for key in keys if not _is_usable(newest[key], key)]
+        limit_s = self.timeouts.stale_after_s
+        trouble = ""
+        if bad:
+            trouble = _fault(self.buoy, bad[0], newest[bad[0]].flags[bad[0]])
+        elif age_s > limit_s:
+            trouble = (
+                f"The last reading of {self.buoy} is {duration_text(age_s)} old; "
+                f"{duration_text(limit_s)} is the limit."
+            )
+        return Reading(metocean=Metocean.from_columns(columns, 1), age_s=age_s, trouble=trouble)
 
     def _timeout_by_stream(self) -> dict[str, float]:
         sensors = dict.fromkeys(self.sensor_names, self.timeouts.sensor_silent_after_s)
@@ -284,3 +356,14 @@ def replay(twin: Twin, samples: Iterable[Sample]) -> Iterator[Event]:
         now = sample.t if state.clock is None else max(sample.t, state.clock)
         state, events = twin.step(state, sample, now)
         yield from events
+
+
+def _is_usable(sample: Sample, key: str) -> bool:
+    """Whether a value may reach a model."""
+    return sample.flags[key] not in {Flag.FAIL, Flag.MISSING}
+
+
+def _fault(buoy: str, key: str, flag: int) -> str:
+    """Return why a value is no input."""
+    word = Flag(flag).name.lower().replace("_", " ")
+    return f"{buoy}: {key} is flagged {flag:d} ({word}); there is no valid input."

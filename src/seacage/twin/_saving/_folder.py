@@ -1,6 +1,7 @@
-"""A twin's folder: settings as JSON, arrays as safetensors, and a manifest that seals both."""
+"""A twin's folder: settings as JSON, arrays as safetensors, a manifest and its signature."""
 
 import hashlib
+import hmac
 import json
 import shutil
 from collections.abc import Mapping
@@ -9,8 +10,14 @@ from typing import cast
 
 import numpy as np
 
-from seacage.conventions import TABLE_BYTES, TEXT_BYTES, ModelError, parse_json, read_bytes
-from seacage.twin._saving._signature import is_signed, signature
+from seacage.conventions import (
+    TABLE_BYTES,
+    TEXT_BYTES,
+    InputError,
+    ModelError,
+    parse_json,
+    read_bytes,
+)
 
 SETTINGS = "model.json"
 ARRAYS = "arrays.safetensors"
@@ -18,6 +25,30 @@ MANIFEST = "manifest.json"
 SIGNATURE = "manifest.hmac"
 
 _MOST_BYTES = {SETTINGS: TEXT_BYTES, ARRAYS: TABLE_BYTES, MANIFEST: 4096, SIGNATURE: 4096}
+_LEAST, _MOST = 16, 4096  # bytes of a key
+
+
+def read_key(path: Path | str) -> bytes:
+    """Read a key that twins are signed with; every byte of the file counts.
+
+    Raises
+    ------
+    InputError
+        No such file, one that others than its owner may read, too short or too long a one.
+    """
+    key = read_bytes(path, most=_MOST)
+    rights = Path(path).stat().st_mode & 0o777
+    if rights & 0o077:
+        raise InputError(
+            f"The key {path} has the rights {rights:o}, so others than its owner may use it. "
+            f"Say: chmod 600 {path}, and make a new key if it has been so for long."
+        )
+    if len(key) < _LEAST:
+        raise InputError(
+            f"The key {path} has {len(key)} bytes, and fewer than {_LEAST} can be "
+            "guessed. Make one of random bytes, such as by: openssl rand -hex 32."
+        )
+    return key
 
 
 def write_folder(
@@ -47,7 +78,7 @@ def write_folder(
     }
     contents[MANIFEST] = _json({name: _sha256(content) for name, content in contents.items()})
     if key is not None:
-        contents[SIGNATURE] = signature(key, contents[MANIFEST])
+        contents[SIGNATURE] = _signature(key, contents[MANIFEST])
     fresh, old = (folder.with_name(f".{folder.name}.{part}") for part in ("new", "old"))
     for leftover in (fresh, old):
         shutil.rmtree(leftover, ignore_errors=True)
@@ -83,7 +114,7 @@ def read_folder(
         )
     manifest = _content(folder, MANIFEST)
     signed = SIGNATURE in found
-    if key is not None and not (signed and is_signed(key, manifest, _content(folder, SIGNATURE))):
+    if key is not None and not (signed and _is_signed(key, manifest, _content(folder, SIGNATURE))):
         raise ModelError(
             f"{folder} is {'signed by another key' if signed else 'not signed'}, and only twins "
             "that the key of the settings signs are taken. Train it with --sign KEYFILE."
@@ -104,6 +135,16 @@ def read_folder(
 
 def _content(folder: Path, name: str) -> bytes:
     return read_bytes(folder / name, most=_MOST_BYTES[name], refusal=ModelError, links=False)
+
+
+def _signature(key: bytes, manifest: bytes) -> bytes:
+    """Sign a manifest, and so all files that it has the sums of: a line of HMAC-SHA256."""
+    return hmac.new(key, manifest, hashlib.sha256).hexdigest().encode() + b"\n"
+
+
+def _is_signed(key: bytes, manifest: bytes, signed: bytes) -> bool:
+    """Whether a signature is that of a manifest, compared in constant time."""
+    return hmac.compare_digest(_signature(key, manifest), signed)
 
 
 def _arrays(content: bytes, path: Path) -> dict[str, np.ndarray]:
