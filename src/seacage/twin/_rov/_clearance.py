@@ -94,21 +94,21 @@ class PathClearance:
 
 
 def sample_path(
-    path: Float[np.ndarray, "corner 3"], *, spacing: float = SPACING
+    path: Float[np.ndarray, "corner 3"],
 ) -> tuple[Float[np.ndarray, "point 3"], Float[np.ndarray, " point"]]:
     """Sample straight lines: points, and their distance along the lines [m].
 
-    Every corner is among them, and no two neighbours are farther apart than ``spacing`` [m].
+    Every corner is among them, and no two neighbours are farther apart than ``SPACING``.
     """
     leg = np.linalg.norm(np.diff(path, axis=0), axis=1)
     total = np.append(0.0, np.cumsum(leg))
-    if total[-1] / spacing > MOST_POINTS:
+    if total[-1] / SPACING > MOST_POINTS:
         raise InputError(
             f"A path of {total[-1]:.0f} m is longer than the "
-            f"{MOST_POINTS * spacing:.0f} m that can be sampled at once. Cut it, and "
+            f"{MOST_POINTS * SPACING:.0f} m that can be sampled at once. Cut it, and "
             "check that its unit is metres."
         )
-    parts = np.maximum(np.ceil(leg / spacing), 1).astype(int)
+    parts = np.maximum(np.ceil(leg / SPACING), 1).astype(int)
     # Corners and what lies between them, leg by leg: how many legs, and parts of the next.
     legs = np.repeat(np.arange(len(leg)), parts)
     within = np.arange(len(legs)) - (np.cumsum(parts) - parts)[legs]

@@ -11,7 +11,6 @@ from jaxtyping import Float, Int
 from seacage.cage import Cage, Nearest
 from seacage.conventions import InputError, Origin, SeacageError, duration_text
 from seacage.ocean import SeaState
-from seacage.twin._answer import Answer
 from seacage.twin._discrepancy import ShapeError
 from seacage.twin._events import Answered
 from seacage.twin._metocean import Metocean
@@ -107,10 +106,19 @@ class PredictedNet:
         water = answered.metocean
         if water is None or age_s is None or not water.known(twin.models.inputs).all():
             raise StaleError(f"There is no net to measure from. {answer.reason[0]}")
-        if not allow_stale:
-            _check_fresh(answer, age_s, most_age_s)
         if not answer.valid[0]:
+            if not allow_stale:
+                raise StaleError(
+                    f"The net is not known now. {answer.reason[0]} Allow a stale state to measure "
+                    "from the last reading."
+                )
             answer = twin.predict(water)
+        elif not allow_stale and most_age_s is not None and age_s > most_age_s:
+            raise StaleError(
+                f"The net rests on a reading of {duration_text(age_s)} ago; "
+                f"{duration_text(most_age_s)} is the limit given. Wait for the next reading, or "
+                "allow a stale state."
+            )
         velocity = water.current_velocity[0]
         known = twin.discrepancy
         return cls(
@@ -221,20 +229,6 @@ class PredictedNet:
             below=below,
             p_below=np.clip(expected.p_below(below) @ weight, 0.0, 1.0),
             p_through=np.clip(np.where(near.inside, 1.0 - p_inside, p_inside), 0.0, 1.0),
-        )
-
-
-def _check_fresh(answer: Answer, age_s: float, most_age_s: float | None) -> None:
-    if not answer.valid[0]:
-        raise StaleError(
-            f"The net is not known now. {answer.reason[0]} Allow a stale state to measure from "
-            "the last reading."
-        )
-    if most_age_s is not None and age_s > most_age_s:
-        raise StaleError(
-            f"The net rests on a reading of {duration_text(age_s)} ago; "
-            f"{duration_text(most_age_s)} is the limit given. Wait for the next reading, or "
-            "allow a stale state."
         )
 
 
