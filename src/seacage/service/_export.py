@@ -4,13 +4,13 @@ import csv
 import io
 import json
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from importlib import import_module
 from importlib.metadata import version
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -38,7 +38,8 @@ _SAME_IN_ALL_ROWS = {
     "sensor_level",
     "shape_level",
 }
-_DOOR = {"N": ("kn", 1e-3), "m": ("m", 1.0)}
+_DOOR_UNITS = {"N": ("kN", 1e-3), "m": ("m", 1.0)}
+_ENDS = {"": "mean", "_lower": "95 %, lower", "_upper": "95 %, upper"}
 
 Column = list[Any]
 Table = Float[np.ndarray, "t output"]
@@ -113,6 +114,46 @@ def _join(parts: list[Any]) -> Any:
     return tuple(chain.from_iterable(parts))
 
 
+class Output(NamedTuple):
+    """What is answered about one bridle or sensor, row by row, in the unit of the doors."""
+
+    name: str
+    unit: str
+    level: int
+    in_domain: Bool[np.ndarray, " t"]
+    low: Float[np.ndarray, " t"]
+    mean: Float[np.ndarray, " t"]
+    lower: Float[np.ndarray, " t"]
+    upper: Float[np.ndarray, " t"]
+
+
+def bridle_outputs(answer: Answer) -> list[Output]:
+    """List what is answered about each bridle."""
+    names, tension, interval = answer.bridle_names, answer.bridle_tension, answer.bridle_interval()
+    tables = (answer.bridle_low, tension.mean, *interval)
+    about = zip(names, ["N"] * len(names), answer.bridle_level.tolist(), strict=True)
+    return list(_outputs(about, answer.bridle_in_domain, tables))
+
+
+def sensor_outputs(answer: Answer) -> list[Output]:
+    """List what is answered about each sensor."""
+    tables = (answer.sensor_low.mean, answer.sensor.mean, *answer.sensor_interval())
+    levels = answer.sensor_level.tolist()
+    about = zip(answer.sensor_names, answer.sensor_units, levels, strict=True)
+    return list(_outputs(about, answer.sensor_in_domain, tables))
+
+
+def _outputs(
+    about: Iterable[tuple[str, str, int]],
+    in_domain: Bool[np.ndarray, "t output"],
+    tables: Sequence[Table],
+) -> Iterator[Output]:
+    for k, (name, unit, level) in enumerate(about):
+        door, scale = _DOOR_UNITS[unit]
+        columns = (scale * table[:, k] for table in tables)
+        yield Output(name, door, level, in_domain[:, k], *columns)
+
+
 # --- a table, and lines of JSON with the same columns ---
 
 
@@ -127,22 +168,12 @@ def _columns(replayed: Replayed) -> Iterator[tuple[str, Column]]:
     for key, values in buoy.values.items():
         yield key, _without_nan(values)
         yield f"{key}_flag", buoy.flags[key].tolist()
-    sensor, bridle = answer.sensor_interval(), answer.bridle_interval()
-    for k, name in enumerate(answer.sensor_names):
-        unit, scale = _DOOR[answer.sensor_units[k]]
-        yield f"{name}_level", [int(answer.sensor_level[k])] * len(buoy)
-        yield f"{name}_in_domain", answer.sensor_in_domain[:, k].tolist()
-        low, best = answer.sensor_low.mean[:, k], answer.sensor.mean[:, k]
-        yield from _interval_columns(f"{name}_low", unit, scale * low)
-        yield from _interval_columns(
-            name, unit, scale * best, *(scale * end[:, k] for end in sensor)
-        )
-    for k, name in enumerate(answer.bridle_names):
-        yield f"{name}_level", [int(answer.bridle_level[k])] * len(buoy)
-        yield f"{name}_in_domain", answer.bridle_in_domain[:, k].tolist()
-        yield from _interval_columns(f"{name}_low", "kn", 1e-3 * answer.bridle_low[:, k])
-        best = 1e-3 * answer.bridle_tension.mean[:, k]
-        yield from _interval_columns(name, "kn", best, *(1e-3 * end[:, k] for end in bridle))
+    for one in (*sensor_outputs(answer), *bridle_outputs(answer)):
+        unit = one.unit.lower()
+        yield f"{one.name}_level", [one.level] * len(buoy)
+        yield f"{one.name}_in_domain", one.in_domain.tolist()
+        yield from _interval_columns(f"{one.name}_low", unit, one.low)
+        yield from _interval_columns(one.name, unit, one.mean, one.lower, one.upper)
     yield "shape_level", [answer.shape_level] * len(buoy)
     yield "shape_in_domain", answer.in_domain.tolist()
     yield "shape_interval_reason", [interval_reason(answer.shape_level)] * len(buoy)
@@ -153,15 +184,11 @@ def _columns(replayed: Replayed) -> Iterator[tuple[str, Column]]:
 
 
 def _interval_columns(
-    name: str,
-    unit: str,
-    mean: Float[np.ndarray, " t"],
-    lower: Float[np.ndarray, " t"] | None = None,
-    upper: Float[np.ndarray, " t"] | None = None,
+    name: str, unit: str, mean: Float[np.ndarray, " t"], *interval: Float[np.ndarray, " t"]
 ) -> Iterator[tuple[str, Column]]:
-    yield f"{name}_{unit}", _without_nan(mean)
-    for side, end in (("lower", lower), ("upper", upper)):
-        yield f"{name}_{side}_{unit}", [None] * len(mean) if end is None else _without_nan(end)
+    columns = (mean, *(interval or (np.full_like(mean, np.nan),) * 2))
+    for end, values in zip(_ENDS, columns, strict=True):
+        yield f"{name}{end}_{unit}", _without_nan(values)
 
 
 def _without_nan(values: Float[np.ndarray, " t"]) -> Column:

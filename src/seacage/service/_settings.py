@@ -284,10 +284,9 @@ def _above(table: Mapping[str, Any]) -> type[Settings]:
             settings_cls: type[BaseSettings],
             init_settings: PydanticBaseSettingsSource,
             env_settings: PydanticBaseSettingsSource,
-            dotenv_settings: PydanticBaseSettingsSource,
-            file_secret_settings: PydanticBaseSettingsSource,
+            *_: Any,
+            **__: Any,
         ) -> tuple[PydanticBaseSettingsSource, ...]:
-            del dotenv_settings, file_secret_settings
             file = InitSettingsSource(settings_cls, init_kwargs=dict(table))
             return init_settings, env_settings, file
 

@@ -2,7 +2,7 @@
 
 import math
 import shlex
-from dataclasses import fields
+from dataclasses import asdict, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -37,6 +37,7 @@ group = typer.Typer(
 Store = Annotated[Path, typer.Argument(help="The campaign's folder, a Zarr store.")]
 
 _FAILURES_SHOWN = 20
+_ENDS = ("converged", "not_converged", "diverged")
 
 _SCRIPT = """\
 #!/bin/bash
@@ -246,21 +247,16 @@ def _report_end(store: Path) -> None:
 
 
 def _report_status(store: Path, reached: "CampaignStatus") -> None:
-    counts = {
-        "converged": reached.converged,
-        "not_converged": reached.not_converged,
-        "diverged": reached.diverged,
-    }
+    about = asdict(reached)
+    failures = [{"case": case, "reason": reason} for case, reason in reached.failures.items()]
     report(
-        {"store": str(store), "plan": reached.plan, "method": reached.method, "law": reached.law}
-        | {"origin": "computed", "total": reached.total, "done": reached.done, **counts}
-        | {"finished": reached.finished, "failures": _failures(reached)}
-        | {"simulated_s": reached.simulated_s, "core_seconds": round(reached.core_seconds, 2)}
+        {"store": str(store), "origin": "computed", **about, "done": reached.done}
+        | {"failures": failures, "core_seconds": round(reached.core_seconds, 2)}
         | {"simulated_s_per_core_second": round(reached.pace, 1)},
         rows=[
             ("Campaign", f"{store}: plan {reached.plan}, {reached.method}, {reached.law}"),
             ("Done", f"{reached.done} of {reached.total}{_pending_checksums(reached)}"),
-            *((name.replace("_", " "), str(count)) for name, count in counts.items()),
+            *((name.replace("_", " "), str(about[name])) for name in _ENDS),
             *_pace(reached),
             *_failure_rows(reached),
         ],
@@ -279,10 +275,6 @@ def _pace(reached: "CampaignStatus") -> list[tuple[str, str]]:
     if math.isnan(reached.pace):
         return [("Cost", cost)]
     return [("Cost", f"{cost}, {reached.pace:.0f} simulated seconds in each")]
-
-
-def _failures(reached: "CampaignStatus") -> list[dict[str, object]]:
-    return [{"case": case, "reason": reason} for case, reason in reached.failures.items()]
 
 
 def _failure_rows(reached: "CampaignStatus") -> list[tuple[str, str]]:

@@ -3,7 +3,7 @@
 import sys
 from collections.abc import Iterator
 from contextlib import closing
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from datetime import timedelta
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -190,23 +190,13 @@ def _transport(to: str, cage: str, site: str, token: str, ca: Path | None) -> "T
 def _report_outcome(done: "Published", refused: _Refused) -> None:
     reasons = [*refused.reasons, *done.reasons]
     report(
-        {
-            "read": done.read,
-            "acknowledged": done.acknowledged,
-            "rejected": done.rejected,
-            "refused": refused.count,
-            "reasons": reasons,
-            "dropped": done.dropped,
-            "spooled": done.waiting,
-            "ahead": done.ahead,
-            "quarantined": done.quarantined,
-        },
+        asdict(done) | {"refused": refused.count, "reasons": reasons},
         rows=[
             ("Read", f"{done.read} samples"),
             ("Acknowledged", str(done.acknowledged)),
             ("Refused", f"{done.rejected} by the service, {refused.count} before"),
             *(("", reason) for reason in reasons[:5]),
-            ("Spooled", f"{done.waiting} wait, {done.dropped} were given up"),
+            ("Spooled", f"{done.spooled} wait, {done.dropped} were given up"),
             ("Ahead", f"{done.ahead} of these wait for the service's clock"),
             ("Set aside", str(done.quarantined)),
         ],

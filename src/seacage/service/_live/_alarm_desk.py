@@ -12,6 +12,7 @@ from types import MappingProxyType
 import structlog
 
 from seacage.conventions import InputError
+from seacage.service._schemas._alarms import alarm_state
 from seacage.service._schemas._state import AlarmBrief
 from seacage.service._store._store import Store, StoreError
 from seacage.twin import (
@@ -97,11 +98,11 @@ class AlarmDesk:
     def waiting(self) -> list[AlarmBrief]:
         """Those in service that are active or that nobody has acknowledged, the worst first."""
         open_ = [
-            one
+            AlarmBrief.model_validate(alarm_state(one, self.policy))
             for one in self.alarms.values()
             if one.in_service and (one.active or not one.acknowledged)
         ]
-        return sorted((self._brief(one) for one in open_), key=lambda one: -one.severity)
+        return sorted(open_, key=lambda one: -one.severity)
 
     def standing(self) -> list[Announcement]:
         """Those that are active, not suppressed and not acknowledged, as when raised."""
@@ -233,19 +234,6 @@ class AlarmDesk:
             alarm=alarm,
             text=alarm_text(alarm, self.policy),
             severity=self.policy.limit(alarm.name).severity,
-        )
-
-    def _brief(self, alarm: Alarm) -> AlarmBrief:
-        text = alarm_text(alarm, self.policy)
-        return AlarmBrief(
-            id=alarm.name,
-            severity=self.policy.limit(alarm.name).severity,
-            title=text.title,
-            message=text.message,
-            active=alarm.active,
-            acknowledged=alarm.acknowledged,
-            shelved=alarm.shelved,
-            since=alarm.since,
         )
 
 

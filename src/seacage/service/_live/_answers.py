@@ -3,16 +3,17 @@
 import hashlib
 import math
 from collections.abc import Iterator, Mapping
+from dataclasses import asdict
 from datetime import UTC, datetime
-from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Float
 
 from seacage.cage import Cage
 from seacage.conventions import Flag, compass
 from seacage.ocean import SeaState
 from seacage.records import Amendment, Record, Sample
+from seacage.service._export import Output, bridle_outputs, sensor_outputs
 from seacage.service._schemas._cages import CageSummary, Position, ShacklePlace, Topology
 from seacage.service._schemas._history import History, Measured, Series
 from seacage.service._schemas._samples import SampleOut
@@ -38,7 +39,6 @@ from seacage.twin import (
 
 _UNUSABLE = (Flag.FAIL, Flag.MISSING)
 _PERIOD = "tp_s"
-_DOOR_UNIT = {"N": ("kN", 1e-3), "m": ("m", 1.0)}
 _ID_DIGITS = 16  # of the hash of a topology: enough that two never meet by chance
 _DECIMALS = 3  # a newton, a millimetre: below what any sensor here resolves
 
@@ -90,23 +90,15 @@ def summary_of(name: str, state: State) -> CageSummary:
     """Say in one line how a cage is."""
     waiting = [alarm for alarm in state.alarms if not alarm.shelved]
     worst = max(waiting, key=lambda alarm: (alarm.active, alarm.severity), default=None)
-    return CageSummary(
-        name=name,
-        origin=state.origin,
-        valid=state.valid,
-        in_domain=state.in_domain,
-        t=state.t,
-        age_s=state.age_s,
-        reason=state.reason,
-        max_utilisation=max((share for share, _, _ in loads_of(state)), default=None),
-        volume_fraction=state.volume_fraction,
-        current_speed_m_s=state.water.current_speed_m_s if state.water else None,
-        current_to_deg=state.water.current_to_deg if state.water else None,
-        waiting=len(waiting),
-        worst_severity=worst.severity if worst else None,
-        worst_title=worst.title if worst else None,
-        concerns=state.concerns,
-    )
+    about = {
+        "name": name,
+        "max_utilisation": max((share for share, _, _ in loads_of(state)), default=None),
+        "waiting": len(waiting),
+        "worst_severity": worst.severity if worst else None,
+        "worst_title": worst.title if worst else None,
+    }
+    water = dict(state.water or dict.fromkeys(Water.model_fields))
+    return CageSummary.model_validate({**dict(state), **water, **about})
 
 
 def _bridles(cage: Cage, answer: Answer, measured: Mapping[int, float]) -> list[BridleState]:
@@ -137,24 +129,23 @@ def _bridles(cage: Cage, answer: Answer, measured: Mapping[int, float]) -> list[
 def _sensors(
     answer: Answer, memory: TwinState, now: datetime, silent_after_s: float
 ) -> list[SensorState]:
-    (lower, upper), states = answer.sensor_interval(), list[SensorState]()
-    for k, sensor in enumerate(answer.sensor_names):
-        unit, scale = _DOOR_UNIT[answer.sensor_units[k]]
-        sample = memory.latest(sensor, now)
+    states = list[SensorState]()
+    for one in sensor_outputs(answer):
+        sample = memory.latest(one.name, now)
         measured = usable_value(sample) if sample else None
         age = (now - sample.t).total_seconds() if sample and measured is not None else None
         fresh = age is not None and age <= silent_after_s
         states.append(
             SensorState(
-                name=sensor,
-                unit=unit,
-                level=int(answer.sensor_level[k]),
-                in_domain=bool(answer.sensor_in_domain[0, k]),
-                low_fidelity=_number(answer.sensor_low.mean[0, k] * scale),
-                mean=_number(answer.sensor.mean[0, k] * scale),
-                lower=_number(lower[0, k] * scale),
-                upper=_number(upper[0, k] * scale),
-                interval_reason=interval_reason(int(answer.sensor_level[k])),
+                name=one.name,
+                unit=one.unit,
+                level=one.level,
+                in_domain=bool(one.in_domain[0]),
+                low_fidelity=_number(one.low[0]),
+                mean=_number(one.mean[0]),
+                lower=_number(one.lower[0]),
+                upper=_number(one.upper[0]),
+                interval_reason=interval_reason(one.level),
                 measured=_number(measured) if fresh else None,
                 measured_age_s=_number(age) if fresh else None,
             )
@@ -163,15 +154,7 @@ def _sensors(
 
 
 def _amendment(one: Amendment) -> Amended:
-    was = None if one.was is None else int(one.was)
-    return Amended(
-        stream=one.stream,
-        t=one.t,
-        quantity=one.key,
-        was=was,
-        flag=int(one.flag),
-        reason=one.remark,
-    )
+    return Amended.model_validate(asdict(one) | {"quantity": one.key, "reason": one.remark})
 
 
 def usable_value(sample: Sample) -> float | None:
@@ -244,59 +227,31 @@ def history_of(
         Whether the buoy read more often than these readings say.
     """
     times = [t.replace(tzinfo=UTC) for t in buoy.time.tolist()]
-    bridles = _Table(
-        answer.bridle_in_domain,
-        answer.bridle_low,
-        answer.bridle_tension.mean,
-        *answer.bridle_interval(),
-    )
-    sensors = _Table(
-        answer.sensor_in_domain,
-        answer.sensor_low.mean,
-        answer.sensor.mean,
-        *answer.sensor_interval(),
-    )
     return History(
         t=times,
         valid=answer.valid.tolist(),
         in_domain=answer.in_domain.tolist(),
         current_speed_m_s=_usable(buoy, "current_speed_m_s"),
         current_to_deg=_usable(buoy, "current_to_deg"),
-        bridles={
-            name: bridles.series(k, "N", int(answer.bridle_level[k]))
-            for k, name in enumerate(answer.bridle_names)
-        },
-        sensors={
-            name: sensors.series(k, answer.sensor_units[k], int(answer.sensor_level[k]))
-            for k, name in enumerate(answer.sensor_names)
-        },
+        bridles={one.name: _series(one) for one in bridle_outputs(answer)},
+        sensors={one.name: _series(one) for one in sensor_outputs(answer)},
         measured=dict(measured),
         volume_fraction=_column(answer.volume_fraction),
         thinned=thinned,
     )
 
 
-class _Table(NamedTuple):
-    """What is answered about all bridles or sensors, one of them a column."""
-
-    in_domain: Bool[np.ndarray, "case output"]
-    low: Float[np.ndarray, "case output"]
-    mean: Float[np.ndarray, "case output"]
-    lower: Float[np.ndarray, "case output"]
-    upper: Float[np.ndarray, "case output"]
-
-    def series(self, k: int, si_unit: str, level: int) -> Series:
-        unit, scale = _DOOR_UNIT[si_unit]
-        return Series(
-            unit=unit,
-            level=level,
-            in_domain=self.in_domain[:, k].tolist(),
-            low_fidelity=_column(self.low[:, k] * scale),
-            mean=_column(self.mean[:, k] * scale),
-            lower=_column(self.lower[:, k] * scale),
-            upper=_column(self.upper[:, k] * scale),
-            interval_reason=interval_reason(level),
-        )
+def _series(one: Output) -> Series:
+    return Series(
+        unit=one.unit,
+        level=one.level,
+        in_domain=one.in_domain.tolist(),
+        low_fidelity=_column(one.low),
+        mean=_column(one.mean),
+        lower=_column(one.lower),
+        upper=_column(one.upper),
+        interval_reason=interval_reason(one.level),
+    )
 
 
 def sample_of(sample: Sample) -> SampleOut:

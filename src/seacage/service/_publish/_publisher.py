@@ -42,7 +42,7 @@ class Published:
         Samples that it refused, and why, of the first ones.
     dropped
         Samples that had to make room in the spool.
-    waiting, ahead
+    spooled, ahead
         Samples that are still in the spool, and how many of these as their time has not come.
     quarantined
         Samples that were set aside, beside the spool.
@@ -53,7 +53,7 @@ class Published:
     rejected: int
     reasons: tuple[str, ...]
     dropped: int
-    waiting: int
+    spooled: int
     ahead: int
     quarantined: int
 
@@ -100,20 +100,6 @@ class Publisher:
         self._fault: SeacageError | OSError | None = None
         self._arrived, self._stopped = threading.Event(), threading.Event()
 
-    @property
-    def outcome(self) -> Published:
-        """What was done so far."""
-        return Published(
-            read=self._read,
-            acknowledged=self._acknowledged,
-            rejected=self._rejected,
-            reasons=tuple(self._reasons),
-            dropped=self._spool.dropped,
-            waiting=len(self._spool),
-            ahead=self._spool.ahead,
-            quarantined=self._spool.quarantined,
-        )
-
     def run(self, source: Iterable[Batch]) -> Published:
         """Publish until the source has ended and all but what is ahead is acknowledged.
 
@@ -142,7 +128,16 @@ class Publisher:
                     self._check_patience(time.monotonic() - acknowledged_at)
         if self._fault is not None:
             raise self._fault
-        return self.outcome
+        return Published(
+            read=self._read,
+            acknowledged=self._acknowledged,
+            rejected=self._rejected,
+            reasons=tuple(self._reasons),
+            dropped=self._spool.dropped,
+            spooled=len(self._spool),
+            ahead=self._spool.ahead,
+            quarantined=self._spool.quarantined,
+        )
 
     def _next(self, live_after: int, *, silent: bool) -> list[Sample]:
         limit = 1 if silent else BATCH_LIMIT

@@ -1,7 +1,6 @@
 """An edge publisher's memory: samples on disk until the service has them."""
 
 import json
-import os
 import sqlite3
 import threading
 from collections.abc import Callable, Generator, Sequence
@@ -115,7 +114,7 @@ class Spool:
         self._quarantine = Quarantine(path.with_name(f"{path.name}.quarantine.jsonl"), most=1 << 30)
         self.dropped = 0
         try:
-            keep_private(path)
+            keep_private(path)  # a file of 0.1.0 could be read by all
             self._connection = _open(path)
             self._count: int = self._all("SELECT count(*) FROM sample")[0][0]
             self.ahead: int = self._all("SELECT count(*) FROM ahead")[0][0]
@@ -271,11 +270,6 @@ class Spool:
 
 
 def _open(path: Path) -> sqlite3.Connection:
-    log = path.with_name(f"{path.name}-wal")
-    os.close(os.open(path, os.O_RDWR | os.O_CREAT, 0o600))
-    for one in (path, log):  # those of 0.1.0 could be read by all
-        if one.exists():
-            one.chmod(0o600)
     connection = sqlite3.connect(path, isolation_level=None, check_same_thread=False, timeout=1.0)
     try:
         connection.text_factory = _text

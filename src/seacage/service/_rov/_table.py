@@ -109,9 +109,8 @@ def write_waypoints(path: Path, answer: InspectionAnswer) -> None:
 
 
 def _frame_of(head: set[str], path: Path) -> FrameName:
-    frames: tuple[FrameName, ...] = ("enu", "ned", "wgs84")
-    for frame in frames:
-        if head.issuperset(HEADS[frame]):
+    for frame, keys in HEADS.items():
+        if head.issuperset(keys):
             return frame
     wanted = "; ".join(",".join(keys) for keys in HEADS.values())
     raise InputError(f"{path}: its header names no frame with units. Name the columns {wanted}.")

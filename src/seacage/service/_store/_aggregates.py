@@ -14,7 +14,7 @@ from datetime import datetime, timedelta
 from seacage.conventions import Flag, InputError
 from seacage.records import KEYS
 from seacage.service._store._database._checksum import with_checksum
-from seacage.service._store._database._rows import DAY_US, Bounds, moment_of, pairs_of
+from seacage.service._store._database._rows import DAY_US, SAMPLES, Bounds, moment_of, pairs_of
 from seacage.service._store._database._session import AbstractSession
 from seacage.service._store._integrity._tally import recount
 
@@ -49,9 +49,7 @@ _SEALED_IN = "SELECT t, crc FROM sealed WHERE cage = ? AND stream = ? AND t >= ?
 
 _UNMARK = "DELETE FROM mark WHERE cage = ? AND stream = ? AND t = ?"
 
-_SAMPLES = """
-SELECT stream, t, seq, readings, remarks, t_ingest, crc FROM sample
-WHERE cage = ? AND stream = ? AND t >= ? AND t < ?"""
+_SAMPLES = f"{SAMPLES} AND stream = ? AND t >= ? AND t < ?"
 
 _CLEAR = "DELETE FROM aggregate WHERE cage = ? AND stream = ? AND t >= ? AND t < ?"
 

@@ -23,8 +23,6 @@ _ALL = Bounds()
 Manifest = Mapping[date, Mapping[str, Any]]
 """By UTC day: ``file``, ``sha256`` and how many ``samples``."""
 
-SampleKey = tuple[str, datetime, int]
-
 
 class Archive:
     """A folder of days that do not change any more, or seldom.
@@ -56,9 +54,7 @@ class Archive:
             manifest = self._manifest(folder)
             there = self._read(folder, stream, day, manifest[day]) if day in manifest else []
             both = {key_of(one): one for one in (*there, *samples)}
-            content = encode_parquet(
-                cage, stream, [both[key] for key in sorted(both, key=order_of)]
-            )
+            content = encode_parquet(cage, stream, [both[key] for key in sorted(both)])
             digest = hashlib.sha256(content).hexdigest()
             name = f"{day.isoformat()}-{digest[:12]}.parquet"
             entry = {"file": name, "sha256": digest, "samples": len(both)}
@@ -171,15 +167,9 @@ class Archive:
         return self.folder / _quote_name(cage) / _quote_name(stream)
 
 
-def key_of(sample: Sample) -> SampleKey:
-    """What a sample is known by."""
-    return (sample.stream, sample.t, -1 if sample.seq is None else sample.seq)
-
-
-def order_of(key: SampleKey) -> tuple[datetime, str, int]:
-    """By which samples are ordered."""
-    stream, t, seq = key
-    return (t, stream, seq)
+def key_of(sample: Sample) -> tuple[datetime, str, int]:
+    """What a sample is known by, in the order of samples."""
+    return (sample.t, sample.stream, -1 if sample.seq is None else sample.seq)
 
 
 def _quote_name(name: str) -> str:

@@ -6,7 +6,7 @@ from datetime import datetime
 from itertools import groupby
 
 from seacage.records import Sample
-from seacage.service._store._archive import Archive, key_of, order_of
+from seacage.service._store._archive import Archive, key_of
 from seacage.service._store._database._rows import MICROSECOND, Bounds
 
 
@@ -27,7 +27,7 @@ def with_archive(
         older = archive.read(cage, name, day, bounds)
         added += len(older)
         held = {key_of(one): one for one in older} | held
-    ordered = [held[key] for key in sorted(held, key=order_of)]
+    ordered = [held[key] for key in sorted(held)]
     return ordered[-bounds.limit :] if bounds.newest else ordered[: bounds.limit]
 
 
@@ -50,4 +50,4 @@ def read_archive_between(
     """Read archived samples in time order, a day at a time."""
     for day, group in groupby(archive.days(cage, stream, bounds), key=lambda one: one[0]):
         samples = [one for _, name in group for one in archive.read(cage, name, day, bounds)]
-        yield from sorted(samples, key=lambda one: order_of(key_of(one)))
+        yield from sorted(samples, key=key_of)

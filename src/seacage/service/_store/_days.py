@@ -6,14 +6,15 @@ from typing import Any
 from seacage.service._store._aggregates import renew_between
 from seacage.service._store._archive import Archive
 from seacage.service._store._database._checksum import with_checksum
-from seacage.service._store._database._rows import DAY_US, SampleRow, moment_of, readable
+from seacage.service._store._database._rows import DAY_US, SAMPLES, SampleRow, moment_of, readable
 from seacage.service._store._database._session import AbstractSession
 from seacage.service._store._integrity._tally import recount
 from seacage.service._store._integrity._verify import Read
 from seacage.service._store._quality import retire_memory
+from seacage.service._store._samples import STREAMS
 from seacage.service._store._write_queue import Writer
 
-# Down the index from name to name; a DISTINCT would read every sample.
+# As the streams of a cage.
 _CAGES = """
 WITH RECURSIVE named(name) AS (
     SELECT min(cage) FROM sample
@@ -22,18 +23,9 @@ WITH RECURSIVE named(name) AS (
     FROM named WHERE named.name IS NOT NULL
 )
 SELECT name FROM named WHERE name IS NOT NULL"""
-_STREAMS = """
-WITH RECURSIVE named(name) AS (
-    SELECT min(stream) FROM sample WHERE cage = ?
-    UNION ALL
-    SELECT (SELECT min(stream) FROM sample WHERE cage = ? AND stream > named.name)
-    FROM named WHERE named.name IS NOT NULL
-)
-SELECT name FROM named WHERE name IS NOT NULL"""
+_STREAMS = STREAMS + "SELECT stream FROM named WHERE stream IS NOT NULL"  # noqa: S608
 _NEXT = "SELECT min(t) FROM sample WHERE cage = ? AND stream = ? AND t >= ?"
-_ROWS = """
-SELECT stream, t, seq, readings, remarks, t_ingest, crc FROM sample
-WHERE cage = ? AND stream = ? AND t >= ? AND t < ? ORDER BY t, seq"""
+_ROWS = f"{SAMPLES} AND stream = ? AND t >= ? AND t < ? ORDER BY t, seq"
 _SEAL = "INSERT INTO sealed VALUES (?, ?, ?, ?) ON CONFLICT DO NOTHING"
 
 # Exactly what was read: a sample that was amended since is left for the next time.

@@ -31,6 +31,7 @@ from seacage.records import (
 from seacage.service._store._database._checksum import checksum, with_checksum
 from seacage.service._store._database._rows import (
     DAY_US,
+    SAMPLES,
     Own,
     SampleRow,
     microseconds,
@@ -52,9 +53,7 @@ _HELD = 4 * _AT_ONCE  # entries of a long walk that wait to be written
 _LONGEST_S = 7 * 86_400.0
 _SECOND = 1_000_000
 
-_SAMPLES = """
-SELECT stream, t, seq, readings, remarks, t_ingest, crc FROM sample
-WHERE cage = ? AND stream = ?"""
+_SAMPLES = f"{SAMPLES} AND stream = ?"
 _FROM = f"{_SAMPLES} AND (t > ? OR (t = ? AND seq > ?)) ORDER BY t, seq LIMIT ?"
 _AT = f"{_SAMPLES} AND t = ? ORDER BY seq"
 _LAST = f"{_SAMPLES} AND t <= ? ORDER BY t DESC, seq DESC LIMIT ?"

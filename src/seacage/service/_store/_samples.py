@@ -12,6 +12,7 @@ from seacage.service._store._database._checksum import checksum, with_checksum
 from seacage.service._store._database._rows import (
     DAY_US,
     MICROSECOND,
+    SAMPLES,
     Bounds,
     Row,
     SampleRow,
@@ -43,24 +44,23 @@ _REPLACE = """
 UPDATE sample SET readings = ?, remarks = ?, t_ingest = ?, crc = ?
 WHERE cage = ? AND stream = ? AND t = ? AND seq = ?"""
 
-_ONE = """
-SELECT stream, t, seq, readings, remarks, t_ingest, crc FROM sample
-WHERE cage = ? AND stream = ? AND t = ? AND seq = ?"""
+_ONE = f"{SAMPLES} AND stream = ? AND t = ? AND seq = ?"
 
-_REMARKED = """
-SELECT stream, t, seq, readings, remarks, t_ingest, crc FROM sample
-WHERE cage = ? AND stream = ? AND t > ? AND t <= ? AND remarks <> '[]' ORDER BY t, seq"""
+_REMARKED = f"{SAMPLES} AND stream = ? AND t > ? AND t <= ? AND remarks <> '[]' ORDER BY t, seq"
 
-# Down the index from stream to stream, and in each to its newest: no scan of the samples. In
-# SQLite's words, and in those that PostgreSQL plans well.
-_LATEST = """
+STREAMS = """
 WITH RECURSIVE named(stream) AS (
     SELECT min(stream) FROM sample WHERE cage = ?
     UNION ALL
     SELECT (SELECT min(stream) FROM sample WHERE cage = ? AND stream > named.stream)
     FROM named WHERE named.stream IS NOT NULL
-)
-SELECT s.stream, s.t, s.seq, s.readings, s.remarks, s.t_ingest, s.crc FROM named {newest}"""
+)"""
+"""Goes down the index from stream to stream: a DISTINCT would read every sample."""
+
+# In each stream to its newest: no scan of the samples. In SQLite's words, and in those that
+# PostgreSQL plans well.
+_LATEST = """
+SELECT s.stream, s.t, s.seq, s.readings, s.remarks, s.t_ingest, s.crc FROM named """
 _NEWEST = {
     False: """JOIN sample s ON s.cage = ? AND s.stream = named.stream AND (s.t, s.seq) = (
     SELECT t, seq FROM sample
@@ -269,16 +269,15 @@ def samples_between(
     known_at: datetime | None = None,
 ) -> list[Sample]:
     """Read samples in time order, as ``Store.samples`` says."""
-    where, values = "cage = ? AND t >= ? AND t < ?", (cage, *bounds.us)
+    sql, values = f"{SAMPLES} AND t >= ? AND t < ?", (cage, *bounds.us)
     if stream is not None:
-        where, values = f"{where} AND stream = ?", (*values, stream)
+        sql, values = f"{sql} AND stream = ?", (*values, stream)
     if not withdrawn:
-        where, values = f"{where} AND remarks NOT LIKE ?", (*values, f"%{AHEAD}%")
+        sql, values = f"{sql} AND remarks NOT LIKE ?", (*values, f"%{AHEAD}%")
     order = "DESC" if bounds.newest else "ASC"
     rows = session.intact(
         "sample",
-        "SELECT stream, t, seq, readings, remarks, t_ingest, crc FROM sample "  # noqa: S608
-        f"WHERE {where} ORDER BY t {order}, stream {order}, seq {order} LIMIT ?",
+        f"{sql} ORDER BY t {order}, stream {order}, seq {order} LIMIT ?",
         values,
         (cage,),
         limit=bounds.limit,
@@ -300,7 +299,7 @@ def latest_samples(
 ) -> dict[str, Sample]:
     """Read the newest sample of each stream until a time, it included; none that is withdrawn."""
     until = microseconds(at) if at else Bounds().us[1]
-    query = _LATEST.format(newest=_NEWEST[session.lateral])
+    query = STREAMS + _LATEST + _NEWEST[session.lateral]
     found = session.rows(query, (cage, cage, cage, until, f"%{AHEAD}%"))
     samples = list[Sample]()
     for row in found:

@@ -168,8 +168,7 @@ class Writer:
             return self._write(works)
         except DamageError as error:
             self.control.forget()
-            if not self._database.renew(error):
-                raise
+            self._database.renew(error)
             return self._write(works)
 
     def _write(self, works: Sequence[Work]) -> list[Any]:

@@ -65,12 +65,12 @@ def spool(tmp_path):
 def test_a_source_is_sent_to_its_end(spool):
     done = Publisher(spool, service := Service()).run([batch(0, 1), batch(2)])
     assert sorted(service.had) == [0, 1, 2]
-    assert (done.read, done.acknowledged, done.waiting) == (3, 3, 0)
+    assert (done.read, done.acknowledged, done.spooled) == (3, 3, 0)
 
 
 def test_what_the_service_refuses_is_reported_and_not_sent_again(spool):
     done = Publisher(spool, Service()).run([batch(0), batch(1, 2, metres=200.0)])
-    assert (done.acknowledged, done.rejected, done.waiting) == (1, 2, 0)
+    assert (done.acknowledged, done.rejected, done.spooled) == (1, 2, 0)
     assert done.reasons == ("Too deep.", "Too deep.")
 
 
@@ -135,7 +135,7 @@ def test_what_is_ahead_of_the_services_clock_waits_and_delays_nothing(spool):
     service.clock = 2
     done = Publisher(spool, service).run([batch(0, 5), batch(1, 6), batch(2)])
     assert sorted(service.had) == [0, 1, 2]
-    assert (done.acknowledged, done.rejected, done.ahead, done.waiting) == (3, 0, 2, 2)
+    assert (done.acknowledged, done.rejected, done.ahead, done.spooled) == (3, 0, 2, 2)
     tried = [minute for minutes in service.tries for minute in minutes]
     assert sorted(tried) == [0, 1, 2, 5, 6], "within a minute, once"
 
@@ -175,7 +175,7 @@ def test_what_stays_ahead_is_set_aside_with_the_reason(spool, tmp_path):
     service = Service()
     service.clock = 2
     done = Publisher(spool, service, keep_ahead=timedelta(0)).run([batch(1, 5)])
-    assert (done.acknowledged, done.quarantined, done.waiting) == (1, 1, 0)
+    assert (done.acknowledged, done.quarantined, done.spooled) == (1, 1, 0)
     assert "It is ahead." in (tmp_path / "spool.quarantine.jsonl").read_text()
 
 

@@ -86,59 +86,29 @@ OBSERVED = ("@iot.id", "phenomenonTime", "resultTime", "result", "resultQuality"
 """The properties of an Observation."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Relation:
-    """How an entity leads to others.
-
-    Parameters
-    ----------
-    to
-        The set that they are of.
-    many
-        Whether there may be several.
-    joins
-        Whether the id of the one and the id of another belong together.
-    """
-
-    to: str
-    many: bool
-    joins: Callable[[str, str], bool]
-
-
-def _same(one: str, other: str) -> bool:
-    return one == other
-
-
-def _begins(whole: str, part: str) -> bool:
-    return whole.startswith(f"{part}:")
-
-
-def _ends(whole: str, part: str) -> bool:
-    return whole.endswith(f":{part}")
-
-
-def _reverse(joins: Callable[[str, str], bool]) -> Callable[[str, str], bool]:
-    return lambda one, other: joins(other, one)
-
-
-# The id of a Datastream is made of those of its Thing, its Sensor and its ObservedProperty.
-RELATIONS: Mapping[str, Mapping[str, Relation]] = {
-    "Things": {
-        "Locations": Relation(to="Locations", many=True, joins=_same),
-        "Datastreams": Relation(to="Datastreams", many=True, joins=_reverse(_begins)),
-    },
-    "Locations": {"Things": Relation(to="Things", many=True, joins=_same)},
-    "Sensors": {"Datastreams": Relation(to="Datastreams", many=True, joins=_reverse(_begins))},
-    "ObservedProperties": {
-        "Datastreams": Relation(to="Datastreams", many=True, joins=_reverse(_ends))
-    },
+RELATIONS: Mapping[str, Mapping[str, str]] = {
+    "Things": {"Locations": "Locations", "Datastreams": "Datastreams"},
+    "Locations": {"Things": "Things"},
+    "Sensors": {"Datastreams": "Datastreams"},
+    "ObservedProperties": {"Datastreams": "Datastreams"},
     "Datastreams": {
-        "Thing": Relation(to="Things", many=False, joins=_begins),
-        "Sensor": Relation(to="Sensors", many=False, joins=_begins),
-        "ObservedProperty": Relation(to="ObservedProperties", many=False, joins=_ends),
+        "Thing": "Things",
+        "Sensor": "Sensors",
+        "ObservedProperty": "ObservedProperties",
     },
 }
-"""By set and by the name that the standard gives them."""
+"""The set that a relation of a set leads to; one named as the set leads to several entities."""
+
+
+def _are_related(of: str, id: str, to: str, other: str) -> bool:  # noqa: A002
+    """Whether entities of two sets belong together, by their ids.
+
+    The id of a Datastream is made of those of its Thing, its Sensor and its ObservedProperty.
+    """
+    whole, part = (id, other) if of == "Datastreams" else (other, id)
+    if "ObservedProperties" in {of, to}:
+        return whole.endswith(f":{part}")
+    return f"{whole}:".startswith(f"{part}:")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -176,13 +146,9 @@ class Catalogue:
 
     def list_related(self, of: str, id: str, name: str) -> list[Entity]:  # noqa: A002
         """List what an entity leads to by a relation."""
-        relation = RELATIONS[of][name]
-        found = (one for one in self._plain(relation.to) if relation.joins(id, one["@iot.id"]))
-        return [self._with_links(relation.to, one) for one in found]
-
-    def link(self, of: str, id: str) -> str:  # noqa: A002
-        """Say where an entity is."""
-        return f"{self.address}{ROOT}/{of}('{id}')"
+        to = RELATIONS[of][name]
+        found = (one for one in self._plain(to) if _are_related(of, id, to, one["@iot.id"]))
+        return [self._with_links(to, one) for one in found]
 
     def _plain(self, of: str) -> list[Entity]:
         # Made once for a question: an expansion may come back to a set thousands of times.
@@ -191,7 +157,7 @@ class Catalogue:
         return self._made[of]
 
     def _with_links(self, of: str, entity: Entity) -> Entity:
-        link = self.link(of, entity["@iot.id"])
+        link = f"{self.address}{ROOT}/{of}('{entity['@iot.id']}')"
         names = [*RELATIONS[of], *([OBSERVATIONS] if of == "Datastreams" else [])]
         leading = {f"{name}@iot.navigationLink": f"{link}/{name}" for name in names}
         return {"@iot.id": entity["@iot.id"], "@iot.selfLink": link} | entity | leading

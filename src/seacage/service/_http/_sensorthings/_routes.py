@@ -211,11 +211,10 @@ class _Answer:
 
     def follow(self, of: str, entity: Entity, name: str, query: QueryOptions) -> Entity:
         """Tell what a relation of an entity leads to: a page of entities, or the one there is."""
-        relation = RELATIONS[of][name]
         found = self.catalogue.list_related(of, entity["@iot.id"], name)
-        if relation.many:
-            return self.page(relation.to, found, query, f"{entity['@iot.selfLink']}/{name}")
-        return self.one(relation.to, found[0], query)
+        if name in SETS:
+            return self.page(name, found, query, f"{entity['@iot.selfLink']}/{name}")
+        return self.one(RELATIONS[of][name], found[0], query)
 
     def _expand(self, of: str, entity: Entity, name: str, query: QueryOptions) -> Entity:
         if (of, name) == ("Datastreams", OBSERVATIONS):
@@ -224,7 +223,7 @@ class _Answer:
             raise InputError(f"$expand: {of} lead to no {name!r}. {_there(of)}")
         else:
             page = self.follow(of, entity, name, query)
-            if not RELATIONS[of][name].many:
+            if name not in SETS:
                 return {name: page}
         value = page.pop("value")
         return {name: value} | {f"{name}{key}": one for key, one in page.items()}
@@ -306,7 +305,7 @@ def _leading(name: str, relation: str) -> Callable[..., Entity]:
     def single(answer: Answering, id: Id, options: Telling) -> Entity:  # noqa: A002
         return answer.follow(name, answer.catalogue.one(name, id), relation, options)
 
-    leading = many if RELATIONS[name][relation].many else single
+    leading = many if relation in SETS else single
     leading.__doc__ = f"Say what one of the {name} leads to as its {relation}."
     return leading
 
@@ -320,12 +319,12 @@ for _name in SETS:
     things.get(f"/{_name}('{{id}}')", responses=_one_of(_name), operation_id=f"sta_one_of_{_name}")(
         _single(_name)
     )
-    for _relation, _to in RELATIONS[_name].items():
+    for _relation in RELATIONS[_name]:
         things.get(
             f"/{_name}('{{id}}')/{_relation}",
-            responses=READ if _to.many else _one_of(_name),
+            responses=READ if _relation in SETS else _one_of(_name),
             operation_id=f"sta_{_relation}_of_{_name}",
-            **(_PAGED if _to.many else {}),
+            **(_PAGED if _relation in SETS else {}),
         )(_leading(_name, _relation))
 
 

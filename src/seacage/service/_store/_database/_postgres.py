@@ -175,7 +175,7 @@ class PostgresDatabase(AbstractDatabase):
 
     shared = True
 
-    def renew(self, error: DamageError) -> bool:
+    def renew(self, error: DamageError) -> None:
         """A server's files are its own affair."""
         raise error
 

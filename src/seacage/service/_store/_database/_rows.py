@@ -17,6 +17,9 @@ _SEQS = range(2**63)
 
 _ALL = 2**62
 
+SAMPLES = "SELECT stream, t, seq, readings, remarks, t_ingest, crc FROM sample WHERE cage = ?"
+"""Begins what selects samples of a cage, each a whole row but for the cage."""
+
 Row = tuple[str, str, int, int, str, str, int]
 """Cage, stream, t, seq, readings, remarks, t_ingest: as in the schema."""
 

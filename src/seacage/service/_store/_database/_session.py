@@ -136,8 +136,8 @@ class AbstractDatabase(ABC):
         """A transaction that sees one moment and changes nothing; from any thread."""
 
     @abstractmethod
-    def renew(self, error: DamageError) -> bool:
-        """Move a damaged database aside and begin a new one; False where that cannot be."""
+    def renew(self, error: DamageError) -> None:
+        """Move a damaged database aside and begin a new one; raises the error where it cannot."""
 
     @abstractmethod
     def claim(self, session: AbstractSession, cage: str) -> bool:

@@ -127,7 +127,7 @@ class SqliteDatabase(AbstractDatabase):
 
     def __init__(self, path: Path) -> None:
         self._path, self.damage = path, Damage()
-        self._readers = Pool(self._reader)
+        self._readers = Pool(partial(_reading, path))
         self._claim: TextIO | None = None
         self._reserve = Reserve(path.with_name(path.name + "-reserve"))
         self.damaged = [
@@ -163,12 +163,11 @@ class SqliteDatabase(AbstractDatabase):
             yield SqliteSession(connection, self.damage)
             connection.execute("COMMIT")
 
-    def renew(self, error: DamageError) -> bool:
+    def renew(self, error: DamageError) -> None:
         """Move the damaged file aside, also while others read."""
         self._writer.close()
         self._readers.close()
         self._begin_anew(error)
-        return True
 
     def claim(self, session: AbstractSession, cage: str) -> bool:
         """Claim the whole file: it has one writer."""
@@ -208,9 +207,6 @@ class SqliteDatabase(AbstractDatabase):
             f"{self._path} was damaged ({error.__cause__}) and begun anew; what was in it lies in "
             f"{aside}. Look after the disk."
         )
-
-    def _reader(self) -> sqlite3.Connection:
-        return _reading(self._path)
 
 
 @contextmanager
