@@ -19,7 +19,7 @@ from seacage.service._live._clock import Clock, FollowingClock, ReplayClock, Wal
 from seacage.service._live._metrics import Metrics
 from seacage.service._live._replay import Replay
 from seacage.service._live._retention import Retention
-from seacage.service._publish._webhooks import Webhook, WebhookNotifier
+from seacage.service._publish._webhooks import WebhookNotifier
 from seacage.service._quarantine import Quarantine
 from seacage.service._settings import CageSection, Settings
 from seacage.service._store._store import Store, open_store
@@ -222,7 +222,7 @@ def _clock(
 
 
 def _feeds(settings: Settings, cages: Mapping[str, LiveCage], metrics: Metrics) -> list[Feed]:
-    hooks = [Webhook(**hook.model_dump()) for hook in settings.webhooks]
+    hooks = settings.webhooks
     feeds: list[Feed] = [WebhookNotifier(hooks, cages).run] if hooks else []
     quarantine = Quarantine(settings.data / "quarantine.jsonl")
     metrics.quarantined.set_function(lambda: float(quarantine.count))

@@ -15,11 +15,10 @@ from pydantic_settings import (
 
 from seacage.conventions import InputError, parse_toml, read_text
 from seacage.service._auth._limits import Limits
+from seacage.service._mqtt._topics import Name
+from seacage.service._publish._post import Webhook
 
 _LOOPBACK = ("127.0.0.1", "::1", "localhost")
-
-Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_.\-]{0,63}$")]
-"""Of a site, a cage, a worker: it becomes part of addresses and topics."""
 
 Network = Annotated[str, AfterValidator(lambda text: str(ip_network(text)))]
 """An address, or a network as ``10.0.0.0/8``."""
@@ -114,30 +113,6 @@ class CageSection(_Section):
     alarms: dict[str, Any] = Field(default_factory=dict)
 
 
-class WebhookSection(_Section):
-    """One ``[[webhooks]]``: an address that alarms are posted to.
-
-    Parameters
-    ----------
-    url
-        ``http://`` or ``https://``.
-    severity
-        The least that is told.
-    after_s
-        Only where nobody has acknowledged the alarm for so long [s].
-    secret
-        Signs each message.
-    cages
-        Whose alarms; all cages' if left out.
-    """
-
-    url: str = Field(pattern=r"^https?://")
-    severity: int = Field(default=500, ge=1, le=1000)
-    after_s: float = Field(default=0.0, ge=0.0, le=86_400.0)
-    secret: str = Field(default="", repr=False)
-    cages: tuple[Name, ...] = ()
-
-
 class Settings(BaseSettings):
     """Settings of ``seacage serve``; each is also an environment variable, ``SEACAGE_PORT``.
 
@@ -201,30 +176,22 @@ class Settings(BaseSettings):
     mqtt: MqttSection | None = None
     cages: tuple[CageSection, ...] = ()
     alarms: dict[str, Any] = Field(default_factory=dict)
-    webhooks: tuple[WebhookSection, ...] = ()
+    webhooks: tuple[Webhook, ...] = ()
     limits: Limits = Limits()
     least_volume: float = Field(default=0.8, ge=0.0, le=1.0)
 
     @model_validator(mode="after")
-    def _certificate_needs_its_key(self) -> Self:
+    def _settings_agree(self) -> Self:
         if (self.certificate is None) != (self.key is None):
             raise ValueError("TLS takes both a certificate and its key")
-        return self
-
-    @model_validator(mode="after")
-    def _cages_have_names_of_their_own(self) -> Self:
         names = [cage.name for cage in self.cages]
         if len(names) > 1 and (None in names or len(set(names)) < len(names)):
             raise ValueError("several cages take a name each, and no two the same")
-        return self
-
-    @model_validator(mode="after")
-    def _a_worker_is_one_of_them(self) -> Self:
         if self.worker >= self.workers:
             raise ValueError(
                 f"worker = {self.worker} of workers = {self.workers}; they count from 0"
             )
-        if self.workers > 1 and any(cage.name is None for cage in self.cages):
+        if self.workers > 1 and None in names:
             raise ValueError("cages that workers share take a name each")
         return self
 

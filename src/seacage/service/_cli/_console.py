@@ -165,7 +165,7 @@ def report(answer: Mapping[str, object], *, rows: Sequence[tuple[str, str]] = ()
         What a person gets: names and values, in two columns.
     """
     if wants_json():
-        typer.echo(json.dumps(without_nan(answer)))
+        typer.echo(json.dumps(without_nan(answer), default=str))
         return
     width = max((len(name) for name, _ in rows), default=0)
     for name, value in rows:
@@ -173,8 +173,14 @@ def report(answer: Mapping[str, object], *, rows: Sequence[tuple[str, str]] = ()
 
 
 def without_nan(value: object) -> object:
-    """What JSON holds of a value: null where it has no such number, and text of what is none."""
-    return json.loads(json.dumps(value, default=str), parse_constant=lambda _: None)
+    """Turn numbers that JSON does not have into null, at any depth."""
+    if isinstance(value, float):
+        return value if abs(value) < float("inf") else None
+    if isinstance(value, Mapping):
+        return {str(key): without_nan(item) for key, item in value.items()}  # pyright: ignore[reportUnknownVariableType, reportUnknownArgumentType]
+    if isinstance(value, list | tuple):
+        return [without_nan(item) for item in value]  # pyright: ignore[reportUnknownVariableType, reportUnknownArgumentType]
+    return value
 
 
 @contextmanager

@@ -87,14 +87,17 @@ def publish(
     from seacage.conventions import InputError
     from seacage.service._logs import begin_logs
     from seacage.service._publish._publisher import Publisher
+    from seacage.service._publish._spool import Spool
 
     if follow and (source == "-" or Path(source).is_dir() or speed is not None):
         raise InputError("publish: --follow is for a growing file, at the speed at which it grows.")
     begin_logs("lines")
-    refused, pace = _Refused(), speed or 1.0
+    refused, pace, drop_oldest = _Refused(), speed or 1.0, when_full == "drop-oldest"
+    place = to.rpartition("://")[2].rpartition("@")[2]  # a password may change
+    destination = f"{place}, site {site}, cage {cage}"
     with (
         closing(_transport(to, cage, site, token, ca)) as transport,  # refuses a wrong address
-        closing(_spool(spool, to, cage, site, spool_most, when_full)) as kept,
+        closing(Spool(spool, to=destination, most=spool_most, drop_oldest=drop_oldest)) as kept,
         progress_bar() as progress,
     ):
         batches = _batches(source, kept, refused, stream, columns, follow=follow, speed=speed)
@@ -167,14 +170,6 @@ def _batches(
         return tail_batches(tail, source=name)
     records = read_streams(path, columns=choice, stream=stream)
     return record_batches(records, source=name, place=place, speed=speed)
-
-
-def _spool(path: Path, to: str, cage: str, site: str, most: int, when_full: str) -> "Spool":
-    from seacage.service._publish._spool import Spool
-
-    place = to.rpartition("://")[2].rpartition("@")[2]  # a password may change
-    destination = f"{place}, site {site}, cage {cage}"
-    return Spool(path, to=destination, most=most, drop_oldest=when_full == "drop-oldest")
 
 
 def _transport(to: str, cage: str, site: str, token: str, ca: Path | None) -> "Transport":

@@ -29,7 +29,7 @@ from seacage.service._http._dependencies import (
 )
 from seacage.service._http._history import history_between
 from seacage.service._live._answers import sample_of, shape_of, summary_of
-from seacage.service._live._frame import MEDIA_TYPE, Flags, frame_of
+from seacage.service._live._frame import MEDIA_TYPE
 from seacage.service._schemas._cages import Cages, Topology
 from seacage.service._schemas._history import History
 from seacage.service._schemas._samples import (
@@ -154,18 +154,13 @@ def get_aggregates(
 @cages.get("/{cage}/state", dependencies=may_read, responses=READ)
 def get_state(live: Live, at: At = None) -> State:
     """Say what the cage does: loads, sensors, volume, each with its level and 95 % interval."""
-    if at is None:
-        return live.snapshot.state
-    memory, answered = live.past.state_at(at)
-    return live.state_of(answered, memory)
+    return live.snapshot_at(at).state
 
 
 @cages.get("/{cage}/shape", dependencies=may_read, responses=READ)
 def get_shape(live: Live, at: At = None) -> Shape:
     """Say where the net is, node by node, and how surely."""
-    if at is None:
-        return shape_of(live.snapshot.answered)
-    return shape_of(live.past.state_at(at)[1])
+    return shape_of(live.snapshot_at(at).answered)
 
 
 @cages.get(
@@ -173,12 +168,7 @@ def get_shape(live: Live, at: At = None) -> Shape:
 )
 def get_frame(live: Live, at: At = None) -> Response:
     """Give the page's binary message of now or of the past; ``docs/service.md`` has its layout."""
-    if at is None:
-        return Response(live.snapshot.frame, media_type=MEDIA_TYPE)
-    memory, answered = live.past.state_at(at)
-    state = live.state_of(answered, memory)
-    frame = frame_of(state, answered, live.rest_position, about=Flags.PAST)
-    return Response(frame, media_type=MEDIA_TYPE)
+    return Response(live.snapshot_at(at).frame, media_type=MEDIA_TYPE)
 
 
 @cages.get("/{cage}/topology", dependencies=may_read, responses=READ)

@@ -97,8 +97,7 @@ def ask_inspection_geojson(live: Live, body: InspectionQuery, at: At = None) -> 
 )
 def get_shape_mcap(live: Live, at: At = None, *, allow_stale: Stale = False) -> Response:
     """Give the net for ROS 2: a PointCloud2, a Marker of triangles, and the collar's Path."""
-    net = _net(live, at, allow_stale=allow_stale)
-    return Response(net_mcap(net), media_type=MCAP)
+    return Response(net_mcap(_net(live, at, allow_stale=allow_stale)), media_type=MCAP)
 
 
 @rov.get(
@@ -108,8 +107,7 @@ def get_shape_mcap(live: Live, at: At = None, *, allow_stale: Stale = False) -> 
 )
 def get_shape_geojson(live: Live, at: At = None, *, allow_stale: Stale = False) -> Response:
     """Give the net for a map; the cage's file must say where it lies."""
-    net = _net(live, at, allow_stale=allow_stale)
-    return Response(net_geojson(net), media_type=GEOJSON)
+    return Response(net_geojson(_net(live, at, allow_stale=allow_stale)), media_type=GEOJSON)
 
 
 def _net_for(live: Live, body: ClearanceQuery | InspectionQuery, at: At) -> PredictedNet:
@@ -117,5 +115,5 @@ def _net_for(live: Live, body: ClearanceQuery | InspectionQuery, at: At) -> Pred
 
 
 def _net(live: Live, at: At, *, allow_stale: bool, most_age_s: float | None = None) -> PredictedNet:
-    answered = live.snapshot.answered if at is None else live.past.state_at(at)[1]
+    answered = live.snapshot_at(at).answered
     return PredictedNet.of(live.twin, answered, allow_stale=allow_stale, most_age_s=most_age_s)

@@ -20,7 +20,7 @@ from seacage.service._live._alarm_desk import AlarmDesk
 from seacage.service._live._answers import state_of, topology_of
 from seacage.service._live._clock import Clock, FollowingClock, latest_allowed
 from seacage.service._live._concerns import concerns_of
-from seacage.service._live._frame import frame_of
+from seacage.service._live._frame import Flags, frame_of
 from seacage.service._live._live_twin import LiveTwin
 from seacage.service._live._metrics import Metrics
 from seacage.service._live._past import Past
@@ -52,17 +52,18 @@ _log = structlog.get_logger(__name__)
 # No slots here: the frame is made once, and only where somebody watches.
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Snapshot:
-    """What a cage says now."""
+    """What a cage says now, or said at a time in the past."""
 
     answered: Answered
     state: State
     rest_position: Float[np.ndarray, "node 3"]
+    about: Flags = Flags.LIVE
     made: float = field(default_factory=time.monotonic)
 
     @cached_property
     def frame(self) -> bytes:
         """The same as one message to the page."""
-        return frame_of(self.state, self.answered, self.rest_position)
+        return frame_of(self.state, self.answered, self.rest_position, about=self.about)
 
 
 class Mailbox:
@@ -166,6 +167,14 @@ class LiveCage:
         policy, least = self.desk.policy, self._least_volume
         concerns = concerns_of(state, memory, policy=policy, least_volume=least)
         return state.model_copy(update={"alarms": list(alarms), "concerns": list(concerns)})
+
+    def snapshot_at(self, at: datetime | None) -> Snapshot:
+        """Return what the cage said at a time, or says now."""
+        if at is None:
+            return self.snapshot
+        memory, answered = self.past.state_at(at)
+        state, rest = self.state_of(answered, memory), self.rest_position
+        return Snapshot(answered=answered, state=state, rest_position=rest, about=Flags.PAST)
 
     def refuse_ahead(self, stream: str, t: datetime) -> None:
         """Note that a sample was refused as later than ``latest_allowed``."""

@@ -2,12 +2,17 @@
 
 import re
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
+
+from pydantic import Field
 
 from seacage.conventions import InputError
 
-_LEVEL = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,63}")
+_LEVEL = r"[A-Za-z0-9][A-Za-z0-9_.\-]{0,63}"
 _OBSERVED = re.compile(r"seacage/v1/([^/+#]+)/([^/+#]+)/([^/+#]+)/(obs|ack)")
+
+Name = Annotated[str, Field(pattern=f"^{_LEVEL}$")]
+"""Of a site, a cage, a worker: it becomes part of addresses and topics."""
 
 
 class Address(NamedTuple):
@@ -35,7 +40,7 @@ class Topics:
     site: str
 
     def __post_init__(self) -> None:
-        if _LEVEL.fullmatch(self.site) is None:
+        if re.fullmatch(_LEVEL, self.site) is None:
             raise InputError(
                 f"{self.site!r} is no site's name: up to 64 letters, digits, '_', '.' or '-', "
                 "the first a letter or a digit."

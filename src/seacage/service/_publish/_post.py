@@ -1,12 +1,16 @@
-"""JSON posted over HTTP or HTTPS, once."""
+"""JSON posted over HTTP or HTTPS, once, and where alarms are posted to."""
 
 import http.client
 from abc import ABC
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Annotated
 from urllib.parse import quote, urlsplit
 
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+
 from seacage.conventions import InputError
+from seacage.service._mqtt._topics import Name
 
 _KINDS = {"http": http.client.HTTPConnection, "https": http.client.HTTPSConnection}
 
@@ -48,6 +52,45 @@ def post(
         return answer.status, answer.read()
     finally:
         connection.close()
+
+
+def _check_address(url: str) -> str:
+    place = urlsplit(url)
+    if place.scheme not in _KINDS or place.hostname is None:
+        raise ValueError("it is no address. Give one as https://…")
+    return url
+
+
+class Webhook(BaseModel):
+    """One ``[[webhooks]]``: an address that alarms are posted to as JSON.
+
+    Parameters
+    ----------
+    url
+        http or https.
+    severity
+        The least that is posted, 1 to 1000.
+    after_s
+        0 tells at once whatever is raised, repeated, cleared or acknowledged. More tells only
+        of an alarm that is still active and not acknowledged so long after it was raised [s],
+        which is how one escalates to the next on duty.
+    secret
+        Signs each body: ``X-Seacage-Signature`` is its HMAC-SHA256, in hexadecimal.
+    cages
+        Whose alarms; all where empty.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    url: Annotated[str, AfterValidator(_check_address)]
+    severity: int = Field(default=500, ge=1, le=1000)
+    after_s: float = Field(default=0.0, ge=0.0, le=86_400.0)
+    secret: str = Field(default="", repr=False)
+    cages: tuple[Name, ...] = ()
+
+    def wants(self, cage: str, severity: int) -> bool:
+        """Whether an alarm of this severity is posted here."""
+        return severity >= self.severity and (not self.cages or cage in self.cages)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

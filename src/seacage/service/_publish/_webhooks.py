@@ -5,17 +5,14 @@ import hashlib
 import hmac
 from collections import deque
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from datetime import datetime, timedelta
 from typing import Protocol, runtime_checkable
-from urllib.parse import urlsplit
 
 import structlog
 
-from seacage.conventions import InputError
 from seacage.service._live._alarm_desk import AlarmDesk, Announcement, announcement_json
 from seacage.service._live._clock import Clock
-from seacage.service._publish._post import POST_FAILED, post
+from seacage.service._publish._post import POST_FAILED, Webhook, post
 from seacage.twin import Action
 
 _ANNOUNCED = {Action.RAISED, Action.REPEATED, Action.CLEARED, Action.ACKNOWLEDGED}
@@ -25,51 +22,6 @@ _WAITING = 1000  # messages to one hook; the oldest is dropped, for the newest s
 _TIMEOUT_S = 10.0
 
 _log = structlog.get_logger(__name__)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Webhook:
-    """An address that alarms are posted to as JSON.
-
-    Parameters
-    ----------
-    url
-        http or https.
-    severity
-        The least that is posted, 1 to 1000.
-    after_s
-        0 tells at once whatever is raised, repeated, cleared or acknowledged. More tells only
-        of an alarm that is still active and not acknowledged so long after it was raised [s],
-        which is how one escalates to the next on duty.
-    secret
-        Signs each body: ``X-Seacage-Signature`` is its HMAC-SHA256, in hexadecimal.
-    cages
-        Whose alarms; all where empty.
-
-    Raises
-    ------
-    InputError
-        The address is none, or the severity or the time is out of range.
-    """
-
-    url: str
-    severity: int = 500
-    after_s: float = 0.0
-    secret: str = ""
-    cages: tuple[str, ...] = ()
-
-    def __post_init__(self) -> None:
-        place = urlsplit(self.url)
-        if place.scheme not in {"http", "https"} or place.hostname is None:
-            raise InputError(f"webhook: {self.url!r} is no address. Give one as https://….")
-        if not 1 <= self.severity <= 1000:
-            raise InputError(f"webhook: severity = {self.severity} is not within 1 to 1000.")
-        if not 0.0 <= self.after_s <= 86400.0:
-            raise InputError(f"webhook: after_s = {self.after_s:g} s is not within 0 to 86400 s.")
-
-    def wants(self, cage: str, severity: int) -> bool:
-        """Whether an alarm of this severity is posted here."""
-        return severity >= self.severity and (not self.cages or cage in self.cages)
 
 
 @runtime_checkable

@@ -15,7 +15,9 @@ import pytest
 from seacage.conventions import InputError
 from seacage.service._live._alarm_desk import Announcement
 from seacage.service._publish import _webhooks
-from seacage.service._publish._webhooks import Webhook, WebhookNotifier
+from seacage.service._publish._post import Webhook
+from seacage.service._publish._webhooks import WebhookNotifier
+from seacage.service._settings import read_settings
 from seacage.twin import Action, Alarm, AlarmEvent, AlarmText
 
 NOON = datetime(2020, 2, 1, 12, tzinfo=UTC)
@@ -166,11 +168,12 @@ def test_an_alarm_that_comes_again_and_again_is_announced_each_time_and_remember
 @pytest.mark.parametrize(
     ("wrong", "why"),
     [
-        ({"url": "ftp://x"}, "no address"),
+        ({"url": "ftp://x"}, "webhooks.0.url does not do: it is no address"),
+        ({"url": "http://"}, "webhooks.0.url does not do: it is no address"),
         ({"url": "http://x", "severity": 0}, "severity = 0"),
-        ({"url": "http://x", "after_s": -1.0}, "after_s = -1 s"),
+        ({"url": "http://x", "after_s": -1.0}, "after_s = -1"),
     ],
 )
 def test_a_hook_that_cannot_be_is_refused(wrong, why):
     with pytest.raises(InputError, match=why):
-        Webhook(**wrong)
+        read_settings(webhooks=[wrong])

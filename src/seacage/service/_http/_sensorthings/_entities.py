@@ -17,45 +17,36 @@ Entity = dict[str, Any]
 Cages = Mapping[str, LiveCage]
 
 
+def _entity(id: str, name: str, description: str, **properties: object) -> Entity:  # noqa: A002
+    return {"@iot.id": id, "name": name, "description": description, **properties}
+
+
 def _things(cages: Cages) -> Iterator[Entity]:
     for name in cages:
-        yield {"@iot.id": name, "name": name, "description": f"Net cage {name}.", "properties": {}}
+        yield _entity(name, name, f"Net cage {name}.", properties={})
 
 
 def _locations(cages: Cages) -> Iterator[Entity]:
     for name, live in cages.items():
         site = live.twin.cage.site
         if site.latitude is not None and site.longitude is not None:
-            yield {
-                "@iot.id": name,
-                "name": name,
-                "description": f"Centre of cage {name}.",
-                "encodingType": "application/geo+json",
-                "location": {"type": "Point", "coordinates": [site.longitude, site.latitude]},
-            }
+            point = {"type": "Point", "coordinates": [site.longitude, site.latitude]}
+            about = {"encodingType": "application/geo+json", "location": point}
+            yield _entity(name, name, f"Centre of cage {name}.", **about)
 
 
 def _sensors(cages: Cages) -> Iterator[Entity]:
     for name, live in cages.items():
+        about = {"encodingType": "text/plain", "metadata": f"Origin: {live.twin.origin}"}
         for stream in live.streams:
-            yield {
-                "@iot.id": f"{name}:{stream}",
-                "name": stream,
-                "description": f"The stream {stream} of cage {name}.",
-                "encodingType": "text/plain",
-                "metadata": f"Origin: {live.twin.origin}",
-            }
+            description = f"The stream {stream} of cage {name}."
+            yield _entity(f"{name}:{stream}", stream, description, **about)
 
 
 def _properties(cages: Cages) -> Iterator[Entity]:
     carried = {key for live in cages.values() for keys in live.streams.values() for key in keys}
     for key in sorted(carried):
-        yield {
-            "@iot.id": key,
-            "name": key,
-            "description": KEYS[key].long_name,
-            "definition": _UNDEFINED,
-        }
+        yield _entity(key, key, KEYS[key].long_name, definition=_UNDEFINED)
 
 
 def _datastreams(cages: Cages) -> Iterator[Entity]:
@@ -63,13 +54,13 @@ def _datastreams(cages: Cages) -> Iterator[Entity]:
         for stream, keys in live.streams.items():
             for key in keys:
                 unit = KEYS[key].cf_unit
-                yield {
-                    "@iot.id": f"{name}:{stream}:{key}",
-                    "name": f"{key} of {stream}",
-                    "description": f"{KEYS[key].long_name}, read by {stream} of cage {name}.",
-                    "observationType": _TYPE,
-                    "unitOfMeasurement": {"name": unit, "symbol": unit, "definition": _UNDEFINED},
-                }
+                yield _entity(
+                    f"{name}:{stream}:{key}",
+                    f"{key} of {stream}",
+                    f"{KEYS[key].long_name}, read by {stream} of cage {name}.",
+                    observationType=_TYPE,
+                    unitOfMeasurement={"name": unit, "symbol": unit, "definition": _UNDEFINED},
+                )
 
 
 SETS: Mapping[str, Callable[[Cages], Iterator[Entity]]] = {
