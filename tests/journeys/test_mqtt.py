@@ -13,7 +13,7 @@ import pytest
 
 import outside
 from mqtt_broker import broker, talking
-from seacage.service._ingest._shards import cages_of
+from seacage.service._ingest._shards import worker_of
 from seacage.service._store._store import open_store
 from seacage.testing import stand_in_field, stand_in_twin
 from stores import schema
@@ -232,7 +232,9 @@ def test_after_a_broker_was_away_live_samples_come_first_and_the_others_follow(t
 
 def test_two_workers_share_the_cages_and_one_of_them_is_killed(twin, tmp_path, postgres):
     cages, workers, count = ["ace", "bass", "cod", "dab"], ["east", "west"], 150
-    shares = {name: cages_of(name, cages, workers) for name in workers}
+    shares = {
+        name: tuple(cage for cage in cages if worker_of(cage, workers) == name) for name in workers
+    }
     assert all(shares.values()), "each has something to do"
     with (
         schema(postgres) as place,

@@ -1,6 +1,7 @@
 """From settings and twins to a service: its store, cages, guard and feeds put together."""
 
 from collections.abc import Callable, Coroutine, Mapping
+from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,7 +14,7 @@ from seacage.service._auth._token_store import Tokens
 from seacage.service._http._api import Service, create_app
 from seacage.service._ingest._file_feed import FileTail
 from seacage.service._ingest._mqtt_feed import MqttFeed
-from seacage.service._ingest._shards import cages_of
+from seacage.service._ingest._shards import worker_of
 from seacage.service._live._cage import LiveCage
 from seacage.service._live._clock import Clock, FollowingClock, ReplayClock, WallClock
 from seacage.service._live._metrics import Metrics
@@ -69,10 +70,9 @@ def own_cages(settings: Settings) -> tuple[CageSection, ...]:
     """The cages that fall to this worker."""
     if settings.workers == 1:
         return settings.cages
-    names = [cage.name for cage in settings.cages if cage.name is not None]
     workers = [str(number) for number in range(settings.workers)]
-    own = set(cages_of(str(settings.worker), names, workers))
-    return tuple(cage for cage in settings.cages if cage.name in own)
+    own = str(settings.worker)
+    return tuple(one for one in settings.cages if worker_of(one.name or "", workers) == own)
 
 
 def policy_of(settings: Settings, name: str, twin: Twin) -> AlarmPolicy:
@@ -131,51 +131,41 @@ def assemble(
         store_place(settings, replayed=replay is not None),
         archive=settings.store.archive if replay is None else None,
     )
-    try:
-        return _serve_from(store, settings, twins, policies, replay=replay, speed=speed)
-    except BaseException:
-        store.close()
-        raise
-
-
-def _serve_from(
-    store: Store,
-    settings: Settings,
-    twins: Mapping[str, Twin],
-    policies: Mapping[str, AlarmPolicy],
-    *,
-    replay: Replay | None,
-    speed: float,
-) -> Service:
-    metrics, clock = Metrics(), _clock(settings, store, tuple(twins), replay, speed)
-    cages = {
-        name: LiveCage(
-            name=name,
-            twin=twin,
+    with ExitStack() as on_failure:
+        on_failure.callback(store.close)
+        metrics, clock = Metrics(), _clock(settings, store, tuple(twins), replay, speed)
+        cages = {
+            name: LiveCage(
+                name=name,
+                twin=twin,
+                store=store,
+                clock=clock,
+                metrics=metrics,
+                tick_s=settings.tick_s,
+                policy=policies[name],
+                least_volume=settings.least_volume,
+            )
+            for name, twin in twins.items()
+        }
+        feeds = _feeds(settings, cages, metrics)
+        keep_days = settings.store.keep_days
+        if replay is None and keep_days is not None:
+            clocks = dict.fromkeys(cages, clock)
+            feeds.append(Retention(store, clocks=clocks, keep_days=keep_days).run)
+        if replay is not None and isinstance(clock, ReplayClock):
+            feeds.append(partial(replay.feed, next(iter(cages.values())), clock))
+        service = Service(
+            cages=cages,
             store=store,
-            clock=clock,
+            tokens=Tokens(settings.data),
             metrics=metrics,
-            tick_s=settings.tick_s,
-            policy=policies[name],
-            least_volume=settings.least_volume,
+            feeds=feeds,
+            limits=settings.limits,
+            site=settings.site,
+            audit=Audit(settings.data / "audit.jsonl"),
         )
-        for name, twin in twins.items()
-    }
-    feeds = _feeds(settings, cages, metrics)
-    if replay is None and (keep_days := settings.store.keep_days) is not None:
-        feeds.append(Retention(store, clocks=dict.fromkeys(cages, clock), keep_days=keep_days).run)
-    if replay is not None and isinstance(clock, ReplayClock):
-        feeds.append(partial(replay.feed, next(iter(cages.values())), clock))
-    return Service(
-        cages=cages,
-        store=store,
-        tokens=Tokens(settings.data),
-        metrics=metrics,
-        feeds=feeds,
-        limits=settings.limits,
-        site=settings.site,
-        audit=Audit(settings.data / "audit.jsonl"),
-    )
+        on_failure.pop_all()
+    return service
 
 
 def server(service: Service, settings: Settings) -> "uvicorn.Server":
@@ -230,15 +220,12 @@ def _feeds(settings: Settings, cages: Mapping[str, LiveCage], metrics: Metrics) 
     if settings.mqtt is not None:
         mqtt = settings.mqtt
         feed = MqttFeed(
-            mqtt.url,
+            **mqtt.model_dump(exclude={"client_id"}),
             site=settings.site,
             cages=cages,
             client_id=mqtt.client_id or f"seacage-{settings.site}-{settings.worker}",
             metrics=metrics,
             quarantine=quarantine,
-            group=mqtt.group,
-            ca=mqtt.ca,
-            state_every_s=mqtt.state_every_s,
         )
         feeds.append(feed.run)
     return feeds

@@ -28,7 +28,9 @@ COOKIE = "seacage_session"
 CSRF_HEADER = "x-csrf-token"
 """What a write by cookie repeats from the session."""
 
-_READING = {"GET", "HEAD", "OPTIONS"}
+READING = {"GET", "HEAD", "OPTIONS"}
+"""Methods that change nothing."""
+
 _FORWARDED = {"forwarded", "x-forwarded-for", "x-real-ip"}
 
 _bearer = HTTPBearer(auto_error=False, description="A token from `seacage token new`.")
@@ -172,7 +174,7 @@ class Permit:
         state.who, state.token, state.action = grant.who, grant.id, self._action
         state.grant = grant
         gate.pace(grant)
-        if session and request.method not in _READING:
+        if session and request.method not in READING:
             check_csrf(request, session)
         if not grant.allows(self._action, request.path_params.get("cage"), site=gate.site):
             raise HTTPException(403, f"This token does not have the scope {self._action}.")

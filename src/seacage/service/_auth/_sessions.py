@@ -10,11 +10,13 @@ from pathlib import Path
 from threading import Lock
 
 import structlog
+from pydantic import AwareDatetime, TypeAdapter
 
 from seacage.service._auth._token_store import Grant, Tokens, digest
 from seacage.service._small_files import write_small
 
 _MOST_SESSIONS = 1000
+_KEPT = TypeAdapter(dict[str, tuple[str, AwareDatetime]])
 _log = structlog.get_logger(__name__)
 
 
@@ -115,18 +117,9 @@ def _session(cookie: str, token_sha256: str, expires: datetime) -> Session:
 def _read(path: Path) -> OrderedDict[str, tuple[str, datetime]]:
     """Read the sessions; a file that was damaged costs everybody a token and nothing else."""
     try:
-        kept = json.loads(path.read_text("utf-8"))
-        found = {key: (str(token), _time(end)) for key, (token, end) in kept.items()}
+        return OrderedDict(_KEPT.validate_json(path.read_text("utf-8")))
     except FileNotFoundError:
         return OrderedDict()
-    except (OSError, ValueError, TypeError, AttributeError) as error:
+    except (OSError, ValueError) as error:
         _log.warning("the sessions cannot be read", file=str(path), error=str(error))
         return OrderedDict()
-    return OrderedDict(found)
-
-
-def _time(text: str) -> datetime:
-    t = datetime.fromisoformat(text)
-    if t.tzinfo is None:
-        raise ValueError("a time without its zone")
-    return t

@@ -5,7 +5,7 @@ from starlette.datastructures import MutableHeaders
 from starlette.requests import HTTPConnection
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from seacage.service._auth._authorization import Gate, source_of
+from seacage.service._auth._authorization import READING, Gate, source_of
 
 _HEADERS = {
     "content-security-policy": (
@@ -19,7 +19,6 @@ _HEADERS = {
     "cache-control": "no-cache",
 }
 _REFUSALS = {401, 403, 429}
-_READING = {"GET", "HEAD", "OPTIONS"}
 _PLAIN = {"read", "ingest"}  # questions and samples: too many to write down, and no deeds
 _SIGN_IN, _SIGN_IN_BYTES = "/session", 4096
 
@@ -49,7 +48,7 @@ class Shield:
         gate.connections.asks(connection, source)
         signs_in, received = scope["path"] == _SIGN_IN, 0
         limit = _SIGN_IN_BYTES if signs_in else gate.limits.body_bytes
-        known = signs_in or scope["method"] in _READING
+        known = signs_in or scope["method"] in READING
 
         async def count_body() -> Message:
             nonlocal known, received
@@ -77,7 +76,7 @@ class Shield:
 
 def _audit(gate: Gate, scope: Scope, source: str, status: int) -> None:
     state = scope.get("state", {})
-    deed = scope["method"] not in _READING and state.get("action", "read") not in _PLAIN
+    deed = scope["method"] not in READING and state.get("action", "read") not in _PLAIN
     if deed or status in _REFUSALS:
         gate.audit.write(
             f"{scope['method']} {scope['path'][:200]}",

@@ -97,7 +97,7 @@ def run(
     share
         Only the I-th of N shares, from 0; others run the rest.
     """
-    from seacage.campaigns import Simulator, run_share
+    from seacage.campaigns import Simulator, campaign_status, run_share
 
     chosen = plan.read()
     by = Simulator(
@@ -120,7 +120,10 @@ def run(
             cluster=cluster,
             progress=progress,
         )
-    _report_end(store)
+    reached = campaign_status(store)
+    _report_status(store, reached)
+    if reached.finished and not reached.converged:
+        raise exit_with("campaign run: no case converged. Check the cage's file.", Exit.FAILED)
 
 
 @group.command()
@@ -235,15 +238,6 @@ def _parse_options(words: list[str]) -> dict[str, Any]:
     command: Any = typer.main.get_command(group)
     with command.commands["run"].make_context("seacage campaign run", [*words]) as context:
         return {name: None if one == () else one for name, one in context.params.items()}
-
-
-def _report_end(store: Path) -> None:
-    from seacage.campaigns import campaign_status
-
-    reached = campaign_status(store)
-    _report_status(store, reached)
-    if reached.finished and not reached.converged:
-        raise exit_with("campaign run: no case converged. Check the cage's file.", Exit.FAILED)
 
 
 def _report_status(store: Path, reached: "CampaignStatus") -> None:

@@ -48,14 +48,9 @@ def score(
     scores = score_record(Twin.read(twin), FieldRecord.read(field), out=out, seed=seed)
     rows = error_rows(scores)
     report(
-        {"sensors": error_table(scores), "written": None if out is None else str(out)},
+        {"sensors": [asdict(one) for one in scores], "written": None if out is None else str(out)},
         rows=rows if out is None else [*rows, ("Written", str(out))],
     )
-
-
-def error_table(scores: "Iterable[SensorScore]") -> list[dict[str, object]]:
-    """One entry per sensor; the unit of its errors is in ``unit``."""
-    return [asdict(score) for score in scores]
 
 
 def error_rows(scores: "Iterable[SensorScore]") -> list[tuple[str, str]]:

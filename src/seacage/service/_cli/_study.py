@@ -8,7 +8,7 @@ import typer
 
 from seacage.service._cli._console import guard, progress_bar, report
 from seacage.service._cli._options import InFile, InFolder, Seed, Workers, read_cage
-from seacage.service._cli._score import error_rows, error_table
+from seacage.service._cli._score import error_rows
 
 if TYPE_CHECKING:
     from seacage.studies import BenchmarkStudy, FidelityStudy, PaperStudy, ShapeScore
@@ -77,7 +77,7 @@ def paper(
     report(
         {
             **_files(study, "virtual field"),
-            "sensors": error_table(study.sensors),
+            "sensors": [asdict(one) for one in study.sensors],
             "shapes": [_shape_entry(one) for one in study.shapes],
             "claims": [asdict(claim) for claim in study.claims],
         },

@@ -33,7 +33,6 @@ from seacage.service._live._frame import MEDIA_TYPE
 from seacage.service._schemas._cages import Cages, Topology
 from seacage.service._schemas._history import History
 from seacage.service._schemas._samples import (
-    AggregateOut,
     AggregatesOut,
     Receipt,
     SamplesIn,
@@ -144,10 +143,9 @@ def get_aggregates(
 
     A direction has no mean; ask for ``current_east_m_s`` and ``current_north_m_s`` instead.
     """
-    found = live.store.aggregates(
+    aggregates = live.store.aggregates(
         live.name, stream=stream, key=key, width_s=width_s, start=start, end=end, limit=limit
     )
-    aggregates = [AggregateOut.model_validate(one) for one in found]
     return AggregatesOut(stream=stream, key=key, width_s=width_s, aggregates=aggregates)
 
 

@@ -14,7 +14,8 @@ from seacage.service._export import join_answers, replay_in_blocks
 from seacage.service._live._answers import history_of, usable_value
 from seacage.service._live._past import buoy_record
 from seacage.service._schemas._history import History, Measured
-from seacage.service._store._aggregates import WIDTHS_S, Aggregate
+from seacage.service._schemas._samples import AggregateOut
+from seacage.service._store._aggregates import WIDTHS_S
 from seacage.service._store._store import Store
 from seacage.twin import Answer, Twin
 
@@ -112,7 +113,7 @@ class _Span:
             width_s=int(width.total_seconds()),
         )
 
-    def _telling_spans(self, first: Sample, key: str) -> tuple[timedelta, list[Aggregate]]:
+    def _telling_spans(self, first: Sample, key: str) -> tuple[timedelta, list[AggregateOut]]:
         """Of the minutes or tens of minutes from a first reading on, those that tell most."""
         store, cage, end = self.store, self.cage, self.end
         (last,) = store.samples(cage, stream=first.stream, end=end, limit=1, newest=True)
@@ -121,7 +122,7 @@ class _Span:
             (width for width in WIDTHS_S if length_s <= width * self.limit), WIDTHS_S[-1]
         )
         width = timedelta(seconds=width_s)
-        since, found = first.t - (first.t - _ORIGIN) % width, list[Aggregate]()
+        since, found = first.t - (first.t - _ORIGIN) % width, list[AggregateOut]()
         read = partial(store.aggregates, cage, stream=first.stream, key=key, width_s=width_s)
         while page := read(start=since, end=end, limit=_PAGE):
             found += page

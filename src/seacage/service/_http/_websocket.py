@@ -81,7 +81,7 @@ async def _send(socket: WebSocket, one: LiveCage, token: str | None) -> None:
     shown = socket.app.state.service.metrics.shown.labels(one.name)
     with one.subscribe() as mailbox:
         while True:
-            snapshot = await mailbox.take()
+            snapshot = await mailbox.get()
             if _grant(socket, token) is None:  # revoked, or signed out, since
                 raise WebSocketException(UNKNOWN_TOKEN, "This token, or its session, has ended.")
             fresh = bool(known)  # the first was made before anybody waited for it

@@ -297,7 +297,7 @@ class MqttFeed:
         topic = self._topics.outgoing(cage.name, "state")
         with cage.subscribe() as mailbox:
             while True:
-                snapshot = await mailbox.take()
+                snapshot = await mailbox.get()
                 text = snapshot.state.model_dump_json().encode()
                 self._link.publish(topic, text, qos=0, retain=True)  # soon there is another
                 self._say_alarms()

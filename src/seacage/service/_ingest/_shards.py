@@ -1,6 +1,6 @@
 """Which of many workers serves which cage."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from hashlib import blake2b
 
 
@@ -22,11 +22,6 @@ def worker_of(cage: str, workers: Sequence[str]) -> str:
     random weight.
     """
     return max(workers, key=lambda worker: (_weight(cage, worker), worker))
-
-
-def cages_of(worker: str, cages: Iterable[str], workers: Sequence[str]) -> tuple[str, ...]:
-    """The cages of one worker, in the order in which all cages were given."""
-    return tuple(cage for cage in cages if worker_of(cage, workers) == worker)
 
 
 def _weight(cage: str, worker: str) -> bytes:

@@ -256,13 +256,7 @@ def _series(one: Output) -> Series:
 
 def sample_of(sample: Sample) -> SampleOut:
     """Say what is stored of a sample."""
-    return SampleOut(
-        stream=sample.stream,
-        t=sample.t,
-        seq=sample.seq,
-        values={key: _finite(value) for key, value in sample.values.items()},
-        flags={key: int(flag) for key, flag in sample.flags.items()},
-    )
+    return SampleOut.model_validate(sample)
 
 
 def _period(memory: TwinState, buoy: str, now: datetime) -> float | None:
@@ -298,7 +292,3 @@ def _column(values: Float[np.ndarray, " case"]) -> list[float | None]:
 
 def _number(value: float | None, decimals: int = _DECIMALS) -> float | None:
     return None if value is None or not math.isfinite(value) else round(float(value), decimals)
-
-
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None

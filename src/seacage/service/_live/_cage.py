@@ -66,29 +66,18 @@ class Snapshot:
         return frame_of(self.state, self.answered, self.rest_position, about=self.about)
 
 
-class Mailbox:
+class Mailbox(asyncio.Queue[Snapshot]):
     """Where a slow reader finds the newest snapshot; what it missed is gone.
 
     A client that does not read can so never make the service hold more than one snapshot
     for it.
     """
 
-    def __init__(self) -> None:
-        self._latest: Snapshot | None = None
-        self._filled = asyncio.Event()
-
-    def put(self, snapshot: Snapshot) -> None:
+    def leave(self, snapshot: Snapshot) -> None:
         """Leave a snapshot in place of the one that was there."""
-        self._latest = snapshot
-        self._filled.set()
-
-    async def take(self) -> Snapshot:
-        """Wait for a snapshot and take it."""
-        await self._filled.wait()
-        self._filled.clear()
-        snapshot, self._latest = self._latest, None
-        assert snapshot is not None
-        return snapshot
+        if not self.empty():
+            self.get_nowait()
+        self.put_nowait(snapshot)
 
 
 class LiveCage:
@@ -261,7 +250,7 @@ class LiveCage:
     def subscribe(self) -> Generator[Mailbox]:
         """Lend a mailbox that gets every snapshot, the present one first."""
         mailbox = Mailbox()
-        mailbox.put(self.snapshot)
+        mailbox.leave(self.snapshot)
         self._mailboxes.add(mailbox)
         self._metrics.clients.labels(self.name).inc()
         try:
@@ -331,7 +320,7 @@ class LiveCage:
         self._metrics.valid.labels(self.name).set(float(self.snapshot.state.valid))
         self._metrics.input_age.labels(self.name).set(self.snapshot.state.age_s or 0.0)
         for mailbox in self._mailboxes:
-            mailbox.put(self.snapshot)
+            mailbox.leave(self.snapshot)
 
     def _snapshot_of(self, answered: Answered) -> Snapshot:
         state = self.state_of(answered, self.live.state, alarms=self.desk.waiting())

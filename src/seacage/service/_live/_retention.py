@@ -6,7 +6,6 @@ from datetime import datetime, timedelta
 
 import structlog
 
-from seacage.conventions import InputError
 from seacage.service._live._clock import Clock
 from seacage.service._store._database._session import StoreError
 from seacage.service._store._store import Store
@@ -27,14 +26,9 @@ class Retention:
     clocks
         Of each cage, as old is what its clock says.
     keep_days
-        UTC days that ended longer ago leave [d].
+        UTC days that ended longer ago leave [d]; above zero, as the settings say.
     every_s
         Between two looks [s of the wall].
-
-    Raises
-    ------
-    InputError
-        It is not above zero.
     """
 
     def __init__(
@@ -45,11 +39,6 @@ class Retention:
         keep_days: float,
         every_s: float = 3600.0,
     ) -> None:
-        if not keep_days > 0.0:
-            raise InputError(
-                f"keep_days = {keep_days:g} d would keep nothing. Give the days that samples "
-                "stay at full rate, e.g. 30; all stay without a retention."
-            )
         self._store, self._clocks = store, clocks
         self._keep, self._every_s = timedelta(days=keep_days), every_s
 

@@ -118,14 +118,13 @@ class Link:
         self._listener, self._will, self._qos = listener, will, qos
         self._connection: _Connection | None = None
         self._properties = connecting(receive_maximum=receive_maximum, session_s=session_s)
-        self._client: Client | None = None
         self.fault: str | None = f"{broker} has not answered yet."
 
     def publish(self, topic: str, payload: bytes, *, qos: int = 1, retain: bool = False) -> bool:
         """Send a message; False without a connection, and then it is not kept."""
-        if self._client is None or self.fault is not None:
+        if self._connection is None or self.fault is not None:
             return False
-        sent = self._client.publish(topic, payload, qos, retain)
+        sent = self._connection.client.publish(topic, payload, qos, retain)
         return sent.rc == MQTTErrorCode.MQTT_ERR_SUCCESS
 
     def pause(self, *, paused: bool) -> None:
@@ -167,7 +166,7 @@ class Link:
             if connection.ended.is_set():
                 raise _Ended(connection.reason)
             client.subscribe([(one, SubscribeOptions(qos=self._qos)) for one in self._filters])
-            self._client, self.fault = client, None
+            self.fault = None
             _log.info("broker found", broker=str(self._broker), client=self._client_id)
             if self._will is not None:
                 self.publish(self._will.topic, self._will.here, retain=True)
@@ -176,7 +175,7 @@ class Link:
         finally:
             if self._will is not None:
                 self.publish(self._will.topic, self._will.gone, retain=True)
-            self._client = self._connection = None
+            self._connection = None
             connection.close()
 
     def _on_message(self, client: Client, _: object, message: MQTTMessage) -> None:

@@ -6,6 +6,7 @@ import threading
 from collections.abc import Callable, Generator, Sequence
 from contextlib import contextmanager
 from datetime import UTC, datetime, timedelta
+from functools import partial
 from math import nan
 from pathlib import Path
 from typing import Any
@@ -272,7 +273,7 @@ class Spool:
 def _open(path: Path) -> sqlite3.Connection:
     connection = sqlite3.connect(path, isolation_level=None, check_same_thread=False, timeout=1.0)
     try:
-        connection.text_factory = _text
+        connection.text_factory = partial(str, encoding="utf-8", errors="replace")
         connection.execute("PRAGMA locking_mode = EXCLUSIVE")
         connection.execute("PRAGMA journal_mode = WAL")
         connection.execute("PRAGMA synchronous = FULL")
@@ -283,16 +284,11 @@ def _open(path: Path) -> sqlite3.Connection:
     return connection
 
 
-def _text(content: bytes) -> str:
-    return content.decode("utf-8", "replace")
-
-
 def _row(sample: Sample) -> tuple[object, ...]:
-    key = (sample.stream, microseconds(sample.t), _NO_SEQ if sample.seq is None else sample.seq)
-    return (*key, json.dumps(sample_fields(sample)))
+    return (*_key(sample), json.dumps(sample_fields(sample)))
 
 
-def _key(one: Settled) -> tuple[object, ...]:
+def _key(one: Settled | Sample) -> tuple[object, ...]:
     return (one.stream, microseconds(one.t), _NO_SEQ if one.seq is None else one.seq)
 
 

@@ -2,19 +2,16 @@
 
 import json
 from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from http import HTTPStatus
+from typing import Any
 
 from seacage.conventions import InputError, SeacageError
 from seacage.service._publish._post import POST_FAILED, AbstractCaller
 from seacage.service._rov._clearance import clearance_answer, inspection_answer, inspection_of
 from seacage.service._rov._files import inspection_geojson, inspection_mcap
-from seacage.service._schemas._clearance import (
-    ClearanceAnswer,
-    ClearanceQuery,
-    InspectionAnswer,
-    InspectionQuery,
-)
+from seacage.service._schemas._clearance import ClearanceQuery, InspectionQuery
 from seacage.twin import PredictedNet, StaleError
 
 
@@ -22,61 +19,39 @@ class AskError(SeacageError):
     """A service does not answer."""
 
 
+Query = ClearanceQuery | InspectionQuery
+
+_CALLS: Mapping[str, Callable[[PredictedNet, Any], bytes]] = {
+    "clearance": lambda net, query: clearance_answer(net, query).model_dump_json().encode(),
+    "inspection": lambda net, query: inspection_answer(net, query).model_dump_json().encode(),
+    "inspection.mcap": lambda net, query: inspection_mcap(net, inspection_of(net, query)),
+    "inspection.geojson": lambda net, query: inspection_geojson(net, inspection_of(net, query)),
+}
+
+
 class AbstractAsker(ABC):
     """Answers about one net, here or elsewhere."""
 
     @abstractmethod
-    def clearance(self, query: ClearanceQuery) -> ClearanceAnswer:
-        """How far points are from the net."""
-
-    @abstractmethod
-    def inspection(self, query: InspectionQuery) -> InspectionAnswer:
-        """A way along the net."""
-
-    @abstractmethod
-    def inspection_file(self, form: str, query: InspectionQuery) -> bytes:
-        """The same way as a file, ``.mcap`` or ``.geojson``."""
+    def ask(self, call: str, query: Query) -> bytes:
+        """Answer a call as a service does: the body."""
 
 
+@dataclass(frozen=True, slots=True)
 class LocalAsker(AbstractAsker):
-    """Answers from a predicted net.
+    """Answers from a predicted net."""
 
-    Parameters
-    ----------
-    net
-        The net that is asked about.
-    """
+    net: PredictedNet
 
-    def __init__(self, net: PredictedNet) -> None:
-        self._net = net
-
-    def clearance(self, query: ClearanceQuery) -> ClearanceAnswer:
-        return clearance_answer(self._net, query)
-
-    def inspection(self, query: InspectionQuery) -> InspectionAnswer:
-        return inspection_answer(self._net, query)
-
-    def inspection_file(self, form: str, query: InspectionQuery) -> bytes:
-        write = inspection_mcap if form == ".mcap" else inspection_geojson
-        return write(self._net, inspection_of(self._net, query))
+    def ask(self, call: str, query: Query) -> bytes:
+        return _CALLS[call](self.net, query)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ServiceAsker(AbstractCaller, AbstractAsker):
     """Answers of a service about one of its cages; the token has the scope read."""
 
-    def clearance(self, query: ClearanceQuery) -> ClearanceAnswer:
-        answer = self.ask("clearance", query.model_dump_json(exclude_none=True))
-        return ClearanceAnswer.model_validate_json(answer)
-
-    def inspection(self, query: InspectionQuery) -> InspectionAnswer:
-        answer = self.ask("inspection", query.model_dump_json(exclude_none=True))
-        return InspectionAnswer.model_validate_json(answer)
-
-    def inspection_file(self, form: str, query: InspectionQuery) -> bytes:
-        return self.ask(f"inspection{form}", query.model_dump_json(exclude_none=True))
-
-    def ask(self, call: str, body: str) -> bytes:
+    def ask(self, call: str, query: Query) -> bytes:
         """Post a question and return the answer's body.
 
         Raises
@@ -89,7 +64,7 @@ class ServiceAsker(AbstractCaller, AbstractAsker):
             Nobody answers, or not so.
         """
         try:
-            status, answer = self.post(call, body)
+            status, answer = self.post(call, query.model_dump_json(exclude_none=True))
         except POST_FAILED as error:
             raise AskError(f"{self.address} does not answer ({error}). Is it running?") from error
         if status == HTTPStatus.OK:

@@ -121,11 +121,8 @@ class RosMessages:
 
     def _message(self, kind: str, **values: Any) -> Any:
         """A message; what is not given is empty, as ROS has it."""
-        made = self._store.types[kind]
-        return made(**{**self._empty(kind), **values})
-
-    def _empty(self, kind: str) -> dict[str, Any]:
-        return {name: self._nothing(*what) for name, what in self._store.fielddefs[kind][1]}
+        empty = {name: self._nothing(*what) for name, what in self._store.fielddefs[kind][1]}
+        return self._store.types[kind](**{**empty, **values})
 
     def _nothing(self, node: Any, what: Any) -> Any:
         from rosbags.interfaces import Nodetype

@@ -2,8 +2,10 @@
 
 import csv
 import io
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
+
+from pydantic import BaseModel, ValidationError
 
 from seacage.conventions import TABLE_BYTES, InputError, read_text
 from seacage.service._schemas._clearance import (
@@ -11,7 +13,6 @@ from seacage.service._schemas._clearance import (
     ClearanceQuery,
     FrameName,
     InspectionAnswer,
-    Place,
 )
 
 HEADS: dict[FrameName, tuple[str, str, str]] = {
@@ -48,34 +49,21 @@ def read_points(path: Path) -> tuple[FrameName, list[Row]]:
     return frame, rows
 
 
-def query_of(
-    frame: FrameName,
-    rows: Sequence[Row],
-    *,
-    as_path: bool,
-    below_m: float,
-    allow_stale: bool,
-    max_age_s: float | None,
-) -> ClearanceQuery:
-    """Ask about points of a frame.
+def query_of(frame: FrameName, rows: Sequence[Row], **options: object) -> ClearanceQuery:
+    """Ask about points of a frame, with the other fields of the query as options.
 
     Raises
     ------
     InputError
         More points than one request takes, or coordinates that are none.
     """
-    from pydantic import ValidationError
-
     geographic = [
         {"latitude_deg": latitude, "longitude_deg": longitude, "depth_m": depth}
         for latitude, longitude, depth in rows
     ]
     points = {"places": geographic} if frame == "wgs84" else {"points_m": [[*row] for row in rows]}
-    options = {"as_path": as_path, "below_m": below_m, "allow_stale": allow_stale}
     try:
-        return ClearanceQuery.model_validate(
-            {"frame": frame, "max_age_s": max_age_s, **options, **points}
-        )
+        return ClearanceQuery.model_validate({"frame": frame, **options, **points})
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(map(str, first["loc"]))
@@ -84,28 +72,16 @@ def query_of(
 
 def write_clearances(path: Path, rows: Sequence[Row], answer: ClearanceAnswer) -> None:
     """Write points with their clearances, one line each."""
-    keys = [
-        key
-        for key in type(answer.points[0]).model_fields
-        if key not in {"nearest_m", "nearest_place", "normal"}
-    ]
-    lines = [
-        [*row, *(getattr(one, key) for key in keys)]
-        for row, one in zip(rows, answer.points, strict=True)
-    ]
-    _write(path, [*HEADS[answer.frame], *keys], lines)
+    _write(
+        path, answer.frame, rows, answer.points, left_out={"nearest_m", "nearest_place", "normal"}
+    )
 
 
 def write_waypoints(path: Path, answer: InspectionAnswer) -> None:
     """Write a way along the net, one waypoint a line."""
-    keys = [
-        key for key in type(answer.waypoints[0]).model_fields if key not in {"position_m", "place"}
-    ]
-    lines = [
-        [*_at(one.position_m, one.place), *(getattr(one, key) for key in keys)]
-        for one in answer.waypoints
-    ]
-    _write(path, [*HEADS[answer.frame], *keys], lines)
+    ways = answer.waypoints
+    places = [dict(one.place).values() if one.place else one.position_m for one in ways]
+    _write(path, answer.frame, places, ways, left_out={"position_m", "place"})
 
 
 def _frame_of(head: set[str], path: Path) -> FrameName:
@@ -116,17 +92,20 @@ def _frame_of(head: set[str], path: Path) -> FrameName:
     raise InputError(f"{path}: its header names no frame with units. Name the columns {wanted}.")
 
 
-def _at(position_m: list[float], place: Place | None) -> list[float]:
-    if place is None:
-        return position_m
-    return [place.latitude_deg, place.longitude_deg, place.depth_m]
-
-
-def _write(path: Path, head: Sequence[str], lines: Sequence[Sequence[object]]) -> None:
+def _write(
+    path: Path,
+    frame: FrameName,
+    places: Sequence[Iterable[float]],
+    entries: Sequence[BaseModel],
+    *,
+    left_out: set[str],
+) -> None:
+    keys = [key for key in type(entries[0]).model_fields if key not in left_out]
     with path.open("w", newline="", encoding="utf-8") as file:
         table = csv.writer(file)
-        table.writerow(head)
-        table.writerows(lines)
+        table.writerow([*HEADS[frame], *keys])
+        for place, one in zip(places, entries, strict=True):
+            table.writerow([*place, *(getattr(one, key) for key in keys)])
 
 
 def _row(row: dict[str, str | None], keys: Sequence[str], where: str) -> Row:

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from typing import Annotated
 
-from pydantic import Field, JsonValue, TypeAdapter, ValidationError
+from pydantic import BeforeValidator, Field, JsonValue, TypeAdapter, ValidationError
 from pydantic.config import JsonDict
 
 from seacage.conventions import InputError
@@ -87,13 +87,17 @@ class Receipt(AbstractAnswer):
     rejected: list[Rejection]
 
 
+def _finite(value: float | None) -> float | None:
+    return value if value is not None and math.isfinite(value) else None
+
+
 class SampleOut(AbstractAnswer):
     """A stored sample; flags are 1 good, 2 not evaluated, 3 suspect, 4 fail, 9 missing."""
 
     stream: str
     t: datetime
     seq: int | None
-    values: dict[str, float | None]
+    values: dict[str, Annotated[float | None, BeforeValidator(_finite)]]
     flags: dict[str, int]
 
 
@@ -107,6 +111,8 @@ class SamplesOut(AbstractAnswer):
 
 class AggregateOut(AbstractAnswer):
     """The usable readings of one span, in the unit of the quantity's name; ``t`` is its start."""
+
+    # Usable is what is a number and flagged neither fail nor missing; a span without has no such.
 
     t: datetime
     count: int

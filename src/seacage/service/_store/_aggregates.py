@@ -8,11 +8,11 @@ sums.
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
-from datetime import datetime, timedelta
+from datetime import timedelta
 
 from seacage.conventions import Flag, InputError
 from seacage.records import KEYS
+from seacage.service._schemas._samples import AggregateOut
 from seacage.service._store._database._checksum import with_checksum
 from seacage.service._store._database._rows import DAY_US, SAMPLES, Bounds, moment_of, pairs_of
 from seacage.service._store._database._session import AbstractSession
@@ -62,29 +62,6 @@ ORDER BY t LIMIT ?"""
 
 Span = tuple[str, str, int]
 """Cage, stream, and where ten minutes begin [µs]."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Aggregate:
-    """The usable readings of one quantity in one span.
-
-    Usable is what is a number and flagged neither fail nor missing.
-
-    Parameters
-    ----------
-    t
-        When the span begins, UTC.
-    count
-        Of the readings; a span without any has no aggregate.
-    mean, least, most
-        In the quantity's unit.
-    """
-
-    t: datetime
-    count: int
-    mean: float
-    least: float
-    most: float
 
 
 def check_aggregate(key: str, width_s: int) -> None:
@@ -162,7 +139,7 @@ def renew_between(session: AbstractSession, cage: str, stream: str, start: int, 
 
 def aggregates_between(
     session: AbstractSession, of: tuple[str, str], key: str, width_s: int, bounds: Bounds
-) -> list[Aggregate]:
+) -> list[AggregateOut]:
     """Read spans of a cage's stream in time order, as ``Store.aggregates`` says."""
     first, last = bounds.us
     marked = _marks(session, *of, first - first % WIDEST_US, last)
@@ -190,11 +167,10 @@ def aggregates_between(
 
 def _marks(session: AbstractSession, cage: str, stream: str, start: int, end: int) -> set[int]:
     """Where the marked spans of a stream begin, but for those of sealed days."""
-    between = (cage, stream, start, end)
     of = (cage, stream)
     days = session.intact("sealed", _SEALED_IN, (*of, start - start % DAY_US, end), of)
     sealed = {t for (t,) in days}
-    marked = {t for t, _ in session.intact("mark", _MARKED_IN, between, of)}
+    marked = {t for t, _ in session.intact("mark", _MARKED_IN, (*of, start, end), of)}
     return {t for t in marked if t - t % DAY_US not in sealed} if sealed else marked
 
 
@@ -218,6 +194,6 @@ def _sum_up(session: AbstractSession, span: Span) -> list[Summary]:
     return summaries((row[1], row[3]) for row in rows)
 
 
-def _aggregate(row: Sequence[float]) -> Aggregate:
+def _aggregate(row: Sequence[float]) -> AggregateOut:
     t, n, mean, least, most = row
-    return Aggregate(t=moment_of(int(t)), count=int(n), mean=mean, least=least, most=most)
+    return AggregateOut(t=moment_of(int(t)), count=int(n), mean=mean, least=least, most=most)

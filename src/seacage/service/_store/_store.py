@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from seacage.records import Amendment, Limits, Sample
+from seacage.service._schemas._samples import AggregateOut
 from seacage.service._store._adaptations import (
     Adaptation,
     Refold,
@@ -16,11 +17,7 @@ from seacage.service._store._adaptations import (
     keep_adaptations,
     refold_of,
 )
-from seacage.service._store._aggregates import (
-    Aggregate,
-    aggregates_between,
-    check_aggregate,
-)
+from seacage.service._store._aggregates import aggregates_between, check_aggregate
 from seacage.service._store._alarms import alarm_book, journal_between, keep_alarms
 from seacage.service._store._archive import Archive
 from seacage.service._store._archive_reads import latest_of, with_archive
@@ -257,7 +254,7 @@ class Store:
         start: datetime | None = None,
         end: datetime | None = None,
         limit: int,
-    ) -> list[Aggregate]:
+    ) -> list[AggregateOut]:
         """Read what the usable readings of each span were, of spans that begin in start <= t < end.
 
         A current has no mean direction: it is aggregated as ``current_east_m_s`` and

@@ -6,7 +6,7 @@ import pytest
 from seacage.conventions import InputError
 from seacage.service._assembly import assemble
 from seacage.service._live._retention import Retention, midnight
-from seacage.service._settings import Settings
+from seacage.service._settings import Settings, read_settings
 from seacage.service._store._store import look_into, open_store
 from seacage.testing import stand_in_twin
 from stores import NOON, put, sample
@@ -67,9 +67,9 @@ def test_the_day_that_is_being_measured_stays_however_short_samples_are_kept(sto
     assert store.samples("ace", limit=9) == [sample(-60), sample(0)]
 
 
-def test_to_keep_nothing_is_refused(store):
-    with pytest.raises(InputError, match="keep_days = 0 d"):
-        Retention(store, clocks={}, keep_days=0)
+def test_to_keep_nothing_is_refused():
+    with pytest.raises(InputError, match="keep_days = 0 does not do"):
+        read_settings(store={"keep_days": 0})
 
 
 def test_midnight_is_that_of_utc():

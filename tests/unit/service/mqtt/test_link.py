@@ -89,7 +89,7 @@ def test_what_is_not_read_stays_at_the_broker_and_comes_when_reading_goes_on(tmp
             one.pause(paused=True)
             for number in range(300):
                 other.publish("a/b", b"%d" % number)
-            await until(lambda: not other._client._out_messages)
+            await until(lambda: not other._connection.client._out_messages)
             await asyncio.sleep(0.5)
             assert not ears.received
             one.pause(paused=False)
@@ -107,7 +107,7 @@ def test_without_a_session_what_is_sent_from_now_on_is_received_and_nothing_else
                 await until(lambda: one.fault is None and other.fault is None)
                 await until(lambda: other.publish("a/b", b"now") and ears.received)
             other.publish("a/b", b"missed")
-            await until(lambda: not other._client._out_messages)
+            await until(lambda: not other._connection.client._out_messages)
             async with running(link(url, ears := Ears(), **live)) as one:
                 await until(lambda: one.fault is None)
                 await until(lambda: other.publish("a/b", b"later") and ears.received)

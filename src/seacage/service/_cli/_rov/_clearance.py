@@ -56,6 +56,7 @@ def clearance(
     """
     from seacage.conventions import InputError
     from seacage.service._rov._table import query_of, write_clearances
+    from seacage.service._schemas._clearance import ClearanceAnswer
 
     frame, rows = _points(points, point or [])
     query = query_of(
@@ -66,7 +67,7 @@ def clearance(
         allow_stale=net.allow_stale,
         max_age_s=net.max_age,
     )
-    answer = net.asker().clearance(query)
+    answer = ClearanceAnswer.model_validate_json(net.asker().ask("clearance", query))
     if out is not None:
         write_clearances(out, rows, answer)
     known = [one.p_below for one in answer.points if one.p_below is not None]

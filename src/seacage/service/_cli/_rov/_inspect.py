@@ -56,7 +56,7 @@ def inspect_path(
     out
         Write the way as .csv, .mcap or .geojson.
     """
-    from seacage.service._schemas._clearance import InspectionQuery
+    from seacage.service._schemas._clearance import InspectionAnswer, InspectionQuery
 
     query = InspectionQuery(
         frame=frame,
@@ -71,7 +71,7 @@ def inspect_path(
         max_age_s=net.max_age,
     )
     asker = net.asker()
-    answer = asker.inspection(query)
+    answer = InspectionAnswer.model_validate_json(asker.ask("inspection", query))
     if out is not None:
         _write_way(out, query, answer, asker)
     report(answer.model_dump(mode="json"), rows=_inspection_rows(answer, out))
@@ -87,7 +87,7 @@ def _write_way(
     if form == ".csv":
         write_waypoints(out, answer)
     elif form in {".mcap", ".geojson"}:
-        out.write_bytes(asker.inspection_file(form, query))
+        out.write_bytes(asker.ask(f"inspection{form}", query))
     else:
         raise InputError(f"{out}: a way is written as .csv, .mcap or .geojson.")
 
