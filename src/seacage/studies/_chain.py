@@ -222,17 +222,13 @@ class Chain:
     @cached_property
     def _campaigns(self) -> tuple[CampaignRecord, CampaignRecord]:
         """The simulations for training, and those held out."""
-        recipe = self.recipe
-        if self.given_campaign is None and not recipe.in_time:
+        recipe, given = self.recipe, self.given_campaign
+        if given is None and not recipe.in_time:
             return self._run("campaign", recipe.plan), self._run("held-out", recipe.held_out_plan)
-        whole = (
-            self._run("campaign", recipe.plan)
-            if self.given_campaign is None
-            else read_campaign(self.given_campaign)
-        )
+        whole = self._run("campaign", recipe.plan) if given is None else read_campaign(given)
         if whole.cage_toml != self.cage.to_toml():
             raise InputError(
-                f"study paper: {self.given_campaign} is a campaign of another cage than "
+                f"study paper: {given} is a campaign of another cage than "
                 f"{self.cage.name}. Give the cage that was simulated."
             )
         count = min(recipe.held_out_cases, len(whole) // 2)

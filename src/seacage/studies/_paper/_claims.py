@@ -1,6 +1,6 @@
 """Statements of the paper, and whether this study's own numbers support them."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -244,7 +244,10 @@ def _network_steadier(shapes: ShapeStudy) -> PaperClaim:
     network = shapes.scores.get(GCN_PAPER)
     if network is None:
         return PaperClaim(claim=claim, verdict="not evaluated", finding=" ".join(shapes.left_out))
-    theirs, ours = (_spread(one) for one in (shapes.scores[PCA_PAPER], network))
+    theirs, ours = (
+        dict(zip("xyz", one.case_axis_mae.std(axis=0).tolist(), strict=True))
+        for one in (shapes.scores[PCA_PAPER], network)
+    )
     return PaperClaim(
         claim=claim,
         verdict=_verdict(theirs[axis] > ours[axis] for axis in "xz"),
@@ -254,10 +257,6 @@ def _network_steadier(shapes: ShapeStudy) -> PaperClaim:
         )
         + ".",
     )
-
-
-def _spread(score: ShapeScore) -> Mapping[str, float]:
-    return dict(zip("xyz", score.case_axis_mae.std(axis=0).tolist(), strict=True))
 
 
 def _papers(shapes: ShapeStudy) -> list[ShapeScore]:

@@ -121,8 +121,7 @@ def paper_study(
 def study_chain(chain: Chain, out: Path, *, networks: bool = False) -> PaperStudy:
     """Score a chain and report on it, making the stages that are missing."""
     _check(chain)
-    waves = has_waves(chain)
-    scored = compare_ways(chain, ways_of(chain.recipe, waves=waves))
+    scored = compare_ways(chain, ways_of(chain.recipe, waves=has_waves(chain)))
     level_one = score_level_one(scored.twin, chain.held_out)
     shapes = _shapes(chain, networks=networks)
     claims = paper_claims(scored, shapes)
@@ -188,8 +187,7 @@ def _check(chain: Chain) -> None:
 
 
 def _shapes(chain: Chain, *, networks: bool) -> ShapeStudy:
-    waves = chain.in_waves
-    models, left_out = shape_models(chain.cage, waves=waves, networks=networks)
+    models, left_out = shape_models(chain.cage, waves=chain.in_waves, networks=networks)
     return shape_study(
         models,
         ShapeTrial(
@@ -206,8 +204,7 @@ def _shapes(chain: Chain, *, networks: bool) -> ShapeStudy:
 
 def _recipe(chain: Chain, scored: ScoredWays, shapes: ShapeStudy) -> dict[str, str]:
     recipe, campaign, field = chain.recipe, chain.campaign, chain.field
-    waves = chain.in_waves
-    what = "half-hours in waves and currents" if waves else "currents settled"
+    what = "half-hours in waves and currents" if chain.in_waves else "currents settled"
     readings = sum(len(sensor) for sensor in field.sensors.values())
     begin, end = (str(time)[:10] for time in field.buoy.time[[0, -1]])
     return {

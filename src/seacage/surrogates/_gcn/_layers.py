@@ -123,7 +123,7 @@ def modal_network(
     return (score @ (p["mode"] + beyond)).reshape(len(x), len(rest), 3)
 
 
-NETWORKS: Mapping[Kind, Any] = {"paper": paper_network, "modal": modal_network}
+NETWORKS: dict[Kind, Any] = {"paper": paper_network, "modal": modal_network}
 
 
 def first_parameters(

@@ -80,7 +80,11 @@ class Network:
         ModelError
             A setting or an array is missing, of another kind or shape, or not finite.
         """
-        kind = _restore_kind(settings)
+        kind = setting(settings, "kind", str)
+        if kind not in NETWORKS:
+            raise ModelError(
+                f"The saved GCN is of kind {kind!r}, which this version does not know."
+            )
         rest = array(arrays, "rest_position", None, 3)
         feature_centre = array(arrays, "feature_centre", None)
         shapes = parameter_shapes(
@@ -109,14 +113,6 @@ def standard_rest(graph: Graph) -> Float[np.ndarray, "node 3"]:
     """Rest position as a feature of the nodes."""
     rest = graph.rest_position
     return Scaling.of(rest).standardise(rest)
-
-
-def _restore_kind(settings: Mapping[str, object]) -> Kind:
-    kind = setting(settings, "kind", str)
-    for known in NETWORKS:
-        if kind == known:
-            return known
-    raise ModelError(f"The saved GCN is of kind {kind!r}, which this version does not know.")
 
 
 def _restore_graph(edges: Float[np.ndarray, "edge 2"], rest: Float[np.ndarray, "node 3"]) -> Graph:
