@@ -96,11 +96,11 @@ def test_an_interrupt_stops_a_service_quietly(twin, tmp_path):
 
 @pytest.mark.slow
 def test_a_buoys_record_is_replayed_on_its_own_clock(twin, field, tmp_path):
-    words = ("--twin", twin, "--record", field / "buoy-1.nc", "--speed", "3600")
+    words = ("--twin", twin, "--record", field / "buoy-1.nc", "--speed", "600")
     with serving(tmp_path, *words) as (_, client):
         ask = lambda: client.get("/api/v1/cages/ace/state").json()  # noqa: E731
         first = until(ask, lambda state: state["valid"])
         assert first["t"].startswith("2020-01-18")
         assert until(ask, lambda state: state["t"] > first["t"])["origin"] == "virtual field"
         topology = client.get("/api/v1/cages/ace/topology").json()
-        assert topology["speed"] == 3600.0
+        assert topology["speed"] == 600.0
