@@ -1,6 +1,6 @@
-"""Counts what makes the code hard to read, and fails where a count is above its ceiling.
-
-`python tools/house.py where` prints each place. A ceiling falls with its count, and never rises.
+"""Counts what makes the code hard to read, and fails where a count is above its ceiling; `python
+tools/house.py where` prints each place. A ceiling falls with its count, and never rises, but for
+that on lines of code: what adds a capability raises it, in its own commit, by its own lines.
 """
 
 import ast
@@ -21,7 +21,7 @@ CEILINGS = {
     "classes of the rename table": 0,
     "classes twice in a room": 0,
     "modules too many in a folder": 0,
-    "lines of code": 38_610,
+    "lines of code": 37_555,
 }
 OWN = "said|told|tell|unsaid|heard|unheard|lessons?|taught|judged|doubt|asked"
 PROSE = re.compile(r"\b(lessons?|taught|judged|heard|doubt)\b", re.IGNORECASE)
