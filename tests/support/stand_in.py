@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
+from line_loads import bare_line_loads
 from seacage.cage import Cage
 from seacage.conventions import InputError, Result
 from seacage.dynamics import History, Statistics
@@ -74,16 +75,19 @@ class StandIn:
             away[:, :, None] * away[:, None, :] if second_moment else np.empty((len(sea), 0, 0))
         )
         nobody = np.empty((len(sea), 0, 0))
+        bridle = _swaying(settled.bridle_tension, sway, quantile_levels)
         return History(
             time=np.empty(0),
             nodes=np.empty(0, int),
             node_position=np.empty((len(sea), 0, 0, 3)),
             bridle_tension=nobody,
+            line_tension=nobody,
             surface_elevation=np.empty((len(sea), 0)),
             node=node,
-            bridle=_swaying(settled.bridle_tension, sway, quantile_levels),
+            bridle=bridle,
             net_force=_swaying(settled.net_force, sway, quantile_levels),
             volume=_swaying(settled.volume, sway, quantile_levels),
+            lines=bare_line_loads(bridle),
             node_displacement=settled.node_position - cage.design_position,
             volume_fraction=np.ones(len(sea)),
             quantile_levels=np.array(quantile_levels),

@@ -180,6 +180,9 @@ class Frame(_Part):
     rope_slack: float = quantity(
         "m", "how much longer it is than balance in still water asks for", low=-1.0, default=0.0
     )
+    rope_tn_slope: float | None = quantity(
+        "", "m of the frame rope's T–N curve", low=1.0, default=None
+    )
     buoy_buoyancy: float = quantity("n", "net buoyancy of a corner buoy")
     corner_mass: float = quantity(
         "kg",
@@ -205,6 +208,7 @@ class AnchorLines(_Part):
     chain_mass: float = quantity("kg_m", "of the chain in air")
     chain_axial_stiffness: float = quantity("n", "EA of the chain")
     pretension: float = quantity("n", "in still water")
+    rope_tn_slope: float | None = quantity("", "m of the rope's T–N curve", low=1.0, default=None)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -222,6 +226,12 @@ class Bridles(_Part):
     )
     breaking_load: float = quantity("n", "least of rope and chain", above=True)
     material_factor: float = quantity("", "divides the breaking load", low=1.0)
+    tn_slope: float | None = quantity(
+        "",
+        "m of the T–N curve of rope or chain, which wears faster",
+        low=1.0,
+        default=None,
+    )
 
     def __post_init__(self) -> None:
         super(Bridles, self).__post_init__()

@@ -10,7 +10,7 @@ from jaxtyping import Bool, Float, Int
 from seacage.cage import Cage
 from seacage.conventions import InputError, Result
 from seacage.dynamics._equilibrium import Equilibria, equilibria
-from seacage.dynamics._moored import assemble
+from seacage.dynamics._moored import assemble, part
 from seacage.dynamics._parts import Assembly
 from seacage.dynamics._physics import Law, SteadyFlow, bar_tension, steady_flow, total_net_force
 from seacage.ocean import SeaState, wave_velocity_variance
@@ -67,6 +67,7 @@ def settle(
     wake: bool = True,
     hold_collar: bool = False,
     collar_drag: bool = True,
+    parted: Sequence[str] = (),
     starts: int = 2,
     workers: int = 1,
 ) -> Response:
@@ -98,6 +99,8 @@ def settle(
         Keep the collar in its place, as in a tank.
     collar_drag
         Whether the current drags on collar and sinker tube.
+    parted
+        Names of bridles that bear nothing; displacements are from the whole cage at rest.
     starts
         First shapes to seek equilibria from; 1 takes half the time of 2.
     workers
@@ -106,8 +109,8 @@ def settle(
     Raises
     ------
     InputError
-        Waves without ``mean_waves``, no sea at all, no start, a ``Structure``, or a cage that
-        cannot float.
+        Waves without ``mean_waves``, no sea at all, no start, a ``Structure``, a bridle that
+        the cage has not, or a cage that cannot float.
     """
     if not isinstance(cage, Cage):
         raise InputError(
@@ -116,7 +119,8 @@ def settle(
         )
     seas = [sea] if isinstance(sea, SeaState) else list(sea)
     _check(seas, mean_waves=mean_waves, starts=starts)
-    assembly = assemble(cage).held() if hold_collar else assemble(cage)
+    whole = assemble(cage).held() if hold_collar else assemble(cage)
+    assembly = part(whole, parted)
     velocity = np.array([state.current_velocity for state in seas])
     variance = _wave_variance(cage, assembly, seas) if mean_waves else None
     flow = steady_flow(

@@ -12,7 +12,13 @@ from seacage.records._campaign_store import (
     write_cases,
 )
 from seacage.records._field import FieldRecord
-from seacage.records._history_file import STATISTICS, HistoryRecord, read_history, write_history
+from seacage.records._history_file import (
+    LINES,
+    STATISTICS,
+    HistoryRecord,
+    read_history,
+    write_history,
+)
 from seacage.records._keys import KEYS, Key
 from seacage.records._quality import (
     AHEAD,
@@ -59,6 +65,7 @@ __all__ = [
     "DEFAULT_LIMITS",
     "GROUPS",
     "KEYS",
+    "LINES",
     "NOT_RUN",
     "STATISTICS",
     "Amendment",

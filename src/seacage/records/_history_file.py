@@ -5,7 +5,7 @@
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -49,6 +49,25 @@ _SERIES = {
     ),
 }
 
+LINES = {
+    "capacity": Variable(("line",), "N", "breaking load over material factor"),
+    "mean": Variable(("line",), "N", "mean tension"),
+    "std": Variable(("line",), "N", "standard deviation of the tension"),
+    "minimum": Variable(("line",), "N", "least tension"),
+    "maximum": Variable(("line",), "N", "largest tension"),
+    "mpm_3h": Variable(("line",), "N", "most probable largest tension of three hours"),
+    "mpm_3h_std": Variable(("line",), "N", "standard deviation of line_mpm_3h"),
+    "expected_3h": Variable(("line",), "N", "expected largest tension of three hours"),
+    "expected_3h_std": Variable(("line",), "N", "standard deviation of line_expected_3h"),
+    "slack_share": Variable(("line",), "1", "share of the time below 1 % of the pretension"),
+    "snaps": Variable(("line",), "1", "times that the slack line was pulled beyond its mean"),
+    "damage_equivalent": Variable(
+        ("line",), "N", "range of cycles at 1 Hz that wear the line as much, by line_tn_slope"
+    ),
+    "tn_slope": Variable(("line",), "1", "slope m of the T-N curve"),
+}
+"""Of each rope and chain, as ``HistoryRecord.lines`` names them; in a file after ``line_``."""
+
 _ENDING = {
     "node_displacement": Variable(
         ("node", "axis"), "m", "mean position less the shape in still water"
@@ -70,6 +89,10 @@ class HistoryRecord:
         In the order of the tensions.
     sea
         The sea state.
+    line_names, line_kinds
+        Ropes and chains, the bridles first; none in a file of version 0.1.
+    lines
+        By the names of ``LINES``; NaN where something is not known.
     time
         Of the series, from the end of the spin-up [s]; empty where none was kept.
     kept_node
@@ -101,6 +124,9 @@ class HistoryRecord:
     cage_toml: str
     bridle_names: tuple[str, ...]
     sea: SeaState
+    line_names: tuple[str, ...] = ()
+    line_kinds: tuple[str, ...] = ()
+    lines: Mapping[str, Float[np.ndarray, " line"]] = field(default_factory=dict[str, np.ndarray])
     time: Float[np.ndarray, " t"]
     kept_node: Int[np.ndarray, " kept"]
     node_position: Float[np.ndarray, "t kept 3"]
@@ -124,6 +150,12 @@ class HistoryRecord:
             raise RecordError(
                 f"HistoryRecord: the statistics are not those of a history (first: {missing[0]}). "
                 f"Give {', '.join(STATISTICS)} of {', '.join(_QUANTITIES)}."
+            )
+
+        if set(self.lines) != (set(LINES) if self.line_names else set()):
+            raise RecordError(
+                f"HistoryRecord: lines has {', '.join(sorted(self.lines)) or 'nothing'}. Give "
+                f"{', '.join(LINES)} with line_names, or neither."
             )
 
     @property
@@ -175,7 +207,7 @@ def _dataset(record: HistoryRecord) -> "xarray.Dataset":
         f"{name}_series": known.holding(getattr(record, name)) for name, known in _SERIES.items()
     }
     return xarray.Dataset(
-        {**series, **_statistics(record), **_scalars(record)},
+        {**series, **_statistics(record), **_scalars(record), **_lines(record)},
         coords={
             "time": ("time", record.time, _TIME),
             "kept_node": ("kept_node", record.kept_node, {"long_name": "index of the node"}),
@@ -214,6 +246,22 @@ def _statistics(record: HistoryRecord) -> dict[str, Any]:
     return variables
 
 
+def _lines(record: HistoryRecord) -> dict[str, Any]:
+    if not record.line_names:
+        return {}
+    kinds = {"long_name": "kind of the line"}
+    return {
+        "line": np.array(record.line_names, dtype=object),
+        "line_kind": ("line", np.array(record.line_kinds, dtype=object), kinds),
+        **{
+            f"line_{name}": known._replace(cell_methods=CELL_METHODS.get(name, "")).holding(
+                record.lines[name]
+            )
+            for name, known in LINES.items()
+        },
+    }
+
+
 def _scalars(record: HistoryRecord) -> dict[str, Any]:
     result = {
         "long_name": "how the case ended",
@@ -238,6 +286,9 @@ def _record(dataset: "xarray.Dataset") -> HistoryRecord:
         cage_toml=str(attributes["cage_toml"]),
         bridle_names=tuple(str(name) for name in values["bridle"]),
         sea=SeaState(**{name: float(values[name]) for name in SEA}),
+        line_names=tuple(map(str, values.get("line", ()))),
+        line_kinds=tuple(map(str, values.get("line_kind", ()))),
+        lines={name: values[f"line_{name}"] for name in LINES if "line" in values},
         time=values["time"].astype(np.float64),
         kept_node=values["kept_node"].astype(np.int64),
         **{name: values[f"{name}_series"] for name in _SERIES},

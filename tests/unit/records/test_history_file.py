@@ -7,7 +7,7 @@ import pytest
 
 from seacage.conventions import Origin, RecordError
 from seacage.ocean import SeaState
-from seacage.records import STATISTICS, HistoryRecord, read_history, write_history
+from seacage.records import LINES, STATISTICS, HistoryRecord, read_history, write_history
 
 xarray = pytest.importorskip("xarray")
 
@@ -132,3 +132,29 @@ def test_a_history_without_one_of_its_statistics_is_refused(history):
     del some["volume_std"]
     with pytest.raises(RecordError, match="volume_std"):
         replace(history, statistics=some)
+
+
+def test_lines_come_back_by_their_names(tmp_path, history):
+    lines = {name: np.array([1.0, np.nan]) + n for n, name in enumerate(LINES)}
+    more = replace(
+        history,
+        line_names=("bridle-1", "frame-1"),
+        line_kinds=("bridle", "frame line"),
+        lines=lines,
+    )
+    write_history(more, tmp_path / "a.nc")
+    back = read_history(tmp_path / "a.nc")
+    assert (back.line_names, back.line_kinds) == (more.line_names, more.line_kinds)
+    for name, values in lines.items():
+        np.testing.assert_array_equal(back.lines[name], values, err_msg=name)
+
+
+def test_a_file_without_lines_has_none(tmp_path, history):
+    write_history(history, tmp_path / "a.nc")
+    back = read_history(tmp_path / "a.nc")
+    assert (back.line_names, dict(back.lines)) == ((), {})
+
+
+def test_lines_lacking_a_number_are_refused(history):
+    with pytest.raises(RecordError, match="lines has mean"):
+        replace(history, line_names=("a",), line_kinds=("line",), lines={"mean": np.zeros(1)})

@@ -24,9 +24,9 @@ typedef double wide[LANES];
 enum { SCREEN = 0, REYNOLDS_SCREEN = 1, TWINES = 2 }; /* kinds of law of the netting */
 
 typedef struct {
-    int32_t nodes, bars, bends, panels, cylinders, floats, springs, grounds, bridles;
+    int32_t nodes, bars, bends, panels, cylinders, floats, springs, grounds, lines;
     const int32_t *bar_ends, *bend_nodes, *panel_corners, *cylinder_ends, *float_nodes,
-        *spring_nodes, *ground_nodes, *bridle_bars;
+        *spring_nodes, *ground_nodes, *line_bars;
     const float *weight, *mass, *water_mass, *place;
     const float *bar_length, *bar_rate, *bar_damping, *bar_least; /* 0 or -infinity */
     const float *bend_stiffness;
@@ -83,12 +83,13 @@ typedef struct {
 typedef struct {
     wide *node_sum, *node_square; /* [node*3] of displacements from `place` */
     lane *node_least, *node_most;
-    wide *bridle_sum, *bridle_square; /* [bridle] */
-    lane *bridle_least, *bridle_most;
+    wide *line_sum, *line_square; /* [line] */
+    lane *line_least, *line_most;
     wide *load_sum, *load_square; /* [3] */
     lane *load_least, *load_most;
     int64_t *counted, *sampled;
-    float *positions, *tensions, *elevations, *loads; /* [sample]..., or null */
+    float *positions, *elevations, *loads; /* [sample]..., or null */
+    float *tensions;                       /* [refresh][line], or null */
 } record;
 
 /* --- small functions, for vectors of lanes ---------------------------------------------- */
@@ -706,18 +707,27 @@ static void count_load(const lane *restrict total, record *r)
         }
 }
 
-/* Bridles are counted at every step: a snap is shorter than a refresh. */
-static void count_bridles(const body *b, const state *s, record *r)
+/* Lines are counted at every step: a snap is shorter than a refresh. */
+static void count_lines(const body *b, const state *s, record *r)
 {
     const vec *x = (const vec *)s->position, *v = (const vec *)s->velocity;
-    for (int n = 0; n < b->bridles; n++) {
+    for (int n = 0; n < b->lines; n++) {
         lane tension;
-        bar_tension(b, b->bridle_bars[n], x, v, tension);
+        bar_tension(b, b->line_bars[n], x, v, tension);
         EACH_LANE {
-            count((double)tension[k], &r->bridle_sum[n][k], &r->bridle_square[n][k]);
-            extremes(tension[k], &r->bridle_least[n][k], &r->bridle_most[n][k]);
+            count((double)tension[k], &r->line_sum[n][k], &r->line_square[n][k]);
+            extremes(tension[k], &r->line_least[n][k], &r->line_most[n][k]);
         }
     }
+}
+
+/* At every refresh: what wears a line, and its peaks, are shorter than most samples' distance. */
+static void sample_lines(const body *b, const state *s, record *r)
+{
+    float *restrict now = r->tensions + (size_t)LANES * (size_t)b->lines * (size_t)*r->counted;
+    for (int n = 0; n < b->lines; n++)
+        bar_tension(b, b->line_bars[n], (const vec *)s->position, (const vec *)s->velocity,
+                    now + LANES * n);
 }
 
 static void sample(const body *b, const sea *w, const schedule *t, const state *s,
@@ -726,9 +736,6 @@ static void sample(const body *b, const sea *w, const schedule *t, const state *
     const int64_t at = (*r->sampled)++;
     const size_t frame = sizeof(vec) * (size_t)b->nodes;
     memcpy((char *)r->positions + frame * (size_t)at, s->position, frame);
-    for (int n = 0; n < b->bridles; n++)
-        bar_tension(b, b->bridle_bars[n], (const vec *)s->position, (const vec *)s->velocity,
-                    r->tensions + LANES * (b->bridles * at + n));
     memcpy(r->loads + 3 * LANES * at, total, sizeof(vec));
     lane ahead[w->components + 1];
     const float ramp = (float)ramp_at(t, now);
@@ -814,13 +821,16 @@ void seacage_march(const body *b, const netting *net, const sea *w, const schedu
             }
             add_forces(b, s, since);
             if (counts)
-                count_bridles(b, s, r);
+                count_lines(b, s, r);
             if (i == 0 && counts) {
                 count_nodes(b, s, r);
                 count_load((const lane *)total, r);
+                if (t->sample_every > 0) {
+                    sample_lines(b, s, r);
+                    if ((n - t->count_from) % t->sample_every == 0)
+                        sample(b, w, t, s, (const lane *)total, now, r);
+                }
                 (*r->counted)++;
-                if (t->sample_every > 0 && (n - t->count_from) % t->sample_every == 0)
-                    sample(b, w, t, s, (const lane *)total, now, r);
             }
             move(b, s, step);
         }
@@ -833,9 +843,9 @@ void seacage_march(const body *b, const netting *net, const sea *w, const schedu
 #define FIELD(name) LAYOUT_FIELD(body, name)
 const layout_row seacage_layout_body[] = {
     FIELD(nodes), FIELD(bars), FIELD(bends), FIELD(panels), FIELD(cylinders), FIELD(floats),
-    FIELD(springs), FIELD(grounds), FIELD(bridles), FIELD(bar_ends), FIELD(bend_nodes),
+    FIELD(springs), FIELD(grounds), FIELD(lines), FIELD(bar_ends), FIELD(bend_nodes),
     FIELD(panel_corners), FIELD(cylinder_ends), FIELD(float_nodes), FIELD(spring_nodes),
-    FIELD(ground_nodes), FIELD(bridle_bars), FIELD(weight), FIELD(mass), FIELD(water_mass),
+    FIELD(ground_nodes), FIELD(line_bars), FIELD(weight), FIELD(mass), FIELD(water_mass),
     FIELD(place), FIELD(bar_length), FIELD(bar_rate), FIELD(bar_damping), FIELD(bar_least),
     FIELD(bend_stiffness), FIELD(panel_share), FIELD(panel_mass), FIELD(cylinder_drag),
     FIELD(cylinder_skin), FIELD(float_stiffness), FIELD(float_draft), FIELD(float_height),
@@ -876,9 +886,9 @@ const layout_row seacage_layout_state[] = {
 
 #define FIELD(name) LAYOUT_FIELD(record, name)
 const layout_row seacage_layout_record[] = {
-    FIELD(node_sum), FIELD(node_square), FIELD(node_least), FIELD(node_most), FIELD(bridle_sum),
-    FIELD(bridle_square), FIELD(bridle_least), FIELD(bridle_most), FIELD(load_sum),
+    FIELD(node_sum), FIELD(node_square), FIELD(node_least), FIELD(node_most), FIELD(line_sum),
+    FIELD(line_square), FIELD(line_least), FIELD(line_most), FIELD(load_sum),
     FIELD(load_square), FIELD(load_least), FIELD(load_most), FIELD(counted), FIELD(sampled),
-    FIELD(positions), FIELD(tensions), FIELD(elevations), FIELD(loads), LAYOUT_END(record),
+    FIELD(positions), FIELD(elevations), FIELD(loads), FIELD(tensions), LAYOUT_END(record),
 };
 #undef FIELD

@@ -89,8 +89,8 @@ class March:
         self._net = netting_of(assembly, law)
         self._sea = sea_tables(ocean)
         self._motion = motion_of(assembly, to_lanes(position))
-        lanes, bridles = simulation_lanes(), len(assembly.bridles)
-        sizes = {"node": (3 * nodes, lanes), "bridle": (bridles, lanes), "load": (3, lanes)}
+        lanes, lines = simulation_lanes(), len(assembly.lines.bars)
+        sizes = {"node": (3 * nodes, lanes), "line": (lines, lanes), "load": (3, lanes)}
         self.account = {
             f"{what}_{how}": np.full(size, start, kind)
             for what, size in sizes.items()
@@ -101,15 +101,15 @@ class March:
                 ("most", -np.inf, np.float32),
             )
         } | {name: np.zeros(1, np.int64) for name in ("counted", "sampled")}
+        sampled = steps.counted if steps.sample_every else 0
         shapes = {
-            "positions": (nodes, 3),
-            "tensions": (bridles,),
-            "elevations": (),
-            "loads": (3,),
+            "positions": (steps.samples, nodes, 3),
+            "elevations": (steps.samples,),
+            "loads": (steps.samples, 3),
+            "tensions": (sampled, lines),
         }
         self.samples = {
-            name: np.empty((steps.samples, *shape, lanes), np.float32)
-            for name, shape in shapes.items()
+            name: np.empty((*shape, lanes), np.float32) for name, shape in shapes.items()
         }
         self._record = RecordStruct.filled(**self.account, **self.samples)
 
@@ -141,6 +141,10 @@ class March:
         """Simulated so far [s]."""
         return self.refreshed * self.steps.each * self.steps.time_step
 
+    def has_waves(self, case: int) -> bool:
+        """Whether a case's sea is not flat."""
+        return bool(np.any(self._ocean.waves[case].amplitude))
+
     def set_current(self, current: Float[np.ndarray, "case level 2"]) -> None:
         """From now on at each level [m/s]."""
         self._ocean = replace(self._ocean, current=current)
@@ -156,7 +160,7 @@ class March:
         self._net = netting_of(self._assembly, law)
 
     def rebuild(self, assembly: Assembly) -> None:
-        """Go on as another assembly, of the same nodes, panels, floats and number of bridles."""
+        """Go on as another assembly, of the same nodes, panels, floats and numbers of lines."""
         before, after = _counts(self._assembly), _counts(assembly)
         if before != after:
             raise InputError(
@@ -207,8 +211,8 @@ class March:
 def _counts(assembly: Assembly) -> str:
     """Of what a march has numbers for."""
     panels, floats = len(assembly.panels.area), len(assembly.floats.nodes)
-    nodes, bridles = len(assembly.position), len(assembly.bridles)
-    return f"{nodes} nodes, {panels} panels, {floats} floats and {bridles} bridles"
+    nodes, lines = len(assembly.position), len(assembly.lines.bars)
+    return f"{nodes} nodes, {panels} panels, {floats} floats and {lines} lines"
 
 
 def motion_of(assembly: Assembly, position: Float[np.ndarray, "node 3 lane"]) -> StateStruct:

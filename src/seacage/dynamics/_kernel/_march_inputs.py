@@ -78,13 +78,13 @@ def from_lanes(values: np.ndarray) -> np.ndarray:
 def body_of(assembly: Assembly) -> BodyStruct:
     """The cage, its bars as their nodes lie in memory, which saves waiting for it."""
     assert np.all(np.diff(assembly.floats.nodes) > 0), "the kernel meets floats in the nodes' order"
-    bars, bridles = _in_node_order(assembly)
-    a = replace(assembly, bars=bars, bridles=bridles)
+    bars, line_bars = _in_node_order(assembly)
+    a = replace(assembly, bars=bars)
     return BodyStruct.cast(
         grounds=len(a.ground.nodes),
-        bridles=len(a.bridles),
+        lines=len(line_bars),
         ground_nodes=a.ground.nodes,
-        bridle_bars=a.bridles,
+        line_bars=line_bars,
         mass=np.where(a.fixed, HELD, a.mass),
         water_mass=a.water_mass,
         place=a.position,
@@ -101,9 +101,9 @@ def body_of(assembly: Assembly) -> BodyStruct:
     )
 
 
-def _in_node_order(assembly: Assembly) -> tuple[Bars, Int[np.ndarray, " bridle"]]:
+def _in_node_order(assembly: Assembly) -> tuple[Bars, Int[np.ndarray, " line"]]:
     order = np.argsort(assembly.bars.ends.min(axis=1), kind="stable")
-    return assembly.bars.rows(order), np.argsort(order)[assembly.bridles]
+    return assembly.bars.rows(order), np.argsort(order)[assembly.lines.bars]
 
 
 def netting_of(assembly: Assembly, law: NetLaw) -> NettingStruct:

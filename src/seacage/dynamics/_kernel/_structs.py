@@ -173,9 +173,9 @@ class BenchStruct(Struct):
 class BodyStruct(Struct):
     c_name = "body"
     _fields_ = (
-        *_each(ctypes.c_int32, "nodes bars bends panels cylinders floats springs grounds bridles"),
+        *_each(ctypes.c_int32, "nodes bars bends panels cylinders floats springs grounds lines"),
         *_each(INTEGERS, "bar_ends bend_nodes panel_corners cylinder_ends float_nodes"),
-        *_each(INTEGERS, "spring_nodes ground_nodes bridle_bars"),
+        *_each(INTEGERS, "spring_nodes ground_nodes line_bars"),
         *_each(FLOATS, "weight mass water_mass place bar_length bar_rate bar_damping bar_least"),
         *_each(FLOATS, "bend_stiffness panel_share panel_mass cylinder_drag cylinder_skin"),
         *_each(FLOATS, "float_stiffness float_draft float_height"),
@@ -227,12 +227,12 @@ class RecordStruct(Struct):
     _fields_ = (
         *_each(DOUBLES, "node_sum node_square"),
         *_each(FLOATS, "node_least node_most"),
-        *_each(DOUBLES, "bridle_sum bridle_square"),
-        *_each(FLOATS, "bridle_least bridle_most"),
+        *_each(DOUBLES, "line_sum line_square"),
+        *_each(FLOATS, "line_least line_most"),
         *_each(DOUBLES, "load_sum load_square"),
         *_each(FLOATS, "load_least load_most"),
         *_each(LONGS, "counted sampled"),
-        *_each(FLOATS, "positions tensions elevations loads"),
+        *_each(FLOATS, "positions elevations loads tensions"),
     )
 
 

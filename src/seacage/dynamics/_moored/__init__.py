@@ -3,6 +3,7 @@
 from seacage.dynamics._moored._detailed import Damage, broken, full_assembly
 from seacage.dynamics._moored._mass_scaling import scale_mass
 from seacage.dynamics._moored._mooring import anchor_assembly
+from seacage.dynamics._moored._parted import part
 from seacage.dynamics._moored._pretension import assemble
 
 __all__ = [
@@ -11,5 +12,6 @@ __all__ = [
     "assemble",
     "broken",
     "full_assembly",
+    "part",
     "scale_mass",
 ]

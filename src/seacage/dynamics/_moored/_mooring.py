@@ -24,6 +24,7 @@ from seacage.dynamics._parts import (
     Cylinders,
     Floats,
     Ground,
+    Lines,
     Springs,
 )
 
@@ -51,38 +52,39 @@ def anchor_assembly(cage: Cage) -> Assembly:
     """
     base = assemble(cage)
     shape = resting_line(cage)
-    lines = _lines(cage, shape)
+    anchors = _anchor_lines(cage, shape)
     bridles = -base.springs.preload  # what they pull the corners by in still water
     lift = _buoy_load(cage, shape, bridles)
-    position = np.vstack([base.position, lines.position])
+    position = np.vstack([base.position, anchors.position])
     frame = _frame(cage, shape, bridles)
-    weight, mass, water_mass = _lump(cage, base, frame, lines)
+    weight, mass, water_mass = _lump(cage, base, frame, anchors)
     return replace(
         base,
         position=position,
         weight=weight,
         mass=mass,
         water_mass=water_mass,
-        fixed=np.concatenate([base.fixed, lines.anchors]),
-        bars=Bars.joined(base.bars, frame, lines.bars),
-        cylinders=_cylinders(cage, base, frame, lines),
+        fixed=np.concatenate([base.fixed, anchors.is_anchor]),
+        bars=Bars.joined(base.bars, frame, anchors.bars),
+        lines=_lines(cage, base, frame, anchors),
+        cylinders=_cylinders(cage, base, frame, anchors),
         floats=_floats(cage, base, lift),
         springs=Springs.none(),
-        ground=_ground(cage, base, lines, mass),
+        ground=_ground(cage, base, anchors, mass),
     )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Lines:
+class _AnchorLines:
     """All anchor lines in their places."""
 
     position: Float[np.ndarray, "node 3"]
-    anchors: Bool[np.ndarray, " node"]
+    is_anchor: Bool[np.ndarray, " node"]
     bars: Bars
     is_rope: Bool[np.ndarray, " bar"]
 
 
-def _lines(cage: Cage, shape: LineShape) -> _Lines:
+def _anchor_lines(cage: Cage, shape: LineShape) -> _AnchorLines:
     length, stiffness = segments(cage.anchor_lines)
     directions, corners = _directions(cage)
     count, each = len(directions), len(length)
@@ -102,12 +104,32 @@ def _lines(cage: Cage, shape: LineShape) -> _Lines:
         np.tile(stiffness, count),
         damping_ratio=cage.netting.damping_ratio,
     )
-    return _Lines(
+    return _AnchorLines(
         position=position.reshape(-1, 3),
-        anchors=np.tile(np.arange(each) == each - 1, count),
+        is_anchor=np.tile(np.arange(each) == each - 1, count),
         bars=bars,
         is_rope=np.tile(is_rope(cage.anchor_lines), count),
     )
+
+
+def _lines(cage: Cage, base: Assembly, frame: Bars, anchors: _AnchorLines) -> Lines:
+    """Bridles, frame ropes, and anchor lines at the corners, where they bear most."""
+    first, count = len(base.bars.length), len(frame.length)
+    ropes = Lines.alike(
+        [f"frame-{n + 1}" for n in range(count)],
+        "frame line",
+        first + np.arange(count),
+        tn_slope=cage.frame.rope_tn_slope,
+    )
+    held = np.flatnonzero(anchors.bars.ends[:, 0] < cage.node_count + 4)
+    moored = Lines.alike(
+        [f"anchor-{n + 1}" for n in range(len(held))],
+        "anchor line",
+        first + count + held,
+        pretension=cage.anchor_lines.pretension,
+        tn_slope=cage.anchor_lines.rope_tn_slope,
+    )
+    return base.lines.joined(ropes).joined(moored)
 
 
 def _directions(cage: Cage) -> tuple[Float[np.ndarray, "line 2"], Int[np.ndarray, " line"]]:
@@ -167,14 +189,14 @@ def _frame(cage: Cage, shape: LineShape, bridles: Float[np.ndarray, "corner 3"])
 
 
 def _lump(
-    cage: Cage, base: Assembly, frame: Bars, lines: _Lines
+    cage: Cage, base: Assembly, frame: Bars, lines: _AnchorLines
 ) -> tuple[Float[np.ndarray, " n"], Float[np.ndarray, " n"], Float[np.ndarray, " n"]]:
     """Weight [N], mass with added mass, and the water's share of it [kg], of all nodes.
 
     A rope weighs nothing in water: with what it holds between its strands, it is as heavy.
     """
     parts, more = cage.anchor_lines, np.zeros(len(lines.position))
-    weight = np.append(base.weight, np.tile(-node_weight(parts)[1:], lines.anchors.sum()))
+    weight = np.append(base.weight, np.tile(-node_weight(parts)[1:], lines.is_anchor.sum()))
     mass, water = np.append(base.mass, more), np.append(base.water_mass, more)
 
     def put(ends: np.ndarray, length: np.ndarray, own: float, displaced: float, added: float):
@@ -192,7 +214,7 @@ def _lump(
     return weight, mass, water
 
 
-def _cylinders(cage: Cage, base: Assembly, frame: Bars, lines: _Lines) -> Cylinders:
+def _cylinders(cage: Cage, base: Assembly, frame: Bars, lines: _AnchorLines) -> Cylinders:
     """Drag on frame and lines too; the bottom chain is dragged like the rope above it."""
     widths = (cage.frame.rope_diameter, cage.anchor_lines.rope_diameter)
     counts = (len(frame.length), len(lines.bars.length))
@@ -217,9 +239,11 @@ def _floats(cage: Cage, base: Assembly, lift: Float[np.ndarray, " corner"]) -> F
     return Floats.joined(base.floats, buoys)
 
 
-def _ground(cage: Cage, base: Assembly, lines: _Lines, mass: Float[np.ndarray, " node"]) -> Ground:
+def _ground(
+    cage: Cage, base: Assembly, lines: _AnchorLines, mass: Float[np.ndarray, " node"]
+) -> Ground:
     """The sea bed under the lines' nodes."""
-    nodes = len(base.position) + np.flatnonzero(~lines.anchors)
+    nodes = len(base.position) + np.flatnonzero(~lines.is_anchor)
     return Ground(
         nodes=nodes, stiffness=mass[nodes] * GRAVITY / SINKING, level=-cage.site.water_depth
     )

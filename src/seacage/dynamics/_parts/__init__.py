@@ -11,6 +11,7 @@ from seacage.dynamics._parts._assembly import (
     Scales,
     Springs,
 )
+from seacage.dynamics._parts._lines import Lines
 from seacage.dynamics._parts._structure import SINKING, assemble_structure
 
 __all__ = [
@@ -21,6 +22,7 @@ __all__ = [
     "Cylinders",
     "Floats",
     "Ground",
+    "Lines",
     "Panels",
     "Scales",
     "Springs",

@@ -7,6 +7,7 @@ from jaxtyping import Bool, Float, Int
 
 from seacage.cage import Cage
 from seacage.conventions import GRAVITY, WATER_DENSITY, InputError, Rows
+from seacage.dynamics._parts._lines import Lines
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -131,6 +132,7 @@ class Assembly:
     fixed: Bool[np.ndarray, " node"]  # held in its place
     bars: Bars
     bridles: Int[np.ndarray, " bridle"]  # which bars are the bridles
+    lines: Lines  # whose tension is reported
     bends: Bends
     panels: Panels
     cylinders: Cylinders
@@ -166,6 +168,7 @@ class Assembly:
             fixed=np.zeros(len(position), dtype=bool),
             bars=bars,
             bridles=bridles,
+            lines=Lines.bridles_of(cage, bridles),
             bends=_bends(cage),
             panels=panels,
             cylinders=_cylinders(cage),

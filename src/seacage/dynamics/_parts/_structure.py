@@ -20,6 +20,7 @@ from seacage.dynamics._parts._assembly import (
     corner_shares,
     panel_area,
 )
+from seacage.dynamics._parts._lines import Lines
 
 SINKING = 0.01
 """Depth to which a line's node sinks into the sea bed under its own weight [m]."""
@@ -56,6 +57,7 @@ def assemble_structure(structure: Structure) -> Assembly:
     _check_floats(structure, members)
     _check_masses(structure, lumps)
     pieces = np.array([line.segments for line in structure.line], dtype=np.int64)
+    lines = len(bars.length) - np.cumsum(pieces[::-1])[::-1]
     fixed = np.zeros(len(position), dtype=bool)
     fixed[structure.anchor_nodes] = True
     return Assembly(
@@ -72,7 +74,8 @@ def assemble_structure(structure: Structure) -> Assembly:
         water_mass=lumps.displaced + lumps.added,
         fixed=fixed,
         bars=bars,
-        bridles=len(bars.length) - np.cumsum(pieces[::-1])[::-1],
+        bridles=lines,
+        lines=Lines.alike(structure.line_names, "line", lines),
         bends=_bends(structure),
         panels=panels,
         cylinders=Cylinders.joined(

@@ -5,24 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float, Int
 
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Statistics:
-    """Statistics of a quantity over the simulated time that counts.
-
-    Attributes
-    ----------
-    mean, std, minimum, maximum
-        In the quantity's own unit and shape.
-    quantile
-        At ``History.quantile_levels``, an axis before the quantity's own.
-    """
-
-    mean: Float[np.ndarray, "*shape"]
-    std: Float[np.ndarray, "*shape"]
-    minimum: Float[np.ndarray, "*shape"]
-    maximum: Float[np.ndarray, "*shape"]
-    quantile: Float[np.ndarray, "*quantile_shape"]
+from seacage.dynamics._time._line_loads import LineLoads
+from seacage.dynamics._time._statistics import Statistics
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -41,11 +25,15 @@ class History:
         Series of the chosen nodes [m].
     bridle_tension
         Series [N].
+    line_tension
+        Series of all lines, the bridles first [N].
     surface_elevation
         Series at the origin [m].
     node, bridle, net_force, volume
         Statistics of all nodes' positions [m], the bridles' tensions [N], the water's load on
         the netting [N] and the volume inside the net [m3].
+    lines
+        Loads of all lines.
     node_displacement
         Mean position less the rest shape [m].
     volume_fraction
@@ -65,11 +53,13 @@ class History:
     nodes: Int[np.ndarray, " kept"]
     node_position: Float[np.ndarray, "*case t kept 3"]
     bridle_tension: Float[np.ndarray, "*case t bridle"]
+    line_tension: Float[np.ndarray, "*case t line"]
     surface_elevation: Float[np.ndarray, "*case t"]
     node: Statistics
     bridle: Statistics
     net_force: Statistics
     volume: Statistics
+    lines: LineLoads
     node_displacement: Float[np.ndarray, "*case node 3"]
     volume_fraction: Float[np.ndarray, "*case"]
     quantile_levels: Float[np.ndarray, " quantile"]

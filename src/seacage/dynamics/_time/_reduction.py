@@ -1,7 +1,7 @@
 """From what the kernel kept of a march to a history."""
 
 from collections.abc import Callable
-from dataclasses import fields, replace
+from dataclasses import fields, is_dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -11,10 +11,13 @@ from seacage.conventions import Result
 from seacage.dynamics._kernel import REFRESH, March
 from seacage.dynamics._parts import Assembly
 from seacage.dynamics._time._history import History, Statistics
+from seacage.dynamics._time._line_loads import line_loads
 from seacage.dynamics._time._simulation import Simulation
 
 VOLUMES = 360
 """At most so many samples give the volume's statistics: it changes slowly, and costs."""
+
+_SHARED = ("time", "nodes", "quantile_levels", "names", "kinds", "capacity", "tn_slope")
 
 
 def histories(
@@ -46,18 +49,24 @@ def _history(
     every = max(1, -(-len(net) // VOLUMES))
     volume = cage.volume(net[::every].astype(np.float64))
     node = of("node", net, counted, assembly.position[: cage.node_count])
-    nothing = np.zeros(len(assembly.bridles))
+    tension = sampled["tensions"][:: steps.sample_every]
+    lines = of("line", tension, counted * steps.each, np.zeros(len(assembly.lines.bars)))
+    bridles = slice(len(assembly.bridles))
     kept = slice(None) if simulation.series else slice(0)
     history = History(
         time=(np.arange(len(net)) * steps.sample_every * REFRESH)[kept],
         nodes=simulation.nodes,
         node_position=net[kept, simulation.nodes].astype(np.float64),
-        bridle_tension=sampled["tensions"][kept].astype(np.float64),
+        bridle_tension=tension[kept, bridles].astype(np.float64),
+        line_tension=tension[kept].astype(np.float64),
         surface_elevation=sampled["elevations"][kept].astype(np.float64),
         node=node,
-        bridle=of("bridle", sampled["tensions"], counted * steps.each, nothing),
+        bridle=_each([lines], lambda values: values[0][..., bridles]),
         net_force=of("load", sampled["loads"], counted, np.zeros(3)),
         volume=_plain_statistics(volume, levels),
+        lines=line_loads(
+            assembly.lines, lines, sampled["tensions"], every=REFRESH, waves=march.has_waves(case)
+        ),
         node_displacement=node.mean - rest,
         volume_fraction=np.asarray(volume.mean() / cage.volume(rest)),
         quantile_levels=levels,
@@ -127,12 +136,13 @@ def _mask_lost(history: History, march: March) -> History:
     def after(series: np.ndarray) -> np.ndarray:
         return np.where(gone.reshape(-1, *(1,) * (series.ndim - 1)), np.nan, series)
 
-    lost = ("node", "bridle", "net_force", "volume")
+    lost = ("node", "bridle", "net_force", "volume", "lines")
     lost += ("node_displacement", "volume_fraction", "second_moment")
     return replace(
         history,
         node_position=after(history.node_position),
         bridle_tension=after(history.bridle_tension),
+        line_tension=after(history.line_tension),
         result=np.asarray(Result.DIVERGED),
         **{name: _each([getattr(history, name)], _nothing) for name in lost},
     )
@@ -143,22 +153,17 @@ def _nothing(values: list[np.ndarray]) -> np.ndarray:
 
 
 def _each(several: list[Any], join: Callable[[list[np.ndarray]], np.ndarray]) -> Any:
-    """Several arrays joined to one, or several statistics, field by field."""
-    if not isinstance(several[0], Statistics):
+    """Several arrays joined to one, or several dataclasses array by array."""
+    if not is_dataclass(several[0]):
         return join(several)
-    names = [f.name for f in fields(Statistics)]
-    return Statistics(**{name: join([getattr(one, name) for one in several]) for name in names})
 
+    def joined(name: str) -> Any:
+        values = [getattr(one, name) for one in several]
+        return values[0] if name in _SHARED else _each(values, join)
 
-_SHARED = ("time", "nodes", "quantile_levels")
+    return type(several[0])(**{f.name: joined(f.name) for f in fields(several[0])})
 
 
 def stack(cases: list[History]) -> History:
     """Several cases as one history, with a leading axis."""
-    values = {f.name: [getattr(case, f.name) for case in cases] for f in fields(History)}
-    return History(
-        **{
-            name: several[0] if name in _SHARED else _each(several, np.stack)
-            for name, several in values.items()
-        }
-    )
+    return _each(cases, np.stack)

@@ -47,6 +47,7 @@ def simulate(
     wake: bool = True,
     hold_collar: bool = False,
     collar_drag: bool = True,
+    parted: Sequence[str] = (),
     ramp: float = 60.0,
     spin_up: float = 300.0,
     time_step: float = 0.002,
@@ -97,6 +98,8 @@ def simulate(
         Keep the collar in its place, as in a tank.
     collar_drag
         Whether collar and sinker tube meet drag.
+    parted
+        Names of lines that bear nothing from the beginning, as in ``History.lines``.
     ramp
         Over which the waves rise [s].
     spin_up
@@ -122,7 +125,7 @@ def simulate(
     Raises
     ------
     InputError
-        No sea at all, times that make no sense, an unknown law or mooring, a time step too
+        No sea at all, times that make no sense, an unknown law, mooring or line, a time step too
         long for the stiffest line, waves that are not finite, too high or of water of another
         depth, drag of twines for a law without, or a cage that cannot float or is deeper than
         its site.
@@ -137,6 +140,7 @@ def simulate(
         wake=wake,
         hold_collar=hold_collar,
         collar_drag=collar_drag,
+        parted=tuple(parted),
         steps=_steps(duration, ramp, spin_up, time_step, sample_every),
         nodes=_series_nodes(cage, series_nodes),
         series=sample_every is not None,
@@ -230,8 +234,8 @@ def _steps(
 
 def _check_room(steps: Steps, assembly: Assembly) -> None:
     """Positions, tensions, net force and surface are kept in single precision to the end."""
-    sampled = 3 * len(assembly.position) + len(assembly.bridles) + 4
-    room = 4e-9 * steps.samples * simulation_lanes() * sampled
+    sampled = steps.samples * (3 * len(assembly.position) + 4)
+    room = 4e-9 * simulation_lanes() * (sampled + steps.counted * len(assembly.lines.bars))
     if room > MOST_ROOM:
         duration, every = steps.counted * REFRESH, steps.sample_every * REFRESH
         raise InputError(

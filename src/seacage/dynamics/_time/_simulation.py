@@ -9,7 +9,7 @@ from jaxtyping import Float, Int
 from seacage.cage import Cage, Structure
 from seacage.conventions import InputError
 from seacage.dynamics._kernel import Ocean, Steps
-from seacage.dynamics._moored import anchor_assembly, assemble, scale_mass
+from seacage.dynamics._moored import anchor_assembly, assemble, part, scale_mass
 from seacage.dynamics._parts import Assembly, assemble_structure
 from seacage.dynamics._physics import MovingLaw, NetLaw
 from seacage.dynamics._settle import rest_shape, settle
@@ -38,6 +38,7 @@ class Simulation:
     wake: bool
     hold_collar: bool
     collar_drag: bool
+    parted: tuple[str, ...]
     steps: Steps
     nodes: Int[np.ndarray, " kept"]
     series: bool
@@ -53,7 +54,8 @@ class Simulation:
             nothing = np.zeros_like(assembly.cylinders.drag_width)
             pipes = replace(assembly.cylinders, drag_width=nothing)
             assembly = replace(assembly, cylinders=pipes)
-        return scale_mass(assembly, self.steps.time_step)[0]
+        # masses as of the whole cage: what parts changes no light node's
+        return part(scale_mass(assembly, self.steps.time_step)[0], self.parted)
 
     def _moored(self) -> Assembly:
         if self.mooring not in ("springs", "catenary"):
@@ -94,6 +96,7 @@ class Simulation:
             law="loland" if self.law == "morison" else self.law,
             wake=self.wake,
             hold_collar=self.hold_collar,
+            parted=[name for name in self.parted if name in self.cage.bridle_names],
             starts=1,
         ).node_position
         known = np.isfinite(settled).all(axis=(1, 2), keepdims=True)

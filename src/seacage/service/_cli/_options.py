@@ -28,6 +28,10 @@ Mooring = Annotated[
     Literal["springs", "catenary"],
     typer.Option(help="What holds the frame: springs, or buoys and anchor lines."),
 ]
+Without = Annotated[
+    list[str] | None,
+    typer.Option(help="A line that has parted, such as bridle-8; again for each further one."),
+]
 SpinUp = Annotated[
     float, typer.Option(help="Simulated first and thrown away, s; the waves rise in it.")
 ]

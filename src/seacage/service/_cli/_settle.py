@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from seacage.service._cli._console import Exit, exit_with, guard, report
-from seacage.service._cli._options import CageName, OutFile, SeaOptions, read_cage
+from seacage.service._cli._options import CageName, OutFile, SeaOptions, Without, read_cage
 
 if TYPE_CHECKING:
     from seacage.cage import Cage
@@ -19,6 +19,7 @@ def settle(
     mean_waves: Annotated[bool, typer.Option("--mean-waves")] = False,
     cage: CageName = "ace",
     law: Literal["kristiansen-faltinsen", "loland", "aarsnes"] = "kristiansen-faltinsen",
+    without: Without = None,
     out: OutFile = None,
 ) -> None:
     """Settle one sea state: shape and loads.
@@ -42,8 +43,9 @@ def settle(
     from seacage.dynamics import settle as settled
 
     state, subject = sea.state(), read_cage(cage)
-    response = settled(subject, state, law=law, mean_waves=mean_waves)
-    answer = _answer(subject, response)
+    parted = without or []
+    response = settled(subject, state, law=law, mean_waves=mean_waves, parted=parted)
+    answer = _answer(subject, response) | ({"without": parted} if parted else {})
     if out is not None:
         from seacage.service._export import write_response
 

@@ -1,5 +1,6 @@
 """``seacage simulate``: one sea state in time."""
 
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,15 +13,18 @@ from seacage.service._cli._options import (
     SeaOptions,
     Seed,
     SpinUp,
+    Without,
     read_cage,
 )
 
 if TYPE_CHECKING:
     from seacage.cage import Cage
-    from seacage.dynamics import History, Statistics
+    from seacage.dynamics import History, LineLoads, Statistics
     from seacage.figures import Motion
     from seacage.ocean import SeaState, Waves
 
+_PURE = ("slack_share", "snaps", "tn_slope")
+"""Numbers of a line that are no forces."""
 _SMOOTH = 0.5
 """Between samples that an animation can follow waves by [s]."""
 
@@ -35,6 +39,7 @@ def simulate(
     cage: CageName = "ace",
     law: Law = "kristiansen-faltinsen",
     mooring: Mooring = "springs",
+    without: Without = None,
     sample_every: float = 0.5,
     out: OutFile = None,
     animation: OutFile = None,
@@ -82,6 +87,7 @@ def simulate(
             ramp=min(60.0, spin_up),
             law=law,
             mooring=mooring,
+            parted=without or (),
             waves=waves,
             sample_every=sample_every,
             progress=progress,
@@ -93,7 +99,7 @@ def simulate(
         "duration_s": duration,
         "spin_up_s": spin_up,
         "sample_every_s": sample_every,
-    }
+    } | ({"without": " ".join(without)} if without else {})
     answer = _answer(subject, history, settings)
     if out is not None:
         _write(out, subject, state, history, settings)
@@ -149,9 +155,27 @@ def _answer(
             name: _statistics(history.bridle, 1e-3, index)
             for index, name in enumerate(cage.bridle_names)
         },
+        "lines": _lines(history),
         "depth_m": {
             one.name: _statistics(history.node, -1.0, (one.node, 2)) for one in cage.depth_sensors
         },
+    }
+
+
+def _lines(history: "History") -> dict[str, dict[str, object]]:
+    """All ropes and chains by their names; null where something is not known."""
+    lines = history.lines
+    columns = {
+        **{f"{name}_kn": lines.columns[name] / 1e3 for name in lines.columns if name not in _PURE},
+        **{name: lines.columns[name] for name in _PURE},
+    }
+
+    def one(index: int) -> dict[str, object]:
+        each = {key: float(values[index]) for key, values in columns.items()}
+        return {key: round(v, 3) if isfinite(v) else None for key, v in each.items()}
+
+    return {
+        name: {"kind": lines.kinds[index], **one(index)} for index, name in enumerate(lines.names)
     }
 
 
@@ -172,20 +196,27 @@ def _statistics(
 
 def _rows(cage: "Cage", history: "History") -> list[tuple[str, str]]:
     east, north, up = history.net_force.mean / 1e3
-    volume, tension = history.volume, history.bridle
+    volume, lines = history.volume, history.lines
     kept = f"{volume.mean:.0f} m3, {history.volume_fraction:.1%} of still water"
     rows = [
         ("Mean load", f"{east:.1f} kN east, {north:.1f} kN north, {up:.1f} kN up on the net"),
         ("Volume", f"{kept}, {volume.minimum:.0f} to {volume.maximum:.0f} m3"),
         ("", "  mean     std     least    most"),
     ]
-    share = tension.maximum / cage.bridle_capacity
     rows += [
-        (name, f"{_line(tension, 1e-3, index)} kN, {share[index]:.0%} of capacity at most")
-        for index, name in enumerate(cage.bridle_names)
+        (name, f"{_line(lines.tension, 1e-3, index)} kN{_beyond(lines, index)}")
+        for index, name in enumerate(lines.names)
     ]
     sensors = ((one.name, (one.node, 2)) for one in cage.depth_sensors)
     return rows + [(name, f"{_line(history.node, -1.0, place)} m") for name, place in sensors]
+
+
+def _beyond(lines: "LineLoads", index: int) -> str:
+    """What a line's largest tension is of its capacity, and what three hours would bring."""
+    share, extremes = lines.utilisation[index], lines.extremes
+    of_capacity = f", {share:.0%} of capacity at most" if isfinite(share) else ""
+    mpm, spread = extremes.mpm[index] / 1e3, extremes.mpm_std[index] / 1e3
+    return of_capacity + (f"; 3 h MPM {mpm:.1f} ± {spread:.1f} kN" if isfinite(mpm) else "")
 
 
 def _line(statistics: "Statistics", scale: float, place: int | tuple[int, ...]) -> str:
@@ -234,6 +265,9 @@ def _write(
         result=int(history.result),
         diverged_at=float(history.diverged_at),
         settings=settings | ({"comment": " ".join(cage.warnings)} if cage.warnings else {}),
+        line_names=history.lines.names,
+        line_kinds=history.lines.kinds,
+        lines=history.lines.columns,
         version=version("seacage"),
     )
     write_history(record, path)

@@ -21,6 +21,7 @@ from seacage.dynamics._kernel._march_inputs import (
 )
 from seacage.dynamics._moored._mass_scaling import scale_mass
 from seacage.dynamics._parts._assembly import Assembly
+from seacage.dynamics._parts._lines import Lines
 from seacage.dynamics._physics._motion import NetLaw
 from seacage.ocean import SeaState, sample_waves, surface_elevation
 
@@ -93,12 +94,12 @@ def test_without_waves_the_water_stands_still():
         np.testing.assert_array_equal(velocity, 0.0)
 
 
-def test_bars_in_the_order_of_nodes_keep_their_bridles():
-    bars, bridles = _in_node_order(ASSEMBLY)
+def test_bars_in_the_order_of_nodes_keep_their_lines():
+    bars, lines = _in_node_order(ASSEMBLY)
     np.testing.assert_array_equal(np.diff(bars.ends.min(axis=1)) >= 0, True)
     for name in ("ends", "length", "stiffness"):
-        before = getattr(ASSEMBLY.bars, name)[ASSEMBLY.bridles]
-        np.testing.assert_array_equal(getattr(bars, name)[bridles], before)
+        before = getattr(ASSEMBLY.bars, name)[ASSEMBLY.lines.bars]
+        np.testing.assert_array_equal(getattr(bars, name)[lines], before)
 
 
 def test_floats_out_of_the_order_of_nodes_are_a_mistake_of_ours():
@@ -142,7 +143,7 @@ def test_nothing_counts_before_the_spin_up_is_over():
     assert one.account["counted"] == 0
     assert one.account["sampled"] == 0
     np.testing.assert_array_equal(one.account["node_sum"], 0.0)
-    assert np.all(np.isinf(one.account["bridle_most"]))
+    assert np.all(np.isinf(one.account["line_most"]))
 
 
 def test_the_account_counts_every_refresh_and_samples_those_requested():
@@ -249,8 +250,9 @@ def test_rebuilt_as_it_was_a_march_goes_on_as_before():
 
 
 def test_an_assembly_of_other_parts_is_refused():
-    fewer = replace(ASSEMBLY, bridles=ASSEMBLY.bridles[1:])
-    with pytest.raises(InputError, match=r"11 bridles cannot go on from one of .* 12 bridles"):
+    lines = ASSEMBLY.lines
+    fewer = replace(ASSEMBLY, lines=Lines.alike(lines.names[1:], "bridle", lines.bars[1:]))
+    with pytest.raises(InputError, match=r"11 lines cannot go on from one of .* 12 lines"):
         march().rebuild(fewer)
 
 

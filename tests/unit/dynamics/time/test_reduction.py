@@ -5,6 +5,7 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
+from line_loads import bare_line_loads
 from seacage.dynamics import History, Statistics
 from seacage.dynamics._time._reduction import _plain_statistics, _quantiles, _statistics, stack
 
@@ -23,11 +24,13 @@ def history(value=0.0, samples=3):
         nodes=np.arange(2),
         node_position=np.full((samples, 2, 3), value),
         bridle_tension=np.full((samples, 4), value),
+        line_tension=np.full((samples, 4), value),
         surface_elevation=np.full(samples, value),
         node=of(2, 3),
         bridle=of(4),
         net_force=of(3),
         volume=of(),
+        lines=bare_line_loads(of(4)),
         node_displacement=np.full((2, 3), value),
         volume_fraction=np.asarray(value),
         quantile_levels=LEVELS,

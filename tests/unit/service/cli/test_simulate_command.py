@@ -8,6 +8,7 @@ from typer.testing import CliRunner
 from seacage.cage import Cage
 from seacage.records import read_history
 from seacage.service._cli._app import app
+from seacage.service._cli._console import Exit
 
 SEA = ("--current-speed", 0.4, "--current-to", 90, "--hs", 1.5, "--tp", 7, "--wave-from", 270)
 SHORT = ("--duration", 6, "--spin-up", 4, "--sample-every", 0.5)
@@ -45,6 +46,32 @@ def test_a_sea_becomes_a_summary_a_file_and_an_animation(small_cage, tmp_path):
     assert Cage.from_toml(history.cage_toml).spokes == 8
     assert len(history.time) == 12
     assert gif.read_bytes().startswith(b"GIF89a")
+
+
+def test_every_line_of_a_whole_mooring_is_reported(small_cage, tmp_path):
+    out = tmp_path / "sea.nc"
+    words = (*SEA, *SHORT, "--cage", small_cage, "--mooring", "catenary", "--out", out)
+    lines = json.loads(run(*words, "--json").stdout)["lines"]
+    history = read_history(out)
+    assert tuple(lines) == history.line_names
+    assert {"bridle-12", "frame-4", "anchor-8"} < set(lines)
+    assert lines["anchor-1"]["kind"] == "anchor line"
+    assert lines["anchor-1"]["capacity_kn"] is None
+    assert lines["bridle-1"]["capacity_kn"] == 160.0
+    # ten minutes are wanted, and got are six seconds
+    assert lines["bridle-6"]["mpm_3h_kn"] is None
+    mean = history.lines["mean"][history.line_names.index("frame-4")] / 1e3
+    assert lines["frame-4"]["mean_kn"] == pytest.approx(mean, abs=1e-3)
+
+
+def test_a_line_that_has_parted_bears_nothing(small_cage):
+    without = (*SEA, *SHORT, "--cage", small_cage, "--without", "bridle-6", "--json")
+    answer = json.loads(run(*without).stdout)
+    assert answer["without"] == "bridle-6"
+    assert answer["lines"]["bridle-6"]["maximum_kn"] < 0.01
+    refused = run(*SEA, *SHORT, "--cage", small_cage, "--without", "bridle-13")
+    assert refused.exit_code == Exit.REFUSED
+    assert "there is no such line" in refused.stderr
 
 
 def test_the_same_seed_gives_the_same_numbers_and_another_does_not(small_cage):

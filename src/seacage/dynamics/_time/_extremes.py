@@ -1,0 +1,144 @@
+"""The largest tension of three hours, from the peaks of shorter simulations."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float, Int
+
+TAIL = 0.8
+"""Share of the peaks below the fifth that a Weibull line is drawn through [-]."""
+
+LEAST_TIME = 600.0
+"""Simulated time below which there is no estimate [s]."""
+
+LEAST_PEAKS = 50
+"""Peaks below which there is no estimate."""
+
+BLOCK = 300.0
+"""Length of the blocks that the bootstrap draws [s]."""
+
+DRAWS = 50
+"""Of the bootstrap."""
+
+_SHARES = (np.arange(200) + 0.5) / 200
+"""Of the distribution of the largest peak, for its mean."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Extremes:
+    """Largest tensions of a time of ``hours``; NaN where there are too few peaks.
+
+    Attributes
+    ----------
+    mpm
+        Most probable maximum: the tension that one peak of that time exceeds on average [N].
+    expected
+        Mean of the largest peak [N].
+    mpm_std, expected_std
+        Their standard deviations, by a bootstrap over blocks of five minutes [N].
+    """
+
+    mpm: Float[np.ndarray, "*case line"]
+    expected: Float[np.ndarray, "*case line"]
+    mpm_std: Float[np.ndarray, "*case line"]
+    expected_std: Float[np.ndarray, "*case line"]
+
+
+def extremes(
+    tension: Sequence[Float[np.ndarray, "t line"]],
+    *,
+    every: float,
+    hours: float = 3.0,
+    has_waves: bool = True,
+) -> Extremes:
+    """Extremes of a stationary sea from simulations of it.
+
+    A peak is the largest value between two successive up-crossings of the mean. A Weibull
+    distribution of a peak's height over the mean is fitted to the upper fifth of the peaks of
+    all simulations, a straight line on Weibull paper. With N peaks in ``hours``, the most
+    probable maximum has N (1 − F) = 1. Left out: that the sea itself is known only within the
+    scatter of the simulations where they are few, and peaks that depend on one another.
+
+    Parameters
+    ----------
+    tension
+        Of each simulation, which differ in their seeds alone [N].
+    every
+        Between samples [s].
+    hours
+        In which the largest is asked for [h].
+    has_waves
+        Without waves the largest tension is the mean.
+
+    References
+    ----------
+    Naess and Moan (2013), Stochastic Dynamics of Marine Structures, on fitted peaks; plotting
+    positions after Benard and Bos-Levenbach (1953).
+    """
+    lines = range(tension[0].shape[1])
+    if not has_waves:
+        mean = np.asarray(np.mean(np.concatenate(tension), axis=0, dtype=np.float64))
+        sure = np.zeros_like(mean)
+        return Extremes(mpm=mean, expected=mean, mpm_std=sure, expected_std=sure)
+    each = [_line_extremes([one[:, line] for one in tension], every, hours) for line in lines]
+    return Extremes(**dict(zip(Extremes.__slots__, np.array(each).reshape(-1, 4).T, strict=True)))
+
+
+def _line_extremes(
+    series: list[Float[np.ndarray, " t"]], every: float, hours: float
+) -> tuple[float, ...]:
+    """Of one line, in the order of the attributes of ``Extremes``."""
+    mean = float(np.mean(np.concatenate(series), dtype=np.float64))
+    found = [upcrossing_peaks(one, mean) for one in series]
+    per_block = max(1, round(BLOCK / every))
+    length = [-(-len(one) // per_block) for one in series]
+    first = np.cumsum([0, *length])[:-1]
+    height = np.concatenate([peaks for peaks, _ in found]) - mean
+    block = np.concatenate([f + at // per_block for f, (_, at) in zip(first, found, strict=True)])
+    duration = every * sum(map(len, series))
+    if duration < LEAST_TIME or len(height) < LEAST_PEAKS:
+        return (np.nan,) * 4
+    draws = np.random.default_rng(0).multinomial(
+        sum(length), np.full(sum(length), 1 / sum(length)), DRAWS
+    )
+    times = np.vstack([np.ones((1, sum(length)), dtype=np.int64), draws])[:, block]
+    mpm, expected = mean + _tail_maxima(height, times, 3600.0 * hours / duration)
+    return mpm[0], expected[0], float(mpm[1:].std()), float(expected[1:].std())
+
+
+def upcrossing_peaks(
+    series: Float[np.ndarray, " t"], level: float
+) -> tuple[Float[np.ndarray, " peak"], Int[np.ndarray, " peak"]]:
+    """Largest values between successive up-crossings of a level, and where each stretch begins."""
+    above = series > level
+    crossing = np.flatnonzero(~above[:-1] & above[1:]) + 1
+    if len(crossing) < 2:
+        return np.zeros(0), np.zeros(0, dtype=np.int64)
+    return np.maximum.reduceat(series, crossing)[:-1].astype(np.float64), crossing[:-1]
+
+
+def _tail_maxima(
+    height: Float[np.ndarray, " peak"], times: Int[np.ndarray, "draw peak"], longer: float
+) -> Float[np.ndarray, "2 draw"]:
+    """Most probable and expected largest height, each peak counted so many times in each draw."""
+    order = np.argsort(height)
+    top = max(int(TAIL * len(order)) - len(order) // 5, 0)  # a draw's upper fifth may reach lower
+    weight = times[:, order]
+    count = weight.sum(axis=1, keepdims=True)
+    rank = np.cumsum(weight, axis=1) - 0.5 * (weight - 1.0)
+    share = ((rank - 0.3) / (count + 0.4))[:, top:]
+    weight = (weight[:, top:] * (share > TAIL)).astype(np.float64)
+    x = np.log(-np.log1p(-np.clip(share, 0.0, 1.0 - 1e-9)))
+    y = np.log(height[order][top:])
+    total = weight.sum(axis=1, keepdims=True)
+    x_mean, y_mean = (np.sum(weight * v, axis=1, keepdims=True) / total for v in (x, y))
+    slope = np.sum(weight * (x - x_mean) * (y - y_mean), axis=1) / np.sum(
+        weight * (x - x_mean) ** 2, axis=1
+    )
+    scale = np.exp(y_mean[:, 0] - slope * x_mean[:, 0])
+    number = count[:, 0] * longer
+    mpm = scale * np.log(number) ** slope
+    largest = -np.log(-np.expm1(np.log(_SHARES) / number[:, None]))
+    expected = scale * np.mean(largest ** slope[:, None], axis=1)
+    return np.stack([mpm, expected])

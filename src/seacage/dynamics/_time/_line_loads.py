@@ -1,0 +1,104 @@
+"""Loads of the lines of a mooring: statistics, extremes, slack, snaps and fatigue."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from seacage.dynamics._parts import Lines
+from seacage.dynamics._time._extremes import Extremes, extremes
+from seacage.dynamics._time._fatigue import damage_equivalent_load
+from seacage.dynamics._time._statistics import Statistics
+
+SLACK = 0.01
+"""Tension over pretension below which a line is slack [-]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class LineLoads:
+    """Tensions of all ropes and chains that the model has; an anchor line's at its corner.
+
+    Attributes
+    ----------
+    names, kinds
+        The bridles first; "bridle", "frame line", "anchor line", or a structure's "line".
+    capacity
+        Breaking load over material factor; NaN where the file gives none [N].
+    tension
+        Over all time steps, the quantiles from samples [N].
+    extremes
+        Of three hours, from tensions every 0.1 s [N].
+    slack_share
+        Share of the time below a hundredth of the pretension; NaN where that is not known [-].
+    snaps
+        Times that a slack line was pulled taut, beyond its mean tension; NaN as above.
+    damage_equivalent
+        Range of cycles at 1 Hz that wear the line as much, for ``tn_slope`` [N].
+    tn_slope
+        m of the line's T–N curve; NaN where the file gives none [-].
+    """
+
+    names: tuple[str, ...]
+    kinds: tuple[str, ...]
+    capacity: Float[np.ndarray, " line"]
+    tn_slope: Float[np.ndarray, " line"]
+    tension: Statistics
+    extremes: Extremes
+    slack_share: Float[np.ndarray, "*case line"]
+    snaps: Float[np.ndarray, "*case line"]
+    damage_equivalent: Float[np.ndarray, "*case line"]
+
+    @property
+    def columns(self) -> dict[str, Float[np.ndarray, "*case line"]]:
+        """Each number of the lines by the name that files and tables give it."""
+        kinds = ("mean", "std", "minimum", "maximum")
+        return {
+            "capacity": self.capacity,
+            **{kind: getattr(self.tension, kind) for kind in kinds},
+            "mpm_3h": self.extremes.mpm,
+            "mpm_3h_std": self.extremes.mpm_std,
+            "expected_3h": self.extremes.expected,
+            "expected_3h_std": self.extremes.expected_std,
+            "slack_share": self.slack_share,
+            "snaps": self.snaps,
+            "damage_equivalent": self.damage_equivalent,
+            "tn_slope": self.tn_slope,
+        }
+
+    @property
+    def utilisation(self) -> Float[np.ndarray, "*case line"]:
+        """Largest tension over capacity [-]."""
+        return self.tension.maximum / self.capacity
+
+
+def line_loads(
+    lines: Lines,
+    statistics: Statistics,
+    tension: Float[np.ndarray, "t line"],
+    *,
+    every: float,
+    waves: bool,
+) -> LineLoads:
+    """Of one simulation, from its statistics and its tensions ``every`` so many seconds."""
+    slack = tension < SLACK * lines.pretension
+    known = np.isfinite(lines.pretension)
+    snaps = [_snaps(slack[:, line], tension[:, line]) for line in range(len(known))]
+    return LineLoads(
+        names=lines.names,
+        kinds=lines.kinds,
+        capacity=lines.capacity,
+        tn_slope=lines.tn_slope,
+        tension=statistics,
+        extremes=extremes([tension], every=every, has_waves=waves),
+        slack_share=np.where(known, slack.mean(axis=0), np.nan),
+        snaps=np.where(known, snaps, np.nan),
+        damage_equivalent=damage_equivalent_load([tension], lines.tn_slope, every=every),
+    )
+
+
+def _snaps(slack: Bool[np.ndarray, " t"], tension: Float[np.ndarray, " t"]) -> int:
+    """Times that a line goes from slack to a peak beyond its mean before it is slack again."""
+    taut = np.flatnonzero(slack[:-1] & ~slack[1:]) + 1
+    if not len(taut):
+        return 0
+    return int(np.sum(np.maximum.reduceat(tension, taut) > tension.mean(dtype=np.float64)))

@@ -1,0 +1,76 @@
+"""Loads of lines in a simulation: what stands beside the bridles, slack, snaps."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from seacage.cage import Cage
+from seacage.dynamics import simulate
+from seacage.dynamics._time._line_loads import _snaps
+from seacage.ocean import SeaState
+
+ACE = Cage.named("ace")
+SEA = SeaState(current_speed=0.4, current_to=90.0, hs=1.5, tp=6.0, wave_from=270.0)
+
+
+@pytest.fixture(scope="module")
+def moored():
+    coarse = replace(ACE, bridles=replace(ACE.bridles, tn_slope=4.0))
+    return simulate(coarse, SEA, duration=20.0, spin_up=30.0, ramp=10.0, mooring="catenary")
+
+
+def test_a_whole_mooring_has_its_frame_ropes_and_anchor_lines(moored):
+    lines = moored.lines
+    assert lines.kinds == ("bridle",) * 12 + ("frame line",) * 4 + ("anchor line",) * 8
+    assert len(set(lines.names)) == 24
+    assert lines.names[:12] == ACE.bridle_names
+    assert np.all(lines.tension.mean[12:] > 0.0)
+    assert np.isnan(lines.capacity[12:]).all()
+
+
+def test_the_bridles_are_the_first_lines(moored):
+    np.testing.assert_array_equal(moored.bridle.mean, moored.lines.tension.mean[:12])
+    np.testing.assert_array_equal(moored.bridle_tension, moored.line_tension[:, :12])
+    np.testing.assert_array_equal(
+        moored.lines.utilisation[:12], moored.bridle.maximum / ACE.bridle_capacity
+    )
+
+
+def test_wear_is_given_where_a_slope_is(moored):
+    assert np.all(moored.lines.damage_equivalent[:12] > 0.0)
+    assert np.isnan(moored.lines.damage_equivalent[12:]).all()
+
+
+def test_extremes_want_ten_minutes(moored):
+    assert np.isnan(moored.lines.extremes.mpm).all()
+
+
+def test_lines_do_not_depend_on_how_often_the_series_is_sampled(moored):
+    often = simulate(
+        replace(ACE, bridles=replace(ACE.bridles, tn_slope=4.0)),
+        SEA,
+        duration=20.0,
+        spin_up=30.0,
+        ramp=10.0,
+        mooring="catenary",
+        sample_every=2.0,
+    )
+    for name in ("slack_share", "snaps", "damage_equivalent"):
+        np.testing.assert_array_equal(getattr(often.lines, name), getattr(moored.lines, name))
+    np.testing.assert_array_equal(often.lines.tension.maximum, moored.lines.tension.maximum)
+
+
+@pytest.mark.parametrize(
+    ("tension", "snaps"),
+    [
+        ([5.0, 6.0, 5.0], 0),
+        ([5.0, 0.0, 9.0, 5.0], 1),
+        ([9.0, 0.0, 1.0, 0.0, 9.0], 1),
+        ([0.0, 9.0, 0.0, 9.0, 0.0], 2),
+        ([0.0, 0.0], 0),
+    ],
+)
+def test_a_snap_is_a_slack_line_pulled_beyond_its_mean(tension, snaps):
+    series = np.array(tension)
+    assert _snaps(series < 0.1, series) == snaps
