@@ -13,6 +13,7 @@ import os
 import sys
 import tempfile
 import time
+from array import array
 from collections.abc import Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
@@ -51,8 +52,9 @@ STEADY_S = 40.0 * MINUTES
 class Soaked:
     """What was seen: seconds to commit and to show, memory [MB] at times [s], samples taken."""
 
-    commits: list[float] = field(default_factory=list[float])
-    shown: list[float] = field(default_factory=list[float])
+    # arrays, or what is kept here would itself be several MB an hour
+    commits: array[float] = field(default_factory=lambda: array("d"))
+    shown: array[float] = field(default_factory=lambda: array("d"))
     memory: list[tuple[float, float]] = field(default_factory=list[tuple[float, float]])
     taken: int = 0
 
