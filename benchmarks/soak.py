@@ -53,8 +53,8 @@ class Soaked:
     """What was seen: seconds to commit and to show, memory [MB] at times [s], samples taken."""
 
     # arrays, or what is kept here would itself be several MB an hour
-    commits: array[float] = field(default_factory=lambda: array("d"))
-    shown: array[float] = field(default_factory=lambda: array("d"))
+    commits: "array[float]" = field(default_factory=lambda: array("d"))
+    shown: "array[float]" = field(default_factory=lambda: array("d"))
     memory: list[tuple[float, float]] = field(default_factory=list[tuple[float, float]])
     taken: int = 0
 
@@ -94,7 +94,7 @@ async def watching(cage: LiveCage, soaked: Soaked) -> None:
     last = None
     with cage.subscribe() as mailbox:
         while True:
-            snapshot = await mailbox.take()
+            snapshot = await mailbox.get()
             latest = cage.live.state.latest(cage.twin.sensor_names[0])
             if latest and latest.t != last:
                 last = latest.t

@@ -19,6 +19,7 @@ from seacage.dynamics._parts._assembly import (
     Scales,
     Springs,
 )
+from seacage.dynamics._parts._lines import Lines
 from seacage.dynamics._physics._motion import NetLaw
 from seacage.dynamics._physics._screens import MovingLaw
 from seacage.ocean import Waves
@@ -72,6 +73,7 @@ def chain(
             damping_ratio=np.zeros(bars),
         ),
         bridles=NO_INDEX,
+        lines=Lines.alike((), "line", NO_INDEX),
         bends=Bends(nodes=np.zeros((0, 3), dtype=np.int64), stiffness=NONE),
         panels=_no_panels(),
         cylinders=Cylinders(

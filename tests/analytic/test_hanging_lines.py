@@ -20,6 +20,7 @@ from seacage.dynamics._parts._assembly import (
     Scales,
     Springs,
 )
+from seacage.dynamics._parts._lines import Lines
 from seacage.dynamics._physics._loads import SteadyFlow, bar_tension, nodal_force
 
 NONE = np.zeros(0)
@@ -54,6 +55,7 @@ def chain(position, *, length, axial_stiffness, weight):
             damping_ratio=np.zeros(count),
         ),
         bridles=NO_INDEX,
+        lines=Lines.alike((), "line", NO_INDEX),
         bends=Bends(nodes=np.zeros((0, 3), dtype=np.int64), stiffness=NONE),
         panels=Panels(
             corners=np.zeros((0, 4), dtype=np.int64),

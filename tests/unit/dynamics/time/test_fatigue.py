@@ -7,7 +7,7 @@ import rainflow
 from seacage.dynamics import damage_equivalent_load
 
 
-def test_it_is_what_the_librarys_cycles_give():
+def test_it_is_what_the_cycles_of_rainflow_give():
     series = np.cumsum(np.random.default_rng(1).normal(size=(5000, 1)), axis=0).round(1)
     m, every = 4.0, 0.1
     cycles = [(size, n) for size, _, n, _, _ in rainflow.extract_cycles(series[:, 0].tolist())]
