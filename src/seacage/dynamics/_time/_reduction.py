@@ -157,11 +157,11 @@ def _each(several: list[Any], join: Callable[[list[np.ndarray]], np.ndarray]) ->
     if not is_dataclass(several[0]):
         return join(several)
 
-    def joined(name: str) -> Any:
+    def merge(name: str) -> Any:
         values = [getattr(one, name) for one in several]
         return values[0] if name in _SHARED else _each(values, join)
 
-    return type(several[0])(**{f.name: joined(f.name) for f in fields(several[0])})
+    return type(several[0])(**{f.name: merge(f.name) for f in fields(several[0])})
 
 
 def stack(cases: list[History]) -> History:
