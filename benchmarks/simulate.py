@@ -21,6 +21,7 @@ from seacage.dynamics._physics._wake import wake_share
 from seacage.ocean import sample_waves
 
 CAGE = Cage.named("ace")
+NO_BARS = np.zeros(0, dtype=np.int64)
 CASES = simulation_lanes()
 STEP, EACH = 0.002, 50
 SEAS = Plan.named("paper", 1, CASES).seas
@@ -85,8 +86,8 @@ def without(assembly: Assembly, what: str) -> Assembly:
     """A copy with no part of one kind."""
     parts = getattr(assembly, what)
     none = replace(parts, **{name: getattr(parts, name)[:0] for name in type(parts).__slots__})
-    bridles = assembly.bridles[:0] if what == "bars" else assembly.bridles
-    return replace(assembly, bridles=bridles, **{what: none})
+    lineless = {"bridles": NO_BARS, "line_bars": NO_BARS} if what == "bars" else {}
+    return replace(assembly, **lineless, **{what: none})
 
 
 def parts(refreshes: int, rounds: int) -> None:

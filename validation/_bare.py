@@ -73,7 +73,8 @@ def chain(
             damping_ratio=np.zeros(bars),
         ),
         bridles=NO_INDEX,
-        lines=Lines.alike((), "line", NO_INDEX),
+        lines=Lines.alike((), "line"),
+        line_bars=NO_INDEX,
         bends=Bends(nodes=np.zeros((0, 3), dtype=np.int64), stiffness=NONE),
         panels=_no_panels(),
         cylinders=Cylinders(

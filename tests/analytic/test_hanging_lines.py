@@ -55,7 +55,8 @@ def chain(position, *, length, axial_stiffness, weight):
             damping_ratio=np.zeros(count),
         ),
         bridles=NO_INDEX,
-        lines=Lines.alike((), "line", NO_INDEX),
+        lines=Lines.alike((), "line"),
+        line_bars=NO_INDEX,
         bends=Bends(nodes=np.zeros((0, 3), dtype=np.int64), stiffness=NONE),
         panels=Panels(
             corners=np.zeros((0, 4), dtype=np.int64),

@@ -228,7 +228,7 @@ class Bridles(_Part):
     material_factor: float = quantity("", "divides the breaking load", low=1.0)
     tn_slope: float | None = quantity(
         "",
-        "m of the T–N curve of rope or chain, which wears faster",
+        "m of the T–N curve of the rope or chain, whichever wears faster",
         low=1.0,
         default=None,
     )

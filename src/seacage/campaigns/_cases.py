@@ -175,6 +175,8 @@ def _statistics(history: History) -> dict[str, np.ndarray]:
         "result": history.result,
         "diverged_at": history.diverged_at,
     }
+    for name, of_lines in history.lines.columns.items():
+        values[f"line_{name}"] = of_lines
     for name, over_time in (("node_position", history.node), ("bridle_tension", history.bridle)):
         values[name] = over_time.mean
         for statistic in ("std", "minimum", "maximum", "quantile"):

@@ -5,7 +5,7 @@
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,6 +16,7 @@ from seacage.conventions import Origin, RecordError, Result
 from seacage.ocean import SeaState
 from seacage.records._brief import brief
 from seacage.records._campaign_store import MEAN, NOT_RUN, SEA, campaign_unsummed, not_a_campaign
+from seacage.records._lines import LINES
 from seacage.records._netcdf_file import check_netcdf, write_netcdf
 
 if TYPE_CHECKING:
@@ -68,6 +69,10 @@ class CampaignRecord:
     second_moment
         Mean over time and all converged cases of the products of all coordinates, as
         displacements from the design shape: coordinate 3 n + a is axis a of node n [m2].
+    line_names, line_kinds
+        All ropes and chains of the mooring, the bridles first; none where they were not kept.
+    lines
+        Their loads by the names of ``LINES``: case × line, ``capacity`` and ``tn_slope`` by line.
     """
 
     cage_toml: str
@@ -95,6 +100,11 @@ class CampaignRecord:
     net_force_std: Float[np.ndarray, "case 3"] | None = None
     volume_std: Float[np.ndarray, " case"] | None = None
     second_moment: Float[np.ndarray, "coordinate coordinate"] | None = None
+    line_names: tuple[str, ...] = ()
+    line_kinds: tuple[str, ...] = ()
+    lines: Mapping[str, Float[np.ndarray, "*case_too mooring_line"]] = field(
+        default_factory=dict[str, np.ndarray]
+    )
 
     __repr__ = brief
 
@@ -117,7 +127,7 @@ class CampaignRecord:
         digest = hashlib.sha256(self.cage_toml.encode())
         for part in fields(self):
             value = getattr(self, part.name)
-            if value is None:
+            if value is None or part.name.startswith("line"):  # nothing learns from these
                 continue
             digest.update(
                 value.tobytes() if isinstance(value, np.ndarray) else repr(value).encode()
@@ -142,6 +152,11 @@ def read_campaign(path: str | Path) -> CampaignRecord:
             if part.default is None and part.name in dataset.variables
         }
         attributes = dict(dataset.attrs)
+        lines = {
+            name: np.asarray(dataset[f"line_{name}"].values)
+            for name in LINES
+            if f"line_{name}" in dataset.variables
+        }
     missing = int(np.sum(variables["result"] == NOT_RUN))
     if missing:
         raise RecordError(
@@ -159,6 +174,9 @@ def read_campaign(path: str | Path) -> CampaignRecord:
         law=attributes["law"],
         seed=int(attributes["seed"]),
         version=attributes["product_version"],
+        line_names=_words(attributes.get("line_names", "")),
+        line_kinds=_words(attributes.get("line_kinds", "")),
+        lines=lines,
         **variables,
     )
 
@@ -188,6 +206,10 @@ def _open(path: Path) -> "xarray.Dataset":
         dataset.close()
         raise not_a_campaign(path)
     return dataset
+
+
+def _words(text: str) -> tuple[str, ...]:
+    return tuple(text.split(", ")) if text else ()
 
 
 def _seas(variables: Mapping[str, np.ndarray]) -> tuple[SeaState, ...]:

@@ -18,6 +18,7 @@ from jaxtyping import Float, Int
 from seacage.conventions import RecordError, Result
 from seacage.ocean import SeaState
 from seacage.records._keys import KEYS
+from seacage.records._lines import CONSTANT, LINES, MooringLines, line_variable
 from seacage.records._netcdf_file import CELL_METHODS, Variable
 
 NOT_RUN = -1
@@ -89,6 +90,12 @@ SPREAD = {
 }
 """What a campaign in time answers beside the means."""
 
+_LOADS = {
+    f"line_{name}": line_variable(name, *_CASE, dtype="float32")
+    for name in LINES
+    if name not in CONSTANT
+}
+
 
 def create_campaign(
     path: Path,
@@ -96,6 +103,7 @@ def create_campaign(
     seas: Sequence[SeaState],
     nodes: int,
     lines: int,
+    mooring: MooringLines | None = None,
     block: int,
     attributes: Mapping[str, Any],
     wave_seeds: Sequence[int] | None = None,
@@ -114,7 +122,9 @@ def create_campaign(
     seas
         The sea state of each case.
     nodes, lines
-        Sizes of the cage.
+        Sizes of the cage: nodes of the net, and bridles.
+    mooring
+        All its lines, whose loads a campaign in time keeps.
     block
         Cases written at a time: the store's chunk along ``case``.
     attributes
@@ -127,7 +137,10 @@ def create_campaign(
     import zarr
 
     variables = _variables(
-        in_time=wave_seeds is not None, quantiles=bool(quantile_levels), moment=second_moment
+        in_time=wave_seeds is not None,
+        quantiles=bool(quantile_levels),
+        moment=second_moment,
+        lines=mooring is not None,
     )
     size = {"case": len(seas), "block": -(-len(seas) // block)}
     size |= {"node": nodes, "axis": 3, "line": lines, "quantile": len(quantile_levels)}
@@ -135,6 +148,12 @@ def create_campaign(
     chunk = {**size, "case": min(block, len(seas)), "block": 1}
     given: dict[str, Any] = {name: [getattr(sea, name) for sea in seas] for name in SEA}
     given |= {"wave_seed": wave_seeds, "quantile": quantile_levels}
+    if mooring is not None:
+        size |= {"mooring_line": len(mooring.names)}
+        chunk |= size | {"case": chunk["case"], "block": 1}
+        given |= {f"line_{name}": getattr(mooring, name) for name in CONSTANT}
+        words = {"line_names": mooring.names, "line_kinds": mooring.kinds}
+        attributes = {**attributes, **{name: ", ".join(each) for name, each in words.items()}}
     unborn = _beside(path, "unborn")
     try:
         unborn.mkdir(parents=True)
@@ -181,7 +200,7 @@ def write_cases(
         _array(path, f"{_BLOCKS}/moment")[number] = moment
     if (path / "core_seconds").is_dir():  # the first campaigns had none
         _array(path, "core_seconds")[number] = core_seconds
-    for name in (*MEAN, "residual", *SPREAD, "result"):
+    for name in (*MEAN, "residual", *SPREAD, *_LOADS, "result"):
         if (path / name).is_dir():
             values = answers[name]
             _array(path, name)[first : first + len(values)] = values
@@ -245,13 +264,15 @@ def _array(path: Path, name: str) -> Any:
     return zarr.open_array(path / name, mode="r+")
 
 
-def _variables(*, in_time: bool, quantiles: bool, moment: bool) -> dict[str, Variable]:
+def _variables(*, in_time: bool, quantiles: bool, moment: bool, lines: bool) -> dict[str, Variable]:
     """Of a campaign of equilibria, or of one in time."""
     variables = {**SEA, **MEAN, "result": _RESULT, "core_seconds": _CORE_SECONDS}
     if in_time:
         variables |= {"wave_seed": _WAVE_SEED, "quantile": _QUANTILE, **SPREAD}
     else:
         variables["residual"] = _RESIDUAL
+    if lines:
+        variables |= _LOADS | {f"line_{name}": line_variable(name) for name in CONSTANT}
     if moment:
         variables["second_moment"] = _SECOND_MOMENT
     return {

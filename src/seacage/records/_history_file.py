@@ -16,6 +16,7 @@ from seacage.conventions import Origin, RecordError, Result, parse_json
 from seacage.ocean import SeaState
 from seacage.records._brief import brief
 from seacage.records._campaign_store import SEA
+from seacage.records._lines import LINES, line_variable
 from seacage.records._netcdf_file import CELL_METHODS, Variable, open_netcdf, write_netcdf
 
 if TYPE_CHECKING:
@@ -48,25 +49,6 @@ _SERIES = {
         "sea_surface_height_above_mean_sea_level",
     ),
 }
-
-LINES = {
-    "capacity": Variable(("line",), "N", "breaking load over material factor"),
-    "mean": Variable(("line",), "N", "mean tension"),
-    "std": Variable(("line",), "N", "standard deviation of the tension"),
-    "minimum": Variable(("line",), "N", "least tension"),
-    "maximum": Variable(("line",), "N", "largest tension"),
-    "mpm_3h": Variable(("line",), "N", "most probable largest tension of three hours"),
-    "mpm_3h_std": Variable(("line",), "N", "standard deviation of line_mpm_3h"),
-    "expected_3h": Variable(("line",), "N", "expected largest tension of three hours"),
-    "expected_3h_std": Variable(("line",), "N", "standard deviation of line_expected_3h"),
-    "slack_share": Variable(("line",), "1", "share of the time below 1 % of the pretension"),
-    "snaps": Variable(("line",), "1", "times that the slack line was pulled beyond its mean"),
-    "damage_equivalent": Variable(
-        ("line",), "N", "range of cycles at 1 Hz that wear the line as much, by line_tn_slope"
-    ),
-    "tn_slope": Variable(("line",), "1", "slope m of the T-N curve"),
-}
-"""Of each rope and chain, as ``HistoryRecord.lines`` names them; in a file after ``line_``."""
 
 _ENDING = {
     "node_displacement": Variable(
@@ -251,14 +233,9 @@ def _lines(record: HistoryRecord) -> dict[str, Any]:
         return {}
     kinds = {"long_name": "kind of the line"}
     return {
-        "line": np.array(record.line_names, dtype=object),
-        "line_kind": ("line", np.array(record.line_kinds, dtype=object), kinds),
-        **{
-            f"line_{name}": known._replace(cell_methods=CELL_METHODS.get(name, "")).holding(
-                record.lines[name]
-            )
-            for name, known in LINES.items()
-        },
+        "mooring_line": np.array(record.line_names, dtype=object),
+        "line_kind": ("mooring_line", np.array(record.line_kinds, dtype=object), kinds),
+        **{f"line_{name}": line_variable(name).holding(record.lines[name]) for name in LINES},
     }
 
 
@@ -286,9 +263,9 @@ def _record(dataset: "xarray.Dataset") -> HistoryRecord:
         cage_toml=str(attributes["cage_toml"]),
         bridle_names=tuple(str(name) for name in values["bridle"]),
         sea=SeaState(**{name: float(values[name]) for name in SEA}),
-        line_names=tuple(map(str, values.get("line", ()))),
+        line_names=tuple(map(str, values.get("mooring_line", ()))),
         line_kinds=tuple(map(str, values.get("line_kind", ()))),
-        lines={name: values[f"line_{name}"] for name in LINES if "line" in values},
+        lines={name: values[f"line_{name}"] for name in LINES if "mooring_line" in values},
         time=values["time"].astype(np.float64),
         kept_node=values["kept_node"].astype(np.int64),
         **{name: values[f"{name}_series"] for name in _SERIES},

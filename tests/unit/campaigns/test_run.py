@@ -75,6 +75,9 @@ def test_a_campaign_in_time_keeps_the_spread_of_every_quantity(
         assert np.all(least < levels[:, 0])
         assert np.all(levels[:, 2] < most)
     np.testing.assert_array_equal(record.quantile, (0.1, 0.5, 0.9))
+    assert record.line_names == small_cage.bridle_names
+    np.testing.assert_allclose(record.lines["mean"], record.bridle_tension, rtol=1e-6)
+    np.testing.assert_array_equal(record.lines["capacity"], small_cage.bridle_capacity)
     assert record.residual is None
     assert np.isnan(record.diverged_at).all()
 

@@ -11,7 +11,9 @@ import xarray
 from seacage.conventions import RecordError, Result
 from seacage.ocean import SeaState
 from seacage.records import (
+    LINES,
     CampaignRecord,
+    MooringLines,
     campaign_results,
     campaign_unsummed,
     campaign_variable,
@@ -57,7 +59,9 @@ def finished(path: Path) -> Path:
 SPREADS = {"node_position": (5, 3), "bridle_tension": (3,)}
 
 
-def created_in_time(path: Path, *, seeds: list[int] | None = None) -> Path:
+def created_in_time(
+    path: Path, *, seeds: list[int] | None = None, mooring: MooringLines | None = None
+) -> Path:
     create_campaign(
         path,
         seas=SEAS,
@@ -68,6 +72,7 @@ def created_in_time(path: Path, *, seeds: list[int] | None = None) -> Path:
         wave_seeds=seeds or list(range(7)),
         quantile_levels=(0.1, 0.9),
         second_moment=True,
+        mooring=mooring,
     )
     return path
 
@@ -184,6 +189,40 @@ def test_statistics_over_time_say_so_in_the_words_of_cf(tmp_path: Path) -> None:
         for variable in dataset.variables.values():
             assert {"units", "long_name"} <= variable.attrs.keys()
     assert read_campaign(tmp_path / "campaign.nc").sha256 == read_campaign(path).sha256
+
+
+def test_the_loads_of_all_lines_are_read_from_the_store_and_from_its_export(
+    tmp_path: Path,
+) -> None:
+    mooring = MooringLines(
+        names=("bridle-1", "anchor-1"),
+        kinds=("bridle", "anchor line"),
+        capacity=np.array([160e3, np.nan]),
+        tn_slope=np.array([np.nan, 13.46]),
+    )
+    path, random = tmp_path / "campaign", np.random.default_rng(0)
+    created_in_time(path, mooring=mooring)
+    changing = [name for name in LINES if name not in ("capacity", "tn_slope")]
+    loads = {name: random.normal(size=(7, 2)).astype(np.float32) for name in changing}
+    for first, last in ((0, 4), (4, 7)):
+        mine = {f"line_{name}": values[first:last] for name, values in loads.items()}
+        write_cases(path, first, answers_in_time(first, last) | mine, moment=moment(first))
+    finish_campaign(path)
+    export_campaign(path, tmp_path / "campaign.nc")
+    for record in (read_campaign(path), read_campaign(tmp_path / "campaign.nc")):
+        assert (record.line_names, record.line_kinds) == (mooring.names, mooring.kinds)
+        assert set(record.lines) == set(LINES)
+        for name, values in loads.items():
+            np.testing.assert_array_equal(record.lines[name], values)
+        np.testing.assert_array_equal(record.lines["capacity"], mooring.capacity)
+        np.testing.assert_array_equal(record.lines["tn_slope"], mooring.tn_slope)
+
+
+def test_a_campaign_that_kept_no_lines_has_none(tmp_path: Path) -> None:
+    path = written_in_time(tmp_path / "campaign")
+    finish_campaign(path)
+    record = read_campaign(path)
+    assert (record.line_names, record.line_kinds, dict(record.lines)) == ((), (), {})
 
 
 def test_what_was_written_is_read_whatever_the_order_of_the_blocks(tmp_path: Path) -> None:

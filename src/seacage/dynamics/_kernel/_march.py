@@ -89,7 +89,7 @@ class March:
         self._net = netting_of(assembly, law)
         self._sea = sea_tables(ocean)
         self._motion = motion_of(assembly, to_lanes(position))
-        lanes, lines = simulation_lanes(), len(assembly.lines.bars)
+        lanes, lines = simulation_lanes(), len(assembly.line_bars)
         sizes = {"node": (3 * nodes, lanes), "line": (lines, lanes), "load": (3, lanes)}
         self.account = {
             f"{what}_{how}": np.full(size, start, kind)
@@ -211,7 +211,7 @@ class March:
 def _counts(assembly: Assembly) -> str:
     """Of what a march has numbers for."""
     panels, floats = len(assembly.panels.area), len(assembly.floats.nodes)
-    nodes, lines = len(assembly.position), len(assembly.lines.bars)
+    nodes, lines = len(assembly.position), len(assembly.line_bars)
     return f"{nodes} nodes, {panels} panels, {floats} floats and {lines} lines"
 
 

@@ -103,7 +103,7 @@ def body_of(assembly: Assembly) -> BodyStruct:
 
 def _in_node_order(assembly: Assembly) -> tuple[Bars, Int[np.ndarray, " line"]]:
     order = np.argsort(assembly.bars.ends.min(axis=1), kind="stable")
-    return assembly.bars.rows(order), np.argsort(order)[assembly.lines.bars]
+    return assembly.bars.rows(order), np.argsort(order)[assembly.line_bars]
 
 
 def netting_of(assembly: Assembly, law: NetLaw) -> NettingStruct:

@@ -24,8 +24,8 @@ from seacage.dynamics._parts import (
     Cylinders,
     Floats,
     Ground,
-    Lines,
     Springs,
+    mooring_lines,
 )
 
 ROPE_DRAG = 1.2
@@ -66,7 +66,8 @@ def anchor_assembly(cage: Cage) -> Assembly:
         water_mass=water_mass,
         fixed=np.concatenate([base.fixed, anchors.is_anchor]),
         bars=Bars.joined(base.bars, frame, anchors.bars),
-        lines=_lines(cage, base, frame, anchors),
+        lines=mooring_lines(cage, anchored=True),
+        line_bars=_line_bars(cage, base, frame, anchors),
         cylinders=_cylinders(cage, base, frame, anchors),
         floats=_floats(cage, base, lift),
         springs=Springs.none(),
@@ -112,24 +113,13 @@ def _anchor_lines(cage: Cage, shape: LineShape) -> _AnchorLines:
     )
 
 
-def _lines(cage: Cage, base: Assembly, frame: Bars, anchors: _AnchorLines) -> Lines:
-    """Bridles, frame ropes, and anchor lines at the corners, where they bear most."""
+def _line_bars(
+    cage: Cage, base: Assembly, frame: Bars, anchors: _AnchorLines
+) -> Int[np.ndarray, " line"]:
+    """Bridles, frame lines, and anchor lines at the corners, where they bear most."""
     first, count = len(base.bars.length), len(frame.length)
-    ropes = Lines.alike(
-        [f"frame-{n + 1}" for n in range(count)],
-        "frame line",
-        first + np.arange(count),
-        tn_slope=cage.frame.rope_tn_slope,
-    )
-    held = np.flatnonzero(anchors.bars.ends[:, 0] < cage.node_count + 4)
-    moored = Lines.alike(
-        [f"anchor-{n + 1}" for n in range(len(held))],
-        "anchor line",
-        first + count + held,
-        pretension=cage.anchor_lines.pretension,
-        tn_slope=cage.anchor_lines.rope_tn_slope,
-    )
-    return base.lines.joined(ropes).joined(moored)
+    held = np.flatnonzero(anchors.bars.ends[:, 0] < cage.node_count + count)
+    return np.concatenate([base.bridles, first + np.arange(count), first + count + held])
 
 
 def _directions(cage: Cage) -> tuple[Float[np.ndarray, "line 2"], Int[np.ndarray, " line"]]:

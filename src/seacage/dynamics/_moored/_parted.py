@@ -30,5 +30,5 @@ def part(assembly: Assembly, names: Sequence[str]) -> Assembly:
                 f"parted = {name!r}: there is no such line. This mooring has: {', '.join(known)}."
             )
     stiffness = assembly.bars.stiffness.copy()
-    stiffness[assembly.lines.bars[np.isin(known, names)]] = NOTHING
+    stiffness[assembly.line_bars[np.isin(known, names)]] = NOTHING
     return replace(assembly, bars=replace(assembly.bars, stiffness=stiffness))

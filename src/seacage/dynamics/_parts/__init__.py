@@ -11,7 +11,7 @@ from seacage.dynamics._parts._assembly import (
     Scales,
     Springs,
 )
-from seacage.dynamics._parts._lines import Lines
+from seacage.dynamics._parts._lines import Lines, mooring_lines
 from seacage.dynamics._parts._structure import SINKING, assemble_structure
 
 __all__ = [
@@ -27,4 +27,5 @@ __all__ = [
     "Scales",
     "Springs",
     "assemble_structure",
+    "mooring_lines",
 ]

@@ -7,7 +7,7 @@ from jaxtyping import Bool, Float, Int
 
 from seacage.cage import Cage
 from seacage.conventions import GRAVITY, WATER_DENSITY, InputError, Rows
-from seacage.dynamics._parts._lines import Lines
+from seacage.dynamics._parts._lines import Lines, mooring_lines
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -133,6 +133,7 @@ class Assembly:
     bars: Bars
     bridles: Int[np.ndarray, " bridle"]  # which bars are the bridles
     lines: Lines  # whose tension is reported
+    line_bars: Int[np.ndarray, " line"]  # at which bar
     bends: Bends
     panels: Panels
     cylinders: Cylinders
@@ -168,7 +169,8 @@ class Assembly:
             fixed=np.zeros(len(position), dtype=bool),
             bars=bars,
             bridles=bridles,
-            lines=Lines.bridles_of(cage, bridles),
+            lines=mooring_lines(cage, anchored=False),
+            line_bars=bridles,
             bends=_bends(cage),
             panels=panels,
             cylinders=_cylinders(cage),

@@ -75,7 +75,8 @@ def assemble_structure(structure: Structure) -> Assembly:
         fixed=fixed,
         bars=bars,
         bridles=lines,
-        lines=Lines.alike(structure.line_names, "line", lines),
+        lines=Lines.alike(structure.line_names, "line"),
+        line_bars=lines,
         bends=_bends(structure),
         panels=panels,
         cylinders=Cylinders.joined(

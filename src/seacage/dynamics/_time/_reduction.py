@@ -50,7 +50,7 @@ def _history(
     volume = cage.volume(net[::every].astype(np.float64))
     node = of("node", net, counted, assembly.position[: cage.node_count])
     tension = sampled["tensions"][:: steps.sample_every]
-    lines = of("line", tension, counted * steps.each, np.zeros(len(assembly.lines.bars)))
+    lines = of("line", tension, counted * steps.each, np.zeros(len(assembly.line_bars)))
     bridles = slice(len(assembly.bridles))
     kept = slice(None) if simulation.series else slice(0)
     history = History(

@@ -21,7 +21,6 @@ from seacage.dynamics._kernel._march_inputs import (
 )
 from seacage.dynamics._moored._mass_scaling import scale_mass
 from seacage.dynamics._parts._assembly import Assembly
-from seacage.dynamics._parts._lines import Lines
 from seacage.dynamics._physics._motion import NetLaw
 from seacage.ocean import SeaState, sample_waves, surface_elevation
 
@@ -98,7 +97,7 @@ def test_bars_in_the_order_of_nodes_keep_their_lines():
     bars, lines = _in_node_order(ASSEMBLY)
     np.testing.assert_array_equal(np.diff(bars.ends.min(axis=1)) >= 0, True)
     for name in ("ends", "length", "stiffness"):
-        before = getattr(ASSEMBLY.bars, name)[ASSEMBLY.lines.bars]
+        before = getattr(ASSEMBLY.bars, name)[ASSEMBLY.line_bars]
         np.testing.assert_array_equal(getattr(bars, name)[lines], before)
 
 
@@ -250,8 +249,7 @@ def test_rebuilt_as_it_was_a_march_goes_on_as_before():
 
 
 def test_an_assembly_of_other_parts_is_refused():
-    lines = ASSEMBLY.lines
-    fewer = replace(ASSEMBLY, lines=Lines.alike(lines.names[1:], "bridle", lines.bars[1:]))
+    fewer = replace(ASSEMBLY, line_bars=ASSEMBLY.line_bars[1:])
     with pytest.raises(InputError, match=r"11 lines cannot go on from one of .* 12 lines"):
         march().rebuild(fewer)
 

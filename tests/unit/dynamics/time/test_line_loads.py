@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from seacage.cage import Cage
-from seacage.dynamics import simulate
+from seacage.dynamics import mooring_lines, simulate
 from seacage.dynamics._time._line_loads import _snaps
 from seacage.ocean import SeaState
 
@@ -27,6 +27,12 @@ def test_a_whole_mooring_has_its_frame_ropes_and_anchor_lines(moored):
     assert lines.names[:12] == ACE.bridle_names
     assert np.all(lines.tension.mean[12:] > 0.0)
     assert np.isnan(lines.capacity[12:]).all()
+
+
+def test_lines_can_be_named_before_anything_is_simulated(moored):
+    lines = mooring_lines(ACE, anchored=True)
+    assert (lines.names, lines.kinds) == (moored.lines.names, moored.lines.kinds)
+    assert mooring_lines(ACE, anchored=False).names == ACE.bridle_names
 
 
 def test_the_bridles_are_the_first_lines(moored):
