@@ -3,9 +3,10 @@
 Fifty small cages, each with its buoy and eight sensors, share `--rate` samples a second (1,500 if
 left out) for `--minutes` (60). Where the machine cannot take so many, what it took is said: then
 run it again with a `--rate` below that. A sample is shown when its cage's snapshot, which is what
-the page gets, has its reading. A twin remembers what came in the last ten minutes, so the slope of
-memory is that of the last two thirds, 40 minutes of an hour: a line of least squares through means
-of a fortieth of it each, which unlike single looks hardly follow one another.
+the page gets, has its reading. A twin remembers the ten minutes that its clock is in and the ten
+before. So the soak waits for a full ten minutes to begin, and the slope of memory is that of the
+last two thirds, 40 minutes of an hour: a line of least squares through means of a fortieth of it
+each, which unlike single looks hardly follow one another.
 """
 
 import asyncio
@@ -157,6 +158,7 @@ def print_soak(soaked: Soaked, stored: int) -> None:
 
 with tempfile.TemporaryDirectory() as folder:
     file = Path(folder, "samples.sqlite")
+    time.sleep(0.0 if ONCE else -time.time() % 600.0)
     result = asyncio.run(soak(file))
     with look_into(file) as session:
         ((kept,),) = session.rows("SELECT count(*) FROM sample")
