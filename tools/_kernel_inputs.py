@@ -49,7 +49,7 @@ def march(library: ctypes.CDLL, rng: np.random.Generator) -> None:
         hold=int(rng.integers(1, 5)),
     )
     state = a_state(rng, nodes, parts, lanes)
-    record = a_record(nodes, parts["bridles"], lanes, refreshes if every else 0)
+    record = a_record(nodes, parts["lines"], lanes, refreshes if every else 0)
     library.seacage_march(*map(ctypes.byref, (body, net, sea, schedule, state, record)))
     total, at = np.zeros((3, lanes), np.float32), numbers(rng, 3, lanes)
     library.seacage_march_forces(*map(ctypes.byref, (body, net, state)), pointer(total))
@@ -67,9 +67,9 @@ def a_body(rng: np.random.Generator, nodes: int) -> tuple[Any, dict[str, int]]:
     named = ("bars", "bends", "panels", "cylinders", "springs", "grounds")
     parts = {name: int(rng.integers(0, 5)) for name in named}
     floats = np.flatnonzero(rng.random(nodes) < 0.5).astype(np.int32)
-    bridles = rng.integers(0, max(1, parts["bars"]), int(rng.integers(0, 4)), dtype=np.int32)
-    bridles = bridles[: 4 if parts["bars"] else 0]
-    parts |= {"floats": len(floats), "bridles": len(bridles)}
+    lines = rng.integers(0, max(1, parts["bars"]), int(rng.integers(0, 4)), dtype=np.int32)
+    lines = lines[: 4 if parts["bars"] else 0]
+    parts |= {"floats": len(floats), "lines": len(lines)}
     shapes = {
         **dict.fromkeys(("weight", "mass", "water_mass"), (nodes,)),
         "place": (nodes, 3),
@@ -93,7 +93,7 @@ def a_body(rng: np.random.Generator, nodes: int) -> tuple[Any, dict[str, int]]:
         spring_nodes=indices(rng, nodes, parts["springs"], 1),
         ground_nodes=indices(rng, nodes, parts["grounds"], 1),
         float_nodes=floats,
-        bridle_bars=bridles,
+        line_bars=lines,
         bar_least=rng.choice([0.0, -np.inf], parts["bars"]).astype(np.float32),
         ground_level=float(numbers(rng)),
         **parts,
@@ -139,16 +139,16 @@ def a_state(rng: np.random.Generator, nodes: int, parts: dict[str, int], lanes: 
     return c.StateStruct.filled(**{n: numbers(rng, *shape, lanes) for n, shape in shapes.items()})
 
 
-def a_record(nodes: int, bridles: int, lanes: int, samples: int) -> Any:
+def a_record(nodes: int, lines: int, lanes: int, samples: int) -> Any:
     """Room for what a march keeps, and not a number more."""
-    sizes = {"node": 3 * nodes, "bridle": bridles, "load": 3}
+    sizes = {"node": 3 * nodes, "line": lines, "load": 3}
     kinds = {"sum": np.float64, "square": np.float64, "least": np.float32, "most": np.float32}
     account = {
         f"{what}_{how}": np.zeros((size, lanes), kind)
         for what, size in sizes.items()
         for how, kind in kinds.items()
     }
-    shapes = {"positions": (nodes, 3), "tensions": (bridles,), "elevations": (), "loads": (3,)}
+    shapes = {"positions": (nodes, 3), "tensions": (lines,), "elevations": (), "loads": (3,)}
     return c.RecordStruct.filled(
         **account,
         counted=np.zeros(1, np.int64),
