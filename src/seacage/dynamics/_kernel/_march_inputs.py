@@ -173,7 +173,9 @@ def sea_tables(ocean: Ocean, *, now: float = 0.0) -> SeaStruct:
 
 def _wave_tables(waves: Sequence[Waves]) -> dict[str, np.ndarray]:
     """All components of all cases, [component][lane]; a case with fewer has flat ones."""
-    count = max(len(w.amplitude) for w in waves)
+    count = max((len(w.amplitude) for w in waves), default=0)
+    if count == 0:
+        return {name: np.zeros((0, simulation_lanes()), k) for name, k in WAVE_KINDS.items()}
     each = [
         {name: np.pad(values, (0, count - len(values))) for name, values in _wave_table(w).items()}
         for w in waves
