@@ -117,9 +117,9 @@ def test_damage_that_shows_while_it_runs_loses_no_sample_that_is_sent_then(path)
                 file.write(b"\xff" * 4096)
         assert put(store, *(sample(k, stream="depth-2") for k in range(50))) == (True,) * 50
         assert "damaged" in store.lost
-        assert len(store.samples("ace", limit=99)) == 50
-    with opened(path) as store:
-        assert len(store.samples("ace", limit=99)) == 50
+        assert len(store.samples("ace", stream="depth-2", limit=99)) == 50
+    with opened(path) as store:  # which may have salvaged an intact row of the old file meanwhile
+        assert len(store.samples("ace", stream="depth-2", limit=99)) == 50
 
 
 @pytest.mark.parametrize("damages", [25, pytest.param(100, marks=pytest.mark.slow)])
