@@ -707,27 +707,27 @@ static void count_load(const lane *restrict total, record *r)
         }
 }
 
-/* Lines are counted at every step: a snap is shorter than a refresh. */
-static void count_lines(const body *b, const state *s, record *r)
+/* Where the present refresh keeps its tensions. */
+static float *line_row(const body *b, const record *r)
+{
+    return r->tensions + (size_t)LANES * (size_t)b->lines * (size_t)*r->counted;
+}
+
+/* Lines are counted at every step, as a snap is shorter than a refresh, and sampled at every
+ * refresh into `row` (else null), as what wears a line is shorter than most samples' distance. */
+static void count_lines(const body *b, const state *s, record *r, float *restrict row)
 {
     const vec *x = (const vec *)s->position, *v = (const vec *)s->velocity;
     for (int n = 0; n < b->lines; n++) {
         lane tension;
         bar_tension(b, b->line_bars[n], x, v, tension);
+        if (row)
+            memcpy(row + LANES * n, tension, sizeof tension);
         EACH_LANE {
             count((double)tension[k], &r->line_sum[n][k], &r->line_square[n][k]);
             extremes(tension[k], &r->line_least[n][k], &r->line_most[n][k]);
         }
     }
-}
-
-/* At every refresh: what wears a line, and its peaks, are shorter than most samples' distance. */
-static void sample_lines(const body *b, const state *s, record *r)
-{
-    float *restrict now = r->tensions + (size_t)LANES * (size_t)b->lines * (size_t)*r->counted;
-    for (int n = 0; n < b->lines; n++)
-        bar_tension(b, b->line_bars[n], (const vec *)s->position, (const vec *)s->velocity,
-                    now + LANES * n);
 }
 
 static void sample(const body *b, const sea *w, const schedule *t, const state *s,
@@ -821,15 +821,12 @@ void seacage_march(const body *b, const netting *net, const sea *w, const schedu
             }
             add_forces(b, s, since);
             if (counts)
-                count_lines(b, s, r);
+                count_lines(b, s, r, i == 0 && t->sample_every > 0 ? line_row(b, r) : 0);
             if (i == 0 && counts) {
                 count_nodes(b, s, r);
                 count_load((const lane *)total, r);
-                if (t->sample_every > 0) {
-                    sample_lines(b, s, r);
-                    if ((n - t->count_from) % t->sample_every == 0)
-                        sample(b, w, t, s, (const lane *)total, now, r);
-                }
+                if (t->sample_every > 0 && (n - t->count_from) % t->sample_every == 0)
+                    sample(b, w, t, s, (const lane *)total, now, r);
                 (*r->counted)++;
             }
             move(b, s, step);
