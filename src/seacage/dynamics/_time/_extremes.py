@@ -76,34 +76,45 @@ def extremes(
     Naess and Moan (2013), Stochastic Dynamics of Marine Structures, on fitted peaks; plotting
     positions after Benard and Bos-Levenbach (1953).
     """
-    lines = range(tension[0].shape[1])
     if not has_waves:
         mean = np.asarray(np.mean(np.concatenate(tension), axis=0, dtype=np.float64))
         sure = np.zeros_like(mean)
         return Extremes(mpm=mean, expected=mean, mpm_std=sure, expected_std=sure)
-    each = [_line_extremes([one[:, line] for one in tension], every, hours) for line in lines]
-    return Extremes(**dict(zip(Extremes.__slots__, np.array(each).reshape(-1, 4).T, strict=True)))
+    duration, lines = every * sum(map(len, tension)), tension[0].shape[1]
+    each = np.full((lines, 4), np.nan)
+    if duration >= LEAST_TIME:
+        blocks, draws = _draw_blocks([len(one) for one in tension], max(1, round(BLOCK / every)))
+        for line in range(lines):
+            series = [one[:, line] for one in tension]
+            each[line] = _line_extremes(series, blocks, draws, 3600.0 * hours / duration)
+    return Extremes(**dict(zip(Extremes.__slots__, each.T, strict=True)))
+
+
+def _draw_blocks(
+    lengths: list[int], per_block: int
+) -> tuple[list[Int[np.ndarray, " t"]], Int[np.ndarray, "draw block"]]:
+    """Block of each sample, and how often each is drawn: in the first row once, as it is."""
+    counts = [-(-length // per_block) for length in lengths]
+    begin, count = np.cumsum([0, *counts]), sum(counts)
+    drawn = np.random.default_rng(0).multinomial(count, np.full(count, 1 / count), DRAWS)
+    blocks = [b + np.arange(n) // per_block for b, n in zip(begin[:-1], lengths, strict=True)]
+    return blocks, np.vstack([np.ones((1, count), dtype=np.int64), drawn])
 
 
 def _line_extremes(
-    series: list[Float[np.ndarray, " t"]], every: float, hours: float
+    series: list[Float[np.ndarray, " t"]],
+    blocks: list[Int[np.ndarray, " t"]],
+    draws: Int[np.ndarray, "draw block"],
+    longer: float,
 ) -> tuple[float, ...]:
     """Of one line, in the order of the attributes of ``Extremes``."""
     mean = float(np.mean(np.concatenate(series), dtype=np.float64))
     found = [upcrossing_peaks(one, mean) for one in series]
-    per_block = max(1, round(BLOCK / every))
-    length = [-(-len(one) // per_block) for one in series]
-    first = np.cumsum([0, *length])[:-1]
     height = np.concatenate([peaks for peaks, _ in found]) - mean
-    block = np.concatenate([f + at // per_block for f, (_, at) in zip(first, found, strict=True)])
-    duration = every * sum(map(len, series))
-    if duration < LEAST_TIME or len(height) < LEAST_PEAKS:
+    if len(height) < LEAST_PEAKS:
         return (np.nan,) * 4
-    draws = np.random.default_rng(0).multinomial(
-        sum(length), np.full(sum(length), 1 / sum(length)), DRAWS
-    )
-    times = np.vstack([np.ones((1, sum(length)), dtype=np.int64), draws])[:, block]
-    mpm, expected = mean + _tail_maxima(height, times, 3600.0 * hours / duration)
+    block = np.concatenate([of[at] for of, (_, at) in zip(blocks, found, strict=True)])
+    mpm, expected = mean + _tail_maxima(height, draws[:, block], longer)
     return mpm[0], expected[0], float(mpm[1:].std()), float(expected[1:].std())
 
 

@@ -2,7 +2,7 @@
 
 from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from seacage.service._cli._console import Exit, exit_with, guard, progress_bar, report
 from seacage.service._cli._options import (
@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from seacage.figures import Motion
     from seacage.ocean import SeaState, Waves
 
-_PURE = ("slack_share", "snaps", "tn_slope")
-"""Numbers of a line that are no forces."""
 _SMOOTH = 0.5
 """Between samples that an animation can follow waves by [s]."""
 
@@ -164,11 +162,12 @@ def _answer(
 
 def _lines(history: "History") -> dict[str, dict[str, object]]:
     """All ropes and chains by their names; null where something is not known."""
-    lines = history.lines
-    columns = {
-        **{f"{name}_kn": lines.columns[name] / 1e3 for name in lines.columns if name not in _PURE},
-        **{name: lines.columns[name] for name in _PURE},
-    }
+    from seacage.records import LINES
+
+    lines, columns = history.lines, dict[str, Any]()
+    for name, values in history.lines.columns.items():
+        is_force = LINES[name][0] == "N"
+        columns[f"{name}_kn" if is_force else name] = values / 1e3 if is_force else values
 
     def one(index: int) -> dict[str, object]:
         each = {key: float(values[index]) for key, values in columns.items()}
