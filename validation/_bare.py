@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 from jaxtyping import Float
 
+from seacage.cage import MooringLines
 from seacage.dynamics._kernel._march import REFRESH, March, Steps
 from seacage.dynamics._kernel._march_inputs import Ocean
 from seacage.dynamics._parts._assembly import (
@@ -19,7 +20,6 @@ from seacage.dynamics._parts._assembly import (
     Scales,
     Springs,
 )
-from seacage.dynamics._parts._lines import Lines
 from seacage.dynamics._physics._motion import NetLaw
 from seacage.dynamics._physics._screens import MovingLaw
 from seacage.ocean import Waves
@@ -73,7 +73,7 @@ def chain(
             damping_ratio=np.zeros(bars),
         ),
         bridles=NO_INDEX,
-        lines=Lines.alike((), "line"),
+        lines=MooringLines.alike((), "line"),
         line_bars=NO_INDEX,
         bends=Bends(nodes=np.zeros((0, 3), dtype=np.int64), stiffness=NONE),
         panels=_no_panels(),

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from seacage.cage import MooringLines
 from seacage.conventions import GRAVITY
 from seacage.dynamics import catenary
 from seacage.dynamics._kernel._balance import Balance, Balancing
@@ -20,7 +21,6 @@ from seacage.dynamics._parts._assembly import (
     Scales,
     Springs,
 )
-from seacage.dynamics._parts._lines import Lines
 from seacage.dynamics._physics._loads import SteadyFlow, bar_tension, nodal_force
 
 NONE = np.zeros(0)
@@ -55,7 +55,7 @@ def chain(position, *, length, axial_stiffness, weight):
             damping_ratio=np.zeros(count),
         ),
         bridles=NO_INDEX,
-        lines=Lines.alike((), "line"),
+        lines=MooringLines.alike((), "line"),
         line_bars=NO_INDEX,
         bends=Bends(nodes=np.zeros((0, 3), dtype=np.int64), stiffness=NONE),
         panels=Panels(

@@ -1,6 +1,7 @@
 """The cage: collar, netting, sinker tube, bridles and their node graph; and any structure."""
 
 from seacage.cage._cage import Cage, DepthSensor, Shackle
+from seacage.cage._mooring_lines import MooringLines, mooring_lines
 from seacage.cage._nearest import Nearest
 from seacage.cage._parts import (
     AnchorLines,
@@ -28,6 +29,7 @@ __all__ = [
     "Frame",
     "Line",
     "Mesh",
+    "MooringLines",
     "Nearest",
     "Net",
     "Netting",
@@ -43,4 +45,5 @@ __all__ = [
     "Tie",
     "Tip",
     "Twine",
+    "mooring_lines",
 ]

@@ -11,17 +11,16 @@ from typing import Any, Literal
 import numpy as np
 from jaxtyping import Int
 
-from seacage.cage import Cage
+from seacage.cage import Cage, mooring_lines
 from seacage.campaigns._cases import Answers, CaseBlock, Simulator, answer_block, software_version
 from seacage.campaigns._cluster import map_on_cluster
 from seacage.campaigns._pool import map_tasks
 from seacage.campaigns._sea_state_plan import Plan
 from seacage.conventions import InputError, Origin, Progress, no_progress
-from seacage.dynamics import PHYSICS, Mooring, MovingLaw, mooring_lines
+from seacage.dynamics import PHYSICS, Mooring, MovingLaw
 from seacage.records import (
     NOT_RUN,
     CampaignRecord,
-    MooringLines,
     campaign_results,
     create_campaign,
     finish_campaign,
@@ -233,24 +232,18 @@ def _map_blocks(
 def _create(
     store: Path, cage: Cage, plan: Plan, by: Simulator, attributes: Mapping[str, Any]
 ) -> None:
+    anchored = by.mooring == "catenary"
     create_campaign(
         store,
         seas=plan.seas,
         nodes=cage.node_count,
         lines=cage.bridle_count,
-        mooring=_mooring(cage, by) if by.in_time else None,
+        mooring=mooring_lines(cage, anchored=anchored) if by.in_time else None,
         block=by.block,
         attributes=attributes,
         wave_seeds=[_wave_seed(plan, case) for case in range(len(plan))] if by.in_time else None,
         quantile_levels=by.quantile_levels if by.in_time else (),
         second_moment=by.in_time and by.second_moment,
-    )
-
-
-def _mooring(cage: Cage, by: Simulator) -> MooringLines:
-    lines = mooring_lines(cage, anchored=by.mooring == "catenary")
-    return MooringLines(
-        names=lines.names, kinds=lines.kinds, capacity=lines.capacity, tn_slope=lines.tn_slope
     )
 
 

@@ -2,7 +2,6 @@
 
 from seacage.dynamics._kernel import simulation_lanes
 from seacage.dynamics._moored import Damage
-from seacage.dynamics._parts import mooring_lines
 from seacage.dynamics._physics import (
     LAWS,
     MOVING_LAWS,
@@ -51,7 +50,6 @@ __all__ = [
     "follow",
     "kristiansen_faltinsen",
     "loland",
-    "mooring_lines",
     "net_load",
     "rest_shape",
     "settle",

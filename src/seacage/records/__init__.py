@@ -14,7 +14,7 @@ from seacage.records._campaign_store import (
 from seacage.records._field import FieldRecord
 from seacage.records._history_file import STATISTICS, HistoryRecord, read_history, write_history
 from seacage.records._keys import KEYS, Key
-from seacage.records._lines import LINES, MooringLines
+from seacage.records._lines import LINES
 from seacage.records._quality import (
     AHEAD,
     DEFAULT_LIMITS,
@@ -73,7 +73,6 @@ __all__ = [
     "Inspection",
     "Key",
     "Limits",
-    "MooringLines",
     "NetcdfMap",
     "QualityState",
     "Range",

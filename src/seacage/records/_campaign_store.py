@@ -15,10 +15,11 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float, Int
 
+from seacage.cage import MooringLines
 from seacage.conventions import RecordError, Result
 from seacage.ocean import SeaState
 from seacage.records._keys import KEYS
-from seacage.records._lines import CONSTANT, LINES, MooringLines, line_variable
+from seacage.records._lines import CONSTANT, LINES, line_variable
 from seacage.records._netcdf_file import CELL_METHODS, Variable
 
 NOT_RUN = -1

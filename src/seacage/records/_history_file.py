@@ -133,7 +133,6 @@ class HistoryRecord:
                 f"HistoryRecord: the statistics are not those of a history (first: {missing[0]}). "
                 f"Give {', '.join(STATISTICS)} of {', '.join(_QUANTITIES)}."
             )
-
         if set(self.lines) != (set(LINES) if self.line_names else set()):
             raise RecordError(
                 f"HistoryRecord: lines has {', '.join(sorted(self.lines)) or 'nothing'}. Give "

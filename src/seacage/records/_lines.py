@@ -1,10 +1,5 @@
 """Numbers of the lines of a mooring, as files and stores name them."""
 
-from dataclasses import dataclass
-
-import numpy as np
-from jaxtyping import Float
-
 from seacage.records._netcdf_file import CELL_METHODS, Variable
 
 LINES = {
@@ -26,26 +21,6 @@ LINES = {
 
 CONSTANT = ("capacity", "tn_slope")
 """Those that do not depend on the sea."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class MooringLines:
-    """Ropes and chains of a mooring, the bridles first.
-
-    Parameters
-    ----------
-    names, kinds
-        Of each, such as "anchor-1" and "anchor line".
-    capacity
-        Breaking load over material factor; NaN where it is not known [N].
-    tn_slope
-        m of the T–N curve; NaN where it is not known [-].
-    """
-
-    names: tuple[str, ...]
-    kinds: tuple[str, ...]
-    capacity: Float[np.ndarray, " line"]
-    tn_slope: Float[np.ndarray, " line"]
 
 
 def line_variable(name: str, *dims: str, dtype: str = "float64") -> Variable:

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 import xarray
 
+from seacage.cage import MooringLines
 from seacage.conventions import RecordError, Result
 from seacage.ocean import SeaState
 from seacage.records import (
     LINES,
     CampaignRecord,
-    MooringLines,
     campaign_results,
     campaign_unsummed,
     campaign_variable,
@@ -198,6 +198,7 @@ def test_the_loads_of_all_lines_are_read_from_the_store_and_from_its_export(
         names=("bridle-1", "anchor-1"),
         kinds=("bridle", "anchor line"),
         capacity=np.array([160e3, np.nan]),
+        pretension=np.array([10e3, 50e3]),
         tn_slope=np.array([np.nan, 13.46]),
     )
     path, random = tmp_path / "campaign", np.random.default_rng(0)

@@ -6,7 +6,7 @@ from functools import lru_cache
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from seacage.cage import Cage
+from seacage.cage import Cage, mooring_lines
 from seacage.conventions import GRAVITY, WATER_DENSITY, InputError
 from seacage.dynamics._moored._anchor_line import (
     STEEL_DENSITY,
@@ -25,7 +25,6 @@ from seacage.dynamics._parts import (
     Floats,
     Ground,
     Springs,
-    mooring_lines,
 )
 
 ROPE_DRAG = 1.2

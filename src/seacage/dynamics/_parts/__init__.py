@@ -11,7 +11,6 @@ from seacage.dynamics._parts._assembly import (
     Scales,
     Springs,
 )
-from seacage.dynamics._parts._lines import Lines, mooring_lines
 from seacage.dynamics._parts._structure import SINKING, assemble_structure
 
 __all__ = [
@@ -22,10 +21,8 @@ __all__ = [
     "Cylinders",
     "Floats",
     "Ground",
-    "Lines",
     "Panels",
     "Scales",
     "Springs",
     "assemble_structure",
-    "mooring_lines",
 ]

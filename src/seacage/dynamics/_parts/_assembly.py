@@ -5,9 +5,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from seacage.cage import Cage
+from seacage.cage import Cage, MooringLines, mooring_lines
 from seacage.conventions import GRAVITY, WATER_DENSITY, InputError, Rows
-from seacage.dynamics._parts._lines import Lines, mooring_lines
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -132,7 +131,7 @@ class Assembly:
     fixed: Bool[np.ndarray, " node"]  # held in its place
     bars: Bars
     bridles: Int[np.ndarray, " bridle"]  # which bars are the bridles
-    lines: Lines  # whose tension is reported
+    lines: MooringLines  # whose tension is reported
     line_bars: Int[np.ndarray, " line"]  # at which bar
     bends: Bends
     panels: Panels

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float, Int
 
-from seacage.cage import Section, Structure
+from seacage.cage import MooringLines, Section, Structure
 from seacage.conventions import GRAVITY, WATER_DENSITY, InputError
 from seacage.dynamics._parts._assembly import (
     Assembly,
@@ -20,7 +20,6 @@ from seacage.dynamics._parts._assembly import (
     corner_shares,
     panel_area,
 )
-from seacage.dynamics._parts._lines import Lines
 
 SINKING = 0.01
 """Depth to which a line's node sinks into the sea bed under its own weight [m]."""
@@ -75,7 +74,7 @@ def assemble_structure(structure: Structure) -> Assembly:
         fixed=fixed,
         bars=bars,
         bridles=lines,
-        lines=Lines.alike(structure.line_names, "line"),
+        lines=MooringLines.alike(structure.line_names, "line"),
         line_bars=lines,
         bends=_bends(structure),
         panels=panels,

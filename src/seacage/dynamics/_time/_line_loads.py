@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float
 
-from seacage.dynamics._parts import Lines
+from seacage.cage import MooringLines
 from seacage.dynamics._time._extremes import Extremes, extremes
 from seacage.dynamics._time._fatigue import damage_equivalent_load
 from seacage.dynamics._time._statistics import Statistics
@@ -72,7 +72,7 @@ class LineLoads:
 
 
 def line_loads(
-    lines: Lines,
+    lines: MooringLines,
     statistics: Statistics,
     tension: Float[np.ndarray, "t line"],
     *,

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from seacage.cage import Cage
-from seacage.dynamics import mooring_lines, simulate
+from seacage.cage import Cage, mooring_lines
+from seacage.dynamics import simulate
 from seacage.dynamics._time._line_loads import _snaps
 from seacage.ocean import SeaState
 

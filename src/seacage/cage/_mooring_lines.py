@@ -6,18 +6,30 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from seacage.cage import Cage
+from seacage.cage._cage import Cage
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Lines:
-    """Ropes and chains by their names."""
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class MooringLines:
+    """Ropes and chains of a mooring, the bridles first.
+
+    Parameters
+    ----------
+    names, kinds
+        Such as "anchor-1" and "bridle", "frame line", "anchor line" or a structure's "line".
+    capacity
+        Breaking load over material factor; NaN where it is not known [N].
+    pretension
+        In still water; NaN where it is not known [N].
+    tn_slope
+        m of the T–N curve; NaN where it is not known [-].
+    """
 
     names: tuple[str, ...]
-    kinds: tuple[str, ...]  # "bridle", "frame line", "anchor line", "line"
-    capacity: Float[np.ndarray, " line"]  # breaking load over material factor, or NaN [N]
-    pretension: Float[np.ndarray, " line"]  # or NaN [N]
-    tn_slope: Float[np.ndarray, " line"]  # m of the T–N curve, or NaN [-]
+    kinds: tuple[str, ...]
+    capacity: Float[np.ndarray, " line"]
+    pretension: Float[np.ndarray, " line"]
+    tn_slope: Float[np.ndarray, " line"]
 
     @classmethod
     def alike(
@@ -28,7 +40,7 @@ class Lines:
         capacity: Float[np.ndarray, " line"] | float = np.nan,
         pretension: float = np.nan,
         tn_slope: float | None = None,
-    ) -> "Lines":
+    ) -> "MooringLines":
         """Lines of one kind."""
         count = len(names)
         return cls(
@@ -39,9 +51,9 @@ class Lines:
             tn_slope=np.full(count, np.nan if tn_slope is None else tn_slope),
         )
 
-    def joined(self, other: "Lines") -> "Lines":
+    def joined(self, other: "MooringLines") -> "MooringLines":
         """These, and then others."""
-        return Lines(
+        return MooringLines(
             names=self.names + other.names,
             kinds=self.kinds + other.kinds,
             capacity=np.concatenate([self.capacity, other.capacity]),
@@ -50,10 +62,10 @@ class Lines:
         )
 
 
-def mooring_lines(cage: Cage, *, anchored: bool) -> Lines:
+def mooring_lines(cage: Cage, *, anchored: bool) -> MooringLines:
     """A cage's bridles; with its frame on anchors also frame lines and anchor lines."""
     parts, anchors = cage.bridles, cage.anchor_lines
-    bridles = Lines.alike(
+    bridles = MooringLines.alike(
         cage.bridle_names,
         "bridle",
         capacity=cage.bridle_capacity,
@@ -66,9 +78,9 @@ def mooring_lines(cage: Cage, *, anchored: bool) -> Lines:
     frame = [f"frame-{number}" for number in sides]
     moored = [f"anchor-{number + 1}" for number in range(len(sides) * anchors.per_corner)]
     return bridles.joined(
-        Lines.alike(frame, "frame line", tn_slope=cage.frame.rope_tn_slope)
+        MooringLines.alike(frame, "frame line", tn_slope=cage.frame.rope_tn_slope)
     ).joined(
-        Lines.alike(
+        MooringLines.alike(
             moored, "anchor line", pretension=anchors.pretension, tn_slope=anchors.rope_tn_slope
         )
     )
