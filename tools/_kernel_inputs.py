@@ -76,7 +76,7 @@ def a_body(rng: np.random.Generator, nodes: int) -> tuple[Any, dict[str, int]]:
         **dict.fromkeys(("bar_length", "bar_rate", "bar_damping"), (parts["bars"],)),
         "bend_stiffness": (parts["bends"],),
         "panel_share": (parts["panels"], 4),
-        "panel_mass": (parts["panels"],),
+        **dict.fromkeys(("panel_outline", "panel_mass"), (parts["panels"],)),
         **dict.fromkeys(("cylinder_drag", "cylinder_skin"), (parts["cylinders"],)),
         **dict.fromkeys(("float_stiffness", "float_draft", "float_height"), (len(floats),)),
         **dict.fromkeys(("spring_place", "spring_stiffness"), (parts["springs"], 3)),
@@ -131,9 +131,9 @@ def a_state(rng: np.random.Generator, nodes: int, parts: dict[str, int], lanes: 
     shapes = {
         **dict.fromkeys((name for name, _ in c.StateStruct._fields_), (nodes, 3)),
         "drag": (nodes,),
-        **dict.fromkeys(("elevation", "rise"), (parts["floats"],)),
+        **dict.fromkeys(("elevation", "rise"), (nodes,)),
         "panel_current": (parts["panels"], 3),
-        **dict.fromkeys(("panel_drag", "panel_lift"), (parts["panels"],)),
+        **dict.fromkeys(("panel_factor", "panel_drag", "panel_lift"), (parts["panels"],)),
         "lost_at": (),
     }
     return c.StateStruct.filled(**{n: numbers(rng, *shape, lanes) for n, shape in shapes.items()})
@@ -255,6 +255,7 @@ def a_structure(rng: np.random.Generator, nodes: int, graph: dict[str, np.ndarra
         **dict.fromkeys(("bar_length", "bar_stiffness"), (len(graph["bars"]),)),
         "bend_stiffness": (len(graph["bends"]),),
         "panel_share": (len(graph["panels"]), 4),
+        "panel_outline": (len(graph["panels"]),),
         "cylinder_width": (len(graph["cylinders"]),),
     }
     floats, springs = len(graph["floats"]), len(graph["springs"])

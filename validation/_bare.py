@@ -103,6 +103,7 @@ def _no_panels() -> Panels:
         half_width=NONE,
         depth=NONE,
         area=NONE,
+        outline=NONE,
         twine_spacing=NONE,
         diamond=np.zeros(0, dtype=bool),
     )

@@ -92,6 +92,7 @@ def _twines(
         half_width=one,
         depth=one,
         area=one,
+        outline=one,
         twine_spacing=half_mesh * one,
         diamond=np.zeros(1, dtype=bool),
     )

@@ -67,6 +67,7 @@ def chain(position, *, length, axial_stiffness, weight):
             half_width=NONE,
             depth=NONE,
             area=NONE,
+            outline=NONE,
             twine_spacing=NONE,
             diamond=np.zeros(0, dtype=bool),
         ),

@@ -27,11 +27,12 @@ ACE = Cage.named("ace")
     waves=st.booleans(),
     pipe_drag=st.booleans(),
     shaken=st.floats(0.0, 3.0),
+    raised=st.sampled_from([0.0, 4.0, 100.0]),  # out of the water in part or all
     cases=st.integers(1, 8),
     seed=st.integers(0, 2**32 - 1),
 )
 def test_the_kernel_computes_the_definition(
-    rings, spokes, cylinder, law, wake, waves, pipe_drag, shaken, cases, seed
+    rings, spokes, cylinder, law, wake, waves, pipe_drag, shaken, raised, cases, seed
 ):
     rng = np.random.default_rng(seed)
     cage = some_cage(rng, rings, spokes, cylinder)
@@ -44,6 +45,7 @@ def test_the_kernel_computes_the_definition(
         assembly, velocity, law=law, wake=wake, pipe_drag=pipe_drag, wave_variance=variance
     )
     position = assembly.position + rng.normal(scale=shaken, size=(cases, *assembly.position.shape))
+    position[..., 2] += raised
     defined = nodal_force(assembly, flow, position)
     computed = still_force(assembly, flow, position)
     # the kernel sums in another order: 1e-9 of the largest force in each case
@@ -71,19 +73,21 @@ def some_cage(rng, rings, spokes, cylinder):
     law=st.sampled_from(LAWS),
     held=st.booleans(),
     shaken=st.floats(0.01, 1.0),  # a bar cut to its length is taut or slack by rounding alone
+    raised=st.sampled_from([0.0, 4.0]),
     moved=st.sampled_from([1e-3, 1e3]),
     barrier=st.sampled_from([1e-6, 1.0, 1e4]),
     cases=st.integers(1, 8),
     seed=st.integers(0, 2**32 - 1),
 )
 def test_the_kernel_takes_the_defined_step_towards_balance(
-    rings, spokes, cylinder, law, held, shaken, moved, barrier, cases, seed
+    rings, spokes, cylinder, law, held, shaken, raised, moved, barrier, cases, seed
 ):
     rng = np.random.default_rng(seed)
     cage = some_cage(rng, rings, spokes, cylinder)
     assembly = Assembly.of(cage)
     flow = steady_flow(assembly, rng.uniform(-1.0, 1.0, (cases, 2)), law=law)
     position = assembly.position + rng.normal(scale=shaken, size=(cases, *assembly.position.shape))
+    position[..., 2] += raised
     tension = rng.uniform(0.1, 1e4, (cases, len(assembly.bars.length)))
     # a shift beyond all that the water can turn: else a chance zero root would part the two
     begun = Balancing.begun(position, tension, barrier=barrier, shift=1e6)

@@ -1,6 +1,6 @@
 """The compiled march computes what the readable definition says, step by step."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pytest
@@ -14,7 +14,14 @@ from seacage.dynamics._kernel._march import March, Steps
 from seacage.dynamics._kernel._march_inputs import Ocean
 from seacage.dynamics._moored._mass_scaling import scale_mass
 from seacage.dynamics._parts._assembly import Assembly, Ground
-from seacage.dynamics._physics._loads import DYNAMIC, _gather, bend_force, float_force, spring_force
+from seacage.dynamics._physics._loads import (
+    DYNAMIC,
+    _gather,
+    bend_force,
+    float_force,
+    spring_force,
+    wet_share,
+)
 from seacage.dynamics._physics._motion import (
     NetLaw,
     Water,
@@ -23,7 +30,7 @@ from seacage.dynamics._physics._motion import (
     damped_bar_force,
     moving_cylinder_force,
     moving_force,
-    moving_net_load,
+    net_load_under_water,
     past_panels,
 )
 from seacage.dynamics._physics._screens import Screen
@@ -144,17 +151,19 @@ def magnitudes(assembly, law, water, position, velocity):
     softer=st.sampled_from([1.0, 1e-6]),
     shaken=st.floats(0.05, 1.0),  # at its own length a bar is slack or taut by a rounding
     still=st.booleans(),
+    raised=st.sampled_from([0.0, 4.0, 100.0]),  # out of the water in part or all
     own=st.booleans(),
     cases=st.integers(1, LANES),
     seed=st.integers(0, 2**32 - 1),
 )
 def test_the_march_computes_the_definition_of_every_force(
-    mesh, law, twine_drag, softer, shaken, still, own, cases, seed
+    mesh, law, twine_drag, softer, shaken, still, raised, own, cases, seed
 ):
     rng = np.random.default_rng(seed)
     assembly = varied(Assembly.of(caged(mesh, rng)), rng, softer)
     shape = (cases, *assembly.position.shape)
-    position = single(assembly.position + rng.normal(scale=shaken, size=shape))
+    height = np.array([0.0, 0.0, raised])
+    position = single(assembly.position + height + rng.normal(scale=shaken, size=shape))
     velocity = single(rng.normal(scale=0.5, size=shape)) * (not still)
     water = Water(
         velocity=single(rng.normal(size=shape)) * (not still),
@@ -233,6 +242,7 @@ class Stepper:
     slope: np.ndarray
     surface: np.ndarray
     rise: np.ndarray
+    wet: np.ndarray = field(init=False)  # held from look to look
 
     @classmethod
     def begun(cls, assembly, law, ocean, steps, position):
@@ -266,6 +276,7 @@ class Stepper:
         self.slope = (moved - self.water) / interval
         self.surface = self.surface + interval * self.rise
         self.rise = (surface - self.surface) / interval
+        self.wet = wet_share(self.assembly.panels, self.position, self.surface)
         self.current = np.zeros_like(ahead)
         for case, axis in np.ndindex(len(ahead), 2):
             at_levels = self.ocean.current[case, :, axis]
@@ -285,7 +296,8 @@ class Stepper:
         ahead = 0.5 * (self.steps.hold - 1) * self.steps.time_step
         a, water, x = self.assembly, self.present(since + ahead), self.position
         x = x + ahead * self.velocity
-        load = moving_net_load(a.panels, self.law, water, x, self.velocity)
+        load = net_load_under_water(a.panels, self.law, water, x, self.velocity)
+        load *= self.wet[..., None]
         corners, share = a.panels.corners, a.panels.share
         self.load = _gather(x, corners, load[:, :, None] * share[..., None])
         self.load += moving_cylinder_force(a.cylinders, water, x, self.velocity)
@@ -310,7 +322,8 @@ class Stepper:
                 unit = twine / np.linalg.norm(twine, axis=-1, keepdims=True)
                 across = past - np.sum(past * unit, axis=-1, keepdims=True) * unit
                 total = total + np.linalg.norm(across, axis=-1)
-            return DYNAMIC * panels.twine_diameter * length * self.law.twine_drag[0] * total
+            each = DYNAMIC * panels.twine_diameter * length * self.law.twine_drag[0]
+            return self.wet * each * total
         area = np.cross(c - a, d - b) / 2.0
         size, speed = np.linalg.norm(area, axis=-1), np.linalg.norm(past, axis=-1)
         cosine = np.abs(np.sum(area * past, axis=-1)) / np.maximum(size * speed, 1e-12)
@@ -318,7 +331,7 @@ class Stepper:
             law=self.law.name, solidity=panels.solidity, twine_diameter=panels.twine_diameter
         ).terms(speed)
         drag = screen["constant"] + screen["slope"] * cosine
-        pressure = DYNAMIC * size * speed
+        pressure = self.wet * DYNAMIC * size * speed
         borne = 2.0 * self.panel_mass() / (self.steps.hold * self.steps.time_step)
         return np.maximum(pressure * drag, 1.25 * pressure * (1.5 * screen["slope"] + drag) - borne)
 

@@ -50,7 +50,7 @@ def kernel_force(
     motion.arrays["velocity"][:] = to_lanes(velocity)
     motion.arrays["water"][:] = to_lanes(water.velocity)
     motion.arrays["current"][:] = to_lanes(water.current)
-    motion.arrays["elevation"][:] = to_lanes(water.elevation[:, assembly.floats.nodes])
+    motion.arrays["elevation"][:] = to_lanes(water.elevation)
     inertia = assembly.water_mass[:, None] * water.acceleration
     inertia[..., 2] += assembly.weight
     motion.arrays["base"][:] = to_lanes(inertia)

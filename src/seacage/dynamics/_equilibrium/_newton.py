@@ -6,8 +6,8 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.dynamics._kernel import Balance, Balancing
-from seacage.dynamics._parts import Assembly, Bars, Bends
-from seacage.dynamics._physics import SteadyFlow, bar_force, nodal_force
+from seacage.dynamics._parts import Assembly, Bars, Bends, Panels
+from seacage.dynamics._physics import LEVEL, SteadyFlow, bar_force, nodal_force, wet_share
 
 Block = Float[np.ndarray, "part 3 3"]
 Entries = tuple[np.ndarray, np.ndarray, np.ndarray]
@@ -201,7 +201,10 @@ def _bends(bends: Bends, position: Float[np.ndarray, "node 3"]) -> list[Entries]
 def _panels(
     assembly: Assembly, flow: SteadyFlow, position: Float[np.ndarray, "node 3"]
 ) -> list[Entries]:
-    """Stiffness of a panel's load F = q A ((C_D − L c) u + L n) as its corners move."""
+    """Stiffness of a panel's load F = w q A ((C_D − L c) u + L n) as its corners move.
+
+    Its wet share w falls as they rise above the surface.
+    """
     panels = assembly.panels
     a, b, c, d = panels.corners.T
     first, second = position[c] - position[a], position[d] - position[b]
@@ -214,21 +217,42 @@ def _panels(
     constant, slope, third = flow.constant[0], flow.slope[0], flow.third[0]
     twice, e = 2.0 * flow.lift[0], flow.lift_second[0]
     drag = constant + slope * x + third * x * (4.0 * x**2 - 3.0)
-    wet = drag > 0.0
+    dragged = drag > 0.0
     lift = twice * x * (1.0 + e * (2.0 * x**2 - 1.0))
     lift_x = twice * (1.0 + e * (6.0 * x**2 - 1.0))
-    on_u = np.where(wet, drag, 0.0) - lift * x
-    on_u_x = np.where(wet, slope + third * (12.0 * x**2 - 3.0), 0.0) - lift_x * x - lift
+    on_u = np.where(dragged, drag, 0.0) - lift * x
+    on_u_x = np.where(dragged, slope + third * (12.0 * x**2 - 3.0), 0.0) - lift_x * x - lift
     off = u - x[:, None] * normal
     turned = _outer(u, on_u[:, None] * normal + on_u_x[:, None] * off)
     turned += _outer(normal, lift_x[:, None] * off) + lift[:, None, None] * np.eye(3)
-    turned *= (flow.pressure[0] * side)[:, None, None]
+    wet = wet_share(panels, position[None])[0]
+    turned *= (wet * flow.pressure[0] * side)[:, None, None]
     by_first = -0.5 * np.cross(turned, second[:, None, :])
     by_second = 0.5 * np.cross(turned, first[:, None, :])
     entries: list[Entries] = []
     for corner, share in zip(panels.corners.T, panels.share.T, strict=True):
         one, two = share[:, None, None] * by_first, share[:, None, None] * by_second
         entries += [(corner, c, -one), (corner, a, one), (corner, d, -two), (corner, b, two)]
+    whole = (flow.pressure[0] * area)[:, None] * (on_u[:, None] * u + lift[:, None] * normal)
+    return entries + _dry_slopes(panels, position, whole)
+
+
+def _dry_slopes(
+    panels: Panels, position: Float[np.ndarray, "node 3"], load: Float[np.ndarray, "panel 3"]
+) -> list[Entries]:
+    """Stiffness of the wet share of loads on panels that are all wet."""
+    height = position[panels.corners, 2]
+    above, span = height > 0.0, np.abs(height).sum(axis=1)
+    least = LEVEL * np.sqrt(panels.outline)
+    out = np.where(span > least, (height * above).sum(axis=1) / np.maximum(span, least), 0.0)
+    falls = np.where(above, 1.0 - out[:, None], out[:, None])
+    falls = falls / np.maximum(span, least)[:, None]
+    entries: list[Entries] = []
+    for corner, share in zip(panels.corners.T, panels.share.T, strict=True):
+        for other, fall in zip(panels.corners.T, falls.T, strict=True):
+            block = np.zeros((len(load), 3, 3))
+            block[:, :, 2] = (share * fall)[:, None] * load
+            entries.append((corner, other, block))
     return entries
 
 

@@ -26,7 +26,7 @@ typedef struct {
     const double *weight;
     const double *bar_length, *bar_stiffness, *bar_least; /* least tension: 0 or -infinity */
     const double *bend_stiffness;
-    const double *panel_share;
+    const double *panel_share, *panel_outline;
     const double *cylinder_width;
     const double *float_stiffness, *float_draft, *float_height;
     const double *spring_place, *spring_stiffness, *spring_preload;
@@ -97,6 +97,22 @@ static void add_bends(const assembly *s, const vec *restrict x, vec *restrict f)
     }
 }
 
+/* Share of panel p that is under still water, by lane. */
+static inline void wet_share(const assembly *s, int p, const vec *restrict x, double *restrict wet)
+{
+    const int *n = s->panel_corners + 4 * p;
+    const double least = 0.4 * sqrt(s->panel_outline[p]);
+    EACH_LANE {
+        double out = 0.0, span = 0.0;
+        for (int e = 0; e < 4; e++) {
+            const double height = x[n[e]][2][k];
+            out += height > 0.0 ? height : 0.0;
+            span += fabs(height);
+        }
+        wet[k] = 1.0 - out / (span > least ? span : least);
+    }
+}
+
 static void add_panels(const assembly *s, const flow *w, const vec *restrict x, vec *restrict f)
 {
     const double *restrict u = w->direction;
@@ -104,7 +120,8 @@ static void add_panels(const assembly *s, const flow *w, const vec *restrict x, 
         const int *n = s->panel_corners + 4 * p;
         const double *share = s->panel_share + 4 * p;
         const double *restrict law = w->panel + 6 * LANES * p;
-        double load[3][LANES];
+        double load[3][LANES], wet[LANES];
+        wet_share(s, p, x, wet);
         EACH_LANE {
             const double ax = x[n[2]][0][k] - x[n[0]][0][k], bx = x[n[3]][0][k] - x[n[1]][0][k];
             const double ay = x[n[2]][1][k] - x[n[0]][1][k], by = x[n[3]][1][k] - x[n[1]][1][k];
@@ -121,7 +138,7 @@ static void add_panels(const assembly *s, const flow *w, const vec *restrict x, 
             nz *= turn;
             c *= turn;
             c = c < 1.0 ? c : 1.0;
-            const double force = law[k] * area;
+            const double force = wet[k] * law[k] * area;
             double drag = law[LANES + k] + law[2 * LANES + k] * c
                           + law[3 * LANES + k] * c * (4.0 * c * c - 3.0);
             drag = drag > 0.0 ? drag : 0.0;

@@ -239,6 +239,7 @@ def parts_of(assembly: Assembly) -> dict[str, Any]:
         "bar_least": np.where(a.bars.pushed, -np.inf, 0.0),
         "bend_stiffness": a.bends.stiffness,
         "panel_share": a.panels.share,
+        "panel_outline": a.panels.outline,
         "float_stiffness": a.floats.stiffness,
         "float_draft": a.floats.draft,
         "float_height": a.floats.height,

@@ -7,7 +7,8 @@
  *
  * The water's motion changes slowly against the time step. It is computed at the nodes every
  * `refresh` seconds, for where they will be, and runs straight in between; so do the
- * coefficients that depend on the Reynolds number, which are held.
+ * coefficients that depend on the Reynolds number and the share of a panel that is wet, which
+ * are held.
  */
 #include "_layout.h"
 #include <math.h>
@@ -30,7 +31,7 @@ typedef struct {
     const float *weight, *mass, *water_mass, *place;
     const float *bar_length, *bar_rate, *bar_damping, *bar_least; /* 0 or -infinity */
     const float *bend_stiffness;
-    const float *panel_share, *panel_mass;
+    const float *panel_share, *panel_outline, *panel_mass;
     const float *cylinder_drag, *cylinder_skin; /* 1/4 rho Cd D, for each end */
     const float *float_stiffness, *float_draft, *float_height;
     const float *spring_place, *spring_stiffness, *spring_preload, *spring_damping;
@@ -74,8 +75,9 @@ typedef struct {
     vec *current, *relative, *force, *base;
     vec *held;                       /* base and the water's load, the latter as for no speed */
     lane *drag;                      /* how much a node's load falls with its speed [N s/m] */
-    lane *elevation, *rise;          /* at the floats: at the last refresh, and its change */
+    lane *elevation, *rise;          /* at the nodes: at the last refresh, and its change */
     vec *panel_current;
+    lane *panel_factor;              /* drag factor times wet share */
     lane *panel_drag, *panel_lift;   /* coefficients that the speed changes */
     float *lost_at;                  /* [lane] time; negative while a case is well */
 } state;
@@ -259,7 +261,7 @@ static void add_screens(const body *b, const netting *net, const state *s,
         const int *n = b->panel_corners + 4 * p;
         const float *share = b->panel_share + 4 * p;
         const float *restrict facing = s->panel_drag[p], *restrict lifting = s->panel_lift[p];
-        const float *restrict factor = net->drag_factor + LANES * p;
+        const float *restrict factor = s->panel_factor[p];
         const float borne = 2.0f * b->panel_mass[p] / span;
         vec load;
         lane falls;
@@ -327,7 +329,7 @@ static void add_twines(const body *b, const netting *net, const state *s,
         const int *n = b->panel_corners + 4 * p;
         const float *share = b->panel_share + 4 * p;
         const lane *restrict law = (const lane *)net->law + 3 * p;
-        const float *restrict factor = net->drag_factor + LANES * p;
+        const float *restrict factor = s->panel_factor[p];
         vec load;
         lane falls;
         EACH_LANE {
@@ -392,7 +394,7 @@ static void add_supports(const body *b, const state *s, float since, const vec *
         const float still = b->float_draft[n], height = b->float_height[n];
         const float stiffness = b->float_stiffness[n];
         EACH_LANE {
-            float draft = still - x[i][2][k] + s->elevation[n][k] + since * s->rise[n][k];
+            float draft = still - x[i][2][k] + s->elevation[i][k] + since * s->rise[i][k];
             draft = draft > 0.0f ? draft : 0.0f;
             draft = draft < height ? draft : height;
             f[i][2][k] += stiffness * draft;
@@ -553,7 +555,6 @@ static void refresh_water(const body *b, const sea *w, const schedule *t, state 
     lane ahead[w->components + 1]; /* C has no arrays of none */
     phases(w, end, ahead);
     const float ramp = (float)ramp_at(t, end), span = (float)interval;
-    int next_float = 0;
     for (int i = 0; i < b->nodes; i++) {
         vec at, u;
         lane elevation;
@@ -570,18 +571,32 @@ static void refresh_water(const body *b, const sea *w, const schedule *t, state 
                 s->base[i][a][k] = inertia * s->slope[i][a][k];
             }
         EACH_LANE s->base[i][2][k] += b->weight[i];
-        if (next_float < b->floats && b->float_nodes[next_float] == i) { /* in order of nodes */
-            lane *restrict at_float = s->elevation + next_float, *restrict rise = s->rise + next_float;
-            EACH_LANE {
-                (*at_float)[k] += span * (*rise)[k];
-                (*rise)[k] = (elevation[k] - (*at_float)[k]) / span;
-            }
-            next_float++;
+        EACH_LANE {
+            s->elevation[i][k] += span * s->rise[i][k];
+            s->rise[i][k] = (elevation[k] - s->elevation[i][k]) / span;
         }
     }
 }
 
-/* What each panel carries of the current, and its coefficients at the present speed.
+/* Drag factor of a panel, times the share of it that is under the surface at its corners. */
+static void wet_factor(const body *b, const netting *net, const state *s, int p,
+                       float *restrict factor)
+{
+    const int *n = b->panel_corners + 4 * p;
+    const float least = 0.4f * sqrtf(b->panel_outline[p]);
+    const float *restrict whole = net->drag_factor + LANES * p;
+    EACH_LANE {
+        float out = 0.0f, span = 0.0f;
+        for (int e = 0; e < 4; e++) {
+            const float height = s->position[n[e]][2][k] - s->elevation[n[e]][k];
+            out += height > 0.0f ? height : 0.0f;
+            span += height > 0.0f ? height : -height;
+        }
+        factor[k] = whole[k] * (1.0f - out / (span > least ? span : least));
+    }
+}
+
+/* What each panel carries of the current, and its coefficients at the present speed and height.
  * Law of a screen: facing drag and lift. Of one with Reynolds number: that for 1 m/s,
  * C_D0 and C_N45 for each unit of the twine's drag coefficient. */
 static void refresh_panels(const body *b, const netting *net, state *s)
@@ -591,8 +606,9 @@ static void refresh_panels(const body *b, const netting *net, state *s)
         const int *n = b->panel_corners + 4 * p;
         const float *share = b->panel_share + 4 * p;
         const lane *restrict law = (const lane *)net->law + 3 * p;
-        const float *restrict factor = net->drag_factor + LANES * p;
+        const float *restrict factor = s->panel_factor[p];
         const float *restrict wake = net->wake + LANES * p;
+        wet_factor(b, net, s, p, s->panel_factor[p]);
         for (int a = 0; a < 3; a++)
             EACH_LANE {
                 float sum = 0.0f;
@@ -844,7 +860,7 @@ const layout_row seacage_layout_body[] = {
     FIELD(panel_corners), FIELD(cylinder_ends), FIELD(float_nodes), FIELD(spring_nodes),
     FIELD(ground_nodes), FIELD(line_bars), FIELD(weight), FIELD(mass), FIELD(water_mass),
     FIELD(place), FIELD(bar_length), FIELD(bar_rate), FIELD(bar_damping), FIELD(bar_least),
-    FIELD(bend_stiffness), FIELD(panel_share), FIELD(panel_mass), FIELD(cylinder_drag),
+    FIELD(bend_stiffness), FIELD(panel_share), FIELD(panel_outline), FIELD(panel_mass), FIELD(cylinder_drag),
     FIELD(cylinder_skin), FIELD(float_stiffness), FIELD(float_draft), FIELD(float_height),
     FIELD(spring_place), FIELD(spring_stiffness), FIELD(spring_preload), FIELD(spring_damping),
     FIELD(ground_stiffness), FIELD(cylinder_series), FIELD(ground_level), LAYOUT_END(body),
@@ -876,7 +892,7 @@ const layout_row seacage_layout_schedule[] = {
 const layout_row seacage_layout_state[] = {
     FIELD(position), FIELD(rest), FIELD(velocity), FIELD(water), FIELD(slope), FIELD(current),
     FIELD(relative), FIELD(force), FIELD(base), FIELD(held), FIELD(drag), FIELD(elevation),
-    FIELD(rise), FIELD(panel_current), FIELD(panel_drag), FIELD(panel_lift), FIELD(lost_at),
+    FIELD(rise), FIELD(panel_current), FIELD(panel_factor), FIELD(panel_drag), FIELD(panel_lift), FIELD(lost_at),
     LAYOUT_END(state),
 };
 #undef FIELD

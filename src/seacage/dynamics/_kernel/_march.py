@@ -218,13 +218,14 @@ def _counts(assembly: Assembly) -> str:
 def motion_of(assembly: Assembly, position: Float[np.ndarray, "node 3 lane"]) -> StateStruct:
     """Nodes at rest in still water, as the kernel keeps them."""
     lanes, nodes = simulation_lanes(), len(position)
-    panels, floats = len(assembly.panels.area), len(assembly.floats.nodes)
+    panels = len(assembly.panels.area)
     nodal = ("rest", "velocity", "water", "slope", "current", "relative", "force", "base", "held")
     shapes: dict[str, tuple[int, ...]] = dict.fromkeys(nodal, (nodes, 3)) | {
         "drag": (nodes,),
-        "elevation": (floats,),
-        "rise": (floats,),
+        "elevation": (nodes,),
+        "rise": (nodes,),
         "panel_current": (panels, 3),
+        "panel_factor": (panels,),
         "panel_drag": (panels,),
         "panel_lift": (panels,),
     }

@@ -124,12 +124,15 @@ static void linearise_bends(const assembly *s, const pattern *p, const vec *rest
     }
 }
 
-/* How a panel's load q A ((C_D − L c) u + L n) turns with its diagonals. */
+/* How a panel's load q A ((C_D − L c) u + L n) turns with its diagonals; and the load itself, as
+ * of a panel all wet. */
 static void panel_slopes(const assembly *s, const flow *f, int q, const vec *restrict x,
-                         vec *restrict by_first, vec *restrict by_second)
+                         vec *restrict by_first, vec *restrict by_second, lane *restrict load)
 {
     const int *n = s->panel_corners + 4 * q;
     const double *restrict law = f->panel + 6 * LANES * q;
+    lane wet;
+    wet_share(s, q, x, wet);
     EACH_LANE {
         double r[3], t[3], v[3], u[3];
         for (int a = 0; a < 3; a++) {
@@ -150,13 +153,14 @@ static void panel_slopes(const assembly *s, const flow *f, int q, const vec *res
         const double slope = law[2 * LANES + k], third = law[3 * LANES + k];
         const double twice = 2.0 * law[4 * LANES + k], second = law[5 * LANES + k];
         const double drag = law[LANES + k] + slope * c + third * c * (4.0 * c * c - 3.0);
-        const double wet = drag > 0.0 ? 1.0 : 0.0;
+        const double dragged = drag > 0.0 ? 1.0 : 0.0;
         const double lift = twice * c * (1.0 + second * (2.0 * c * c - 1.0));
         const double lift_c = twice * (1.0 + second * (6.0 * c * c - 1.0));
-        const double on_u = wet * drag - lift * c;
-        const double on_u_c = wet * (slope + third * (12.0 * c * c - 3.0)) - lift_c * c - lift;
-        const double pressure = law[k] * side;
+        const double on_u = dragged * drag - lift * c;
+        const double on_u_c = dragged * (slope + third * (12.0 * c * c - 3.0)) - lift_c * c - lift;
+        const double pressure = wet[k] * law[k] * side, whole = law[k] * area;
         for (int a = 0; a < 3; a++) {
+            load[a][k] = whole * (on_u * u[a] + lift * v[a]);
             double m[3]; /* a row of the load's slope in the area vector */
             for (int e = 0; e < 3; e++) {
                 const double off = u[e] - c * v[e];
@@ -173,12 +177,41 @@ static void panel_slopes(const assembly *s, const flow *f, int q, const vec *res
     }
 }
 
+/* How the wet share of a panel falls as each corner rises; 1 if it does in any lane. */
+static int drying(const assembly *s, int q, const vec *restrict x, lane *restrict falls)
+{
+    const int *n = s->panel_corners + 4 * q;
+    const double least = 0.4 * sqrt(s->panel_outline[q]);
+    EACH_LANE {
+        double out = 0.0, span = 0.0;
+        for (int e = 0; e < 4; e++) {
+            const double height = x[n[e]][2][k];
+            out += height > 0.0 ? height : 0.0;
+            span += fabs(height);
+        }
+        const double flat = span > least ? 0.0 : 1.0, whole = flat > 0.0 ? least : span;
+        const double over = 1.0 / whole, share = (1.0 - flat) * out * over;
+        for (int e = 0; e < 4; e++) {
+            const double above = x[n[e]][2][k] > 0.0 ? 1.0 : 0.0;
+            falls[e][k] = over * (above + share * (1.0 - 2.0 * above));
+        }
+    }
+    int any = 0;
+    for (int e = 0; e < 4; e++)
+        for (int k = 0; k < LANES; k++)
+            any |= falls[e][k] != 0.0;
+    return any;
+}
+
 static void linearise_panels(const assembly *s, const flow *f, const pattern *p,
                              const vec *restrict x, bench *w)
 {
     for (int q = 0; q < s->panels; q++) {
         block by_first, by_second;
-        panel_slopes(s, f, q, x, by_first, by_second);
+        vec load;
+        lane falls[4];
+        panel_slopes(s, f, q, x, by_first, by_second, load);
+        const int dries = drying(s, q, x, falls);
         for (int e = 0; e < 4; e++) {
             const int32_t *to = p->panels + 16 * q + 4 * e;
             const double share = s->panel_share[4 * q + e];
@@ -192,6 +225,9 @@ static void linearise_panels(const assembly *s, const flow *f, const pattern *p,
                         w->blocks[to[1]][a][c][k] += two;
                         w->blocks[to[3]][a][c][k] -= two;
                     }
+            for (int g = 0; dries && g < 4; g++)
+                for (int a = 0; a < 3; a++)
+                    EACH_LANE w->blocks[to[g]][a][2][k] += share * falls[g][k] * load[a][k];
         }
     }
 }

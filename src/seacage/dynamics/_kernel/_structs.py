@@ -119,7 +119,7 @@ class AssemblyStruct(Struct):
         *_each(INTEGERS, "bar_ends bend_nodes panel_corners cylinder_ends float_nodes"),
         *_each(INTEGERS, "spring_nodes"),
         *_each(DOUBLES, "weight bar_length bar_stiffness bar_least bend_stiffness panel_share"),
-        *_each(DOUBLES, "cylinder_width float_stiffness float_draft float_height"),
+        *_each(DOUBLES, "panel_outline cylinder_width float_stiffness float_draft float_height"),
         *_each(DOUBLES, "spring_place spring_stiffness spring_preload"),
     )
 
@@ -177,7 +177,10 @@ class BodyStruct(Struct):
         *_each(INTEGERS, "bar_ends bend_nodes panel_corners cylinder_ends float_nodes"),
         *_each(INTEGERS, "spring_nodes ground_nodes line_bars"),
         *_each(FLOATS, "weight mass water_mass place bar_length bar_rate bar_damping bar_least"),
-        *_each(FLOATS, "bend_stiffness panel_share panel_mass cylinder_drag cylinder_skin"),
+        *_each(
+            FLOATS,
+            "bend_stiffness panel_share panel_outline panel_mass cylinder_drag cylinder_skin",
+        ),
         *_each(FLOATS, "float_stiffness float_draft float_height"),
         *_each(FLOATS, "spring_place spring_stiffness spring_preload spring_damping"),
         *_each(FLOATS, "ground_stiffness cylinder_series"),
@@ -218,7 +221,9 @@ class StateStruct(Struct):
     c_name = "state"
     _fields_ = (
         *_each(FLOATS, "position rest velocity water slope current relative force base held"),
-        *_each(FLOATS, "drag elevation rise panel_current panel_drag panel_lift lost_at"),
+        *_each(
+            FLOATS, "drag elevation rise panel_current panel_factor panel_drag panel_lift lost_at"
+        ),
     )
 
 

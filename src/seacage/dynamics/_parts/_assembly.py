@@ -65,7 +65,10 @@ class Panels(Rows):
     outward: Float[np.ndarray, "panel 2"]  # horizontal, of the design shape [-]
     half_width: Float[np.ndarray, " panel"]  # half the angle a panel spans round the cage [rad]
     depth: Float[np.ndarray, " panel"]  # of the design shape [m]
-    area: Float[np.ndarray, " panel"]  # of the design shape [m2]
+    area: Float[np.ndarray, " panel"]  # of the netting as cut [m2]
+    outline: Float[
+        np.ndarray, " panel"
+    ]  # that the solidity is of: as designed, folds seen as solidity [m2]
     twine_spacing: Float[np.ndarray, " panel"]  # half mesh [m]
     diamond: Bool[np.ndarray, " panel"]  # twines run at 45 degrees to the panel's edges
 
@@ -279,6 +282,7 @@ def _bends(cage: Cage) -> Bends:
 def _panels(cage: Cage) -> Panels:
     corners = cage.panels
     share = corner_shares(corners)
+    area = panel_area(cage.design_position, corners)
     centre = np.einsum("pc,pcx->px", share, cage.design_position[corners])
     solidity = np.array([cage.netting.solidity_at(-z) for z in centre[:, 2]])
     return Panels(
@@ -290,7 +294,8 @@ def _panels(cage: Cage) -> Panels:
         outward=centre[:, :2] / np.linalg.norm(centre[:, :2], axis=1, keepdims=True),
         half_width=np.full(len(corners), np.pi / cage.spokes),
         depth=-centre[:, 2],
-        area=panel_area(cage.design_position, corners),
+        area=area,
+        outline=area,
         twine_spacing=np.full(len(corners), cage.netting.half_mesh),
         diamond=np.zeros(len(corners), dtype=bool),
     )

@@ -235,6 +235,7 @@ def _panels(structure: Structure, index: int) -> Panels:
         half_width=np.full(count, np.pi / structure.spokes),
         depth=-centre[:, 2],
         area=area,
+        outline=area / folds,
         twine_spacing=np.full(count, twine.half_mesh),
         diamond=np.full(count, net.twines == "diagonal"),
     )

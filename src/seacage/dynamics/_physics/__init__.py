@@ -4,11 +4,13 @@ from seacage.dynamics._physics._catenary import catenary
 from seacage.dynamics._physics._flow import steady_flow
 from seacage.dynamics._physics._loads import (
     DYNAMIC,
+    LEVEL,
     SteadyFlow,
     bar_force,
     bar_tension,
     nodal_force,
     total_net_force,
+    wet_share,
 )
 from seacage.dynamics._physics._motion import NetLaw, Water, bar_damping, damped_tension
 from seacage.dynamics._physics._screens import (
@@ -29,6 +31,7 @@ __all__ = [
     "CYLINDER",
     "DYNAMIC",
     "LAWS",
+    "LEVEL",
     "MOVING_LAWS",
     "Law",
     "MovingLaw",
@@ -50,4 +53,5 @@ __all__ = [
     "total_net_force",
     "wake_in_sight",
     "wake_share",
+    "wet_share",
 ]

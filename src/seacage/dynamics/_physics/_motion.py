@@ -22,6 +22,7 @@ from seacage.dynamics._physics._loads import (
     float_force,
     screen_load,
     spring_force,
+    wet_share,
 )
 from seacage.dynamics._physics._screens import MOVING_LAWS, MovingLaw, Screen
 
@@ -143,7 +144,15 @@ def past_panels(
 def moving_net_load(
     panels: Panels, law: NetLaw, water: Water, position: Nodal, velocity: Nodal
 ) -> Float[np.ndarray, "case panel 3"]:
-    """The water's load on each panel [N]."""
+    """The water's load on each panel; what is above the surface is dry [N]."""
+    wet = wet_share(panels, position, water.elevation)
+    return wet[..., None] * net_load_under_water(panels, law, water, position, velocity)
+
+
+def net_load_under_water(
+    panels: Panels, law: NetLaw, water: Water, position: Nodal, velocity: Nodal
+) -> Float[np.ndarray, "case panel 3"]:
+    """The load on each panel if it were under water [N]."""
     past = past_panels(panels, law, water, velocity)
     if law.name == "morison":
         return twine_load(panels, law, position, past)

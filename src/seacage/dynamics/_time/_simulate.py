@@ -65,9 +65,10 @@ def simulate(
     added mass; damped, tension-only netting; elastic collar afloat, sinker tube on the
     cylinder's edge, bridles on elastic frame corners or on a frame with buoys and anchor lines.
     It starts from the equilibrium in the current; the waves rise over ``ramp``, and nothing
-    counts before ``spin_up``. Left out: waves made by the collar, second-order waves, the
-    netting's shelter from waves, and that netting above the surface is dry: it meets the water
-    at the surface. A case's numbers do not depend on the cases beside it nor on ``workers``.
+    counts before ``spin_up``. Netting above the moving surface bears no drag or lift. Left out:
+    waves made by the collar, second-order waves, the netting's shelter from waves, and that dry
+    netting weighs more and is not pushed by the waves' acceleration. A
+    case's numbers do not depend on the cases beside it nor on ``workers``.
 
     Parameters
     ----------

@@ -35,10 +35,11 @@ def swaying(scale):
     return PARTS.position + np.random.default_rng(0).normal(scale=scale, size=PARTS.position.shape)
 
 
+@pytest.mark.parametrize("raised", [0.0, 10.0])  # that panels are partly dry
 @pytest.mark.parametrize("law", LAWS)
-def test_the_tangent_is_the_slope_of_the_force(law):
+def test_the_tangent_is_the_slope_of_the_force(law, raised):
     flow = steady_flow(PARTS, np.array([[0.5, 0.3]]), law=law, pipe_drag=False)
-    position = swaying(0.2)
+    position = swaying(0.2) + np.array([0.0, 0.0, raised])
     direction = np.random.default_rng(1).normal(size=position.shape)
     ahead, back = (
         nodal_force(PARTS, flow, (position + step * direction)[None])[0] for step in (1e-6, -1e-6)

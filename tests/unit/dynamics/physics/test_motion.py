@@ -9,7 +9,7 @@ from seacage.cage import Cage
 from seacage.conventions import WATER_DENSITY, WATER_VISCOSITY, InputError
 from seacage.dynamics import loland
 from seacage.dynamics._parts._assembly import Assembly, Bars, Panels
-from seacage.dynamics._physics._loads import float_force
+from seacage.dynamics._physics._loads import float_force, wet_share
 from seacage.dynamics._physics._motion import (
     NetLaw,
     Water,
@@ -35,6 +35,7 @@ PANEL = Panels(
     half_width=np.array([0.1]),
     depth=np.array([0.5]),
     area=np.array([2.0]),
+    outline=np.array([2.0]),
     twine_spacing=np.array([0.02]),
     diamond=np.array([False]),
 )
@@ -101,10 +102,41 @@ def test_corners_count_by_their_shares():
     np.testing.assert_allclose(past[0, 0], [0.0, 1.0, 0.0])
 
 
-# Growth of each case
+# Above the surface
+
+
+def load_at(name, height, elevation=0.0):
+    """Of the square with its lower edge a metre below this height, the surface at another."""
+    water = replace(flow((0.3, 0.7, 0.1)), elevation=np.full((1, 4), elevation))
+    raised = SQUARE + np.array([0.0, 0.0, height])
+    return moving_net_load(PANEL, law(name), water, raised, np.zeros_like(SQUARE))[0, 0]
 
 
 EVERY_LAW = pytest.mark.parametrize("name", MOVING_LAWS)
+
+
+@EVERY_LAW
+def test_a_panel_above_the_surface_bears_nothing(name):
+    np.testing.assert_array_equal(load_at(name, 1.0), 0.0)
+    np.testing.assert_array_equal(load_at(name, 0.0, elevation=-1.5), 0.0)
+
+
+@EVERY_LAW
+def test_a_panel_bears_what_is_below_the_surface(name):
+    whole = load_at(name, 0.0)
+    np.testing.assert_array_equal(whole, load_at(name, -7.0))
+    np.testing.assert_allclose(load_at(name, 0.25), 0.75 * whole, rtol=1e-12)
+    np.testing.assert_allclose(load_at(name, 2.25, elevation=2.0), 0.75 * whole, rtol=1e-12)
+
+
+def test_a_panel_that_lies_level_comes_out_within_a_tenth_of_its_width():
+    level = np.array([[[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 1.0, 0.0], [0.0, 1.0, 0.0]]])
+    heights = np.sqrt(2.0) * np.array([-0.1, 0.0, 0.05, 0.1, 5.0])
+    shares = [wet_share(PANEL, level + np.array([0.0, 0.0, h]))[0, 0] for h in heights]
+    np.testing.assert_allclose(shares, [1.0, 1.0, 0.5, 0.0, 0.0], atol=1e-12)
+
+
+# Growth of each case
 
 
 def load_of(name, panel=PANEL, **netting):
