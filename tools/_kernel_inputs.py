@@ -56,6 +56,8 @@ def march(library: ctypes.CDLL, rng: np.random.Generator) -> None:
     library.seacage_march_water(
         ctypes.byref(sea),
         pointer(at),
+        pointer(numbers(rng, 2)),
+        ctypes.c_int32(int(rng.integers(0, 2))),
         ctypes.c_double(float(numbers(rng, kind=np.float64))),
         pointer(np.zeros(lanes, np.float32)),
         pointer(total),
@@ -73,6 +75,7 @@ def a_body(rng: np.random.Generator, nodes: int) -> tuple[Any, dict[str, int]]:
     shapes = {
         **dict.fromkeys(("weight", "mass", "water_mass"), (nodes,)),
         "place": (nodes, 3),
+        "chord": (nodes, 2),
         **dict.fromkeys(("bar_length", "bar_rate", "bar_damping"), (parts["bars"],)),
         "bend_stiffness": (parts["bends"],),
         "panel_share": (parts["panels"], 4),
@@ -119,10 +122,12 @@ def a_sea(rng: np.random.Generator, lanes: int) -> Any:
     return c.SeaStruct.filled(
         components=components,
         levels=levels,
+        spread=int(rng.integers(0, 2)),
+        shallow=rng.integers(0, 2, components, dtype=np.int32),
         depth=float(numbers(rng)),
         level_z=numbers(rng, levels),
         current=numbers(rng, levels, 2, lanes),
-        **{name: numbers(rng, components, lanes, kind=k) for name, k in WAVE_KINDS.items()},
+        **{name: numbers(rng, components + 1, lanes, kind=k) for name, k in WAVE_KINDS.items()},
     )
 
 

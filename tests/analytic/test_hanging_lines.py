@@ -47,6 +47,7 @@ def chain(position, *, length, axial_stiffness, weight):
         mass=-nodal / GRAVITY,
         water_mass=np.zeros(count + 1),
         fixed=np.zeros(count + 1, dtype=bool),
+        chord=np.zeros((count + 1, 2)),
         bars=Bars(
             ends=np.stack([np.arange(count), np.arange(count) + 1], axis=1),
             length=np.full(count, length / count),

@@ -14,6 +14,7 @@ from seacage.dynamics._kernel._march import March, Steps
 from seacage.dynamics._kernel._march_inputs import Ocean
 from seacage.dynamics._moored._mass_scaling import scale_mass
 from seacage.dynamics._parts._assembly import Assembly, Ground
+from seacage.dynamics._physics._felt_waves import felt_waves
 from seacage.dynamics._physics._loads import (
     DYNAMIC,
     _gather,
@@ -205,15 +206,24 @@ def wave_train(rng, depth):
     cases=st.integers(1, LANES),
     time=st.floats(0.0, 6.0 * 3600.0),
     near=st.sampled_from([1.0, 0.05, 0.0]),
+    crests=st.sampled_from(["long", "spread", "both"]),
+    chord=st.tuples(st.floats(-9.0, 9.0), st.floats(-9.0, 9.0)) | st.just((0.0, 0.0)),
+    whole=st.booleans(),
     seed=st.integers(0, 2**32 - 1),
 )
-def test_the_march_moves_the_water_as_the_ocean_does(depth, cases, time, near, seed):
+def test_the_march_moves_the_water_as_the_ocean_does(
+    depth, cases, time, near, crests, chord, whole, seed
+):
     rng = np.random.default_rng(seed)
     waves = [wave_train(rng, depth) for _ in range(cases)]
+    if crests != "spread":
+        waves[crests == "both" :] = [long_crests(w) for w in waves[crests == "both" :]]
+    chord = np.array(chord, np.float32).astype(np.float64)
     place = rng.uniform([-60.0, -60.0, -depth], [60.0, 60.0, 3.0], (cases, 3))
     place = single(place * [1.0, 1.0, near])
-    elevation, velocity = kernel_water(waves, place, time)
-    for w, at, up, moved in zip(waves, place, elevation, velocity, strict=True):
+    elevation, velocity = kernel_water(waves, place, time, chord=tuple(chord), whole=whole)
+    for all_waves, at, up, moved in zip(waves, place, elevation, velocity, strict=True):
+        w = felt_waves(all_waves, np.inf if whole else at[2], chord)
         surface = surface_elevation(w, at[:2], np.array(time))
         # what rises above the surface meets the water there, where the ocean has air
         wet = np.array([*at[:2], min(at[2], float(surface) - 1e-9)])
@@ -223,6 +233,11 @@ def test_the_march_moves_the_water_as_the_ocean_does(depth, cases, time, near, s
         rounded = 1.0 + np.max(w.wavenumber, initial=0.0) * (85.0 + abs(at[2]))
         assert abs(up - surface) <= 4.0 * FLOAT * rounded * w.amplitude.sum()
         assert np.all(np.abs(moved - defined) <= 4.0 * FLOAT * rounded * most + 1e-9)
+
+
+def long_crests(waves):
+    """The same, all along the first."""
+    return replace(waves, direction=np.repeat(waves.direction[:1], len(waves.phase), axis=0))
 
 
 # Steps
@@ -267,11 +282,14 @@ class Stepper:
         rising = 0.5 - 0.5 * np.cos(np.pi * end / self.steps.ramp) if end < self.steps.ramp else 1.0
         moved, surface = np.empty_like(ahead), np.empty_like(self.surface)
         for case, waves in enumerate(self.ocean.waves):
-            ramped = replace(waves, amplitude=rising * waves.amplitude)
-            surface[case] = surface_elevation(ramped, ahead[case, :, :2], np.array(end))
-            wet = ahead[case].copy()
-            wet[:, 2] = np.minimum(wet[:, 2], surface[case] - 1e-12)
-            moved[case], _ = water_motion(ramped, wet, np.array(end))
+            floats = np.isin(np.arange(len(ahead[case])), self.assembly.floats.nodes)
+            for node, at in enumerate(ahead[case]):
+                height = np.inf if floats[node] else at[2]
+                felt = felt_waves(waves, height, self.assembly.chord[node])
+                felt = replace(felt, amplitude=rising * felt.amplitude)
+                surface[case, node] = surface_elevation(felt, at[:2], np.array(end))
+                wet = np.array([*at[:2], min(at[2], surface[case, node] - 1e-12)])
+                moved[case, node], _ = water_motion(felt, wet, np.array(end))
         self.water = self.water + interval * self.slope
         self.slope = (moved - self.water) / interval
         self.surface = self.surface + interval * self.rise

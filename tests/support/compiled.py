@@ -63,7 +63,12 @@ def kernel_force(
 
 
 def kernel_water(
-    waves: Sequence[Waves], position: Float[np.ndarray, "case 3"], time: float
+    waves: Sequence[Waves],
+    position: Float[np.ndarray, "case 3"],
+    time: float,
+    *,
+    chord: tuple[float, float] = (0.0, 0.0),
+    whole: bool = False,
 ) -> tuple[Float[np.ndarray, " case"], Float[np.ndarray, "case 3"]]:
     """Surface [m] and wave velocity [m/s] at one place for each case, as the kernel has them."""
     cases, lanes = len(waves), simulation_lanes()
@@ -74,6 +79,8 @@ def kernel_water(
     kernel().library.seacage_march_water(
         ctypes.byref(sea_tables(ocean)),
         pointer(to_lanes(position)),
+        pointer(np.array(chord, np.float32)),
+        ctypes.c_int32(whole),
         ctypes.c_double(time),
         pointer(elevation),
         pointer(velocity),

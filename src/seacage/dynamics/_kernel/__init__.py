@@ -3,7 +3,7 @@
 from seacage.dynamics._kernel._balance import Balance, Balancing
 from seacage.dynamics._kernel._library import Relaxation, Relaxing, kernel
 from seacage.dynamics._kernel._march import REFRESH, March, Steps
-from seacage.dynamics._kernel._march_inputs import Ocean, simulation_lanes
+from seacage.dynamics._kernel._march_inputs import Ocean, has_long_crests, simulation_lanes
 
 __all__ = [
     "REFRESH",
@@ -14,6 +14,7 @@ __all__ = [
     "Relaxation",
     "Relaxing",
     "Steps",
+    "has_long_crests",
     "kernel",
     "simulation_lanes",
 ]

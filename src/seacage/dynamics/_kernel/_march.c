@@ -29,6 +29,7 @@ typedef struct {
     const int32_t *bar_ends, *bend_nodes, *panel_corners, *cylinder_ends, *float_nodes,
         *spring_nodes, *ground_nodes, *line_bars;
     const float *weight, *mass, *water_mass, *place;
+    const float *chord; /* [node][2] horizontal, over which a node's waves are averaged [m] */
     const float *bar_length, *bar_rate, *bar_damping, *bar_least; /* 0 or -infinity */
     const float *bend_stiffness;
     const float *panel_share, *panel_outline, *panel_mass;
@@ -48,14 +49,18 @@ typedef struct {
     float all[4]; /* SCREEN*: a, e of the law, share of cos and of cos3; TWINES: Cn, Ct */
 } netting;
 
+/* Components stand in each lane in the order of their reach, the deepest first. */
 typedef struct {
     int32_t components, levels;
-    const double *turns, *turns_per_second;      /* [component][lane] phase, frequency */
-    const float *east, *north;                   /* [component][lane] wave number, turns/m */
-    const float *decay;                          /* wave number × log2 e [1/m] */
-    const float *amplitude, *along_x, *along_y, *up; /* [m], and of the velocities [m/s] */
-    const float *floor, *bounce;                 /* of finite depth: 1/(1-e^-2kh), e^-2kh of it */
-    const float *level_z;                        /* [level], downwards */
+    int32_t spread;                         /* whether a lane's components differ in direction */
+    const int32_t *shallow;                 /* [component] whether one of its lanes feels the bed */
+    const double *turns, *turns_per_second; /* [component][lane] phase, frequency */
+    const float *number;                    /* [component][lane] wave number [turns/m] */
+    const float *toward_x, *toward_y;       /* [component][lane], or [lane] of long crests */
+    const float *amplitude, *speed;         /* [component][lane] of the surface and below [m, m/s] */
+    const float *reach;                     /* [component][lane] z where it is no longer felt [m] */
+    const float *floor, *bounce;            /* of finite depth: 1/(1-e^-2kh), e^-2kh of it */
+    const float *level_z;                   /* [level], downwards */
     const float *current;                        /* [level][2][lane] */
     float depth;
 } sea;
@@ -471,45 +476,123 @@ static void add_forces(const body *b, const state *s, float since)
 
 /* --- water ------------------------------------------------------------------------------- */
 
-/* Surface and wave velocity at a place, Wheeler's stretching; `ahead`: phases at that time. */
-static void wave_motion(const sea *w, const lane *restrict ahead, float ramp,
-                        const lane *restrict at, float *restrict elevation, lane *restrict u)
+/* Mean of a cosine over a chord that is so many turns long, over its value in the middle: the
+ * series of sin(pi t)/(pi t). None beyond one turn: what is left would be a side lobe. */
+static inline float mean_over(float turns)
 {
-    lane cosine[w->components + 1], sine[w->components + 1], height;
+    float q = turns * turns;
+    q = q < 1.0f ? q : 1.0f;
+    const float mean = 1.0f + q * (-1.64493407f + q * (0.811742426f + q * (-0.190751824f
+                       + q * (0.0261478478f + q * (-2.34608103e-3f + q * (1.48428793e-4f
+                       + q * -6.9758736e-6f))))));
+    return mean > 0.0f ? mean : 0.0f;
+}
+
+/* Surface and wave velocity at a place, Wheeler's stretching; `ahead`: phases at that time. Each
+ * component counts with its mean over the `chord`, and only above its reach but where the
+ * `whole` surface is needed. Called with constants for spread, averaged and whole. */
+static inline __attribute__((always_inline)) void wave_sums(
+    const sea *w, const int spread, const int averaged, const int whole,
+    const lane *restrict ahead, float ramp, const lane *restrict at, const float *restrict chord,
+    float *restrict elevation, lane *restrict u)
+{
+    lane cosine[w->components + 1], sine[w->components + 1], height, along, across;
+    const float *restrict x = w->toward_x, *restrict y = w->toward_y;
     EACH_LANE elevation[k] = 0.0f;
-    for (int c = 0; c < w->components; c++) {
-        const float *restrict east = w->east + LANES * c, *restrict north = w->north + LANES * c;
-        const float *restrict amplitude = w->amplitude + LANES * c;
+    if (!spread)
         EACH_LANE {
-            const float turns = ahead[c][k] + east[k] * at[0][k] + north[k] * at[1][k];
-            COS_SIN(turns, cosine[c][k], sine[c][k]);
+            along[k] = at[0][k] * x[k] + at[1][k] * y[k];
+            across[k] = chord[0] * x[k] + chord[1] * y[k];
+        }
+    int felt = 0;
+    for (; felt < w->components; felt++) {
+        const int c = felt;
+        const float *restrict number = w->number + LANES * c, *restrict reach = w->reach + LANES * c;
+        const float *restrict amplitude = w->amplitude + LANES * c;
+        if (!whole) {
+            int reaches = 0;
+            _Pragma("omp simd reduction(|:reaches)") for (int k = 0; k < LANES; k++)
+                reaches |= at[2][k] > reach[k];
+            if (!reaches)
+                break;
+        }
+        if (spread) {
+            x = w->toward_x + LANES * c;
+            y = w->toward_y + LANES * c;
+            EACH_LANE {
+                along[k] = at[0][k] * x[k] + at[1][k] * y[k];
+                across[k] = chord[0] * x[k] + chord[1] * y[k];
+            }
+        }
+        EACH_LANE {
+            float cos_, sin_, share = 1.0f;
+            COS_SIN(ahead[c][k] + number[k] * along[k], cos_, sin_);
+            if (averaged)
+                share = mean_over(number[k] * across[k]);
+            if (!whole)
+                share = at[2][k] > reach[k] ? share : 0.0f;
+            cosine[c][k] = share * cos_;
+            sine[c][k] = share * sin_;
             elevation[k] += amplitude[k] * cosine[c][k];
         }
     }
     const float depth = w->depth;
+    lane flat_x, flat_y;
     EACH_LANE {
         elevation[k] *= ramp;
         float z = (at[2][k] - elevation[k]) * depth / (depth + elevation[k]);
         z = z < 0.0f ? z : 0.0f; /* a node above the surface meets the water at the surface */
-        height[k] = z > -depth ? z : -depth;
-        u[0][k] = u[1][k] = u[2][k] = 0.0f;
+        height[k] = 9.06472028f * (z > -depth ? z : -depth); /* 2 pi log2 e, for turns and 2^ */
+        flat_x[k] = flat_y[k] = u[2][k] = 0.0f;
     }
-    for (int c = 0; c < w->components; c++) {
-        const float *restrict decay = w->decay + LANES * c;
+    for (int c = 0; c < felt; c++) {
+        const float *restrict number = w->number + LANES * c, *restrict speed = w->speed + LANES * c;
         const float *restrict floor = w->floor + LANES * c, *restrict bounce = w->bounce + LANES * c;
-        const float *restrict along_x = w->along_x + LANES * c, *restrict along_y = w->along_y + LANES * c;
-        const float *restrict up = w->up + LANES * c;
+        const int shallow = w->shallow[c];
+        if (spread) {
+            x = w->toward_x + LANES * c;
+            y = w->toward_y + LANES * c;
+        }
         EACH_LANE {
-            const float down = power_of_two(decay[k] * height[k]);
-            const float direct = floor[k] * down, back = bounce[k] / down;
-            const float flat = (direct + back) * cosine[c][k];
-            u[0][k] += along_x[k] * flat;
-            u[1][k] += along_y[k] * flat;
-            u[2][k] += up[k] * (direct - back) * sine[c][k];
+            float direct = power_of_two(number[k] * height[k]), back = 0.0f;
+            if (shallow) {
+                back = bounce[k] / direct;
+                direct *= floor[k];
+            }
+            const float flat = speed[k] * ((direct + back) * cosine[c][k]);
+            u[2][k] += speed[k] * ((direct - back) * sine[c][k]);
+            if (spread) {
+                flat_x[k] += x[k] * flat;
+                flat_y[k] += y[k] * flat;
+            } else
+                flat_x[k] += flat;
         }
     }
-    for (int a = 0; a < 3; a++)
-        EACH_LANE u[a][k] *= ramp;
+    EACH_LANE {
+        u[0][k] = ramp * (spread ? flat_x[k] : flat_x[k] * x[k]);
+        u[1][k] = ramp * (spread ? flat_y[k] : flat_x[k] * y[k]);
+        u[2][k] *= ramp;
+    }
+}
+
+static void wave_motion(const sea *w, const lane *restrict ahead, float ramp,
+                        const lane *restrict at, const float *restrict chord, int whole,
+                        float *restrict elevation, lane *restrict u)
+{
+    const int averaged = chord[0] != 0.0f || chord[1] != 0.0f;
+#define SUMS(spread, averaged, whole)                                                            \
+    wave_sums(w, spread, averaged, whole, ahead, ramp, at, chord, elevation, u)
+    switch (4 * !!w->spread + 2 * averaged + !!whole) {
+    case 0: SUMS(0, 0, 0); break;
+    case 1: SUMS(0, 0, 1); break;
+    case 2: SUMS(0, 1, 0); break;
+    case 3: SUMS(0, 1, 1); break;
+    case 4: SUMS(1, 0, 0); break;
+    case 5: SUMS(1, 0, 1); break;
+    case 6: SUMS(1, 1, 0); break;
+    default: SUMS(1, 1, 1);
+    }
+#undef SUMS
 }
 
 static void current_at(const sea *w, const float *restrict z, lane *restrict u)
@@ -555,12 +638,16 @@ static void refresh_water(const body *b, const sea *w, const schedule *t, state 
     lane ahead[w->components + 1]; /* C has no arrays of none */
     phases(w, end, ahead);
     const float ramp = (float)ramp_at(t, end), span = (float)interval;
+    int next_float = 0; /* in the order of nodes */
     for (int i = 0; i < b->nodes; i++) {
         vec at, u;
         lane elevation;
         for (int a = 0; a < 3; a++)
             EACH_LANE at[a][k] = s->position[i][a][k] + span * s->velocity[i][a][k];
-        wave_motion(w, (const lane *)ahead, ramp, (const lane *)at, elevation, u);
+        const int floats = next_float < b->floats && b->float_nodes[next_float] == i;
+        next_float += floats;
+        wave_motion(w, (const lane *)ahead, ramp, (const lane *)at, b->chord + 2 * i, floats,
+                    elevation, u);
         current_at(w, at[2], s->current[i]);
         const float inertia = b->water_mass[i];
         for (int a = 0; a < 3; a++)
@@ -807,11 +894,12 @@ void seacage_march_forces(const body *b, const netting *net, state *s, float *to
 }
 
 /* Surface and wave velocity at places, the waves' ramp done: for the tests. */
-void seacage_march_water(const sea *w, const float *at, double now, float *elevation, float *u)
+void seacage_march_water(const sea *w, const float *at, const float *chord, int32_t whole,
+                         double now, float *elevation, float *u)
 {
     lane ahead[w->components + 1];
     phases(w, now, ahead);
-    wave_motion(w, (const lane *)ahead, 1.0f, (const lane *)at, elevation, (lane *)u);
+    wave_motion(w, (const lane *)ahead, 1.0f, (const lane *)at, chord, whole, elevation, (lane *)u);
 }
 
 /* March through some refreshes. Called again with `first` moved on, the numbers are the same
@@ -859,8 +947,9 @@ const layout_row seacage_layout_body[] = {
     FIELD(springs), FIELD(grounds), FIELD(lines), FIELD(bar_ends), FIELD(bend_nodes),
     FIELD(panel_corners), FIELD(cylinder_ends), FIELD(float_nodes), FIELD(spring_nodes),
     FIELD(ground_nodes), FIELD(line_bars), FIELD(weight), FIELD(mass), FIELD(water_mass),
-    FIELD(place), FIELD(bar_length), FIELD(bar_rate), FIELD(bar_damping), FIELD(bar_least),
-    FIELD(bend_stiffness), FIELD(panel_share), FIELD(panel_outline), FIELD(panel_mass), FIELD(cylinder_drag),
+    FIELD(place), FIELD(chord), FIELD(bar_length), FIELD(bar_rate), FIELD(bar_damping), FIELD(bar_least),
+    FIELD(bend_stiffness), FIELD(panel_share), FIELD(panel_outline), FIELD(panel_mass),
+    FIELD(cylinder_drag),
     FIELD(cylinder_skin), FIELD(float_stiffness), FIELD(float_draft), FIELD(float_height),
     FIELD(spring_place), FIELD(spring_stiffness), FIELD(spring_preload), FIELD(spring_damping),
     FIELD(ground_stiffness), FIELD(cylinder_series), FIELD(ground_level), LAYOUT_END(body),
@@ -875,9 +964,9 @@ const layout_row seacage_layout_netting[] = {
 
 #define FIELD(name) LAYOUT_FIELD(sea, name)
 const layout_row seacage_layout_sea[] = {
-    FIELD(components), FIELD(levels), FIELD(turns), FIELD(turns_per_second), FIELD(east),
-    FIELD(north), FIELD(decay), FIELD(amplitude), FIELD(along_x), FIELD(along_y), FIELD(up),
-    FIELD(floor), FIELD(bounce), FIELD(level_z), FIELD(current), FIELD(depth), LAYOUT_END(sea),
+    FIELD(components), FIELD(levels), FIELD(spread), FIELD(shallow), FIELD(turns),
+    FIELD(turns_per_second), FIELD(number), FIELD(toward_x), FIELD(toward_y), FIELD(amplitude),
+    FIELD(speed), FIELD(reach), FIELD(floor), FIELD(bounce), FIELD(level_z), FIELD(current), FIELD(depth), LAYOUT_END(sea),
 };
 #undef FIELD
 

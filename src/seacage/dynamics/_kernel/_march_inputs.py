@@ -14,11 +14,23 @@ from seacage.conventions import WATER_VISCOSITY
 from seacage.dynamics._kernel._library import kernel, parts_of
 from seacage.dynamics._kernel._structs import BodyStruct, NettingStruct, SeaStruct
 from seacage.dynamics._parts import Assembly, Bars
-from seacage.dynamics._physics import CYLINDER, DYNAMIC, NetLaw, Screen, bar_damping, facing
+from seacage.dynamics._physics import (
+    CYLINDER,
+    DYNAMIC,
+    UNFELT,
+    NetLaw,
+    Screen,
+    bar_damping,
+    facing,
+    wave_reach,
+)
 from seacage.ocean import Waves
 
 HELD = 1e20
 """Mass of a node that is held in its place [kg]."""
+
+NO_BED = 1e-12
+"""Least e^(−2kh) with which the bed changes a component where it is felt, in single precision."""
 
 _SCREEN, _REYNOLDS_SCREEN, _TWINES = range(3)
 
@@ -77,6 +89,7 @@ def from_lanes(values: np.ndarray) -> np.ndarray:
 
 def body_of(assembly: Assembly) -> BodyStruct:
     """The cage, its bars as their nodes lie in memory, which saves waiting for it."""
+    assert np.all(np.diff(assembly.floats.nodes) > 0), "the kernel meets floats in the nodes' order"
     bars, line_bars = _in_node_order(assembly)
     a = replace(assembly, bars=bars)
     return BodyStruct.cast(
@@ -87,6 +100,7 @@ def body_of(assembly: Assembly) -> BodyStruct:
         mass=np.where(a.fixed, HELD, a.mass),
         water_mass=a.water_mass,
         place=a.position,
+        chord=a.chord,
         bar_rate=bars.stiffness / bars.length,
         bar_damping=bar_damping(bars, a.mass),
         panel_mass=_panel_mass(a),
@@ -160,9 +174,15 @@ def sea_tables(ocean: Ocean, *, now: float = 0.0) -> SeaStruct:
     """Tables of the kernel's sea, for waves whose time 0 is ``now`` [s]."""
     tables = _wave_tables(ocean.waves)
     tables["turns"] += now * tables["turns_per_second"]
+    spread = not all(has_long_crests(waves) for waves in ocean.waves)
+    if not spread:
+        for name in ("toward_x", "toward_y"):
+            tables[name] = tables[name][:1]
     return SeaStruct.cast(
         components=len(tables["turns"]),
         levels=len(ocean.level_z),
+        spread=int(spread),
+        shallow=np.any(tables["bounce"] > 0.0, axis=1).astype(np.int32),
         depth=ocean.depth,
         level_z=ocean.level_z,
         current=to_lanes(ocean.current),
@@ -170,15 +190,16 @@ def sea_tables(ocean: Ocean, *, now: float = 0.0) -> SeaStruct:
     )
 
 
+def has_long_crests(waves: Waves) -> bool:
+    """Whether all components travel the same way, which the kernel sums up faster."""
+    return bool(np.all(waves.direction == waves.direction[:1]))
+
+
 def _wave_tables(waves: Sequence[Waves]) -> dict[str, np.ndarray]:
     """All components of all cases, [component][lane]; a case with fewer has flat ones."""
     count = max((len(w.amplitude) for w in waves), default=0)
-    if count == 0:
-        return {name: np.zeros((0, simulation_lanes()), k) for name, k in WAVE_KINDS.items()}
-    each = [
-        {name: np.pad(values, (0, count - len(values))) for name, values in _wave_table(w).items()}
-        for w in waves
-    ]
+    # a row at least: the directions of a sea without components are read too
+    each = [_wave_table(w, max(count, 1)) for w in waves]
     return {
         name: to_lanes(np.array([table[name] for table in each]), kind)
         for name, kind in WAVE_KINDS.items()
@@ -189,27 +210,35 @@ WAVE_KINDS: dict[str, Any] = {
     "turns": np.float64,
     "turns_per_second": np.float64,
     **dict.fromkeys(
-        ("east", "north", "decay", "amplitude", "along_x", "along_y", "up", "floor", "bounce"),
+        ("number", "toward_x", "toward_y", "amplitude", "speed", "reach", "floor", "bounce"),
         np.float32,
     ),
 }
 
 
-def _wave_table(waves: Waves) -> dict[str, np.ndarray]:
+def _wave_table(waves: Waves, count: int) -> dict[str, np.ndarray]:
+    """Components of one case, those that reach deepest first, then as many flat ones as fill up."""
     turn = 2.0 * np.pi
     # as the water itself meets them: what passes a place may be carried by a current
     speed = waves.amplitude * waves.intrinsic_frequency
     fading = np.exp(-2.0 * waves.wavenumber * waves.depth)
-    return {
+    # in deep water, nothing comes back from the bed: without it the kernel divides less
+    fading = np.where(fading < NO_BED, 0.0, fading)
+    table = {
         "turns": waves.phase / turn,
         "turns_per_second": waves.angular_frequency / turn,
-        "east": waves.wavenumber * waves.direction[:, 0] / turn,
-        "north": waves.wavenumber * waves.direction[:, 1] / turn,
-        "decay": waves.wavenumber / np.log(2.0),
+        "number": waves.wavenumber / turn,
+        "toward_x": waves.direction[:, 0],
+        "toward_y": waves.direction[:, 1],
         "amplitude": waves.amplitude,
-        "along_x": speed * waves.direction[:, 0],
-        "along_y": speed * waves.direction[:, 1],
-        "up": speed,
+        "speed": speed,
+        "reach": wave_reach(waves),
         "floor": 1.0 / (1.0 - fading),
         "bounce": fading / (1.0 - fading),
+    }
+    order = np.argsort(table["reach"], kind="stable")
+    flat = {"reach": UNFELT, "floor": 1.0}
+    return {
+        name: np.pad(values[order], (0, count - len(order)), constant_values=flat.get(name, 0.0))
+        for name, values in table.items()
     }

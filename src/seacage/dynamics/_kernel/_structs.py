@@ -176,7 +176,8 @@ class BodyStruct(Struct):
         *_each(ctypes.c_int32, "nodes bars bends panels cylinders floats springs grounds lines"),
         *_each(INTEGERS, "bar_ends bend_nodes panel_corners cylinder_ends float_nodes"),
         *_each(INTEGERS, "spring_nodes ground_nodes line_bars"),
-        *_each(FLOATS, "weight mass water_mass place bar_length bar_rate bar_damping bar_least"),
+        *_each(FLOATS, "weight mass water_mass place chord"),
+        *_each(FLOATS, "bar_length bar_rate bar_damping bar_least"),
         *_each(
             FLOATS,
             "bend_stiffness panel_share panel_outline panel_mass cylinder_drag cylinder_skin",
@@ -200,9 +201,10 @@ class NettingStruct(Struct):
 class SeaStruct(Struct):
     c_name = "sea"
     _fields_ = (
-        *_each(ctypes.c_int32, "components levels"),
+        *_each(ctypes.c_int32, "components levels spread"),
+        ("shallow", INTEGERS),
         *_each(DOUBLES, "turns turns_per_second"),
-        *_each(FLOATS, "east north decay amplitude along_x along_y up floor bounce"),
+        *_each(FLOATS, "number toward_x toward_y amplitude speed reach floor bounce"),
         *_each(FLOATS, "level_z current"),
         ("depth", ctypes.c_float),
     )

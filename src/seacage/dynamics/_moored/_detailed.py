@@ -78,6 +78,7 @@ def _tube_hung(cage: Cage, base: Assembly) -> Assembly:
         mass=_shift(base.mass, ring, lump),
         water_mass=_shift(base.water_mass, ring, water + tube.added_mass_coefficient * water),
         fixed=np.append(base.fixed, np.zeros(len(ring), dtype=bool)),
+        chord=np.vstack([base.chord, base.chord[ring]]),
         bars=Bars.joined(bars, _hangers(cage, ring, count)),
         bends=replace(bends, nodes=_move(bends.nodes, ring, moved)),
         cylinders=replace(pipes, ends=_move(pipes.ends, ring, moved)),

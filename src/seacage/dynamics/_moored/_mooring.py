@@ -64,6 +64,7 @@ def anchor_assembly(cage: Cage) -> Assembly:
         mass=mass,
         water_mass=water_mass,
         fixed=np.concatenate([base.fixed, anchors.is_anchor]),
+        chord=np.vstack([base.chord, np.zeros((len(anchors.position), 2))]),
         bars=Bars.joined(base.bars, frame, anchors.bars),
         lines=mooring_lines(cage, anchored=True),
         line_bars=_line_bars(cage, base, frame, anchors),

@@ -1,5 +1,6 @@
 """A cage as the solver sees it: nodes, bars, bends, panels, cylinders, floats and springs."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -132,6 +133,7 @@ class Assembly:
     mass: Float[np.ndarray, " node"]  # with the added mass of water [kg]
     water_mass: Float[np.ndarray, " node"]  # displaced and added: what moving water pushes [kg]
     fixed: Bool[np.ndarray, " node"]  # held in its place
+    chord: Float[np.ndarray, "node 2"]  # horizontal, over which its waves are averaged [m]
     bars: Bars
     bridles: Int[np.ndarray, " bridle"]  # which bars are the bridles
     lines: MooringLines  # whose tension is reported
@@ -169,6 +171,7 @@ class Assembly:
             mass=mass,
             water_mass=water_mass,
             fixed=np.zeros(len(position), dtype=bool),
+            chord=ring_chords(position, [cage.ring_nodes(ring) for ring in range(cage.rings)]),
             bars=bars,
             bridles=bridles,
             lines=mooring_lines(cage, anchored=False),
@@ -367,6 +370,17 @@ def _masses(
     put(np.array([cage.bottom_node]), tip, tip * WATER_DENSITY / steel, 0.5)
     put(np.arange(cage.node_count, len(position)), cage.frame.corner_mass, 0.0, 0.0)
     return own + added, displaced + added
+
+
+def ring_chords(
+    position: Float[np.ndarray, "node 3"], rings: Sequence[Int[np.ndarray, " spoke"]]
+) -> Float[np.ndarray, "node 2"]:
+    """Piece of a ring that each of its nodes stands for, horizontal; of other nodes zero [m]."""
+    chord = np.zeros((len(position), 2))
+    for ring in rings:
+        around = position[ring, :2]
+        chord[ring] = (np.roll(around, -1, axis=0) - np.roll(around, 1, axis=0)) / 2.0
+    return chord
 
 
 def corner_shares(corners: Int[np.ndarray, "panel 4"]) -> Float[np.ndarray, "panel 4"]:

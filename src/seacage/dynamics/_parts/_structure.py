@@ -19,6 +19,7 @@ from seacage.dynamics._parts._assembly import (
     Springs,
     corner_shares,
     panel_area,
+    ring_chords,
 )
 
 SINKING = 0.01
@@ -72,6 +73,7 @@ def assemble_structure(structure: Structure) -> Assembly:
         mass=lumps.mass + lumps.added,
         water_mass=lumps.displaced + lumps.added,
         fixed=fixed,
+        chord=ring_chords(position, [structure.ring_nodes(i) for i in range(len(structure.ring))]),
         bars=bars,
         bridles=lines,
         lines=MooringLines.alike(structure.line_names, "line"),

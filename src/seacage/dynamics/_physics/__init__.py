@@ -1,6 +1,7 @@
 """The physics, readable: loads, netting laws, wakes and the catenary."""
 
 from seacage.dynamics._physics._catenary import catenary
+from seacage.dynamics._physics._felt_waves import UNFELT, felt_waves, wave_reach
 from seacage.dynamics._physics._flow import steady_flow
 from seacage.dynamics._physics._loads import (
     DYNAMIC,
@@ -33,6 +34,7 @@ __all__ = [
     "LAWS",
     "LEVEL",
     "MOVING_LAWS",
+    "UNFELT",
     "Law",
     "MovingLaw",
     "NetLaw",
@@ -46,6 +48,7 @@ __all__ = [
     "catenary",
     "damped_tension",
     "facing",
+    "felt_waves",
     "kristiansen_faltinsen",
     "loland",
     "nodal_force",
@@ -53,5 +56,6 @@ __all__ = [
     "total_net_force",
     "wake_in_sight",
     "wake_share",
+    "wave_reach",
     "wet_share",
 ]

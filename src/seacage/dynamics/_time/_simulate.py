@@ -11,7 +11,7 @@ from jaxtyping import Float, Int
 
 from seacage.cage import Cage, Structure
 from seacage.conventions import InputError, Progress
-from seacage.dynamics._kernel import REFRESH, March, Ocean, Steps, simulation_lanes
+from seacage.dynamics._kernel import REFRESH, March, Ocean, Steps, has_long_crests, simulation_lanes
 from seacage.dynamics._parts import Assembly
 from seacage.dynamics._physics import MOVING_LAWS, MovingLaw
 from seacage.dynamics._time._forcing import draw_waves, ocean_of
@@ -166,9 +166,10 @@ def _simulate(
     _check_room(steps, assembly)
     report = _Report(progress, steps.whole * len(seas))
 
-    def run(block: slice) -> list[History]:
-        some = replace(ocean, waves=ocean.waves[block], current=ocean.current[block])
-        start = simulation.start(assembly, seas[block])
+    def run(block: Int[np.ndarray, " case"]) -> list[History]:
+        waves = [ocean.waves[case] for case in block]
+        some = replace(ocean, waves=waves, current=ocean.current[block])
+        start = simulation.start(assembly, [seas[case] for case in block])
         march = March(assembly, simulation.net_law(assembly, some), some, steps, start)
         for first in range(0, steps.whole, CHUNK):
             taken = min(CHUNK, steps.whole - first)
@@ -176,10 +177,17 @@ def _simulate(
             report(taken * march.cases)
         return histories(simulation, assembly, march, rest)
 
-    lanes = simulation_lanes()
+    blocks = _blocks(ocean)
     with ThreadPoolExecutor(workers) as pool:
-        blocks = pool.map(run, (slice(i, i + lanes) for i in range(0, len(seas), lanes)))
-        return [case for block in blocks for case in block]
+        ended = [history for block in pool.map(run, blocks) for history in block]
+    return [ended[place] for place in np.argsort(np.concatenate(blocks))]
+
+
+def _blocks(ocean: Ocean) -> list[Int[np.ndarray, " case"]]:
+    """Cases that travel together: those of long crests, which the kernel sums up in another way."""
+    long, lanes = np.array([has_long_crests(waves) for waves in ocean.waves]), simulation_lanes()
+    alike = (np.flatnonzero(long), np.flatnonzero(~long))
+    return [cases[i : i + lanes] for cases in alike for i in range(0, len(cases), lanes)]
 
 
 def _check(

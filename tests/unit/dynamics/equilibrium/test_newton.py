@@ -96,6 +96,7 @@ def standing_pole():
         mass=np.ones(2),
         water_mass=np.zeros(2),
         fixed=np.zeros(2, dtype=bool),
+        chord=np.zeros((2, 2)),
         bars=replace(
             PARTS.bars,
             ends=np.array([[0, 1]]),

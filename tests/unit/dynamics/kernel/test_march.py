@@ -101,6 +101,12 @@ def test_bars_in_the_order_of_nodes_keep_their_lines():
         np.testing.assert_array_equal(getattr(bars, name)[lines], before)
 
 
+def test_floats_out_of_the_order_of_nodes_are_a_mistake_of_ours():
+    floats = replace(ASSEMBLY.floats, nodes=ASSEMBLY.floats.nodes[::-1].copy())
+    with pytest.raises(AssertionError, match="order"):
+        march(assembly=replace(ASSEMBLY, floats=floats))
+
+
 def test_a_held_node_is_too_heavy_to_move():
     fixed = np.arange(len(ASSEMBLY.position)) == 2
     held = replace(ASSEMBLY, fixed=fixed)

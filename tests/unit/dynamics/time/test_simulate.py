@@ -212,6 +212,18 @@ def test_a_case_does_not_depend_on_its_place(company):
         np.testing.assert_array_equal(value, expected[order], err_msg=name)
 
 
+def test_a_case_does_not_depend_on_whether_crests_beside_it_are_long():
+    every = seas(4)
+    long = [sample_waves(sea, seed=i, depth=SMALL.site.water_depth) for i, sea in enumerate(every)]
+    spread = [replace(w, direction=np.roll(w.direction, 1, axis=1) * [1, -1]) for w in long]
+    for w in spread:
+        w.direction[: len(w.phase) // 2] *= -1.0
+    mixed = [spread[0], long[1], spread[2], long[3]]
+    together = quick(every, waves=mixed)
+    for case, own in enumerate(mixed):
+        assert_same(quick(every[case], waves=own), together, case)
+
+
 @pytest.mark.parametrize("workers", [2, 5])
 def test_a_case_does_not_depend_on_the_number_of_threads(workers, company):
     every = seas(len(company.result))
