@@ -162,7 +162,15 @@ def a_record(nodes: int, lines: int, lanes: int, samples: int) -> Any:
     )
 
 
-PARTS = {"bars": 2, "bends": 3, "panels": 4, "cylinders": 2, "floats": 1, "springs": 1}
+PARTS = {
+    "bars": 2,
+    "bends": 3,
+    "panels": 4,
+    "cylinders": 2,
+    "floats": 1,
+    "springs": 1,
+    "grounds": 1,
+}
 """Nodes of each."""
 
 NODES = {
@@ -172,6 +180,7 @@ NODES = {
     "cylinders": "cylinder_ends",
     "floats": "float_nodes",
     "springs": "spring_nodes",
+    "grounds": "ground_nodes",
 }
 """C's names of them."""
 
@@ -182,9 +191,9 @@ def a_graph(seed: int) -> tuple[int, dict[str, np.ndarray], Pattern]:
     rng = np.random.default_rng(seed)
     nodes = int(rng.integers(1, 9))
     graph = {n: indices(rng, nodes, int(rng.integers(0, 6)), ends) for n, ends in PARTS.items()}
-    stiff = {name: part for name, part in graph.items() if name != "cylinders"}
-    ends = tuple(PARTS[name] for name in stiff)
-    pattern = _pattern(nodes, ends, tuple(part.tobytes() for part in stiff.values()))
+    pattern = _pattern(
+        nodes, tuple(PARTS.values()), tuple(part.tobytes() for part in graph.values())
+    )
     return nodes, graph, pattern
 
 
@@ -266,8 +275,10 @@ def a_structure(rng: np.random.Generator, nodes: int, graph: dict[str, np.ndarra
     floats, springs = len(graph["floats"]), len(graph["springs"])
     shapes |= dict.fromkeys(("float_stiffness", "float_draft", "float_height"), (floats,))
     shapes |= dict.fromkeys(("spring_place", "spring_stiffness", "spring_preload"), (springs, 3))
+    shapes["ground_stiffness"] = (len(graph["grounds"]),)
     return c.AssemblyStruct.filled(
         nodes=nodes,
+        ground_level=float(doubles(rng, 1)[0]),
         **{name: len(part) for name, part in graph.items()},
         **{NODES[name]: part for name, part in graph.items()},
         bar_least=rng.choice([0.0, -np.inf], len(graph["bars"])),

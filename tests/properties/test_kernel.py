@@ -10,11 +10,16 @@ from seacage.dynamics import LAWS
 from seacage.dynamics._equilibrium._newton import nearer
 from seacage.dynamics._kernel._balance import Balance, Balancing
 from seacage.dynamics._kernel._library import kernel
+from seacage.dynamics._moored._mooring import anchor_assembly
 from seacage.dynamics._parts._assembly import Assembly
 from seacage.dynamics._physics._flow import steady_flow
 from seacage.dynamics._physics._loads import nodal_force
 
 ACE = Cage.named("ace")
+ANCHORED = anchor_assembly(
+    ACE.altered(mesh={"spokes": 16, "ring_depths_m": [0.0, 15.0], "cylinder_depth_m": 15.0})
+)
+"""On buoys and lines, some nodes of which the shaking puts into the sea bed."""
 
 
 @settings(max_examples=60)
@@ -22,6 +27,7 @@ ACE = Cage.named("ace")
     rings=st.integers(2, 6),
     spokes=st.integers(3, 12),
     cylinder=st.integers(1, 5),
+    anchored=st.booleans(),
     law=st.sampled_from(LAWS),
     wake=st.booleans(),
     waves=st.booleans(),
@@ -32,12 +38,13 @@ ACE = Cage.named("ace")
     seed=st.integers(0, 2**32 - 1),
 )
 def test_the_kernel_computes_the_definition(
-    rings, spokes, cylinder, law, wake, waves, pipe_drag, shaken, raised, cases, seed
+    rings, spokes, cylinder, anchored, law, wake, waves, pipe_drag, shaken, raised, cases, seed
 ):
     rng = np.random.default_rng(seed)
     cage = some_cage(rng, rings, spokes, cylinder)
     cage = cage.fouled(shallow=rng.uniform(0.0, 0.1), deep=rng.uniform(0.0, 0.1))
-    assembly = Assembly.of(cage.rotated(rng.uniform(0.0, 360.0)))
+    turned = Assembly.of(cage.rotated(rng.uniform(0.0, 360.0)))
+    assembly = ANCHORED if anchored else turned
     velocity = rng.uniform(-1.5, 1.5, (cases, 2))
     velocity[0] *= rng.integers(2)  # now and then still water
     variance = rng.uniform(0.0, 0.5, (cases, len(assembly.panels.depth))) if waves else None
@@ -70,6 +77,7 @@ def some_cage(rng, rings, spokes, cylinder):
     rings=st.integers(2, 5),
     spokes=st.integers(3, 10),
     cylinder=st.integers(1, 4),
+    anchored=st.booleans(),
     law=st.sampled_from(LAWS),
     held=st.booleans(),
     shaken=st.floats(0.01, 1.0),  # a bar cut to its length is taut or slack by rounding alone
@@ -80,11 +88,11 @@ def some_cage(rng, rings, spokes, cylinder):
     seed=st.integers(0, 2**32 - 1),
 )
 def test_the_kernel_takes_the_defined_step_towards_balance(
-    rings, spokes, cylinder, law, held, shaken, raised, moved, barrier, cases, seed
+    rings, spokes, cylinder, anchored, law, held, shaken, raised, moved, barrier, cases, seed
 ):
     rng = np.random.default_rng(seed)
     cage = some_cage(rng, rings, spokes, cylinder)
-    assembly = Assembly.of(cage)
+    assembly = ANCHORED if anchored else Assembly.of(cage)
     flow = steady_flow(assembly, rng.uniform(-1.0, 1.0, (cases, 2)), law=law)
     position = assembly.position + rng.normal(scale=shaken, size=(cases, *assembly.position.shape))
     position[..., 2] += raised
@@ -92,8 +100,8 @@ def test_the_kernel_takes_the_defined_step_towards_balance(
     # a shift beyond all that the water can turn: else a chance zero root would part the two
     begun = Balancing.begun(position, tension, barrier=barrier, shift=1e6)
     begun.moved[:] = moved
-    free = np.ones(len(assembly.position), dtype=bool)
-    free[cage.ring_nodes(0)] = not held
+    free = ~assembly.fixed
+    free[assembly.collar] = not held
     balance = Balance(
         free=free, tolerance=1e-3, reach=0.5, least_barrier=1e-7, least_shift=0.1, most_shift=1e7
     )

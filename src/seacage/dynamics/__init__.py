@@ -1,7 +1,7 @@
 """Loads on the cage in the sea, and the shapes and tensions that answer them."""
 
 from seacage.dynamics._kernel import simulation_lanes
-from seacage.dynamics._moored import Damage
+from seacage.dynamics._moored import Damage, Mooring
 from seacage.dynamics._physics import (
     LAWS,
     MOVING_LAWS,
@@ -20,7 +20,6 @@ from seacage.dynamics._time import (
     Followed,
     History,
     LineLoads,
-    Mooring,
     Statistics,
     damage_equivalent_load,
     extremes,

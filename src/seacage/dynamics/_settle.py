@@ -1,7 +1,7 @@
 """Equilibria of the cage in a steady current, many at once."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -10,9 +10,16 @@ from jaxtyping import Bool, Float, Int
 from seacage.cage import Cage
 from seacage.conventions import InputError, Result
 from seacage.dynamics._equilibrium import Equilibria, equilibria
-from seacage.dynamics._moored import assemble, part
+from seacage.dynamics._moored import Mooring, moor, part
 from seacage.dynamics._parts import Assembly
-from seacage.dynamics._physics import Law, SteadyFlow, bar_tension, steady_flow, total_net_force
+from seacage.dynamics._physics import (
+    Law,
+    SteadyFlow,
+    bar_tension,
+    nodal_force,
+    steady_flow,
+    total_net_force,
+)
 from seacage.ocean import SeaState, wave_velocity_variance
 
 
@@ -26,6 +33,11 @@ class Response:
         Where each node of the net is, and how far from its place in still water [m].
     bridle_tension
         Of each bridle [N].
+    line_names, line_tension
+        Of all lines of the mooring, the bridles first; an anchor line's at its corner [N].
+    anchor_load
+        Of each anchor line on its anchor, as the anchor lines are numbered: what points up is
+        uplift, what points down lies on the sea bed. Springs have none [N].
     net_force
         The water's load on the netting: zero in still water [N].
     volume, volume_fraction
@@ -48,6 +60,9 @@ class Response:
     node_position: Float[np.ndarray, "*case node 3"]
     node_displacement: Float[np.ndarray, "*case node 3"]
     bridle_tension: Float[np.ndarray, "*case bridle"]
+    line_names: tuple[str, ...]
+    line_tension: Float[np.ndarray, "*case line"]
+    anchor_load: Float[np.ndarray, "*case anchor 3"]
     net_force: Float[np.ndarray, "*case 3"]
     volume: Float[np.ndarray, "*case"]
     volume_fraction: Float[np.ndarray, "*case"]
@@ -63,6 +78,7 @@ def settle(
     sea: SeaState | Sequence[SeaState],
     *,
     law: Law = "kristiansen-faltinsen",
+    mooring: Mooring = "springs",
     mean_waves: bool = False,
     wake: bool = True,
     hold_collar: bool = False,
@@ -74,10 +90,11 @@ def settle(
     """Equilibrium of the moored cage in each sea's current.
 
     Net loads by a screen law with a wake on the down-stream half, tension-only netting
-    with its weight, elastic collar afloat, sinker tube on the cylinder's edge, bridles on
-    elastic frame corners. Netting above z = 0 is dry. Left out: the change of the current with
-    depth, and the motion of the water and the cage in waves, which ``simulate`` has.
-    A case's numbers do not depend on the cases beside it nor on ``workers``.
+    with its weight, elastic collar afloat, sinker tube on the cylinder's edge, bridles on a
+    frame with buoys and anchor lines or on elastic frame corners. Netting above z = 0 is dry.
+    Left out: the change of the current with depth, and the motion of the water and the cage in
+    waves, which ``simulate`` has. A case's numbers do not depend on the cases beside it nor on
+    ``workers``.
 
     A cage may have several equilibria. They are sought from so many first shapes: the net
     swung as the load asks, hanging straight, nearly flat, then swung aside. The first found
@@ -90,6 +107,9 @@ def settle(
         One sea state, or several: a leading case axis.
     law
         "aarsnes", "loland" or "kristiansen-faltinsen".
+    mooring
+        "springs" under the frame corners, or "catenary": frame ropes, buoys, and anchor lines
+        that lift off the sea bed and come to lie on it.
     mean_waves
         Take waves' mean effect on the net's drag; without it a sea with waves is refused,
         as an equilibrium has none.
@@ -100,7 +120,7 @@ def settle(
     collar_drag
         Whether the current drags on collar and sinker tube.
     parted
-        Names of bridles that bear nothing; displacements are from the whole cage at rest.
+        Names of lines that bear nothing; displacements are from the whole cage at rest.
     starts
         First shapes to seek equilibria from; 1 takes half the time of 2.
     workers
@@ -109,8 +129,8 @@ def settle(
     Raises
     ------
     InputError
-        Waves without ``mean_waves``, no sea at all, no start, a ``Structure``, a bridle that
-        the cage has not, or a cage that cannot float.
+        Waves without ``mean_waves``, no sea at all, no start, a ``Structure``, a line that
+        the mooring has not, or a cage that cannot float or has not what the mooring needs.
     """
     if not isinstance(cage, Cage):
         raise InputError(
@@ -119,15 +139,15 @@ def settle(
         )
     seas = [sea] if isinstance(sea, SeaState) else list(sea)
     _check(seas, mean_waves=mean_waves, starts=starts)
-    whole = assemble(cage).held() if hold_collar else assemble(cage)
-    assembly = part(whole, parted)
+    whole = moor(cage, mooring)
+    assembly = part(whole.held() if hold_collar else whole, parted)
     velocity = np.array([state.current_velocity for state in seas])
     variance = _wave_variance(cage, assembly, seas) if mean_waves else None
     flow = steady_flow(
         assembly, velocity, law=law, wake=wake, pipe_drag=collar_drag, wave_variance=variance
     )
     found = equilibria(assembly, flow, starts=starts, workers=workers)
-    rest = rest_shape(cage, hold_collar=hold_collar)
+    rest = rest_shape(cage, mooring=mooring, hold_collar=hold_collar)
     response = _response(cage, assembly, flow, found, rest)
     return _only_case(response) if isinstance(sea, SeaState) else response
 
@@ -141,13 +161,15 @@ def net_load(
     wake: bool = True,
 ) -> Float[np.ndarray, "3"]:
     """The current's load on the netting in a given shape, at rest [N]."""
-    assembly = Assembly.of(cage)  # the netting does not ask how the bridles are cut
+    assembly = Assembly.of(cage)  # the netting does not ask for the mooring
     flow = steady_flow(assembly, sea.current_velocity[None], law=law, wake=wake)
     return total_net_force(assembly.panels, flow, node_position[None])[0]
 
 
 @lru_cache(maxsize=16)
-def rest_shape(cage: Cage, *, hold_collar: bool = False) -> Float[np.ndarray, "node 3"]:
+def rest_shape(
+    cage: Cage, *, mooring: Mooring = "springs", hold_collar: bool = False
+) -> Float[np.ndarray, "node 3"]:
     """The net's shape in still water [m]; do not write into it.
 
     Raises
@@ -155,7 +177,8 @@ def rest_shape(cage: Cage, *, hold_collar: bool = False) -> Float[np.ndarray, "n
     InputError
         A cage that has no rest: its parts cannot hang together.
     """
-    assembly = assemble(cage).held() if hold_collar else assemble(cage)
+    whole = moor(cage, mooring)
+    assembly = whole.held() if hold_collar else whole
     found = equilibria(assembly, steady_flow(assembly, np.zeros((1, 2)), law="loland"))
     if found.result[0] != Result.CONVERGED:
         raise InputError(
@@ -199,10 +222,15 @@ def _response(
 ) -> Response:
     net = found.position[:, : cage.node_count]
     volume = cage.volume(net)
+    tension = bar_tension(assembly.bars, found.position)
+    anchors = cage.node_count + np.flatnonzero(assembly.fixed[cage.node_count :])
     return Response(
         node_position=net,
         node_displacement=net - rest,
-        bridle_tension=bar_tension(assembly.bars, found.position)[:, assembly.bridles],
+        bridle_tension=tension[:, assembly.bridles],
+        line_names=assembly.lines.names,
+        line_tension=tension[:, assembly.line_bars],
+        anchor_load=nodal_force(assembly, flow, found.position)[:, anchors],
         net_force=total_net_force(assembly.panels, flow, found.position),
         volume=volume,
         volume_fraction=volume / cage.volume(rest),
@@ -216,5 +244,5 @@ def _response(
 
 def _only_case(response: Response) -> Response:
     # asarray: one number of a case is still an array, of no axes.
-    fields = Response.__dataclass_fields__
-    return Response(**{name: np.asarray(getattr(response, name)[0]) for name in fields})
+    arrays = [name for name in Response.__dataclass_fields__ if name != "line_names"]
+    return replace(response, **{name: np.asarray(getattr(response, name)[0]) for name in arrays})

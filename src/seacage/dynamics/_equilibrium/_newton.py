@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.dynamics._kernel import Balance, Balancing
-from seacage.dynamics._parts import Assembly, Bars, Bends, Panels
+from seacage.dynamics._parts import Assembly, Bars, Bends, Cylinders, Panels
 from seacage.dynamics._physics import LEVEL, SteadyFlow, bar_force, nodal_force, wet_share
 
 Block = Float[np.ndarray, "part 3 3"]
@@ -30,7 +30,7 @@ def nearer(assembly: Assembly, flow: SteadyFlow, state: Balancing, balance: Bala
     lacks to meet it at x. The shift s [N/m] falls while steps stay within ``reach`` and
     rises where one has to be shortened. In a step a tension falls to no less than a
     twentieth, and once steps are short that of a stretched bar is at least √m, from where it
-    finds its place at once. Left out of K: the drag on pipes, part of their bending.
+    finds its place at once. Left out of K: part of the pipes' bending.
 
     References
     ----------
@@ -149,6 +149,7 @@ def tangent(
         *_bars(assembly.bars, position, rate, tension),
         *_bends(assembly.bends, position),
         *_panels(assembly, flow, position),
+        *_cylinders(assembly.cylinders, flow, position),
         *_supports(assembly, position),
     ]
 
@@ -256,6 +257,25 @@ def _dry_slopes(
     return entries
 
 
+def _cylinders(
+    cylinders: Cylinders, flow: SteadyFlow, position: Float[np.ndarray, "node 3"]
+) -> list[Entries]:
+    """Stiffness of a pipe's drag F = ½ q w l |v| v on either end, v = u − (u·t) t, as it turns."""
+    i, j = cylinders.ends.T
+    along = position[j] - position[i]
+    t = along / np.linalg.norm(along, axis=1, keepdims=True)
+    u = flow.direction[0]
+    slide = t @ u
+    v = u - slide[:, None] * t
+    speed = np.linalg.norm(v, axis=1)
+    slow = np.where(speed > 1e-9, slide / np.maximum(speed, 1e-9), 0.0)
+    turned = speed[:, None, None] * (_outer(v, t) - _outer(t, v))
+    turned -= slow[:, None, None] * _outer(v, v)
+    turned -= (speed * slide)[:, None, None] * (np.eye(3) - _outer(t, t))
+    block = (0.5 * flow.pipe_pressure[0] * cylinders.drag_width)[:, None, None] * turned
+    return [(i, i, block), (i, j, -block), (j, i, block), (j, j, -block)]
+
+
 def _supports(assembly: Assembly, position: Float[np.ndarray, "node 3"]) -> list[Entries]:
     floats, springs = assembly.floats, assembly.springs
     draft = floats.draft - position[floats.nodes, 2]
@@ -263,4 +283,11 @@ def _supports(assembly: Assembly, position: Float[np.ndarray, "node 3"]) -> list
     heave = np.zeros((len(draft), 3, 3))
     heave[:, 2, 2] = np.where(wet, floats.stiffness, 0.0)
     held = springs.stiffness[:, :, None] * np.eye(3)
-    return [(floats.nodes, floats.nodes, heave), (springs.nodes, springs.nodes, held)]
+    ground = assembly.ground
+    bed = np.zeros((len(ground.nodes), 3, 3))
+    bed[:, 2, 2] = np.where(position[ground.nodes, 2] < ground.level, ground.stiffness, 0.0)
+    return [
+        (floats.nodes, floats.nodes, heave),
+        (springs.nodes, springs.nodes, held),
+        (ground.nodes, ground.nodes, bed),
+    ]

@@ -107,6 +107,7 @@ def _fictitious_mass(
     np.add.at(stiffness, bends.nodes[:, 1], 16.0 * bends.stiffness / span**2)
     stiffness[assembly.floats.nodes] += assembly.floats.stiffness
     stiffness[assembly.springs.nodes] += assembly.springs.stiffness.max(axis=1)
+    stiffness[assembly.ground.nodes] += assembly.ground.stiffness
     return 0.6 * stiffness
 
 

@@ -20,9 +20,9 @@ typedef double vec[3][LANES];
 #define LOST 1e12 /* no cage bears such a force [N]: the case has left the finite numbers */
 
 typedef struct {
-    int32_t nodes, bars, bends, panels, cylinders, floats, springs;
+    int32_t nodes, bars, bends, panels, cylinders, floats, springs, grounds;
     const int32_t *bar_ends, *bend_nodes, *panel_corners, *cylinder_ends, *float_nodes,
-        *spring_nodes;
+        *spring_nodes, *ground_nodes;
     const double *weight;
     const double *bar_length, *bar_stiffness, *bar_least; /* least tension: 0 or -infinity */
     const double *bend_stiffness;
@@ -30,6 +30,8 @@ typedef struct {
     const double *cylinder_width;
     const double *float_stiffness, *float_draft, *float_height;
     const double *spring_place, *spring_stiffness, *spring_preload;
+    const double *ground_stiffness;
+    double ground_level;
 } assembly;
 
 typedef struct {
@@ -201,6 +203,14 @@ static void add_supports(const assembly *s, const vec *restrict x, vec *restrict
             const double stiffness = s->spring_stiffness[3 * b + a];
             const double preload = s->spring_preload[3 * b + a];
             EACH_LANE f[i][a][k] += preload - stiffness * (x[i][a][k] - place);
+        }
+    }
+    for (int b = 0; b < s->grounds; b++) {
+        const int i = s->ground_nodes[b];
+        const double stiffness = s->ground_stiffness[b], level = s->ground_level;
+        EACH_LANE {
+            const double sunk = level - x[i][2][k];
+            f[i][2][k] += sunk > 0.0 ? stiffness * sunk : 0.0;
         }
     }
 }

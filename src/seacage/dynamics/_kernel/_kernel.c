@@ -100,11 +100,13 @@ void seacage_relax(const assembly *s, const flow *w, const relaxation *r, relaxi
 #define FIELD(name) LAYOUT_FIELD(assembly, name)
 const layout_row seacage_layout_assembly[] = {
     FIELD(nodes), FIELD(bars), FIELD(bends), FIELD(panels), FIELD(cylinders), FIELD(floats),
-    FIELD(springs), FIELD(bar_ends), FIELD(bend_nodes), FIELD(panel_corners), FIELD(cylinder_ends),
-    FIELD(float_nodes), FIELD(spring_nodes), FIELD(weight), FIELD(bar_length), FIELD(bar_stiffness),
-    FIELD(bar_least), FIELD(bend_stiffness), FIELD(panel_share), FIELD(panel_outline),
-    FIELD(cylinder_width), FIELD(float_stiffness), FIELD(float_draft), FIELD(float_height),
-    FIELD(spring_place), FIELD(spring_stiffness), FIELD(spring_preload), LAYOUT_END(assembly),
+    FIELD(springs), FIELD(grounds), FIELD(bar_ends), FIELD(bend_nodes), FIELD(panel_corners),
+    FIELD(cylinder_ends), FIELD(float_nodes), FIELD(spring_nodes), FIELD(ground_nodes),
+    FIELD(weight), FIELD(bar_length), FIELD(bar_stiffness), FIELD(bar_least),
+    FIELD(bend_stiffness), FIELD(panel_share), FIELD(panel_outline), FIELD(cylinder_width),
+    FIELD(float_stiffness), FIELD(float_draft), FIELD(float_height), FIELD(spring_place),
+    FIELD(spring_stiffness), FIELD(spring_preload), FIELD(ground_stiffness), FIELD(ground_level),
+    LAYOUT_END(assembly),
 };
 #undef FIELD
 

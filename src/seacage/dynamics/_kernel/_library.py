@@ -228,12 +228,14 @@ def parts_of(assembly: Assembly) -> dict[str, Any]:
         "cylinders": len(a.cylinders.drag_width),
         "floats": len(a.floats.nodes),
         "springs": len(a.springs.nodes),
+        "grounds": len(a.ground.nodes),
         "bar_ends": a.bars.ends,
         "bend_nodes": a.bends.nodes,
         "panel_corners": a.panels.corners,
         "cylinder_ends": a.cylinders.ends,
         "float_nodes": a.floats.nodes,
         "spring_nodes": a.springs.nodes,
+        "ground_nodes": a.ground.nodes,
         "weight": a.weight,
         "bar_length": a.bars.length,
         "bar_least": np.where(a.bars.pushed, -np.inf, 0.0),
@@ -246,6 +248,8 @@ def parts_of(assembly: Assembly) -> dict[str, Any]:
         "spring_place": a.position[a.springs.nodes],
         "spring_stiffness": a.springs.stiffness,
         "spring_preload": a.springs.preload,
+        "ground_stiffness": a.ground.stiffness,
+        "ground_level": a.ground.level,
     }
 
 

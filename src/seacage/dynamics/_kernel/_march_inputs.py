@@ -93,9 +93,7 @@ def body_of(assembly: Assembly) -> BodyStruct:
     bars, line_bars = _in_node_order(assembly)
     a = replace(assembly, bars=bars)
     return BodyStruct.cast(
-        grounds=len(a.ground.nodes),
         lines=len(line_bars),
-        ground_nodes=a.ground.nodes,
         line_bars=line_bars,
         mass=np.where(a.fixed, HELD, a.mass),
         water_mass=a.water_mass,
@@ -107,8 +105,6 @@ def body_of(assembly: Assembly) -> BodyStruct:
         cylinder_drag=DYNAMIC / 2.0 * a.cylinders.drag_width,
         cylinder_skin=DYNAMIC / 2.0 * a.cylinders.skin_width,
         spring_damping=a.springs.damping,
-        ground_stiffness=a.ground.stiffness,
-        ground_level=a.ground.level,
         cylinder_series=_cylinder_series(),
         **parts_of(a),
     )

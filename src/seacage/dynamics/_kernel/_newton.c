@@ -18,7 +18,8 @@ typedef struct {
                                       at the end the number of all), its diagonal one */
     const int32_t *column;         /* of each block */
     const int32_t *order;          /* which node each row is of */
-    const int32_t *bars, *bends, *panels, *floats, *springs; /* [part][i][j]: their blocks */
+    const int32_t *bars, *bends, *panels, *cylinders, *floats, *springs, *grounds; /* [part][i][j]:
+                                      their blocks */
 } pattern;
 
 typedef struct {
@@ -232,6 +233,50 @@ static void linearise_panels(const assembly *s, const flow *f, const pattern *p,
     }
 }
 
+/* How a cylinder's drag turns with it; half of it falls on either end. */
+static void linearise_cylinders(const assembly *s, const flow *f, const pattern *p,
+                                const vec *restrict x, bench *w)
+{
+    const double *restrict u = f->direction;
+    for (int q = 0; q < s->cylinders; q++) {
+        const int i = s->cylinder_ends[2 * q], j = s->cylinder_ends[2 * q + 1];
+        const double width = 0.5 * s->cylinder_width[q];
+        const int32_t *to = p->cylinders + 4 * q;
+        block turns;
+        EACH_LANE {
+            double t[3], v[3], tt = 0.0, ut = 0.0, vv = 0.0;
+            for (int a = 0; a < 3; a++) {
+                t[a] = x[j][a][k] - x[i][a][k];
+                tt += t[a] * t[a];
+            }
+            const double over = 1.0 / sqrt(tt);
+            for (int a = 0; a < 3; a++) {
+                t[a] *= over;
+                ut += t[a] * u[a * LANES + k];
+            }
+            for (int a = 0; a < 3; a++) {
+                v[a] = u[a * LANES + k] - ut * t[a];
+                vv += v[a] * v[a];
+            }
+            const double speed = sqrt(vv), load = f->pipe_pressure[k] * width;
+            const double slow = speed > 1e-9 ? ut / speed : 0.0;
+            for (int a = 0; a < 3; a++)
+                for (int c = 0; c < 3; c++)
+                    turns[a][c][k] = load * (speed * (v[a] * t[c] - t[a] * v[c])
+                                             - slow * v[a] * v[c]
+                                             - speed * ut * ((a == c) - t[a] * t[c]));
+        }
+        for (int a = 0; a < 3; a++)
+            for (int c = 0; c < 3; c++)
+                EACH_LANE {
+                    w->blocks[to[0]][a][c][k] += turns[a][c][k];
+                    w->blocks[to[1]][a][c][k] -= turns[a][c][k];
+                    w->blocks[to[2]][a][c][k] += turns[a][c][k];
+                    w->blocks[to[3]][a][c][k] -= turns[a][c][k];
+                }
+    }
+}
+
 static void linearise_supports(const assembly *s, const pattern *p, const vec *restrict x, bench *w)
 {
     for (int q = 0; q < s->floats; q++) {
@@ -246,6 +291,11 @@ static void linearise_supports(const assembly *s, const pattern *p, const vec *r
     for (int q = 0; q < s->springs; q++)
         for (int a = 0; a < 3; a++)
             EACH_LANE w->blocks[p->springs[q]][a][a][k] += s->spring_stiffness[3 * q + a];
+    for (int q = 0; q < s->grounds; q++) {
+        const int i = s->ground_nodes[q];
+        const double stiffness = s->ground_stiffness[q], level = s->ground_level;
+        EACH_LANE w->blocks[p->grounds[q]][2][2][k] += x[i][2][k] < level ? stiffness : 0.0;
+    }
 }
 
 /* Forces, and the slope with which they fall as nodes move. */
@@ -258,6 +308,7 @@ static void linearise(const assembly *s, const flow *f, const pattern *p, const 
     linearise_bars(s, p, r, b, w);
     linearise_bends(s, p, b->position, w);
     linearise_panels(s, f, p, b->position, w);
+    linearise_cylinders(s, f, p, b->position, w);
     linearise_supports(s, p, b->position, w);
     for (int i = 0; i < s->nodes; i++) {
         const double free = r->free[p->order[i]], held = free > 0.0 ? 0.0 : HELD;
@@ -515,7 +566,8 @@ void seacage_balance(const assembly *s, const flow *f, const pattern *p, const b
 #define FIELD(name) LAYOUT_FIELD(pattern, name)
 const layout_row seacage_layout_pattern[] = {
     FIELD(row), FIELD(diagonal), FIELD(column), FIELD(order), FIELD(bars), FIELD(bends),
-    FIELD(panels), FIELD(floats), FIELD(springs), LAYOUT_END(pattern),
+    FIELD(panels), FIELD(cylinders), FIELD(floats), FIELD(springs), FIELD(grounds),
+    LAYOUT_END(pattern),
 };
 #undef FIELD
 

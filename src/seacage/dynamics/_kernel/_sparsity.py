@@ -11,6 +11,9 @@ from scipy.sparse.linalg import splu
 
 from seacage.dynamics._parts import Assembly
 
+PARTS = ("bars", "bends", "panels", "cylinders", "floats", "springs", "grounds")
+"""Parts of an assembly that stiffen it, in the order of a pattern's fields."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Pattern:
@@ -24,7 +27,7 @@ class Pattern:
         Of each block.
     order
         Which node each row (and column) is of.
-    bars, bends, panels, floats, springs
+    bars, bends, panels, cylinders, floats, springs, grounds
         Which block takes what each part adds for each pair of its nodes.
     """
 
@@ -35,14 +38,17 @@ class Pattern:
     bars: Int[np.ndarray, "bar 2 2"]
     bends: Int[np.ndarray, "bend 3 3"]
     panels: Int[np.ndarray, "panel 4 4"]
+    cylinders: Int[np.ndarray, "cylinder 2 2"]
     floats: Int[np.ndarray, "float 1 1"]
     springs: Int[np.ndarray, "spring 1 1"]
+    grounds: Int[np.ndarray, "ground 1 1"]
 
     @classmethod
     def of(cls, assembly: Assembly) -> "Pattern":
         """Work out a pattern, or remember it: cages with one graph share it."""
         a = assembly
-        parts = (a.bars.ends, a.bends.nodes, a.panels.corners, a.floats.nodes, a.springs.nodes)
+        several = (a.bars.ends, a.bends.nodes, a.panels.corners, a.cylinders.ends)
+        parts = (*several, a.floats.nodes, a.springs.nodes, a.ground.nodes)
         parts = tuple(np.ascontiguousarray(part, dtype=np.int32) for part in parts)
         ends = tuple(part.shape[1] if part.ndim == 2 else 1 for part in parts)
         return _pattern(len(a.position), ends, tuple(part.tobytes() for part in parts))
@@ -64,8 +70,7 @@ def _pattern(nodes: int, ends: tuple[int, ...], parts: tuple[bytes, ...]) -> Pat
         ranked = rank[part]
         return np.searchsorted(key, ranked[:, :, None] * nodes + ranked[:, None, :])
 
-    names = ("bars", "bends", "panels", "floats", "springs")
-    taken = {name: places(part) for name, part in zip(names, graph, strict=True)}
+    taken = {name: places(part) for name, part in zip(PARTS, graph, strict=True)}
     numbers = {
         "row": np.searchsorted(filled[0], np.arange(nodes + 1)),
         "diagonal": np.searchsorted(key, np.arange(nodes) * (nodes + 1)),

@@ -115,12 +115,13 @@ def _each(kind: Any, names: str) -> tuple[tuple[str, Any], ...]:
 class AssemblyStruct(Struct):
     c_name = "assembly"
     _fields_ = (
-        *_each(ctypes.c_int32, "nodes bars bends panels cylinders floats springs"),
+        *_each(ctypes.c_int32, "nodes bars bends panels cylinders floats springs grounds"),
         *_each(INTEGERS, "bar_ends bend_nodes panel_corners cylinder_ends float_nodes"),
-        *_each(INTEGERS, "spring_nodes"),
+        *_each(INTEGERS, "spring_nodes ground_nodes"),
         *_each(DOUBLES, "weight bar_length bar_stiffness bar_least bend_stiffness panel_share"),
         *_each(DOUBLES, "panel_outline cylinder_width float_stiffness float_draft float_height"),
-        *_each(DOUBLES, "spring_place spring_stiffness spring_preload"),
+        *_each(DOUBLES, "spring_place spring_stiffness spring_preload ground_stiffness"),
+        ("ground_level", ctypes.c_double),
     )
 
 
@@ -145,7 +146,10 @@ class RelaxingStruct(Struct):
 
 class PatternStruct(Struct):
     c_name = "pattern"
-    _fields_ = _each(INTEGERS, "row diagonal column order bars bends panels floats springs")
+    _fields_ = (
+        *_each(INTEGERS, "row diagonal column order bars bends panels cylinders floats springs"),
+        ("grounds", INTEGERS),
+    )
 
 
 class BalanceStruct(Struct):

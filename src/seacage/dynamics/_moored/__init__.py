@@ -1,5 +1,6 @@
 """A cage on its mooring: pretension, anchor lines, more detail and stable masses."""
 
+from seacage.dynamics._moored._choice import Mooring, moor
 from seacage.dynamics._moored._detailed import Damage, broken, full_assembly
 from seacage.dynamics._moored._mass_scaling import scale_mass
 from seacage.dynamics._moored._mooring import anchor_assembly
@@ -8,10 +9,12 @@ from seacage.dynamics._moored._pretension import assemble
 
 __all__ = [
     "Damage",
+    "Mooring",
     "anchor_assembly",
     "assemble",
     "broken",
     "full_assembly",
+    "moor",
     "part",
     "scale_mass",
 ]

@@ -95,7 +95,8 @@ def resting_line(cage: Cage) -> LineShape:
     if length.sum() <= bed:
         raise InputError(
             f"Cage {cage.name}: an anchor line of {length.sum():.0f} m does not reach the sea bed "
-            f"{bed:.0f} m below the frame. Lengthen rope_length_m or chain_length_m."
+            f"{bed:.0f} m below the frame. Lengthen rope_length_m or chain_length_m, or pass "
+            "mooring='springs'."
         )
 
     def shape(slope: float) -> LineShape:
@@ -126,5 +127,5 @@ def _check(name: str, parts: AnchorLines) -> None:
         if value == 0.0:
             raise InputError(
                 f"Cage {name}: anchor_lines, {key} = 0, but a line needs some. Give a number "
-                "above 0, or moor the cage on springs."
+                "above 0, or pass mooring='springs'."
             )

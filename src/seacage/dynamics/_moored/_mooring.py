@@ -128,7 +128,7 @@ def _directions(cage: Cage) -> tuple[Float[np.ndarray, "line 2"], Int[np.ndarray
     if per_corner < 1:
         raise InputError(
             f"Cage {cage.name}: per_corner = {per_corner}, but a frame needs anchor lines. Give "
-            "2, or moor the cage on springs."
+            "2, or pass mooring='springs'."
         )
     spread = np.pi / 4.0 * (np.linspace(-1.0, 1.0, per_corner) if per_corner > 1 else np.zeros(1))
     outward = np.arctan2(cage.corner_position[:, 1], cage.corner_position[:, 0])
@@ -146,7 +146,8 @@ def _buoy_load(
     if lift.max() >= cage.frame.buoy_buoyancy:
         raise InputError(
             f"Cage {cage.name}: a corner buoy of buoy_buoyancy_n = {cage.frame.buoy_buoyancy:g} "
-            f"cannot carry the {lift.max() / 1e3:.1f} kN that anchor lines and bridles hang on it."
+            f"cannot carry the {lift.max() / 1e3:.1f} kN that anchor lines and bridles hang on it. "
+            "Give a larger one, or pass mooring='springs'."
         )
     return lift
 
@@ -168,7 +169,7 @@ def _frame(cage: Cage, shape: LineShape, bridles: Float[np.ndarray, "corner 3"])
     if stiffness == 0.0:
         raise InputError(
             f"Cage {cage.name}: frame, rope_axial_stiffness_n = 0, but free corners need ropes "
-            "between them. Give a number above 0, or moor the cage on springs."
+            "between them. Give a number above 0, or pass mooring='springs'."
         )
     return Bars.alike(
         cage.node_count + ends,

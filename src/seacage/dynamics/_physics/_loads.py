@@ -10,7 +10,16 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.conventions import WATER_DENSITY, Rows
-from seacage.dynamics._parts import Assembly, Bars, Bends, Cylinders, Floats, Panels, Springs
+from seacage.dynamics._parts import (
+    Assembly,
+    Bars,
+    Bends,
+    Cylinders,
+    Floats,
+    Ground,
+    Panels,
+    Springs,
+)
 
 Nodal = Float[np.ndarray, "case node 3"]
 
@@ -63,6 +72,7 @@ def nodal_force(assembly: Assembly, flow: SteadyFlow, position: Nodal) -> Nodal:
     force += cylinder_force(assembly.cylinders, flow, position)
     force += float_force(assembly.floats, position)
     force += spring_force(assembly.springs, assembly.position, position)
+    force += bed_force(assembly.ground, position)
     force[..., 2] += assembly.weight
     return force
 
@@ -201,6 +211,14 @@ def spring_force(springs: Springs, design: Float[np.ndarray, "node 3"], position
     force = np.zeros_like(position)
     moved = position[:, springs.nodes] - design[springs.nodes]
     force[:, springs.nodes] = springs.preload - springs.stiffness * moved
+    return force
+
+
+def bed_force(ground: Ground, position: Nodal) -> Nodal:
+    """Push of the sea bed on what sinks into it; friction is left out [N]."""
+    force = np.zeros_like(position)
+    sunk = np.maximum(ground.level - position[:, ground.nodes, 2], 0.0)
+    force[:, ground.nodes, 2] = ground.stiffness * sunk
     return force
 
 

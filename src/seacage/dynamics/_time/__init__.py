@@ -6,7 +6,6 @@ from seacage.dynamics._time._follow import Followed, follow
 from seacage.dynamics._time._history import History
 from seacage.dynamics._time._line_loads import LineLoads
 from seacage.dynamics._time._simulate import simulate
-from seacage.dynamics._time._simulation import Mooring
 from seacage.dynamics._time._statistics import Statistics
 from seacage.dynamics._time._weather import AbstractWeather
 
@@ -16,7 +15,6 @@ __all__ = [
     "Followed",
     "History",
     "LineLoads",
-    "Mooring",
     "Statistics",
     "damage_equivalent_load",
     "extremes",

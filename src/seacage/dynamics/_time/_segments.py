@@ -7,14 +7,13 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from seacage.cage import Cage
-from seacage.conventions import compass
+from seacage.dynamics._equilibrium import equilibria
 from seacage.dynamics._kernel import REFRESH, March, Ocean, Steps
-from seacage.dynamics._moored import Damage, broken, full_assembly, scale_mass
+from seacage.dynamics._moored import Damage, broken, full_assembly, moor, scale_mass
 from seacage.dynamics._parts import Assembly
-from seacage.dynamics._physics import MovingLaw, NetLaw, wake_in_sight
-from seacage.dynamics._settle import rest_shape, settle
+from seacage.dynamics._physics import MovingLaw, NetLaw, steady_flow, wake_in_sight
 from seacage.dynamics._time._weather import AbstractWeather
-from seacage.ocean import MAX_CURRENT_SPEED, SeaState
+from seacage.ocean import MAX_CURRENT_SPEED
 
 HOLD = 8
 """Time steps through which the water's load is held."""
@@ -193,17 +192,14 @@ def _steps(course: Course, time_step: float) -> Steps:
 def _start(
     cage: Cage, assembly: Assembly, current: Float[np.ndarray, "stretch 2"]
 ) -> Float[np.ndarray, "stretch node 3"]:
-    """The bare cage's equilibria on springs, and the tube below its ring: near enough to begin."""
-    speed = np.minimum(np.linalg.norm(current, axis=1), MAX_CURRENT_SPEED)
-    seas = [
-        SeaState(current_speed=float(each), current_to=float(to))
-        for each, to in zip(speed, compass(current), strict=True)
-    ]
-    settled = settle(cage, seas, law="loland", starts=1).node_position
+    """The cage's equilibria with the tube on its ring, then hung below: near enough to begin."""
+    speed = np.linalg.norm(current, axis=1, keepdims=True)
+    bounded = current * np.minimum(1.0, MAX_CURRENT_SPEED / np.maximum(speed, 1e-9))
+    moored = moor(cage, "catenary")
+    settled = equilibria(moored, steady_flow(moored, bounded, law="loland")).position
     known = np.isfinite(settled).all(axis=(1, 2), keepdims=True)
-    net = np.where(known, settled, rest_shape(cage))
-    start = np.repeat(assembly.position[None], len(seas), axis=0)
-    start[:, : cage.node_count] = net
+    start = np.repeat(assembly.position[None], len(current), axis=0)
+    start[:, : len(moored.position)] = np.where(known, settled, moored.position)
     ring = cage.ring_nodes(cage.tube_ring)
-    start[:, -len(ring) :] = net[:, ring] - np.array([0.0, 0.0, cage.sinker_tube.hung_below])
+    start[:, -len(ring) :] = start[:, ring] - np.array([0.0, 0.0, cage.sinker_tube.hung_below])
     return start

@@ -12,12 +12,13 @@ from jaxtyping import Float, Int
 from seacage.cage import Cage, Structure
 from seacage.conventions import InputError, Progress
 from seacage.dynamics._kernel import REFRESH, March, Ocean, Steps, has_long_crests, simulation_lanes
+from seacage.dynamics._moored import Mooring
 from seacage.dynamics._parts import Assembly
 from seacage.dynamics._physics import MOVING_LAWS, MovingLaw
 from seacage.dynamics._time._forcing import draw_waves, ocean_of
 from seacage.dynamics._time._history import History
 from seacage.dynamics._time._reduction import histories, stack
-from seacage.dynamics._time._simulation import Mooring, Simulation
+from seacage.dynamics._time._simulation import Simulation
 from seacage.ocean import CurrentProfile, SeaState, Waves
 
 HOLD = 4

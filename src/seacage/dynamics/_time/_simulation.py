@@ -1,22 +1,20 @@
 """Settings of a simulation in time, and the assembly and the start that follow from them."""
 
 from dataclasses import dataclass, replace
-from typing import Literal
 
 import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.cage import Cage, Structure
 from seacage.conventions import InputError
+from seacage.dynamics._equilibrium import equilibria
 from seacage.dynamics._kernel import Ocean, Steps
-from seacage.dynamics._moored import anchor_assembly, assemble, part, scale_mass
+from seacage.dynamics._moored import Mooring, moor, part, scale_mass
 from seacage.dynamics._parts import Assembly, assemble_structure
-from seacage.dynamics._physics import MovingLaw, NetLaw
-from seacage.dynamics._settle import rest_shape, settle
+from seacage.dynamics._physics import MovingLaw, NetLaw, steady_flow
+from seacage.dynamics._settle import rest_shape
 from seacage.dynamics._time._forcing import wakes
 from seacage.ocean import SeaState
-
-Mooring = Literal["springs", "catenary"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -58,13 +56,8 @@ class Simulation:
         return part(scale_mass(assembly, self.steps.time_step)[0], self.parted)
 
     def _moored(self) -> Assembly:
-        if self.mooring not in ("springs", "catenary"):
-            raise InputError(
-                f"simulate: no mooring {self.mooring!r}; there are: springs, catenary."
-            )
         if isinstance(self.cage, Cage):
-            on_anchors = self.mooring == "catenary"
-            return anchor_assembly(self.cage) if on_anchors else assemble(self.cage)
+            return moor(self.cage, self.mooring)
         if self.mooring != "springs":
             raise InputError(
                 f"simulate: mooring = {self.mooring!r}, but structure {self.cage.name} has lines "
@@ -82,23 +75,19 @@ class Simulation:
         """Shape in still water; a structure's is the design [m]."""
         if isinstance(self.cage, Structure):
             return self.cage.design_position
-        return rest_shape(self.cage, hold_collar=self.hold_collar)
+        return rest_shape(self.cage, mooring=self.mooring, hold_collar=self.hold_collar)
 
     def start(self, assembly: Assembly, seas: list[SeaState]) -> Float[np.ndarray, "case node 3"]:
         """Equilibria in the sea's surface current; it is only a start, so any will do."""
         start = np.repeat(assembly.position[None], len(seas), axis=0)
         if isinstance(self.cage, Structure):
             return start
-        still = [SeaState(current_speed=s.current_speed, current_to=s.current_to) for s in seas]
-        settled = settle(
-            self.cage,
-            still,
+        flow = steady_flow(
+            assembly,
+            np.array([sea.current_velocity for sea in seas]),
             law="loland" if self.law == "morison" else self.law,
             wake=self.wake,
-            hold_collar=self.hold_collar,
-            parted=[name for name in self.parted if name in self.cage.bridle_names],
-            starts=1,
-        ).node_position
-        known = np.isfinite(settled).all(axis=(1, 2), keepdims=True)
-        start[:, : self.cage.node_count] = np.where(known, settled, self.rest)
-        return start
+        )
+        settled = equilibria(assembly, flow).position
+        start[:, : self.cage.node_count] = self.rest
+        return np.where(np.isfinite(settled).all(axis=(1, 2), keepdims=True), settled, start)

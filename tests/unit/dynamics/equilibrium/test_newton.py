@@ -10,6 +10,7 @@ from seacage.dynamics import LAWS, rest_shape
 from seacage.dynamics._equilibrium._newton import dense, hooke, nearer, tangent
 from seacage.dynamics._kernel._balance import Balance, Balancing
 from seacage.dynamics._kernel._library import kernel
+from seacage.dynamics._moored._mooring import anchor_assembly
 from seacage.dynamics._moored._pretension import assemble
 from seacage.dynamics._physics._flow import steady_flow
 from seacage.dynamics._physics._loads import nodal_force
@@ -31,22 +32,23 @@ def begun(position, *, borne=1000.0):
     return Balancing.begun(position[None].copy(), tension[None], barrier=1e4, shift=30.0)
 
 
-def swaying(scale):
-    return PARTS.position + np.random.default_rng(0).normal(scale=scale, size=PARTS.position.shape)
+def swaying(scale, parts=PARTS):
+    return parts.position + np.random.default_rng(0).normal(scale=scale, size=parts.position.shape)
 
 
 @pytest.mark.parametrize("raised", [0.0, 10.0])  # that panels are partly dry
 @pytest.mark.parametrize("law", LAWS)
-def test_the_tangent_is_the_slope_of_the_force(law, raised):
-    flow = steady_flow(PARTS, np.array([[0.5, 0.3]]), law=law, pipe_drag=False)
-    position = swaying(0.2) + np.array([0.0, 0.0, raised])
+@pytest.mark.parametrize("parts", [PARTS, anchor_assembly(COARSE)], ids=["springs", "anchors"])
+def test_the_tangent_is_the_slope_of_the_force(law, parts, raised):
+    flow = steady_flow(parts, np.array([[0.5, 0.3]]), law=law)
+    position = swaying(0.2, parts) + np.array([0.0, 0.0, raised])
     direction = np.random.default_rng(1).normal(size=position.shape)
     ahead, back = (
-        nodal_force(PARTS, flow, (position + step * direction)[None])[0] for step in (1e-6, -1e-6)
+        nodal_force(parts, flow, (position + step * direction)[None])[0] for step in (1e-6, -1e-6)
     )
     slope = (ahead - back) / 2e-6
-    rate, tension = hooke(PARTS.bars, position)
-    blocks = tangent(PARTS, flow, position, rate=rate, tension=tension)
+    rate, tension = hooke(parts.bars, position)
+    blocks = tangent(parts, flow, position, rate=rate, tension=tension)
     found = -(dense(blocks, len(position)) @ direction.ravel()).reshape(-1, 3)
     np.testing.assert_allclose(found, slope, atol=1e-6 * np.abs(slope).max())
 

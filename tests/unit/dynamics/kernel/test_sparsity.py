@@ -5,11 +5,12 @@ import pytest
 
 from seacage.cage import Cage
 from seacage.dynamics._kernel._sparsity import Pattern
+from seacage.dynamics._moored._mooring import anchor_assembly
 from seacage.dynamics._parts._assembly import Assembly
 
 ACE = Cage.named("ace")
 COARSE = ACE.altered(mesh={"spokes": 16, "ring_depths_m": [0.0, 7.0, 15.0, 21.4, 27.8]})
-PARTS = Assembly.of(COARSE)
+PARTS = anchor_assembly(COARSE)
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +35,9 @@ def test_each_part_finds_the_blocks_of_its_nodes(pattern):
         (pattern.bends, PARTS.bends.nodes),
         (pattern.panels, PARTS.panels.corners),
         (pattern.floats, PARTS.floats.nodes[:, None]),
+        (pattern.cylinders, PARTS.cylinders.ends),
         (pattern.springs, PARTS.springs.nodes[:, None]),
+        (pattern.grounds, PARTS.ground.nodes[:, None]),
     ):
         of_row, of_column = pattern.order[row[places]], pattern.order[pattern.column[places]]
         np.testing.assert_array_equal(of_row, np.repeat(nodes[:, :, None], nodes.shape[1], 2))
@@ -61,5 +64,5 @@ def test_the_order_fills_up_less_than_ring_by_ring():
 
 
 def test_cages_with_one_graph_share_a_pattern(pattern):
-    heavier = Assembly.of(COARSE.altered(tip={"weight_n": 9000.0}))
+    heavier = anchor_assembly(COARSE.altered(tip={"weight_n": 9000.0}))
     assert Pattern.of(heavier) is pattern

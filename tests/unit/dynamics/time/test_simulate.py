@@ -526,7 +526,7 @@ def test_what_makes_no_sense_is_refused_with_its_value_and_what_to_do(what):
             "law='froude'",
             "no law 'froude'; there are: aarsnes, loland, kristiansen-faltinsen, morison.",
         ),
-        ("mooring='rod'", "no mooring 'rod'; there are: springs, catenary."),
+        ("mooring='rod'", "mooring = 'rod' is none of: catenary, springs."),
     ],
 )
 def test_an_unknown_name_is_answered_with_the_known_ones(option, words):

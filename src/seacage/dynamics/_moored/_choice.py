@@ -1,0 +1,25 @@
+"""Choice of what holds a cage's frame."""
+
+from typing import Literal, get_args
+
+from seacage.cage import Cage
+from seacage.conventions import InputError
+from seacage.dynamics._moored._mooring import anchor_assembly
+from seacage.dynamics._moored._pretension import assemble
+from seacage.dynamics._parts import Assembly
+
+Mooring = Literal["catenary", "springs"]
+
+
+def moor(cage: Cage, mooring: Mooring) -> Assembly:
+    """The cage on frame ropes, buoys and anchor lines ("catenary"), or on corner "springs".
+
+    Raises
+    ------
+    InputError
+        Another mooring, and what the mooring asks of the cage that its file has not.
+    """
+    if mooring not in get_args(Mooring):
+        known = ", ".join(get_args(Mooring))
+        raise InputError(f"mooring = {mooring!r} is none of: {known}.")
+    return anchor_assembly(cage) if mooring == "catenary" else assemble(cage)
