@@ -1,5 +1,6 @@
 """What every test shares: checked shapes, one thread each, and the programs it may need."""
 
+import gc
 import os
 import shutil
 import socket
@@ -50,6 +51,12 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     config.stash[MARKS] = marks
     if seed := os.environ.get("SEACAGE_ORDER"):
         shuffle(items, seed)
+
+
+def pytest_collection_finish() -> None:
+    """Spare the garbage collector what stays until the end: all modules, and all tests."""
+    gc.collect()
+    gc.freeze()
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
+from functools import cache
 from pathlib import Path
 
 import httpx
@@ -21,6 +22,9 @@ from seacage.service._settings import Settings
 from seacage.service._store._store import Store
 from seacage.testing import stand_in_twin
 from seacage.twin import AlarmPolicy, Twin
+
+# Each client would read all authorities' certificates again, in 20 ms, to speak without TLS.
+httpx._transports.default.create_ssl_context = cache(httpx.create_ssl_context)
 
 NOON = datetime(2020, 2, 1, 12, tzinfo=UTC)
 
