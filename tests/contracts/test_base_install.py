@@ -62,6 +62,7 @@ def test_a_command_names_the_extra_that_it_needs_in_one_sentence(tmp_path, words
     assert last.startswith("seacage: This needs ")
     assert last.endswith("Install it with: pip install 'seacage[sim]'.")
     assert "Traceback" not in ran.stderr
+    assert "0 of" not in ran.stderr, "nothing is simulated before"
 
 
 def test_what_the_base_install_has_runs_there(tmp_path):

@@ -130,6 +130,8 @@ def run_share(
     share
         Which share, from 0, and of how many.
     """
+    import zarr  # noqa: F401  # where it is absent this is said before hours of work, not after
+
     store = Path(out)
     attributes = _attributes(cage, plan, by)
     result, size = _results_so_far(store, attributes, cases=len(plan), block=by.block)
@@ -172,8 +174,7 @@ def _firsts(share: tuple[int, int], *, cases: int, size: int) -> range:
             f"Share {which} of {shares} does not exist. Shares count from 0: give 0/{shares} to "
             f"{max(shares, 1) - 1}/{shares}."
         )
-    firsts = range(size * which, cases, size * shares)
-    if not firsts:
+    if not (firsts := range(size * which, cases, size * shares)):
         raise InputError(
             f"Share {which} of {shares} is empty: {cases} cases make {-(-cases // size)} blocks "
             f"of {size}. Make no more shares than that."

@@ -1,6 +1,7 @@
 """Running a campaign, with a formula in the simulator's place."""
 
 import inspect
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -54,6 +55,16 @@ def test_a_campaign_answers_every_case_and_reports_on_its_way(
     assert record.cage_toml == small_cage.to_toml()
     assert record.node_position.shape == (100, small_cage.node_count, 3)
     assert messages == [("campaign", done, 100) for done in (0, 16, 32, 48, 64, 80, 96, 100)]
+
+
+def test_without_what_writes_its_store_no_campaign_begins(
+    small_cage: Cage, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "zarr", None)
+    begun = []
+    with pytest.raises(ModuleNotFoundError, match="zarr"):
+        run_campaign(small_cage, PLAN, tmp_path / "c", progress=lambda *step: begun.append(step))
+    assert begun == []
 
 
 def test_a_campaign_in_time_keeps_the_spread_of_every_quantity(
