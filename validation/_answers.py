@@ -10,15 +10,20 @@ from seacage.cage import Cage, Structure
 from seacage.conventions import Result
 from seacage.dynamics import LAWS, History, MovingLaw, Response, settle, simulate
 from seacage.ocean import SeaState
+from validation._present_area import settle_on_present_area
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class How:
-    """How the cages of a case are solved; times count where they are simulated [s]."""
+    """How the cages of a case are solved; times count where they are simulated [s].
+
+    ``present_area`` is for the equilibria of a model that loads the area a panel now has.
+    """
 
     hold_collar: bool
     pipe_drag: bool
     wake: bool
+    present_area: bool
     twine_drag: tuple[float, float] | None
     spin_up: float
     duration: float
@@ -48,7 +53,7 @@ def answers(
     waves = any(sea.hs > 0.0 for sea in seas)
     if isinstance(subject, Structure) or law not in LAWS or waves:
         return _simulated(subject, seas, law, how)
-    response = settle(
+    response = (settle_on_present_area if how.present_area else settle)(
         subject,
         seas,
         law=law,

@@ -21,7 +21,7 @@ CASES = Path(__file__).parent / "cases"
 KEYS: dict[str, type | tuple[type, ...]] = {
     **dict.fromkeys(("title", "about", "kind", "source", "cage", "structure", "collar"), str),
     **dict.fromkeys(("laws", "twine_drag"), list),
-    **dict.fromkeys(("pipe_drag", "wake", "must_hold"), bool),
+    **dict.fromkeys(("pipe_drag", "wake", "present_area", "must_hold"), bool),
     **dict.fromkeys(("spin_up_s", "duration_s", "time_step_s"), (int, float)),
     "note": str,
     **dict.fromkeys(("panel", "changes", "ensemble", "tolerance"), dict),
@@ -199,6 +199,7 @@ def _how(table: Mapping[str, Any], where: str) -> How:
         hold_collar=collar == "held",
         pipe_drag=table.get("pipe_drag", True),
         wake=table.get("wake", True),
+        present_area=table.get("present_area", False),
         twine_drag=(twine[0], twine[1]) if twine else None,
         spin_up=float(table.get("spin_up_s", 300.0)),
         duration=float(table.get("duration_s", 60.0)),

@@ -14,6 +14,7 @@ from seacage.dynamics._physics._flow import steady_flow
 from seacage.dynamics._physics._loads import cylinder_force
 from seacage.ocean import SeaState
 from validation._case import CASES, read_case
+from validation._present_area import settle_on_present_area
 from validation._row import Kind, Row, Section
 
 NOTES = "the project's physics notes, section 6"
@@ -42,14 +43,14 @@ def _sensitivities() -> Iterator[Row]:
         ("ring of 1000 N/m", cage.altered(sinker_tube={"weight_n_m": 1000.0}), True, 64.0, 29.0),
         ("no wake", cage, False, 1.12 * 60.0, None),
     ):
-        response = settle(
-            changed, current(0.5), law="aarsnes", wake=wake, hold_collar=True, collar_drag=False
+        response = settle_on_present_area(
+            changed, [current(0.5)], law="aarsnes", wake=wake, hold_collar=True, collar_drag=False
         )
         what = f"Held cage at 0.5 m/s by Aarsnes' law, {name}"
-        yield _model(f"{what}: drag", "kN", drag, float(response.net_force[1]) / 1e3)
+        yield _model(f"{what}: drag", "kN", drag, float(response.net_force[0, 1]) / 1e3)
         if lost is not None:
             volume = float(cage.volume(cage.design_position))
-            found = 100.0 * (1.0 - float(response.volume) / volume)
+            found = 100.0 * (1.0 - float(response.volume[0]) / volume)
             yield _model(f"{what}: volume lost of the design shape's", "%", lost, found)
 
 
@@ -74,8 +75,8 @@ def _moored() -> Iterator[Row]:
     cage = Cage.named("ace")
     upstream = cage.design_position[cage.bridle_nodes, 1] < 0.0
     for speed, least, most in ((0.5, 10.0, 22.0), (1.0, 27.0, 48.0)):
-        response = settle(cage, current(speed), law="aarsnes", collar_drag=False)
-        tension = response.bridle_tension[upstream] / 1e3
+        response = settle_on_present_area(cage, [current(speed)], law="aarsnes", collar_drag=False)
+        tension = response.bridle_tension[0, upstream] / 1e3
         for which, value, ours in (("least", least, tension.min()), ("most", most, tension.max())):
             yield _model(
                 f"Moored cage at {speed:g} m/s by Aarsnes' law, no drag on pipes: tension of the "
@@ -222,8 +223,9 @@ def _upstream_edge(cage: Cage) -> int:
 SECTIONS = (
     Section(
         title="The cage at rest in a current",
-        about="Equilibria by `settle`: beside an independent model (computed, not measured), "
-        "turned, mirrored, and on a finer mesh.",
+        about="Equilibria by `settle`: beside an independent model (computed, not measured; it "
+        "loads the area that a panel has now, as ours does beside it), turned, mirrored, and on a "
+        "finer mesh.",
         rows=lambda: [*_sensitivities(), *_moored(), *_symmetry(), *_residuals()],
     ),
     Section(

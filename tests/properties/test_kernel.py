@@ -34,11 +34,24 @@ ANCHORED = anchor_assembly(
     pipe_drag=st.booleans(),
     shaken=st.floats(0.0, 3.0),
     raised=st.sampled_from([0.0, 4.0, 100.0]),  # out of the water in part or all
+    narrowed=st.sampled_from([1.0, 0.1, 0.01]),  # into folds
     cases=st.integers(1, 8),
     seed=st.integers(0, 2**32 - 1),
 )
 def test_the_kernel_computes_the_definition(
-    rings, spokes, cylinder, anchored, law, wake, waves, pipe_drag, shaken, raised, cases, seed
+    rings,
+    spokes,
+    cylinder,
+    anchored,
+    law,
+    wake,
+    waves,
+    pipe_drag,
+    shaken,
+    raised,
+    narrowed,
+    cases,
+    seed,
 ):
     rng = np.random.default_rng(seed)
     cage = some_cage(rng, rings, spokes, cylinder)
@@ -53,6 +66,7 @@ def test_the_kernel_computes_the_definition(
     )
     position = assembly.position + rng.normal(scale=shaken, size=(cases, *assembly.position.shape))
     position[..., 2] += raised
+    position[..., :2] *= narrowed
     defined = nodal_force(assembly, flow, position)
     computed = still_force(assembly, flow, position)
     # the kernel sums in another order: 1e-9 of the largest force in each case

@@ -153,18 +153,19 @@ def magnitudes(assembly, law, water, position, velocity):
     shaken=st.floats(0.05, 1.0),  # at its own length a bar is slack or taut by a rounding
     still=st.booleans(),
     raised=st.sampled_from([0.0, 4.0, 100.0]),  # out of the water in part or all
+    narrowed=st.sampled_from([1.0, 0.1]),  # into folds
     own=st.booleans(),
     cases=st.integers(1, LANES),
     seed=st.integers(0, 2**32 - 1),
 )
 def test_the_march_computes_the_definition_of_every_force(
-    mesh, law, twine_drag, softer, shaken, still, raised, own, cases, seed
+    mesh, law, twine_drag, softer, shaken, still, raised, narrowed, own, cases, seed
 ):
     rng = np.random.default_rng(seed)
     assembly = varied(Assembly.of(caged(mesh, rng)), rng, softer)
     shape = (cases, *assembly.position.shape)
-    height = np.array([0.0, 0.0, raised])
-    position = single(assembly.position + height + rng.normal(scale=shaken, size=shape))
+    placed = assembly.position * [narrowed, narrowed, 1.0] + [0.0, 0.0, raised]
+    position = single(placed + rng.normal(scale=shaken, size=shape))
     velocity = single(rng.normal(scale=0.5, size=shape)) * (not still)
     water = Water(
         velocity=single(rng.normal(size=shape)) * (not still),
@@ -345,11 +346,12 @@ class Stepper:
         area = np.cross(c - a, d - b) / 2.0
         size, speed = np.linalg.norm(area, axis=-1), np.linalg.norm(past, axis=-1)
         cosine = np.abs(np.sum(area * past, axis=-1)) / np.maximum(size * speed, 1e-12)
+        assert np.all(size > 0.1 * panels.outline)  # openness is 1
         screen = Screen(
             law=self.law.name, solidity=panels.solidity, twine_diameter=panels.twine_diameter
         ).terms(speed)
         drag = screen["constant"] + screen["slope"] * cosine
-        pressure = self.wet * DYNAMIC * size * speed
+        pressure = self.wet * DYNAMIC * panels.outline * speed
         borne = 2.0 * self.panel_mass() / (self.steps.hold * self.steps.time_step)
         return np.maximum(pressure * drag, 1.25 * pressure * (1.5 * screen["slope"] + drag) - borne)
 

@@ -18,6 +18,7 @@ from validation.own_cases import rows_of_case
 HOW = How(
     hold_collar=True,
     pipe_drag=True,
+    present_area=False,
     wake=True,
     twine_drag=None,
     spin_up=300.0,

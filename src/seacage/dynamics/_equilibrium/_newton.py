@@ -7,7 +7,14 @@ from jaxtyping import Float
 
 from seacage.dynamics._kernel import Balance, Balancing
 from seacage.dynamics._parts import Assembly, Bars, Bends, Cylinders, Panels
-from seacage.dynamics._physics import LEVEL, SteadyFlow, bar_force, nodal_force, wet_share
+from seacage.dynamics._physics import (
+    LEVEL,
+    SteadyFlow,
+    bar_force,
+    nodal_force,
+    openness,
+    wet_share,
+)
 
 Block = Float[np.ndarray, "part 3 3"]
 Entries = tuple[np.ndarray, np.ndarray, np.ndarray]
@@ -202,9 +209,10 @@ def _bends(bends: Bends, position: Float[np.ndarray, "node 3"]) -> list[Entries]
 def _panels(
     assembly: Assembly, flow: SteadyFlow, position: Float[np.ndarray, "node 3"]
 ) -> list[Entries]:
-    """Stiffness of a panel's load F = w q A ((C_D − L c) u + L n) as its corners move.
+    """Stiffness of a panel's load F = w q A ((C_D − L m·u) u + L m) as its corners move.
 
-    Its wet share w falls as they rise above the surface.
+    A is the area as cut; m the normal times how open the panel is. Its wet share w falls as
+    corners rise above the surface.
     """
     panels = assembly.panels
     a, b, c, d = panels.corners.T
@@ -214,27 +222,36 @@ def _panels(
     side = np.where(np.sum(area_vector * u, axis=1) < 0.0, -1.0, 1.0)
     area = np.maximum(np.linalg.norm(area_vector, axis=1), 1e-12)
     normal = area_vector * (side / area)[:, None]
-    x = np.minimum(np.sum(normal * u, axis=1), 1.0)
+    opened, opens = openness(panels, area)
+    straight = np.minimum(np.sum(normal * u, axis=1), 1.0)
+    along = opened * straight
+    x = along + 0.5 * (1.0 - opened)
     constant, slope, third = flow.constant[0], flow.slope[0], flow.third[0]
     twice, e = 2.0 * flow.lift[0], flow.lift_second[0]
     drag = constant + slope * x + third * x * (4.0 * x**2 - 3.0)
     dragged = drag > 0.0
     lift = twice * x * (1.0 + e * (2.0 * x**2 - 1.0))
     lift_x = twice * (1.0 + e * (6.0 * x**2 - 1.0))
-    on_u = np.where(dragged, drag, 0.0) - lift * x
-    on_u_x = np.where(dragged, slope + third * (12.0 * x**2 - 3.0), 0.0) - lift_x * x - lift
-    off = u - x[:, None] * normal
-    turned = _outer(u, on_u[:, None] * normal + on_u_x[:, None] * off)
-    turned += _outer(normal, lift_x[:, None] * off) + lift[:, None, None] * np.eye(3)
+    on_u = np.where(dragged, drag, 0.0) - lift * along
+    on_u_x = np.where(dragged, slope + third * (12.0 * x**2 - 3.0), 0.0) - lift_x * along
+    over = (opened / area)[:, None]
+    along_slope = over * (u - straight[:, None] * normal) + (opens * straight)[:, None] * normal
+    x_slope = along_slope - 0.5 * opens[:, None] * normal
+    facing = opened[:, None] * normal
+    turned = _outer(u, on_u_x[:, None] * x_slope - lift[:, None] * along_slope)
+    turned += _outer(facing, lift_x[:, None] * x_slope)
+    across = over[..., None] * (np.eye(3) - _outer(normal, normal))
+    turned += lift[:, None, None] * (across + opens[:, None, None] * _outer(normal, normal))
     wet = wet_share(panels, position[None])[0]
-    turned *= (wet * flow.pressure[0] * side)[:, None, None]
+    pressure = flow.pressure[0] * panels.outline
+    turned *= (wet * pressure * side)[:, None, None]
     by_first = -0.5 * np.cross(turned, second[:, None, :])
     by_second = 0.5 * np.cross(turned, first[:, None, :])
     entries: list[Entries] = []
     for corner, share in zip(panels.corners.T, panels.share.T, strict=True):
         one, two = share[:, None, None] * by_first, share[:, None, None] * by_second
         entries += [(corner, c, -one), (corner, a, one), (corner, d, -two), (corner, b, two)]
-    whole = (flow.pressure[0] * area)[:, None] * (on_u[:, None] * u + lift[:, None] * normal)
+    whole = pressure[:, None] * (on_u[:, None] * u + lift[:, None] * facing)
     return entries + _dry_slopes(panels, position, whole)
 
 

@@ -122,6 +122,7 @@ static void add_panels(const assembly *s, const flow *w, const vec *restrict x, 
         const int *n = s->panel_corners + 4 * p;
         const double *share = s->panel_share + 4 * p;
         const double *restrict law = w->panel + 6 * LANES * p;
+        const double outline = s->panel_outline[p], folds = 10.0 / outline;
         double load[3][LANES], wet[LANES];
         wet_share(s, p, x, wet);
         EACH_LANE {
@@ -134,19 +135,23 @@ static void add_panels(const assembly *s, const flow *w, const vec *restrict x, 
             const double area = sqrt(nx * nx + ny * ny + nz * nz);
             const double ux = u[k], uy = u[LANES + k], uz = u[2 * LANES + k];
             double c = nx * ux + ny * uy + nz * uz;
-            const double turn = (c < 0.0 ? -1.0 : 1.0) / (area > 1e-12 ? area : 1e-12);
+            const double closed = area * folds < 1.0 ? 1.0 - area * folds : 0.0;
+            const double open = 1.0 - closed * closed;
+            const double turn = (c < 0.0 ? -open : open) / (area > 1e-12 ? area : 1e-12);
             nx *= turn;
             ny *= turn;
             nz *= turn;
             c *= turn;
-            c = c < 1.0 ? c : 1.0;
-            const double force = wet[k] * law[k] * area;
+            c = c < open ? c : open;
+            const double along = c;
+            c += 0.5 * closed * closed;
+            const double force = wet[k] * law[k] * outline;
             double drag = law[LANES + k] + law[2 * LANES + k] * c
                           + law[3 * LANES + k] * c * (4.0 * c * c - 3.0);
             drag = drag > 0.0 ? drag : 0.0;
             const double lift = 2.0 * c * law[4 * LANES + k]
                                 * (1.0 + law[5 * LANES + k] * (2.0 * c * c - 1.0));
-            const double on_u = force * (drag - lift * c), on_n = force * lift;
+            const double on_u = force * (drag - lift * along), on_n = force * lift;
             load[0][k] = on_u * ux + on_n * nx;
             load[1][k] = on_u * uy + on_n * ny;
             load[2][k] = on_u * uz + on_n * nz;

@@ -253,7 +253,8 @@ static void share_out(const int *n, const float *share, const lane *restrict loa
 }
 
 /* Screens: C_D = max(0, a + b cos + h cos3), C_L = l sin2 (1 + e cos2), b and h one number
- * times fixed shares. `falls`: how the load changes with speed. C_D serves most: more would act
+ * times fixed shares, on the area as cut: twine is not lost in folds. What is nearly closed turns
+ * to cos = 1/2 without lift. `falls`: how the load changes with speed. C_D serves most: more would act
  * as mass that is not there. In fast water a light panel needs more, or holding its load
  * through `span` would be unstable: the steepest slope less what the panel's mass bears.
  */
@@ -268,6 +269,7 @@ static void add_screens(const body *b, const netting *net, const state *s,
         const float *restrict facing = s->panel_drag[p], *restrict lifting = s->panel_lift[p];
         const float *restrict factor = s->panel_factor[p];
         const float borne = 2.0f * b->panel_mass[p] / span;
+        const float pressure = 512.5f * b->panel_outline[p], folds = 10.0f / b->panel_outline[p];
         vec load;
         lane falls;
         EACH_LANE {
@@ -282,15 +284,17 @@ static void add_screens(const body *b, const netting *net, const state *s,
             const float uu = ux * ux + uy * uy + uz * uz;
             const float slow = 1.0f / sqrtf(uu > 1e-20f ? uu : 1e-20f);
             float c = (nx * ux + ny * uy + nz * uz) * flat * slow;
-            const float turn = c < 0.0f ? -flat : flat;
+            const float closed = area * folds < 1.0f ? 1.0f - area * folds : 0.0f;
+            const float open = 1.0f - closed * closed;
+            const float turn = c < 0.0f ? -flat * open : flat * open;
             c = c < 0.0f ? -c : c;
-            c = c < 1.0f ? c : 1.0f;
+            const float along = open * (c < 1.0f ? c : 1.0f);
+            c = along + 0.5f * closed * closed;
             const float cc = c * c;
             float cd = factor[k] * constant + facing[k] * c * (of_cos + of_cos3 * (4.0f * cc - 3.0f));
             cd = cd > 0.0f ? cd : 0.0f;
             const float cl = 2.0f * c * lifting[k] * (1.0f + e * (2.0f * cc - 1.0f));
-            const float pressure = 512.5f * area;
-            const float on_u = pressure * uu * slow * (cd - cl * c); /* times u, of length |u| */
+            const float on_u = pressure * uu * slow * (cd - cl * along); /* times u, of length |u| */
             const float on_n = pressure * uu * cl * turn;
             load[0][k] = on_u * ux + on_n * nx;
             load[1][k] = on_u * uy + on_n * ny;

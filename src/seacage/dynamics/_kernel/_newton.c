@@ -125,13 +125,14 @@ static void linearise_bends(const assembly *s, const pattern *p, const vec *rest
     }
 }
 
-/* How a panel's load q A ((C_D − L c) u + L n) turns with its diagonals; and the load itself, as
- * of a panel all wet. */
+/* How a panel's load q A ((C_D − L m·u) u + L m) turns with its diagonals, m its normal times
+ * how open it is and A as cut; and the load itself, as of a panel all wet. */
 static void panel_slopes(const assembly *s, const flow *f, int q, const vec *restrict x,
                          vec *restrict by_first, vec *restrict by_second, lane *restrict load)
 {
     const int *n = s->panel_corners + 4 * q;
     const double *restrict law = f->panel + 6 * LANES * q;
+    const double outline = s->panel_outline[q], folds = 10.0 / outline;
     lane wet;
     wet_share(s, q, x, wet);
     EACH_LANE {
@@ -150,23 +151,31 @@ static void panel_slopes(const assembly *s, const flow *f, int q, const vec *res
         const double turn = side / (area > 1e-12 ? area : 1e-12);
         for (int a = 0; a < 3; a++)
             v[a] *= turn;
-        c = c * turn < 1.0 ? c * turn : 1.0;
+        const double straight = c * turn < 1.0 ? c * turn : 1.0;
+        const double closed = area * folds < 1.0 ? 1.0 - area * folds : 0.0;
+        const double open = 1.0 - closed * closed, opens = 2.0 * closed * folds;
+        const double over = open / (area > 1e-12 ? area : 1e-12);
+        const double along = open * straight;
+        c = along + 0.5 * closed * closed;
         const double slope = law[2 * LANES + k], third = law[3 * LANES + k];
         const double twice = 2.0 * law[4 * LANES + k], second = law[5 * LANES + k];
         const double drag = law[LANES + k] + slope * c + third * c * (4.0 * c * c - 3.0);
         const double dragged = drag > 0.0 ? 1.0 : 0.0;
         const double lift = twice * c * (1.0 + second * (2.0 * c * c - 1.0));
         const double lift_c = twice * (1.0 + second * (6.0 * c * c - 1.0));
-        const double on_u = dragged * drag - lift * c;
-        const double on_u_c = dragged * (slope + third * (12.0 * c * c - 3.0)) - lift_c * c - lift;
-        const double pressure = wet[k] * law[k] * side, whole = law[k] * area;
+        const double on_u = dragged * drag - lift * along;
+        const double on_u_c = dragged * (slope + third * (12.0 * c * c - 3.0)) - lift_c * along;
+        const double whole = law[k] * outline, pressure = wet[k] * whole * side;
         for (int a = 0; a < 3; a++) {
-            load[a][k] = whole * (on_u * u[a] + lift * v[a]);
+            load[a][k] = whole * (on_u * u[a] + lift * open * v[a]);
             double m[3]; /* a row of the load's slope in the area vector */
             for (int e = 0; e < 3; e++) {
-                const double off = u[e] - c * v[e];
-                m[e] = pressure * (u[a] * (on_u * v[e] + on_u_c * off) + v[a] * lift_c * off
-                                   + (a == e ? lift : 0.0));
+                const double turned = over * (u[e] - straight * v[e]); /* slope of m·u */
+                const double facing = turned + opens * straight * v[e];
+                const double of_c = facing - 0.5 * opens * v[e];
+                const double of_m = over * ((a == e) - v[a] * v[e]) + opens * v[a] * v[e];
+                m[e] = pressure * (u[a] * (on_u_c * of_c - lift * facing)
+                                   + open * v[a] * lift_c * of_c + lift * of_m);
             }
             by_first[a][0][k] = -0.5 * (m[1] * t[2] - m[2] * t[1]);
             by_first[a][1][k] = -0.5 * (m[2] * t[0] - m[0] * t[2]);

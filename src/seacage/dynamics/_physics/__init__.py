@@ -10,6 +10,7 @@ from seacage.dynamics._physics._loads import (
     bar_force,
     bar_tension,
     nodal_force,
+    openness,
     total_net_force,
     wet_share,
 )
@@ -52,6 +53,7 @@ __all__ = [
     "kristiansen_faltinsen",
     "loland",
     "nodal_force",
+    "openness",
     "steady_flow",
     "total_net_force",
     "wake_in_sight",

@@ -30,6 +30,11 @@ LEVEL = 0.4
 """Sum of the corners' distances from the surface, over the root of the area, below which a panel
 counts as lying in the surface [-]."""
 
+FOLDED = 0.1
+"""Share of a panel's outline below which its normal says little of its twine [-]."""
+
+Values = Float[np.ndarray, "*case panel"]
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SteadyFlow(Rows):
@@ -156,26 +161,45 @@ def wet_share(
     return 1.0 - out / span
 
 
+def openness(panels: Panels, area: Values) -> tuple[Values, Values]:
+    """How open panels of some present area are, and how that grows with the area [-, 1/m2].
+
+    1 down to a tenth of the outline, from where it falls to 0 of what is folded to a line.
+    """
+    whole = FOLDED * panels.outline
+    share = np.minimum(area / whole, 1.0)
+    return share * (2.0 - share), 2.0 * (1.0 - share) / whole
+
+
 def screen_load(
     panels: Panels,
     position: Float[np.ndarray, "#case node 3"],
     u: Float[np.ndarray, "case #panel 3"],
     flow: SteadyFlow,
 ) -> Float[np.ndarray, "case panel 3"]:
-    """``panel_load`` with a direction of the flow for each panel."""
+    """``panel_load`` with a direction of the flow for each panel.
+
+    A is the area as cut, not as it now is: twine is not lost where a net shrinks and folds, nor
+    won where it stretches. What is nearly closed has no normal: it turns to the mean |cosθ| of
+    pieces that face everywhere, ½, and its lift fades. Left out: that twines which come closer
+    shelter each other and speed up the flow between them.
+    """
     a, b, c, d = np.moveaxis(position[:, panels.corners], 2, 0)
     area_vector = np.cross(c - a, d - b) / 2.0
     area = np.linalg.norm(area_vector, axis=-1)
+    opened, _ = openness(panels, area)
     normal = area_vector / np.maximum(area, 1e-12)[..., None]
-    cosine = np.sum(normal * u, axis=-1)
-    normal = normal * np.where(cosine < 0.0, -1.0, 1.0)[..., None]
-    cosine = np.minimum(np.abs(cosine), 1.0)
+    facing = np.sum(normal * u, axis=-1)
+    normal = normal * (opened * np.where(facing < 0.0, -1.0, 1.0))[..., None]
+    facing = opened * np.minimum(np.abs(facing), 1.0)
+    cosine = facing + 0.5 * (1.0 - opened)
     third = cosine * (4.0 * cosine**2 - 3.0)
     drag = np.maximum(flow.constant + flow.slope * cosine + flow.third * third, 0.0)
     # (u×n)×u = n − u cosθ has length sinθ, so sin2θ needs no square root
     lift = flow.lift * 2.0 * cosine * (1.0 + flow.lift_second * (2.0 * cosine**2 - 1.0))
-    across = normal - cosine[..., None] * u
-    return (flow.pressure * area)[..., None] * (drag[..., None] * u + lift[..., None] * across)
+    across = normal - facing[..., None] * u
+    coefficients = drag[..., None] * u + lift[..., None] * across
+    return (flow.pressure * panels.outline)[..., None] * coefficients
 
 
 def cylinder_force(cylinders: Cylinders, flow: SteadyFlow, position: Nodal) -> Nodal:

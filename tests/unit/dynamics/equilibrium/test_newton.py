@@ -36,12 +36,12 @@ def swaying(scale, parts=PARTS):
     return parts.position + np.random.default_rng(0).normal(scale=scale, size=parts.position.shape)
 
 
-@pytest.mark.parametrize("raised", [0.0, 10.0])  # that panels are partly dry
+@pytest.mark.parametrize(("raised", "scale"), [(0.0, 0.2), (10.0, 0.2), (10.0, 2.0)])
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("parts", [PARTS, anchor_assembly(COARSE)], ids=["springs", "anchors"])
-def test_the_tangent_is_the_slope_of_the_force(law, parts, raised):
+def test_the_tangent_is_the_slope_of_the_force(law, parts, raised, scale):
     flow = steady_flow(parts, np.array([[0.5, 0.3]]), law=law)
-    position = swaying(0.2, parts) + np.array([0.0, 0.0, raised])
+    position = swaying(scale, parts) + np.array([0.0, 0.0, raised])  # panels partly dry, and folded
     direction = np.random.default_rng(1).normal(size=position.shape)
     ahead, back = (
         nodal_force(parts, flow, (position + step * direction)[None])[0] for step in (1e-6, -1e-6)

@@ -21,7 +21,7 @@ from seacage.dynamics._physics._motion import (
     past_panels,
     twine_load,
 )
-from seacage.dynamics._physics._screens import MOVING_LAWS
+from seacage.dynamics._physics._screens import LAWS, MOVING_LAWS, Screen
 
 SQUARE = np.array([[[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 0.0, -1.0], [0.0, 0.0, -1.0]]])
 """Two metres wide and one deep, facing north and south [m]."""
@@ -134,6 +134,47 @@ def test_a_panel_that_lies_level_comes_out_within_a_tenth_of_its_width():
     heights = np.sqrt(2.0) * np.array([-0.1, 0.0, 0.05, 0.1, 5.0])
     shares = [wet_share(PANEL, level + np.array([0.0, 0.0, h]))[0, 0] for h in heights]
     np.testing.assert_allclose(shares, [1.0, 1.0, 0.5, 0.0, 0.0], atol=1e-12)
+
+
+# Folds
+
+
+def load_on(name, corners, water=(0.3, 0.7, 0.1)):
+    return moving_net_load(PANEL, law(name), flow(water), corners, np.zeros_like(corners))[0, 0]
+
+
+@EVERY_LAW
+def test_a_fold_keeps_its_twine(name):
+    # drawn together to a third of its width, and along the fold to a third of its height
+    for drawn in ([1 / 3, 1.0, 1.0], [1.0, 1.0, 1 / 3]):
+        folded = load_on(name, SQUARE * np.array(drawn), water=(0.0, 0.7, 0.0))
+        np.testing.assert_allclose(folded, load_on(name, SQUARE, water=(0.0, 0.7, 0.0)), rtol=1e-9)
+
+
+@EVERY_LAW
+def test_a_stretched_panel_wins_no_twine(name):
+    wide = load_on(name, SQUARE * np.array([1.3, 1.0, 1.0]), water=(0.0, 0.7, 0.0))
+    np.testing.assert_allclose(wide, load_on(name, SQUARE, water=(0.0, 0.7, 0.0)), rtol=1e-9)
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_a_panel_folded_to_a_line_bears_the_drag_of_netting_that_faces_everywhere(name):
+    line, water = SQUARE * np.array([1e-9, 1.0, 1.0]), np.array([0.3, 0.7, 0.1])
+    force, speed = load_on(name, line, water), np.linalg.norm(water)
+    screen = Screen(law=name, solidity=PANEL.solidity, twine_diameter=PANEL.twine_diameter)
+    terms = screen.terms(np.array([[speed]]))
+    drag = (terms["constant"] + 0.5 * terms["slope"] - terms["third"])[0, 0]
+    np.testing.assert_allclose(
+        force, 0.5 * WATER_DENSITY * 2.0 * drag * speed * water, rtol=1e-6, atol=1e-6
+    )
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_folding_up_never_makes_a_load_jump(name):
+    widths = np.concatenate([-np.geomspace(1.0, 1e-6, 400), np.geomspace(1e-6, 1.0, 400)])
+    loads = np.array([load_on(name, SQUARE * np.array([w, 1.0, 1.0])) for w in widths])
+    steps = np.linalg.norm(np.diff(loads, axis=0), axis=1)
+    assert steps.max() < 0.06 * np.linalg.norm(loads[0])
 
 
 # Growth of each case
