@@ -93,6 +93,7 @@ class StandIn:
             quantile_levels=np.array(quantile_levels),
             second_moment=moment,
             result=np.where(lost, Result.DIVERGED, Result.CONVERGED),
+            hs_left_out=np.zeros(len(sea)),
             diverged_at=np.where(lost, 12.5, np.nan),
         )
 

@@ -193,6 +193,11 @@ class Cage(TomlFile):
         return self.spokes * ring + np.arange(self.spokes)
 
     @property
+    def pipe_diameter(self) -> float:
+        """Of a pipe of the collar, which waves are long against [m]."""
+        return self.collar.pipe_diameter
+
+    @property
     def tube_ring(self) -> int:
         """The ring at the cylinder's lower edge, which carries the sinker tube."""
         return self.mesh.ring_depths.index(self.mesh.cylinder_depth)

@@ -87,6 +87,11 @@ class Structure(TomlFile):
         """The cross-section of a ring, of a tie or of a line."""
         return self._find(self.section, part.section, "section", part.name)
 
+    @property
+    def pipe_diameter(self) -> float:
+        """Of the thickest floating pipe, which waves are long against; 0 without pipes [m]."""
+        return max((s.diameter for s in self.section if s.is_pipe), default=0.0)
+
     def twine_of(self, net: Net) -> Twine:
         """The twine of a net."""
         return self._find(self.twine, net.twine, "twine", net.name)

@@ -1,4 +1,4 @@
 """Revision of the physics; a campaign is not continued under another revision."""
 
-PHYSICS = 6
+PHYSICS = 7
 """Revision of the physics: raised by every change to a number (``changes/*.physics.md``)."""

@@ -1,7 +1,7 @@
 """Linear waves in water of finite depth, and the motion of the water under them."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
@@ -73,14 +73,31 @@ class Waves:
         k = self.wavenumber
         return np.sqrt(GRAVITY * k * np.tanh(k * self.depth))
 
+    def shifted(self, seconds: float) -> "Waves":
+        """The same waves, so much later: their time 0 is then."""
+        return replace(self, phase=self.phase - seconds * self.angular_frequency)
 
-def sample_waves(sea: SeaState, *, seed: int, components: int = 30, depth: float = 191.0) -> Waves:
+    def longer(self, shortest: float) -> "Waves":
+        """The components at least so long [m]."""
+        kept = self.wavenumber * shortest <= 2.0 * np.pi
+        names = ("amplitude", "angular_frequency", "wavenumber", "phase", "direction")
+        return replace(self, **{name: getattr(self, name)[kept] for name in names})
+
+    @property
+    def variance(self) -> float:
+        """Of the surface [m2]."""
+        return float(np.sum(self.amplitude**2)) / 2.0
+
+
+def sample_waves(sea: SeaState, *, seed: int, components: int = 200, depth: float = 191.0) -> Waves:
     """Draw one realisation of a sea's waves.
 
     Each component carries the energy of its own bin of frequency, so that their sum is that of
     the sea; its frequency is random in the bin, so that the sea does not repeat, and so is its
-    phase. Left out: spreading of direction, and waves shorter than a quarter of the peak's
-    period. Without waves every amplitude is 0.
+    phase. Bins are narrow where the energy is (``frequency_bins``). Amplitudes are not random:
+    half-hours of 200 components differ in Hs by 1.4 % (standard deviation, Tp 7 s), those of a
+    Gaussian sea by 3.0 %. Left out: spreading of direction, and waves shorter than a quarter of
+    the peak's period. Without waves every amplitude is 0.
 
     Parameters
     ----------
@@ -89,14 +106,13 @@ def sample_waves(sea: SeaState, *, seed: int, components: int = 30, depth: float
     seed
         The same seed gives the same sea.
     components
-        How many waves; 30 or more for half an hour.
+        How many waves. With 200 the largest crest of half an hour is that of a Gaussian sea
+        within 1 % in the mean; with 30 it is 3 % low.
     depth
         Of the water [m].
     """
     random = np.random.default_rng(seed)
-    # A flat sea keeps its components, at frequencies that no amplitude needs.
-    peak = 2.0 * math.pi / sea.peak_period if sea.hs > 0.0 else 1.0
-    edges = peak * np.linspace(*BAND, components + 1)
+    edges = frequency_bins(sea, components)
     frequency = edges[:-1] + random.random(components) * np.diff(edges)
     energy = bin_energy(sea, edges)
     return Waves(
@@ -107,6 +123,22 @@ def sample_waves(sea: SeaState, *, seed: int, components: int = 30, depth: float
         direction=np.tile(sea.wave_direction, (components, 1)),
         depth=depth,
     )
+
+
+def frequency_bins(sea: SeaState, components: int) -> Float[np.ndarray, " edge"]:
+    """Edges of the components' bins [rad/s].
+
+    Half of a bin's share is of the energy, half of the width of the band: equal widths leave
+    few components under the peak, and crests too alike; equal energies leave one for the whole
+    tail, which moves the water fastest.
+    """
+    # A flat sea keeps its components, at frequencies that no amplitude needs.
+    if sea.hs == 0.0:
+        return np.linspace(*BAND, components + 1)
+    fine = 2.0 * math.pi / sea.peak_period * np.linspace(*BAND, 2001)
+    energy = np.append(0.0, np.cumsum(bin_energy(sea, fine)))
+    share = (energy / energy[-1] + np.linspace(0.0, 1.0, len(fine))) / 2.0
+    return np.interp(np.linspace(0.0, 1.0, components + 1), share, fine)
 
 
 def regular_wave(*, height: float, period: float, wave_from: float, depth: float = 191.0) -> Waves:

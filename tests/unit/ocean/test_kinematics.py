@@ -13,6 +13,7 @@ from seacage.ocean import (
     water_motion,
     wave_velocity_variance,
 )
+from seacage.ocean._kinematics import bin_energy, frequency_bins
 
 SEA = SeaState(current_speed=0.5, current_to=0.0, hs=2.0, tp=7.0, wave_from=270.0)
 STILL = SeaState(current_speed=0.5, current_to=0.0)
@@ -24,8 +25,8 @@ def test_the_components_carry_the_energy_of_the_sea():
         assert np.sum(waves.amplitude**2) / 2.0 == pytest.approx(SEA.hs**2 / 16.0, rel=1e-12)
 
 
-def test_there_are_30_components_unless_more_are_requested():
-    assert sample_waves(SEA, seed=0).amplitude.shape == (30,)
+def test_there_are_200_components_unless_others_are_requested():
+    assert sample_waves(SEA, seed=0).amplitude.shape == (200,)
     assert sample_waves(SEA, seed=0, components=64).amplitude.shape == (64,)
 
 
@@ -39,6 +40,14 @@ def test_each_frequency_lies_in_a_bin_of_its_own_so_that_the_sea_does_not_repeat
     frequency = sample_waves(SEA, seed=0).angular_frequency
     assert np.all(np.diff(frequency) > 0.0)
     assert np.std(np.diff(frequency)) > 0.1 * np.mean(np.diff(frequency))
+
+
+def test_no_bin_is_wider_than_two_of_equal_width_nor_holds_more_than_two_of_equal_energy():
+    edges = frequency_bins(SEA, 50)
+    assert len(edges) == 51
+    assert np.diff(edges).max() <= 2.0001 * (edges[-1] - edges[0]) / 50
+    # energies are interpolated in a fine table
+    assert bin_energy(SEA, edges).max() <= 2.02 * SEA.hs**2 / 16.0 / 50
 
 
 def test_the_surface_over_hours_has_the_significant_height():

@@ -16,6 +16,10 @@ MOST_COMPONENTS = 1000
 """Components of the waves of a case at most: the kernel keeps their phases on a thread's stack."""
 
 
+LEAST_LENGTH = 8.0
+"""Shortest wave over the floating pipe's diameter for which Morison's equation holds [-]."""
+
+
 def draw_waves(
     seas: list[SeaState],
     given: Waves | Sequence[Waves] | None,
@@ -71,6 +75,23 @@ def _check_waves(waves: list[Waves], depth: float) -> list[Waves]:
                 f"which the kernel takes {MOST_COMPONENTS}. Draw fewer."
             )
     return waves
+
+
+def morison_waves(
+    waves: list[Waves], diameter: float
+) -> tuple[list[Waves], Float[np.ndarray, " case"]]:
+    """The waves that a floating pipe does not disturb, and the share of Hs that is left out [-].
+
+    Morison's equation holds where a wave is long against the pipe: ``LEAST_LENGTH`` diameters,
+    4 m or 1.6 s for pipes of 0.5 m. Shorter waves are scattered, and push the pipe by less
+    than its displaced and added mass would have it.
+    """
+    kept = [one.longer(LEAST_LENGTH * diameter) for one in waves]
+    share = [
+        1.0 - math.sqrt(one.variance / whole.variance) if whole.variance > 0.0 else 0.0
+        for one, whole in zip(kept, waves, strict=True)
+    ]
+    return kept, np.array(share)
 
 
 def ocean_of(

@@ -43,6 +43,9 @@ class History:
     second_moment
         Mean over time of the products of all coordinates, as displacements from the design
         shape: (node and axis) × (node and axis) [m2]; of no rows unless requested.
+    hs_left_out
+        Share of Hs in waves that are too short for the loads on the collar's pipes, and are left
+        out: those below eight pipe diameters, 1.6 s for 0.5 m [-].
     result
         Of ``seacage.conventions.Result``.
     diverged_at
@@ -64,5 +67,6 @@ class History:
     volume_fraction: Float[np.ndarray, "*case"]
     quantile_levels: Float[np.ndarray, " quantile"]
     second_moment: Float[np.ndarray, "*case coordinate coordinate"]
+    hs_left_out: Float[np.ndarray, "*case"]
     result: Int[np.ndarray, "*case"]
     diverged_at: Float[np.ndarray, "*case"]

@@ -1,6 +1,6 @@
 """From what the kernel kept of a march to a history."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import fields, is_dataclass, replace
 from typing import Any
 
@@ -23,8 +23,10 @@ _SHARED = ("time", "nodes", "quantile_levels", "names", "kinds", "capacity", "tn
 def histories(
     simulation: Simulation, assembly: Assembly, march: March, rest: Float[np.ndarray, "node 3"]
 ) -> list[History]:
-    """One for each case of a march that has ended."""
-    return [_history(simulation, assembly, march, rest, case) for case in range(march.cases)]
+    """One for each case of a march that has ended, or one for all its pieces of a single case."""
+    if simulation.pieces > 1:
+        return [_history(simulation, assembly, march, rest, range(march.cases))]
+    return [_history(simulation, assembly, march, rest, [case]) for case in range(march.cases)]
 
 
 def _history(
@@ -32,18 +34,20 @@ def _history(
     assembly: Assembly,
     march: March,
     rest: Float[np.ndarray, "node 3"],
-    case: int,
+    lanes: Sequence[int],
 ) -> History:
+    """Of one case, whose pieces lie in some lanes in the order of time."""
     cage, steps, levels = simulation.cage, march.steps, simulation.quantile_levels
-    sampled = {name: values[..., case] for name, values in march.samples.items()}
+    sampled = {name: _in_turn(values, lanes) for name, values in march.samples.items()}
     net = np.ascontiguousarray(sampled["positions"][:, : cage.node_count])
-    counted = int(march.account["counted"][0])
+    counted = int(march.account["counted"][0]) * len(lanes)
 
     def of(what: str, sample: np.ndarray, count: int, origin: np.ndarray) -> Statistics:
         account = {
-            how: march.account[f"{what}_{how}"][: origin.size, case].reshape(origin.shape)
-            for how in ("sum", "square", "least", "most")
+            how: join(march.account[f"{what}_{how}"][: origin.size, lanes], axis=1)
+            for how, join in _JOINS.items()
         }
+        account = {how: values.reshape(origin.shape) for how, values in account.items()}
         return _statistics(account, sample, count, origin, levels)
 
     every = max(1, -(-len(net) // VOLUMES))
@@ -53,6 +57,7 @@ def _history(
     lines = of("line", tension, counted * steps.each, np.zeros(len(assembly.line_bars)))
     bridles = slice(len(assembly.bridles))
     kept = slice(None) if simulation.series else slice(0)
+    waves = march.has_waves(lanes[0])
     history = History(
         time=(np.arange(len(net)) * steps.sample_every * REFRESH)[kept],
         nodes=simulation.nodes,
@@ -64,17 +69,38 @@ def _history(
         bridle=_each([lines], lambda values: values[0][..., bridles]),
         net_force=of("load", sampled["loads"], counted, np.zeros(3)),
         volume=_plain_statistics(volume, levels),
-        lines=line_loads(
-            assembly.lines, lines, sampled["tensions"], every=REFRESH, waves=march.has_waves(case)
-        ),
+        lines=line_loads(assembly.lines, lines, sampled["tensions"], every=REFRESH, waves=waves),
         node_displacement=node.mean - rest,
         volume_fraction=np.asarray(volume.mean() / cage.volume(rest)),
         quantile_levels=levels,
         second_moment=_second_moment(simulation, net),
+        hs_left_out=np.asarray(0.0),
         result=np.asarray(Result.CONVERGED),
-        diverged_at=np.asarray(float(march.lost_at[case])),
+        diverged_at=np.asarray(_lost_at(march, lanes)),
     )
     return _mask_lost(history, march) if np.isfinite(history.diverged_at) else history
+
+
+_JOINS: dict[str, Callable[..., np.ndarray]] = {
+    "sum": np.sum,
+    "square": np.sum,
+    "least": np.min,
+    "most": np.max,
+}
+
+
+def _in_turn(values: np.ndarray, lanes: Sequence[int]) -> np.ndarray:
+    """Samples of some lanes, the last axis, one after the other along the first."""
+    if len(lanes) == 1:
+        return values[..., lanes[0]]
+    return np.concatenate([values[..., lane] for lane in lanes])
+
+
+def _lost_at(march: March, lanes: Sequence[int]) -> float:
+    """Time since the start of the first piece at which a piece was lost first, else NaN [s]."""
+    before = np.arange(len(lanes)) * march.steps.counted * REFRESH
+    lost = march.lost_at[lanes] + before
+    return float(np.nanmin(lost)) if np.isfinite(lost).any() else np.nan
 
 
 def _second_moment(

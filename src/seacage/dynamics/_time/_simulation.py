@@ -27,6 +27,8 @@ class Simulation:
         Time steps, refreshes and samples.
     nodes, series
         Nodes of the series, and whether there are any series.
+    pieces
+        That each case is cut into, simulated side by side; ``steps`` are those of a piece.
     """
 
     cage: Cage | Structure
@@ -42,6 +44,7 @@ class Simulation:
     series: bool
     quantile_levels: Float[np.ndarray, " quantile"]
     second_moment: bool
+    pieces: int
 
     def assembly(self) -> Assembly:
         """The cage on its mooring, with masses that the time step can follow."""

@@ -35,6 +35,7 @@ def history(value=0.0, samples=3):
         volume_fraction=np.asarray(value),
         quantile_levels=LEVELS,
         second_moment=np.zeros((0, 0)),
+        hs_left_out=np.asarray(value),
         result=np.asarray(0),
         diverged_at=np.asarray(np.nan),
     )

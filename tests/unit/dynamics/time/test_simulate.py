@@ -17,6 +17,7 @@ from seacage.dynamics import (
     simulate,
     simulation_lanes,
 )
+from seacage.dynamics._kernel import March
 from seacage.dynamics._time import _forcing, _simulate
 from seacage.dynamics._time._simulation import Simulation
 from seacage.ocean import CurrentProfile, SeaState, Waves, sample_waves, surface_elevation
@@ -105,14 +106,14 @@ def test_a_history_counts_from_the_end_of_the_spin_up():
 
 
 def test_the_surface_is_that_of_the_waves_drawn_from_the_sea(full):
-    waves = sample_waves(SEA, seed=0, depth=DEPTH)
+    waves = sample_waves(SEA, seed=0, depth=DEPTH).longer(8.0 * SMALL.collar.pipe_diameter)
     elevation = surface_elevation(waves, np.zeros(2), full.time + QUICK["spin_up"])
     # single precision of phases and of 30 components
     np.testing.assert_allclose(full.surface_elevation, elevation, atol=1e-6)
 
 
 def test_waves_rise_over_the_ramp():
-    waves = sample_waves(SEA, seed=0, depth=DEPTH)
+    waves = sample_waves(SEA, seed=0, depth=DEPTH).longer(8.0 * SMALL.collar.pipe_diameter)
     history = quick(SEA, spin_up=30.0, ramp=30.0, duration=1.0, sample_every=0.1)
     at_full = surface_elevation(waves, np.zeros(2), history.time + 30.0)
     np.testing.assert_allclose(history.surface_elevation, at_full, atol=1e-6)
@@ -571,3 +572,67 @@ def test_a_structure_keeps_its_own_mooring(pytestconfig):
     with pytest.raises(InputError, match="has lines and anchors of its own"):
         simulate(moored, still, **QUICK, mooring="catenary")
     assert simulate(moored, still, **QUICK).result == Result.CONVERGED
+
+
+# Pieces
+
+
+def test_a_case_cut_into_pieces_is_the_whole_one():
+    sea = SeaState(current_speed=0.4, current_to=30.0, hs=1.5, tp=6.0, wave_from=200.0)
+    settings = {"duration": 160.0, "spin_up": 150.0, "ramp": 30.0, "seed": 4, "sample_every": 0.5}
+    whole = simulate(SMALL, sea, **settings)
+    cut = simulate(SMALL, sea, pieces=8, **settings)
+    np.testing.assert_allclose(cut.time, whole.time)
+    np.testing.assert_allclose(cut.surface_elevation, whole.surface_elevation, atol=1e-4)
+    # a cage forgets its start in less than the spin-up: what is left is a few mm of creep
+    np.testing.assert_allclose(cut.node.mean, whole.node.mean, atol=0.05)
+    np.testing.assert_allclose(cut.bridle.mean, whole.bridle.mean, rtol=0.01, atol=100.0)
+    np.testing.assert_allclose(cut.bridle.std, whole.bridle.std, rtol=0.02, atol=100.0)
+    np.testing.assert_allclose(cut.bridle.maximum, whole.bridle.maximum, rtol=0.03, atol=100.0)
+    assert cut.line_tension.shape == whole.line_tension.shape
+
+
+def test_pieces_round_the_duration_up():
+    sea = SeaState(current_speed=0.4, current_to=30.0)
+    cut = quick(sea, duration=1.0, sample_every=0.2, pieces=3)
+    assert len(cut.time) == 6  # three times 0.4 s
+
+
+def test_a_piece_that_is_lost_loses_the_case(monkeypatch):
+    sea = SeaState(current_speed=0.4, current_to=30.0)
+    monkeypatch.setattr(March, "lost_at", np.array([np.nan, 2.0, np.nan]))
+    cut = quick(sea, duration=3.0, pieces=3)
+    assert cut.result == Result.DIVERGED
+    assert cut.diverged_at == 3.0  # a second of the first piece, and two of the second
+    assert np.isnan(cut.bridle.mean).all()
+
+
+@pytest.mark.parametrize("pieces", [0, -1, 17])
+def test_pieces_that_no_vector_holds_are_refused(pieces):
+    with pytest.raises(InputError, match=f"pieces = {pieces}, but a case is cut into 1 to 16"):
+        quick(SeaState(current_speed=0.4, current_to=30.0), pieces=pieces)
+
+
+# Short waves
+
+
+def test_waves_of_five_millimetres_move_no_bridle():
+    sea = SeaState(
+        current_speed=0.5, current_to=0.0, hs=0.005, tp=5.0 * 0.005**0.5, wave_from=180.0
+    )
+    history = simulate(Cage.named("ace"), sea, duration=20.0, spin_up=60.0, sample_every=None)
+    assert history.hs_left_out == 1.0
+    assert history.bridle.std.max() < 50.0
+
+
+def test_waves_shorter_than_eight_pipe_diameters_are_left_out():
+    sea = SeaState(current_speed=0.0, current_to=0.0, hs=0.3, tp=2.7, wave_from=180.0)
+    waves = sample_waves(sea, seed=0, depth=SMALL.site.water_depth)
+    history = quick(sea, waves=waves)
+    longest = 2.0 * np.pi / (8.0 * SMALL.collar.pipe_diameter)
+    kept = waves.wavenumber <= longest
+    variance = np.sum(waves.amplitude**2)
+    left = np.sum(waves.amplitude[kept] ** 2)
+    assert history.hs_left_out == pytest.approx(1.0 - np.sqrt(left / variance))
+    assert 0.05 < history.hs_left_out < 0.5
+    assert quick(SeaState(current_speed=0.3, current_to=0.0)).hs_left_out == 0.0
