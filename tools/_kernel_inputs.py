@@ -77,7 +77,7 @@ def a_body(rng: np.random.Generator, nodes: int) -> tuple[Any, dict[str, int]]:
         "place": (nodes, 3),
         "chord": (nodes, 2),
         **dict.fromkeys(("bar_length", "bar_rate", "bar_damping"), (parts["bars"],)),
-        "bend_stiffness": (parts["bends"],),
+        **dict.fromkeys(("bend_stiffness", "bend_plane", "bend_turn"), (parts["bends"],)),
         "panel_share": (parts["panels"], 4),
         **dict.fromkeys(("panel_outline", "panel_mass"), (parts["panels"],)),
         **dict.fromkeys(("cylinder_drag", "cylinder_skin"), (parts["cylinders"],)),
@@ -267,7 +267,7 @@ def a_structure(rng: np.random.Generator, nodes: int, graph: dict[str, np.ndarra
     shapes = {
         "weight": (nodes,),
         **dict.fromkeys(("bar_length", "bar_stiffness"), (len(graph["bars"]),)),
-        "bend_stiffness": (len(graph["bends"]),),
+        **dict.fromkeys(("bend_stiffness", "bend_plane", "bend_turn"), (len(graph["bends"]),)),
         "panel_share": (len(graph["panels"]), 4),
         "panel_outline": (len(graph["panels"]),),
         "cylinder_width": (len(graph["cylinders"]),),

@@ -75,7 +75,7 @@ def chain(
         bridles=NO_INDEX,
         lines=MooringLines.alike((), "line"),
         line_bars=NO_INDEX,
-        bends=Bends(nodes=np.zeros((0, 3), dtype=np.int64), stiffness=NONE),
+        bends=Bends.none(),
         panels=_no_panels(),
         cylinders=Cylinders(
             ends=ends if drag_width else ends[:0],
@@ -180,9 +180,12 @@ def energy(
     stretch = np.where(bars.pushed, stretch, np.maximum(stretch, 0.0))
     total += 0.5 * stretch**2 @ (bars.stiffness / bars.length)
     first, second = np.moveaxis(np.diff(position[:, assembly.bends.nodes], axis=2), 2, 0)
-    cosine = np.sum(first * second, axis=-1)
-    cosine /= np.linalg.norm(first, axis=-1) * np.linalg.norm(second, axis=-1)
+    lengths = np.linalg.norm(first, axis=-1) * np.linalg.norm(second, axis=-1)
+    cosine = np.sum(first * second, axis=-1) / lengths
     total += 2.0 * ((1.0 - cosine) / (1.0 + cosine)) @ assembly.bends.stiffness
+    turn = 2.0 * np.cross(first, second)[..., 2] / lengths / (1.0 + cosine)
+    bent = turn - assembly.bends.plane_turn
+    total += 0.5 * bent**2 @ assembly.bends.plane_stiffness
     floats, springs = assembly.floats, assembly.springs
     draft = np.maximum(floats.draft - position[:, floats.nodes, 2], 0.0)
     drowned = np.maximum(draft - floats.height, 0.0)

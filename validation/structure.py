@@ -32,10 +32,7 @@ class _Ring:
         self.along = np.stack([-np.sin(self.angle), np.cos(self.angle), zero], axis=1)
         self.circle = RADIUS * self.outward
         chord = 2.0 * RADIUS * math.sin(math.pi / JOINTS)
-        self.bends = Bends(
-            nodes=np.stack([np.roll(turn, k) for k in (1, 0, -1)], axis=1),
-            stiffness=np.full(JOINTS, BENDING / chord),
-        )
+        self.bends = Bends.ring(turn, BENDING / chord)
         self.hoop = Bars(
             ends=np.stack([turn, np.roll(turn, -1)], axis=1),
             length=np.full(JOINTS, chord),

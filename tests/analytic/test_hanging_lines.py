@@ -58,7 +58,7 @@ def chain(position, *, length, axial_stiffness, weight):
         bridles=NO_INDEX,
         lines=MooringLines.alike((), "line"),
         line_bars=NO_INDEX,
-        bends=Bends(nodes=np.zeros((0, 3), dtype=np.int64), stiffness=NONE),
+        bends=Bends.none(),
         panels=Panels(
             corners=np.zeros((0, 4), dtype=np.int64),
             share=np.zeros((0, 4)),

@@ -117,7 +117,8 @@ def magnitudes(assembly, law, water, position, velocity):
     lengths = [np.linalg.norm(middle - before, axis=-1), np.linalg.norm(after - middle, axis=-1)]
     cosine = np.sum((middle - before) * (after - middle), axis=-1) / (lengths[0] * lengths[1])
     # the force grows without bound as a joint folds: its rounding does by one power more
-    bend = 8.0 * a.bends.stiffness / (np.minimum(*lengths) * (1.0 + cosine) ** 3)
+    plane = a.bends.plane_stiffness * (1.0 + a.bends.plane_turn)
+    bend = 8.0 * (a.bends.stiffness + plane) / (np.minimum(*lengths) * (1.0 + cosine) ** 3)
     put(a.bends.nodes, bend)
     speed = np.linalg.norm(past_panels(a.panels, law, water, velocity), axis=-1)
     speed += np.abs(velocity[:, a.panels.corners]).sum(axis=(2, 3))

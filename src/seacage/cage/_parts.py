@@ -93,6 +93,31 @@ class Collar(_Part):
     added_mass_coefficient: float = quantity(
         "", "added mass over displaced mass of the pipe's wet share", default=1.0
     )
+    pipe_distance: float | None = quantity(
+        "m", "between the axes of two pipes", above=True, default=None
+    )
+    brackets: int | None = quantity(
+        "", "that hold two pipes together, evenly spaced; 0 if these slide in them", default=None
+    )
+
+    def __post_init__(self) -> None:
+        super(Collar, self).__post_init__()
+        if self.brackets and self.pipe_distance is None:
+            raise InputError(
+                f"Cage, Collar: brackets = {self.brackets} need the distance between the pipes. "
+                "Add pipe_distance_m, from axis to axis."
+            )
+        if self.pipe_distance is not None and self.pipe_distance < self.pipe_diameter:
+            raise InputError(
+                f"Cage, Collar: pipe_distance_m = {self.pipe_distance:g} is less than "
+                f"pipe_diameter_m = {self.pipe_diameter:g}: the pipes would overlap. Give the "
+                "distance from axis to axis."
+            )
+        if self.brackets and self.pipes != 2:
+            raise InputError(
+                f"Cage, Collar: brackets = {self.brackets} hold two pipes together, but pipes = "
+                f"{self.pipes}. Leave brackets out, and the pipes bend each for itself."
+            )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

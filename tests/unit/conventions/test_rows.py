@@ -7,7 +7,15 @@ import numpy as np
 from seacage.conventions import Rows
 from seacage.dynamics._parts import Bends, Floats
 
-BENDS = Bends(nodes=np.arange(12).reshape(4, 3), stiffness=np.array([1.0, 2.0, 3.0, 4.0]))
+
+def bends(nodes, stiffness):
+    zero = np.zeros(len(nodes))
+    return Bends(
+        nodes=nodes, stiffness=np.array(stiffness), plane_stiffness=zero, plane_turn=zero.copy()
+    )
+
+
+BENDS = bends(np.arange(12).reshape(4, 3), [1.0, 2.0, 3.0, 4.0])
 
 
 def test_some_rows_are_copies_in_the_order_requested():
@@ -20,7 +28,7 @@ def test_some_rows_are_copies_in_the_order_requested():
 
 def test_rows_that_are_taken_back_leave_the_others_alone():
     whole = BENDS.rows(np.arange(4))
-    other = Bends(nodes=np.full((2, 3), 9), stiffness=np.array([30.0, 10.0]))
+    other = bends(np.full((2, 3), 9), [30.0, 10.0])
     whole.take(np.array([2, 0]), other)
     np.testing.assert_array_equal(whole.stiffness, [10.0, 2.0, 30.0, 4.0])
     np.testing.assert_array_equal(whole.nodes[:, 0], [9, 3, 9, 9])

@@ -192,18 +192,43 @@ def _bars(
 
 
 def _bends(bends: Bends, position: Float[np.ndarray, "node 3"]) -> list[Entries]:
-    """The turn's energy is nearly ½ k |t2 − t1|²; what is left out does not move the answer."""
+    """The turn's energy is nearly ½ k |t2 − t1|²; what is left out does not move the answer.
+
+    In the horizontal plane it is ½ k (κ − κ0)², of which the slope of κ alone is taken.
+    """
     first, _, last = bends.nodes.T
     chord = position[last] - position[first]
     square = np.sum(chord**2, axis=1)[:, None, None]
     stiffness = 4.0 * bends.stiffness[:, None, None] / square
     block = stiffness * (np.eye(3) - _outer(chord, chord) / square)
     shares = (1.0, -2.0, 1.0)
+    turned = _turn_slopes(bends, position)
+    plane = bends.plane_stiffness[:, None, None]
     return [
-        (bends.nodes[:, e], bends.nodes[:, g], shares[e] * shares[g] * block)
+        (
+            bends.nodes[:, e],
+            bends.nodes[:, g],
+            shares[e] * shares[g] * block + plane * _outer(turned[e], turned[g]),
+        )
         for e in range(3)
         for g in range(3)
     ]
+
+
+def _turn_slopes(
+    bends: Bends, position: Float[np.ndarray, "node 3"]
+) -> tuple[Float[np.ndarray, "bend 3"], ...]:
+    """How a joint's curvature about the vertical rises as each of its nodes moves [1/m]."""
+    before, middle, after = np.moveaxis(position[bends.nodes], 1, 0)
+    first, second = middle - before, after - middle
+    length_1 = np.linalg.norm(first, axis=1, keepdims=True)
+    length_2 = np.linalg.norm(second, axis=1, keepdims=True)
+    t1, t2, up = first / length_1, second / length_2, np.array([0.0, 0.0, 1.0])
+    opened = 1.0 + np.sum(t1 * t2, axis=1, keepdims=True)
+    along = 2.0 * np.cross(t1, t2)[:, 2:] / opened * (t1 + t2)
+    by_first = (2.0 * np.cross(t2, up) - along) / opened / length_1
+    by_second = (2.0 * np.cross(up, t1) - along) / opened / length_2
+    return -by_first, by_first - by_second, by_second
 
 
 def _panels(

@@ -104,7 +104,8 @@ def _fictitious_mass(
     span = np.linalg.norm(
         assembly.position[bends.nodes[:, 1]] - assembly.position[bends.nodes[:, 0]], axis=1
     )
-    np.add.at(stiffness, bends.nodes[:, 1], 16.0 * bends.stiffness / span**2)
+    bending = bends.stiffness + bends.plane_stiffness
+    np.add.at(stiffness, bends.nodes[:, 1], 16.0 * bending / span**2)
     stiffness[assembly.floats.nodes] += assembly.floats.stiffness
     stiffness[assembly.springs.nodes] += assembly.springs.stiffness.max(axis=1)
     stiffness[assembly.ground.nodes] += assembly.ground.stiffness

@@ -25,7 +25,7 @@ typedef struct {
         *spring_nodes, *ground_nodes;
     const double *weight;
     const double *bar_length, *bar_stiffness, *bar_least; /* least tension: 0 or -infinity */
-    const double *bend_stiffness;
+    const double *bend_stiffness, *bend_plane, *bend_turn;
     const double *panel_share, *panel_outline;
     const double *cylinder_width;
     const double *float_stiffness, *float_draft, *float_height;
@@ -75,6 +75,7 @@ static void add_bends(const assembly *s, const vec *restrict x, vec *restrict f)
         const int *n = s->bend_nodes + 3 * b;
         const int i = n[0], j = n[1], m = n[2];
         const double stiffness = 4.0 * s->bend_stiffness[b];
+        const double plane = s->bend_plane[b], cut = s->bend_turn[b];
         EACH_LANE {
             double p[3], q[3], pp = 0.0, qq = 0.0, c = 0.0;
             for (int a = 0; a < 3; a++) {
@@ -86,11 +87,15 @@ static void add_bends(const assembly *s, const vec *restrict x, vec *restrict f)
             }
             const double rp = 1.0 / sqrt(pp), rq = 1.0 / sqrt(qq);
             c *= rp * rq;
-            const double slope = stiffness / ((1.0 + c) * (1.0 + c));
+            const double open = 1.0 / (1.0 + c), slope = stiffness * open * open;
+            const double turn = 2.0 * (p[0] * q[1] - p[1] * q[0]) * rp * rq * open;
+            const double moment = plane * (turn - cut) * open;
+            const double q_up[3] = {2.0 * q[1] * rq, -2.0 * q[0] * rq, 0.0};
+            const double up_p[3] = {-2.0 * p[1] * rp, 2.0 * p[0] * rp, 0.0};
             for (int a = 0; a < 3; a++) {
-                const double t1 = p[a] * rp, t2 = q[a] * rq;
-                const double on_first = slope * (t2 - c * t1) * rp;
-                const double on_second = slope * (t1 - c * t2) * rq;
+                const double t1 = p[a] * rp, t2 = q[a] * rq, along = turn * (t1 + t2);
+                const double on_first = (slope * (t2 - c * t1) - moment * (q_up[a] - along)) * rp;
+                const double on_second = (slope * (t1 - c * t2) - moment * (up_p[a] - along)) * rq;
                 f[i][a][k] -= on_first;
                 f[j][a][k] += on_first - on_second;
                 f[m][a][k] += on_second;

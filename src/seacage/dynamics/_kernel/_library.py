@@ -240,6 +240,8 @@ def parts_of(assembly: Assembly) -> dict[str, Any]:
         "bar_length": a.bars.length,
         "bar_least": np.where(a.bars.pushed, -np.inf, 0.0),
         "bend_stiffness": a.bends.stiffness,
+        "bend_plane": a.bends.plane_stiffness,
+        "bend_turn": a.bends.plane_turn,
         "panel_share": a.panels.share,
         "panel_outline": a.panels.outline,
         "float_stiffness": a.floats.stiffness,

@@ -31,7 +31,7 @@ typedef struct {
     const float *weight, *mass, *water_mass, *place;
     const float *chord; /* [node][2] horizontal, over which a node's waves are averaged [m] */
     const float *bar_length, *bar_rate, *bar_damping, *bar_least; /* 0 or -infinity */
-    const float *bend_stiffness;
+    const float *bend_stiffness, *bend_plane, *bend_turn;
     const float *panel_share, *panel_outline, *panel_mass;
     const float *cylinder_drag, *cylinder_skin; /* 1/4 rho Cd D, for each end */
     const float *float_stiffness, *float_draft, *float_height;
@@ -205,6 +205,7 @@ static void add_bends(const body *b, const vec *restrict x, vec *restrict f)
         const int *at = b->bend_nodes + 3 * n;
         const int i = at[0], j = at[1], m = at[2];
         const float stiffness = 4.0f * b->bend_stiffness[n];
+        const float plane = b->bend_plane[n], cut = b->bend_turn[n];
         EACH_LANE {
             float p[3], q[3], pp = 1e-12f, qq = 1e-12f, c = 0.0f;
             for (int a = 0; a < 3; a++) {
@@ -216,12 +217,16 @@ static void add_bends(const body *b, const vec *restrict x, vec *restrict f)
             }
             const float rp = 1.0f / sqrtf(pp), rq = 1.0f / sqrtf(qq);
             c *= rp * rq;
-            const float open = 1.0f + c > 1e-3f ? 1.0f + c : 1e-3f;
-            const float slope = stiffness / (open * open);
+            const float open = 1.0f / (1.0f + c > 1e-3f ? 1.0f + c : 1e-3f);
+            const float slope = stiffness * open * open;
+            const float turn = 2.0f * (p[0] * q[1] - p[1] * q[0]) * rp * rq * open;
+            const float moment = plane * (turn - cut) * open;
+            const float q_up[3] = {2.0f * q[1] * rq, -2.0f * q[0] * rq, 0.0f};
+            const float up_p[3] = {-2.0f * p[1] * rp, 2.0f * p[0] * rp, 0.0f};
             for (int a = 0; a < 3; a++) {
-                const float t1 = p[a] * rp, t2 = q[a] * rq;
-                const float on_first = slope * (t2 - c * t1) * rp;
-                const float on_second = slope * (t1 - c * t2) * rq;
+                const float t1 = p[a] * rp, t2 = q[a] * rq, along = turn * (t1 + t2);
+                const float on_first = (slope * (t2 - c * t1) - moment * (q_up[a] - along)) * rp;
+                const float on_second = (slope * (t1 - c * t2) - moment * (up_p[a] - along)) * rq;
                 f[i][a][k] -= on_first;
                 f[j][a][k] += on_first - on_second;
                 f[m][a][k] += on_second;
@@ -951,9 +956,9 @@ const layout_row seacage_layout_body[] = {
     FIELD(springs), FIELD(grounds), FIELD(lines), FIELD(bar_ends), FIELD(bend_nodes),
     FIELD(panel_corners), FIELD(cylinder_ends), FIELD(float_nodes), FIELD(spring_nodes),
     FIELD(ground_nodes), FIELD(line_bars), FIELD(weight), FIELD(mass), FIELD(water_mass),
-    FIELD(place), FIELD(chord), FIELD(bar_length), FIELD(bar_rate), FIELD(bar_damping), FIELD(bar_least),
-    FIELD(bend_stiffness), FIELD(panel_share), FIELD(panel_outline), FIELD(panel_mass),
-    FIELD(cylinder_drag),
+    FIELD(place), FIELD(chord), FIELD(bar_length), FIELD(bar_rate), FIELD(bar_damping),
+    FIELD(bar_least), FIELD(bend_stiffness), FIELD(bend_plane), FIELD(bend_turn),
+    FIELD(panel_share), FIELD(panel_outline), FIELD(panel_mass), FIELD(cylinder_drag),
     FIELD(cylinder_skin), FIELD(float_stiffness), FIELD(float_draft), FIELD(float_height),
     FIELD(spring_place), FIELD(spring_stiffness), FIELD(spring_preload), FIELD(spring_damping),
     FIELD(ground_stiffness), FIELD(cylinder_series), FIELD(ground_level), LAYOUT_END(body),

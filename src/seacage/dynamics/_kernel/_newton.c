@@ -100,13 +100,43 @@ static void linearise_bars(const assembly *s, const pattern *p, const balance *r
     }
 }
 
+/* How a joint's curvature about the vertical rises as each of its nodes moves. */
+static void turn_slopes(const int32_t *n, const vec *restrict x, vec *restrict turned)
+{
+    EACH_LANE {
+        double p[3], q[3], pp = 0.0, qq = 0.0, pq = 0.0;
+        for (int a = 0; a < 3; a++) {
+            p[a] = x[n[1]][a][k] - x[n[0]][a][k];
+            q[a] = x[n[2]][a][k] - x[n[1]][a][k];
+            pp += p[a] * p[a];
+            qq += q[a] * q[a];
+            pq += p[a] * q[a];
+        }
+        const double rp = 1.0 / sqrt(pp), rq = 1.0 / sqrt(qq);
+        const double open = 1.0 / (1.0 + pq * rp * rq);
+        const double turn = 2.0 * (p[0] * q[1] - p[1] * q[0]) * rp * rq * open;
+        const double q_up[3] = {2.0 * q[1] * rq, -2.0 * q[0] * rq, 0.0};
+        const double up_p[3] = {-2.0 * p[1] * rp, 2.0 * p[0] * rp, 0.0};
+        for (int a = 0; a < 3; a++) {
+            const double along = turn * (p[a] * rp + q[a] * rq);
+            const double by_first = (q_up[a] - along) * open * rp;
+            const double by_second = (up_p[a] - along) * open * rq;
+            turned[0][a][k] = -by_first;
+            turned[1][a][k] = by_first - by_second;
+            turned[2][a][k] = by_second;
+        }
+    }
+}
+
 static void linearise_bends(const assembly *s, const pattern *p, const vec *restrict x, bench *w)
 {
     static const double share[3] = {1.0, -2.0, 1.0};
     for (int q = 0; q < s->bends; q++) {
         const int i = s->bend_nodes[3 * q], m = s->bend_nodes[3 * q + 2];
-        const double stiffness = 4.0 * s->bend_stiffness[q];
+        const double stiffness = 4.0 * s->bend_stiffness[q], plane = s->bend_plane[q];
         block part;
+        vec turned[3];
+        turn_slopes(s->bend_nodes + 3 * q, x, turned);
         EACH_LANE {
             const double x0 = x[m][0][k] - x[i][0][k];
             const double x1 = x[m][1][k] - x[i][1][k];
@@ -121,7 +151,8 @@ static void linearise_bends(const assembly *s, const pattern *p, const vec *rest
             for (int a = 0; a < 3; a++)
                 for (int c = 0; c < 3; c++)
                     EACH_LANE w->blocks[p->bends[9 * q + e]][a][c][k] +=
-                        share[e / 3] * share[e % 3] * part[a][c][k];
+                        share[e / 3] * share[e % 3] * part[a][c][k]
+                        + plane * turned[e / 3][a][k] * turned[e % 3][c][k];
     }
 }
 

@@ -21,7 +21,8 @@ def scale_mass(assembly: Assembly, time_step: float) -> tuple[Assembly, Float[np
     Light nodes on stiff bars ring faster than a time step can follow, at frequencies at which
     nothing else happens. They are lent mass: equilibria and slow motion stay as they are, where
     softer bars would shift both. A bar's frequency is bounded by that of the bars along it
-    at its two ends, each end with its own mass; on a straight chain this is exact.
+    at its two ends, each end with its own mass; on a straight chain this is exact. A pipe's
+    bending comes on top, as if its nodes stood out to either side in turn.
 
     Raises
     ------
@@ -35,6 +36,7 @@ def scale_mass(assembly: Assembly, time_step: float) -> tuple[Assembly, Float[np
     for end in (0, 1):
         along = 2.0 * _stiffness_along(assembly, end) / limit**2
         np.maximum.at(need, bars.ends[:, end], along)
+    need += _bending(assembly) / _fastest(np.zeros(1), time_step) ** 2
     lent = np.where(assembly.fixed, 0.0, np.maximum(need - assembly.mass, 0.0))
     worst = int(np.argmax(lent / assembly.mass))
     if lent[worst] > MOST_ADDED * assembly.mass[worst]:
@@ -58,6 +60,18 @@ def _fastest(
     """Highest frequency a step can follow, with damping taken at the old velocity [rad/s]."""
     ratio = np.sqrt(2.0) * damping_ratio
     return SAFETY * 2.0 / time_step * (np.sqrt(1.0 + ratio**2) - ratio)
+
+
+def _bending(assembly: Assembly) -> Float[np.ndarray, " node"]:
+    """Highest stiffness of a pipe against bending, at each of its nodes [N/m]."""
+    bends, position = assembly.bends, assembly.position
+    before, middle, after = bends.nodes.T
+    span = np.linalg.norm(position[[middle, after]] - position[[before, middle]], axis=-1)
+    stiffness = np.zeros(len(position))
+    # a joint that stands out by w turns by 4 w/l, and its neighbours turn as far the other way
+    bending = bends.stiffness + bends.plane_stiffness
+    np.add.at(stiffness, middle, 16.0 * bending / span.min(axis=0) ** 2)
+    return stiffness
 
 
 def _stiffness_along(assembly: Assembly, end: int) -> Float[np.ndarray, " bar"]:

@@ -8,6 +8,7 @@ from jaxtyping import Bool, Float, Int
 
 from seacage.cage import Cage, MooringLines, mooring_lines
 from seacage.conventions import GRAVITY, WATER_DENSITY, InputError, Rows
+from seacage.dynamics._parts._bracketed_pipes import bracket_stiffness
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -43,16 +44,30 @@ class Bars(Rows):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Bends(Rows):
-    """Joints of a pipe that resist being bent."""
+    """Joints of pipes that resist being bent: alike in all directions, and more when level."""
 
     nodes: Int[np.ndarray, "bend 3"]
     stiffness: Float[np.ndarray, " bend"]  # EI over the joint's share of length [N m]
+    plane_stiffness: Float[np.ndarray, " bend"]  # the same, of what the horizontal plane adds
+    plane_turn: Float[np.ndarray, " bend"]  # 2 tan of half the turn about z that this is cut to [-]
 
     @classmethod
-    def ring(cls, around: Int[np.ndarray, " spoke"], stiffness: float) -> "Bends":
-        """Joints of a pipe that closes on itself, all alike."""
+    def ring(
+        cls,
+        around: Int[np.ndarray, " spoke"],
+        stiffness: float,
+        *,
+        plane_stiffness: float = 0.0,
+    ) -> "Bends":
+        """Joints of a pipe that closes on itself, all alike, counter-clockwise from above."""
         nodes = np.column_stack([np.roll(around, 1), around, np.roll(around, -1)])
-        return cls(nodes=nodes, stiffness=np.full(len(around), stiffness))
+        count = len(around)
+        return cls(
+            nodes=nodes,
+            stiffness=np.full(count, stiffness),
+            plane_stiffness=np.full(count, plane_stiffness),
+            plane_turn=np.full(count, 2.0 * np.tan(np.pi / count)),
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -275,10 +290,15 @@ def _bridle_bars(cage: Cage, position: Float[np.ndarray, "node 3"]) -> Bars:
 
 
 def _bends(cage: Cage) -> Bends:
-    collar = cage.collar.pipes * cage.collar.pipe_bending_stiffness
-    rings = ((0, collar), (cage.tube_ring, cage.sinker_tube.bending_stiffness))
+    collar, chord = cage.collar, _chord(cage, 0)
+    tube = cage.sinker_tube.bending_stiffness / _chord(cage, cage.tube_ring)
     return Bends.joined(
-        *(Bends.ring(cage.ring_nodes(ring), stiff / _chord(cage, ring)) for ring, stiff in rings)
+        Bends.ring(
+            cage.ring_nodes(0),
+            collar.pipes * collar.pipe_bending_stiffness / chord,
+            plane_stiffness=bracket_stiffness(collar) / chord,
+        ),
+        Bends.ring(cage.ring_nodes(cage.tube_ring), tube),
     )
 
 

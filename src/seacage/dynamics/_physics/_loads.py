@@ -105,6 +105,12 @@ def bend_force(bends: Bends, position: Nodal) -> Nodal:
     vector of a discrete elastic rod that is straight when unloaded, free to twist. On a
     ring it gives the classical in-plane (n²−1)² EI/R⁴ and out-of-plane n²(n²−1) EI/R⁴.
 
+    Pipes held together in the horizontal plane are stiffer there: ½ (ΔEI/l)(κ − κ0)² comes on
+    top, with κ the vertical part of that curvature vector (the curvature binormal), and κ0 that
+    of the ring as it was cut. It stands for the curvature in the plane of the pipes, whose
+    twist is not known; as the pair rests at κ0, a ring that a wave tilts by an angle bends
+    only by its square.
+
     References
     ----------
     Bergou et al. (2008), discrete elastic rods; Love (1927), section 293.
@@ -116,8 +122,14 @@ def bend_force(bends: Bends, position: Nodal) -> Nodal:
     t1, t2 = first / length_1, second / length_2
     c = np.sum(t1 * t2, axis=-1, keepdims=True)
     slope = 4.0 * bends.stiffness[:, None] / (1.0 + c) ** 2  # −dE/dc
-    on_first = slope * (t2 - c * t1) / length_1  # −dE/d(first)
-    on_second = slope * (t1 - c * t2) / length_2
+    up = np.array([0.0, 0.0, 1.0])
+    turn = 2.0 * np.cross(t1, t2)[..., 2:] / (1.0 + c)
+    moment = bends.plane_stiffness[:, None] * (turn - bends.plane_turn[:, None])
+    along = turn * (t1 + t2)
+    plane_1 = moment / (1.0 + c) * (2.0 * np.cross(t2, up) - along)
+    plane_2 = moment / (1.0 + c) * (2.0 * np.cross(up, t1) - along)
+    on_first = (slope * (t2 - c * t1) - plane_1) / length_1  # −dE/d(first)
+    on_second = (slope * (t1 - c * t2) - plane_2) / length_2
     shares = np.stack([-on_first, on_first - on_second, on_second], axis=2)
     return _gather(position, bends.nodes, shares)
 

@@ -42,6 +42,24 @@ def swaying(scale, parts=PARTS):
 def test_the_tangent_is_the_slope_of_the_force(law, parts, raised, scale):
     flow = steady_flow(parts, np.array([[0.5, 0.3]]), law=law)
     position = swaying(scale, parts) + np.array([0.0, 0.0, raised])  # panels partly dry, and folded
+    check_tangent(parts, flow, position)
+
+
+def test_the_tangent_has_the_stiffness_of_pipes_held_together_in_their_plane():
+    bends = replace(
+        PARTS.bends,
+        stiffness=np.zeros_like(PARTS.bends.stiffness),
+        plane_stiffness=np.full_like(PARTS.bends.stiffness, 1e7),
+    )
+    flow = steady_flow(PARTS, np.array([[0.5, 0.3]]), law="loland")
+    # larger, and turned about z, joints keep the turn they were cut to, and no bar is slack;
+    # lower, no panel is dry
+    position = 1.01 * PARTS.position @ [[0.8, 0.6, 0.0], [-0.6, 0.8, 0.0], [0.0, 0.0, 1.0]]
+    position[:, 2] -= 2.0
+    check_tangent(replace(PARTS, bends=bends), flow, position)
+
+
+def check_tangent(parts, flow, position):
     direction = np.random.default_rng(1).normal(size=position.shape)
     ahead, back = (
         nodal_force(parts, flow, (position + step * direction)[None])[0] for step in (1e-6, -1e-6)
@@ -107,7 +125,7 @@ def standing_pole():
             pushed=np.ones(1, dtype=bool),
             damping_ratio=np.zeros(1),
         ),
-        bends=replace(PARTS.bends, nodes=np.zeros((0, 3), dtype=np.int64), stiffness=np.zeros(0)),
+        bends=PARTS.bends.none(),
         panels=replace(PARTS.panels, **empty(PARTS.panels)),
         cylinders=replace(PARTS.cylinders, **empty(PARTS.cylinders)),
         floats=replace(PARTS.floats, **empty(PARTS.floats)),

@@ -1,5 +1,7 @@
 """Each load alone: nothing in still water, no NaN, and the force that its energy says."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -119,22 +121,40 @@ def test_twines_go_slack_and_pipes_can_be_pushed():
 def test_what_holds_the_cage_together_pulls_on_nothing_outside():
     position = shaken()
     scale = np.abs(bar_force(PARTS.bars, position)).sum()
-    for force in (bar_force(PARTS.bars, position), bend_force(PARTS.bends, position)):
+    free = replace(PARTS.bends, plane_stiffness=np.zeros(len(PARTS.bends.stiffness)))
+    # pipes held together in the horizontal plane keep to it: they turn freely about z alone
+    for force, axes in (
+        (bar_force(PARTS.bars, position), slice(None)),
+        (bend_force(free, position), slice(None)),
+        (bend_force(PARTS.bends, position), slice(2, None)),
+    ):
         np.testing.assert_allclose(force.sum(axis=1), 0.0, atol=1e-12 * scale)
         moment = np.cross(position, force).sum(axis=1)
-        np.testing.assert_allclose(moment, 0.0, atol=1e-10 * scale)
+        np.testing.assert_allclose(moment[:, axes], 0.0, atol=1e-10 * scale)
+
+
+def joint(stiffness, plane_stiffness=0.0, plane_turn=0.0):
+    return Bends(
+        nodes=np.array([[0, 1, 2]]),
+        stiffness=np.array([stiffness]),
+        plane_stiffness=np.array([plane_stiffness]),
+        plane_turn=np.array([plane_turn]),
+    )
 
 
 def test_a_joint_resists_as_its_energy_says():
-    joint = Bends(nodes=np.array([[0, 1, 2]]), stiffness=np.array([7.0]))
+    bent = joint(7.0, 11.0, 0.3)
 
     def energy(position):
         first, second = position[1] - position[0], position[2] - position[1]
-        turn = np.arctan2(np.linalg.norm(np.cross(first, second)), first @ second)
-        return 2.0 * 7.0 * np.tan(turn / 2.0) ** 2
+        axis = np.cross(first, second)
+        turn = np.arctan2(np.linalg.norm(axis), first @ second)
+        curvature = 2.0 * np.tan(turn / 2.0)
+        level = curvature * axis[2] / np.linalg.norm(axis)
+        return 0.5 * 7.0 * curvature**2 + 0.5 * 11.0 * (level - 0.3) ** 2
 
     position = np.array([[0.0, 0.0, 0.0], [1.0, 0.2, 0.1], [1.8, 0.9, -0.3]])
-    force = bend_force(joint, position[None])[0]
+    force = bend_force(bent, position[None])[0]
     for node in range(3):
         for axis in range(3):
             step = np.zeros((3, 3))
@@ -144,9 +164,8 @@ def test_a_joint_resists_as_its_energy_says():
 
 
 def test_a_straight_joint_is_at_rest():
-    joint = Bends(nodes=np.array([[0, 1, 2]]), stiffness=np.array([7.0]))
     line = np.outer(np.arange(3.0), [1.0, 2.0, -1.0])
-    np.testing.assert_allclose(bend_force(joint, line[None]), 0.0, atol=1e-14)
+    np.testing.assert_allclose(bend_force(joint(7.0, 11.0), line[None]), 0.0, atol=1e-14)
 
 
 def test_a_float_bears_no_less_than_nothing_and_no_more_than_all_of_it():
