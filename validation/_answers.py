@@ -57,6 +57,7 @@ def answers(
         subject,
         seas,
         law=law,
+        mooring="springs",  # a tank has no anchor lines
         hold_collar=how.hold_collar,
         collar_drag=how.pipe_drag,
         wake=how.wake,
@@ -87,6 +88,7 @@ def _simulated(
         [*seas, SeaState(current_speed=0.0, current_to=0.0)],
         law=law,
         twine_drag=how.twine_drag if law == "morison" else None,
+        mooring="springs" if isinstance(subject, Cage) else "catenary",
         hold_collar=how.hold_collar,
         collar_drag=how.pipe_drag,
         wake=how.wake,

@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 
 from seacage.cage import Cage
-from seacage.dynamics import Law, Response, rest_shape
+from seacage.dynamics import Law, Mooring, Response, rest_shape
 from seacage.dynamics._equilibrium import equilibria
-from seacage.dynamics._moored import assemble
+from seacage.dynamics._moored import moor
 from seacage.dynamics._physics import steady_flow
 from seacage.dynamics._settle import _response
 from seacage.ocean import SeaState
@@ -22,12 +22,14 @@ def settle_on_present_area(
     seas: Sequence[SeaState],
     *,
     law: Law,
+    mooring: Mooring = "springs",
     wake: bool = True,
     hold_collar: bool = False,
     collar_drag: bool = True,
 ) -> Response:
     """``settle``, a panel's load for the area that it now has instead of that as cut."""
-    assembly = assemble(cage).held() if hold_collar else assemble(cage)
+    moored = moor(cage, mooring)
+    assembly = moored.held() if hold_collar else moored
     panels = assembly.panels
     velocity = np.array([sea.current_velocity for sea in seas])
     flow = whole = steady_flow(assembly, velocity, law=law, wake=wake, pipe_drag=collar_drag)
@@ -37,5 +39,5 @@ def settle_on_present_area(
         area = np.linalg.norm(np.cross(c - a, d - b), axis=-1) / 2.0
         flow = replace(whole, pressure=whole.pressure * np.nan_to_num(area) / panels.outline)
         found = equilibria(assembly, flow, starts=2)
-    rest = rest_shape(cage, hold_collar=hold_collar)
+    rest = rest_shape(cage, mooring=mooring, hold_collar=hold_collar)
     return _response(cage, assembly, flow, found, rest)

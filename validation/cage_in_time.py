@@ -325,7 +325,7 @@ def _bessel(x: float) -> float:
 SECTIONS = (
     Section(
         title="The cage in time",
-        about="`simulate` with the reference cage moored by springs.",
+        about="`simulate` with the reference cage.",
         rows=lambda: [*_steady(), *_symmetry(), *_known_waves(), *_swinging_volume()],
         slow=True,
     ),

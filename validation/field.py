@@ -62,7 +62,7 @@ def flume_drags() -> dict[tuple[float, float, Law], tuple[np.ndarray, np.ndarray
         assembly = Assembly.of(cage)
         corners = np.repeat(assembly.position[None, cage.node_count :], len(seas), axis=0)
         for law in LAWS:
-            response = settle(cage, seas, law=law, hold_collar=True)
+            response = settle(cage, seas, law=law, mooring="springs", hold_collar=True)
             velocity = np.array([sea.current_velocity for sea in seas])
             flow = steady_flow(assembly, velocity, law=law)
             position = np.concatenate([response.node_position, corners], axis=1)

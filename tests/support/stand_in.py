@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from line_loads import bare_line_loads
-from seacage.cage import Cage
+from seacage.cage import Cage, mooring_lines
 from seacage.conventions import InputError, Result
 from seacage.dynamics import History, Statistics
 from seacage.ocean import SeaState
@@ -25,7 +25,7 @@ class StandIn:
         self.settled: list[SeaState] = []
 
     def settle(
-        self, cage: Cage, seas: Sequence[SeaState], *, law: str, mean_waves: bool
+        self, cage: Cage, seas: Sequence[SeaState], *, law: str, mean_waves: bool, **_: object
     ) -> SimpleNamespace:
         if self.refuses:
             raise InputError("This cage cannot float.")
@@ -62,6 +62,7 @@ class StandIn:
         quantile_levels: Sequence[float],
         second_moment: bool,
         law: str,
+        mooring: str = "catenary",
         **_: object,
     ) -> History:
         """The settled cage, swaying by what the seed draws."""
@@ -76,6 +77,9 @@ class StandIn:
         )
         nobody = np.empty((len(sea), 0, 0))
         bridle = _swaying(settled.bridle_tension, sway, quantile_levels)
+        names = mooring_lines(cage, anchored=mooring == "catenary").names
+        others = np.full((len(sea), len(names) - cage.bridle_count), 2e4)
+        tension = np.concatenate([settled.bridle_tension, others], axis=1)
         return History(
             time=np.empty(0),
             nodes=np.empty(0, int),
@@ -87,7 +91,7 @@ class StandIn:
             bridle=bridle,
             net_force=_swaying(settled.net_force, sway, quantile_levels),
             volume=_swaying(settled.volume, sway, quantile_levels),
-            lines=bare_line_loads(bridle),
+            lines=bare_line_loads(_swaying(tension, sway, quantile_levels)),
             node_displacement=settled.node_position - cage.design_position,
             volume_fraction=np.ones(len(sea)),
             quantile_levels=np.array(quantile_levels),

@@ -31,7 +31,7 @@ class Simulator:
     law
         Load law of the netting; "morison", twine by twine, in time only.
     mooring
-        "springs" at the frame's corners, or "catenary" for its buoys and anchor lines.
+        "catenary": frame ropes, buoys and anchor lines; or "springs" under the frame's corners.
     ramp, spin_up
         Time over which the waves grow, and time before the statistics begin, the ramp
         included [s].
@@ -45,7 +45,7 @@ class Simulator:
 
     method: Literal["simulate", "settle"] = "simulate"
     law: MovingLaw = "kristiansen-faltinsen"
-    mooring: Mooring = "springs"
+    mooring: Mooring = "catenary"
     ramp: float = 60.0
     spin_up: float = 300.0
     time_step: float = 0.002
@@ -74,10 +74,10 @@ class Simulator:
     @property
     def attributes(self) -> dict[str, Any]:
         """What to write into a store, with units, beside ``law`` and ``method``."""
+        moored = {"mooring": self.mooring}
         if not self.in_time:
-            return {}
-        return {
-            "mooring": self.mooring,
+            return moored
+        return moored | {
             "ramp_s": self.ramp,
             "spin_up_s": self.spin_up,
             "time_step_s": self.time_step,
@@ -143,9 +143,10 @@ def answer_block(block: CaseBlock) -> Answers:
 
 
 def _settle_block(block: CaseBlock) -> tuple[dict[str, np.ndarray], None]:
-    law = block.simulator.law
+    law, mooring = block.simulator.law, block.simulator.mooring
     assert law != "morison"  # the simulator refused it
-    response = settle(_cage(block.cage_toml), block.seas, law=law, mean_waves=True)
+    cage = _cage(block.cage_toml)
+    response = settle(cage, block.seas, law=law, mooring=mooring, mean_waves=True)
     names = ("node_position", "bridle_tension", "net_force", "volume", "residual", "result")
     return {name: getattr(response, name) for name in names}, None
 

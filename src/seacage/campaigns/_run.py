@@ -17,7 +17,7 @@ from seacage.campaigns._cluster import map_on_cluster
 from seacage.campaigns._pool import map_tasks
 from seacage.campaigns._sea_state_plan import Plan
 from seacage.conventions import InputError, Origin, Progress, no_progress
-from seacage.dynamics import PHYSICS, Mooring, MovingLaw
+from seacage.dynamics import PHYSICS, SPRINGS, Mooring, MovingLaw
 from seacage.records import (
     NOT_RUN,
     CampaignRecord,
@@ -53,7 +53,7 @@ def run_campaign(
     workers: int | None = None,
     law: MovingLaw = "kristiansen-faltinsen",
     method: Literal["simulate", "settle"] = "simulate",
-    mooring: Mooring = "springs",
+    mooring: Mooring = "catenary",
     ramp: float = 60.0,
     spin_up: float = 300.0,
     time_step: float = 0.002,
@@ -269,4 +269,5 @@ def _attributes(cage: Cage, plan: Plan, by: Simulator) -> dict[str, Any]:
         "seed": plan.seed,
         "duration_s": plan.duration,
         **by.attributes,
+        **({"comment": SPRINGS} if by.mooring == "springs" else {}),
     }

@@ -26,7 +26,7 @@ class CampaignStatus:
         "simulate" or "settle".
     total
         Cases planned.
-    converged, not_converged, diverged
+    converged, not_converged, diverged, drowned
         Cases that ended so.
     failures
         Cases that did not converge, each with the reason.
@@ -45,6 +45,7 @@ class CampaignStatus:
     converged: int
     not_converged: int
     diverged: int
+    drowned: int
     failures: dict[int, str]
     simulated_s: float
     core_seconds: float
@@ -53,7 +54,7 @@ class CampaignStatus:
     @property
     def done(self) -> int:
         """Cases that have been run, however they ended."""
-        return self.converged + self.not_converged + self.diverged
+        return self.converged + self.not_converged + self.diverged + self.drowned
 
     @property
     def pace(self) -> float:
@@ -87,6 +88,7 @@ def campaign_status(out: str | Path) -> CampaignStatus:
         converged=int(np.sum(result == Result.CONVERGED)),
         not_converged=int(np.sum(result == Result.NOT_CONVERGED)),
         diverged=int(np.sum(result == Result.DIVERGED)),
+        drowned=int(np.sum(result == Result.DROWNED)),
         failures=_failures(store, result),
         simulated_s=simulated_s,
         core_seconds=core_seconds,
@@ -120,6 +122,8 @@ def _reason(result: Result, row: Mapping[str, float]) -> str:
         left = row["residual"]
         with_left = "" if np.isnan(left) else f" with {left:.3g} N left on a node"
         return f"it did not come to rest; its last shape is kept{with_left}"
+    if result is Result.DROWNED:
+        return "its collar or a corner buoy is under water in the mean"
     when = row["diverged_at"]
     after = "" if np.isnan(when) else f" after {when:.4g} s of simulated time"
     return f"its positions left the finite numbers{after}, so it carries no answer"

@@ -9,12 +9,14 @@ class Result(IntEnum):
     CONVERGED = 0
     NOT_CONVERGED = 1
     DIVERGED = 2
+    DROWNED = 3
 
 
 RESULTS: dict[Result, str] = {
     Result.CONVERGED: "it ended as it should: at rest within the limit, or at the end of its time",
     Result.NOT_CONVERGED: "the iterations ran out before the residual fell below its limit",
     Result.DIVERGED: "the nodes left all bounds of speed or place; the case carries no answer",
+    Result.DROWNED: "the collar or a corner buoy is under water in the mean; the numbers are kept",
 }
 
 

@@ -1,7 +1,7 @@
 """Loads on the cage in the sea, and the shapes and tensions that answer them."""
 
 from seacage.dynamics._kernel import simulation_lanes
-from seacage.dynamics._moored import Damage, Mooring
+from seacage.dynamics._moored import SPRINGS, Damage, Mooring
 from seacage.dynamics._physics import (
     LAWS,
     MOVING_LAWS,
@@ -31,6 +31,7 @@ __all__ = [
     "LAWS",
     "MOVING_LAWS",
     "PHYSICS",
+    "SPRINGS",
     "AbstractWeather",
     "Damage",
     "Extremes",

@@ -10,7 +10,7 @@ from jaxtyping import Bool, Float, Int
 from seacage.cage import Cage
 from seacage.conventions import InputError, Result
 from seacage.dynamics._equilibrium import Equilibria, equilibria
-from seacage.dynamics._moored import Mooring, moor, part
+from seacage.dynamics._moored import Mooring, is_drowned, moor, part
 from seacage.dynamics._parts import Assembly
 from seacage.dynamics._physics import (
     Law,
@@ -46,7 +46,7 @@ class Response:
         Largest force left on a node [N].
     result
         Of ``seacage.conventions.Result``: a case that did not converge carries its last
-        shape, one that diverged NaN.
+        shape, one that diverged NaN; one that drowned is an equilibrium of a cage under water.
     equilibria
         Number of different equilibria that were found from the given number of starts.
     equilibrium_spread
@@ -78,7 +78,7 @@ def settle(
     sea: SeaState | Sequence[SeaState],
     *,
     law: Law = "kristiansen-faltinsen",
-    mooring: Mooring = "springs",
+    mooring: Mooring = "catenary",
     mean_waves: bool = False,
     wake: bool = True,
     hold_collar: bool = False,
@@ -108,8 +108,8 @@ def settle(
     law
         "aarsnes", "loland" or "kristiansen-faltinsen".
     mooring
-        "springs" under the frame corners, or "catenary": frame ropes, buoys, and anchor lines
-        that lift off the sea bed and come to lie on it.
+        "catenary": frame ropes, buoys, and anchor lines that lift off the sea bed and come to
+        lie on it; or "springs" under the frame corners, for old campaigns (``SPRINGS``).
     mean_waves
         Take waves' mean effect on the net's drag; without it a sea with waves is refused,
         as an equilibrium has none.
@@ -168,7 +168,7 @@ def net_load(
 
 @lru_cache(maxsize=16)
 def rest_shape(
-    cage: Cage, *, mooring: Mooring = "springs", hold_collar: bool = False
+    cage: Cage, *, mooring: Mooring = "catenary", hold_collar: bool = False
 ) -> Float[np.ndarray, "node 3"]:
     """The net's shape in still water [m]; do not write into it.
 
@@ -221,7 +221,7 @@ def _response(
     rest: Float[np.ndarray, "node 3"],
 ) -> Response:
     net = found.position[:, : cage.node_count]
-    volume = cage.volume(net)
+    volume, drowned = cage.volume(net), is_drowned(cage, assembly, found.position)
     tension = bar_tension(assembly.bars, found.position)
     anchors = cage.node_count + np.flatnonzero(assembly.fixed[cage.node_count :])
     return Response(
@@ -235,7 +235,9 @@ def _response(
         volume=volume,
         volume_fraction=volume / cage.volume(rest),
         residual=found.residual,
-        result=found.result,
+        result=np.where(
+            drowned & (found.result == Result.CONVERGED), Result.DROWNED, found.result
+        ).astype(np.int64),
         equilibria=found.number,
         equilibrium_spread=found.spread,
         unstable=found.unstable,

@@ -325,7 +325,9 @@ def write_response(path: Path, cage: Cage, sea: SeaState, law: str, response: "R
             "volume": _variable("", float(response.volume), "m3", "volume inside the net"),
             "volume_fraction": _variable("", share, "1", "of still water"),
             "residual": _variable("", float(response.residual), "N", "largest unbalanced force"),
-            "result": _variable("", int(response.result), "1", "0 converged, 1 not, 2 diverged"),
+            "result": _variable(
+                "", int(response.result), "1", "0 converged, 1 not, 2 diverged, 3 drowned"
+            ),
         },
         coords={
             "bridle": np.array(cage.bridle_names, dtype=object),

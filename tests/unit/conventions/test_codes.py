@@ -22,7 +22,7 @@ def test_the_worse_flag_is_the_larger():
 
 
 def test_results_keep_their_numbers_and_each_has_a_message():
-    expected = {"CONVERGED": 0, "NOT_CONVERGED": 1, "DIVERGED": 2}
+    expected = {"CONVERGED": 0, "NOT_CONVERGED": 1, "DIVERGED": 2, "DROWNED": 3}
     assert {result.name: result.value for result in Result} == expected
     assert set(RESULTS) == set(Result)
 

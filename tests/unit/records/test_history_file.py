@@ -91,7 +91,9 @@ def test_plain_xarray_reads_it_with_units_names_and_cell_methods(tmp_path, histo
         assert dataset["node_position_quantile"].dims == ("quantile_level", "node", "axis")
         assert dataset["hs"].attrs["standard_name"] == "sea_surface_wave_significant_height"
         assert float(dataset["time"][1]) == 0.5
-        assert dataset["result"].attrs["flag_meanings"] == "converged not_converged diverged"
+        assert dataset["result"].attrs["flag_meanings"] == (
+            "converged not_converged diverged drowned"
+        )
 
 
 def test_a_simulation_without_series_comes_back(tmp_path, history):

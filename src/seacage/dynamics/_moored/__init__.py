@@ -1,19 +1,22 @@
 """A cage on its mooring: pretension, anchor lines, more detail and stable masses."""
 
-from seacage.dynamics._moored._choice import Mooring, moor
+from seacage.dynamics._moored._choice import SPRINGS, Mooring, moor
 from seacage.dynamics._moored._detailed import Damage, broken, full_assembly
+from seacage.dynamics._moored._drowned import is_drowned
 from seacage.dynamics._moored._mass_scaling import scale_mass
 from seacage.dynamics._moored._mooring import anchor_assembly
 from seacage.dynamics._moored._parted import part
 from seacage.dynamics._moored._pretension import assemble
 
 __all__ = [
+    "SPRINGS",
     "Damage",
     "Mooring",
     "anchor_assembly",
     "assemble",
     "broken",
     "full_assembly",
+    "is_drowned",
     "moor",
     "part",
     "scale_mass",

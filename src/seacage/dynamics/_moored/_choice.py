@@ -10,6 +10,12 @@ from seacage.dynamics._parts import Assembly
 
 Mooring = Literal["catenary", "springs"]
 
+SPRINGS = (
+    "springs under the corners hold the frame nine times stiffer than its anchor lines; they are "
+    "kept to go on with old campaigns, and mooring = catenary is the whole mooring."
+)
+"""Warning of results on springs."""
+
 
 def moor(cage: Cage, mooring: Mooring) -> Assembly:
     """The cage on frame ropes, buoys and anchor lines ("catenary"), or on corner "springs".

@@ -47,7 +47,7 @@ class History:
         Share of Hs in waves that are too short for the loads on the collar's pipes, and are left
         out: those below eight pipe diameters, 1.6 s for 0.5 m [-].
     result
-        Of ``seacage.conventions.Result``.
+        Of ``seacage.conventions.Result``; a case that drowned keeps its numbers.
     diverged_at
         Simulated time at which a case was given up, spin-up included; NaN for the others [s].
     """

@@ -9,6 +9,7 @@ from jaxtyping import Float
 
 from seacage.conventions import Result
 from seacage.dynamics._kernel import REFRESH, March
+from seacage.dynamics._moored import is_drowned
 from seacage.dynamics._parts import Assembly
 from seacage.dynamics._time._history import History, Statistics
 from seacage.dynamics._time._line_loads import line_loads
@@ -50,6 +51,8 @@ def _history(
         account = {how: values.reshape(origin.shape) for how, values in account.items()}
         return _statistics(account, sample, count, origin, levels)
 
+    moved = march.account["node_sum"][:, lanes].sum(axis=1).reshape(-1, 3) / counted
+    drowned = is_drowned(cage, assembly, (assembly.position + moved)[None])[0]
     every = max(1, -(-len(net) // VOLUMES))
     volume = cage.volume(net[::every].astype(np.float64))
     node = of("node", net, counted, assembly.position[: cage.node_count])
@@ -75,7 +78,7 @@ def _history(
         quantile_levels=levels,
         second_moment=_second_moment(simulation, net),
         hs_left_out=np.asarray(0.0),
-        result=np.asarray(Result.CONVERGED),
+        result=np.asarray(Result.DROWNED if drowned else Result.CONVERGED),
         diverged_at=np.asarray(_lost_at(march, lanes)),
     )
     return _mask_lost(history, march) if np.isfinite(history.diverged_at) else history

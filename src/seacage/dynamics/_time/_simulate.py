@@ -42,7 +42,7 @@ def simulate(
     seed: int | Sequence[int] = 0,
     law: MovingLaw = "kristiansen-faltinsen",
     twine_drag: tuple[float, float] | None = None,
-    mooring: Mooring = "springs",
+    mooring: Mooring = "catenary",
     current_profile: CurrentProfile | None = None,
     waves: Waves | Sequence[Waves] | None = None,
     wake: bool = True,
@@ -89,8 +89,8 @@ def simulate(
         With "morison": drag coefficients of a twine across and along the flow [-]. None takes
         a smooth cylinder's by its Reynolds number, and no skin friction.
     mooring
-        Of a ``Cage``, for a ``Structure`` has its own: "springs" under the frame corners, or
-        "catenary": frame, buoys and anchor lines.
+        Of a ``Cage``, for a ``Structure`` has its own: "catenary", which is frame, buoys and
+        anchor lines, or "springs" under the frame corners, for old campaigns (``SPRINGS``).
     current_profile
         How the current changes with depth; uniform without.
     waves

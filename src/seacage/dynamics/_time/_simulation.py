@@ -61,7 +61,7 @@ class Simulation:
     def _moored(self) -> Assembly:
         if isinstance(self.cage, Cage):
             return moor(self.cage, self.mooring)
-        if self.mooring != "springs":
+        if self.mooring != "catenary":
             raise InputError(
                 f"simulate: mooring = {self.mooring!r}, but structure {self.cage.name} has lines "
                 "and anchors of its own. Leave it out."

@@ -24,6 +24,7 @@ from seacage.service._cli._options import (
     Workers,
     read_cage,
     read_share,
+    warn_of,
 )
 from seacage.service._cli._plans import PlanOptions
 
@@ -37,7 +38,7 @@ group = typer.Typer(
 Store = Annotated[Path, typer.Argument(help="The campaign's folder, a Zarr store.")]
 
 _FAILURES_SHOWN = 20
-_ENDS = ("converged", "not_converged", "diverged")
+_ENDS = ("converged", "not_converged", "diverged", "drowned")
 
 _SCRIPT = """\
 #!/bin/bash
@@ -65,7 +66,7 @@ def run(
     cage: CageName = "ace",
     method: Literal["simulate", "settle"] = "simulate",
     law: Law = "kristiansen-faltinsen",
-    mooring: Mooring = "springs",
+    mooring: Mooring = "catenary",
     ramp: float = 60.0,
     spin_up: SpinUp = 300.0,
     time_step: float = 0.002,
@@ -100,6 +101,7 @@ def run(
     from seacage.campaigns import Simulator, campaign_status, run_share
 
     chosen = plan.read()
+    warn_of(mooring)
     by = Simulator(
         method=method,
         law=law,

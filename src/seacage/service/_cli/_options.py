@@ -25,8 +25,8 @@ Law = Annotated[
     typer.Option(help="How the water loads the netting."),
 ]
 Mooring = Annotated[
-    Literal["springs", "catenary"],
-    typer.Option(help="What holds the frame: springs, or buoys and anchor lines."),
+    Literal["catenary", "springs"],
+    typer.Option(help="What holds the frame: buoys and anchor lines, or springs (old campaigns)."),
 ]
 Without = Annotated[
     list[str] | None,
@@ -85,6 +85,16 @@ def read_cage(name: str) -> "Cage":
     for warning in cage.warnings:
         typer.echo(f"seacage: warning: {warning}", err=True)
     return cage
+
+
+def warn_of(mooring: str) -> tuple[str, ...]:
+    """What a mooring is warned of, also to stderr."""
+    from seacage.dynamics import SPRINGS
+
+    warnings = (f"mooring = {mooring}: {SPRINGS}",) if mooring == "springs" else ()
+    for warning in warnings:
+        typer.echo(f"seacage: warning: {warning}", err=True)
+    return warnings
 
 
 def read_share(text: str | None) -> tuple[int, int]:

@@ -5,7 +5,15 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from seacage.service._cli._console import Exit, exit_with, guard, report
-from seacage.service._cli._options import CageName, OutFile, SeaOptions, Without, read_cage
+from seacage.service._cli._options import (
+    CageName,
+    Mooring,
+    OutFile,
+    SeaOptions,
+    Without,
+    read_cage,
+    warn_of,
+)
 
 if TYPE_CHECKING:
     from seacage.cage import Cage
@@ -19,6 +27,7 @@ def settle(
     mean_waves: Annotated[bool, typer.Option("--mean-waves")] = False,
     cage: CageName = "ace",
     law: Literal["kristiansen-faltinsen", "loland", "aarsnes"] = "kristiansen-faltinsen",
+    mooring: Mooring = "catenary",
     without: Without = None,
     out: OutFile = None,
 ) -> None:
@@ -44,8 +53,12 @@ def settle(
 
     state, subject = sea.state(), read_cage(cage)
     parted = without or []
-    response = settled(subject, state, law=law, mean_waves=mean_waves, parted=parted)
-    answer = _answer(subject, response) | ({"without": parted} if parted else {})
+    warnings = [*subject.warnings, *warn_of(mooring)]
+    response = settled(
+        subject, state, law=law, mooring=mooring, mean_waves=mean_waves, parted=parted
+    )
+    answer = _answer(subject, response) | {"mooring": mooring, "warnings": warnings}
+    answer |= {"without": parted} if parted else {}
     if out is not None:
         from seacage.service._export import write_response
 
@@ -63,13 +76,16 @@ def _answer(cage: "Cage", response: "Response") -> dict[str, object]:
     return {
         "cage": cage.name,
         "origin": "computed",
-        "warnings": list(cage.warnings),
         "result": int(response.result),
         "residual_n": float(response.residual),
         "net_force_kn": force.round(3).tolist(),
         "volume_m3": round(float(response.volume), 1),
         "volume_fraction": round(float(response.volume_fraction), 4),
         "bridle_tension_kn": dict(zip(cage.bridle_names, tension.round(3).tolist(), strict=True)),
+        "line_tension_kn": dict(
+            zip(response.line_names, (response.line_tension / 1e3).round(3).tolist(), strict=True)
+        ),
+        "anchor_uplift_kn": (response.anchor_load[:, 2] / 1e3).round(3).tolist(),
         "depth_m": {one.name: round(float(depth[one.node]), 3) for one in cage.depth_sensors},
         "bottom_displacement_m": response.node_displacement[cage.bottom_node].round(3).tolist(),
     }
@@ -88,6 +104,13 @@ def _rows(cage: "Cage", response: "Response") -> list[tuple[str, str]]:
     tensions = zip(cage.bridle_names, response.bridle_tension, cage.bridle_capacity, strict=True)
     rows += [
         (n, f"{load / 1e3:6.1f} kN, {load / most:.0%} of capacity") for n, load, most in tensions
+    ]
+    others = slice(cage.bridle_count, None)
+    rows += [
+        (name, f"{load / 1e3:6.1f} kN")
+        for name, load in zip(
+            response.line_names[others], response.line_tension[others], strict=True
+        )
     ]
     depth = -response.node_position[:, 2]
     return rows + [(one.name, f"{depth[one.node]:6.2f} m") for one in cage.depth_sensors]

@@ -15,9 +15,12 @@ from seacage.service._cli._options import (
     SpinUp,
     Without,
     read_cage,
+    warn_of,
 )
 
 if TYPE_CHECKING:
+    import numpy as np
+
     from seacage.cage import Cage
     from seacage.dynamics import History, LineLoads, Statistics
     from seacage.figures import Motion
@@ -36,7 +39,7 @@ def simulate(
     seed: Seed = 0,
     cage: CageName = "ace",
     law: Law = "kristiansen-faltinsen",
-    mooring: Mooring = "springs",
+    mooring: Mooring = "catenary",
     without: Without = None,
     sample_every: float = 0.5,
     out: OutFile = None,
@@ -75,6 +78,7 @@ def simulate(
             f"Give --sample-every {_SMOOTH:g} or less."
         )
     subject, state = read_cage(cage), sea.state()
+    warnings = [*subject.warnings, *warn_of(mooring)]
     waves = sample_waves(state, seed=seed, depth=subject.site.water_depth)
     with progress_bar() as progress:
         history = simulated(
@@ -98,19 +102,23 @@ def simulate(
         "spin_up_s": spin_up,
         "sample_every_s": sample_every,
     } | ({"without": " ".join(without)} if without else {})
-    answer = _answer(subject, history, settings)
+    answer = _answer(subject, history, warnings, settings)
     if out is not None:
-        _write(out, subject, state, history, settings)
+        comment = {"comment": " ".join(warnings)} if warnings else {}
+        _write(out, subject, state, history, settings | comment)
         answer["written"] = str(out)
     _refuse_failure(history)
     if animation is not None:
+        from seacage.dynamics import rest_shape
         from seacage.figures import write_animation
 
-        motion = _motion(subject, state, waves, history, spin_up)
+        rest = rest_shape(subject, mooring=mooring)
+        motion = _motion(rest, state, waves, history, spin_up)
         with progress_bar() as progress:
             write_animation(animation, subject, motion, progress=progress)
         answer["animation"] = str(animation)
     report(answer, rows=_rows(subject, history))
+    _name_drowned(history)
 
 
 def _check_file(path: Path | None, ending: str) -> None:
@@ -137,13 +145,23 @@ def _refuse_failure(history: "History") -> None:
         )
 
 
+def _name_drowned(history: "History") -> None:
+    from seacage.conventions import RESULTS, Result
+
+    if history.result == Result.DROWNED:
+        raise exit_with(f"simulate: drowned: {RESULTS[Result.DROWNED]}.", Exit.FAILED)
+
+
 def _answer(
-    cage: "Cage", history: "History", settings: dict[str, str | int | float]
+    cage: "Cage",
+    history: "History",
+    warnings: list[str],
+    settings: dict[str, str | int | float],
 ) -> dict[str, object]:
     return {
         "cage": cage.name,
         "origin": "computed",
-        "warnings": list(cage.warnings),
+        "warnings": warnings,
         "result": int(history.result),
         **settings,
         "net_force_kn": _statistics(history.net_force, 1e-3),
@@ -263,7 +281,7 @@ def _write(
         volume_fraction=float(history.volume_fraction),
         result=int(history.result),
         diverged_at=float(history.diverged_at),
-        settings=settings | ({"comment": " ".join(cage.warnings)} if cage.warnings else {}),
+        settings=settings,
         line_names=history.lines.names,
         line_kinds=history.lines.kinds,
         lines=history.lines.columns,
@@ -273,10 +291,9 @@ def _write(
 
 
 def _motion(
-    cage: "Cage", sea: "SeaState", waves: "Waves", history: "History", spin_up: float
+    rest: "np.ndarray", sea: "SeaState", waves: "Waves", history: "History", spin_up: float
 ) -> "Motion":
     """The first minute that counts."""
-    from seacage.dynamics import rest_shape
     from seacage.figures import Motion
 
     first = history.time < 60.0
@@ -284,7 +301,7 @@ def _motion(
         time=spin_up + history.time[first],
         node_position=history.node_position[first],
         bridle_tension=history.bridle_tension[first],
-        rest_position=rest_shape(cage),
+        rest_position=rest,
         sea=sea,
         waves=waves,
     )

@@ -192,7 +192,7 @@ def _recipe(record: FieldRecord, windows: Windows, *, lost: int) -> dict[str, st
         "Windows": f"{surveyed} of 10 minutes spread over {days} days, each from its own share "
         f"of the day, and {len(windows) - surveyed} more in which a shackle lives",
         "Low fidelity (computed)": f"Kristiansen–Faltinsen screens on a clean net, uniform "
-        f"current, corners on springs; {how}; {lost} lost",
+        f"current, frame on anchor lines; {how}; {lost} lost",
         "Days": "for the rescaling every other day trains; for the null case the first half "
         "trains, the second is scored",
     }

@@ -32,7 +32,7 @@ def test_settled_and_simulated_without_waves_agree():
 
 def test_a_whole_mooring_may_lose_a_frame_line_or_an_anchor_line():
     gone = ["frame-4", "anchor-3"]
-    history = simulate(SMALL, SEA, duration=10.0, spin_up=60.0, mooring="catenary", parted=gone)
+    history = simulate(SMALL, SEA, duration=10.0, spin_up=60.0, parted=gone)
     assert history.result == Result.CONVERGED
     lost = np.isin(history.lines.names, gone)
     assert np.all(history.lines.tension.maximum[lost] < 10.0)
@@ -40,7 +40,7 @@ def test_a_whole_mooring_may_lose_a_frame_line_or_an_anchor_line():
 
 
 @pytest.mark.parametrize("run", [settle, lambda *a, **k: simulate(*a, duration=1.0, **k)])
-@pytest.mark.parametrize("name", ["bridle-99", "anchor-1", ""])
+@pytest.mark.parametrize("name", ["bridle-99", "anchor-9", ""])
 def test_a_line_that_does_not_exist_is_refused(run, name):
     with pytest.raises(InputError, match=f"parted = '{name}': there is no such line.*bridle-12"):
         run(SMALL, SEA, parted=[name])
