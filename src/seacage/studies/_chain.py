@@ -111,6 +111,8 @@ class Chain:
         Folder of a finished campaign to take in place of the recipe's; its last cases are held out.
     given_field
         Folder of a virtual field, with its truth in ``truth``, to take in place of the recipe's.
+    hidden
+        Differences of the recipe's virtual field; None for those that come with seacage.
     workers
         Processes for simulations; None for one per core.
     progress
@@ -122,6 +124,7 @@ class Chain:
     recipe: Recipe
     given_campaign: Path | None = None
     given_field: Path | None = None
+    hidden: TruthParameters | None = None
     workers: int | None = None
     progress: Progress = no_progress
 
@@ -187,10 +190,14 @@ class Chain:
         return Stages(folder=self.folder)
 
     @property
+    def _hidden(self) -> TruthParameters:
+        return TruthParameters.read() if self.hidden is None else self.hidden
+
+    @property
     def _truth_settings(self) -> dict[str, object]:
         return {
             "cage": self.cage.to_toml(),
-            "hidden_sha256": TruthParameters.read().sha256,
+            "hidden_sha256": self._hidden.sha256,
             "seed": self.recipe.seed,
         }
 
@@ -268,7 +275,7 @@ class Chain:
         made = virtual_field(
             self.cage,
             buoy,
-            hidden=TruthParameters.read(),
+            hidden=self._hidden,
             seed=self.recipe.seed,
             workers=self.workers,
             progress=self.progress,

@@ -43,7 +43,7 @@ class TrueShapes:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _Moments:
-    """Times at which a virtual field is looked at, and the cage's lines, which are of its seed."""
+    """Times at which a virtual field is looked at, and the cage drawn by its seed."""
 
     hidden: TruthParameters
     reported: Float[np.ndarray, "case 2"]
@@ -63,7 +63,7 @@ def true_shapes(
     """Settle the true cage at times of several generated records.
 
     Each seed draws a record, turned to a direction of its own, the buoy's errors and the
-    eddies that it does not see, and how uneven the bridles are. The times are spread evenly
+    eddies that it does not see, and the cage from its ranges. The times are spread evenly
     over the speeds, for a record's own are mostly slow. Left out, as in every settled field:
     waves, the current's profile, and that a cage takes time to follow. Growth is rounded to a
     quarter of the whole.
@@ -105,13 +105,13 @@ def true_shapes(
 def _moments(hidden: TruthParameters, seed: int, cases: int) -> _Moments:
     # The word keeps these draws apart from those of a field that has the same seed.
     weather, choice, turn = np.random.default_rng([seed, *b"shapes"]).spawn(3)
-    strung = replace(hidden, bridles=replace(hidden.bridles, seed=int(turn.integers(2**31))))
+    built = hidden.drawn(int(turn.integers(2**31)))
     buoy = _turn_current(
         generated_current(seed, start=_START, days=_DAYS), turn.uniform(0.0, 360.0)
     )
     at = (buoy.time - buoy.time[0]) / np.timedelta64(1, "s")
     seconds = np.arange(0.0, at[-1] + _EVERY_S, _EVERY_S)
-    current = current_at_cage(buoy, seconds, hidden=strung, rng=weather)
+    current = current_at_cage(buoy, seconds, hidden=built, rng=weather)
     speed = buoy.values["current_speed_m_s"]
     wanted = choice.uniform(0.0, speed.max(), cases)
     # Of the ten rows nearest to a speed any one, lest the fastest hour be all there is.
@@ -119,7 +119,7 @@ def _moments(hidden: TruthParameters, seed: int, cases: int) -> _Moments:
     rows = choice.permuted(nearest, axis=1)[:, 0]
     grown = hidden.fouling.grown(at[rows] / 86400.0)
     return _Moments(
-        hidden=strung,
+        hidden=built,
         reported=towards(speed[rows], buoy.values["current_to_deg"][rows]),
         velocity=current[np.searchsorted(seconds, at[rows])],
         growth=np.rint(grown / _GROWTH_STEP) * _GROWTH_STEP,

@@ -2,7 +2,7 @@
 
 import hashlib
 import math
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass, replace
 from importlib import resources
 from pathlib import Path
 from typing import Any, Literal, Self, get_args, get_origin
@@ -54,10 +54,27 @@ class FoulingTruth:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BridlesTruth:
-    """Scatter of the bridles' lengths."""
+    """Scatter of the bridles' lengths, and bounds of their pretension over that drawn."""
 
     length_sd_m: float
-    seed: int
+    pretension_least: float
+    pretension_most: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FrameTruth:
+    """Bounds of the slack of the frame's ropes."""
+
+    slack_least_m: float
+    slack_most_m: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CollarTruth:
+    """Bounds of the number of brackets that hold the collar's pipes together."""
+
+    brackets_least: int
+    brackets_most: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -160,9 +177,12 @@ class TruthParameters:
     """
 
     law: Law
+    seed: int
     netting: NettingTruth
     fouling: FoulingTruth
     bridles: BridlesTruth
+    frame: FrameTruth
+    collar: CollarTruth
     lines: LinesTruth
     current: CurrentTruth
     profile: ProfileTruth
@@ -188,11 +208,16 @@ class TruthParameters:
         sha256 = hashlib.sha256(text.encode()).hexdigest()
         return _build(cls, {**table, "sha256": sha256}, where=f"{path or own}")
 
+    def drawn(self, seed: int) -> Self:
+        """The same ranges, from which another seed draws the cage; the hash names the seed too."""
+        named = f"{self.sha256}, seed {seed}"
+        return replace(self, seed=seed, sha256=hashlib.sha256(named.encode()).hexdigest())
+
     def true_cage(self, cage: Cage, growth: float) -> Cage:
         """The cage as it truly is, its net grown by a share of the whole growth, 0 to 1."""
         least, most = self.fouling.shallow_least, self.fouling.shallow_most
         shallow = least + growth * (most - least)
-        return self._strung(cage).fouled(
+        return self._built(cage).fouled(
             shallow=shallow,
             deep=self.fouling.deep_share * shallow,
             boundary_depth=self.fouling.boundary_depth_m,
@@ -207,7 +232,7 @@ class TruthParameters:
         drawn = np.array([*cage.mesh.ring_depths, cage.mesh.tip_depth])
         between = np.arange(times) / times
         depths = drawn[:-1, None] + np.diff(drawn)[:, None] * between
-        return self._strung(cage).altered(
+        return self._built(cage).altered(
             mesh={"spokes": times * cage.spokes, "ring_depths_m": depths.ravel().tolist()},
             ropes={
                 "axial_stiffness_n": cage.ropes.axial_stiffness / times,
@@ -215,12 +240,24 @@ class TruthParameters:
             },
         )
 
-    def _strung(self, cage: Cage) -> Cage:
-        rng = np.random.default_rng(self.bridles.seed)
-        offset = rng.normal(scale=self.bridles.length_sd_m, size=cage.bridle_count)
+    def _built(self, cage: Cage) -> Cage:
+        """The cage as riggers left it: what is drawn from the ranges depends on the seed alone."""
+        rng, bridles, frame = np.random.default_rng(self.seed), self.bridles, self.frame
+        offset = rng.normal(scale=bridles.length_sd_m, size=cage.bridle_count)
+        tighter = rng.uniform(bridles.pretension_least, bridles.pretension_most)
+        slack = rng.uniform(frame.slack_least_m, frame.slack_most_m)
+        brackets = rng.integers(
+            self.collar.brackets_least, self.collar.brackets_most, endpoint=True
+        )
         return cage.altered(
             netting={"elastic_modulus_pa": self.netting.elastic_modulus_pa},
-            bridles={"length_offset_m": offset.tolist()},
+            bridles={
+                "length_offset_m": offset.tolist(),
+                "pretension_n": cage.bridles.pretension * tighter,
+            },
+            frame={"rope_slack_m": cage.frame.rope_slack + slack},
+            # Pipes of which nobody knows how far they are apart are computed as sliding.
+            collar={"brackets": int(brackets)} if cage.collar.brackets else {},
         )
 
 

@@ -12,8 +12,9 @@ from seacage.dynamics._kernel import REFRESH, March, Ocean, Steps
 from seacage.dynamics._moored import Damage, broken, full_assembly, moor, scale_mass
 from seacage.dynamics._parts import Assembly
 from seacage.dynamics._physics import MovingLaw, NetLaw, steady_flow, wake_in_sight
+from seacage.dynamics._time._forcing import morison_waves
 from seacage.dynamics._time._weather import AbstractWeather
-from seacage.ocean import MAX_CURRENT_SPEED
+from seacage.ocean import MAX_CURRENT_SPEED, Waves
 
 HOLD = 8
 """Time steps through which the water's load is held."""
@@ -97,7 +98,7 @@ class SegmentBatch:
             assembly,
             self._law(),
             Ocean(
-                waves=[w.waves(t) for w, t in zip(weathers, begun, strict=True)],
+                waves=self._waves(begun),
                 current=current,
                 level_z=-np.array(weathers[0].level_depth),
                 depth=build.cage.site.water_depth,
@@ -118,7 +119,7 @@ class SegmentBatch:
         self.march.set_current(current)
         since = (step + self._course.spin_up) * self._course.every
         if _due(since, WAVES_EVERY, self._course.every):
-            self.march.set_waves([w.waves(t) for w, t in zip(self._weathers, now, strict=True)])
+            self.march.set_waves(self._waves(now))
         if _due(since, WAKE_EVERY, self._course.every):
             self._solidity, self._drag_factor = self._netting(now)
             self._relax_wake(current.mean(axis=1))
@@ -132,6 +133,11 @@ class SegmentBatch:
 
     def _current(self, at: Float[np.ndarray, " stretch"]) -> Float[np.ndarray, "stretch level 2"]:
         return np.array([w.current(t) for w, t in zip(self._weathers, at, strict=True)])
+
+    def _waves(self, at: Float[np.ndarray, " stretch"]) -> list[Waves]:
+        """Waves that the pipes do not disturb, as in ``simulate``."""
+        waves = [w.waves(t) for w, t in zip(self._weathers, at, strict=True)]
+        return morison_waves(waves, self.cage.pipe_diameter)[0]
 
     def _netting(
         self, at: Float[np.ndarray, " stretch"]

@@ -101,6 +101,9 @@ def _shape_entry(score: "ShapeScore") -> dict[str, object]:
         "mae_m": score.axis_mae,
         "p99_m": score.p99,
         "worst_node_m": score.worst,
+        "mae_without_drift_m": score.mae_without_drift,
+        "p99_without_drift_m": score.p99_without_drift,
+        "worst_node_without_drift_m": score.worst_without_drift,
         "coverage": score.coverage,
         "crps_m": score.crps,
         "fit_cpu_s": score.fit_cpu_s,
@@ -111,7 +114,9 @@ def _shape_entry(score: "ShapeScore") -> dict[str, object]:
 def _shape_line(score: "ShapeScore") -> str:
     return (
         f"MAE {score.mae:.3g} m, 99 % of nodes within {score.p99:.3g} m, worst "
-        f"{score.worst:.3g} m; hears {score.inputs} (computed)"
+        f"{score.worst:.3g} m (without drift {score.mae_without_drift:.3g}, "
+        f"{score.p99_without_drift:.3g} and {score.worst_without_drift:.3g} m); "
+        f"hears {score.inputs} (computed)"
     )
 
 

@@ -25,6 +25,7 @@ def claims(
     """The rules against an inverse crime, and what growth does."""
     return (
         _underestimation(gaps),
+        _underestimated_loads(gaps),
         _remainder(rescalings),
         _nothing_gained(null),
         _zero_covered(null),
@@ -48,6 +49,28 @@ def _underestimation(gaps: Sequence[SensorGap]) -> Claim:
         claim=f"The low fidelity underestimates the displacement of {_all(len(depth))} on average.",
         holds=bool(depth) and all(gap.underestimates for gap in depth),
         finding=f"On average {join_names(found or ['no depth sensor was there'])}.",
+    )
+
+
+def _underestimated_loads(gaps: Sequence[SensorGap]) -> Claim:
+    loads = [gap for gap in gaps if gap.unit == "kN"]
+    truth, low = (
+        float(np.mean([getattr(gap, side) for gap in loads])) if loads else np.nan
+        for side in ("truth", "low")
+    )
+    over = [gap.sensor for gap in loads if not gap.underestimates]
+    finding = (
+        f"Over all shackles and windows a bridle bears {number(truth)} kN in truth and "
+        f"{number(low)} kN in the low fidelity, {number(low - truth)} kN."
+        if loads
+        else "No shackle was there."
+    )
+    if over:
+        finding += f" It overestimates {join_names(over)} on average."
+    return Claim(
+        claim="The low fidelity underestimates the mean tension of the bridles with shackles.",
+        holds=low < truth,
+        finding=finding,
     )
 
 

@@ -85,7 +85,7 @@ def fidelity_study(
     cage
         That the field is of; None takes the shipped cage of the field's name.
     hidden
-        That the field was made with; None for those shipped.
+        That the field was made with, or is to be made with; None for those shipped.
     windows
         10-minute windows that survey the days, about; those in which a shackle lives come
         on top. With waves a window costs half a second of a core.
@@ -104,7 +104,7 @@ def fidelity_study(
     out, report = Path(out), progress or no_progress
     stages = Stages(folder=out / "stages")
     hidden = TruthParameters.read() if hidden is None else hidden
-    record, truth, cage = _field(out, field, cage, seed, workers, report)
+    record, truth, cage = _field(out, field, cage, hidden, seed, workers, report)
     _check(record, hidden, windows)
     sensors = Sensors.of(cage)
     chosen = choose_windows(sensors, record, truth, count=windows, seed=seed)
@@ -143,6 +143,7 @@ def _field(
     out: Path,
     field: str | Path | None,
     cage: Cage | None,
+    hidden: TruthParameters,
     seed: int,
     workers: int | None,
     progress: Progress,
@@ -156,6 +157,7 @@ def _field(
         folder=out / "stages",
         cage=Cage.named("ace") if cage is None else cage,
         recipe=Recipe(seed=seed, days=_DAYS),
+        hidden=hidden,
         workers=workers,
         progress=progress,
     )

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
 from seacage.surrogates import Prediction, coverage, crps
 
@@ -14,6 +14,8 @@ class ShapeScore:
     """One model of the whole shape against held-out simulations.
 
     Coordinates and displacements from rest differ by a constant, so the errors are of either.
+    A cage on its mooring also moves as a whole. Errors without drift are of shapes whose collar
+    lies in its place: both nets are shifted by the mean displacement of the collar's nodes.
 
     Parameters
     ----------
@@ -25,6 +27,8 @@ class ShapeScore:
         Mean absolute error along x, y and z [m].
     p99, worst
         Of the distance between the predicted and the computed node [m].
+    mae_without_drift, p99_without_drift, worst_without_drift
+        The same, without the drift of the collar [m].
     coverage
         Share of all coordinates inside the 95 % interval [-].
     crps
@@ -41,6 +45,9 @@ class ShapeScore:
     axis_mae: tuple[float, float, float]
     p99: float
     worst: float
+    mae_without_drift: float
+    p99_without_drift: float
+    worst_without_drift: float
     coverage: float
     crps: float
     fit_cpu_s: float = float("nan")
@@ -58,6 +65,8 @@ def shape_score(
     model: str,
     predicted: Prediction,
     computed: Float[np.ndarray, "case node 3"],
+    *,
+    collar: Int[np.ndarray, " spoke"],
     **known: Any,
 ) -> ShapeScore:
     """Score a model's shapes.
@@ -68,17 +77,24 @@ def shape_score(
         Its name.
     predicted, computed
         One shape per case [m].
+    collar
+        Nodes of the collar.
     known
         Inputs, modes and times, as in ``ShapeScore``.
     """
     difference = predicted.mean - computed
     error, distance = np.abs(difference), np.linalg.norm(difference, axis=-1)
+    deformed = difference - difference[:, collar].mean(axis=1, keepdims=True)
+    without_drift = np.linalg.norm(deformed, axis=-1)
     x, y, z = error.mean(axis=(0, 1)).tolist()
     return ShapeScore(
         model=model,
         axis_mae=(x, y, z),
         p99=float(np.quantile(distance, 0.99)),
         worst=float(distance.max()),
+        mae_without_drift=float(np.abs(deformed).mean()),
+        p99_without_drift=float(np.quantile(without_drift, 0.99)),
+        worst_without_drift=float(without_drift.max()),
         coverage=coverage(computed, predicted.mean, predicted.std),
         crps=crps(computed, predicted.mean, predicted.std),
         case_axis_mae=error.mean(axis=1),

@@ -186,7 +186,12 @@ def shape_study(
             continue
         answers[model.name], cost = _read_answers(folder)
         scores[model.name] = shape_score(
-            model.name, answers[model.name], trial.computed, inputs=WORDS[model.inputs], **cost
+            model.name,
+            answers[model.name],
+            trial.computed,
+            collar=trial.cage.ring_nodes(0),
+            inputs=WORDS[model.inputs],
+            **cost,
         )
     return ShapeStudy(
         training_cases=int(np.sum(trial.campaign.converged)),

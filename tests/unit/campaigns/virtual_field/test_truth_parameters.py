@@ -91,6 +91,35 @@ def test_the_refined_cage_has_the_drawn_nodes_where_they_were() -> None:
     assert stiffness[0] == pytest.approx(stiffness[1])
 
 
+def test_another_seed_draws_another_cage_from_the_same_ranges_and_has_another_hash() -> None:
+    hidden, drawn = TruthParameters.read(), Cage.named("ace")
+    cages = [hidden.drawn(seed).true_cage(drawn, 0.0) for seed in range(200)]
+    tighter = np.array([cage.bridles.pretension / drawn.bridles.pretension for cage in cages])
+    slack = np.array([cage.frame.rope_slack for cage in cages])
+    brackets = np.array([cage.collar.brackets for cage in cages])
+    for values, least, most in (
+        (tighter, hidden.bridles.pretension_least, hidden.bridles.pretension_most),
+        (slack, hidden.frame.slack_least_m, hidden.frame.slack_most_m),
+        (brackets, hidden.collar.brackets_least, hidden.collar.brackets_most),
+    ):
+        assert least <= values.min() < values.max() <= most
+        # 200 uniform draws: their ends miss a tenth of the range with probability 1e-9
+        assert np.ptp(values) > 0.8 * (most - least)
+    assert hidden.drawn(3) == hidden.drawn(3)
+    assert len({hidden.sha256, hidden.drawn(3).sha256, hidden.drawn(4).sha256}) == 3
+
+
+def test_the_growing_net_and_the_fine_mesh_are_of_the_same_cage() -> None:
+    hidden, drawn = TruthParameters.read(), Cage.named("ace")
+    fine, grown = hidden.fine_cage(drawn), hidden.true_cage(drawn, 1.0)
+    assert (fine.bridles, fine.frame, fine.collar) == (grown.bridles, grown.frame, grown.collar)
+
+
+def test_pipes_that_slide_in_the_drawing_slide_in_truth() -> None:
+    sliding = Cage.named("ace").altered(collar={"brackets": 0})
+    assert TruthParameters.read().true_cage(sliding, 0.0).collar.brackets == 0
+
+
 def test_the_true_cage_is_grown_stiffer_and_uneven() -> None:
     hidden, drawn = TruthParameters.read(), Cage.named("ace")
     clean, grown = hidden.true_cage(drawn, 0.0), hidden.true_cage(drawn, 1.0)

@@ -61,6 +61,32 @@ def test_a_stretch_is_the_same_beside_others():
     np.testing.assert_array_equal(together.time[1], 100.0 + 2.0 * np.arange(10))
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Rippled(Tide):
+    """The same with ripples of 3 m, which pipes of half a metre scatter."""
+
+    def waves(self, second):
+        waves = super(Rippled, self).waves(second)
+        number = 2.0 * np.pi / 3.0
+        return Waves(
+            amplitude=np.append(waves.amplitude, 0.05),
+            angular_frequency=np.append(waves.angular_frequency, np.sqrt(9.81 * number)),
+            wavenumber=np.append(waves.wavenumber, number),
+            phase=np.append(waves.phase, 0.3),
+            direction=np.vstack([waves.direction, [0.0, 1.0]]),
+            depth=waves.depth,
+        )
+
+
+def test_waves_that_are_short_against_the_pipes_are_left_out():
+    plain, rippled = (
+        follow(CAGE, [kind(speed=0.3, hs=1.0)], [50.0], watched=[20], **BRIEF)
+        for kind in (Tide, Rippled)
+    )
+    np.testing.assert_array_equal(plain.watched_position, rippled.watched_position)
+    np.testing.assert_array_equal(plain.bridle_tension, rippled.bridle_tension)
+
+
 @pytest.mark.slow
 def test_stretches_join_where_one_ends_and_the_next_begins():
     weather = Tide(speed=0.5, period=4.0 * 3600.0, hs=0.6)

@@ -6,12 +6,16 @@ import pytest
 from seacage.studies._paper._shape_scores import shape_score
 from seacage.surrogates import Prediction
 
+COLLAR = np.array([0, 1])
+
 
 def test_a_shape_is_scored_by_axis_by_case_and_by_its_worst_node():
     computed = np.zeros((2, 4, 3))
     mean = computed.copy()
     mean[1, 2] = [3.0, 4.0, 0.0]
-    score = shape_score("some model", Prediction(mean=mean, std=np.ones_like(mean)), computed)
+    score = shape_score(
+        "some model", Prediction(mean=mean, std=np.ones_like(mean)), computed, collar=COLLAR
+    )
     assert score.axis_mae == pytest.approx((3.0 / 8.0, 4.0 / 8.0, 0.0))
     assert score.worst == 5.0
     np.testing.assert_allclose(score.case_worst, [0.0, 5.0])
@@ -24,9 +28,23 @@ def test_a_wider_spread_than_the_error_costs_crps_and_not_coverage():
     computed = rng.standard_normal((50, 6, 3))
     mean = np.zeros_like(computed)
     fair, wide = (
-        shape_score("m", Prediction(mean=mean, std=np.full_like(mean, std)), computed)
+        shape_score(
+            "m", Prediction(mean=mean, std=np.full_like(mean, std)), computed, collar=COLLAR
+        )
         for std in (1.0, 4.0)
     )
     assert fair.coverage == pytest.approx(0.95, abs=0.03)  # 900 draws: a standard error of 0.007
     assert wide.coverage == 1.0
     assert wide.crps > fair.crps
+
+
+def test_a_net_that_only_drifts_otherwise_is_right_without_drift():
+    computed = np.zeros((2, 4, 3))
+    mean = computed + np.array([3.0, 4.0, 0.0])
+    mean[1, 3] += [0.0, 0.0, 2.0]
+    score = shape_score("m", Prediction(mean=mean, std=np.ones_like(mean)), computed, collar=COLLAR)
+    assert score.mae == pytest.approx((8 * 3.0 + 8 * 4.0 + 2.0) / 24.0)
+    assert score.worst == pytest.approx(np.sqrt(29.0))
+    assert score.mae_without_drift == pytest.approx(2.0 / 24.0)
+    assert score.worst_without_drift == 2.0
+    assert score.p99_without_drift < 2.0
