@@ -156,6 +156,37 @@ class Cage(TomlFile):
         """A copy turned clockwise, mooring and sensors with it."""
         return replace(self, heading=(self.heading + degrees) % 360.0)
 
+    def drawn(self, seed: int) -> Self:
+        """A copy whose mooring is drawn from the uncertainty that the file states.
+
+        Normal, each about the file's value: the bridles' pretension, with what they share; the
+        length of each bridle; the slack of the frame ropes, with what they share. Drawn values
+        stay in the file's bounds, the pretension above a tenth of the file's.
+
+        Raises
+        ------
+        InputError
+            A file that states none of ``pretension_sd_n``, ``length_sd_m``, ``rope_slack_sd_m``.
+        """
+        bridles, frame = self.bridles, self.frame
+        spread = (bridles.pretension_sd, bridles.length_sd, frame.rope_slack_sd)
+        if not any(spread):
+            raise InputError(
+                f"Cage {self.name}: its file states no uncertainty of the mooring. Add "
+                "pretension_sd_n or length_sd_m to [bridles], or rope_slack_sd_m to [frame]."
+            )
+        pretension_sd, length_sd, slack_sd = (value or 0.0 for value in spread)
+        normal = np.random.default_rng(seed).standard_normal(2 + self.bridle_count)
+        pretension = bridles.pretension + pretension_sd * normal[0]
+        offset = np.array(bridles.length_offset) + length_sd * normal[2:]
+        return self.altered(
+            bridles={
+                "pretension_n": float(max(pretension, 0.1 * bridles.pretension)),
+                "length_offset_m": np.maximum(offset, -5.0).tolist(),
+            },
+            frame={"rope_slack_m": float(max(frame.rope_slack + slack_sd * normal[1], -1.0))},
+        )
+
     def refined(self) -> Self:
         """A copy with twice the rings and spokes; every old node stays a node."""
         depths = (*self.mesh.ring_depths, self.mesh.tip_depth)

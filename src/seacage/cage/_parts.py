@@ -205,6 +205,9 @@ class Frame(_Part):
     rope_slack: float = quantity(
         "m", "how much longer it is than balance in still water asks for", low=-1.0, default=0.0
     )
+    rope_slack_sd: float | None = quantity(
+        "m", "standard deviation of the slack, as far as it is known", default=None
+    )
     rope_tn_slope: float | None = quantity(
         "", "m of the frame rope's T–N curve", low=1.0, default=None
     )
@@ -248,6 +251,12 @@ class Bridles(_Part):
     chain_axial_stiffness: float = quantity("n", "EA of the chain", above=True)
     length_offset: tuple[float, ...] = quantity(
         "m", "how much longer each line is than it should be", low=-5.0
+    )
+    pretension_sd: float | None = quantity(
+        "n", "standard deviation of the pretension, as far as it is known", default=None
+    )
+    length_sd: float | None = quantity(
+        "m", "standard deviation of each line's length, as far as it is known", default=None
     )
     breaking_load: float = quantity("n", "least of rope and chain", above=True)
     material_factor: float = quantity("", "divides the breaking load", low=1.0)

@@ -41,6 +41,7 @@ def simulate(
     law: Law = "kristiansen-faltinsen",
     mooring: Mooring = "catenary",
     without: Without = None,
+    mooring_draws: int = 0,
     sample_every: float = 0.5,
     out: OutFile = None,
     animation: OutFile = None,
@@ -59,6 +60,9 @@ def simulate(
         That counts, s.
     seed
         Of the waves.
+    mooring_draws
+        Simulate so many moorings more, drawn from the uncertainty that the cage file states, in
+        the same waves, and answer each line's band over them.
     sample_every
         Between samples of the series, s: whole tenths.
     out
@@ -80,20 +84,19 @@ def simulate(
     subject, state = read_cage(cage), sea.state()
     warnings = [*subject.warnings, *warn_of(mooring)]
     waves = sample_waves(state, seed=seed, depth=subject.site.water_depth)
+    given: dict[str, Any] = {
+        "duration": duration,
+        "spin_up": spin_up,
+        "ramp": min(60.0, spin_up),
+        "law": law,
+        "mooring": mooring,
+        "parted": without or (),
+        "waves": waves,
+    }
+    drawn = [subject.drawn(number) for number in range(mooring_draws)]
     with progress_bar() as progress:
-        history = simulated(
-            subject,
-            state,
-            duration=duration,
-            spin_up=spin_up,
-            ramp=min(60.0, spin_up),
-            law=law,
-            mooring=mooring,
-            parted=without or (),
-            waves=waves,
-            sample_every=sample_every,
-            progress=progress,
-        )
+        history = simulated(subject, state, **given, sample_every=sample_every, progress=progress)
+        others = [simulated(one, state, **given, sample_every=None) for one in drawn]
     settings = {
         "law": law,
         "mooring": mooring,
@@ -103,6 +106,8 @@ def simulate(
         "sample_every_s": sample_every,
     } | ({"without": " ".join(without)} if without else {})
     answer = _answer(subject, history, warnings, settings)
+    if others:
+        answer["mooring_draws"] = {"draws": mooring_draws, "lines": _bands(others)}
     if out is not None:
         comment = {"comment": " ".join(warnings)} if warnings else {}
         _write(out, subject, state, history, settings | comment)
@@ -194,6 +199,24 @@ def _lines(history: "History") -> dict[str, dict[str, object]]:
     return {
         name: {"kind": lines.kinds[index], **one(index)} for index, name in enumerate(lines.names)
     }
+
+
+def _bands(others: "list[History]") -> dict[str, dict[str, dict[str, float]]]:
+    """Mean and 5 to 95 % over the drawn moorings, of each line's statistics [kN]."""
+    import numpy as np
+
+    def band(values: "np.ndarray") -> dict[str, float]:
+        low, high = np.quantile(values, (0.05, 0.95))
+        numbers = {"mean": values.mean(), "p05": low, "p95": high}
+        return {key: round(float(value) / 1e3, 3) for key, value in numbers.items()}
+
+    def one(index: int) -> dict[str, dict[str, float]]:
+        return {
+            f"{kind}_kn": band(np.array([getattr(h.lines.tension, kind)[index] for h in others]))
+            for kind in ("mean", "std", "maximum")
+        }
+
+    return {name: one(index) for index, name in enumerate(others[0].lines.names)}
 
 
 def _statistics(

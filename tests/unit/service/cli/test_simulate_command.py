@@ -64,6 +64,19 @@ def test_every_line_of_a_whole_mooring_is_reported(small_cage, tmp_path):
     assert lines["frame-4"]["mean_kn"] == pytest.approx(mean, abs=1e-3)
 
 
+def test_drawn_moorings_answer_with_a_band(small_cage, tmp_path):
+    path = tmp_path / "uncertain.toml"
+    Cage.read(small_cage).altered(bridles={"pretension_sd_n": 2e3}).write(path)
+    words = (*SEA, *SHORT, "--cage", path, "--mooring-draws", "2", "--json")
+    bands = json.loads(run(*words).stdout)["mooring_draws"]
+    assert bands["draws"] == 2
+    band = bands["lines"]["bridle-6"]["mean_kn"]
+    assert band["p05"] < band["mean"] < band["p95"]
+    refused = run(*SEA, *SHORT, "--cage", small_cage, "--mooring-draws", "2")
+    assert refused.exit_code == Exit.REFUSED
+    assert "states no uncertainty" in refused.stderr
+
+
 def test_a_line_that_has_parted_bears_nothing(small_cage):
     without = (*SEA, *SHORT, "--cage", small_cage, "--without", "bridle-6", "--json")
     answer = json.loads(run(*without).stdout)
