@@ -1,7 +1,9 @@
 """What sensors of a damaged cage read: kept answers of settled cages, and how they were made.
 
 ``damaged_ace.npz`` holds cage ``ace`` with the hidden parameters of its virtual field: whole, with
-bridle-8 parted, and with a hole of 6 × 6 of its 320 panels below the depth sensors.
+bridle-8 parted, and with a hole of 6 × 6 of its 320 panels below the depth sensors. Where the
+physics or the hidden parameters change, ``PYTHONPATH=src python tests/support/damaged.py`` makes
+the file again: 1,440 equilibria.
 """
 
 from collections.abc import Sequence
@@ -18,8 +20,8 @@ from seacage.campaigns._virtual_field._responses import _DIRECTIONS, _GROWTHS, _
 from seacage.campaigns._virtual_field._timetable import reading_times
 from seacage.dynamics import Damage
 from seacage.dynamics._equilibrium._search import equilibria
+from seacage.dynamics._moored import moor
 from seacage.dynamics._moored._detailed import _tear
-from seacage.dynamics._moored._pretension import assemble
 from seacage.dynamics._physics._flow import steady_flow
 from seacage.dynamics._physics._loads import bar_tension
 from seacage.ocean import SeaState
@@ -60,7 +62,7 @@ def damaged_field(
 def settled_answers(damage: str, hidden: TruthParameters, growth: float, seas: Sequence[SeaState]):
     """Settle the damaged cage: depths [m], then tensions [kN], of each sea."""
     cage, broken = hidden.true_cage(ACE, growth), DAMAGES[damage]
-    assembly = assemble(cage)
+    assembly = moor(cage, "catenary")
     stiffness = assembly.bars.stiffness.copy()
     whole = np.ones(len(assembly.panels.area), dtype=bool)
     if broken.bridle is not None:
@@ -76,3 +78,22 @@ def settled_answers(damage: str, hidden: TruthParameters, growth: float, seas: S
     nodes = [sensor.node for sensor in cage.depth_sensors]
     lines = [shackle.bridle for shackle in cage.shackles]
     return np.hstack([-found.position[:, nodes, 2], tension[:, lines] / 1e3])
+
+
+def answers_on_the_grid(damage: str, hidden: TruthParameters) -> np.ndarray:
+    """Answers of one of ``DAMAGES`` at every growth, speed and direction of a settled field."""
+    still = [SeaState(current_speed=0.0, current_to=0.0)]
+    moving = [SeaState(current_speed=u, current_to=to) for u in _SPEEDS for to in _DIRECTIONS]
+    at_rest = settled_answers(damage, hidden, _GROWTHS[0], still)
+    grids = []
+    for growth in _GROWTHS:
+        answers = settled_answers(damage, hidden, growth, moving)
+        by_speed = answers.reshape(len(_SPEEDS), len(_DIRECTIONS), -1)
+        grids.append(np.concatenate([np.broadcast_to(at_rest, (1, *by_speed.shape[1:])), by_speed]))
+    return np.stack(grids).astype(np.float32)
+
+
+if __name__ == "__main__":
+    np.savez_compressed(
+        _KEPT, **{damage: answers_on_the_grid(damage, TruthParameters.read()) for damage in DAMAGES}
+    )
