@@ -22,10 +22,11 @@ from seacage.dynamics._parts._assembly import (
 )
 from seacage.dynamics._physics._motion import NetLaw
 from seacage.dynamics._physics._screens import MovingLaw
-from seacage.ocean import Waves
+from seacage.ocean import SeaState, Waves, sample_waves
 
 NONE = np.zeros(0)
 NO_INDEX = np.zeros(0, dtype=np.int64)
+STILL = SeaState(current_speed=0.0, current_to=0.0)
 
 
 def chain(
@@ -65,6 +66,7 @@ def chain(
         mass=mass,
         water_mass=np.zeros(count + 1),
         fixed=fixed,
+        chord=np.zeros((count + 1, 2)),
         bars=Bars(
             ends=ends[:bars],
             length=np.full(bars, length / max(count, 1)),
@@ -151,7 +153,7 @@ def marched(
     )
     depth = 500.0 if waves is None else waves.depth
     ocean = Ocean(
-        waves=() if waves is None else (waves,),
+        waves=(sample_waves(STILL, seed=0, depth=depth) if waves is None else waves,),
         current=np.zeros((1, 1, 2)),
         level_z=np.zeros(1),
         depth=depth,
