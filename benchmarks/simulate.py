@@ -86,7 +86,8 @@ def without(assembly: Assembly, what: str) -> Assembly:
     """A copy with no part of one kind."""
     parts = getattr(assembly, what)
     none = replace(parts, **{name: getattr(parts, name)[:0] for name in type(parts).__slots__})
-    lineless = {"bridles": NO_BARS, "line_bars": NO_BARS} if what == "bars" else {}
+    names = ("bridles", "line_bars", "anchor_bars", "net_bars")
+    lineless = dict.fromkeys(names, NO_BARS) if what == "bars" else {}
     return replace(assembly, **lineless, **{what: none})
 
 

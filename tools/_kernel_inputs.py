@@ -49,9 +49,9 @@ def march(library: ctypes.CDLL, rng: np.random.Generator) -> None:
         hold=int(rng.integers(1, 5)),
     )
     state = a_state(rng, nodes, parts, lanes)
-    record = a_record(nodes, parts["lines"], lanes, refreshes if every else 0)
+    record = a_record(nodes, parts, lanes, refreshes if every else 0)
     library.seacage_march(*map(ctypes.byref, (body, net, sea, schedule, state, record)))
-    total, at = np.zeros((3, lanes), np.float32), numbers(rng, 3, lanes)
+    total, at = np.zeros((15, lanes), np.float32), numbers(rng, 3, lanes)  # of five bodies
     library.seacage_march_forces(*map(ctypes.byref, (body, net, state)), pointer(total))
     library.seacage_march_water(
         ctypes.byref(sea),
@@ -71,7 +71,8 @@ def a_body(rng: np.random.Generator, nodes: int) -> tuple[Any, dict[str, int]]:
     floats = np.flatnonzero(rng.random(nodes) < 0.5).astype(np.int32)
     lines = rng.integers(0, max(1, parts["bars"]), int(rng.integers(0, 4)), dtype=np.int32)
     lines = lines[: 4 if parts["bars"] else 0]
-    parts |= {"floats": len(floats), "lines": len(lines)}
+    twines = rng.integers(0, max(1, parts["bars"]), 3 if parts["bars"] else 0, dtype=np.int32)
+    parts |= {"floats": len(floats), "lines": len(lines), "twines": len(twines)}
     shapes = {
         **dict.fromkeys(("weight", "mass", "water_mass"), (nodes,)),
         "place": (nodes, 3),
@@ -97,6 +98,10 @@ def a_body(rng: np.random.Generator, nodes: int) -> tuple[Any, dict[str, int]]:
         ground_nodes=indices(rng, nodes, parts["grounds"], 1),
         float_nodes=floats,
         line_bars=lines,
+        anchor_bars=np.where(rng.random(len(lines)) < 0.5, -1, lines).astype(np.int32),
+        twine_bars=twines,
+        cylinder_body=rng.integers(0, 5, parts["cylinders"], dtype=np.int32),
+        cage_nodes=int(rng.integers(0, nodes + 1)),
         bar_least=rng.choice([0.0, -np.inf], parts["bars"]).astype(np.float32),
         ground_level=float(numbers(rng)),
         **parts,
@@ -144,18 +149,28 @@ def a_state(rng: np.random.Generator, nodes: int, parts: dict[str, int], lanes: 
     return c.StateStruct.filled(**{n: numbers(rng, *shape, lanes) for n, shape in shapes.items()})
 
 
-def a_record(nodes: int, lines: int, lanes: int, samples: int) -> Any:
+def a_record(nodes: int, parts: dict[str, int], lanes: int, samples: int) -> Any:
     """Room for what a march keeps, and not a number more."""
-    sizes = {"node": 3 * nodes, "line": lines, "load": 3}
+    sizes = {"node": 3 * nodes, "line": parts["lines"], "load": 15}
     kinds = {"sum": np.float64, "square": np.float64, "least": np.float32, "most": np.float32}
     account = {
         f"{what}_{how}": np.zeros((size, lanes), kind)
         for what, size in sizes.items()
         for how, kind in kinds.items()
     }
-    shapes = {"positions": (nodes, 3), "tensions": (lines,), "elevations": (), "loads": (3,)}
+    shapes = {
+        "positions": (nodes, 3),
+        "tensions": (parts["lines"],),
+        "elevations": (),
+        "loads": (3,),
+    }
     return c.RecordStruct.filled(
         **account,
+        twine_sum=np.zeros((parts["twines"], lanes)),
+        twine_most=np.zeros((parts["twines"], lanes), np.float32),
+        twine_slack=np.zeros((parts["twines"], lanes), np.float32),
+        anchor_sum=np.zeros((3 * parts["lines"], lanes)),
+        uplift_most=np.zeros((parts["lines"], lanes), np.float32),
         counted=np.zeros(1, np.int64),
         sampled=np.zeros(1, np.int64),
         **{n: np.zeros((samples, *shape, lanes), np.float32) for n, shape in shapes.items()},

@@ -77,12 +77,15 @@ def chain(
         bridles=NO_INDEX,
         lines=MooringLines.alike((), "line"),
         line_bars=NO_INDEX,
+        anchor_bars=NO_INDEX,
+        net_bars=NO_INDEX,
         bends=Bends.none(),
         panels=_no_panels(),
         cylinders=Cylinders(
             ends=ends if drag_width else ends[:0],
             drag_width=np.full(count if drag_width else 0, drag_width),
             skin_width=np.zeros(count if drag_width else 0),
+            body=np.zeros(count if drag_width else 0, dtype=np.int64),
         ),
         floats=Floats(nodes=NO_INDEX, stiffness=NONE, draft=NONE, height=NONE),
         springs=Springs(

@@ -58,6 +58,8 @@ def chain(position, *, length, axial_stiffness, weight):
         bridles=NO_INDEX,
         lines=MooringLines.alike((), "line"),
         line_bars=NO_INDEX,
+        anchor_bars=NO_INDEX,
+        net_bars=NO_INDEX,
         bends=Bends.none(),
         panels=Panels(
             corners=np.zeros((0, 4), dtype=np.int64),
@@ -73,7 +75,7 @@ def chain(position, *, length, axial_stiffness, weight):
             diamond=np.zeros(0, dtype=bool),
         ),
         cylinders=Cylinders(
-            ends=np.zeros((0, 2), dtype=np.int64), drag_width=NONE, skin_width=NONE
+            ends=np.zeros((0, 2), dtype=np.int64), drag_width=NONE, skin_width=NONE, body=NO_INDEX
         ),
         floats=Floats(nodes=NO_INDEX, stiffness=NONE, draft=NONE, height=NONE),
         springs=Springs(

@@ -14,7 +14,6 @@ from seacage.dynamics._kernel._march import March, Steps
 from seacage.dynamics._kernel._march_inputs import Ocean
 from seacage.dynamics._moored._mass_scaling import scale_mass
 from seacage.dynamics._parts._assembly import Assembly, Ground
-from seacage.dynamics._physics._felt_waves import felt_waves
 from seacage.dynamics._physics._loads import (
     DYNAMIC,
     _gather,
@@ -34,6 +33,7 @@ from seacage.dynamics._physics._motion import (
     net_load_under_water,
     past_panels,
 )
+from seacage.dynamics._physics._node_waves import node_waves
 from seacage.dynamics._physics._screens import Screen
 from seacage.ocean import SeaState, Waves, sample_waves, surface_elevation, water_motion, wavenumber
 
@@ -225,7 +225,7 @@ def test_the_march_moves_the_water_as_the_ocean_does(
     place = single(place * [1.0, 1.0, near])
     elevation, velocity = kernel_water(waves, place, time, chord=tuple(chord), whole=whole)
     for all_waves, at, up, moved in zip(waves, place, elevation, velocity, strict=True):
-        w = felt_waves(all_waves, np.inf if whole else at[2], chord)
+        w = node_waves(all_waves, np.inf if whole else at[2], chord)
         surface = surface_elevation(w, at[:2], np.array(time))
         # what rises above the surface meets the water there, where the ocean has air
         wet = np.array([*at[:2], min(at[2], float(surface) - 1e-9)])
@@ -287,7 +287,7 @@ class Stepper:
             floats = np.isin(np.arange(len(ahead[case])), self.assembly.floats.nodes)
             for node, at in enumerate(ahead[case]):
                 height = np.inf if floats[node] else at[2]
-                felt = felt_waves(waves, height, self.assembly.chord[node])
+                felt = node_waves(waves, height, self.assembly.chord[node])
                 felt = replace(felt, amplitude=rising * felt.amplitude)
                 surface[case, node] = surface_elevation(felt, at[:2], np.array(end))
                 wet = np.array([*at[:2], min(at[2], surface[case, node] - 1e-12)])

@@ -17,7 +17,7 @@ from seacage.dynamics._kernel._march_inputs import (
     to_lanes,
 )
 from seacage.dynamics._kernel._structs import pointer
-from seacage.dynamics._parts import Assembly
+from seacage.dynamics._parts import Assembly, Body
 from seacage.dynamics._physics import NetLaw, SteadyFlow, Water
 from seacage.ocean import Waves
 
@@ -54,10 +54,10 @@ def kernel_force(
     inertia = assembly.water_mass[:, None] * water.acceleration
     inertia[..., 2] += assembly.weight
     motion.arrays["base"][:] = to_lanes(inertia)
-    total = np.zeros((3, simulation_lanes()), np.float32)
+    loads = np.zeros((3 * len(Body), simulation_lanes()), np.float32)
     kernel().library.seacage_march_forces(
         *map(ctypes.byref, (body_of(assembly), netting_of(assembly, law), motion)),
-        pointer(total),
+        pointer(loads),
     )
     return from_lanes(motion.arrays["force"])[:cases].astype(np.float64)
 

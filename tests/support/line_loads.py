@@ -3,6 +3,8 @@
 import numpy as np
 
 from seacage.dynamics import Extremes, LineLoads, Statistics
+from seacage.dynamics._time._twines import PanelTwines
+from seacage.dynamics._time._water_load import BODIES, WaterLoad
 
 
 def bare_line_loads(tension: Statistics) -> LineLoads:
@@ -17,5 +19,16 @@ def bare_line_loads(tension: Statistics) -> LineLoads:
         extremes=Extremes(mpm=unknown, expected=unknown, mpm_std=unknown, expected_std=unknown),
         slack_share=unknown,
         snaps=unknown,
+        anchor_pull=np.repeat(unknown[..., None], 3, axis=-1),
+        uplift_maximum=unknown,
         damage_equivalent=unknown,
     )
+
+
+def bare_loads(*cases: int) -> dict[str, WaterLoad | PanelTwines]:
+    """The fields of a history for loads of which nothing is known, with leading axes."""
+    body, panel = np.full((*cases, len(BODIES), 3), np.nan), np.full((*cases, 0, 2), np.nan)
+    return {
+        "water_load": WaterLoad(mean=body, std=body, minimum=body, maximum=body),
+        "twines": PanelTwines(mean=panel, maximum=panel, slack_share=panel),
+    }

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from line_loads import bare_line_loads
+from line_loads import bare_line_loads, bare_loads
 from seacage.cage import Cage, mooring_lines
 from seacage.conventions import InputError, Result
 from seacage.dynamics import History, Statistics
@@ -92,6 +92,7 @@ class StandIn:
             net_force=_swaying(settled.net_force, sway, quantile_levels),
             volume=_swaying(settled.volume, sway, quantile_levels),
             lines=bare_line_loads(_swaying(tension, sway, quantile_levels)),
+            **bare_loads(len(sea)),
             node_displacement=settled.node_position - cage.design_position,
             volume_fraction=np.ones(len(sea)),
             quantile_levels=np.array(quantile_levels),

@@ -15,12 +15,15 @@ from seacage.dynamics._physics import (
 from seacage.dynamics._revision import PHYSICS
 from seacage.dynamics._settle import Response, net_load, rest_shape, settle
 from seacage.dynamics._time import (
+    BODIES,
     AbstractWeather,
     Extremes,
     Followed,
     History,
     LineLoads,
+    PanelTwines,
     Statistics,
+    WaterLoad,
     damage_equivalent_load,
     extremes,
     follow,
@@ -28,6 +31,7 @@ from seacage.dynamics._time import (
 )
 
 __all__ = [
+    "BODIES",
     "LAWS",
     "MOVING_LAWS",
     "PHYSICS",
@@ -41,8 +45,10 @@ __all__ = [
     "LineLoads",
     "Mooring",
     "MovingLaw",
+    "PanelTwines",
     "Response",
     "Statistics",
+    "WaterLoad",
     "aarsnes",
     "catenary",
     "damage_equivalent_load",

@@ -12,7 +12,13 @@ from seacage.records._campaign_store import (
     write_cases,
 )
 from seacage.records._field import FieldRecord
-from seacage.records._history_file import STATISTICS, HistoryRecord, read_history, write_history
+from seacage.records._history_file import (
+    STATISTICS,
+    TWINES,
+    HistoryRecord,
+    read_history,
+    write_history,
+)
 from seacage.records._keys import KEYS, Key
 from seacage.records._lines import LINES
 from seacage.records._quality import (
@@ -63,6 +69,7 @@ __all__ = [
     "LINES",
     "NOT_RUN",
     "STATISTICS",
+    "TWINES",
     "Amendment",
     "CampaignRecord",
     "Clock",

@@ -4,7 +4,7 @@
 # pyright: reportUnknownMemberType=false
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -49,6 +49,15 @@ _SERIES = {
         "sea_surface_height_above_mean_sea_level",
     ),
 }
+
+_BODIES = ("netting", "collar", "sinker tube", "ropes", "waves")
+
+TWINES = {
+    "mean": ("N", "mean tension of a twine"),
+    "maximum": ("N", "largest tension of a twine"),
+    "slack_share": ("1", "share of the time without tension"),
+}
+"""Unit and meaning of the numbers of ``HistoryRecord.twines``; in files after ``twine_``."""
 
 _ENDING = {
     "node_displacement": Variable(
@@ -95,6 +104,12 @@ class HistoryRecord:
         How the case ended, a ``Result``.
     diverged_at
         When it was given up, NaN where it was not [s].
+    water_load
+        ``mean``, ``std``, ``minimum`` and ``maximum`` of the load on netting, collar, sinker
+        tube and ropes, and of the waves' push [N]; empty in files of earlier versions.
+    twines
+        ``mean``, ``maximum`` [N] and ``slack_share`` of a twine in each panel, round the cage and
+        down the net; empty as above.
     settings
         What the simulation was asked for, such as ``law``, ``mooring``, ``seed``,
         ``duration_s``: an attribute each.
@@ -109,6 +124,12 @@ class HistoryRecord:
     line_names: tuple[str, ...] = ()
     line_kinds: tuple[str, ...] = ()
     lines: Mapping[str, Float[np.ndarray, " line"]] = field(default_factory=dict[str, np.ndarray])
+    water_load: Mapping[str, Float[np.ndarray, "body 3"]] = field(
+        default_factory=dict[str, np.ndarray]
+    )
+    twines: Mapping[str, Float[np.ndarray, "panel 2"]] = field(
+        default_factory=dict[str, np.ndarray]
+    )
     time: Float[np.ndarray, " t"]
     kept_node: Int[np.ndarray, " kept"]
     node_position: Float[np.ndarray, "t kept 3"]
@@ -188,7 +209,7 @@ def _dataset(record: HistoryRecord) -> "xarray.Dataset":
         f"{name}_series": known.holding(getattr(record, name)) for name, known in _SERIES.items()
     }
     return xarray.Dataset(
-        {**series, **_statistics(record), **_scalars(record), **_lines(record)},
+        {**series, **_statistics(record), **_scalars(record), **_lines(record), **_bodies(record)},
         coords={
             "time": ("time", record.time, _TIME),
             "kept_node": ("kept_node", record.kept_node, {"long_name": "index of the node"}),
@@ -238,6 +259,22 @@ def _lines(record: HistoryRecord) -> dict[str, Any]:
     }
 
 
+def _bodies(record: HistoryRecord) -> dict[str, Any]:
+    """The water's loads and the netting's tension, of a simulation that has them."""
+    variables = dict[str, Any]()
+    if record.water_load:
+        variables["body"] = np.array(_BODIES, dtype=object)
+    if record.twines:
+        variables["twine"] = np.array(["around", "down"], dtype=object)
+    for kind, values in record.water_load.items():
+        meaning, methods = f"{kind} of the water's load on a body", CELL_METHODS.get(kind, "")
+        load = Variable(("body", "axis"), "N", meaning, cell_methods=methods)
+        variables[f"water_load_{kind}"] = load.holding(values)
+    for kind, values in record.twines.items():
+        variables[f"twine_{kind}"] = Variable(("panel", "twine"), *TWINES[kind]).holding(values)
+    return variables
+
+
 def _scalars(record: HistoryRecord) -> dict[str, Any]:
     result = {
         "long_name": "how the case ended",
@@ -265,6 +302,8 @@ def _record(dataset: "xarray.Dataset") -> HistoryRecord:
         line_names=tuple(map(str, values.get("mooring_line", ()))),
         line_kinds=tuple(map(str, values.get("line_kind", ()))),
         lines={name: values[f"line_{name}"] for name in LINES if "mooring_line" in values},
+        water_load=_under(values, "water_load_", STATISTICS),
+        twines=_under(values, "twine_", TWINES),
         time=values["time"].astype(np.float64),
         kept_node=values["kept_node"].astype(np.int64),
         **{name: values[f"{name}_series"] for name in _SERIES},
@@ -277,3 +316,10 @@ def _record(dataset: "xarray.Dataset") -> HistoryRecord:
         settings=parse_json(str(attributes["settings"]), "its settings"),
         version=str(attributes["product_version"]),
     )
+
+
+def _under(
+    values: Mapping[str, np.ndarray], prefix: str, names: Iterable[str]
+) -> dict[str, np.ndarray]:
+    """Values whose names begin alike, by the rest of their names."""
+    return {name: values[prefix + name] for name in names if prefix + name in values}

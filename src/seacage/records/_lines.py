@@ -14,6 +14,8 @@ LINES = {
     "expected_3h_std": ("N", "standard deviation of line_expected_3h"),
     "slack_share": ("1", "share of the time below 1 % of the pretension"),
     "snaps": ("1", "times that the slack line was pulled beyond its mean"),
+    "uplift_mean": ("N", "mean pull up on the line's anchor"),
+    "uplift_maximum": ("N", "largest pull up on the line's anchor"),
     "damage_equivalent": ("N", "range of cycles at 1 Hz that wear the line as much"),
     "tn_slope": ("1", "slope m of the T-N curve, of line_damage_equivalent"),
 }

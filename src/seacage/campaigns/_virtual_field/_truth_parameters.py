@@ -217,7 +217,7 @@ class TruthParameters:
         """The cage as it truly is, its net grown by a share of the whole growth, 0 to 1."""
         least, most = self.fouling.shallow_least, self.fouling.shallow_most
         shallow = least + growth * (most - least)
-        return self._built(cage).fouled(
+        return self._build(cage).fouled(
             shallow=shallow,
             deep=self.fouling.deep_share * shallow,
             boundary_depth=self.fouling.boundary_depth_m,
@@ -232,7 +232,7 @@ class TruthParameters:
         drawn = np.array([*cage.mesh.ring_depths, cage.mesh.tip_depth])
         between = np.arange(times) / times
         depths = drawn[:-1, None] + np.diff(drawn)[:, None] * between
-        return self._built(cage).altered(
+        return self._build(cage).altered(
             mesh={"spokes": times * cage.spokes, "ring_depths_m": depths.ravel().tolist()},
             ropes={
                 "axial_stiffness_n": cage.ropes.axial_stiffness / times,
@@ -240,7 +240,7 @@ class TruthParameters:
             },
         )
 
-    def _built(self, cage: Cage) -> Cage:
+    def _build(self, cage: Cage) -> Cage:
         """The cage as riggers left it: what is drawn from the ranges depends on the seed alone."""
         rng, bridles, frame = np.random.default_rng(self.seed), self.bridles, self.frame
         offset = rng.normal(scale=bridles.length_sd_m, size=cage.bridle_count)

@@ -22,12 +22,18 @@ typedef float lane[LANES];
 typedef lane vec[3];
 typedef double wide[LANES];
 
+/* What the water loads: `loads` has three rows, of axes, for each. */
+enum { NETTING, COLLAR, TUBE, ROPES, PUSH, BODIES }; /* PUSH: of the waves' acceleration */
 enum { SCREEN = 0, REYNOLDS_SCREEN = 1, TWINES = 2 }; /* kinds of law of the netting */
 
 typedef struct {
-    int32_t nodes, bars, bends, panels, cylinders, floats, springs, grounds, lines;
+    int32_t nodes, bars, bends, panels, cylinders, floats, springs, grounds, lines, twines;
+    int32_t cage_nodes; /* the first ones; PUSH is on them */
     const int32_t *bar_ends, *bend_nodes, *panel_corners, *cylinder_ends, *float_nodes,
         *spring_nodes, *ground_nodes, *line_bars;
+    const int32_t *cylinder_body; /* of BODIES */
+    const int32_t *twine_bars;    /* of the netting */
+    const int32_t *anchor_bars;   /* [line] the bar that ends at its anchor, or -1 */
     const float *weight, *mass, *water_mass, *place;
     const float *chord; /* [node][2] horizontal, over which a node's waves are averaged [m] */
     const float *bar_length, *bar_rate, *bar_damping, *bar_least; /* 0 or -infinity */
@@ -92,10 +98,14 @@ typedef struct {
     lane *node_least, *node_most;
     wide *line_sum, *line_square; /* [line] */
     lane *line_least, *line_most;
-    wide *load_sum, *load_square; /* [3] */
+    wide *load_sum, *load_square; /* [BODIES*3] */
     lane *load_least, *load_most;
     int64_t *counted, *sampled;
-    float *positions, *elevations, *loads; /* [sample]..., or null */
+    wide *twine_sum; /* [twine], at every refresh, as what follows */
+    lane *twine_most, *twine_slack;
+    wide *anchor_sum; /* [3*line] pull on its anchor */
+    lane *uplift_most; /* [line] of it upwards */
+    float *positions, *elevations, *loads; /* [sample]..., or null; loads of the netting */
     float *tensions;                       /* [refresh][line], or null */
 } record;
 
@@ -363,7 +373,7 @@ static void add_twines(const body *b, const netting *net, const state *s,
     }
 }
 
-static void add_cylinders(const body *b, const state *s, const vec *restrict x)
+static void add_cylinders(const body *b, const state *s, const vec *restrict x, lane *loads)
 {
     const vec *restrict w = (const vec *)s->relative, *restrict current = (const vec *)s->current;
     vec *restrict f = s->held;
@@ -371,6 +381,7 @@ static void add_cylinders(const body *b, const state *s, const vec *restrict x)
     for (int n = 0; n < b->cylinders; n++) {
         const int i = b->cylinder_ends[2 * n], j = b->cylinder_ends[2 * n + 1];
         const float width = b->cylinder_drag[n], skin = b->cylinder_skin[n];
+        lane *restrict load = loads + 3 * b->cylinder_body[n];
         EACH_LANE {
             const float tx = x[j][0][k] - x[i][0][k];
             const float ty = x[j][1][k] - x[i][1][k];
@@ -393,6 +404,9 @@ static void add_cylinders(const body *b, const state *s, const vec *restrict x)
             f[j][0][k] += fx;
             f[j][1][k] += fy;
             f[j][2][k] += fz;
+            load[0][k] += 2.0f * fx; /* half at each end */
+            load[1][k] += 2.0f * fy;
+            load[2][k] += 2.0f * fz;
             drag[i][k] += 1.4f * pressure;
             drag[j][k] += 1.4f * pressure;
         }
@@ -440,11 +454,21 @@ static void add_supports(const body *b, const state *s, float since, const vec *
     }
 }
 
+/* What the waves' acceleration does to the cage's own and added water. */
+static void add_push(const body *b, const state *s, lane *restrict load)
+{
+    for (int i = 0; i < b->cage_nodes; i++)
+        for (int a = 0; a < 3; a++) {
+            const float weight = a == 2 ? b->weight[i] : 0.0f;
+            EACH_LANE load[a][k] += s->base[i][a][k] - weight;
+        }
+}
+
 /* Loads of the water into s->held, for where the nodes will be so many seconds ahead, in the
  * middle of the time they are held: held from its beginning, they would lag. s->force is free
- * to keep those places, and is left with what is held. total: the loads on the netting. */
+ * to keep those places, and is left with what is held. loads: by body. */
 static void hold_loads(const body *b, const netting *net, const state *s, float ahead,
-                       float span, lane *total)
+                       float span, lane *loads)
 {
     const vec *restrict now = (const vec *)s->position, *restrict v = (const vec *)s->velocity;
     const vec *restrict base = (const vec *)s->base;
@@ -458,13 +482,14 @@ static void hold_loads(const body *b, const netting *net, const state *s, float 
             }
         EACH_LANE drag[i][k] = 0.0f;
     }
-    for (int a = 0; a < 3; a++)
-        EACH_LANE total[a][k] = 0.0f;
+    for (int a = 0; a < 3 * BODIES; a++)
+        EACH_LANE loads[a][k] = 0.0f;
     if (net->kind == TWINES)
-        add_twines(b, net, s, (const vec *)x, total);
+        add_twines(b, net, s, (const vec *)x, loads + 3 * NETTING);
     else
-        add_screens(b, net, s, (const vec *)x, span, total);
-    add_cylinders(b, s, (const vec *)x);
+        add_screens(b, net, s, (const vec *)x, span, loads + 3 * NETTING);
+    add_cylinders(b, s, (const vec *)x, loads);
+    add_push(b, s, loads + 3 * PUSH);
     for (int i = 0; i < b->nodes; i++)
         for (int a = 0; a < 3; a++)
             EACH_LANE {
@@ -810,13 +835,50 @@ static void count_nodes(const body *b, const state *s, record *r)
         }
 }
 
-static void count_load(const lane *restrict total, record *r)
+static void count_loads(const lane *restrict loads, record *r)
 {
-    for (int a = 0; a < 3; a++)
+    for (int a = 0; a < 3 * BODIES; a++)
         EACH_LANE {
-            count((double)total[a][k], &r->load_sum[a][k], &r->load_square[a][k]);
-            extremes(total[a][k], &r->load_least[a][k], &r->load_most[a][k]);
+            count((double)loads[a][k], &r->load_sum[a][k], &r->load_square[a][k]);
+            extremes(loads[a][k], &r->load_least[a][k], &r->load_most[a][k]);
         }
+}
+
+static void count_twines(const body *b, const state *s, record *r)
+{
+    const vec *x = (const vec *)s->position, *v = (const vec *)s->velocity;
+    for (int n = 0; n < b->twines; n++) {
+        lane tension;
+        bar_tension(b, b->twine_bars[n], x, v, tension);
+        EACH_LANE {
+            r->twine_sum[n][k] += (double)tension[k];
+            r->twine_most[n][k] = tension[k] > r->twine_most[n][k] ? tension[k] : r->twine_most[n][k];
+            r->twine_slack[n][k] += tension[k] > 0.0f ? 0.0f : 1.0f;
+        }
+    }
+}
+
+/* An anchor line's last bar pulls its anchor, the bar's second end, along the bed and up. */
+static void count_anchors(const body *b, const state *s, record *r)
+{
+    const vec *x = (const vec *)s->position, *v = (const vec *)s->velocity;
+    for (int n = 0; n < b->lines; n++) {
+        const int bar = b->anchor_bars[n];
+        if (bar < 0)
+            continue;
+        const int i = b->bar_ends[2 * bar], j = b->bar_ends[2 * bar + 1];
+        lane tension;
+        bar_tension(b, bar, x, v, tension);
+        EACH_LANE {
+            const float dx = x[i][0][k] - x[j][0][k], dy = x[i][1][k] - x[j][1][k];
+            const float dz = x[i][2][k] - x[j][2][k];
+            const float pull = tension[k] / sqrtf(dx * dx + dy * dy + dz * dz + 1e-12f);
+            r->anchor_sum[3 * n][k] += (double)(pull * dx);
+            r->anchor_sum[3 * n + 1][k] += (double)(pull * dy);
+            r->anchor_sum[3 * n + 2][k] += (double)(pull * dz);
+            r->uplift_most[n][k] = pull * dz > r->uplift_most[n][k] ? pull * dz : r->uplift_most[n][k];
+        }
+    }
 }
 
 /* Where the present refresh keeps its tensions. */
@@ -843,12 +905,12 @@ static void count_lines(const body *b, const state *s, record *r, float *restric
 }
 
 static void sample(const body *b, const sea *w, const schedule *t, const state *s,
-                   const lane *restrict total, double now, record *r)
+                   const lane *restrict loads, double now, record *r)
 {
     const int64_t at = (*r->sampled)++;
     const size_t frame = sizeof(vec) * (size_t)b->nodes;
     memcpy((char *)r->positions + frame * (size_t)at, s->position, frame);
-    memcpy(r->loads + 3 * LANES * at, total, sizeof(vec));
+    memcpy(r->loads + 3 * LANES * at, loads + 3 * NETTING, sizeof(vec));
     lane ahead[w->components + 1];
     const float ramp = (float)ramp_at(t, now);
     float *restrict elevation = r->elevations + LANES * at;
@@ -891,11 +953,11 @@ static void give_up_lost(const body *b, state *s, double now)
 int32_t seacage_march_lanes(void) { return LANES; }
 
 /* All forces at a state, the water given at its nodes: for the tests. */
-void seacage_march_forces(const body *b, const netting *net, state *s, float *total)
+void seacage_march_forces(const body *b, const netting *net, state *s, float *loads)
 {
     relative_flow(b, s, 0.0f);
     refresh_panels(b, net, s);
-    hold_loads(b, net, s, 0.0f, 1.0f, (lane *)total);
+    hold_loads(b, net, s, 0.0f, 1.0f, (lane *)loads);
     for (int i = 0; i < b->nodes; i++)
         for (int a = 0; a < 3; a++)
             EACH_LANE s->force[i][a][k] -= s->drag[i][k] * s->velocity[i][a][k];
@@ -919,7 +981,7 @@ void seacage_march(const body *b, const netting *net, const sea *w, const schedu
     const float step = (float)t->time_step;
     const float middle = 0.5f * step * (float)(t->hold - 1);
     const double interval = t->time_step * t->steps;
-    vec total;
+    lane loads[3 * BODIES];
     for (int64_t n = t->first; n < t->first + t->refreshes; n++) {
         const double now = interval * (double)n;
         refresh_water(b, w, t, s, now + interval, interval);
@@ -930,16 +992,18 @@ void seacage_march(const body *b, const netting *net, const sea *w, const schedu
                 relative_flow(b, s, since + middle);
                 if (i == 0)
                     refresh_panels(b, net, s);
-                hold_loads(b, net, s, middle, step * (float)t->hold, (lane *)total);
+                hold_loads(b, net, s, middle, step * (float)t->hold, loads);
             }
             add_forces(b, s, since);
             if (counts)
                 count_lines(b, s, r, i == 0 && t->sample_every > 0 ? line_row(b, r) : 0);
             if (i == 0 && counts) {
                 count_nodes(b, s, r);
-                count_load((const lane *)total, r);
+                count_loads((const lane *)loads, r);
+                count_twines(b, s, r);
+                count_anchors(b, s, r);
                 if (t->sample_every > 0 && (n - t->count_from) % t->sample_every == 0)
-                    sample(b, w, t, s, (const lane *)total, now, r);
+                    sample(b, w, t, s, (const lane *)loads, now, r);
                 (*r->counted)++;
             }
             move(b, s, step);
@@ -953,9 +1017,10 @@ void seacage_march(const body *b, const netting *net, const sea *w, const schedu
 #define FIELD(name) LAYOUT_FIELD(body, name)
 const layout_row seacage_layout_body[] = {
     FIELD(nodes), FIELD(bars), FIELD(bends), FIELD(panels), FIELD(cylinders), FIELD(floats),
-    FIELD(springs), FIELD(grounds), FIELD(lines), FIELD(bar_ends), FIELD(bend_nodes),
+    FIELD(springs), FIELD(grounds), FIELD(lines), FIELD(twines), FIELD(cage_nodes), FIELD(bar_ends), FIELD(bend_nodes),
     FIELD(panel_corners), FIELD(cylinder_ends), FIELD(float_nodes), FIELD(spring_nodes),
-    FIELD(ground_nodes), FIELD(line_bars), FIELD(weight), FIELD(mass), FIELD(water_mass),
+    FIELD(ground_nodes), FIELD(line_bars), FIELD(cylinder_body), FIELD(twine_bars),
+    FIELD(anchor_bars), FIELD(weight), FIELD(mass), FIELD(water_mass),
     FIELD(place), FIELD(chord), FIELD(bar_length), FIELD(bar_rate), FIELD(bar_damping),
     FIELD(bar_least), FIELD(bend_stiffness), FIELD(bend_plane), FIELD(bend_turn),
     FIELD(panel_share), FIELD(panel_outline), FIELD(panel_mass), FIELD(cylinder_drag),
@@ -1000,6 +1065,7 @@ const layout_row seacage_layout_record[] = {
     FIELD(node_sum), FIELD(node_square), FIELD(node_least), FIELD(node_most), FIELD(line_sum),
     FIELD(line_square), FIELD(line_least), FIELD(line_most), FIELD(load_sum),
     FIELD(load_square), FIELD(load_least), FIELD(load_most), FIELD(counted), FIELD(sampled),
+    FIELD(twine_sum), FIELD(twine_most), FIELD(twine_slack), FIELD(anchor_sum), FIELD(uplift_most),
     FIELD(positions), FIELD(elevations), FIELD(loads), FIELD(tensions), LAYOUT_END(record),
 };
 #undef FIELD

@@ -20,7 +20,7 @@ from seacage.dynamics._kernel._march_inputs import (
     to_lanes,
 )
 from seacage.dynamics._kernel._structs import RecordStruct, ScheduleStruct, StateStruct
-from seacage.dynamics._parts import Assembly
+from seacage.dynamics._parts import Assembly, Body
 from seacage.dynamics._physics import NetLaw, damped_tension
 from seacage.ocean import Waves
 
@@ -90,7 +90,8 @@ class March:
         self._sea = sea_tables(ocean)
         self._motion = motion_of(assembly, to_lanes(position))
         lanes, lines = simulation_lanes(), len(assembly.line_bars)
-        sizes = {"node": (3 * nodes, lanes), "line": (lines, lanes), "load": (3, lanes)}
+        sizes = {"node": (3 * nodes, lanes), "line": (lines, lanes), "load": (3 * len(Body), lanes)}
+        twines = len(assembly.net_bars)
         self.account = {
             f"{what}_{how}": np.full(size, start, kind)
             for what, size in sizes.items()
@@ -100,7 +101,15 @@ class March:
                 ("least", np.inf, np.float32),
                 ("most", -np.inf, np.float32),
             )
-        } | {name: np.zeros(1, np.int64) for name in ("counted", "sampled")}
+        }
+        self.account |= {
+            "twine_sum": np.zeros((twines, lanes)),
+            "twine_most": np.zeros((twines, lanes), np.float32),
+            "twine_slack": np.zeros((twines, lanes), np.float32),
+            "anchor_sum": np.zeros((3 * lines, lanes)),
+            "uplift_most": np.full((lines, lanes), -np.inf, np.float32),
+        }
+        self.account |= {name: np.zeros(1, np.int64) for name in ("counted", "sampled")}
         sampled = steps.counted if steps.sample_every else 0
         shapes = {
             "positions": (steps.samples, nodes, 3),

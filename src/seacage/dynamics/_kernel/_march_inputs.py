@@ -90,11 +90,18 @@ def from_lanes(values: np.ndarray) -> np.ndarray:
 def body_of(assembly: Assembly) -> BodyStruct:
     """The cage, its bars as their nodes lie in memory, which saves waiting for it."""
     assert np.all(np.diff(assembly.floats.nodes) > 0), "the kernel meets floats in the nodes' order"
-    bars, line_bars = _in_node_order(assembly)
+    bars, new = _in_node_order(assembly.bars)
     a = replace(assembly, bars=bars)
     return BodyStruct.cast(
-        lines=len(line_bars),
-        line_bars=line_bars,
+        lines=len(a.line_bars),
+        twines=len(a.net_bars),
+        cage_nodes=a.cage_nodes,
+        line_bars=new[a.line_bars],
+        twine_bars=new[a.net_bars],
+        anchor_bars=np.where(a.anchor_bars < 0, -1, new[a.anchor_bars])
+        if len(new)
+        else a.anchor_bars,
+        cylinder_body=a.cylinders.body,
         mass=np.where(a.fixed, HELD, a.mass),
         water_mass=a.water_mass,
         place=a.position,
@@ -110,9 +117,10 @@ def body_of(assembly: Assembly) -> BodyStruct:
     )
 
 
-def _in_node_order(assembly: Assembly) -> tuple[Bars, Int[np.ndarray, " line"]]:
-    order = np.argsort(assembly.bars.ends.min(axis=1), kind="stable")
-    return assembly.bars.rows(order), np.argsort(order)[assembly.line_bars]
+def _in_node_order(bars: Bars) -> tuple[Bars, Int[np.ndarray, " bar"]]:
+    """The bars in another order, and the new number of each."""
+    order = np.argsort(bars.ends.min(axis=1), kind="stable")
+    return bars.rows(order), np.argsort(order)
 
 
 def netting_of(assembly: Assembly, law: NetLaw) -> NettingStruct:

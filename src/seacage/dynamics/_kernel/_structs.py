@@ -179,8 +179,11 @@ class BodyStruct(Struct):
     c_name = "body"
     _fields_ = (
         *_each(ctypes.c_int32, "nodes bars bends panels cylinders floats springs grounds lines"),
+        *_each(ctypes.c_int32, "twines cage_nodes"),
         *_each(INTEGERS, "bar_ends bend_nodes panel_corners cylinder_ends float_nodes"),
-        *_each(INTEGERS, "spring_nodes ground_nodes line_bars"),
+        *_each(
+            INTEGERS, "spring_nodes ground_nodes line_bars cylinder_body twine_bars anchor_bars"
+        ),
         *_each(FLOATS, "weight mass water_mass place chord"),
         *_each(FLOATS, "bar_length bar_rate bar_damping bar_least"),
         *_each(FLOATS, "bend_stiffness bend_plane bend_turn panel_share panel_outline panel_mass"),
@@ -242,6 +245,10 @@ class RecordStruct(Struct):
         *_each(DOUBLES, "load_sum load_square"),
         *_each(FLOATS, "load_least load_most"),
         *_each(LONGS, "counted sampled"),
+        ("twine_sum", DOUBLES),
+        *_each(FLOATS, "twine_most twine_slack"),
+        ("anchor_sum", DOUBLES),
+        ("uplift_most", FLOATS),
         *_each(FLOATS, "positions elevations loads tensions"),
     )
 

@@ -6,7 +6,7 @@ from functools import lru_cache
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from seacage.cage import Cage, mooring_lines
+from seacage.cage import Cage, MooringLines, mooring_lines
 from seacage.conventions import GRAVITY, WATER_DENSITY, InputError
 from seacage.dynamics._moored._anchor_line import (
     STEEL_DENSITY,
@@ -21,6 +21,7 @@ from seacage.dynamics._parts import (
     SINKING,
     Assembly,
     Bars,
+    Body,
     Cylinders,
     Floats,
     Ground,
@@ -66,8 +67,9 @@ def anchor_assembly(cage: Cage) -> Assembly:
         fixed=np.concatenate([base.fixed, anchors.is_anchor]),
         chord=np.vstack([base.chord, np.zeros((len(anchors.position), 2))]),
         bars=Bars.joined(base.bars, frame, anchors.bars),
-        lines=mooring_lines(cage, anchored=True),
+        lines=_lines(cage, frame),
         line_bars=_line_bars(cage, base, frame, anchors),
+        anchor_bars=_anchor_bars(base, frame, anchors),
         cylinders=_cylinders(cage, base, frame, anchors),
         floats=_floats(cage, base, lift),
         springs=Springs.none(),
@@ -120,6 +122,23 @@ def _line_bars(
     first, count = len(base.bars.length), len(frame.length)
     held = np.flatnonzero(anchors.bars.ends[:, 0] < cage.node_count + count)
     return np.concatenate([base.bridles, first + np.arange(count), first + count + held])
+
+
+def _anchor_bars(base: Assembly, frame: Bars, anchors: _AnchorLines) -> Int[np.ndarray, " line"]:
+    """The last bar of each anchor line; -1 for bridles and frame lines."""
+    before = len(base.bars.length) + len(frame.length)
+    without = np.full(len(base.bridles) + len(frame.length), -1)
+    return np.concatenate([without, before + np.flatnonzero(anchors.is_anchor)])
+
+
+def _lines(cage: Cage, frame: Bars) -> MooringLines:
+    """All lines; a frame line's pretension is what it bears between its corners at rest."""
+    lines, corners = mooring_lines(cage, anchored=True), cage.corner_position
+    span = np.linalg.norm(np.roll(corners, -1, axis=0) - corners, axis=1)
+    taut = np.maximum(frame.stiffness * (span / frame.length - 1.0), 0.0)
+    pretension = lines.pretension.copy()
+    pretension[[kind == "frame line" for kind in lines.kinds]] = np.where(taut > 0.0, taut, np.nan)
+    return replace(lines, pretension=pretension)
 
 
 def _directions(cage: Cage) -> tuple[Float[np.ndarray, "line 2"], Int[np.ndarray, " line"]]:
@@ -213,6 +232,7 @@ def _cylinders(cage: Cage, base: Assembly, frame: Bars, lines: _AnchorLines) -> 
         ends=np.concatenate([frame.ends, lines.bars.ends]),
         drag_width=ROPE_DRAG * np.repeat(widths, counts),
         skin_width=np.zeros(sum(counts)),
+        body=np.full(sum(counts), Body.ROPES),
     )
     return Cylinders.joined(base.cylinders, ropes)
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from enum import IntEnum
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
@@ -89,6 +90,16 @@ class Panels(Rows):
     diamond: Bool[np.ndarray, " panel"]  # twines run at 45 degrees to the panel's edges
 
 
+class Body(IntEnum):
+    """What the water loads, as its load is reported."""
+
+    NETTING = 0
+    COLLAR = 1
+    TUBE = 2
+    ROPES = 3
+    WAVES = 4  # the push of their acceleration on the cage's own and added water
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cylinders(Rows):
     """Pipes that the water drags across."""
@@ -96,6 +107,7 @@ class Cylinders(Rows):
     ends: Int[np.ndarray, "cylinder 2"]
     drag_width: Float[np.ndarray, " cylinder"]  # drag coefficient × diameter [m]
     skin_width: Float[np.ndarray, " cylinder"]  # the same for flow along the pipe [m]
+    body: Int[np.ndarray, " cylinder"]  # of ``Body``
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -153,6 +165,8 @@ class Assembly:
     bridles: Int[np.ndarray, " bridle"]  # which bars are the bridles
     lines: MooringLines  # whose tension is reported
     line_bars: Int[np.ndarray, " line"]  # at which bar
+    anchor_bars: Int[np.ndarray, " line"]  # which bar ends at the line's anchor, or -1
+    net_bars: Int[np.ndarray, " edge"]  # which bars are the netting, in the order of its edges
     bends: Bends
     panels: Panels
     cylinders: Cylinders
@@ -191,6 +205,8 @@ class Assembly:
             bridles=bridles,
             lines=mooring_lines(cage, anchored=False),
             line_bars=bridles,
+            anchor_bars=np.full(len(bridles), -1),
+            net_bars=np.arange(len(cage.edges)),
             bends=_bends(cage),
             panels=panels,
             cylinders=_cylinders(cage),
@@ -332,6 +348,7 @@ def _cylinders(cage: Cage) -> Cylinders:
         ends=np.concatenate([_around(cage, 0), _around(cage, cage.tube_ring)]),
         drag_width=np.repeat(widths, cage.spokes),
         skin_width=np.zeros(2 * cage.spokes),
+        body=np.repeat([Body.COLLAR, Body.TUBE], cage.spokes),
     )
 
 

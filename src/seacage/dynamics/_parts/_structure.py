@@ -11,6 +11,7 @@ from seacage.dynamics._parts._assembly import (
     Assembly,
     Bars,
     Bends,
+    Body,
     Cylinders,
     Floats,
     Ground,
@@ -78,6 +79,8 @@ def assemble_structure(structure: Structure) -> Assembly:
         bridles=lines,
         lines=MooringLines.alike(structure.line_names, "line"),
         line_bars=lines,
+        anchor_bars=np.full(len(lines), -1),
+        net_bars=np.zeros(0, dtype=np.int64),
         bends=_bends(structure),
         panels=panels,
         cylinders=Cylinders.joined(
@@ -343,10 +346,13 @@ def _cylinders(member: _Member, position: Float[np.ndarray, "node 3"]) -> Cylind
     if section.is_pipe:
         wet *= wet_share(position[member.ends, 2], section.box_height).mean(axis=1)
     met = wet > 0.0
+    afloat = position[member.ends, 2].mean(axis=1) > -section.box_height
+    body = np.where(afloat, Body.COLLAR, Body.TUBE) if section.is_pipe else Body.ROPES
     return Cylinders(
         ends=member.ends[met],
         drag_width=section.drag_coefficient * section.diameter * wet[met],
         skin_width=section.skin_coefficient * section.diameter * wet[met],
+        body=np.broadcast_to(body, len(met))[met].astype(np.int64),
     )
 
 

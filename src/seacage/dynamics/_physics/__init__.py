@@ -1,7 +1,6 @@
 """The physics, readable: loads, netting laws, wakes and the catenary."""
 
 from seacage.dynamics._physics._catenary import catenary
-from seacage.dynamics._physics._felt_waves import UNFELT, felt_waves, wave_reach
 from seacage.dynamics._physics._flow import steady_flow
 from seacage.dynamics._physics._loads import (
     DYNAMIC,
@@ -15,6 +14,7 @@ from seacage.dynamics._physics._loads import (
     wet_share,
 )
 from seacage.dynamics._physics._motion import NetLaw, Water, bar_damping, damped_tension
+from seacage.dynamics._physics._node_waves import UNFELT, node_waves, wave_reach
 from seacage.dynamics._physics._screens import (
     CYLINDER,
     LAWS,
@@ -49,10 +49,10 @@ __all__ = [
     "catenary",
     "damped_tension",
     "facing",
-    "felt_waves",
     "kristiansen_faltinsen",
     "loland",
     "nodal_force",
+    "node_waves",
     "openness",
     "steady_flow",
     "total_net_force",

@@ -7,6 +7,8 @@ from jaxtyping import Float, Int
 
 from seacage.dynamics._time._line_loads import LineLoads
 from seacage.dynamics._time._statistics import Statistics
+from seacage.dynamics._time._twines import PanelTwines
+from seacage.dynamics._time._water_load import WaterLoad
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -34,6 +36,10 @@ class History:
         the netting [N] and the volume inside the net [m3].
     lines
         Loads of all lines.
+    water_load
+        Of the water on netting, collar, sinker tube and ropes.
+    twines
+        Tension in each panel of the netting, in the order of ``Cage.panels``.
     node_displacement
         Mean position less the rest shape [m].
     volume_fraction
@@ -63,6 +69,8 @@ class History:
     net_force: Statistics
     volume: Statistics
     lines: LineLoads
+    water_load: WaterLoad
+    twines: PanelTwines
     node_displacement: Float[np.ndarray, "*case node 3"]
     volume_fraction: Float[np.ndarray, "*case"]
     quantile_levels: Float[np.ndarray, " quantile"]

@@ -32,6 +32,10 @@ class LineLoads:
         Share of the time below a hundredth of the pretension; NaN where that is not known [-].
     snaps
         Times that a slack line was pulled taut, beyond its mean tension; NaN as above.
+    anchor_pull
+        Mean pull of an anchor line on its anchor, east, north and up; NaN for other lines [N].
+    uplift_maximum
+        Largest pull up on the anchor; NaN as above [N].
     damage_equivalent
         Range of cycles at 1 Hz that wear the line as much, for ``tn_slope`` [N].
     tn_slope
@@ -46,6 +50,8 @@ class LineLoads:
     extremes: Extremes
     slack_share: Float[np.ndarray, "*case line"]
     snaps: Float[np.ndarray, "*case line"]
+    anchor_pull: Float[np.ndarray, "*case line 3"]
+    uplift_maximum: Float[np.ndarray, "*case line"]
     damage_equivalent: Float[np.ndarray, "*case line"]
 
     @property
@@ -61,6 +67,8 @@ class LineLoads:
             "expected_3h_std": self.extremes.expected_std,
             "slack_share": self.slack_share,
             "snaps": self.snaps,
+            "uplift_mean": self.anchor_pull[..., 2],
+            "uplift_maximum": self.uplift_maximum,
             "damage_equivalent": self.damage_equivalent,
             "tn_slope": self.tn_slope,
         }
@@ -76,6 +84,8 @@ def line_loads(
     statistics: Statistics,
     tension: Float[np.ndarray, "t line"],
     *,
+    anchor_pull: Float[np.ndarray, "line 3"],
+    uplift: Float[np.ndarray, " line"],
     every: float,
     waves: bool,
 ) -> LineLoads:
@@ -92,6 +102,8 @@ def line_loads(
         extremes=extremes([tension], every=every, has_waves=waves),
         slack_share=np.where(known, slack.mean(axis=0), np.nan),
         snaps=np.where(known, snaps, np.nan),
+        anchor_pull=anchor_pull,
+        uplift_maximum=uplift,
         damage_equivalent=damage_equivalent_load([tension], lines.tn_slope, every=every),
     )
 

@@ -10,10 +10,12 @@ from jaxtyping import Float
 from seacage.conventions import Result
 from seacage.dynamics._kernel import REFRESH, March
 from seacage.dynamics._moored import is_drowned
-from seacage.dynamics._parts import Assembly
+from seacage.dynamics._parts import Assembly, Body
 from seacage.dynamics._time._history import History, Statistics
 from seacage.dynamics._time._line_loads import line_loads
 from seacage.dynamics._time._simulation import Simulation
+from seacage.dynamics._time._twines import panel_twines
+from seacage.dynamics._time._water_load import WaterLoad
 
 VOLUMES = 360
 """At most so many samples give the volume's statistics: it changes slowly, and costs."""
@@ -45,10 +47,9 @@ def _history(
 
     def of(what: str, sample: np.ndarray, count: int, origin: np.ndarray) -> Statistics:
         account = {
-            how: join(march.account[f"{what}_{how}"][: origin.size, lanes], axis=1)
-            for how, join in _JOINS.items()
+            how: _join(march, f"{what}_{how}", lanes)[: origin.size].reshape(origin.shape)
+            for how in ("sum", "square", "least", "most")
         }
-        account = {how: values.reshape(origin.shape) for how, values in account.items()}
         return _statistics(account, sample, count, origin, levels)
 
     moved = march.account["node_sum"][:, lanes].sum(axis=1).reshape(-1, 3) / counted
@@ -61,6 +62,8 @@ def _history(
     bridles = slice(len(assembly.bridles))
     kept = slice(None) if simulation.series else slice(0)
     waves = march.has_waves(lanes[0])
+    at_anchor = assembly.anchor_bars >= 0
+    pull = _join(march, "anchor_sum", lanes).reshape(-1, 3) / counted
     history = History(
         time=(np.arange(len(net)) * steps.sample_every * REFRESH)[kept],
         nodes=simulation.nodes,
@@ -70,26 +73,56 @@ def _history(
         surface_elevation=sampled["elevations"][kept].astype(np.float64),
         node=node,
         bridle=_each([lines], lambda values: values[0][..., bridles]),
-        net_force=of("load", sampled["loads"], counted, np.zeros(3)),
+        net_force=of("load", sampled["loads"], counted, np.zeros(3)),  # rows of the netting first
         volume=_plain_statistics(volume, levels),
-        lines=line_loads(assembly.lines, lines, sampled["tensions"], every=REFRESH, waves=waves),
+        lines=line_loads(
+            assembly.lines,
+            lines,
+            sampled["tensions"],
+            anchor_pull=np.where(at_anchor[:, None], pull, np.nan),
+            uplift=np.where(at_anchor, _join(march, "uplift_most", lanes), np.nan),
+            every=REFRESH,
+            waves=waves,
+        ),
+        water_load=_water_load(march, lanes, counted),
+        twines=panel_twines(
+            cage,
+            assembly,
+            total=_join(march, "twine_sum", lanes),
+            most=_join(march, "twine_most", lanes),
+            slack=_join(march, "twine_slack", lanes),
+            counted=counted,
+        ),
         node_displacement=node.mean - rest,
         volume_fraction=np.asarray(volume.mean() / cage.volume(rest)),
         quantile_levels=levels,
         second_moment=_second_moment(simulation, net),
         hs_left_out=np.asarray(0.0),
         result=np.asarray(Result.DROWNED if drowned else Result.CONVERGED),
-        diverged_at=np.asarray(_lost_at(march, lanes)),
+        diverged_at=np.asarray(_time_of_loss(march, lanes)),
     )
     return _mask_lost(history, march) if np.isfinite(history.diverged_at) else history
 
 
-_JOINS: dict[str, Callable[..., np.ndarray]] = {
-    "sum": np.sum,
-    "square": np.sum,
-    "least": np.min,
-    "most": np.max,
-}
+def _join(march: March, name: str, lanes: Sequence[int]) -> np.ndarray:
+    """A number of the account over some lanes: the least, the most, or the sum."""
+    join = {"least": np.min, "most": np.max}.get(name.split("_")[1], np.sum)
+    return join(march.account[name][:, lanes], axis=1)
+
+
+def _water_load(march: March, lanes: Sequence[int], counted: int) -> WaterLoad:
+    shape = (len(Body), 3)
+    account = {
+        how: _join(march, f"load_{how}", lanes).reshape(shape)
+        for how in ("sum", "square", "least", "most")
+    }
+    mean = account["sum"] / counted
+    return WaterLoad(
+        mean=mean,
+        std=np.sqrt(np.maximum(account["square"] / counted - mean**2, 0.0)),
+        minimum=account["least"].astype(np.float64),
+        maximum=account["most"].astype(np.float64),
+    )
 
 
 def _in_turn(values: np.ndarray, lanes: Sequence[int]) -> np.ndarray:
@@ -99,7 +132,7 @@ def _in_turn(values: np.ndarray, lanes: Sequence[int]) -> np.ndarray:
     return np.concatenate([values[..., lane] for lane in lanes])
 
 
-def _lost_at(march: March, lanes: Sequence[int]) -> float:
+def _time_of_loss(march: March, lanes: Sequence[int]) -> float:
     """Time since the start of the first piece at which a piece was lost first, else NaN [s]."""
     before = np.arange(len(lanes)) * march.steps.counted * REFRESH
     lost = march.lost_at[lanes] + before
@@ -165,7 +198,7 @@ def _mask_lost(history: History, march: March) -> History:
     def after(series: np.ndarray) -> np.ndarray:
         return np.where(gone.reshape(-1, *(1,) * (series.ndim - 1)), np.nan, series)
 
-    lost = ("node", "bridle", "net_force", "volume", "lines")
+    lost = ("node", "bridle", "net_force", "volume", "lines", "water_load", "twines")
     lost += ("node_displacement", "volume_fraction", "second_moment")
     return replace(
         history,

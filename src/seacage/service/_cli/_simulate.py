@@ -4,6 +4,8 @@ from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import typer
+
 from seacage.service._cli._console import Exit, exit_with, guard, progress_bar, report
 from seacage.service._cli._options import (
     CageName,
@@ -22,9 +24,12 @@ if TYPE_CHECKING:
     import numpy as np
 
     from seacage.cage import Cage
-    from seacage.dynamics import History, LineLoads, Statistics
+    from seacage.dynamics import History, LineLoads, Statistics, WaterLoad
     from seacage.figures import Motion
     from seacage.ocean import SeaState, Waves
+
+_MOST_LEFT_OUT = 0.05
+"""Share of Hs in waves too short for the model, beyond which the answer says so [-]."""
 
 _SMOOTH = 0.5
 """Between samples that an animation can follow waves by [s]."""
@@ -43,6 +48,7 @@ def simulate(
     without: Without = None,
     mooring_draws: int = 0,
     sample_every: float = 0.5,
+    pieces: int | None = None,
     out: OutFile = None,
     animation: OutFile = None,
 ) -> None:
@@ -65,6 +71,9 @@ def simulate(
         the same waves, and answer each line's band over them.
     sample_every
         Between samples of the series, s: whole tenths.
+    pieces
+        That the time is cut into, simulated side by side: 16 take a quarter of the time of 1.
+        Series leap a little where one begins. As many as last a minute each, up to 16.
     out
         Write series and statistics as CF-NetCDF.
     animation
@@ -81,6 +90,8 @@ def simulate(
             f"simulate: a sample every {sample_every:g} s is too seldom for an animation. "
             f"Give --sample-every {_SMOOTH:g} or less."
         )
+    if pieces is None:
+        pieces = max(1, min(16, int(duration // 60.0)))
     subject, state = read_cage(cage), sea.state()
     warnings = [*subject.warnings, *warn_of(mooring)]
     waves = sample_waves(state, seed=seed, depth=subject.site.water_depth)
@@ -92,11 +103,15 @@ def simulate(
         "mooring": mooring,
         "parted": without or (),
         "waves": waves,
+        "pieces": pieces,
     }
     drawn = [subject.drawn(number) for number in range(mooring_draws)]
     with progress_bar() as progress:
         history = simulated(subject, state, **given, sample_every=sample_every, progress=progress)
         others = [simulated(one, state, **given, sample_every=None) for one in drawn]
+    for remark in _remarks(history):
+        warnings.append(remark)
+        typer.echo(f"seacage: warning: {remark}", err=True)
     settings = {
         "law": law,
         "mooring": mooring,
@@ -104,6 +119,7 @@ def simulate(
         "duration_s": duration,
         "spin_up_s": spin_up,
         "sample_every_s": sample_every,
+        "pieces": pieces,
     } | ({"without": " ".join(without)} if without else {})
     answer = _answer(subject, history, warnings, settings)
     if others:
@@ -124,6 +140,20 @@ def simulate(
         answer["animation"] = str(animation)
     report(answer, rows=_rows(subject, history))
     _name_drowned(history)
+
+
+def _remarks(history: "History") -> list[str]:
+    """Sentences on what lies outside the model, and on lines that bear nothing."""
+    remarks, lines = list[str](), history.lines
+    if history.hs_left_out > _MOST_LEFT_OUT:
+        remarks.append(
+            f"{history.hs_left_out:.0%} of Hs is in waves shorter than eight diameters of the "
+            "collar's pipes, for which the loads are not valid; they are left out."
+        )
+    slack = [n for n, share in zip(lines.names, lines.slack_share, strict=True) if share > 0.99]
+    if slack:
+        remarks.append(f"Slack throughout: {', '.join(slack)}.")
+    return remarks
 
 
 def _check_file(path: Path | None, ending: str) -> None:
@@ -163,11 +193,14 @@ def _answer(
     warnings: list[str],
     settings: dict[str, str | int | float],
 ) -> dict[str, object]:
+    from seacage.dynamics import BODIES
+
     return {
         "cage": cage.name,
         "origin": "computed",
         "warnings": warnings,
         "result": int(history.result),
+        "hs_left_out": round(float(history.hs_left_out), 4),
         **settings,
         "net_force_kn": _statistics(history.net_force, 1e-3),
         "volume_m3": _statistics(history.volume, 1.0),
@@ -177,6 +210,13 @@ def _answer(
             for index, name in enumerate(cage.bridle_names)
         },
         "lines": _lines(history),
+        "water_load_kn": {
+            body: _statistics(history.water_load, 1e-3, index) for index, body in enumerate(BODIES)
+        },
+        "twine_tension_n": {
+            "mean": round(float(history.twines.mean.mean()), 3),
+            "maximum": round(float(history.twines.maximum.max()), 3),
+        },
         "depth_m": {
             one.name: _statistics(history.node, -1.0, (one.node, 2)) for one in cage.depth_sensors
         },
@@ -220,7 +260,7 @@ def _bands(others: "list[History]") -> dict[str, dict[str, dict[str, float]]]:
 
 
 def _statistics(
-    statistics: "Statistics", scale: float, place: int | tuple[int, ...] = ()
+    statistics: "Statistics | WaterLoad", scale: float, place: int | tuple[int, ...] = ()
 ) -> dict[str, object]:
     """Mean, standard deviation and range of one quantity; a negative scale swaps the ends."""
     import numpy as np
@@ -276,7 +316,7 @@ def _write(
 
     import numpy as np
 
-    from seacage.records import STATISTICS, HistoryRecord, write_history
+    from seacage.records import STATISTICS, TWINES, HistoryRecord, write_history
 
     quantities = {
         "node_position": history.node,
@@ -308,6 +348,8 @@ def _write(
         line_names=history.lines.names,
         line_kinds=history.lines.kinds,
         lines=history.lines.columns,
+        water_load={name: getattr(history.water_load, name) for name in STATISTICS[:4]},
+        twines={name: getattr(history.twines, name) for name in TWINES},
         version=version("seacage"),
     )
     write_history(record, path)

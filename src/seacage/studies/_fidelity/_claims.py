@@ -25,7 +25,7 @@ def claims(
     """The rules against an inverse crime, and what growth does."""
     return (
         _underestimation(gaps),
-        _underestimated_loads(gaps),
+        _low_loads(gaps),
         _remainder(rescalings),
         _nothing_gained(null),
         _zero_covered(null),
@@ -52,7 +52,7 @@ def _underestimation(gaps: Sequence[SensorGap]) -> Claim:
     )
 
 
-def _underestimated_loads(gaps: Sequence[SensorGap]) -> Claim:
+def _low_loads(gaps: Sequence[SensorGap]) -> Claim:
     loads = [gap for gap in gaps if gap.unit == "kN"]
     truth, low = (
         float(np.mean([getattr(gap, side) for gap in loads])) if loads else np.nan

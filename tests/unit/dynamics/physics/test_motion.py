@@ -315,7 +315,10 @@ def test_a_pipe_in_relative_flow_bears_cross_flow_and_friction():
     from seacage.dynamics._parts._assembly import Cylinders
 
     pipe = Cylinders(
-        ends=np.array([[0, 1]]), drag_width=np.array([0.6]), skin_width=np.array([0.02])
+        ends=np.array([[0, 1]]),
+        drag_width=np.array([0.6]),
+        skin_width=np.array([0.02]),
+        body=np.array([1]),
     )
     position, _ = bar(4.0)
     velocity = np.tile([-0.5, 0.0, 0.0], (1, 2, 1))

@@ -5,7 +5,7 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-from line_loads import bare_line_loads
+from line_loads import bare_line_loads, bare_loads
 from seacage.dynamics import History, Statistics
 from seacage.dynamics._time._reduction import _plain_statistics, _quantiles, _statistics, stack
 
@@ -31,6 +31,7 @@ def history(value=0.0, samples=3):
         net_force=of(3),
         volume=of(),
         lines=bare_line_loads(of(4)),
+        **bare_loads(),
         node_displacement=np.full((2, 3), value),
         volume_fraction=np.asarray(value),
         quantile_levels=LEVELS,

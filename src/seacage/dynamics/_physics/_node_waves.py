@@ -30,7 +30,7 @@ def wave_reach(waves: Waves) -> Float[np.ndarray, " wave"]:
     return reach
 
 
-def felt_waves(waves: Waves, height: float, chord: Float[np.ndarray, "2"]) -> Waves:
+def node_waves(waves: Waves, height: float, chord: Float[np.ndarray, "2"]) -> Waves:
     """The components that a node at some height feels, each averaged over the node's chord.
 
     A node stands for the piece of ring between it and its neighbours. A wave that is short

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from seacage.dynamics._physics._felt_waves import FELT, UNFELT, felt_waves, wave_reach
+from seacage.dynamics._physics._node_waves import FELT, UNFELT, node_waves, wave_reach
 from seacage.ocean import SeaState, Waves, regular_wave, sample_waves, surface_elevation
 
 SEA = SeaState(current_speed=0.0, current_to=0.0, hs=1.0, tp=5.0, wave_from=270.0)
@@ -20,7 +20,7 @@ def test_a_chord_feels_the_mean_of_the_surface_along_it(length):
         **{name: getattr(WAVES, name)[WAVES.wavenumber < short] for name in Waves.__slots__[:-1]},
         depth=WAVES.depth,
     )
-    felt = felt_waves(waves, np.inf, length * along)
+    felt = node_waves(waves, np.inf, length * along)
     # the middle of 2,000 equal pieces, whose error falls with the square of their length
     places = (np.arange(2000) + 0.5) / 2000 - 0.5
     mean = surface_elevation(waves, places[:, None] * length * along, np.array(7.0)).mean()
@@ -30,8 +30,8 @@ def test_a_chord_feels_the_mean_of_the_surface_along_it(length):
 
 def test_a_wave_shorter_than_the_chord_along_it_is_left_out():
     ripple = regular_wave(height=0.05, period=1.6, wave_from=270.0, depth=60.0)  # 4.0 m long
-    assert felt_waves(ripple, np.inf, np.array([4.9, 0.0])).amplitude == 0.0
-    assert felt_waves(ripple, np.inf, np.array([0.0, 4.9])).amplitude == ripple.amplitude
+    assert node_waves(ripple, np.inf, np.array([4.9, 0.0])).amplitude == 0.0
+    assert node_waves(ripple, np.inf, np.array([0.0, 4.9])).amplitude == ripple.amplitude
 
 
 def test_what_a_node_does_not_feel_would_move_it_by_less_than_the_limit():
@@ -52,7 +52,7 @@ def test_the_waves_left_out_at_a_depth_are_a_thousandth_of_the_motion_at_the_sur
     times = np.arange(0.0, 120.0, 0.5)
     place = np.array([0.0, 0.0, height])
     whole, _ = water_motion(WAVES, place, times)
-    felt, _ = water_motion(felt_waves(WAVES, height, POINT), place, times)
+    felt, _ = water_motion(node_waves(WAVES, height, POINT), place, times)
     surface, _ = water_motion(WAVES, np.array([0.0, 0.0, -2.0]), times)
     # neglected components act through the stretching too
     assert np.std(felt - whole) <= 5e-3 * np.std(surface)
