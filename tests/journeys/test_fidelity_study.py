@@ -3,6 +3,7 @@
 import json
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
@@ -62,6 +63,14 @@ def test_each_claim_has_its_verdict_and_every_sensor_its_numbers(study):
     assert {one.sensor for one in study.null.real.sensors} == set(SMALL.sensor_names)
     assert study.null.real.together.low > 0.0
     assert study.null.null.together.low <= 0.0, "nothing is gained where there is nothing to gain"
+
+
+def test_the_nets_are_compared_with_and_without_the_drift_of_the_cage(study):
+    fouling = study.fouling
+    assert fouling.distance.shape == fouling.distance_without_drift.shape == (5, 3)
+    assert np.all(fouling.distance > 0.0)
+    scores = json.loads(study.scores.read_text("utf-8"))["fouling"]
+    np.testing.assert_allclose(scores["distance_without_drift"], fouling.distance_without_drift)
 
 
 def test_the_page_stands_alone_and_says_what_is_virtual(study):

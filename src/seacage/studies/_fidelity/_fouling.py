@@ -9,6 +9,8 @@ from seacage.cage import Cage
 from seacage.campaigns import Plan, TruthParameters
 from seacage.conventions import Progress, no_progress
 from seacage.dynamics import Law
+from seacage.records import CampaignRecord
+from seacage.studies._drift import without_drift
 from seacage.studies._fidelity._windows import Windows
 from seacage.studies._stages import Stages
 
@@ -56,6 +58,9 @@ class FoulingGap:
         At which the true cage was settled [-] and [m/s].
     gap
         Between settled cages in the same current.
+    distance, distance_without_drift
+        Of the nodes of both cages in the same current, on average, and without the drift of
+        the collars [m].
     met
         Of the record, by growth.
     """
@@ -66,6 +71,8 @@ class FoulingGap:
     growth: Float[np.ndarray, " growth"]
     speed: Float[np.ndarray, " speed"]
     gap: Float[np.ndarray, "growth speed sensor"]
+    distance: Float[np.ndarray, "growth speed"]
+    distance_without_drift: Float[np.ndarray, "growth speed"]
     met: tuple[MetGap, ...]
 
     @property
@@ -98,18 +105,23 @@ def fouling_gap(
     to = sensors.cage.site.current_to
     plan = Plan.grid(current_speed=SPEEDS, current_to=(to,), name="fouling")
 
-    def answers_of(cage: Cage, law: Law) -> Float[np.ndarray, "speed sensor"]:
-        record = stages.ensure_campaign(
+    def settled(cage: Cage, law: Law) -> CampaignRecord:
+        return stages.ensure_campaign(
             "fouling", cage, plan, law=law, workers=workers, progress=no_progress
         )
-        return sensors.responses_of(record.node_position, record.bridle_tension)
 
-    low = answers_of(sensors.cage, "kristiansen-faltinsen")
-    gaps: list[Float[np.ndarray, "speed sensor"]] = []
+    low = settled(sensors.cage, "kristiansen-faltinsen")
+    true: list[CampaignRecord] = []
     for growth in GROWTHS:
-        progress("fouling", len(gaps), len(GROWTHS))
-        gaps.append(answers_of(hidden.true_cage(sensors.cage, growth), hidden.law) - low)
-    progress("fouling", len(gaps), len(gaps))
+        progress("fouling", len(true), len(GROWTHS))
+        true.append(settled(hidden.true_cage(sensors.cage, growth), hidden.law))
+    progress("fouling", len(true), len(true))
+    responses, of_low = (
+        [sensors.responses_of(one.node_position, one.bridle_tension) for one in records]
+        for records in (true, [low])
+    )
+    apart = [one.node_position - low.node_position for one in true]
+    collar = sensors.cage.ring_nodes(0)
     growth = hidden.fouling.grown((windows.end - begin) / _DAY)
     return FoulingGap(
         sensors=sensors.names,
@@ -117,9 +129,17 @@ def fouling_gap(
         current_to=to,
         growth=np.array(GROWTHS),
         speed=np.array(SPEEDS),
-        gap=np.stack(gaps),
+        gap=np.stack(responses) - of_low[0],
+        distance=np.stack([_mean_distance(one) for one in apart]),
+        distance_without_drift=np.stack(
+            [_mean_distance(without_drift(one, collar)) for one in apart]
+        ),
         met=_gaps_by_growth(windows, growth),
     )
+
+
+def _mean_distance(apart: Float[np.ndarray, "case node 3"]) -> Float[np.ndarray, " case"]:
+    return np.linalg.norm(apart, axis=-1).mean(axis=-1)
 
 
 def _gaps_by_growth(windows: Windows, growth: Float[np.ndarray, " window"]) -> tuple[MetGap, ...]:

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float, Int
 
+from seacage.studies._drift import without_drift
 from seacage.surrogates import Prediction, coverage, crps
 
 
@@ -84,8 +85,8 @@ def shape_score(
     """
     difference = predicted.mean - computed
     error, distance = np.abs(difference), np.linalg.norm(difference, axis=-1)
-    deformed = difference - difference[:, collar].mean(axis=1, keepdims=True)
-    without_drift = np.linalg.norm(deformed, axis=-1)
+    deformed = without_drift(difference, collar)
+    deformed_distance = np.linalg.norm(deformed, axis=-1)
     x, y, z = error.mean(axis=(0, 1)).tolist()
     return ShapeScore(
         model=model,
@@ -93,8 +94,8 @@ def shape_score(
         p99=float(np.quantile(distance, 0.99)),
         worst=float(distance.max()),
         mae_without_drift=float(np.abs(deformed).mean()),
-        p99_without_drift=float(np.quantile(without_drift, 0.99)),
-        worst_without_drift=float(without_drift.max()),
+        p99_without_drift=float(np.quantile(deformed_distance, 0.99)),
+        worst_without_drift=float(deformed_distance.max()),
         coverage=coverage(computed, predicted.mean, predicted.std),
         crps=crps(computed, predicted.mean, predicted.std),
         case_axis_mae=error.mean(axis=1),

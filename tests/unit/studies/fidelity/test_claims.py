@@ -63,6 +63,8 @@ FOULING = FoulingGap(
     growth=np.array([0.0, 1.0]),
     speed=np.array([0.5]),
     gap=np.array([[[1.0]], [[2.0]]]),
+    distance=np.array([[1.0], [2.0]]),
+    distance_without_drift=np.array([[0.5], [0.6]]),
     met=(),
 )
 
@@ -129,6 +131,10 @@ def test_sensors_that_could_not_be_scored_are_named():
 
 def test_a_gap_that_narrows_at_one_current_misses_the_last_claim():
     narrowing = replace(
-        FOULING, speed=np.array([0.3, 0.5]), gap=np.array([[[1.0], [1.0]], [[0.9], [2.0]]])
+        FOULING,
+        speed=np.array([0.3, 0.5]),
+        gap=np.array([[[1.0], [1.0]], [[0.9], [2.0]]]),
+        distance=np.ones((2, 2)),
+        distance_without_drift=np.ones((2, 2)),
     )
     assert claims_of(fouling=narrowing)[5].verdict == "missed"
