@@ -113,11 +113,11 @@ def a_body(rng: np.random.Generator, nodes: int) -> tuple[Any, dict[str, int]]:
 def a_netting(rng: np.random.Generator, panels: int, lanes: int) -> Any:
     """Under any law, and any growth."""
     return c.NettingStruct.filled(
-        kind=int(rng.integers(0, 3)),
+        kind=int(rng.integers(0, 2)),
         law=numbers(rng, panels, 3, lanes),
         drag_factor=numbers(rng, panels, lanes),
         wake=numbers(rng, panels, lanes),
-        all=(ctypes.c_float * 4)(*numbers(rng, 4)),
+        all=numbers(rng, 6, lanes),
     )
 
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from compiled import kernel_force, kernel_water
 from seacage.cage import Cage
-from seacage.dynamics import MOVING_LAWS, simulation_lanes
+from seacage.dynamics import LAWS, MOVING_LAWS, simulation_lanes
 from seacage.dynamics._kernel._march import March, Steps
 from seacage.dynamics._kernel._march_inputs import Ocean
 from seacage.dynamics._moored._mass_scaling import scale_mass
@@ -34,7 +34,7 @@ from seacage.dynamics._physics._motion import (
     past_panels,
 )
 from seacage.dynamics._physics._node_waves import node_waves
-from seacage.dynamics._physics._screens import Screen
+from seacage.dynamics._physics._screens import AS_PUBLISHED, Screen, Tuning
 from seacage.ocean import SeaState, Waves, sample_waves, surface_elevation, water_motion, wavenumber
 
 ACE = Cage.named("ace")
@@ -89,14 +89,23 @@ def varied(assembly, rng, softer):
 
 
 def grown(rng, law, cases, assembly, *, own, twine_drag):
-    """A law with any wake, and each case's own netting."""
+    """A law with any wake, changed by some, and each case's own netting."""
     shape = (cases, len(assembly.panels.area))
     netting = {
         "solidity": rng.uniform(0.05, 0.5, shape),
         "drag_factor": rng.choice([0.0, 0.7, 1.0, 1.3], shape),
     }
     wake = rng.uniform(0.5, 1.0, shape)
-    return NetLaw(name=law, wake=wake, twine_drag=twine_drag, **(netting if own else {}))
+    tuned = Tuning(
+        skin_friction=rng.choice([None, 0.0, 0.04]), lift_factor=float(rng.choice([1.0, 1.6]))
+    )
+    return NetLaw(
+        name=law,
+        wake=wake,
+        twine_drag=twine_drag,
+        tuning=AS_PUBLISHED if law == "morison" else tuned,
+        **(netting if own else {}),
+    )
 
 
 def magnitudes(assembly, law, water, position, velocity):
@@ -180,6 +189,29 @@ def test_the_march_computes_the_definition_of_every_force(
     size = magnitudes(assembly, net, water, position, velocity)
     # a few roundings between parameters and force, most of them averaged out over its parts
     assert np.all(np.abs(computed - defined) <= 8.0 * FLOAT * size[..., None])
+
+
+@settings(max_examples=20)
+@given(mesh=meshes(), seed=st.integers(0, 2**32 - 1))
+def test_each_lane_keeps_its_own_law(mesh, seed):
+    rng = np.random.default_rng(seed)
+    assembly = varied(Assembly.of(caged(mesh, rng)), rng, 1e-6)
+    names = rng.choice(LAWS, LANES)
+    shape = (LANES, *assembly.position.shape)
+    position = single(assembly.position + rng.normal(scale=0.3, size=shape))
+    velocity = single(rng.normal(scale=0.5, size=shape))
+    water = Water(
+        velocity=single(rng.normal(size=shape)),
+        acceleration=np.zeros(shape),
+        elevation=np.zeros(shape[:2]),
+        current=single(rng.normal(size=shape)),
+    )
+    laws = [grown(rng, name, 1, assembly, own=True, twine_drag=None) for name in names]
+    together = kernel_force(assembly, laws, water, position, velocity)
+    for case, law in enumerate(laws):
+        one = {name: getattr(water, name)[[case]] for name in Water.__slots__}
+        alone = kernel_force(assembly, law, Water(**one), position[[case]], velocity[[case]])
+        np.testing.assert_array_equal(together[case], alone[0])
 
 
 # Water

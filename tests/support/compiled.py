@@ -39,7 +39,7 @@ def still_force(
 
 def kernel_force(
     assembly: Assembly,
-    law: NetLaw,
+    law: NetLaw | Sequence[NetLaw],
     water: Water,
     position: Float[np.ndarray, "case node 3"],
     velocity: Float[np.ndarray, "case node 3"],
@@ -54,9 +54,10 @@ def kernel_force(
     inertia = assembly.water_mass[:, None] * water.acceleration
     inertia[..., 2] += assembly.weight
     motion.arrays["base"][:] = to_lanes(inertia)
+    laws = [law] if isinstance(law, NetLaw) else law
     loads = np.zeros((3 * len(Body), simulation_lanes()), np.float32)
     kernel().library.seacage_march_forces(
-        *map(ctypes.byref, (body_of(assembly), netting_of(assembly, law), motion)),
+        *map(ctypes.byref, (body_of(assembly), netting_of(assembly, *laws), motion)),
         pointer(loads),
     )
     return from_lanes(motion.arrays["force"])[:cases].astype(np.float64)

@@ -15,7 +15,11 @@ from seacage.dynamics._parts import Assembly
 from seacage.dynamics._physics import (
     Law,
     SteadyFlow,
+    Tuning,
     bar_tension,
+    flow_of_laws,
+    law_of_each,
+    law_warnings,
     nodal_force,
     steady_flow,
     total_net_force,
@@ -55,6 +59,8 @@ class Response:
         Whether the cage would creep away from this equilibrium on its own, proved by the
         sign of the stiffness matrix's determinant. False proves nothing: a net may still
         sway about it, which only ``simulate`` shows.
+    warnings
+        Sentences on where a law was used beyond what is known of it.
     """
 
     node_position: Float[np.ndarray, "*case node 3"]
@@ -71,13 +77,16 @@ class Response:
     equilibria: Int[np.ndarray, "*case"]
     equilibrium_spread: Float[np.ndarray, "*case"]
     unstable: Bool[np.ndarray, "*case"]
+    warnings: tuple[str, ...] = ()
 
 
 def settle(
     cage: Cage,
     sea: SeaState | Sequence[SeaState],
     *,
-    law: Law = "kristiansen-faltinsen",
+    law: Law | Sequence[Law] = "kristiansen-faltinsen",
+    skin_friction: float | None = None,
+    lift_factor: float = 1.0,
     mooring: Mooring = "catenary",
     mean_waves: bool = False,
     wake: bool = True,
@@ -106,7 +115,9 @@ def settle(
     sea
         One sea state, or several: a leading case axis.
     law
-        "aarsnes", "loland" or "kristiansen-faltinsen".
+        "aarsnes", "loland" or "kristiansen-faltinsen": one for all cases or one for each.
+    skin_friction, lift_factor
+        Changes to the law, as in ``simulate``.
     mooring
         "catenary": frame ropes, buoys, and anchor lines that lift off the sea bed and come to
         lie on it; or "springs" under the frame corners, for old campaigns (``SPRINGS``).
@@ -143,12 +154,21 @@ def settle(
     assembly = part(whole.held() if hold_collar else whole, parted)
     velocity = np.array([state.current_velocity for state in seas])
     variance = _wave_variance(cage, assembly, seas) if mean_waves else None
-    flow = steady_flow(
-        assembly, velocity, law=law, wake=wake, pipe_drag=collar_drag, wave_variance=variance
+    laws: tuple[Law, ...] = law_of_each(law, len(seas))
+    flow = flow_of_laws(
+        assembly,
+        velocity,
+        laws=laws,
+        wake=wake,
+        pipe_drag=collar_drag,
+        wave_variance=variance,
+        tuning=Tuning(skin_friction=skin_friction, lift_factor=lift_factor),
     )
     found = equilibria(assembly, flow, starts=starts, workers=workers)
     rest = rest_shape(cage, mooring=mooring, hold_collar=hold_collar)
     response = _response(cage, assembly, flow, found, rest)
+    warnings = law_warnings(laws, np.linalg.norm(velocity, axis=1))
+    response = replace(response, warnings=warnings)
     return _only_case(response) if isinstance(sea, SeaState) else response
 
 
@@ -158,11 +178,15 @@ def net_load(
     sea: SeaState,
     *,
     law: Law = "kristiansen-faltinsen",
+    skin_friction: float | None = None,
+    lift_factor: float = 1.0,
     wake: bool = True,
 ) -> Float[np.ndarray, "3"]:
     """The current's load on the netting in a given shape, at rest [N]."""
     assembly = Assembly.of(cage)  # the netting does not ask for the mooring
-    flow = steady_flow(assembly, sea.current_velocity[None], law=law, wake=wake)
+    tuning = Tuning(skin_friction=skin_friction, lift_factor=lift_factor)
+    velocity = sea.current_velocity[None]
+    flow = steady_flow(assembly, velocity, law=law, wake=wake, tuning=tuning)
     return total_net_force(assembly.panels, flow, node_position[None])[0]
 
 
@@ -246,5 +270,6 @@ def _response(
 
 def _only_case(response: Response) -> Response:
     # asarray: one number of a case is still an array, of no axes.
-    arrays = [name for name in Response.__dataclass_fields__ if name != "line_names"]
+    shared = ("line_names", "warnings")
+    arrays = [name for name in Response.__dataclass_fields__ if name not in shared]
     return replace(response, **{name: np.asarray(getattr(response, name)[0]) for name in arrays})

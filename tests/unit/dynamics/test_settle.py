@@ -17,7 +17,7 @@ from seacage.ocean import SeaState
 ACE = Cage.named("ace")
 COARSE = ACE.altered(mesh={"spokes": 16, "ring_depths_m": [0.0, 7.0, 15.0, 21.4, 27.8]})
 SPEEDS = np.linspace(0.1, 1.0, 10)
-ARRAYS = [name for name in Response.__dataclass_fields__ if name != "line_names"]
+ARRAYS = [n for n in Response.__dataclass_fields__ if n not in ("line_names", "warnings")]
 
 
 def current(speed, to):
@@ -50,6 +50,29 @@ def around():
 
 
 # What it answers
+
+
+def test_each_case_may_have_a_law_of_its_own():
+    several = settle(COARSE, [current(0.6, 90.0)] * 3, law=["loland", "aarsnes", "loland"])
+    alone = settle(COARSE, current(0.6, 90.0), law="aarsnes")
+    np.testing.assert_array_equal(several.bridle_tension[1], alone.bridle_tension)
+    np.testing.assert_array_equal(several.bridle_tension[0], several.bridle_tension[2])
+
+
+def test_a_law_beyond_its_currents_is_warned_of():
+    assert settle(COARSE, current(1.2, 0.0), starts=1).warnings == ()
+    (warning,) = settle(COARSE, current(1.3, 0.0), starts=1).warnings
+    assert "the case has a current above 1.2 m/s" in warning
+    assert settle(COARSE, current(1.3, 0.0), law="loland", starts=1).warnings == ()
+
+
+def test_skin_friction_is_what_parts_the_laws_in_fast_water():
+    plain, rough, other = (
+        settle(COARSE, current(1.3, 0.0), starts=1, **options).net_force[1]
+        for options in ({}, {"skin_friction": 0.04}, {"law": "aarsnes"})
+    )
+    assert other / plain > 1.8
+    assert 0.7 < rough / other < 1.0
 
 
 def test_several_seas_have_a_leading_axis_and_one_sea_has_none():

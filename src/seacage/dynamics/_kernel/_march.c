@@ -24,7 +24,7 @@ typedef double wide[LANES];
 
 /* What the water loads: `loads` has three rows, of axes, for each. */
 enum { NETTING, COLLAR, TUBE, ROPES, PUSH, BODIES }; /* PUSH: of the waves' acceleration */
-enum { SCREEN = 0, REYNOLDS_SCREEN = 1, TWINES = 2 }; /* kinds of law of the netting */
+enum { SCREENS = 0, TWINES = 1 }; /* kinds of law of the netting */
 
 typedef struct {
     int32_t nodes, bars, bends, panels, cylinders, floats, springs, grounds, lines, twines;
@@ -49,10 +49,11 @@ typedef struct {
 
 typedef struct {
     int32_t kind;
-    const float *law;         /* [panel][3][lane]: by kind, at `refresh_panels` and `add_twines` */
+    const float *law;         /* [panel][3][lane]: at `refresh_panels` and `add_twines` */
     const float *drag_factor; /* [panel][lane] on drag and lift */
     const float *wake;        /* [panel][lane] share of the current left */
-    float all[4]; /* SCREEN*: a, e of the law, share of cos and of cos3; TWINES: Cn, Ct */
+    const float *all; /* [6][lane]: SCREENS: C_D along the flow, e, share of cos and of cos3, factor
+                         on lift, 1 where the Reynolds number counts; TWINES: Cn, Ct */
 } netting;
 
 /* Components stand in each lane in the order of their reach, the deepest first. */
@@ -267,8 +268,8 @@ static void share_out(const int *n, const float *share, const lane *restrict loa
     }
 }
 
-/* Screens: C_D = max(0, a + b cos + h cos3), C_L = l sin2 (1 + e cos2), b and h one number
- * times fixed shares, on the area as cut: twine is not lost in folds. What is nearly closed turns
+/* Screens: C_D = max(0, s (1 - cos) + b cos + h cos3), C_L = l sin2 (1 + e cos2), b and h one
+ * number times fixed shares, on the area as cut: twine is not lost in folds. What is nearly closed turns
  * to cos = 1/2 without lift. `falls`: how the load changes with speed. C_D serves most: more would act
  * as mass that is not there. In fast water a light panel needs more, or holding its load
  * through `span` would be unstable: the steepest slope less what the panel's mass bears.
@@ -277,7 +278,7 @@ static void add_screens(const body *b, const netting *net, const state *s,
                         const vec *restrict x, float span, lane *total)
 {
     const vec *restrict w = (const vec *)s->relative, *restrict carried = (const vec *)s->panel_current;
-    const float constant = net->all[0], e = net->all[1], of_cos = net->all[2], of_cos3 = net->all[3];
+    const lane *restrict all = (const lane *)net->all;
     for (int p = 0; p < b->panels; p++) {
         const int *n = b->panel_corners + 4 * p;
         const float *share = b->panel_share + 4 * p;
@@ -306,15 +307,17 @@ static void add_screens(const body *b, const netting *net, const state *s,
             const float along = open * (c < 1.0f ? c : 1.0f);
             c = along + 0.5f * closed * closed;
             const float cc = c * c;
-            float cd = factor[k] * constant + facing[k] * c * (of_cos + of_cos3 * (4.0f * cc - 3.0f));
+            const float skin = factor[k] * all[0][k];
+            float cd = skin * (1.0f - c)
+                       + facing[k] * c * (all[2][k] + all[3][k] * (4.0f * cc - 3.0f));
             cd = cd > 0.0f ? cd : 0.0f;
-            const float cl = 2.0f * c * lifting[k] * (1.0f + e * (2.0f * cc - 1.0f));
+            const float cl = 2.0f * c * lifting[k] * (1.0f + all[1][k] * (2.0f * cc - 1.0f));
             const float on_u = pressure * uu * slow * (cd - cl * along); /* times u, of length |u| */
             const float on_n = pressure * uu * cl * turn;
             load[0][k] = on_u * ux + on_n * nx;
             load[1][k] = on_u * uy + on_n * ny;
             load[2][k] = on_u * uz + on_n * nz;
-            const float steep = 1.25f * (1.5f * facing[k] + cd) - borne / (pressure * uu * slow + 1e-6f);
+            const float steep = 1.25f * (1.5f * (facing[k] - skin) + cd) - borne / (pressure * uu * slow + 1e-6f);
             falls[k] = pressure * uu * slow * (cd > steep ? cd : steep);
         }
         share_out(n, share, (const lane *)load, falls, s->held, s->drag, total);
@@ -347,8 +350,7 @@ static void add_twines(const body *b, const netting *net, const state *s,
                        const vec *restrict x, lane *total)
 {
     const vec *restrict w = (const vec *)s->relative, *restrict carried = (const vec *)s->panel_current;
-    const float given = net->all[0], skin = net->all[1];
-    const int by_reynolds = given < 0.0f;
+    const lane *restrict all = (const lane *)net->all;
     for (int p = 0; p < b->panels; p++) {
         const int *n = b->panel_corners + 4 * p;
         const float *share = b->panel_share + 4 * p;
@@ -359,6 +361,8 @@ static void add_twines(const body *b, const netting *net, const state *s,
         EACH_LANE {
             DIAGONALS;
             const float weight = factor[k] * law[0][k], reynolds = law[1][k];
+            const float given = all[0][k], skin = all[1][k];
+            const int by_reynolds = given < 0.0f;
             const float mix = 1.0f - law[2][k]; /* edges are half sums of diagonals */
             const float ux = PAST(0), uy = PAST(1), uz = PAST(2);
             float lx = 0.0f, ly = 0.0f, lz = 0.0f, fall = 0.0f;
@@ -718,7 +722,7 @@ static void wet_factor(const body *b, const netting *net, const state *s, int p,
 }
 
 /* What each panel carries of the current, and its coefficients at the present speed and height.
- * Law of a screen: facing drag and lift. Of one with Reynolds number: that for 1 m/s,
+ * Law of a screen: drag of a facing panel, and lift. Of one with Reynolds number: that for 1 m/s,
  * C_D0 and C_N45 for each unit of the twine's drag coefficient. */
 static void refresh_panels(const body *b, const netting *net, state *s)
 {
@@ -737,13 +741,9 @@ static void refresh_panels(const body *b, const netting *net, state *s)
                     sum += share[e] * s->current[n[e]][a][k];
                 s->panel_current[p][a][k] = wake[k] * sum;
             }
-        if (net->kind != REYNOLDS_SCREEN) {
-            EACH_LANE {
-                s->panel_drag[p][k] = factor[k] * law[0][k];
-                s->panel_lift[p][k] = factor[k] * law[1][k];
-            }
+        if (net->kind == TWINES)
             continue;
-        }
+        const lane *restrict all = (const lane *)net->all;
         const vec *restrict w_ = (const vec *)s->relative;
         const float *restrict series = b->cylinder_series;
         EACH_LANE {
@@ -754,7 +754,8 @@ static void refresh_panels(const body *b, const netting *net, state *s)
                     past += share[e] * w_[n[e]][a][k];
                 uu += past * past;
             }
-            float number = law[0][k] * sqrtf(uu);
+            const int by_reynolds = all[5][k] > 0.0f;
+            float number = by_reynolds ? law[0][k] * sqrtf(uu) : 512.0f;
             number = number > 32.0f ? number : 32.0f;
             number = number < 1e4f ? number : 1e4f;
             const float y = logarithm_2(number) - 9.0f;
@@ -762,9 +763,10 @@ static void refresh_panels(const body *b, const netting *net, state *s)
             for (int power = 6; power >= 0; power--)
                 c = c * y + series[power];
             const float facing = c * law[1][k], normal = c * law[2][k];
-            s->panel_drag[p][k] = factor[k] * facing;
-            s->panel_lift[p][k] = factor[k] * 0.707106781f
-                                  * (0.5f * facing - 3.14159265f * normal / (8.0f + normal));
+            const float lift = 0.707106781f
+                               * (0.5f * facing - 3.14159265f * normal / (8.0f + normal));
+            s->panel_drag[p][k] = factor[k] * (by_reynolds ? facing : law[0][k]);
+            s->panel_lift[p][k] = factor[k] * all[4][k] * (by_reynolds ? lift : law[1][k]);
         }
     }
 }

@@ -70,14 +70,15 @@ class Steps:
 class March:
     """Cases on their way through time; ``go`` moves them all.
 
-    Between two moves the water, the netting and the parts may change. The arrays of ``account``
+    Several laws of the netting have their own cases, one law's after another's. Between two moves
+    the water, the netting and the parts may change. The arrays of ``account``
     and ``samples`` have the lanes last.
     """
 
     def __init__(
         self,
         assembly: Assembly,
-        law: NetLaw,
+        law: NetLaw | Sequence[NetLaw],
         ocean: Ocean,
         steps: Steps,
         position: Float[np.ndarray, "case node 3"],
@@ -86,7 +87,7 @@ class March:
         self.cases, nodes = position.shape[:2]
         self._assembly, self._ocean = assembly, ocean
         self._body = body_of(assembly)
-        self._net = netting_of(assembly, law)
+        self._net = netting_of(assembly, *([law] if isinstance(law, NetLaw) else law))
         self._sea = sea_tables(ocean)
         self._motion = motion_of(assembly, to_lanes(position))
         lanes, lines = simulation_lanes(), len(assembly.line_bars)

@@ -1,6 +1,5 @@
 """A cage and its sea as the marching kernel reads them: arrays in single precision, lanes last."""
 
-import ctypes
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -19,7 +18,6 @@ from seacage.dynamics._physics import (
     DYNAMIC,
     UNFELT,
     NetLaw,
-    Screen,
     bar_damping,
     facing,
     wave_reach,
@@ -32,7 +30,7 @@ HELD = 1e20
 NO_BED = 1e-12
 """Least e^(−2kh) with which the bed changes a component where it is felt, in single precision."""
 
-_SCREEN, _REYNOLDS_SCREEN, _TWINES = range(3)
+_SCREENS, _TWINES = range(2)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -123,38 +121,50 @@ def _in_node_order(bars: Bars) -> tuple[Bars, Int[np.ndarray, " bar"]]:
     return bars.rows(order), np.argsort(order)
 
 
-def netting_of(assembly: Assembly, law: NetLaw) -> NettingStruct:
-    kind, numbers, each = _law(assembly, law)
-    shape = (*law.wake.shape, 3)
+def netting_of(assembly: Assembly, *laws: NetLaw) -> NettingStruct:
+    """The netting of all cases, each law's own after another's; twines go beside no screen."""
+    twines = {law.name == "morison" for law in laws}
+    assert len(twines) == 1, "screens and twines do not march together"
+    numbers, panels = zip(*(_law(assembly, law) for law in laws), strict=True)
     return NettingStruct.filled(
-        kind=kind,
-        all=(ctypes.c_float * 4)(*numbers),
-        law=to_lanes(np.broadcast_to(np.stack(np.broadcast_arrays(*each), axis=-1), shape)),
-        drag_factor=to_lanes(law.factor),
-        wake=to_lanes(law.wake),
+        kind=_TWINES if twines.pop() else _SCREENS,
+        all=to_lanes(np.concatenate(numbers)),
+        law=to_lanes(np.concatenate(panels)),
+        drag_factor=to_lanes(np.concatenate([law.factor for law in laws])),
+        wake=to_lanes(np.concatenate([law.wake for law in laws])),
     )
 
 
 def _law(
     assembly: Assembly, law: NetLaw
-) -> tuple[int, tuple[float, ...], tuple[Float[np.ndarray, "*#case panel"], ...]]:
-    """Kind of the law, its numbers for all panels and for each, as ``_march.c`` names them."""
+) -> tuple[Float[np.ndarray, "case 6"], Float[np.ndarray, "case panel 3"]]:
+    """Its numbers for all panels and for each, as ``_march.c`` names them."""
+    numbers, each = _numbers(assembly, law)
+    shape = (*law.wake.shape, 3)
+    panels = np.broadcast_to(np.stack(np.broadcast_arrays(*each), axis=-1), shape)
+    return np.tile(numbers, (len(panels), 1)), panels
+
+
+def _numbers(
+    assembly: Assembly, law: NetLaw
+) -> tuple[tuple[float, ...], tuple[Float[np.ndarray, "*#case panel"], ...]]:
     panels = assembly.panels
     solidity, diameter = law.netting(panels)
     if law.name == "morison":
         weight = DYNAMIC * diameter * panels.area / panels.twine_spacing
         by_reynolds = (-1.0, 0.0)
-        numbers = (*(law.twine_drag or by_reynolds), 0.0, 0.0)
-        return _TWINES, numbers, (weight, diameter / WATER_VISCOSITY, panels.diamond.astype(float))
+        numbers = (*(law.twine_drag or by_reynolds), 0.0, 0.0, 0.0, 0.0)
+        return numbers, (weight, diameter / WATER_VISCOSITY, panels.diamond.astype(float))
+    screen, lift_factor = law.screen(panels), law.tuning.lift_factor
     if law.name == "kristiansen-faltinsen":
         reynolds = diameter / (WATER_VISCOSITY * (1.0 - solidity))
         normal = solidity / (2.0 * (1.0 - solidity) ** 2)
         each = (reynolds, np.asarray(facing(solidity, 1.0)[0]), normal)
-        return _REYNOLDS_SCREEN, (0.0, 0.2, 0.9, 0.1), each
-    screen = Screen(law=law.name, solidity=solidity, twine_diameter=diameter)
+        return (screen.skin, 0.2, 0.9, 0.1, lift_factor, 1.0), each
     terms = screen.terms(np.ones_like(law.wake))
-    each = (terms["slope"], terms["lift"], np.zeros_like(law.wake))
-    return _SCREEN, (float(terms["constant"][0, 0]), 0.0, 1.0, 0.0), each
+    facing_drag = terms["constant"] + terms["slope"]
+    # the factor on lift is in the terms
+    return (screen.skin, 0.0, 1.0, 0.0, 1.0, 0.0), (facing_drag, terms["lift"], 0.0 * law.wake)
 
 
 def _panel_mass(assembly: Assembly) -> Float[np.ndarray, " panel"]:

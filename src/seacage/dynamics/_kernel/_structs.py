@@ -199,8 +199,7 @@ class NettingStruct(Struct):
     c_name = "netting"
     _fields_ = (
         ("kind", ctypes.c_int32),
-        *_each(FLOATS, "law drag_factor wake"),
-        ("all", ctypes.c_float * 4),
+        *_each(FLOATS, "law drag_factor wake all"),
     )
 
 

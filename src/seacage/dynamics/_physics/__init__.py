@@ -1,7 +1,7 @@
 """The physics, readable: loads, netting laws, wakes and the catenary."""
 
 from seacage.dynamics._physics._catenary import catenary
-from seacage.dynamics._physics._flow import steady_flow
+from seacage.dynamics._physics._flow import flow_of_laws, steady_flow
 from seacage.dynamics._physics._loads import (
     DYNAMIC,
     LEVEL,
@@ -16,20 +16,25 @@ from seacage.dynamics._physics._loads import (
 from seacage.dynamics._physics._motion import NetLaw, Water, bar_damping, damped_tension
 from seacage.dynamics._physics._node_waves import UNFELT, node_waves, wave_reach
 from seacage.dynamics._physics._screens import (
+    AS_PUBLISHED,
     CYLINDER,
     LAWS,
     MOVING_LAWS,
     Law,
     MovingLaw,
     Screen,
+    Tuning,
     aarsnes,
     facing,
     kristiansen_faltinsen,
+    law_of_each,
+    law_warnings,
     loland,
 )
 from seacage.dynamics._physics._wake import wake_in_sight, wake_share
 
 __all__ = [
+    "AS_PUBLISHED",
     "CYLINDER",
     "DYNAMIC",
     "LAWS",
@@ -41,6 +46,7 @@ __all__ = [
     "NetLaw",
     "Screen",
     "SteadyFlow",
+    "Tuning",
     "Water",
     "aarsnes",
     "bar_damping",
@@ -49,7 +55,10 @@ __all__ = [
     "catenary",
     "damped_tension",
     "facing",
+    "flow_of_laws",
     "kristiansen_faltinsen",
+    "law_of_each",
+    "law_warnings",
     "loland",
     "nodal_force",
     "node_waves",

@@ -1,12 +1,44 @@
 """From a sea state to the steady flow on each panel: wake, law and mean effect of waves."""
 
+from collections.abc import Sequence
+
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
 from seacage.dynamics._parts import Assembly
 from seacage.dynamics._physics._loads import DYNAMIC, SteadyFlow
-from seacage.dynamics._physics._screens import Law, Screen
+from seacage.dynamics._physics._screens import AS_PUBLISHED, Law, Screen, Tuning
 from seacage.dynamics._physics._wake import downstream, wake_factor
+
+
+def flow_of_laws(
+    assembly: Assembly,
+    current_velocity: Float[np.ndarray, "case 2"],
+    *,
+    laws: Sequence[Law],
+    wake: bool = True,
+    pipe_drag: bool = True,
+    wave_variance: Float[np.ndarray, "case panel"] | None = None,
+    tuning: Tuning = AS_PUBLISHED,
+) -> SteadyFlow:
+    """``steady_flow`` with a law for each case."""
+
+    def of(law: Law, some: Int[np.ndarray, " some"]) -> SteadyFlow:
+        return steady_flow(
+            assembly,
+            current_velocity[some],
+            law=law,
+            wake=wake,
+            pipe_drag=pipe_drag,
+            wave_variance=None if wave_variance is None else wave_variance[some],
+            tuning=tuning,
+        )
+
+    flow = of(laws[0], np.arange(len(laws)))
+    for law in dict.fromkeys(laws[1:]):
+        some = np.flatnonzero([one == law for one in laws])
+        flow.take(some, of(law, some))
+    return flow
 
 
 def steady_flow(
@@ -17,6 +49,7 @@ def steady_flow(
     wake: bool = True,
     pipe_drag: bool = True,
     wave_variance: Float[np.ndarray, "case panel"] | None = None,
+    tuning: Tuning = AS_PUBLISHED,
 ) -> SteadyFlow:
     """Steady flow on each panel in a uniform current and, if given, waves.
 
@@ -34,13 +67,20 @@ def steady_flow(
         Of the waves' horizontal velocity at each panel [m2/s2]. Their mean effect on a
         net that stands still is taken as stochastic linearisation gives it, with
         |u| raised to sqrt(|u|² + 8σ²/π). A net that follows the water feels less.
+    tuning
+        What is changed of the law.
 
     References
     ----------
     Borgman (1967) for the linearised drag of a Gaussian sea.
     """
     panels = assembly.panels
-    screen = Screen(law=law, solidity=panels.solidity, twine_diameter=panels.twine_diameter)
+    screen = Screen(
+        law=law,
+        solidity=panels.solidity,
+        twine_diameter=panels.twine_diameter,
+        tuning=tuning,
+    )
     speed = np.linalg.norm(current_velocity, axis=1)
     unit = current_velocity / np.where(speed > 0.0, speed, 1.0)[:, None]
     direction = np.column_stack([unit, np.zeros(len(speed))])

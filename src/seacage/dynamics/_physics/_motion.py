@@ -24,7 +24,13 @@ from seacage.dynamics._physics._loads import (
     spring_force,
     wet_share,
 )
-from seacage.dynamics._physics._screens import MOVING_LAWS, MovingLaw, Screen
+from seacage.dynamics._physics._screens import (
+    AS_PUBLISHED,
+    MOVING_LAWS,
+    MovingLaw,
+    Screen,
+    Tuning,
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,6 +71,8 @@ class NetLaw:
     drag_factor
         On drag and lift of each case's netting, which soft growth loads less than a net as
         solid [-]; None for 1. 0 is a hole.
+    tuning
+        What is changed of a screen law.
     """
 
     name: MovingLaw
@@ -72,6 +80,7 @@ class NetLaw:
     twine_drag: tuple[float, float] | None = None
     solidity: Float[np.ndarray, "case panel"] | None = None
     drag_factor: Float[np.ndarray, "case panel"] | None = None
+    tuning: Tuning = AS_PUBLISHED
 
     def __post_init__(self) -> None:
         if self.name not in MOVING_LAWS:
@@ -83,8 +92,19 @@ class NetLaw:
                 f"simulate: twine_drag = {self.twine_drag} must be two finite numbers of at least "
                 "0, across and along the twine. Pass None for those of a smooth cylinder."
             )
+        if self.name == "morison" and self.tuning != AS_PUBLISHED:
+            raise InputError(
+                "simulate: skin_friction and lift_factor change screen laws, and law 'morison' is "
+                "none. Give twine_drag, whose second number is the skin friction along a twine."
+            )
         _check_range("solidity", self.solidity, 1.0)
         _check_range("drag_factor", self.drag_factor, np.inf)
+
+    def screen(self, panels: Panels) -> Screen:
+        """The law as a screen law, which twine by twine is not."""
+        assert self.name != "morison"
+        solidity, diameter = self.netting(panels)
+        return Screen(law=self.name, solidity=solidity, twine_diameter=diameter, tuning=self.tuning)
 
     def netting(
         self, panels: Panels
@@ -157,14 +177,12 @@ def net_load_under_water(
     if law.name == "morison":
         return twine_load(panels, law, position, past)
     speed = np.linalg.norm(past, axis=-1)
-    solidity, diameter = law.netting(panels)
-    screen = Screen(law=law.name, solidity=solidity, twine_diameter=diameter)
     unit = past / np.where(speed > 0.0, speed, 1.0)[..., None]
     flow = SteadyFlow(
         direction=unit[:, 0],
         pressure=DYNAMIC * speed**2,
         pipe_pressure=np.zeros(len(speed)),
-        **screen.terms(speed),
+        **law.screen(panels).terms(speed),
     )
     return law.factor[..., None] * screen_load(panels, position, unit, flow)
 

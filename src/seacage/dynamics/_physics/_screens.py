@@ -1,7 +1,8 @@
 """Screen laws: drag and lift of a net panel from its solidity and its angle to the flow."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, TypeVar
 
 import numpy as np
 from jaxtyping import Float
@@ -23,7 +24,52 @@ Goldstein (1965) as fitted by Kristiansen & Faltinsen (2012), for 10^1.5 <= Re <
 
 REYNOLDS_RANGE = (32.0, 1.0e4)
 
+SKIN_FRICTION: dict[Law, float] = {"aarsnes": 0.04, "loland": 0.04, "kristiansen-faltinsen": 0.0}
+"""C_D of a panel along the flow by each law as published [-]."""
+
 Values = float | Float[np.ndarray, "*#n"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Tuning:
+    """Changes to a screen law as published, for what measurements part on.
+
+    Attributes
+    ----------
+    skin_friction
+        C_D of a panel along the flow; falls as 1 − cosθ, so that a facing panel keeps its drag
+        [-]. None takes the law's own: 0.04 of Aarsnes' and of Løland's, from towed panels, 0 of
+        Kristiansen and Faltinsen's, which knows cross-flow on twines alone.
+    lift_factor
+        On C_L [-]. Fits to flume tests have C_L/C_D(0) of 0.25 to 0.43 at 30° to 60°, the laws
+        0.11 to 0.24.
+
+    References
+    ----------
+    Aarsnes, Rudi & Løland (1990); Løland (1991). Xu et al. (2020) quote 0.3 of the facing
+    panel's drag along the flow, which is 0.08 to 0.1 for a solidity of 0.21. Lift: Lee et al.
+    (2005), Bi et al. (2014), Tang et al. (2018).
+    """
+
+    skin_friction: float | None = None
+    lift_factor: float = 1.0
+
+    def __post_init__(self) -> None:
+        skin = 0.0 if self.skin_friction is None else self.skin_friction
+        for name, value in (("skin_friction", skin), ("lift_factor", self.lift_factor)):
+            if not 0.0 <= value < np.inf:
+                raise InputError(
+                    f"Net law: {name} = {value:g} must be a finite number of at least 0. Leave it "
+                    "out for the law as published."
+                )
+
+
+FASTEST = 1.2
+"""Current above which Kristiansen and Faltinsen's law is warned of [m/s]. On the reference cage
+Aarsnes' and Løland's give 1.6 times its load at 1 m/s, 1.9 times at 1.25 and 2.4 times at 2."""
+
+AS_PUBLISHED = Tuning()
+"""No change."""
 
 
 def aarsnes(solidity: Values, cos_theta: Values) -> tuple[Values, Values]:
@@ -123,6 +169,45 @@ def _sin_twice(cos_theta: Values) -> Values:
     return 2.0 * cos_theta * np.sqrt(np.maximum(1.0 - cos_theta**2, 0.0))
 
 
+LawName = TypeVar("LawName", bound=str)
+
+
+def law_of_each(law: LawName | Sequence[LawName], cases: int) -> tuple[LawName, ...]:
+    """The law of each case.
+
+    Raises
+    ------
+    InputError
+        Another number of laws than of cases.
+    """
+    if isinstance(law, str):
+        return (law,) * cases  # pyright: ignore[reportReturnType]
+    if len(law) != cases:
+        raise InputError(f"{len(law)} laws for {cases} seas. Give one for each, or one for all.")
+    return tuple(law)
+
+
+def law_warnings(
+    laws: Sequence[MovingLaw], current_speed: Float[np.ndarray, " case"]
+) -> tuple[str, ...]:
+    """What to know of the laws at the current's speeds [m/s], in sentences."""
+    beyond = [
+        float(speed)
+        for law, speed in zip(laws, current_speed, strict=True)
+        if law == "kristiansen-faltinsen" and speed > FASTEST
+    ]
+    if not beyond:
+        return ()
+    cases = f"{len(beyond)} of {len(laws)} cases have" if len(laws) > 1 else "the case has"
+    warning = (
+        f"Law 'kristiansen-faltinsen': {cases} a current above {FASTEST:g} m/s (up to "
+        f"{max(beyond):.3g}). There the laws of the netting part by a factor of 1.8 and more in "
+        "its load, and this one, without skin friction, gives the least. Pass another law, or "
+        "compare them all (seacage simulate --laws all)."
+    )
+    return (warning,)
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Screen:
     """A screen law put to work on the panels of a net.
@@ -138,15 +223,24 @@ class Screen:
         Of each panel [-].
     twine_diameter
         Of each panel, grown [m].
+    tuning
+        What is changed of the law.
     """
 
     law: Law
     solidity: Float[np.ndarray, "*case panel"]
     twine_diameter: Float[np.ndarray, "*case panel"]
+    tuning: Tuning = AS_PUBLISHED
 
     def __post_init__(self) -> None:
         if self.law not in LAWS:
             raise InputError(f"settle: no law {self.law!r}; there are: {', '.join(LAWS)}.")
+
+    @property
+    def skin(self) -> float:
+        """C_D of a panel along the flow [-]."""
+        given = self.tuning.skin_friction
+        return SKIN_FRICTION[self.law] if given is None else given
 
     def terms(
         self, speed: Float[np.ndarray, "case panel"]
@@ -155,11 +249,15 @@ class Screen:
         if self.law == "kristiansen-faltinsen":
             twine_reynolds = self.twine_diameter / (WATER_VISCOSITY * (1.0 - self.solidity))
             cd0, cl0 = facing(self.solidity, cylinder_drag(twine_reynolds * speed))
-            terms = (0.0, 0.9 * cd0, 0.1 * cd0, cl0, 0.2)
+            terms = (0.9 * cd0, 0.1 * cd0, cl0, 0.2)
         else:
             fixed = _aarsnes_terms if self.law == "aarsnes" else _loland_terms
             slope, lift = fixed(self.solidity)
-            terms = (0.04, slope, 0.0, lift, 0.0)
+            terms = (slope, 0.0, lift, 0.0)
+        slope, third, lift, second = terms
+        # what acts along the panel, as (1 − cosθ): a facing one bears what it did
+        slope = slope + (SKIN_FRICTION[self.law] - self.skin)
+        terms = (self.skin, slope, third, self.tuning.lift_factor * lift, second)
         names = ("constant", "slope", "third", "lift", "lift_second")
         like = np.ones_like(speed)
         return {name: term * like for name, term in zip(names, terms, strict=True)}

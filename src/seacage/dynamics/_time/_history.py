@@ -56,6 +56,8 @@ class History:
         Of ``seacage.conventions.Result``; a case that drowned keeps its numbers.
     diverged_at
         Simulated time at which a case was given up, spin-up included; NaN for the others [s].
+    warnings
+        Sentences on where a law was used beyond what is known of it.
     """
 
     time: Float[np.ndarray, " t"]
@@ -78,3 +80,4 @@ class History:
     hs_left_out: Float[np.ndarray, "*case"]
     result: Int[np.ndarray, "*case"]
     diverged_at: Float[np.ndarray, "*case"]
+    warnings: tuple[str, ...]

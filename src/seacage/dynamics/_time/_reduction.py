@@ -20,7 +20,7 @@ from seacage.dynamics._time._water_load import WaterLoad
 VOLUMES = 360
 """At most so many samples give the volume's statistics: it changes slowly, and costs."""
 
-_SHARED = ("time", "nodes", "quantile_levels", "names", "kinds", "capacity", "tn_slope")
+_SHARED = ("time", "nodes", "quantile_levels", "names", "kinds", "capacity", "tn_slope", "warnings")
 
 
 def histories(
@@ -100,6 +100,7 @@ def _history(
         hs_left_out=np.asarray(0.0),
         result=np.asarray(Result.DROWNED if drowned else Result.CONVERGED),
         diverged_at=np.asarray(_time_of_loss(march, lanes)),
+        warnings=(),
     )
     return _mask_lost(history, march) if np.isfinite(history.diverged_at) else history
 

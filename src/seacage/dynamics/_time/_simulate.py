@@ -14,7 +14,14 @@ from seacage.conventions import InputError, Progress
 from seacage.dynamics._kernel import REFRESH, March, Ocean, Steps, has_long_crests, simulation_lanes
 from seacage.dynamics._moored import Mooring
 from seacage.dynamics._parts import Assembly
-from seacage.dynamics._physics import MOVING_LAWS, MovingLaw
+from seacage.dynamics._physics import (
+    AS_PUBLISHED,
+    MOVING_LAWS,
+    MovingLaw,
+    Tuning,
+    law_of_each,
+    law_warnings,
+)
 from seacage.dynamics._time._forcing import draw_waves, morison_waves, ocean_of
 from seacage.dynamics._time._history import History
 from seacage.dynamics._time._reduction import histories, stack
@@ -40,7 +47,9 @@ def simulate(
     *,
     duration: float,
     seed: int | Sequence[int] = 0,
-    law: MovingLaw = "kristiansen-faltinsen",
+    law: MovingLaw | Sequence[MovingLaw] = "kristiansen-faltinsen",
+    skin_friction: float | None = None,
+    lift_factor: float = 1.0,
     twine_drag: tuple[float, float] | None = None,
     mooring: Mooring = "catenary",
     current_profile: CurrentProfile | None = None,
@@ -84,7 +93,14 @@ def simulate(
     seed
         Of the waves: one for each case, or the first case's, from which the others count up.
     law
-        "aarsnes", "loland", "kristiansen-faltinsen", or "morison": twine by twine.
+        "aarsnes", "loland", "kristiansen-faltinsen", or "morison": twine by twine; one for all
+        cases or one for each.
+    skin_friction
+        Of screen laws: C_D of a panel along the flow, falling as 1 − cosθ to nothing for a facing
+        one [-]. None takes the law's own: 0.04 of Aarsnes' and Løland's, 0 of Kristiansen and
+        Faltinsen's.
+    lift_factor
+        Of screen laws: on C_L [-]. Fits to flume tests have up to twice the laws' lift.
     twine_drag
         With "morison": drag coefficients of a twine across and along the flow [-]. None takes
         a smooth cylinder's by its Reynolds number, and no skin friction.
@@ -139,11 +155,13 @@ def simulate(
         its site.
     """
     seas = [sea] if isinstance(sea, SeaState) else list(sea)
-    _check(seas, law, twine_drag, workers)
+    laws: tuple[MovingLaw, ...] = law_of_each(law, len(seas))
+    tuning = Tuning(skin_friction=skin_friction, lift_factor=lift_factor)
+    _check(seas, laws, twine_drag, tuning, workers)
     simulation = Simulation(
         cage=cage,
-        law=law,
         twine_drag=twine_drag,
+        tuning=tuning,
         mooring=mooring,
         wake=wake,
         hold_collar=hold_collar,
@@ -162,14 +180,17 @@ def simulate(
     cases = [
         replace(case, hs_left_out=np.asarray(share))
         for case, share in zip(
-            _simulate(simulation, seas, ocean, workers, progress), left_out, strict=True
+            _simulate(simulation, laws, seas, ocean, workers, progress), left_out, strict=True
         )
     ]
-    return cases[0] if isinstance(sea, SeaState) else stack(cases)
+    fastest = np.linalg.norm(ocean.current, axis=-1).max(axis=-1)
+    history = cases[0] if isinstance(sea, SeaState) else stack(cases)
+    return replace(history, warnings=law_warnings(laws, fastest))
 
 
 def _simulate(
     simulation: Simulation,
+    laws: Sequence[MovingLaw],
     seas: list[SeaState],
     ocean: Ocean,
     workers: int,
@@ -186,44 +207,54 @@ def _simulate(
         waves = [ocean.waves[case].shifted(second) for case in block for second in later]
         current = np.repeat(ocean.current[block], simulation.pieces, axis=0)
         some = replace(ocean, waves=waves, current=current)
-        start = simulation.start(assembly, [seas[case] for case in block])
+        own = [laws[case] for case in block]
+        start = simulation.start(assembly, own, [seas[case] for case in block])
         start = np.repeat(start, simulation.pieces, axis=0)
-        march = March(assembly, simulation.net_law(assembly, some), some, steps, start)
+        net = simulation.net_laws(assembly, [law for law in own for _ in later], some)
+        march = March(assembly, net, some, steps, start)
         for first in range(0, steps.whole, CHUNK):
             taken = min(CHUNK, steps.whole - first)
             march.go(taken)
             report(taken * march.cases)
         return histories(simulation, assembly, march, rest)
 
-    blocks = _blocks(ocean, 1 if simulation.pieces > 1 else simulation_lanes())
+    blocks = _blocks(ocean, laws, 1 if simulation.pieces > 1 else simulation_lanes())
     with ThreadPoolExecutor(workers) as pool:
         ended = [history for block in pool.map(run, blocks) for history in block]
     return [ended[place] for place in np.argsort(np.concatenate(blocks))]
 
 
-def _blocks(ocean: Ocean, most: int) -> list[Int[np.ndarray, " case"]]:
-    """Cases that travel together: those of long crests, which the kernel sums up in another way."""
+def _blocks(ocean: Ocean, laws: Sequence[MovingLaw], most: int) -> list[Int[np.ndarray, " case"]]:
+    """Cases that travel together: long crests and twines are summed up in other ways."""
     long = np.array([has_long_crests(waves) for waves in ocean.waves])
-    alike = (np.flatnonzero(long), np.flatnonzero(~long))
+    kind = 2 * np.array([law == "morison" for law in laws]) + ~long
+    alike = [np.flatnonzero(kind == each) for each in range(4)]
     return [cases[i : i + most] for cases in alike for i in range(0, len(cases), most)]
 
 
 def _check(
     seas: list[SeaState],
-    law: MovingLaw,
+    laws: Sequence[MovingLaw],
     twine_drag: tuple[float, float] | None,
+    tuning: Tuning,
     workers: int,
 ) -> None:
     if not seas:
         raise InputError("simulate: no sea state given. Pass one or more.")
     if workers < 1:
         raise InputError(f"simulate: workers = {workers} threads do no work. Give 1 or more.")
-    if law not in MOVING_LAWS:
-        raise InputError(f"simulate: no law {law!r}; there are: {', '.join(MOVING_LAWS)}.")
-    if twine_drag is not None and law != "morison":
+    for law in laws:
+        if law not in MOVING_LAWS:
+            raise InputError(f"simulate: no law {law!r}; there are: {', '.join(MOVING_LAWS)}.")
+    if twine_drag is not None and "morison" not in laws:
         raise InputError(
-            f"simulate: twine_drag = {twine_drag}, but law {law!r} knows no twines. "
+            f"simulate: twine_drag = {twine_drag}, but law {laws[0]!r} knows no twines. "
             "Leave it out, or pass law='morison'."
+        )
+    if tuning != AS_PUBLISHED and set(laws) == {"morison"}:
+        raise InputError(
+            "simulate: skin_friction and lift_factor change screen laws, and law 'morison' is "
+            "none. Give twine_drag, whose second number is the skin friction along a twine."
         )
 
 

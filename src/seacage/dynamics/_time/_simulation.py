@@ -1,5 +1,6 @@
 """Settings of a simulation in time, and the assembly and the start that follow from them."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,7 +12,7 @@ from seacage.dynamics._equilibrium import equilibria
 from seacage.dynamics._kernel import Ocean, Steps
 from seacage.dynamics._moored import Mooring, moor, part, scale_mass
 from seacage.dynamics._parts import Assembly, assemble_structure
-from seacage.dynamics._physics import MovingLaw, NetLaw, steady_flow
+from seacage.dynamics._physics import MovingLaw, NetLaw, Tuning, flow_of_laws
 from seacage.dynamics._settle import rest_shape
 from seacage.dynamics._time._forcing import wakes
 from seacage.ocean import SeaState
@@ -32,8 +33,8 @@ class Simulation:
     """
 
     cage: Cage | Structure
-    law: MovingLaw
     twine_drag: tuple[float, float] | None
+    tuning: Tuning
     mooring: Mooring
     wake: bool
     hold_collar: bool
@@ -68,10 +69,17 @@ class Simulation:
             )
         return assemble_structure(self.cage)
 
-    def net_law(self, assembly: Assembly, ocean: Ocean) -> NetLaw:
-        """The law of the netting in each case's current."""
-        share = wakes(assembly, self.law, ocean, wake=self.wake)
-        return NetLaw(name=self.law, wake=share, twine_drag=self.twine_drag)
+    def net_laws(self, assembly: Assembly, laws: Sequence[MovingLaw], ocean: Ocean) -> list[NetLaw]:
+        """The law of the netting in each case's current, case by case."""
+
+        def of(law: MovingLaw, case: slice) -> NetLaw:
+            one = replace(ocean, waves=ocean.waves[case], current=ocean.current[case])
+            share = wakes(assembly, law, one, wake=self.wake)
+            if law == "morison":
+                return NetLaw(name=law, wake=share, twine_drag=self.twine_drag)
+            return NetLaw(name=law, wake=share, tuning=self.tuning)
+
+        return [of(law, slice(case, case + 1)) for case, law in enumerate(laws)]
 
     @property
     def rest(self) -> Float[np.ndarray, "node 3"]:
@@ -80,16 +88,19 @@ class Simulation:
             return self.cage.design_position
         return rest_shape(self.cage, mooring=self.mooring, hold_collar=self.hold_collar)
 
-    def start(self, assembly: Assembly, seas: list[SeaState]) -> Float[np.ndarray, "case node 3"]:
+    def start(
+        self, assembly: Assembly, laws: Sequence[MovingLaw], seas: Sequence[SeaState]
+    ) -> Float[np.ndarray, "case node 3"]:
         """Equilibria in the sea's surface current; it is only a start, so any will do."""
         start = np.repeat(assembly.position[None], len(seas), axis=0)
         if isinstance(self.cage, Structure):
             return start
-        flow = steady_flow(
+        flow = flow_of_laws(
             assembly,
             np.array([sea.current_velocity for sea in seas]),
-            law="loland" if self.law == "morison" else self.law,
+            laws=["loland" if law == "morison" else law for law in laws],
             wake=self.wake,
+            tuning=self.tuning,
         )
         settled = equilibria(assembly, flow).position
         start[:, : self.cage.node_count] = self.rest

@@ -3,7 +3,15 @@
 import numpy as np
 import pytest
 
-from seacage.dynamics import aarsnes, kristiansen_faltinsen, loland
+from seacage.conventions import InputError
+from seacage.dynamics import LAWS, aarsnes, kristiansen_faltinsen, loland
+from seacage.dynamics._physics._screens import (
+    SKIN_FRICTION,
+    Screen,
+    Tuning,
+    law_of_each,
+    law_warnings,
+)
 
 # Solidity, angle from the normal [deg], then cd and cl of Aarsnes et al. (1990), Løland (1991) and
 # Kristiansen & Faltinsen (2012) at a twine's Reynolds number of 1500, computed from the published
@@ -111,3 +119,60 @@ def test_a_denser_net_drags_more():
     solidity = np.array([0.13, 0.2, 0.25, 0.32])
     for cd, _ in (aarsnes(solidity, 1.0), loland(solidity, 1.0)):
         assert np.all(np.diff(cd) > 0.0)
+
+
+# Changes to a law
+
+
+def terms(law, **changes):
+    screen = Screen(
+        law=law,
+        solidity=np.array([0.21]),
+        twine_diameter=np.array([0.0028]),
+        tuning=Tuning(**changes),
+    )
+    return {name: float(each[0, 0]) for name, each in screen.terms(np.array([[0.5]])).items()}
+
+
+def drag(of, cosine):
+    return of["constant"] + of["slope"] * cosine + of["third"] * cosine * (4.0 * cosine**2 - 3.0)
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_skin_friction_acts_along_a_panel_and_not_on_a_facing_one(law):
+    rough, own = terms(law, skin_friction=0.1), terms(law)
+    assert drag(rough, 0.0) == pytest.approx(0.1)
+    assert drag(rough, 1.0) == pytest.approx(drag(own, 1.0))
+    assert rough["lift"] == own["lift"]
+    assert drag(own, 0.0) == SKIN_FRICTION[law]
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_a_lift_factor_is_on_lift_alone(law):
+    more, own = terms(law, lift_factor=1.6), terms(law)
+    assert more.pop("lift") == pytest.approx(1.6 * own.pop("lift"))
+    assert more == own
+
+
+@pytest.mark.parametrize("change", [{"skin_friction": -0.1}, {"lift_factor": float("nan")}])
+def test_changes_that_are_no_coefficients_are_refused(change):
+    with pytest.raises(InputError, match="must be a finite number"):
+        Tuning(**change)
+
+
+# What to know of a law
+
+
+def test_kristiansen_and_faltinsens_law_is_warned_of_in_fast_water():
+    laws = ["kristiansen-faltinsen", "loland", "kristiansen-faltinsen"]
+    (warning,) = law_warnings(laws, np.array([1.1, 2.0, 1.5]))
+    assert "1 of 3 cases have a current above 1.2 m/s (up to 1.5)" in warning
+    assert "--laws all" in warning
+    assert law_warnings(laws, np.array([1.2, 2.0, 1.0])) == ()
+
+
+def test_laws_are_one_for_all_cases_or_one_for_each():
+    assert law_of_each("loland", 2) == ("loland", "loland")
+    assert law_of_each(["loland", "aarsnes"], 2) == ("loland", "aarsnes")
+    with pytest.raises(InputError, match="2 laws for 3 seas"):
+        law_of_each(["loland", "aarsnes"], 3)

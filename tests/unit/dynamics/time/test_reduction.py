@@ -39,6 +39,7 @@ def history(value=0.0, samples=3):
         hs_left_out=np.asarray(value),
         result=np.asarray(0),
         diverged_at=np.asarray(np.nan),
+        warnings=(),
     )
 
 

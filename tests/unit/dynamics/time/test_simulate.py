@@ -272,7 +272,7 @@ def test_in_a_steady_current_it_comes_to_rest_where_settle_does(law, monkeypatch
     currents = [SeaState(current_speed=u, current_to=200.0) for u in (0.2, 0.5)]
     settled = settle(SMALL, currents, law=law)
 
-    def at_rest(simulation, assembly, seas):
+    def at_rest(simulation, assembly, laws, seas):
         start = assembly.position.copy()
         start[: simulation.cage.node_count] = simulation.rest
         return np.repeat(start[None], len(seas), axis=0)
@@ -284,6 +284,34 @@ def test_in_a_steady_current_it_comes_to_rest_where_settle_does(law, monkeypatch
     np.testing.assert_allclose(ended.bridle.mean, settled.bridle_tension, rtol=0.01, atol=20.0)
     np.testing.assert_allclose(ended.net_force.mean, settled.net_force, rtol=1e-3, atol=5.0)
     np.testing.assert_allclose(ended.volume_fraction, settled.volume_fraction, atol=1e-3)
+
+
+def test_each_case_may_have_a_law_of_its_own():
+    waves = sample_waves(SEA, seed=3, depth=DEPTH)
+    laws = ["morison", "loland", "kristiansen-faltinsen", "loland"]
+    several = quick([SEA] * 4, law=laws, waves=waves)
+    for case, law in enumerate(laws):
+        alone = quick(SEA, law=law, waves=waves)
+        np.testing.assert_array_equal(several.bridle.mean[case], alone.bridle.mean)
+    np.testing.assert_array_equal(several.bridle.mean[1], several.bridle.mean[3])
+
+
+def test_skin_friction_and_lift_change_what_a_screen_bears():
+    fast = SeaState(current_speed=0.8, current_to=0.0)
+    plain, rough, lifted = (
+        quick(fast, **change) for change in ({}, {"skin_friction": 0.1}, {"lift_factor": 1.6})
+    )
+    assert rough.net_force.mean[1] > 1.1 * plain.net_force.mean[1]
+    assert lifted.net_force.mean[2] > 1.2 * plain.net_force.mean[2]
+
+
+def test_a_law_beyond_its_currents_is_warned_of_at_any_depth():
+    profile = CurrentProfile(depth=(0.0, 10.0), factor=(1.0, 1.6))
+    slow, fast = (replace(SEA, current_speed=speed) for speed in (0.7, 0.8))
+    assert quick(slow, current_profile=profile).warnings == ()
+    (warning,) = quick([slow, fast], current_profile=profile).warnings
+    assert "1 of 2 cases have a current above 1.2 m/s (up to 1.28)" in warning
+    assert quick(fast, current_profile=profile, law="aarsnes").warnings == ()
 
 
 @pytest.mark.parametrize("law", MOVING_LAWS)
