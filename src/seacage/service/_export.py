@@ -311,10 +311,18 @@ def _flags(dim: str, inside: Bool[np.ndarray, "t output"]) -> Any:
     return _variable(f"time {dim}", inside.astype(np.int8), "1", meaning)
 
 
-def write_response(path: Path, cage: Cage, sea: SeaState, law: str, response: "Response") -> None:
+def write_response(
+    path: Path,
+    cage: Cage,
+    sea: SeaState,
+    law: str,
+    response: "Response",
+    changes: Mapping[str, float],
+) -> None:
     """Write one equilibrium as CF-NetCDF."""
     import xarray
 
+    warnings = (*cage.warnings, *response.warnings)
     moved, share = "displacement from still water", float(response.volume_fraction)
     dataset = xarray.Dataset(
         {
@@ -337,6 +345,8 @@ def write_response(path: Path, cage: Cage, sea: SeaState, law: str, response: "R
         | {
             "origin": "computed",
             "law": law,
+            **changes,
+            **({"comment": " ".join(warnings)} if warnings else {}),
             "current_speed_m_s": sea.current_speed,
             "current_to_deg": sea.current_to,
             "hs_m": sea.hs,

@@ -62,7 +62,7 @@ def test_each_case_may_have_a_law_of_its_own():
 def test_a_law_beyond_its_currents_is_warned_of():
     assert settle(COARSE, current(1.2, 0.0), starts=1).warnings == ()
     (warning,) = settle(COARSE, current(1.3, 0.0), starts=1).warnings
-    assert "the case has a current above 1.2 m/s" in warning
+    assert "the current of 1.3 m/s is above 1.2 m/s" in warning
     assert settle(COARSE, current(1.3, 0.0), law="loland", starts=1).warnings == ()
 
 

@@ -191,19 +191,21 @@ def law_warnings(
     laws: Sequence[MovingLaw], current_speed: Float[np.ndarray, " case"]
 ) -> tuple[str, ...]:
     """What to know of the laws at the current's speeds [m/s], in sentences."""
-    beyond = [
-        float(speed)
-        for law, speed in zip(laws, current_speed, strict=True)
-        if law == "kristiansen-faltinsen" and speed > FASTEST
-    ]
-    if not beyond:
+    met = current_speed[[law == "kristiansen-faltinsen" for law in laws]]
+    beyond = met[met > FASTEST]
+    if len(beyond) == 0:
         return ()
-    cases = f"{len(beyond)} of {len(laws)} cases have" if len(laws) > 1 else "the case has"
+    most = f"{beyond.max():.3g} m/s"
+    which = (
+        f"the current of {most} is"
+        if len(met) == 1
+        else f"{len(beyond)} of {len(met)} currents, up to {most}, are"
+    )
     warning = (
-        f"Law 'kristiansen-faltinsen': {cases} a current above {FASTEST:g} m/s (up to "
-        f"{max(beyond):.3g}). There the laws of the netting part by a factor of 1.8 and more in "
-        "its load, and this one, without skin friction, gives the least. Pass another law, or "
-        "compare them all (seacage simulate --laws all)."
+        f"Law 'kristiansen-faltinsen': {which} above {FASTEST:g} m/s. There the laws of the "
+        "netting part by a factor of 1.8 and more in its load, and this one, without skin "
+        "friction, gives the least. Pass another law, or compare them all (seacage simulate --laws "
+        "all)."
     )
     return (warning,)
 

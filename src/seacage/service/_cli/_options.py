@@ -1,5 +1,6 @@
 """Kinds of options, options that several commands share, and groups of them."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -77,13 +78,53 @@ class SeaOptions:
         return SeaState(**asdict(self))
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LawOptions:
+    """What the water does to the netting.
+
+    Parameters
+    ----------
+    laws
+        Answer by every law instead of one: lowest, central and highest.
+    skin_friction
+        Drag coefficient of a panel along the flow, of screen laws. [default: the law's own]
+    lift_factor
+        Factor on the lift of screen laws.
+    """
+
+    laws: Literal["all"] | None = None
+    skin_friction: float | None = None
+    lift_factor: float = 1.0
+
+    @property
+    def changes(self) -> dict[str, float]:
+        """What is changed of a law, as `settle` and `simulate` take it."""
+        given = {"skin_friction": self.skin_friction, "lift_factor": self.lift_factor}
+        return {k: v for k, v in given.items() if v is not None and (k, v) != ("lift_factor", 1.0)}
+
+    def check_files(self, *files: Path | None) -> None:
+        """Refuse files where several laws answer: they hold one."""
+        from seacage.conventions import InputError
+
+        if self.laws is not None and any(files):
+            raise InputError(
+                "--laws all has one answer for each law, and a file holds one. Leave --laws out, "
+                "or the file."
+            )
+
+
+def warn(sentences: Iterable[str]) -> None:
+    """Print what to know of an answer on stderr."""
+    for sentence in sentences:
+        typer.echo(f"seacage: warning: {sentence}", err=True)
+
+
 def read_cage(name: str) -> "Cage":
     """A shipped cage by its name, else a file; what the cage warns of goes to stderr."""
     from seacage.cage import Cage
 
     cage = Cage.read(name) if name.endswith(".toml") else Cage.named(name)
-    for warning in cage.warnings:
-        typer.echo(f"seacage: warning: {warning}", err=True)
+    warn(cage.warnings)
     return cage
 
 
@@ -92,8 +133,7 @@ def warn_of(mooring: str) -> tuple[str, ...]:
     from seacage.dynamics import SPRINGS
 
     warnings = (f"mooring = {mooring}: {SPRINGS}",) if mooring == "springs" else ()
-    for warning in warnings:
-        typer.echo(f"seacage: warning: {warning}", err=True)
+    warn(warnings)
     return warnings
 
 

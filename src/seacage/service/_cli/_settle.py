@@ -7,11 +7,13 @@ import typer
 from seacage.service._cli._console import Exit, exit_with, guard, report
 from seacage.service._cli._options import (
     CageName,
+    LawOptions,
     Mooring,
     OutFile,
     SeaOptions,
     Without,
     read_cage,
+    warn,
     warn_of,
 )
 
@@ -27,6 +29,7 @@ def settle(
     mean_waves: Annotated[bool, typer.Option("--mean-waves")] = False,
     cage: CageName = "ace",
     law: Literal["kristiansen-faltinsen", "loland", "aarsnes"] = "kristiansen-faltinsen",
+    net: LawOptions,
     mooring: Mooring = "catenary",
     without: Without = None,
     out: OutFile = None,
@@ -49,20 +52,39 @@ def settle(
         Write the response as CF-NetCDF.
     """
     from seacage.conventions import RESULTS, Result
+    from seacage.dynamics import LAWS
     from seacage.dynamics import settle as settled
 
+    net.check_files(out)
     state, subject = sea.state(), read_cage(cage)
     parted = without or []
     warnings = [*subject.warnings, *warn_of(mooring)]
+    laws = (law,) if net.laws is None else LAWS
     response = settled(
-        subject, state, law=law, mooring=mooring, mean_waves=mean_waves, parted=parted
+        subject,
+        [state] * len(laws) if net.laws else state,
+        law=laws if net.laws else law,
+        skin_friction=net.skin_friction,
+        lift_factor=net.lift_factor,
+        mooring=mooring,
+        mean_waves=mean_waves,
+        parted=parted,
     )
-    answer = _answer(subject, response) | {"mooring": mooring, "warnings": warnings}
-    answer |= {"without": parted} if parted else {}
+    warn(response.warnings)
+    warnings += response.warnings
+    about: dict[str, object] = {"mooring": mooring, "warnings": warnings, **net.changes}
+    about |= {"without": parted} if parted else {}
+    if net.laws is not None:
+        from seacage.service._cli._law_band import answer_of_response, report_band
+
+        band = answer_of_response(subject, response, laws)
+        report_band("settle", subject, laws, response.result, about, band)
+        return
+    answer = _answer(subject, response) | about
     if out is not None:
         from seacage.service._export import write_response
 
-        write_response(out, subject, state, law, response)
+        write_response(out, subject, state, law, response, net.changes)
         answer["written"] = str(out)
     report(answer, rows=_rows(subject, response))
     result = Result(int(response.result))

@@ -4,12 +4,11 @@ from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import typer
-
 from seacage.service._cli._console import Exit, exit_with, guard, progress_bar, report
 from seacage.service._cli._options import (
     CageName,
     Law,
+    LawOptions,
     Mooring,
     OutFile,
     SeaOptions,
@@ -17,6 +16,7 @@ from seacage.service._cli._options import (
     SpinUp,
     Without,
     read_cage,
+    warn,
     warn_of,
 )
 
@@ -44,6 +44,7 @@ def simulate(
     seed: Seed = 0,
     cage: CageName = "ace",
     law: Law = "kristiansen-faltinsen",
+    net: LawOptions,
     mooring: Mooring = "catenary",
     without: Without = None,
     mooring_draws: int = 0,
@@ -80,9 +81,15 @@ def simulate(
         Write the first minute as a GIF.
     """
     from seacage.conventions import InputError
+    from seacage.dynamics import MOVING_LAWS
     from seacage.dynamics import simulate as simulated
     from seacage.ocean import sample_waves
 
+    net.check_files(out, animation)
+    if net.laws is not None and mooring_draws:
+        raise InputError(
+            "simulate: --laws all and --mooring-draws are two bands. Ask for one at a time."
+        )
     for path, ending in ((out, ".nc"), (animation, ".gif")):
         _check_file(path, ending)
     if animation is not None and sample_every > _SMOOTH:
@@ -99,21 +106,32 @@ def simulate(
         "duration": duration,
         "spin_up": spin_up,
         "ramp": min(60.0, spin_up),
-        "law": law,
+        "skin_friction": net.skin_friction,
+        "lift_factor": net.lift_factor,
         "mooring": mooring,
         "parted": without or (),
         "waves": waves,
         "pieces": pieces,
     }
     drawn = [subject.drawn(number) for number in range(mooring_draws)]
+    laws = (law,) if net.laws is None else MOVING_LAWS
     with progress_bar() as progress:
-        history = simulated(subject, state, **given, sample_every=sample_every, progress=progress)
-        others = [simulated(one, state, **given, sample_every=None) for one in drawn]
-    for remark in _remarks(history):
-        warnings.append(remark)
-        typer.echo(f"seacage: warning: {remark}", err=True)
+        history = simulated(
+            subject,
+            [state] * len(laws) if net.laws else state,
+            law=laws if net.laws else law,
+            sample_every=sample_every,
+            workers=len(laws),
+            progress=progress,
+            **given,
+        )
+        others = [simulated(one, state, law=law, sample_every=None, **given) for one in drawn]
+    remarks = [*history.warnings, *(() if net.laws else _remarks(history))]
+    warn(remarks)
+    warnings += remarks
     settings = {
-        "law": law,
+        "law": net.laws or law,
+        **net.changes,
         "mooring": mooring,
         "seed": seed,
         "duration_s": duration,
@@ -121,6 +139,13 @@ def simulate(
         "sample_every_s": sample_every,
         "pieces": pieces,
     } | ({"without": " ".join(without)} if without else {})
+    if net.laws is not None:
+        from seacage.service._cli._law_band import answer_of_history, report_band
+
+        band = answer_of_history(subject, history, laws)
+        about = {"warnings": warnings, **settings}
+        report_band("simulate", subject, laws, history.result, about, band)
+        return
     answer = _answer(subject, history, warnings, settings)
     if others:
         answer["mooring_draws"] = {"draws": mooring_draws, "lines": _bands(others)}

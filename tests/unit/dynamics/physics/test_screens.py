@@ -166,7 +166,7 @@ def test_changes_that_are_no_coefficients_are_refused(change):
 def test_kristiansen_and_faltinsens_law_is_warned_of_in_fast_water():
     laws = ["kristiansen-faltinsen", "loland", "kristiansen-faltinsen"]
     (warning,) = law_warnings(laws, np.array([1.1, 2.0, 1.5]))
-    assert "1 of 3 cases have a current above 1.2 m/s (up to 1.5)" in warning
+    assert "1 of 2 currents, up to 1.5 m/s, are above 1.2 m/s" in warning
     assert "--laws all" in warning
     assert law_warnings(laws, np.array([1.2, 2.0, 1.0])) == ()
 

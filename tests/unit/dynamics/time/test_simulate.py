@@ -310,7 +310,7 @@ def test_a_law_beyond_its_currents_is_warned_of_at_any_depth():
     slow, fast = (replace(SEA, current_speed=speed) for speed in (0.7, 0.8))
     assert quick(slow, current_profile=profile).warnings == ()
     (warning,) = quick([slow, fast], current_profile=profile).warnings
-    assert "1 of 2 cases have a current above 1.2 m/s (up to 1.28)" in warning
+    assert "1 of 2 currents, up to 1.28 m/s, are above 1.2 m/s" in warning
     assert quick(fast, current_profile=profile, law="aarsnes").warnings == ()
 
 
