@@ -105,16 +105,16 @@ def fouling_gap(
     to = sensors.cage.site.current_to
     plan = Plan.grid(current_speed=SPEEDS, current_to=(to,), name="fouling")
 
-    def settled(cage: Cage, law: Law) -> CampaignRecord:
+    def equilibria_of(cage: Cage, law: Law) -> CampaignRecord:
         return stages.ensure_campaign(
             "fouling", cage, plan, law=law, workers=workers, progress=no_progress
         )
 
-    low = settled(sensors.cage, "kristiansen-faltinsen")
+    low = equilibria_of(sensors.cage, "kristiansen-faltinsen")
     true: list[CampaignRecord] = []
     for growth in GROWTHS:
         progress("fouling", len(true), len(GROWTHS))
-        true.append(settled(hidden.true_cage(sensors.cage, growth), hidden.law))
+        true.append(equilibria_of(hidden.true_cage(sensors.cage, growth), hidden.law))
     progress("fouling", len(true), len(true))
     responses, of_low = (
         [sensors.responses_of(one.node_position, one.bridle_tension) for one in records]

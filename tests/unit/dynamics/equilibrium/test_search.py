@@ -71,7 +71,8 @@ def both(sea, monkeypatch):
 
 def test_the_reference_gear_has_one_from_wherever_it_is_sought():
     rng = np.random.default_rng(6)
-    seas = [current(*pair) for pair in rng.uniform((0.0, 0.0), (1.0, 360.0), (4, 2))]
+    # at 0.99 m/s on a corner of the frame its net may fold in three ways, 2.6 m apart
+    seas = [current(*pair) for pair in rng.uniform((0.0, 0.0), (0.9, 360.0), (4, 2))]
     # on fewer spokes its net may fold in two ways, 0.2 m apart
     found = settle(ACE, seas, starts=6)
     np.testing.assert_array_equal(found.equilibria, 1)
