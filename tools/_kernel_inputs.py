@@ -66,7 +66,7 @@ def march(library: ctypes.CDLL, rng: np.random.Generator) -> None:
 
 def a_body(rng: np.random.Generator, nodes: int) -> tuple[Any, dict[str, int]]:
     """A structure that no one would build."""
-    named = ("bars", "bends", "panels", "cylinders", "springs", "grounds")
+    named = ("bars", "bends", "panels", "cylinders", "springs", "grounds", "slenders")
     parts = {name: int(rng.integers(0, 5)) for name in named}
     floats = np.flatnonzero(rng.random(nodes) < 0.5).astype(np.int32)
     lines = rng.integers(0, max(1, parts["bars"]), int(rng.integers(0, 4)), dtype=np.int32)
@@ -77,6 +77,8 @@ def a_body(rng: np.random.Generator, nodes: int) -> tuple[Any, dict[str, int]]:
         **dict.fromkeys(("weight", "mass", "water_mass"), (nodes,)),
         "place": (nodes, 3),
         "chord": (nodes, 2),
+        "slender_tangent": (parts["slenders"], 3),
+        "slender_mass": (parts["slenders"],),
         **dict.fromkeys(("bar_length", "bar_rate", "bar_damping"), (parts["bars"],)),
         **dict.fromkeys(("bend_stiffness", "bend_plane", "bend_turn"), (parts["bends"],)),
         "panel_share": (parts["panels"], 4),
@@ -96,6 +98,7 @@ def a_body(rng: np.random.Generator, nodes: int) -> tuple[Any, dict[str, int]]:
         cylinder_ends=indices(rng, nodes, parts["cylinders"], 2),
         spring_nodes=indices(rng, nodes, parts["springs"], 1),
         ground_nodes=indices(rng, nodes, parts["grounds"], 1),
+        slender_nodes=indices(rng, nodes, parts["slenders"], 1),
         float_nodes=floats,
         line_bars=lines,
         anchor_bars=np.where(rng.random(len(lines)) < 0.5, -1, lines).astype(np.int32),

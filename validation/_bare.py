@@ -18,6 +18,7 @@ from seacage.dynamics._parts._assembly import (
     Ground,
     Panels,
     Scales,
+    Slender,
     Springs,
 )
 from seacage.dynamics._physics._motion import NetLaw
@@ -65,6 +66,7 @@ def chain(
         weight=np.zeros(count + 1) + weight,
         mass=mass,
         water_mass=np.zeros(count + 1),
+        slender=Slender.none(),
         fixed=fixed,
         chord=np.zeros((count + 1, 2)),
         bars=Bars(
@@ -178,6 +180,8 @@ def energy(
 ) -> Float[np.ndarray, " t"]:
     """Of motion, stretch, bending, height, floating and springs, up to a constant [J]."""
     total = 0.5 * np.einsum("n,tnx,tnx->t", assembly.mass, velocity, velocity)
+    along = np.sum(velocity[:, assembly.slender.nodes] * assembly.slender.tangent, axis=-1)
+    total -= 0.5 * along**2 @ assembly.slender.added_mass
     total -= position[:, :, 2] @ assembly.weight
     bars = assembly.bars
     along = np.diff(position[:, bars.ends], axis=2)[:, :, 0]

@@ -19,6 +19,7 @@ from seacage.dynamics._parts._assembly import (
     Ground,
     Panels,
     Scales,
+    Slender,
     Springs,
 )
 from seacage.dynamics._physics._loads import SteadyFlow, bar_tension, nodal_force
@@ -46,6 +47,7 @@ def chain(position, *, length, axial_stiffness, weight):
         weight=nodal,
         mass=-nodal / GRAVITY,
         water_mass=np.zeros(count + 1),
+        slender=Slender.none(),
         fixed=np.zeros(count + 1, dtype=bool),
         chord=np.zeros((count + 1, 2)),
         bars=Bars(

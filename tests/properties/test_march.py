@@ -32,6 +32,7 @@ from seacage.dynamics._physics._motion import (
     moving_force,
     net_load_under_water,
     past_panels,
+    water_push,
 )
 from seacage.dynamics._physics._node_waves import node_waves
 from seacage.dynamics._physics._screens import AS_PUBLISHED, Screen, Tuning
@@ -353,7 +354,7 @@ class Stepper:
         corners, share = a.panels.corners, a.panels.share
         self.load = _gather(x, corners, load[:, :, None] * share[..., None])
         self.load += moving_cylinder_force(a.cylinders, water, x, self.velocity)
-        self.load += a.water_mass[:, None] * water.acceleration
+        self.load += water_push(a, water.acceleration)
         self.load[..., 2] += a.weight
         self.drag = np.zeros_like(self.surface)
         falls = self.falls(water, x)[..., None] * share
@@ -411,8 +412,13 @@ class Stepper:
         force = self.load + damped_bar_force(a.bars, a.mass, x, v) + bend_force(a.bends, x)
         force += float_force(a.floats, x, self.present(since).elevation)
         force += spring_force(a.springs, a.position, x) + _spring_damping(a.springs, v)
-        mass = a.mass[:, None]
-        self.velocity = (mass * v + h * force) / (mass + h * self.drag[..., None])
+        inertia = a.mass[:, None, None] * np.eye(3)
+        pipes, tangent = a.slender, a.slender.tangent
+        lack = pipes.added_mass[:, None, None] * tangent[:, :, None] * tangent[:, None]
+        np.subtract.at(inertia, pipes.nodes, lack)
+        push = np.einsum("nxy,cny->cnx", inertia, v) + h * force
+        slowed = inertia + h * self.drag[..., None, None] * np.eye(3)
+        self.velocity = np.linalg.solve(slowed, push[..., None])[..., 0]
         self.velocity[:, a.fixed] = 0.0
         self.position = x + h * self.velocity
 

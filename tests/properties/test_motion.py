@@ -165,7 +165,15 @@ def test_faster_water_drags_more(law, faster, seed):
 def turned_assembly(assembly, matrix):
     """The structure turned or mirrored; its springs are alike in both horizontal directions."""
     springs = replace(assembly.springs, preload=assembly.springs.preload @ matrix.T)
-    return replace(assembly, position=assembly.position @ matrix.T, springs=springs)
+    bends, slender = assembly.bends, assembly.slender
+    seen = np.linalg.det(matrix)  # from above, a ring turns the other way round in a mirror
+    return replace(
+        assembly,
+        position=assembly.position @ matrix.T,
+        springs=springs,
+        bends=replace(bends, plane_turn=seen * bends.plane_turn),
+        slender=replace(slender, tangent=slender.tangent @ matrix.T),
+    )
 
 
 def turned_water(sea, matrix):

@@ -19,6 +19,7 @@ from seacage.dynamics._kernel._march_inputs import (
 from seacage.dynamics._kernel._structs import pointer
 from seacage.dynamics._parts import Assembly, Body
 from seacage.dynamics._physics import NetLaw, SteadyFlow, Water
+from seacage.dynamics._physics._motion import water_push
 from seacage.ocean import Waves
 
 
@@ -51,7 +52,7 @@ def kernel_force(
     motion.arrays["water"][:] = to_lanes(water.velocity)
     motion.arrays["current"][:] = to_lanes(water.current)
     motion.arrays["elevation"][:] = to_lanes(water.elevation)
-    inertia = assembly.water_mass[:, None] * water.acceleration
+    inertia = water_push(assembly, water.acceleration)
     inertia[..., 2] += assembly.weight
     motion.arrays["base"][:] = to_lanes(inertia)
     laws = [law] if isinstance(law, NetLaw) else law

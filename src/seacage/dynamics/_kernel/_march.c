@@ -27,15 +27,16 @@ enum { NETTING, COLLAR, TUBE, ROPES, PUSH, BODIES }; /* PUSH: of the waves' acce
 enum { SCREENS = 0, TWINES = 1 }; /* kinds of law of the netting */
 
 typedef struct {
-    int32_t nodes, bars, bends, panels, cylinders, floats, springs, grounds, lines, twines;
+    int32_t nodes, bars, bends, panels, cylinders, floats, springs, grounds, lines, twines, slenders;
     int32_t cage_nodes; /* the first ones; PUSH is on them */
     const int32_t *bar_ends, *bend_nodes, *panel_corners, *cylinder_ends, *float_nodes,
-        *spring_nodes, *ground_nodes, *line_bars;
+        *spring_nodes, *ground_nodes, *line_bars, *slender_nodes;
     const int32_t *cylinder_body; /* of BODIES */
     const int32_t *twine_bars;    /* of the netting */
     const int32_t *anchor_bars;   /* [line] the bar that ends at its anchor, or -1 */
     const float *weight, *mass, *water_mass, *place;
     const float *chord; /* [node][2] horizontal, over which a node's waves are averaged [m] */
+    const float *slender_tangent, *slender_mass; /* [slender][axis]; added mass not there along it */
     const float *bar_length, *bar_rate, *bar_damping, *bar_least; /* 0 or -infinity */
     const float *bend_stiffness, *bend_plane, *bend_turn;
     const float *panel_share, *panel_outline, *panel_mass;
@@ -669,6 +670,23 @@ static void phases(const sea *w, double now, lane *restrict ahead)
         }
 }
 
+/* Accelerating water pushes no added mass along a pipe. */
+static void slip_water(const body *b, state *s)
+{
+    for (int n = 0; n < b->slenders; n++) {
+        const int i = b->slender_nodes[n];
+        const float *t = b->slender_tangent + 3 * n;
+        const vec *restrict slope = (const vec *)s->slope + i;
+        vec *restrict base = s->base + i;
+        EACH_LANE {
+            const float along = b->slender_mass[n] * (t[0] * (*slope)[0][k] + t[1] * (*slope)[1][k]
+                                                      + t[2] * (*slope)[2][k]);
+            for (int a = 0; a < 3; a++)
+                (*base)[a][k] -= along * t[a];
+        }
+    }
+}
+
 /* The water at all nodes at the end of a refresh, for where they will be then. */
 static void refresh_water(const body *b, const sea *w, const schedule *t, state *s, double end,
                           double interval)
@@ -701,6 +719,7 @@ static void refresh_water(const body *b, const sea *w, const schedule *t, state 
             s->rise[i][k] = (elevation[k] - s->elevation[i][k]) / span;
         }
     }
+    slip_water(b, s);
 }
 
 /* Drag factor of a panel, times the share of it that is under the surface at its corners. */
@@ -781,6 +800,29 @@ static void relative_flow(const body *b, state *s, float since)
     for (int i = 0; i < b->nodes; i++)
         for (int a = 0; a < 3; a++)
             EACH_LANE past[i][a][k] = water[i][a][k] + since * slope[i][a][k] - v[i][a][k];
+}
+
+/* Along a pipe a node is lighter than `move` takes it to be. Its inertia m − a t tᵀ with drag d
+ * taken at the new speed asks for F + t a / (m + h d − a) (t·F − d t·v) in place of F: the inverse
+ * after Sherman and Morrison. */
+static void lighten(const body *b, state *s, float step)
+{
+    for (int n = 0; n < b->slenders; n++) {
+        const int i = b->slender_nodes[n];
+        const float *t = b->slender_tangent + 3 * n;
+        const float added = b->slender_mass[n], rest = b->mass[i] - added;
+        const vec *restrict v = (const vec *)s->velocity + i;
+        const float *restrict drag = s->drag[i];
+        vec *restrict f = s->force + i;
+        EACH_LANE {
+            float along = 0.0f;
+            for (int a = 0; a < 3; a++)
+                along += t[a] * ((*f)[a][k] - drag[k] * (*v)[a][k]);
+            along *= added / (rest + step * drag[k]);
+            for (int a = 0; a < 3; a++)
+                (*f)[a][k] += along * t[a];
+        }
+    }
 }
 
 /* Symplectic Euler; drag falls with the speed, and is taken at the new one. What is held begins
@@ -1008,6 +1050,7 @@ void seacage_march(const body *b, const netting *net, const sea *w, const schedu
                     sample(b, w, t, s, (const lane *)loads, now, r);
                 (*r->counted)++;
             }
+            lighten(b, s, step);
             move(b, s, step);
         }
         give_up_lost(b, s, now + interval);
@@ -1019,14 +1062,16 @@ void seacage_march(const body *b, const netting *net, const sea *w, const schedu
 #define FIELD(name) LAYOUT_FIELD(body, name)
 const layout_row seacage_layout_body[] = {
     FIELD(nodes), FIELD(bars), FIELD(bends), FIELD(panels), FIELD(cylinders), FIELD(floats),
-    FIELD(springs), FIELD(grounds), FIELD(lines), FIELD(twines), FIELD(cage_nodes), FIELD(bar_ends), FIELD(bend_nodes),
-    FIELD(panel_corners), FIELD(cylinder_ends), FIELD(float_nodes), FIELD(spring_nodes),
-    FIELD(ground_nodes), FIELD(line_bars), FIELD(cylinder_body), FIELD(twine_bars),
-    FIELD(anchor_bars), FIELD(weight), FIELD(mass), FIELD(water_mass),
-    FIELD(place), FIELD(chord), FIELD(bar_length), FIELD(bar_rate), FIELD(bar_damping),
-    FIELD(bar_least), FIELD(bend_stiffness), FIELD(bend_plane), FIELD(bend_turn),
-    FIELD(panel_share), FIELD(panel_outline), FIELD(panel_mass), FIELD(cylinder_drag),
-    FIELD(cylinder_skin), FIELD(float_stiffness), FIELD(float_draft), FIELD(float_height),
+    FIELD(springs), FIELD(grounds), FIELD(lines), FIELD(twines), FIELD(slenders),
+    FIELD(cage_nodes), FIELD(bar_ends), FIELD(bend_nodes), FIELD(panel_corners),
+    FIELD(cylinder_ends), FIELD(float_nodes), FIELD(spring_nodes), FIELD(ground_nodes),
+    FIELD(line_bars), FIELD(slender_nodes), FIELD(cylinder_body), FIELD(twine_bars),
+    FIELD(anchor_bars), FIELD(weight), FIELD(mass), FIELD(water_mass), FIELD(place), FIELD(chord),
+    FIELD(slender_tangent), FIELD(slender_mass), FIELD(bar_length), FIELD(bar_rate),
+    FIELD(bar_damping), FIELD(bar_least), FIELD(bend_stiffness), FIELD(bend_plane),
+    FIELD(bend_turn), FIELD(panel_share), FIELD(panel_outline), FIELD(panel_mass),
+    FIELD(cylinder_drag), FIELD(cylinder_skin), FIELD(float_stiffness), FIELD(float_draft),
+    FIELD(float_height),
     FIELD(spring_place), FIELD(spring_stiffness), FIELD(spring_preload), FIELD(spring_damping),
     FIELD(ground_stiffness), FIELD(cylinder_series), FIELD(ground_level), LAYOUT_END(body),
 };

@@ -81,6 +81,7 @@ def _tube_hung(cage: Cage, base: Assembly) -> Assembly:
         chord=np.vstack([base.chord, base.chord[ring]]),
         bars=Bars.joined(bars, _hangers(cage, ring, count)),
         bends=replace(bends, nodes=_move(bends.nodes, ring, moved)),
+        slender=replace(base.slender, nodes=moved[base.slender.nodes]),
         cylinders=replace(pipes, ends=_move(pipes.ends, ring, moved)),
     )
 

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
 from seacage.conventions import InputError
 from seacage.dynamics._parts import Assembly
@@ -22,7 +22,9 @@ def scale_mass(assembly: Assembly, time_step: float) -> tuple[Assembly, Float[np
     nothing else happens. They are lent mass: equilibria and slow motion stay as they are, where
     softer bars would shift both. A bar's frequency is bounded by that of the bars along it
     at its two ends, each end with its own mass; on a straight chain this is exact. A pipe's
-    bending comes on top, as if its nodes stood out to either side in turn.
+    bending comes on top, as if its nodes stood out to either side in turn. Along itself a pipe
+    is lighter, without the water's added mass; where it is too light for the step, it has as
+    much of that along itself too as the step asks for.
 
     Raises
     ------
@@ -30,12 +32,15 @@ def scale_mass(assembly: Assembly, time_step: float) -> tuple[Assembly, Float[np
         A node that would have to be lent more than ``MOST_ADDED`` times its mass.
     """
     bars = assembly.bars
-    limit = _fastest(bars.damping_ratio, time_step)
-    need = np.zeros(len(assembly.position))
+    need, along = np.zeros(len(assembly.position)), _along_pipes(assembly)
+    needs: list[Float[np.ndarray, " bar"]] = []
     # twice the stiffness at a node along a bar, over its mass, is at least the bar's frequency²
     for end in (0, 1):
-        along = 2.0 * _stiffness_along(assembly, end) / limit**2
-        np.maximum.at(need, bars.ends[:, end], along)
+        # a bar's damping is a share of the critical one of the mass across a pipe
+        ratio = bars.damping_ratio * np.sqrt(_over_lighter(assembly, bars.ends[:, end], along[end]))
+        limit = _fastest(ratio, time_step)
+        needs.append(2.0 * _stiffness_along(assembly, end) / limit**2)
+        np.maximum.at(need, bars.ends[:, end], needs[end])
     need += _bending(assembly) / _fastest(np.zeros(1), time_step) ** 2
     lent = np.where(assembly.fixed, 0.0, np.maximum(need - assembly.mass, 0.0))
     worst = int(np.argmax(lent / assembly.mass))
@@ -45,7 +50,42 @@ def scale_mass(assembly: Assembly, time_step: float) -> tuple[Assembly, Float[np
             f"simulate: time_step = {time_step:g} s is too long for the stiffest line, at node "
             f"{worst} ({assembly.mass[worst]:.3g} kg). Give at most {_below(longest):.2g} s."
         )
-    return replace(assembly, mass=assembly.mass + lent), lent
+    heavier = replace(assembly, mass=assembly.mass + lent)
+    most = np.full(len(need), np.inf)
+    for end in (0, 1):
+        mass, beside = heavier.mass[bars.ends[:, end]], along[end] <= 1e-9
+        spare = np.maximum(mass - needs[end], 0.0)
+        # with this much less mass along the pipe, as much is left along the bar as it needs
+        share = np.where(
+            beside, 1.0, spare / np.where(beside, 1.0, spare + along[end] * needs[end])
+        )
+        np.minimum.at(most, bars.ends[:, end], share * mass)
+    slender = assembly.slender
+    added = np.minimum(slender.added_mass, most[slender.nodes])
+    return replace(heavier, slender=replace(slender, added_mass=added)), lent
+
+
+def _along_pipes(assembly: Assembly) -> Float[np.ndarray, "2 bar"]:
+    """Squared cosine between each bar and the pipe at each of its ends, 0 without a pipe [-]."""
+    tangent = np.zeros_like(assembly.position)
+    tangent[assembly.slender.nodes] = assembly.slender.tangent
+    cosine = np.sum(tangent[assembly.bars.ends] * _directions(assembly)[:, None], axis=-1)
+    return cosine.T**2
+
+
+def _over_lighter(
+    assembly: Assembly, nodes: Int[np.ndarray, " bar"], along: Float[np.ndarray, " bar"]
+) -> Float[np.ndarray, " bar"]:
+    """Mass of a node across its pipe over that in the direction of a bar [-]."""
+    added = np.zeros(len(assembly.position))
+    added[assembly.slender.nodes] = assembly.slender.added_mass
+    lighter = assembly.mass[nodes] - added[nodes]
+    return 1.0 + added[nodes] * along / lighter
+
+
+def _directions(assembly: Assembly) -> Float[np.ndarray, "bar 3"]:
+    along = np.diff(assembly.position[assembly.bars.ends], axis=1)[:, 0]
+    return along / np.linalg.norm(along, axis=1, keepdims=True)
 
 
 def _below(time: float) -> float:
@@ -76,9 +116,7 @@ def _bending(assembly: Assembly) -> Float[np.ndarray, " node"]:
 
 def _stiffness_along(assembly: Assembly, end: int) -> Float[np.ndarray, " bar"]:
     """Stiffness that a bar's end meets along the bar, from all bars that end there [N/m]."""
-    bars, position = assembly.bars, assembly.position
-    along = position[bars.ends[:, 1]] - position[bars.ends[:, 0]]
-    unit = along / np.linalg.norm(along, axis=1, keepdims=True)
+    bars, position, unit = assembly.bars, assembly.position, _directions(assembly)
     rate = bars.stiffness / bars.length
     matrix = np.zeros((len(position), 3, 3))
     np.add.at(matrix, bars.ends, (rate[:, None, None] * unit[:, :, None] * unit[:, None])[:, None])

@@ -10,6 +10,7 @@ from seacage.dynamics._parts._assembly import (
     Ground,
     Panels,
     Scales,
+    Slender,
     Springs,
 )
 from seacage.dynamics._parts._structure import SINKING, assemble_structure
@@ -25,6 +26,7 @@ __all__ = [
     "Ground",
     "Panels",
     "Scales",
+    "Slender",
     "Springs",
     "assemble_structure",
 ]

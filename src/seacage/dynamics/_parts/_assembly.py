@@ -111,6 +111,34 @@ class Cylinders(Rows):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Slender(Rows):
+    """Nodes of pipes, to which water adds mass across the pipe and none along it.
+
+    The added mass is that of long slender bodies, A (I − t tᵀ). In ``mass`` and ``water_mass``
+    of an assembly it is A in all directions, from which this takes A t tᵀ.
+    """
+
+    nodes: Int[np.ndarray, " slender"]  # each once
+    tangent: Float[np.ndarray, "slender 3"]  # of the pipe in the design shape [-]
+    added_mass: Float[np.ndarray, " slender"]  # A [kg]
+
+    @classmethod
+    def ring(
+        cls,
+        around: Int[np.ndarray, " spoke"],
+        position: Float[np.ndarray, "node 3"],
+        added_mass: float | Float[np.ndarray, " spoke"],
+    ) -> "Slender":
+        """Nodes of a pipe that closes on itself."""
+        along = position[np.roll(around, -1)] - position[np.roll(around, 1)]
+        return cls(
+            nodes=around,
+            tangent=along / np.linalg.norm(along, axis=1, keepdims=True),
+            added_mass=np.full(len(around), added_mass),
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Floats(Rows):
     """Nodes that the water carries, as boxes of equal waterplane and volume."""
 
@@ -157,8 +185,9 @@ class Assembly:
     collar: Int[np.ndarray, " spoke"]  # nodes of the uppermost ring
     position: Float[np.ndarray, "node 3"]  # design [m]
     weight: Float[np.ndarray, " node"]  # submerged, upwards negative [N]
-    mass: Float[np.ndarray, " node"]  # with the added mass of water [kg]
+    mass: Float[np.ndarray, " node"]  # with the added mass of water, across a pipe [kg]
     water_mass: Float[np.ndarray, " node"]  # displaced and added: what moving water pushes [kg]
+    slender: Slender  # what both lack along a pipe
     fixed: Bool[np.ndarray, " node"]  # held in its place
     chord: Float[np.ndarray, "node 2"]  # horizontal, over which its waves are averaged [m]
     bars: Bars
@@ -199,6 +228,7 @@ class Assembly:
             weight=weight,
             mass=mass,
             water_mass=water_mass,
+            slender=_slender(cage),
             fixed=np.zeros(len(position), dtype=bool),
             chord=ring_chords(position, [cage.ring_nodes(ring) for ring in range(cage.rings)]),
             bars=bars,
@@ -372,8 +402,8 @@ def _masses(
     """Mass of each node with its added mass, and the water's share that follows the water [kg].
 
     Ropes on the meridians weigh nothing in water, so their mass is that of the water they
-    displace. Added mass is the same in all directions, along a pipe too. The tip's weight is
-    taken as steel.
+    displace. Added mass is the same in all directions, also along a pipe, from where ``Slender``
+    takes it. The tip's weight is taken as steel.
     """
     own, displaced, added = (np.zeros(len(position)) for _ in range(3))
 
@@ -388,20 +418,11 @@ def _masses(
     span = np.linalg.norm(position[meridians[:, 1]] - position[meridians[:, 0]], axis=1)
     rope = WATER_DENSITY * np.pi / 4.0 * cage.ropes.diameter**2 * span[:, None] / 2.0
     put(meridians, rope, rope, 1.0)
-    wet = WATER_DENSITY * collar.pipes * collar.pipe_displaced * collar.submerged_fraction
     arc, low_arc = _arc(cage, 0), _arc(cage, cage.tube_ring)
-    put(
-        cage.ring_nodes(0),
-        collar.pipes * collar.pipe_mass * arc,
-        wet * arc,
-        collar.added_mass_coefficient,
-    )
-    put(
-        cage.ring_nodes(cage.tube_ring),
-        tube.mass * low_arc,
-        WATER_DENSITY * tube.displaced * low_arc,
-        tube.added_mass_coefficient,
-    )
+    wet, low = _pipe_water(cage)
+    own_collar = collar.pipes * collar.pipe_mass * arc
+    put(cage.ring_nodes(0), own_collar, wet, collar.added_mass_coefficient)
+    put(cage.ring_nodes(cage.tube_ring), tube.mass * low_arc, low, tube.added_mass_coefficient)
     steel = 7850.0
     tip = cage.tip.weight / GRAVITY * steel / (steel - WATER_DENSITY)
     put(np.array([cage.bottom_node]), tip, tip * WATER_DENSITY / steel, 0.5)
@@ -418,6 +439,28 @@ def ring_chords(
         around = position[ring, :2]
         chord[ring] = (np.roll(around, -1, axis=0) - np.roll(around, 1, axis=0)) / 2.0
     return chord
+
+
+def _pipe_water(cage: Cage) -> tuple[float, float]:
+    """Mass of the water that collar and tube displace at each of their nodes [kg]."""
+    collar = cage.collar
+    wet = collar.pipes * collar.pipe_displaced * collar.submerged_fraction * _arc(cage, 0)
+    tube = cage.sinker_tube.displaced * _arc(cage, cage.tube_ring)
+    return WATER_DENSITY * wet, WATER_DENSITY * tube
+
+
+def _slender(cage: Cage) -> Slender:
+    wet, low = _pipe_water(cage)
+    added = (
+        cage.collar.added_mass_coefficient * wet,
+        cage.sinker_tube.added_mass_coefficient * low,
+    )
+    return Slender.joined(
+        *(
+            Slender.ring(cage.ring_nodes(ring), cage.design_position, one)
+            for ring, one in zip((0, cage.tube_ring), added, strict=True)
+        )
+    )
 
 
 def corner_shares(corners: Int[np.ndarray, "panel 4"]) -> Float[np.ndarray, "panel 4"]:

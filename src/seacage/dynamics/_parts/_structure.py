@@ -17,6 +17,7 @@ from seacage.dynamics._parts._assembly import (
     Ground,
     Panels,
     Scales,
+    Slender,
     Springs,
     corner_shares,
     panel_area,
@@ -38,7 +39,8 @@ def assemble_structure(structure: Structure) -> Assembly:
 
     Pipes float as boxes of their width and volume, centred on their nodes, and follow the
     surface; ropes count as always under water, and so do nets but a roof at the water line,
-    which counts as always dry. Ties and lines are lumped into their segments' ends. ``bridles``
+    which counts as always dry. Ties and lines are lumped into their segments' ends, and have
+    the same added mass in all directions, which a ring has across itself alone. ``bridles``
     are the first bars of the lines, in the order of ``structure.line_names``. Friction on the
     sea bed is left out.
 
@@ -73,6 +75,7 @@ def assemble_structure(structure: Structure) -> Assembly:
         weight=lumps.weight,
         mass=lumps.mass + lumps.added,
         water_mass=lumps.displaced + lumps.added,
+        slender=_slender(structure),
         fixed=fixed,
         chord=ring_chords(position, [structure.ring_nodes(i) for i in range(len(structure.ring))]),
         bars=bars,
@@ -209,6 +212,20 @@ def _bends(structure: Structure) -> Bends:
             chord = 2.0 * ring.radius * np.sin(np.pi / structure.spokes)
             rings.append(Bends.ring(structure.ring_nodes(index), bending / chord))
     return Bends.joined(*rings)
+
+
+def _slender(structure: Structure) -> Slender:
+    """The added mass of the rings' own pipes and ropes."""
+    rings = [Slender.none()]
+    for index, ring in enumerate(structure.ring):
+        if ring.section:
+            section, nodes = structure.section_of(ring), structure.ring_nodes(index)
+            position = structure.design_position
+            chord = 2.0 * ring.radius * np.sin(np.pi / structure.spokes)
+            added = section.added_mass_coefficient * section.displaced_mass * chord
+            wet = wet_share(position[nodes, 2], section.box_height) if section.is_pipe else 1.0
+            rings.append(Slender.ring(nodes, position, added * wet))
+    return Slender.joined(*rings)
 
 
 # Netting

@@ -11,7 +11,7 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.conventions import WATER_VISCOSITY, InputError
-from seacage.dynamics._parts import Assembly, Bars, Cylinders, Ground, Panels, Springs
+from seacage.dynamics._parts import Assembly, Bars, Cylinders, Ground, Panels, Slender, Springs
 from seacage.dynamics._physics._loads import (
     DYNAMIC,
     Nodal,
@@ -133,7 +133,10 @@ def _check_range(name: str, values: Float[np.ndarray, "case panel"] | None, belo
 def moving_force(
     assembly: Assembly, law: NetLaw, water: Water, position: Nodal, velocity: Nodal
 ) -> Nodal:
-    """All forces on all nodes but the inertia of their own mass and added mass [N]."""
+    """All forces on all nodes but the inertia of their own mass and added mass [N].
+
+    That inertia is ``mass`` times a node's acceleration, less what ``along_pipes`` gives for it.
+    """
     net = moving_net_load(assembly.panels, law, water, position, velocity)
     force = _gather(
         position, assembly.panels.corners, net[:, :, None] * assembly.panels.share[..., None]
@@ -145,9 +148,31 @@ def moving_force(
     force += spring_force(assembly.springs, assembly.position, position)
     force += _spring_damping(assembly.springs, velocity)
     force += _ground_force(assembly.ground, assembly.mass, position, velocity)
-    force += assembly.water_mass[:, None] * water.acceleration
+    force += water_push(assembly, water.acceleration)
     force[..., 2] += assembly.weight
     return force
+
+
+def water_push(assembly: Assembly, acceleration: Nodal) -> Nodal:
+    """Inertia force of accelerating water on what displaces it (Froude–Krylov) and on added mass.
+
+    On a horizontal ring of radius R in long-crested waves of wave number k it is m_w a
+    (J0 + Ca (J0 − J2)/2) of kR, with m_w the displaced mass and a the amplitude of the water's
+    acceleration at its centre [N].
+    """
+    everywhere = assembly.water_mass[:, None] * acceleration
+    return everywhere - along_pipes(assembly.slender, acceleration)
+
+
+def along_pipes(slender: Slender, motion: Nodal) -> Nodal:
+    """Added mass that pipes have across and not along, times the motion along them [kg × motion].
+
+    The tangent is that of the design shape: a pipe that turns with its ring does not take its
+    added mass along.
+    """
+    along = np.sum(motion[:, slender.nodes] * slender.tangent, axis=-1)
+    share = (slender.added_mass * along)[..., None] * slender.tangent
+    return _gather(motion, slender.nodes[:, None], share[:, :, None])
 
 
 def past_panels(

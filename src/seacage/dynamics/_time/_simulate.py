@@ -73,8 +73,9 @@ def simulate(
 
     Net loads by a screen law in relative flow or twine by twine, with the wake of the current on
     the down-stream half; linear irregular waves, stretched to the moving surface; inertia with
-    added mass; damped, tension-only netting; elastic collar afloat, sinker tube on the
-    cylinder's edge, bridles on elastic frame corners or on a frame with buoys and anchor lines.
+    added mass, of collar and tube across the pipe and not along it; damped, tension-only netting;
+    elastic collar afloat, sinker tube on the cylinder's edge, bridles on elastic frame corners or
+    on a frame with buoys and anchor lines.
     It starts from the equilibrium in the current; the waves rise over ``ramp``, and nothing
     counts before ``spin_up``. Netting above the moving surface bears no drag or lift. Left out:
     waves made by the collar, second-order waves, the netting's shelter from waves, and that dry

@@ -115,6 +115,7 @@ def standing_pole():
         weight=np.array([0.0, -100.0]),
         mass=np.ones(2),
         water_mass=np.zeros(2),
+        slender=PARTS.slender.none(),
         fixed=np.zeros(2, dtype=bool),
         chord=np.zeros((2, 2)),
         bars=replace(

@@ -50,6 +50,8 @@ def test_hoop_bending_and_drag_go_with_the_tube():
         assert not np.isin(nodes, RING).any()
     hoop = DETAILED.bars.pushed & np.isin(DETAILED.bars.ends, TUBE).all(axis=1)
     assert hoop.sum() == ACE.spokes
+    np.testing.assert_array_equal(DETAILED.slender.nodes, [*ACE.ring_nodes(0), *TUBE])
+    assert np.all(DETAILED.slender.added_mass < DETAILED.mass[DETAILED.slender.nodes])
 
 
 def test_a_rope_is_as_drawn_below_its_strain_and_stiffer_beyond():

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.linalg import eigvalsh
 
 from seacage.cage import Cage
 from seacage.conventions import InputError
@@ -29,9 +30,14 @@ def highest_frequency(assembly):
     rows = np.arange(len(unit))
     stretch[rows, bars.ends[:, 0]] = -unit
     stretch[rows, bars.ends[:, 1]] = unit
-    stretch = stretch.reshape(len(unit), -1) / np.repeat(np.sqrt(assembly.mass), 3)
+    stretch = stretch.reshape(len(unit), -1)
+    inertia = np.kron(np.diag(assembly.mass), np.eye(3))
+    pipes = assembly.slender
+    rows = 3 * pipes.nodes[:, None] + np.arange(3)
+    lack = pipes.added_mass[:, None, None] * pipes.tangent[:, :, None] * pipes.tangent[:, None]
+    inertia[rows[:, :, None], rows[:, None]] -= lack
     rate = bars.stiffness / bars.length
-    return np.sqrt(np.linalg.eigvalsh(stretch.T * rate @ stretch)[-1])
+    return np.sqrt(eigvalsh(stretch.T * rate @ stretch, inertia)[-1])
 
 
 @pytest.mark.slow
@@ -73,6 +79,15 @@ def test_mass_is_lent_where_it_is_needed_and_nothing_else_changes():
     assert replace(steady, mass=ACE.mass).bars is ACE.bars
     np.testing.assert_array_equal(steady.weight, ACE.weight)
     np.testing.assert_array_equal(steady.water_mass, ACE.water_mass)
+
+
+def test_a_pipe_too_light_along_itself_has_some_of_the_added_mass_there():
+    finer = Assembly.of(Cage.named("ace").refined())
+    short, long = (scale_mass(finer, step)[0].slender.added_mass for step in (0.001, 0.002))
+    np.testing.assert_array_equal(short, finer.slender.added_mass)
+    collar, tube = np.split(long / finer.slender.added_mass, 2)
+    assert np.all((collar > 0.5) & (collar < 1.0))
+    np.testing.assert_array_equal(tube, 1.0)
 
 
 def test_a_longer_step_lends_more():

@@ -95,6 +95,17 @@ def test_water_moves_only_what_is_wet():
     )
 
 
+def test_water_adds_mass_to_rings_across_them_alone():
+    collar, sinker = (WATER_DENSITY * np.pi / 4.0 * d**2 for d in (0.4, 0.1))
+    slender, chord = PARTS.slender, AROUND / 8.0
+    np.testing.assert_array_equal(slender.nodes, [*DRUM.ring_nodes(0), *DRUM.ring_nodes(1)])
+    np.testing.assert_allclose(slender.added_mass, np.repeat([0.5 * collar, sinker], 8) * chord)
+    outward = PARTS.position[slender.nodes, :2]
+    np.testing.assert_allclose(np.sum(slender.tangent[:, :2] * outward, axis=1), 0.0, atol=1e-12)
+    leftwards = outward @ [[0.0, 1.0], [-1.0, 0.0]]
+    assert np.all(np.sum(leftwards * slender.tangent[:, :2], axis=1) > 0.0)
+
+
 def test_anchors_are_held_and_lines_may_lie_on_the_sea_bed():
     np.testing.assert_array_equal(np.flatnonzero(PARTS.fixed), DRUM.anchor_nodes)
     lying = {DRUM.point_nodes[0], *DRUM.line_nodes(1)[1:-1], *DRUM.line_nodes(2)[1:-1]}
