@@ -99,6 +99,7 @@ class StandIn:
             second_moment=moment,
             result=np.where(lost, Result.DIVERGED, Result.CONVERGED),
             hs_left_out=np.zeros(len(sea)),
+            warnings=(),
             diverged_at=np.where(lost, 12.5, np.nan),
         )
 
