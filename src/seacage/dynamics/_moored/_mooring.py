@@ -25,6 +25,7 @@ from seacage.dynamics._parts import (
     Cylinders,
     Floats,
     Ground,
+    Slender,
     Springs,
 )
 
@@ -64,6 +65,7 @@ def anchor_assembly(cage: Cage) -> Assembly:
         weight=weight,
         mass=mass,
         water_mass=water_mass,
+        slender=Slender.joined(base.slender, _slender(cage, base, anchors)),
         fixed=np.concatenate([base.fixed, anchors.is_anchor]),
         chord=np.vstack([base.chord, np.zeros((len(anchors.position), 2))]),
         bars=Bars.joined(base.bars, frame, anchors.bars),
@@ -222,6 +224,33 @@ def _lump(
     displaced = parts.chain_mass * WATER_DENSITY / STEEL_DENSITY
     put(bars.ends[~rope], bars.length[~rope], parts.chain_mass, displaced, displaced)
     return weight, mass, water
+
+
+def _slender(cage: Cage, base: Assembly, lines: _AnchorLines) -> Slender:
+    """Nodes along the anchor lines, which take no water with them along themselves.
+
+    Corners have added mass in all directions: they are plates, chains and buoys.
+    """
+    first, count = len(base.position), len(lines.position)
+    parts, bars = cage.anchor_lines, lines.bars
+    per_length = np.where(
+        lines.is_rope,
+        WATER_DENSITY * np.pi / 4.0 * parts.rope_diameter**2,
+        parts.chain_mass * WATER_DENSITY / STEEL_DENSITY,
+    )
+    added = np.zeros(first + count)
+    np.add.at(added, bars.ends, (per_length * bars.length / 2.0)[:, None])
+    # the node before each along its line and the one after
+    before, after = np.zeros((2, first + count), dtype=np.int64)
+    before[bars.ends[:, 1]], after[bars.ends[:, 0]] = bars.ends[:, 0], bars.ends[:, 1]
+    nodes = first + np.flatnonzero(~lines.is_anchor)
+    position = np.vstack([base.position, lines.position])
+    along = position[after[nodes]] - position[before[nodes]]
+    return Slender(
+        nodes=nodes,
+        tangent=along / np.linalg.norm(along, axis=1, keepdims=True),
+        added_mass=added[nodes],
+    )
 
 
 def _cylinders(cage: Cage, base: Assembly, frame: Bars, lines: _AnchorLines) -> Cylinders:

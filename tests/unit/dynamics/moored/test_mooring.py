@@ -151,3 +151,18 @@ def test_it_rests_with_the_tensions_of_the_file_and_its_corners_in_place():
 def test_a_mooring_that_cannot_be_is_refused_in_a_sentence(section, changes, says):
     with pytest.raises(InputError, match=says):
         anchor_assembly(ACE.altered(**{section: changes}))
+
+
+def test_water_adds_mass_across_an_anchor_line_and_not_along_it():
+    slender, per_line = PARTS.slender, 15  # its nodes but the corner and the anchor
+    lines = slender.rows(slender.nodes >= ACE.node_count + 4)
+    assert len(lines.nodes) == 8 * per_line
+    rope, chain = lines.nodes[0], lines.nodes[per_line - 1]
+    # a rope is as heavy as its water, to which the same is added; a chain displaces an eighth
+    assert lines.added_mass[0] == pytest.approx(PARTS.mass[rope] / 2.0)
+    assert PARTS.mass[chain] / lines.added_mass[per_line - 1] == pytest.approx(
+        1.0 + 7850.0 / 1025.0
+    )
+    step = PARTS.position[rope] - PARTS.position[ACE.node_count]
+    assert lines.tangent[0] @ step == pytest.approx(np.linalg.norm(step), rel=1e-4)
+    np.testing.assert_allclose(np.linalg.norm(lines.tangent, axis=1), 1.0)
