@@ -476,12 +476,13 @@ def check_steps(mesh, law, cases, each, hold, held, seed):
     plain = Stepper.begun(assembly, net, ocean, steps, start)
     march.go(3)
     plain.go(3)
-    # Over all nodes together, for a single bar that rings in rounding may be off by more: 70
-    # cages were off by 1.7e-4 at most, one of 700, whose tip's bars go slack, by 6.6e-4, and the
-    # smallest slip tried, drag taken at the old speed instead of the new, changes both by 2e-3.
+    # Over all nodes but two, for a bar that grazes slackness in rounding moves both its ends: 70
+    # cages were off by 1.7e-4 at most, and the smallest slip tried, drag taken at the old speed
+    # instead of the new, changes both by 2e-3 and more.
     for ours, outcome, change in (
         (march.position, plain.position, plain.position - start),
         (march.velocity, plain.velocity, plain.velocity),
     ):
-        assert np.linalg.norm(ours - outcome) <= 1e-3 * np.linalg.norm(change)
+        off = np.sort(np.linalg.norm(ours - outcome, axis=-1).max(axis=0))[:-2]
+        assert np.linalg.norm(off) <= 5e-4 * np.linalg.norm(change)
     assert np.all(np.isnan(march.lost_at))
