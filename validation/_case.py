@@ -3,23 +3,25 @@
 import csv
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from decimal import Decimal
 from difflib import get_close_matches
 from itertools import product
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 from seacage.cage import Cage, Structure
 from seacage.conventions import InputError, parse_toml, read_text
-from seacage.dynamics import LAWS, MOVING_LAWS, MovingLaw
+from seacage.dynamics import LAWS, MOVING_LAWS, Mooring, MovingLaw
 from seacage.ocean import SeaState
-from validation._answers import How
+from validation._answers import How, Water
 from validation._panel import Panel, panel_of
 from validation._quantities import Conditions, Quantity, Subject, quantity_named
 from validation._row import Kind
 
 CASES = Path(__file__).parent / "cases"
 KEYS: dict[str, type | tuple[type, ...]] = {
-    **dict.fromkeys(("title", "about", "kind", "source", "cage", "structure", "collar"), str),
+    **dict.fromkeys(("title", "about", "kind", "source", "cage", "structure"), str),
+    **dict.fromkeys(("collar", "mooring"), str),
     **dict.fromkeys(("laws", "twine_drag"), list),
     **dict.fromkeys(("pipe_drag", "wake", "present_area", "must_hold"), bool),
     **dict.fromkeys(("spin_up_s", "duration_s", "time_step_s"), (int, float)),
@@ -28,29 +30,37 @@ KEYS: dict[str, type | tuple[type, ...]] = {
 }
 NEEDED = ("title", "kind", "source", "tolerance")
 SUBJECTS = ("cage", "structure", "panel")
-OF_A_CAGE = ("current_to_deg", "hs_m", "tp_s", "wave_from_deg")
+OF_A_CAGE = ("current_to_deg", "hs_m", "tp_s", "wave_height_m", "wave_period_s", "wave_from_deg")
 OF_A_PANEL = ("angle_deg", "solidity")
 UNCERTAINTY = "uncertainty:"
+STATISTICS_OF_WAVES = 1800.0
+"""That are simulated of irregular waves where a case does not say [s]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Tolerance:
-    """A share of the measured value and a fixed part, in the quantity's unit, and why."""
+    """A share of the measured value, a fixed part in the quantity's unit, and why.
+
+    ``last_digits`` counts units of the last digit that the CSV prints: 0.5 of 18.9 is 0.05.
+    """
 
     share: float
     fixed: float
+    last_digits: float
     reason: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Measured:
-    """One number of the CSV, and the conditions it was measured in."""
+    """One number of the CSV, its last digit's unit, and the conditions it was measured in."""
 
     at: Conditions
     law: MovingLaw | None  # None: the case's
     quantity: Quantity
     value: float
+    digit: float
     uncertainty: float
+    may_miss: bool
     note: str
 
 
@@ -95,13 +105,14 @@ def read_case(folder: Path) -> Case:
     table = _table(folder / "case.toml", where)
     subject = _subject(folder, table, where)
     tolerance = {key: _tolerance(key, entry, where) for key, entry in table["tolerance"].items()}
-    measured = list(_measured(folder, subject))
+    mooring = _mooring(table, subject, where)
+    measured = list(_measured(folder, subject, mooring))
     for number in measured:
         if number.quantity.name not in tolerance:
             raise InputError(
                 f'{where}: measured.csv has {number.quantity.name}, but [tolerance."'
-                f'{number.quantity.name}"] is missing. Add it, with share, fixed or both, and '
-                "reason."
+                f'{number.quantity.name}"] is missing. Add it, with share, fixed, last_digits or '
+                "several, and reason."
             )
     usual = MOVING_LAWS if isinstance(subject, Panel) else LAWS
     return Case(
@@ -112,7 +123,12 @@ def read_case(folder: Path) -> Case:
         source=table["source"],
         subjects=list(_ensemble(subject, table.get("ensemble", {}), where)),
         laws=[_law(law, f"{where}: laws") for law in table.get("laws", usual)],
-        how=_how(table, where),
+        how=_how(
+            table,
+            where,
+            mooring=mooring,
+            irregular=any(number.at.water.sea.hs > 0.0 for number in measured),
+        ),
         must_hold=table.get("must_hold", False),
         note=table.get("note", ""),
         tolerance=tolerance,
@@ -187,7 +203,16 @@ def _ensemble(subject: Subject, choices: Mapping[str, Any], where: str) -> Itera
         yield subject.altered(**changes)
 
 
-def _how(table: Mapping[str, Any], where: str) -> How:
+def _mooring(table: Mapping[str, Any], subject: Subject, where: str) -> Mooring:
+    """As it is built; a cage whose collar is held needs no anchors."""
+    held = isinstance(subject, Cage) and table.get("collar") == "held"
+    given = table.get("mooring", "springs" if held else "catenary")
+    if "mooring" in table and not isinstance(subject, Cage):
+        raise InputError(f"{where}: only a cage has a mooring of two kinds. Leave mooring out.")
+    return _one_of(given, get_args(Mooring), f"{where}: mooring")  # pyright: ignore[reportReturnType]
+
+
+def _how(table: Mapping[str, Any], where: str, *, mooring: Mooring, irregular: bool) -> How:
     twine = table.get("twine_drag")
     if twine is not None and not (len(twine) == 2 and all(isinstance(c, float) for c in twine)):
         raise InputError(
@@ -196,13 +221,14 @@ def _how(table: Mapping[str, Any], where: str) -> How:
         )
     collar = _one_of(table.get("collar", "moored"), ["held", "moored"], f"{where}: collar")
     return How(
+        mooring=mooring,
         hold_collar=collar == "held",
         pipe_drag=table.get("pipe_drag", True),
         wake=table.get("wake", True),
         present_area=table.get("present_area", False),
         twine_drag=(twine[0], twine[1]) if twine else None,
         spin_up=float(table.get("spin_up_s", 300.0)),
-        duration=float(table.get("duration_s", 60.0)),
+        duration=float(table.get("duration_s", STATISTICS_OF_WAVES if irregular else 60.0)),
         time_step=float(table.get("time_step_s", 0.002)),
     )
 
@@ -212,14 +238,14 @@ def _tolerance(key: str, entry: Any, where: str) -> Tolerance:
     if not isinstance(entry, dict) or not isinstance(entry.get("reason"), str):
         raise InputError(f'{where}: the key reason is missing. Say why: reason = "…".')
     for name, value in entry.items():
-        _one_of(name, ["share", "fixed", "reason"], f"{where}: key")
+        _one_of(name, ["share", "fixed", "last_digits", "reason"], f"{where}: key")
         if name != "reason" and not (isinstance(value, int | float) and value >= 0.0):
             raise InputError(f"{where}: {name} = {value!r} must be a number of at least 0.")
-    share, fixed = float(entry.get("share", 0.0)), float(entry.get("fixed", 0.0))
-    return Tolerance(share=share, fixed=fixed, reason=entry["reason"])
+    parts = {name: float(entry.get(name, 0.0)) for name in ("share", "fixed", "last_digits")}
+    return Tolerance(**parts, reason=entry["reason"])
 
 
-def _measured(folder: Path, subject: Subject) -> Iterator[Measured]:
+def _measured(folder: Path, subject: Subject, mooring: Mooring) -> Iterator[Measured]:
     path, where = folder / "measured.csv", f"{folder.name}/measured.csv"
     if not path.is_file():
         raise InputError(f"{folder.name}: measured.csv is missing beside case.toml. Add it.")
@@ -231,7 +257,7 @@ def _measured(folder: Path, subject: Subject) -> Iterator[Measured]:
                 f"{where}: the column current_speed_m_s is missing. Add it: each line is one "
                 "current."
             )
-        quantities = _quantities(names, subject, where)
+        quantities = _quantities(names, subject, mooring, where)
         several = [
             number
             for line in reader
@@ -242,11 +268,13 @@ def _measured(folder: Path, subject: Subject) -> Iterator[Measured]:
     yield from several
 
 
-def _quantities(names: Sequence[str], subject: Subject, where: str) -> list[Quantity]:
+def _quantities(
+    names: Sequence[str], subject: Subject, mooring: Mooring, where: str
+) -> list[Quantity]:
     own = OF_A_PANEL if isinstance(subject, Panel) else OF_A_CAGE
-    conditions = ("current_speed_m_s", "law", "note", *own)
+    conditions = ("current_speed_m_s", "law", "may_miss", "note", *own)
     quantities = [
-        quantity_named(name, subject, where)
+        quantity_named(name, subject, where, mooring=mooring)
         for name in names
         if name not in conditions and not name.startswith(UNCERTAINTY)
     ]
@@ -261,6 +289,7 @@ def _numbers(
 ) -> Iterator[Measured]:
     """The numbers of one line; an empty cell was not measured."""
     law = _law(line["law"], f"{where}: law") if line.get("law") else None
+    may_miss = _one_of(line.get("may_miss") or "no", ["yes", "no"], f"{where}: may_miss") == "yes"
     for quantity in quantities:
         value = _number(line, quantity.name, where)
         if value is None:
@@ -270,6 +299,8 @@ def _numbers(
             law=law,
             quantity=quantity,
             value=value,
+            digit=10.0 ** int(Decimal(line[quantity.name]).as_tuple().exponent),
+            may_miss=may_miss,
             uncertainty=_number(line, UNCERTAINTY + quantity.name, where) or 0.0,
             note=line.get("note") or "",
         )
@@ -287,8 +318,14 @@ def _conditions(line: Mapping[str, str], where: str) -> Conditions:
         )
     except InputError as error:
         raise InputError(f"{where}: {error}") from error
+    height, period = (_number(line, name, where) for name in ("wave_height_m", "wave_period_s"))
+    if (height is None) != (period is None) or (height is not None and sea.hs > 0.0):
+        raise InputError(
+            f"{where}: regular waves have wave_height_m and wave_period_s, and no hs_m; irregular "
+            "ones have hs_m and tp_s. Leave the other cells empty."
+        )
     return Conditions(
-        sea=sea,
+        water=Water(sea=sea, height=height or 0.0, period=period or 0.0),
         angle=90.0 if angle is None else angle,
         solidity=_number(line, "solidity", where),
     )

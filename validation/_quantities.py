@@ -5,10 +5,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from seacage.cage import Cage, Structure
+from seacage.cage import Cage, Structure, mooring_lines
 from seacage.conventions import InputError
-from seacage.ocean import SeaState
-from validation._answers import Answer
+from seacage.dynamics import Mooring
+from validation._answers import Answer, Water
 from validation._panel import Panel
 
 Subject = Cage | Structure | Panel
@@ -18,7 +18,7 @@ Subject = Cage | Structure | Panel
 class Conditions:
     """The water, and for a panel its angle to the flow [deg] and its solidity if not its own."""
 
-    sea: SeaState
+    water: Water
     angle: float = 90.0
     solidity: float | None = None
 
@@ -35,10 +35,26 @@ OF_CAGES = {
     "rise_m:PLACE": "how far a place of the net is lifted from its place in still water",
     "design_rise_m:PLACE": "how far it is lifted from its place in the design shape",
     "depth_m:PLACE": "how deep it is",
-    "line_tension_kn:N": "tension of bridle N of a cage, from 1, or of a structure's line by name",
+    "line_tension_kn:LINE": "mean tension of a line",
+    "line_tension_std_kn:LINE": "standard deviation of that tension in waves",
+    "line_tension_max_kn:LINE": "largest tension of a line in the time that is simulated",
 }
 """PLACE in a cage is tip, RING:SPOKE (from 0) or a depth sensor's name; in a structure a point's
-name, or RING/SPOKE with the ring's name."""
+name, or RING/SPOKE with the ring's name. LINE is a line's name, such as bridle-8, frame-1 or
+anchor-3; a number stands for that bridle of a cage."""
+
+TENSIONS: dict[str, tuple[str, Callable[[Answer, int], float]]] = {
+    "line_tension_kn": ("tension", lambda answer, line: float(answer.tension[line])),
+    "line_tension_std_kn": (
+        "standard deviation of the tension",
+        lambda answer, line: float(answer.tension_std[line]),
+    ),
+    "line_tension_max_kn": (
+        "largest tension",
+        lambda answer, line: float(answer.tension_maximum[line]),
+    ),
+}
+"""What is read of a line's tension [N]."""
 
 OF_PANELS = {
     "cd": "drag over dynamic pressure and the panel's area",
@@ -58,8 +74,10 @@ class Quantity:
     read: Read
 
 
-def quantity_named(column: str, subject: Subject, where: str) -> Quantity:
-    """The quantity of a column.
+def quantity_named(
+    column: str, subject: Subject, where: str, *, mooring: Mooring = "catenary"
+) -> Quantity:
+    """The quantity of a column; which lines a cage has turns on its mooring.
 
     Raises
     ------
@@ -73,13 +91,13 @@ def quantity_named(column: str, subject: Subject, where: str) -> Quantity:
     if place and kind in ("rise_m", "design_rise_m", "depth_m"):
         what, read = _of_node(kind, _node(place, subject, where), subject)
         return Quantity(name=column, unit="m", what=f"{what} of {place}", read=read)
-    if place and kind == "line_tension_kn":
-        index = _line(place, subject, where)
+    if place and kind in TENSIONS:
+        index, (what, read_line) = _line(place, subject, mooring, where), TENSIONS[kind]
         return Quantity(
             name=column,
             unit="kN",
-            what=f"tension of line {place}",
-            read=lambda answer, _: float(answer.tension[index]) / 1e3,
+            what=f"{what} of line {place}",
+            read=lambda answer, _: read_line(answer, index) / 1e3,
         )
     whole = _of_whole(subject)
     if column not in whole:
@@ -92,7 +110,8 @@ def quantity_named(column: str, subject: Subject, where: str) -> Quantity:
 
 
 def _drag(answer: Answer, at: Conditions) -> float:
-    along = at.sea.current_velocity / max(at.sea.current_speed, 1e-12)
+    sea = at.water.sea
+    along = sea.current_velocity / max(sea.current_speed, 1e-12)
     return float(answer.net_force[:2] @ along)
 
 
@@ -168,14 +187,16 @@ def _structure_node(place: str, subject: Structure, where: str) -> int:
     return int(subject.ring_nodes(ring)[int(spoke)])
 
 
-def _line(place: str, subject: Cage | Structure, where: str) -> int:
+def _line(place: str, subject: Cage | Structure, mooring: Mooring, where: str) -> int:
     if isinstance(subject, Structure):
-        if place not in subject.line_names:
-            raise InputError(f"{where}: lines are: {', '.join(subject.line_names) or 'none'}.")
-        return subject.line_names.index(place)
-    if not (place.isdecimal() and 1 <= int(place) <= subject.bridle_count):
-        raise InputError(f"{where}: the cage has bridles 1 to {subject.bridle_count}.")
-    return int(place) - 1
+        names = tuple(subject.line_names)
+    else:
+        names = mooring_lines(subject, anchored=mooring == "catenary").names
+        if place.isdecimal():
+            place = f"bridle-{int(place)}"
+    if place not in names:
+        raise InputError(f"{where}: lines are: {', '.join(names) or 'none'}.")
+    return names.index(place)
 
 
 def _of_panel(column: str, panel: Panel, where: str) -> Quantity:
@@ -189,7 +210,7 @@ def _of_panel(column: str, panel: Panel, where: str) -> Quantity:
 
     def read(law: Any, at: Conditions) -> float:
         cosine = math.sin(math.radians(at.angle))  # the angle is to the panel, not its normal
-        speed = at.sea.current_speed
+        speed = at.water.sea.current_speed
         solidity = panel.own_solidity if at.solidity is None else at.solidity
         coefficient = law(solidity, cosine, speed=speed, half_mesh=panel.half_mesh)[part]
         pressure = 0.5 * panel.water_density * speed**2 * panel.area

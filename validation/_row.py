@@ -16,6 +16,7 @@ class Kind(StrEnum):
     CLOSED_FORM = "closed form"
     PUBLISHED_MODEL = "published model"
     OTHER_PROGRAM = "other program"
+    IN_HOUSE_MODEL = "in-house model"  # a simpler prototype of this project's own
     OURSELVES = "our own"  # a finer step, a mirrored sea: what must not change the answer
 
 

@@ -16,6 +16,7 @@ MODULES = (
     "structure",
     "second_solver",
     "mooring",
+    "cuts",
     "lines_in_time",
     "cage_at_rest",
     "field",

@@ -14,12 +14,16 @@ Table = Mapping[str, tuple[Section, Sequence[Row]]]
 
 HEAD = """# Validation
 
-Our physics against published numbers, closed forms and other programs. `make validate` computes
-this page; [validation/README.md](../validation/README.md) says how a row or a case is added.
+**No measured load of a known cage is on this page.** No test that prints a cage's geometry,
+weights, nets, water and forces was in reach: what is measured here are panels of netting, a
+cylinder, volumes, lifts, and bounds for cages whose gear is not printed. A measured cage joins by
+one TOML and one CSV: [validation/README.md](../validation/README.md) has an example with waves,
+a mooring and line tensions, and says how a row is added. `make validate` computes this page.
 
 - *kind* says what stands behind a reference: **measured**, a **closed form**, a **published
-  model**, an **other program**, or **our own** answer to a question that must not change it (half
-  the time step, a mirrored sea).
+  model**, an **other program**, an **in-house model** (a simpler prototype of this project, so no
+  independent proof), or **our own** answer to a question that must not change it (half the time
+  step, a mirrored sea).
 - A row *holds* when ours differs from the reference by no more than the tolerance. An interval in
   *ours* is what an ensemble of plausible cages and laws spans, because the source does not print
   the cage: it must contain the reference.

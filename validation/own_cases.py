@@ -6,14 +6,13 @@ from typing import Any
 
 from seacage.cage import Structure
 from seacage.dynamics import LAWS, MovingLaw
-from seacage.ocean import SeaState
-from validation._answers import answers
+from validation._answers import Water, answers
 from validation._case import Case, Measured, read_cases
 from validation._panel import PANEL_LAWS, Panel
 from validation._row import Row, Section, Span
 
-Found = dict[tuple[int, MovingLaw, SeaState], Any]
-"""What each member of the ensemble does, by each law, in each sea."""
+Found = dict[tuple[int, MovingLaw, Water], Any]
+"""What each member of the ensemble does, by each law, in each water."""
 
 
 def rows_of_case(case: Case) -> Iterator[Row]:
@@ -21,7 +20,7 @@ def rows_of_case(case: Case) -> Iterator[Row]:
     found = _found(case)
     for measured in case.measured:
         several = [
-            found[number, law, measured.at.sea]
+            found[number, law, measured.at.water]
             for number in range(len(case.subjects))
             for law in _laws(case, measured)
         ]
@@ -31,22 +30,22 @@ def rows_of_case(case: Case) -> Iterator[Row]:
 
 def _found(case: Case) -> Found:
     found: Found = {}
-    for law, seas in _seas_by_law(case).items():
+    for law, waters in _waters_by_law(case).items():
         for number, subject in enumerate(case.subjects):
             if isinstance(subject, Panel):
-                several: list[Any] = [PANEL_LAWS[law]] * len(seas)
+                several: list[Any] = [PANEL_LAWS[law]] * len(waters)
             else:
-                several = [*answers(subject, seas, law, case.how)]
-            found |= {(number, law, sea): one for sea, one in zip(seas, several, strict=True)}
+                several = [*answers(subject, waters, law, case.how)]
+            found |= {(number, law, at): one for at, one in zip(waters, several, strict=True)}
     return found
 
 
-def _seas_by_law(case: Case) -> dict[MovingLaw, list[SeaState]]:
-    requests: dict[MovingLaw, list[SeaState]] = {}
+def _waters_by_law(case: Case) -> dict[MovingLaw, list[Water]]:
+    requests: dict[MovingLaw, list[Water]] = {}
     for measured in case.measured:
         for law in _laws(case, measured):
-            if measured.at.sea not in requests.setdefault(law, []):
-                requests[law].append(measured.at.sea)
+            if measured.at.water not in requests.setdefault(law, []):
+                requests[law].append(measured.at.water)
     return requests
 
 
@@ -66,21 +65,26 @@ def _row(case: Case, measured: Measured, ours: list[float], *, unsettled: int) -
         ours=_span(ours),
         kind=case.kind,
         source=case.source,
-        tolerance=tolerance.share * abs(value) + tolerance.fixed,
+        tolerance=tolerance.share * abs(value)
+        + tolerance.fixed
+        + tolerance.last_digits * measured.digit,
         reason=tolerance.reason,
-        must_hold=case.must_hold,
+        must_hold=case.must_hold and not measured.may_miss,
         detail=f"{unsettled} of {whole} did not settle" if unsettled else "",
         note=measured.note or case.note,
     )
 
 
 def _conditions(measured: Measured) -> Iterator[str]:
-    at, sea = measured.at, measured.at.sea
+    at, water = measured.at, measured.at.water
+    sea = water.sea
     yield f"{sea.current_speed:g} m/s"
     if sea.current_to:
         yield f"to {sea.current_to:g}°"
     if sea.hs:
         yield f"Hs {sea.hs:g} m and Tp {sea.tp:g} s from {sea.wave_from:g}°"
+    if water.height:
+        yield f"waves of {water.height:g} m and {water.period:g} s from {sea.wave_from:g}°"
     if at.angle != 90.0:
         yield f"{at.angle:g}° to the flow"
     if at.solidity is not None:
@@ -96,8 +100,8 @@ def _span(numbers: list[float]) -> Span:
 
 
 def _section(case: Case) -> Section:
-    laws = _seas_by_law(case)
-    simulated = any(law not in LAWS or any(sea.hs for sea in laws[law]) for law in laws)
+    laws = _waters_by_law(case)
+    simulated = any(law not in LAWS or any(at.has_waves for at in laws[law]) for law in laws)
     of_panel = isinstance(case.subjects[0], Panel)
     slow = simulated or isinstance(case.subjects[0], Structure)
     return Section(

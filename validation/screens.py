@@ -63,7 +63,7 @@ def _worst(law: str, coefficient: str, rows: np.ndarray | None, column: int, whe
         reference=0.0,
         ours=found,
         kind=Kind.PUBLISHED_MODEL,
-        source="the published formula, computed elsewhere to five decimals",
+        source="the published formula, evaluated apart from this code to five decimals",
         tolerance=LAST_DIGIT,
         reason="half of the last digit printed",
         note="" if rows is not None else ABSENT,

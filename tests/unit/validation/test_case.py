@@ -1,6 +1,9 @@
 """A user's case: one TOML, one CSV, and a clear sentence where one of them is wrong."""
 
+import re
 from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,12 +13,15 @@ from seacage.conventions import InputError
 from seacage.dynamics import loland, rest_shape, settle
 from seacage.ocean import SeaState
 from validation import Kind
-from validation._answers import How, answers
+from validation._answers import How, Water, answers
 from validation._case import CASES, read_case, read_cases
 from validation._quantities import Conditions, quantity_named
 from validation.own_cases import rows_of_case
 
+README = Path(__file__).parents[3] / "validation" / "README.md"
+
 HOW = How(
+    mooring="springs",
     hold_collar=True,
     pipe_drag=True,
     present_area=False,
@@ -63,7 +69,8 @@ def test_a_case_says_which_cage_was_measured_and_what(folder):
     assert (case.title, case.kind, case.how.hold_collar) == ("A tank", Kind.MEASURED, True)
     assert [cage.tip.weight for cage in case.subjects] == [2000.0]
     read = [
-        (m.at.sea.current_speed, m.quantity.name, m.value, m.uncertainty) for m in case.measured
+        (m.at.water.sea.current_speed, m.quantity.name, m.value, m.uncertainty)
+        for m in case.measured
     ]
     assert read == [
         (0.2, "net_drag_kn", 12.0, 1.0),
@@ -105,6 +112,59 @@ def test_a_line_may_name_its_law_its_direction_and_a_note(folder):
     assert row.note == "odd"
 
 
+def test_a_tolerance_follows_the_last_digit_that_is_printed(folder):
+    (folder / "case.toml").write_text(TOML.replace("share = 0.1", "share = 0.1\nlast_digits = 0.5"))
+    (folder / "measured.csv").write_text("current_speed_m_s,net_drag_kn\n0.2,12\n0.3,25.0\n")
+    first, second = rows_of_case(read_case(folder))
+    assert (first.tolerance, second.tolerance) == pytest.approx((1.2 + 0.5, 2.5 + 0.05))
+
+
+def test_a_line_alone_may_miss(folder):
+    (folder / "case.toml").write_text(TOML.replace("[changes", "must_hold = true\n[changes"))
+    (folder / "measured.csv").write_text(
+        "current_speed_m_s,net_drag_kn,may_miss\n0.2,12,\n0.3,99,yes\n"
+    )
+    first, second = rows_of_case(read_case(folder))
+    assert (first.must_hold, second.must_hold, second.fails) == (True, False, False)
+
+
+def examples():
+    """The two files of each example in the README."""
+    blocks = re.findall(r"```(?:toml)?\n(.*?)```", README.read_text("utf-8"), re.DOTALL)
+    return [(a, b) for a, b in pairwise(blocks) if b.startswith("current_speed")]
+
+
+@pytest.mark.parametrize("number", [0, 1])
+def test_the_examples_of_the_readme_work_as_they_stand(tmp_path, number):
+    toml, table = examples()[number]
+    (tmp_path / "case.toml").write_text(toml, "utf-8")
+    (tmp_path / "measured.csv").write_text(table, "utf-8")
+    case = read_case(tmp_path)
+    # a moment stands for the half-hour
+    brief = replace(case, how=replace(case.how, spin_up=2.0, duration=1.0))
+    rows = list(rows_of_case(brief))
+    assert len(rows) == len(case.measured)
+    assert all(np.all(np.isfinite(row.ours)) for row in rows)
+
+
+def test_a_moored_cage_in_waves_is_simulated_as_long_as_its_statistics_need(tmp_path):
+    toml, table = examples()[0]
+    (tmp_path / "case.toml").write_text(toml, "utf-8")
+    (tmp_path / "measured.csv").write_text(table, "utf-8")
+    case = read_case(tmp_path)
+    assert (case.how.mooring, case.how.duration) == ("catenary", 1800.0)
+    calm, irregular, regular = dict.fromkeys(number.at.water for number in case.measured)
+    assert (calm.has_waves, irregular.sea.tp, regular.height) == (False, 6.7, 2.0)
+
+
+def test_regular_and_irregular_waves_do_not_mix(folder):
+    (folder / "measured.csv").write_text(
+        "current_speed_m_s,hs_m,wave_height_m,wave_period_s,net_drag_kn\n0.2,1.0,1.0,6.0,12\n"
+    )
+    with pytest.raises(InputError, match="line 2: regular waves have wave_height_m and wave_per"):
+        read_case(folder)
+
+
 def test_the_cases_that_come_with_seacage_are_read():
     names = [case.name for case in read_cases()]
     assert names == sorted(path.parent.name for path in CASES.glob("*/case.toml"))
@@ -118,6 +178,7 @@ def test_the_cases_that_come_with_seacage_are_read():
         ('cage = "ace"', 'cage = "ace"\ncolour = 3', "key 'colour' is unknown"),
         ('"measured"', '"measure"', "kind 'measure' is unknown; did you mean 'measured'?"),
         ('"held"', '"hold"', "collar 'hold' is unknown; did you mean 'held'?"),
+        ("[changes", 'mooring = "spring"\n[changes', "mooring 'spring' is unknown; did you mean"),
         ('["loland"]', '["lolland"]', "laws 'lolland' is unknown; did you mean 'loland'?"),
         ('["loland"]', "3", "laws must be a list, not 3"),
         ('"ace"', '"mine.toml"', "there is no cage file mine.toml beside it"),
@@ -154,7 +215,7 @@ def test_a_wrong_toml_is_refused_in_one_sentence(folder, old, new, message):
         ("current_speed_m_s,net_drag_kn\n0.2,3\n0.3,x\n", "line 3: net_drag_kn = 'x' is no number"),
         ("current_speed_m_s,rise_m:top\n0.2,3\n", "'top' is no place of the cage. Write tip"),
         ("current_speed_m_s,depth_m:10:3\n0.2,3\n", "rings 0 to 9 and spokes 0 to 31"),
-        ("current_speed_m_s,line_tension_kn:13\n0.2,3\n", "the cage has bridles 1 to 12"),
+        ("current_speed_m_s,line_tension_kn:13\n0.2,3\n", "lines are: bridle-1, bridle-2,"),
         ("current_speed_m_s,uncertainty:net_drag_kn\n0.2,3\n", "'uncertainty:net_drag_kn' is unk"),
         (
             "current_speed_m_s,net_drag_kn\n9,3\n",
@@ -192,12 +253,15 @@ def test_a_case_without_numbers_is_refused(folder):
         ("rise_m:tip", lambda r, cage: r.node_displacement[cage.bottom_node, 2]),
         ("design_rise_m:tip", lambda r, cage: r.node_position[cage.bottom_node, 2] + 31.0),
         ("line_tension_kn:7", lambda r, _: r.bridle_tension[6] / 1e3),
+        ("line_tension_max_kn:bridle-7", lambda r, _: r.bridle_tension[6] / 1e3),
+        ("line_tension_std_kn:bridle-7", lambda _r, _c: 0.0),
     ],
 )
 def test_each_quantity_is_read_as_its_name_says(column, value):
     cage, sea = Cage.named("ace"), SeaState(current_speed=0.2, current_to=0.0)
-    (answer,) = answers(cage, [sea], "loland", HOW)
-    found = quantity_named(column, cage, "here").read(answer, Conditions(sea=sea))
+    water = Water(sea=sea)
+    (answer,) = answers(cage, [water], "loland", HOW)
+    found = quantity_named(column, cage, "here").read(answer, Conditions(water=water))
     response = settle(cage, sea, law="loland", mooring="springs", hold_collar=True)
     assert found == pytest.approx(float(value(response, cage)))
 
@@ -335,6 +399,7 @@ def test_waves_are_simulated_and_their_means_taken():
         SeaState(current_speed=0.2, current_to=0.0),
         SeaState(current_speed=0.2, current_to=0.0, hs=1.0),
     ]
-    calm, wavy = answers(cage, seas, "loland", replace(HOW, spin_up=10.0, duration=2.0))
+    waters = [Water(sea=sea) for sea in seas]
+    calm, wavy = answers(cage, waters, "loland", replace(HOW, spin_up=10.0, duration=2.0))
     assert wavy.net_force[1] > calm.net_force[1]
     np.testing.assert_allclose(calm.rest, rest_shape(cage, hold_collar=True), atol=0.02)
