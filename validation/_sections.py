@@ -16,6 +16,7 @@ MODULES = (
     "structure",
     "second_solver",
     "mooring",
+    "mooring_peers",
     "cuts",
     "lines_in_time",
     "cage_at_rest",
