@@ -44,8 +44,9 @@ class Row:
     reason
         Why this tolerance.
     must_hold
-        Whether a miss is a failure. Only for a published field envelope, or a number whose
-        conditions are not published whole, it is not; ``note`` then says why we miss it.
+        Whether a miss is a failure. Only for a published field envelope, a number whose
+        conditions are not published whole, or a known weakness, it is not; ``note`` then says
+        why we miss it.
     detail
         What each member of an ensemble gives.
     note

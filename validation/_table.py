@@ -27,8 +27,9 @@ a mooring and line tensions, and says how a row is added. `make validate` comput
 - A row *holds* when ours differs from the reference by no more than the tolerance. An interval in
   *ours* is what an ensemble of plausible cages and laws spans, because the source does not print
   the cage: it must contain the reference.
-- Rows marked **(may miss)** are published field or panel numbers whose conditions are not printed
-  whole. A miss is told, with the reason, and fails nothing. All others must hold.
+- Rows marked **(may miss)** are numbers whose conditions are not printed whole, and two weak points
+  that are known. A miss is shown, with the reason, and fails nothing. All others must hold.
+- Where seas, lines or meshes are compared, the worst counts and not their mean.
 """
 COLUMNS = ("quantity", "reference", "kind, source", "ours", "tolerance", "holds")
 
@@ -100,16 +101,16 @@ def _line(cells: Sequence[str]) -> str:
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
 
 
-def shown(span: Span) -> str:
-    """A number to four digits, or an interval."""
+def shown(span: Span, *, digits: int = 4) -> str:
+    """A number to so many digits, or an interval."""
     low, high = ends(span)
     if low == high:
-        return _number(low)
+        return _number(low, digits=digits)
     if math.isinf(low):
-        return f"≤ {_number(high)}"
+        return f"≤ {_number(high, digits=digits)}"
     if math.isinf(high):
-        return f"≥ {_number(low)}"
-    return f"{_number(low)} to {_number(high)}"
+        return f"≥ {_number(low, digits=digits)}"
+    return f"{_number(low, digits=digits)} to {_number(high, digits=digits)}"
 
 
 def _number(value: float, *, digits: int = 4) -> str:

@@ -11,6 +11,7 @@ from seacage.cage import Structure
 from seacage.dynamics import History, simulate
 from seacage.ocean import SeaState, regular_wave
 from validation._row import Kind, Row, Section
+from validation._table import shown
 
 FILE = Path(__file__).with_name("second_solver.toml")
 
@@ -183,10 +184,10 @@ def _refined() -> Iterator[Row]:
         tolerance=3.0,
         reason="3 %",
         must_hold=False,
-        detail=f"{min(found):.1f} to {max(found):.1f} %",
+        detail=f"{shown((min(found), max(found)), digits=2)} %",
         note="Its chains are two bars of 13.5 m, of which one lies on the sea bed. With two bars "
-        f"ours differ from it by {min(coarse):.1f} to {max(coarse):.1f} %, so what six add is its "
-        "own mesh error. No finer solution of it is stored.",
+        f"ours differ from it by {shown((min(coarse), max(coarse)), digits=2)} %: what six add is "
+        "its own mesh error. No finer solution of it is stored.",
     )
 
 
