@@ -62,6 +62,7 @@ def settled():
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("law", LAWS)
 def test_drag_and_volume_of_the_deformed_net_are_the_published_ones(settled, law):
     response, published = settled[law], np.array(PUBLISHED[law])
@@ -72,6 +73,7 @@ def test_drag_and_volume_of_the_deformed_net_are_the_published_ones(settled, law
     np.testing.assert_allclose(lost, published[:, 1], rtol=0.25)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("law", LAWS)
 def test_ring_and_tip_rise_as_published(settled, law):
     published = np.array(PUBLISHED[law])
@@ -81,6 +83,7 @@ def test_ring_and_tip_rise_as_published(settled, law):
     np.testing.assert_allclose(rise[:, CAGE.bottom_node], published[:, 3], atol=1.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("law", LAWS)
 def test_drag_of_a_flexible_net_grows_more_slowly_than_the_square(settled, law):
     # Lader & Enerhaug (2005): an exponent below 2; that model's: 1.28 to 1.47 above 0.25 m/s
@@ -90,6 +93,7 @@ def test_drag_of_a_flexible_net_grows_more_slowly_than_the_square(settled, law):
     assert exponent[1] < exponent[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("law", "more"), [("aarsnes", 1.19), ("loland", 1.18), ("kristiansen-faltinsen", 1.11)]
 )

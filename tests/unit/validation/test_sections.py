@@ -8,7 +8,7 @@ import pytest
 from validation._sections import MODULES, chosen, computed, rows_of, sections_of
 
 PAGE = Path(__file__).parents[3] / "docs" / "validation.md"
-SECONDS = {"field", "lines_in_time", "own_cases"}
+SECONDS = {"cage_at_rest", "field", "lines_in_time", "own_cases"}
 QUICK = [job for job in chosen(quick=True) if job[0] not in SECONDS]
 SLOW = [job for job in chosen() if job not in QUICK]
 MINUTES = (pytest.mark.slow, pytest.mark.timeout(900))

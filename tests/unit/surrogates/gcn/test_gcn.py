@@ -41,6 +41,7 @@ def miss(fitted: FittedGCN) -> float:
     return float(np.abs(fitted.predict(x).mean - truth).mean())
 
 
+@pytest.mark.slow
 def test_the_papers_network_learns_to_lean(paper: FittedGCN) -> None:
     still = float(np.abs(SHAPES - SHAPES.mean(axis=0)).mean())
     assert miss(paper) < 0.75 * still
@@ -51,7 +52,7 @@ def test_the_modal_network_beats_the_papers(modal: FittedGCN, paper: FittedGCN) 
     assert miss(modal) < 0.5 * miss(paper)
 
 
-@pytest.mark.parametrize("kind", ["modal", "paper"])
+@pytest.mark.parametrize("kind", ["modal", pytest.param("paper", marks=pytest.mark.slow)])
 def test_two_sigma_hold_most_unseen_shapes(kind: str, request: pytest.FixtureRequest) -> None:
     x, truth = shapes(60, seed=1)
     answer = request.getfixturevalue(kind).predict(x, noisy=True)
