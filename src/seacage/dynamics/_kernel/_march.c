@@ -270,9 +270,9 @@ static void share_out(const int *n, const float *share, const lane *restrict loa
 }
 
 /* Screens: C_D = max(0, s (1 - cos) + b cos + h cos3), C_L = l sin2 (1 + e cos2), b and h one
- * number times fixed shares, on the area as cut: twine is not lost in folds. What is nearly closed turns
- * to cos = 1/2 without lift. `falls`: how the load changes with speed. C_D serves most: more would act
- * as mass that is not there. In fast water a light panel needs more, or holding its load
+ * number times fixed shares, on the area as cut: twine is not lost in folds. What is nearly
+ * closed turns to cos = 1/2 without lift. `falls`: how the load changes with speed. C_D serves
+ * most: more would act as mass that is not there. In fast water a light panel needs more, or holding its load
  * through `span` would be unstable: the steepest slope less what the panel's mass bears.
  */
 static void add_screens(const body *b, const netting *net, const state *s,
@@ -471,7 +471,7 @@ static void add_push(const body *b, const state *s, lane *restrict load)
 
 /* Loads of the water into s->held, for where the nodes will be so many seconds ahead, in the
  * middle of the time they are held: held from its beginning, they would lag. s->force is free
- * to keep those places, and is left with what is held. loads: by body. */
+ * to keep those places, and is left with what is held. loads: by body, but for PUSH. */
 static void hold_loads(const body *b, const netting *net, const state *s, float ahead,
                        float span, lane *loads)
 {
@@ -494,7 +494,6 @@ static void hold_loads(const body *b, const netting *net, const state *s, float 
     else
         add_screens(b, net, s, (const vec *)x, span, loads + 3 * NETTING);
     add_cylinders(b, s, (const vec *)x, loads);
-    add_push(b, s, loads + 3 * PUSH);
     for (int i = 0; i < b->nodes; i++)
         for (int a = 0; a < 3; a++)
             EACH_LANE {
@@ -879,8 +878,9 @@ static void count_nodes(const body *b, const state *s, record *r)
         }
 }
 
-static void count_loads(const lane *restrict loads, record *r)
+static void count_loads(const body *b, const state *s, lane *restrict loads, record *r)
 {
+    add_push(b, s, loads + 3 * PUSH);
     for (int a = 0; a < 3 * BODIES; a++)
         EACH_LANE {
             count((double)loads[a][k], &r->load_sum[a][k], &r->load_square[a][k]);
@@ -1002,6 +1002,7 @@ void seacage_march_forces(const body *b, const netting *net, state *s, float *lo
     relative_flow(b, s, 0.0f);
     refresh_panels(b, net, s);
     hold_loads(b, net, s, 0.0f, 1.0f, (lane *)loads);
+    add_push(b, s, (lane *)loads + 3 * PUSH);
     for (int i = 0; i < b->nodes; i++)
         for (int a = 0; a < 3; a++)
             EACH_LANE s->force[i][a][k] -= s->drag[i][k] * s->velocity[i][a][k];
@@ -1043,7 +1044,7 @@ void seacage_march(const body *b, const netting *net, const sea *w, const schedu
                 count_lines(b, s, r, i == 0 && t->sample_every > 0 ? line_row(b, r) : 0);
             if (i == 0 && counts) {
                 count_nodes(b, s, r);
-                count_loads((const lane *)loads, r);
+                count_loads(b, s, loads, r);
                 count_twines(b, s, r);
                 count_anchors(b, s, r);
                 if (t->sample_every > 0 && (n - t->count_from) % t->sample_every == 0)

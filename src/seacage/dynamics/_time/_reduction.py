@@ -45,14 +45,17 @@ def _history(
     net = np.ascontiguousarray(sampled["positions"][:, : cage.node_count])
     counted = int(march.account["counted"][0]) * len(lanes)
 
-    def of(what: str, sample: np.ndarray, count: int, origin: np.ndarray) -> Statistics:
+    def moments(what: str, count: int, origin: np.ndarray) -> dict[str, np.ndarray]:
         account = {
             how: _join(march, f"{what}_{how}", lanes)[: origin.size].reshape(origin.shape)
             for how in ("sum", "square", "least", "most")
         }
-        return _statistics(account, sample, count, origin, levels)
+        return _moments(account, count, origin)
 
-    moved = march.account["node_sum"][:, lanes].sum(axis=1).reshape(-1, 3) / counted
+    def of(what: str, sample: np.ndarray, count: int, origin: np.ndarray) -> Statistics:
+        return Statistics(**moments(what, count, origin), quantile=_quantiles(sample, levels))
+
+    moved = _join(march, "node_sum", lanes).reshape(-1, 3) / counted
     drowned = is_drowned(cage, assembly, (assembly.position + moved)[None])[0]
     every = max(1, -(-len(net) // VOLUMES))
     volume = cage.volume(net[::every].astype(np.float64))
@@ -84,7 +87,7 @@ def _history(
             every=REFRESH,
             waves=waves,
         ),
-        water_load=_water_load(march, lanes, counted),
+        water_load=WaterLoad(**moments("load", counted, np.zeros((len(Body), 3)))),
         twines=panel_twines(
             cage,
             assembly,
@@ -111,19 +114,17 @@ def _join(march: March, name: str, lanes: Sequence[int]) -> np.ndarray:
     return join(march.account[name][:, lanes], axis=1)
 
 
-def _water_load(march: March, lanes: Sequence[int], counted: int) -> WaterLoad:
-    shape = (len(Body), 3)
-    account = {
-        how: _join(march, f"load_{how}", lanes).reshape(shape)
-        for how in ("sum", "square", "least", "most")
+def _moments(
+    account: dict[str, np.ndarray], count: int, origin: np.ndarray
+) -> dict[str, np.ndarray]:
+    """Mean, standard deviation and extremes, of an account that is kept from an origin."""
+    mean = account["sum"] / count
+    return {
+        "mean": mean + origin,
+        "std": np.sqrt(np.maximum(account["square"] / count - mean**2, 0.0)),
+        "minimum": account["least"].astype(np.float64),
+        "maximum": account["most"].astype(np.float64),
     }
-    mean = account["sum"] / counted
-    return WaterLoad(
-        mean=mean,
-        std=np.sqrt(np.maximum(account["square"] / counted - mean**2, 0.0)),
-        minimum=account["least"].astype(np.float64),
-        maximum=account["most"].astype(np.float64),
-    )
 
 
 def _in_turn(values: np.ndarray, lanes: Sequence[int]) -> np.ndarray:
@@ -148,24 +149,6 @@ def _second_moment(
     design = simulation.cage.design_position.astype(np.float32)
     moved = (net - design).reshape(len(net), -1)
     return (moved.T @ moved).astype(np.float64) / len(net)
-
-
-def _statistics(
-    account: dict[str, np.ndarray],
-    sample: np.ndarray,
-    count: int,
-    origin: np.ndarray,
-    levels: Float[np.ndarray, " quantile"],
-) -> Statistics:
-    mean = account["sum"] / count
-    variance = np.maximum(account["square"] / count - mean**2, 0.0)
-    return Statistics(
-        mean=mean + origin,
-        std=np.sqrt(variance),
-        minimum=account["least"].astype(np.float64),
-        maximum=account["most"].astype(np.float64),
-        quantile=_quantiles(sample, levels),
-    )
 
 
 def _plain_statistics(

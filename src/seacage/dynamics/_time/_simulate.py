@@ -79,8 +79,8 @@ def simulate(
     It starts from the equilibrium in the current; the waves rise over ``ramp``, and nothing
     counts before ``spin_up``. Netting above the moving surface bears no drag or lift. Left out:
     waves made by the collar, second-order waves, the netting's shelter from waves, and that dry
-    netting weighs more and is not pushed by the waves' acceleration. A
-    case's numbers do not depend on the cases beside it nor on ``workers``.
+    netting weighs more and is not pushed by the waves' acceleration. A case's numbers do not
+    depend on the cases beside it nor on ``workers``.
 
     Parameters
     ----------
