@@ -129,7 +129,7 @@ def _corner() -> Iterator[Row]:
     assembly, step = anchor_assembly(ACE), 0.1
     span = float(resting_line(ACE).position[-1, 0])
     along, aside, up = _stiffness(exact_line, span)
-    side, pull = ACE.frame.side, exact_line(span, BED)[0] - BRIDLES
+    side, pull = 2.0 * ACE.frame.reach, exact_line(span, BED)[0] - BRIDLES
     rope = ACE.frame.rope_axial_stiffness
     stretch = (rope + pull) / side, pull / side  # of a rope under its tension: along and aside
     expected = {

@@ -5,7 +5,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from functools import cached_property
 from importlib import resources
-from itertools import pairwise
 from typing import Any, Self
 
 import numpy as np
@@ -33,9 +32,6 @@ from seacage.cage._tangent_plane import TangentPlane
 from seacage.cage._toml import TomlFile, alter
 from seacage.cage._volume import enclosed_volume
 from seacage.conventions import InputError, towards
-
-SNAPPED = 0.01
-"""A bridle that a node moves by more is warned of [deg]; bearings are seldom written finer."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -100,10 +96,11 @@ class Cage(TomlFile):
                 f"Cage {self.name}: it hangs {deepest:g} m deep in water of {water:g} m, and "
                 "no bed carries it. Check water_depth_m, tip_depth_m and the frame's depth_m."
             )
-        if self.frame.side <= 2.0 * self.collar.radius:
+        if self.frame.reach <= self.collar.radius:
             raise InputError(
-                f"Cage {self.name}: its frame of side_m = {self.frame.side:g} has no room for a "
-                f"collar of radius_m = {self.collar.radius:g}. Give more than twice the radius."
+                f"Cage {self.name}: its frame has no room for a collar of radius_m = "
+                f"{self.collar.radius:g}: a side is {self.frame.reach:g} m from the centre. Check "
+                "the frame's side_m or corners."
             )
 
     # Doors
@@ -187,11 +184,18 @@ class Cage(TomlFile):
             frame={"rope_slack_m": float(max(frame.rope_slack + slack_sd * normal[1], -1.0))},
         )
 
-    def refined(self) -> Self:
-        """A copy with twice the rings and spokes; every old node stays a node."""
-        depths = (*self.mesh.ring_depths, self.mesh.tip_depth)
-        finer = [d for a, b in pairwise(depths) for d in (a, (a + b) / 2.0)]
-        return self.altered(mesh={"ring_depths_m": finer, "spokes": 2 * self.mesh.spokes})
+    def refined(self, times: int = 2) -> Self:
+        """A copy with so many times the rings and spokes; every old node stays a node."""
+        between = np.arange(times) / times
+        depths = np.array([*self.mesh.ring_depths, self.mesh.tip_depth])
+        finer = depths[:-1, None] + np.diff(depths)[:, None] * between
+        mesh = {"ring_depths_m": finer.ravel().tolist(), "spokes": times * self.spokes}
+        even = self.altered(mesh=mesh)
+        angles = self.spoke_angles[:, None] + self.sectors[:, None] * between
+        if self.mesh.spoke_bearings is None and np.allclose(even.spoke_angles, angles.ravel()):
+            return even
+        bearings = 90.0 - np.rad2deg(angles.ravel())
+        return self.altered(mesh={**mesh, "spoke_bearings_deg": bearings.tolist()})
 
     # The graph
 
@@ -234,10 +238,28 @@ class Cage(TomlFile):
         return self.mesh.ring_depths.index(self.mesh.cylinder_depth)
 
     @cached_property
+    def spoke_angles(self) -> Float[np.ndarray, " spoke"]:
+        """Angle of each spoke, counter-clockwise from east, at heading 0 [rad]."""
+        return _read_only(_graph.spoke_angles(self.mesh, np.array(self.bridles.bearings)))
+
+    @cached_property
+    def sectors(self) -> Float[np.ndarray, " spoke"]:
+        """Angle from each spoke to the next [rad]."""
+        angles = self.spoke_angles
+        return _read_only(np.diff(angles, append=angles[0] + 2.0 * np.pi))
+
+    @cached_property
+    def spoke_share(self) -> Float[np.ndarray, " spoke"]:
+        """Share of the round that each spoke stands for [-]."""
+        return _read_only((self.sectors + np.roll(self.sectors, 1)) / (4.0 * np.pi))
+
+    @cached_property
     def design_position(self) -> Float[np.ndarray, "node 3"]:
         """The shape the net was cut to [m]; the rest shape hangs a little narrower."""
         return _read_only(
-            _graph.node_positions(self.mesh, radius=self.collar.radius, heading=self.heading)
+            _graph.node_positions(
+                self.mesh, self.spoke_angles, radius=self.collar.radius, heading=self.heading
+            )
         )
 
     @cached_property
@@ -292,32 +314,36 @@ class Cage(TomlFile):
     @property
     def warnings(self) -> tuple[str, ...]:
         """Differences from the file: bridles that were moved to the nearest spoke."""
-        held = (90.0 - 360.0 * self.bridle_nodes / self.spokes) % 360.0
+        held = (90.0 - np.rad2deg(self.spoke_angles[self.bridle_nodes])) % 360.0
         moved = [
             f"{name} from {bearing:g}° to {now:g}°"
             for name, bearing, now in zip(
                 self.bridle_names, self.bridles.bearings, held.tolist(), strict=True
             )
-            if abs((now - bearing + 180.0) % 360.0 - 180.0) > SNAPPED
+            if abs((now - bearing + 180.0) % 360.0 - 180.0) > _graph.SNAPPED
         ]
         warning = (
             f"Cage {self.name}: bridles are held at the nearest of {self.spokes} spokes, which "
-            f"moves {', '.join(moved)}. Their loads are those of the moved bridles."
+            f"moves {', '.join(moved)}. Their loads are those of the moved bridles. Give the mesh "
+            "more spokes: each can be moved to one bridle."
         )
         return (warning,) if moved else ()
 
     @cached_property
     def corner_position(self) -> Float[np.ndarray, "corner 3"]:
-        """Frame corners in still water: north-east, north-west, south-west, south-east [m]."""
-        bearing = np.array([45.0, 315.0, 225.0, 135.0]) + self.heading
-        horizontal = towards(np.full(4, self.frame.side / np.sqrt(2.0)), bearing)
-        return _read_only(np.column_stack([horizontal, np.full(4, -self.frame.depth)]))
+        """Frame corners in still water, a square's from north-east counter-clockwise [m]."""
+        east, north = self.frame.corners.T
+        bearing = np.rad2deg(np.arctan2(east, north)) + self.heading
+        horizontal = towards(np.hypot(east, north), bearing)
+        return _read_only(np.column_stack([horizontal, np.full(len(east), -self.frame.depth)]))
 
     @cached_property
     def bridle_corner(self) -> Int[np.ndarray, " bridle"]:
-        """The frame corner that each bridle comes from: the nearest."""
+        """The frame corner that each bridle comes from: the nearest that it leaves outwards."""
         ends = self.design_position[self.bridle_nodes]
-        distance = np.linalg.norm(ends[:, None] - self.corner_position, axis=-1)
+        line = self.corner_position - ends[:, None]
+        outwards = np.einsum("bcx,bx->bc", line[..., :2], ends[:, :2]) > 0.0
+        distance = np.where(outwards, np.linalg.norm(line, axis=-1), np.inf)
         return _read_only(np.argmin(distance, axis=1))
 
     @property
@@ -346,7 +372,10 @@ class Cage(TomlFile):
         return tuple(entry.name for entry in (*self.depth_sensor, *self.shackle))
 
     def _nearest_spoke(self, bearing: float) -> int:
-        return round((90.0 - bearing) / 360.0 * self.spokes) % self.spokes
+        angles = np.append(self.spoke_angles, self.spoke_angles[0] + 2.0 * np.pi)
+        at = np.deg2rad(90.0 - bearing - np.rad2deg(angles[0])) % (2.0 * np.pi) + angles[0]
+        # halfway between two spokes rounding must not decide
+        return round(round(float(np.interp(at, angles, np.arange(len(angles)))), 6)) % self.spokes
 
     def _nearest_node(self, entry: DepthSensorEntry) -> int:
         depths = np.array([*self.mesh.ring_depths, self.mesh.tip_depth])

@@ -5,18 +5,51 @@ from jaxtyping import Float, Int
 
 from seacage.cage._parts import Mesh
 
+SNAPPED = 0.01
+"""A bridle that a node moves by more is warned of [deg]; bearings are seldom written finer."""
 
-def node_positions(mesh: Mesh, *, radius: float, heading: float) -> Float[np.ndarray, "node 3"]:
+
+LEAST_SECTOR = 0.4
+"""Of the even one: the narrowest sector that spokes are moved to for the sake of bridles [-]."""
+
+
+def spoke_angles(mesh: Mesh, bearings: Float[np.ndarray, " bridle"]) -> Float[np.ndarray, " spoke"]:
+    """Angle of each spoke, counter-clockwise from east at heading 0 [rad].
+
+    As the mesh says, else even but for the spokes that bridles of given bearings hold [deg]: the
+    nearest to each is moved to its bearing, and those between in proportion. All stay even
+    where two bridles of different bearings share a spoke, or a sector would become narrow.
+    """
+    even = 2.0 * np.pi * np.arange(mesh.spokes) / mesh.spokes
+    if mesh.spoke_bearings is not None:
+        return np.unwrap(np.deg2rad(90.0 - np.array(mesh.spoke_bearings)))
+    at = (90.0 - bearings) / 360.0 * mesh.spokes
+    held = np.round(at)
+    spoke, first, which = np.unique(held % mesh.spokes, return_index=True, return_inverse=True)
+    shift = (at - held)[first]
+    moved = np.arange(mesh.spokes) + np.interp(
+        np.arange(mesh.spokes), spoke, shift, period=mesh.spokes
+    )
+    sector = 360.0 / mesh.spokes
+    shared = np.abs(at - held - shift[which]).max() * sector > SNAPPED
+    narrowest = np.diff(moved, append=moved[0] + mesh.spokes).min()
+    if shared or narrowest < LEAST_SECTOR or np.abs(shift).max() * sector <= SNAPPED:
+        return even
+    return 2.0 * np.pi * moved / mesh.spokes
+
+
+def node_positions(
+    mesh: Mesh, angles: Float[np.ndarray, " spoke"], *, radius: float, heading: float
+) -> Float[np.ndarray, "node 3"]:
     """Design shape: a cylinder over a cone, x east, y north, z up [m].
 
-    Node = spokes · ring + spoke; spoke 0 is east at heading 0, the others follow
-    counter-clockwise seen from above; the tip is last. The heading turns the whole
-    clockwise [deg].
+    Node = spokes · ring + spoke, the spokes at given angles [rad]; the tip is last. The heading
+    turns the whole clockwise [deg].
     """
     depth = np.array(mesh.ring_depths)
     cone = (mesh.tip_depth - depth) / (mesh.tip_depth - mesh.cylinder_depth)
     ring_radius = radius * np.minimum(1.0, cone)
-    angle = 2.0 * np.pi * np.arange(mesh.spokes) / mesh.spokes - np.deg2rad(heading)
+    angle = angles - np.deg2rad(heading)
     rings = np.stack(
         [
             ring_radius[:, None] * np.cos(angle),

@@ -5,7 +5,13 @@ from dataclasses import Field, dataclass, field, fields
 from itertools import pairwise
 from typing import Any
 
+import numpy as np
+from jaxtyping import Float
+
 from seacage.conventions import InputError
+
+MOST_CORNERS = 12
+"""Of a frame."""
 
 
 def quantity(
@@ -60,9 +66,16 @@ class Mesh(_Part):
     ring_depths: tuple[float, ...] = quantity("m", "depth of each ring, the collar first")
     cylinder_depth: float = quantity("m", "depth of the cylinder's lower edge", above=True)
     tip_depth: float = quantity("m", "depth of the cone's tip", above=True)
+    spoke_bearings: tuple[float, ...] | None = quantity(
+        "deg",
+        "compass bearing of each spoke, counter-clockwise, heading 0; else near even",
+        low=-360.0,
+        default=None,
+    )
 
     def __post_init__(self) -> None:
         super(Mesh, self).__post_init__()
+        self._check_spokes()
         depths = (*self.ring_depths, self.tip_depth)
         rising = all(a < b for a, b in pairwise(depths))
         if len(depths) < 3 or depths[0] != 0.0 or not rising:
@@ -74,6 +87,20 @@ class Mesh(_Part):
             raise InputError(
                 f"Cage, Mesh: cylinder_depth_m = {self.cylinder_depth:g} is no ring's depth. "
                 "Add it to ring_depths_m: the sinker tube is carried there."
+            )
+
+    def _check_spokes(self) -> None:
+        """Refuse spokes that do not go once round the cage, each sector less than half of it."""
+        bearings = self.spoke_bearings
+        if bearings is None:
+            return
+        beside = (*bearings[1:], *bearings[:1])
+        sectors = [(a - b) % 360.0 for a, b in zip(bearings, beside, strict=True)]
+        round_once = math.isclose(sum(sectors), 360.0)
+        if len(bearings) != self.spokes or not round_once or not 0.0 < max(sectors) < 180.0:
+            raise InputError(
+                f"Cage, Mesh: spoke_bearings_deg = {list(bearings)} must be {self.spokes} bearings "
+                "that go round the cage once, counter-clockwise, each less than 180° from the next."
             )
 
 
@@ -194,9 +221,22 @@ class Tip(_Part):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Frame(_Part):
-    """The square mooring frame; in the low fidelity its corners sit on linear springs."""
+    """The square mooring frame; in the low fidelity its corners sit on linear springs.
 
-    side: float = quantity("m", "length of a side", above=True)
+    A frame of another shape gives its corners instead of a side; the first line is in files,
+    whose text identifies a cage, and stays.
+    """
+
+    side: float | None = quantity("m", "length of a side", above=True, default=None)
+    corners_east: tuple[float, ...] | None = quantity(
+        "m",
+        "of each corner from the cage's centre, counter-clockwise, heading 0",
+        low=-math.inf,
+        default=None,
+    )
+    corners_north: tuple[float, ...] | None = quantity(
+        "m", "of each corner, as corners_east_m", low=-math.inf, default=None
+    )
     depth: float = quantity("m", "of the corner plates")
     corner_stiffness_horizontal: float = quantity("n_m", "spring in x and in y", above=True)
     corner_stiffness_vertical: float = quantity("n_m", "spring in z: the buoy", above=True)
@@ -221,6 +261,45 @@ class Frame(_Part):
     corner_damping_ratio: float = quantity(
         "", "of the corner on its springs, over critical", default=0.2
     )
+
+    def __post_init__(self) -> None:
+        super(Frame, self).__post_init__()
+        east, north = self.corners_east, self.corners_north
+        if (self.side is None) == (east is None) or (east is None) != (north is None):
+            raise InputError(
+                "Cage, Frame: give side_m of a square, or corners_east_m with corners_north_m of "
+                "another shape, and not both."
+            )
+        counts = (len(east or ()), len(north or ()))
+        if east is not None and not 3 <= counts[0] == counts[1] <= MOST_CORNERS:
+            raise InputError(
+                f"Cage, Frame: {counts[0]} corners_east_m with {counts[1]} corners_north_m are no "
+                f"frame. Give as many of each, 3 to {MOST_CORNERS}."
+            )
+        if _turning(np.diff(self.corners, axis=0, append=self.corners[:1])).min() <= 0.0:
+            raise InputError(
+                f"Cage, Frame: the corners {self.corners.tolist()} (east, north) are not those of "
+                "a convex polygon, counter-clockwise. Check their order and signs."
+            )
+
+    @property
+    def corners(self) -> Float[np.ndarray, "corner 2"]:
+        """East and north of each corner at heading 0, counter-clockwise [m]."""
+        if self.side is not None:
+            return self.side / 2.0 * np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
+        return np.column_stack([self.corners_east or (), self.corners_north or ()])
+
+    @property
+    def reach(self) -> float:
+        """Least distance of a side from the centre; below 0 if that lies outside [m]."""
+        side = np.diff(self.corners, axis=0, append=self.corners[:1])
+        return float(np.min(_turning(self.corners) / np.linalg.norm(side, axis=1)))
+
+
+def _turning(vectors: Float[np.ndarray, "row 2"]) -> Float[np.ndarray, " row"]:
+    """Cross product of each vector with the next, round and round."""
+    beside = np.roll(vectors, -1, axis=0)
+    return vectors[:, 0] * beside[:, 1] - vectors[:, 1] * beside[:, 0]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -287,8 +287,8 @@ def _ramp(colours: tuple[str, ...], levels: int) -> "LinearSegmentedColormap":
 
 def _draw_frame(axes: "Axes", cage: Cage, eye: _Eye) -> None:
     corner = eye.project(cage.corner_position)
-    for side in range(4):
-        ends = corner[[side, (side + 1) % 4]]
+    for side in range(len(corner)):
+        ends = corner[[side, (side + 1) % len(corner)]]
         axes.plot(ends[:, 0], ends[:, 1], color=MUTED, lw=0.9, ls=(0, (5, 3)), zorder=1)
     axes.plot(corner[:, 0], corner[:, 1], "s", color=MUTED, ms=4.5, zorder=4.5)
 

@@ -172,7 +172,7 @@ def _finish_top(
         # Half way out on the frame's up-stream side, where no bridle is.
         axis = int(np.argmax(np.abs(along)))
         place = np.zeros(2)
-        place[axis] = -np.sign(along[axis]) * (cage.frame.side / 2.0 + cage.collar.radius) / 2.0
+        place[axis] = -np.sign(along[axis]) * (cage.frame.reach + cage.collar.radius) / 2.0
         tail, tip = tuple(place - 6.0 * along), tuple(place + 6.0 * along)
         axes.annotate("", tip, tail, arrowprops={"arrowstyle": "-|>", "color": LOW, "lw": 1.6})
     if tension is None:

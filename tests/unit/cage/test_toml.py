@@ -205,7 +205,7 @@ def test_an_unknown_name_is_refused_with_the_known_ones():
         ("water_depth_m = 191.0", "water_depth_m = 31.0", "water_depth_m, tip_depth_m and the"),
         ("\ndepth_m = 8.0", "\ndepth_m = 200.0", "it hangs 200 m deep in water of 191 m"),
         ("side_m = 85.0", "side_m = 40.0", "no room for a collar of radius_m = 25"),
-        ("side_m = 85.0", "side_m = 50.0", "more than twice the radius"),
+        ("side_m = 85.0", "side_m = 50.0", "a side is 25 m from the centre"),
         ("bearings_deg = [67.5, ", "bearings_deg = [", "11 bearings_deg but 12 length_offset_m"),
         ("radius_m = 25.0", "radius_m = nan", "radius_m = nan must be a finite number"),
     ],

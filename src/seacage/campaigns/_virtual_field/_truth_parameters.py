@@ -229,15 +229,15 @@ class TruthParameters:
         Ropes run on all of the new meridians, as strong together as those drawn.
         """
         times = self.netting.refined
-        drawn = np.array([*cage.mesh.ring_depths, cage.mesh.tip_depth])
-        between = np.arange(times) / times
-        depths = drawn[:-1, None] + np.diff(drawn)[:, None] * between
-        return self._build(cage).altered(
-            mesh={"spokes": times * cage.spokes, "ring_depths_m": depths.ravel().tolist()},
-            ropes={
-                "axial_stiffness_n": cage.ropes.axial_stiffness / times,
-                "diameter_m": cage.ropes.diameter / math.sqrt(times),
-            },
+        return (
+            self._build(cage)
+            .refined(times)
+            .altered(
+                ropes={
+                    "axial_stiffness_n": cage.ropes.axial_stiffness / times,
+                    "diameter_m": cage.ropes.diameter / math.sqrt(times),
+                },
+            )
         )
 
     def _build(self, cage: Cage) -> Cage:

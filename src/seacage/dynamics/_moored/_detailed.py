@@ -52,8 +52,9 @@ def full_assembly(cage: Cage, *, stiffening: tuple[float, float]) -> Assembly:
 def _ropes(cage: Cage) -> Int[np.ndarray, " bar"]:
     """Bars of ``anchor_assembly(cage)`` that are ropes: bridles, frame and anchor lines."""
     base, parts = assemble(cage), cage.anchor_lines
-    frame = len(base.bars.length) + np.arange(4)
-    lines = np.flatnonzero(np.tile(is_rope(parts), 4 * parts.per_corner))
+    corners = len(cage.corner_position)
+    frame = len(base.bars.length) + np.arange(corners)
+    lines = np.flatnonzero(np.tile(is_rope(parts), corners * parts.per_corner))
     return np.concatenate([base.bridles, frame, frame[-1] + 1 + lines])
 
 
@@ -68,7 +69,7 @@ def _tube_hung(cage: Cage, base: Assembly) -> Assembly:
     bars, bends, pipes = base.bars, base.bends, base.cylinders
     hoop = bars.pushed & _all_in(bars.ends, ring)
     bars = replace(bars, ends=np.where(hoop[:, None], moved[bars.ends], bars.ends))
-    arc = 2.0 * np.pi * np.linalg.norm(below[:, :2], axis=1) / len(ring)
+    arc = 2.0 * np.pi * np.linalg.norm(below[:, :2], axis=1) * cage.spoke_share
     water = WATER_DENSITY * tube.displaced * arc
     lump = tube.mass * arc + tube.added_mass_coefficient * water
     return replace(

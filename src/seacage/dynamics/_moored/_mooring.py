@@ -37,7 +37,7 @@ ROPE_DRAG = 1.2
 def anchor_assembly(cage: Cage) -> Assembly:
     """The cage with frame ropes, corner buoys and anchor lines in place of corner springs.
 
-    Nodes: the cage's, the four corners, then those of each anchor line from its corner to its
+    Nodes: the cage's, the frame's corners, then those of each anchor line from its corner to its
     anchor, line by line, corner by corner. The corners are free. A buoy stands plumb over its
     corner on a chain that stays taut, so its lift follows the surface there. Anchor lines run
     on from the frame's sides, rope over chain, in lumped segments; the rope weighs nothing in
@@ -101,7 +101,7 @@ def _anchor_lines(cage: Cage, shape: LineShape) -> _AnchorLines:
         ],
         axis=-1,
     )
-    own = cage.node_count + 4 + np.arange(count * each).reshape(count, each)
+    own = cage.node_count + len(cage.corner_position) + np.arange(count * each).reshape(count, each)
     chain = np.column_stack([cage.node_count + corners, own])
     bars = Bars.alike(
         np.stack([chain[:, :-1], chain[:, 1:]], axis=-1).reshape(-1, 2),
@@ -151,10 +151,14 @@ def _directions(cage: Cage) -> tuple[Float[np.ndarray, "line 2"], Int[np.ndarray
             f"Cage {cage.name}: per_corner = {per_corner}, but a frame needs anchor lines. Give "
             "2, or pass mooring='springs'."
         )
-    spread = np.pi / 4.0 * (np.linspace(-1.0, 1.0, per_corner) if per_corner > 1 else np.zeros(1))
-    outward = np.arctan2(cage.corner_position[:, 1], cage.corner_position[:, 0])
-    angle = (outward[:, None] + spread).ravel()
-    return np.column_stack([np.cos(angle), np.sin(angle)]), np.repeat(np.arange(4), per_corner)
+    corner = cage.corner_position[:, :2]
+    ahead, behind = (corner - np.roll(corner, n, axis=0) for n in (-1, 1))
+    first = np.arctan2(ahead[:, 1], ahead[:, 0])
+    between = (np.arctan2(behind[:, 1], behind[:, 0]) - first) % (2.0 * np.pi)
+    share = np.linspace(0.0, 1.0, per_corner) if per_corner > 1 else np.array([0.5])
+    angle = (first[:, None] + between[:, None] * share).ravel()
+    held = np.repeat(np.arange(len(corner)), per_corner)
+    return np.column_stack([np.cos(angle), np.sin(angle)]), held
 
 
 def _buoy_load(
@@ -174,18 +178,25 @@ def _buoy_load(
 
 
 def _frame(cage: Cage, shape: LineShape, bridles: Float[np.ndarray, "corner 3"]) -> Bars:
-    """The four sides, as long as the balance of their corners asks for, and slack if cut so."""
+    """The sides, as long as the balance of their corners asks for, and slack if cut so.
+
+    A frame that is no square may not balance: then as nearly as ropes between its corners can.
+    """
     corner = cage.corner_position[:, :2]
-    ends = np.column_stack([np.arange(4), np.roll(np.arange(4), -1)])
+    count = len(corner)
+    ends = np.column_stack([np.arange(count), np.roll(np.arange(count), -1)])
     side = corner[ends[:, 1]] - corner[ends[:, 0]]
     span = np.linalg.norm(side, axis=1)
-    unit = side / span[:, None]
     directions, corners = _directions(cage)
-    outward = np.zeros((4, 2))
+    outward = np.zeros((count, 2))
     level = float(shape.position[1, 0] / np.linalg.norm(shape.position[1]))
     np.add.at(outward, corners, shape.tension[0] * level * directions)
     needed = outward + bridles[:, :2]  # the frame's ropes must hold this back
-    tension = np.sum((needed[ends[:, 1]] - needed[ends[:, 0]]) * unit, axis=1) / 2.0
+    pull = np.zeros((count, 2, count))  # of each rope on its two corners
+    sides = np.arange(count)
+    pull[ends[:, 0], :, sides] = side / span[:, None]
+    pull[ends[:, 1], :, sides] = -side / span[:, None]
+    tension = np.linalg.lstsq(pull.reshape(-1, count), -needed.ravel(), rcond=None)[0]
     stiffness = cage.frame.rope_axial_stiffness
     if stiffness == 0.0:
         raise InputError(
@@ -271,10 +282,10 @@ def _floats(cage: Cage, base: Assembly, lift: Float[np.ndarray, " corner"]) -> F
     frame = cage.frame
     stiffness = frame.corner_stiffness_vertical
     buoys = Floats(
-        nodes=cage.node_count + np.arange(4),
-        stiffness=np.full(4, stiffness),
+        nodes=cage.node_count + np.arange(len(lift)),
+        stiffness=np.full(len(lift), stiffness),
         draft=np.maximum(lift, 0.0) / stiffness - frame.depth,
-        height=np.full(4, frame.buoy_buoyancy / stiffness),
+        height=np.full(len(lift), frame.buoy_buoyancy / stiffness),
     )
     return Floats.joined(base.floats, buoys)
 

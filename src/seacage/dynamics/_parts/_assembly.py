@@ -56,18 +56,23 @@ class Bends(Rows):
     def ring(
         cls,
         around: Int[np.ndarray, " spoke"],
-        stiffness: float,
+        stiffness: float | Float[np.ndarray, " spoke"],
         *,
-        plane_stiffness: float = 0.0,
+        plane_stiffness: float | Float[np.ndarray, " spoke"] = 0.0,
+        share: float | Float[np.ndarray, " spoke"] | None = None,
     ) -> "Bends":
-        """Joints of a pipe that closes on itself, all alike, counter-clockwise from above."""
+        """Joints of a pipe that closes on itself, counter-clockwise from above.
+
+        Each turns by its share of the round, all by the same without.
+        """
         nodes = np.column_stack([np.roll(around, 1), around, np.roll(around, -1)])
         count = len(around)
+        turn = 2.0 * np.tan(np.pi * np.asarray(1.0 / count if share is None else share))
         return cls(
             nodes=nodes,
             stiffness=np.full(count, stiffness),
             plane_stiffness=np.full(count, plane_stiffness),
-            plane_turn=np.full(count, 2.0 * np.tan(np.pi / count)),
+            plane_turn=np.full(count, turn),
         )
 
 
@@ -343,8 +348,9 @@ def _bends(cage: Cage) -> Bends:
             cage.ring_nodes(0),
             collar.pipes * collar.pipe_bending_stiffness / chord,
             plane_stiffness=bracket_stiffness(collar) / chord,
+            share=cage.spoke_share,
         ),
-        Bends.ring(cage.ring_nodes(cage.tube_ring), tube),
+        Bends.ring(cage.ring_nodes(cage.tube_ring), tube, share=cage.spoke_share),
     )
 
 
@@ -361,7 +367,7 @@ def _panels(cage: Cage) -> Panels:
         # the twine that alone would give the grown solidity, from Sn = 2d/l − (d/l)²
         twine_diameter=cage.netting.half_mesh * (1.0 - np.sqrt(1.0 - solidity)),
         outward=centre[:, :2] / np.linalg.norm(centre[:, :2], axis=1, keepdims=True),
-        half_width=np.full(len(corners), np.pi / cage.spokes),
+        half_width=np.tile(cage.sectors / 2.0, cage.rings),
         depth=-centre[:, 2],
         area=area,
         outline=area,
@@ -441,7 +447,7 @@ def ring_chords(
     return chord
 
 
-def _pipe_water(cage: Cage) -> tuple[float, float]:
+def _pipe_water(cage: Cage) -> tuple[Float[np.ndarray, " spoke"], Float[np.ndarray, " spoke"]]:
     """Mass of the water that collar and tube displace at each of their nodes [kg]."""
     collar = cage.collar
     wet = collar.pipes * collar.pipe_displaced * collar.submerged_fraction * _arc(cage, 0)
@@ -483,17 +489,17 @@ def _floats(cage: Cage, carried: float) -> Floats:
     width = collar.pipes * collar.pipe_diameter
     height = collar.pipes * collar.pipe_displaced / width
     stiffness = WATER_DENSITY * GRAVITY * width * _arc(cage, 0)
-    draft = carried / (stiffness * cage.spokes)
+    draft = carried / stiffness.sum()
     if draft >= height:
         raise InputError(
             f"Cage {cage.name}: the collar cannot float. It carries {carried / 1e3:.0f} kN and "
-            f"displaces at most {stiffness * cage.spokes * height / 1e3:.0f} kN. "
+            f"displaces at most {stiffness.sum() * height / 1e3:.0f} kN. "
             "Check the weights of tube, tip and netting, and the pipes' volume."
         )
     count = cage.spokes
     return Floats(
         nodes=cage.ring_nodes(0),
-        stiffness=np.full(count, stiffness),
+        stiffness=stiffness,
         draft=np.full(count, draft),
         height=np.full(count, height),
     )
@@ -528,12 +534,14 @@ def _around(cage: Cage, ring: int) -> Int[np.ndarray, "spoke 2"]:
     return np.column_stack([nodes, np.roll(nodes, -1)])
 
 
-def _chord(cage: Cage, ring: int) -> float:
-    first, second = cage.design_position[cage.ring_nodes(ring)[:2]]
-    return float(np.linalg.norm(second - first))
+def _chord(cage: Cage, ring: int) -> Float[np.ndarray, " spoke"]:
+    """Straight length of ring that each node stands for [m]."""
+    nodes = cage.design_position[cage.ring_nodes(ring)]
+    beside = np.linalg.norm(np.roll(nodes, -1, axis=0) - nodes, axis=1)
+    return (beside + np.roll(beside, 1)) / 2.0
 
 
-def _arc(cage: Cage, ring: int) -> float:
-    """True length of ring for each node [m]."""
-    radius = np.linalg.norm(cage.design_position[cage.node(ring, 0), :2])
-    return float(2.0 * np.pi * radius / cage.spokes)
+def _arc(cage: Cage, ring: int) -> Float[np.ndarray, " spoke"]:
+    """True length of ring that each node stands for [m]."""
+    radius = float(np.linalg.norm(cage.design_position[cage.node(ring, 0), :2]))
+    return 2.0 * np.pi * radius * cage.spoke_share
