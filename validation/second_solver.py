@@ -60,7 +60,7 @@ class Solved:
     @property
     def tension(self) -> dict[str, float]:
         """Mean, by the line's name [N]."""
-        names = self.structure.line_names
+        names = self.structure.bridle_names
         return dict(zip(names, self.history.bridle.mean.tolist(), strict=True))
 
     def centre(self, ring: str) -> Float[np.ndarray, "t 3"]:

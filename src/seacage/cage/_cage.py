@@ -343,7 +343,8 @@ class Cage(TomlFile):
         ends = self.design_position[self.bridle_nodes]
         line = self.corner_position - ends[:, None]
         outwards = np.einsum("bcx,bx->bc", line[..., :2], ends[:, :2]) > 0.0
-        distance = np.where(outwards, np.linalg.norm(line, axis=-1), np.inf)
+        # where two are equally near, rounding must not choose
+        distance = np.where(outwards, np.linalg.norm(line, axis=-1).round(6), np.inf)
         return _read_only(np.argmin(distance, axis=1))
 
     @property

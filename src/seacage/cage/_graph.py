@@ -24,7 +24,7 @@ def spoke_angles(mesh: Mesh, bearings: Float[np.ndarray, " bridle"]) -> Float[np
     if mesh.spoke_bearings is not None:
         return np.unwrap(np.deg2rad(90.0 - np.array(mesh.spoke_bearings)))
     at = (90.0 - bearings) / 360.0 * mesh.spokes
-    held = np.round(at)
+    held = np.floor(at + 0.5)  # half a sector apart, all go the same way
     spoke, first, which = np.unique(held % mesh.spokes, return_index=True, return_inverse=True)
     shift = (at - held)[first]
     moved = np.arange(mesh.spokes) + np.interp(

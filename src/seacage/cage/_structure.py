@@ -9,6 +9,7 @@ from typing import TypeVar
 import numpy as np
 from jaxtyping import Float, Int
 
+from seacage.cage._cage import DepthSensor
 from seacage.cage._parts import Site, check_bounds, quantity
 from seacage.cage._structure_parts import Anchor, Line, Named, Net, Point, Ring, Section, Tie, Twine
 from seacage.cage._toml import TomlFile
@@ -202,10 +203,37 @@ class Structure(TomlFile):
         lines = [_chain_edges(self.line_nodes(index)[None]) for index in range(len(self.line))]
         return np.concatenate([*around, *nets, *ties, *lines])
 
+    # What commands ask of any cage
+
     @property
-    def line_names(self) -> tuple[str, ...]:
+    def bridle_names(self) -> tuple[str, ...]:
         """The lines, in the order in which their tensions are reported."""
         return tuple(line.name for line in self.line)
+
+    @property
+    def bridle_count(self) -> int:
+        """Number of lines."""
+        return len(self.line)
+
+    @property
+    def bridle_capacity(self) -> Float[np.ndarray, " bridle"]:
+        """NaN: a structure's file does not say what its lines can bear [N]."""
+        return np.full(self.bridle_count, np.nan)
+
+    @property
+    def bottom_node(self) -> int:
+        """The deepest node of the rings and nets as they were designed."""
+        return int(np.argmin(self.design_position[: self._starts["net"][-1], 2]))
+
+    @property
+    def depth_sensors(self) -> tuple[DepthSensor, ...]:
+        """None: a structure's file names no sensors."""
+        return ()
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """None: nothing of the file is changed."""
+        return ()
 
     def volume(
         self, node_position: Float[np.ndarray, "*case node 3"]

@@ -7,7 +7,7 @@ from functools import lru_cache
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from seacage.cage import Cage
+from seacage.cage import Cage, Structure
 from seacage.conventions import InputError, Result
 from seacage.dynamics._equilibrium import Equilibria, equilibria
 from seacage.dynamics._moored import Mooring, is_drowned, moor, part
@@ -40,8 +40,9 @@ class Response:
     line_names, line_tension
         Of all lines of the mooring, the bridles first; an anchor line's at its corner [N].
     anchor_load
-        Of each anchor line on its anchor, as the anchor lines are numbered: what points up is
-        uplift, what points down lies on the sea bed. Springs have none [N].
+        Of each anchor line on its anchor, as the anchor lines are numbered, or of all lines on
+        each of a structure's anchors: what points up is uplift, what points down lies on the sea
+        bed. Springs have none [N].
     net_force
         The water's load on the netting: zero in still water [N].
     volume, volume_fraction
@@ -81,7 +82,7 @@ class Response:
 
 
 def settle(
-    cage: Cage,
+    cage: Cage | Structure,
     sea: SeaState | Sequence[SeaState],
     *,
     law: Law | Sequence[Law] = "kristiansen-faltinsen",
@@ -112,6 +113,8 @@ def settle(
 
     Parameters
     ----------
+    cage
+        Of a ``Structure`` the "bridles" are its lines, and displacements are from the design.
     sea
         One sea state, or several: a leading case axis.
     law
@@ -140,14 +143,9 @@ def settle(
     Raises
     ------
     InputError
-        Waves without ``mean_waves``, no sea at all, no start, a ``Structure``, a line that
-        the mooring has not, or a cage that cannot float or has not what the mooring needs.
+        Waves without ``mean_waves``, no sea at all, no start, a line that the mooring has not,
+        or a cage that cannot float or has not what the mooring needs.
     """
-    if not isinstance(cage, Cage):
-        raise InputError(
-            f"settle: takes a Cage, not a {type(cage).__name__}. A structure comes to rest in "
-            "simulate, in a sea without waves and with a long spin-up."
-        )
     seas = [sea] if isinstance(sea, SeaState) else list(sea)
     _check(seas, mean_waves=mean_waves, starts=starts)
     whole = moor(cage, mooring)
@@ -173,7 +171,7 @@ def settle(
 
 
 def net_load(
-    cage: Cage,
+    cage: Cage | Structure,
     node_position: Float[np.ndarray, "node 3"],
     sea: SeaState,
     *,
@@ -183,7 +181,8 @@ def net_load(
     wake: bool = True,
 ) -> Float[np.ndarray, "3"]:
     """The current's load on the netting in a given shape, at rest [N]."""
-    assembly = Assembly.of(cage)  # the netting does not ask for the mooring
+    # the netting does not ask for the mooring
+    assembly = moor(cage, "catenary") if isinstance(cage, Structure) else Assembly.of(cage)
     tuning = Tuning(skin_friction=skin_friction, lift_factor=lift_factor)
     velocity = sea.current_velocity[None]
     flow = steady_flow(assembly, velocity, law=law, wake=wake, tuning=tuning)
@@ -192,15 +191,17 @@ def net_load(
 
 @lru_cache(maxsize=16)
 def rest_shape(
-    cage: Cage, *, mooring: Mooring = "catenary", hold_collar: bool = False
+    cage: Cage | Structure, *, mooring: Mooring = "catenary", hold_collar: bool = False
 ) -> Float[np.ndarray, "node 3"]:
-    """The net's shape in still water [m]; do not write into it.
+    """The net's shape in still water, a structure's design [m]; do not write into it.
 
     Raises
     ------
     InputError
         A cage that has no rest: its parts cannot hang together.
     """
+    if isinstance(cage, Structure):
+        return cage.design_position
     whole = moor(cage, mooring)
     assembly = whole.held() if hold_collar else whole
     found = equilibria(assembly, steady_flow(assembly, np.zeros((1, 2)), law="loland"))
@@ -230,7 +231,7 @@ def _check(seas: list[SeaState], *, mean_waves: bool, starts: int) -> None:
 
 
 def _wave_variance(
-    cage: Cage, assembly: Assembly, seas: list[SeaState]
+    cage: Cage | Structure, assembly: Assembly, seas: list[SeaState]
 ) -> Float[np.ndarray, "case panel"]:
     depths, level = np.unique(assembly.panels.depth, return_inverse=True)
     along = [wave_velocity_variance(s, -depths, depth=cage.site.water_depth)[:, 0] for s in seas]
@@ -238,7 +239,7 @@ def _wave_variance(
 
 
 def _response(
-    cage: Cage,
+    cage: Cage | Structure,
     assembly: Assembly,
     flow: SteadyFlow,
     found: Equilibria,
@@ -247,14 +248,15 @@ def _response(
     net = found.position[:, : cage.node_count]
     volume, drowned = cage.volume(net), is_drowned(cage, assembly, found.position)
     tension = bar_tension(assembly.bars, found.position)
-    anchors = cage.node_count + np.flatnonzero(assembly.fixed[cage.node_count :])
+    is_anchor = assembly.fixed.copy()
+    is_anchor[assembly.collar] = False  # which may be held
     return Response(
         node_position=net,
         node_displacement=net - rest,
         bridle_tension=tension[:, assembly.bridles],
         line_names=assembly.lines.names,
         line_tension=tension[:, assembly.line_bars],
-        anchor_load=nodal_force(assembly, flow, found.position)[:, anchors],
+        anchor_load=nodal_force(assembly, flow, found.position)[:, is_anchor],
         net_force=total_net_force(assembly.panels, flow, found.position),
         volume=volume,
         volume_fraction=volume / cage.volume(rest),

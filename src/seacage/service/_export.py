@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from jaxtyping import Bool, Float
 
-from seacage.cage import Cage
+from seacage.cage import Cage, Structure
 from seacage.conventions import InputError
 from seacage.ocean import SeaState
 from seacage.records import KEYS, Record
@@ -313,7 +313,7 @@ def _flags(dim: str, inside: Bool[np.ndarray, "t output"]) -> Any:
 
 def write_response(
     path: Path,
-    cage: Cage,
+    cage: Cage | Structure,
     sea: SeaState,
     law: str,
     response: "Response",
@@ -362,7 +362,7 @@ def _variable(dims: str, values: Any, units: str = "", long_name: str = "") -> A
     return tuple(dims.split()), values, attributes
 
 
-def _attributes(title: str, cage: Cage) -> dict[str, Any]:
+def _attributes(title: str, cage: Cage | Structure) -> dict[str, Any]:
     return {
         "Conventions": "CF-1.11, ACDD-1.3",
         "title": title,

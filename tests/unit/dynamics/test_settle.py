@@ -365,14 +365,3 @@ def test_an_unknown_law_is_refused_with_those_that_are_known():
     done = subprocess.run([sys.executable, "-c", ask], capture_output=True, text=True, check=False)
     message = done.stderr.splitlines()[-1]
     assert message.endswith("no law 'morison'; there are: aarsnes, loland, kristiansen-faltinsen.")
-
-
-def test_who_passes_a_structure_learns_where_it_comes_to_rest():
-    # a process without the tests' checks of types, which would refuse it first
-    script = (
-        "from seacage.dynamics import settle; from seacage.ocean import SeaState; "
-        "settle(object(), SeaState(current_speed=0.1, current_to=0.0))"
-    )
-    command = [sys.executable, "-c", script]
-    result = subprocess.run(command, check=False, capture_output=True, text=True).stderr
-    assert "settle: takes a Cage, not a object. A structure comes to rest in simulate" in result

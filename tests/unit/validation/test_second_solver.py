@@ -12,7 +12,7 @@ PARTS = assemble_structure(CAGE)
 
 
 def test_its_lines_have_the_names_of_the_reference():
-    assert set(LINES) <= set(CAGE.line_names)
+    assert set(LINES) <= set(CAGE.bridle_names)
     assert len(CAGE.anchor) == 3
 
 

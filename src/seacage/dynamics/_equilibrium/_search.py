@@ -103,6 +103,7 @@ def _swung(
     hangs = np.zeros(len(assembly.position))
     net = slice(0, assembly.cage_nodes)
     hangs[net] = np.maximum(-assembly.position[net, 2], 0.0)
+    hangs[assembly.fixed] = 0.0  # a structure's anchors
     aside = np.sin(angle)[:, None] * hangs
     shape = assembly.position + aside[..., None] * ahead[:, None]
     shape[..., 2] += (1.0 - np.cos(angle))[:, None] * hangs

@@ -2,11 +2,11 @@
 
 from typing import Literal, get_args
 
-from seacage.cage import Cage
+from seacage.cage import Cage, Structure
 from seacage.conventions import InputError
 from seacage.dynamics._moored._mooring import anchor_assembly
 from seacage.dynamics._moored._pretension import assemble
-from seacage.dynamics._parts import Assembly
+from seacage.dynamics._parts import Assembly, assemble_structure
 
 Mooring = Literal["catenary", "springs"]
 
@@ -17,8 +17,10 @@ SPRINGS = (
 """Warning of results on springs."""
 
 
-def moor(cage: Cage, mooring: Mooring) -> Assembly:
+def moor(cage: Cage | Structure, mooring: Mooring) -> Assembly:
     """The cage on frame ropes, buoys and anchor lines ("catenary"), or on corner "springs".
+
+    A structure has lines and anchors of its own.
 
     Raises
     ------
@@ -28,4 +30,11 @@ def moor(cage: Cage, mooring: Mooring) -> Assembly:
     if mooring not in get_args(Mooring):
         known = ", ".join(get_args(Mooring))
         raise InputError(f"mooring = {mooring!r} is none of: {known}.")
+    if isinstance(cage, Structure):
+        if mooring != "catenary":
+            raise InputError(
+                f"mooring = {mooring!r}, but structure {cage.name} has lines and anchors of its "
+                "own. Leave it out."
+            )
+        return assemble_structure(cage)
     return anchor_assembly(cage) if mooring == "catenary" else assemble(cage)

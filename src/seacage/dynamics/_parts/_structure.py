@@ -41,7 +41,7 @@ def assemble_structure(structure: Structure) -> Assembly:
     surface; ropes count as always under water, and so do nets but a roof at the water line,
     which counts as always dry. Ties and lines are lumped into their segments' ends, and have
     the same added mass in all directions, which a ring has across itself alone. ``bridles``
-    are the first bars of the lines, in the order of ``structure.line_names``. Friction on the
+    are the first bars of the lines, in the order of ``structure.bridle_names``. Friction on the
     sea bed is left out.
 
     Raises
@@ -80,7 +80,7 @@ def assemble_structure(structure: Structure) -> Assembly:
         chord=ring_chords(position, [structure.ring_nodes(i) for i in range(len(structure.ring))]),
         bars=bars,
         bridles=lines,
-        lines=MooringLines.alike(structure.line_names, "line"),
+        lines=MooringLines.alike(structure.bridle_names, "line"),
         line_bars=lines,
         anchor_bars=np.full(len(lines), -1),
         net_bars=np.zeros(0, dtype=np.int64),

@@ -7,11 +7,10 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.cage import Cage, Structure
-from seacage.conventions import InputError
 from seacage.dynamics._equilibrium import equilibria
 from seacage.dynamics._kernel import Ocean, Steps
 from seacage.dynamics._moored import Mooring, moor, part, scale_mass
-from seacage.dynamics._parts import Assembly, assemble_structure
+from seacage.dynamics._parts import Assembly
 from seacage.dynamics._physics import MovingLaw, NetLaw, Tuning, flow_of_laws
 from seacage.dynamics._settle import rest_shape
 from seacage.dynamics._time._forcing import wakes
@@ -49,7 +48,7 @@ class Simulation:
 
     def assembly(self) -> Assembly:
         """The cage on its mooring, with masses that the time step can follow."""
-        assembly = self._moored()
+        assembly = moor(self.cage, self.mooring)
         if self.hold_collar:
             assembly = assembly.held()
         if not self.collar_drag:
@@ -58,16 +57,6 @@ class Simulation:
             assembly = replace(assembly, cylinders=pipes)
         # masses as of the whole cage: what parts changes no light node's
         return part(scale_mass(assembly, self.steps.time_step)[0], self.parted)
-
-    def _moored(self) -> Assembly:
-        if isinstance(self.cage, Cage):
-            return moor(self.cage, self.mooring)
-        if self.mooring != "catenary":
-            raise InputError(
-                f"simulate: mooring = {self.mooring!r}, but structure {self.cage.name} has lines "
-                "and anchors of its own. Leave it out."
-            )
-        return assemble_structure(self.cage)
 
     def net_laws(self, assembly: Assembly, laws: Sequence[MovingLaw], ocean: Ocean) -> list[NetLaw]:
         """The law of the netting in each case's current, case by case."""
@@ -84,8 +73,6 @@ class Simulation:
     @property
     def rest(self) -> Float[np.ndarray, "node 3"]:
         """Shape in still water; a structure's is the design [m]."""
-        if isinstance(self.cage, Structure):
-            return self.cage.design_position
         return rest_shape(self.cage, mooring=self.mooring, hold_collar=self.hold_collar)
 
     def start(

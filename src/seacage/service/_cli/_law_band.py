@@ -10,14 +10,14 @@ from jaxtyping import Float
 from seacage.service._cli._console import Exit, exit_with, report
 
 if TYPE_CHECKING:
-    from seacage.cage import Cage
+    from seacage.cage import Cage, Structure
     from seacage.dynamics import History, Response
 
 Values = Float[np.ndarray, " law"]
 
 
 def answer_of_response(
-    cage: "Cage", response: "Response", laws: Sequence[str]
+    cage: "Cage | Structure", response: "Response", laws: Sequence[str]
 ) -> tuple[dict[str, Any], list[tuple[str, str]]]:
     """JSON and table of equilibria, one for each law."""
     bands = _Bands(laws)
@@ -36,7 +36,7 @@ def answer_of_response(
 
 
 def answer_of_history(
-    cage: "Cage", history: "History", laws: Sequence[str]
+    cage: "Cage | Structure", history: "History", laws: Sequence[str]
 ) -> tuple[dict[str, Any], list[tuple[str, str]]]:
     """JSON and table of histories in the same waves, one for each law."""
     bands, lines = _Bands(laws), history.lines
@@ -66,7 +66,7 @@ def answer_of_history(
 
 def report_band(
     command: str,
-    cage: "Cage",
+    cage: "Cage | Structure",
     laws: Sequence[str],
     results: np.ndarray,
     about: Mapping[str, object],

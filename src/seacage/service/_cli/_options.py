@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 
 if TYPE_CHECKING:
-    from seacage.cage import Cage
+    from seacage.cage import Cage, Structure
     from seacage.ocean import SeaState
     from seacage.records import Record
 
@@ -122,10 +122,29 @@ def warn(sentences: Iterable[str]) -> None:
 def read_cage(name: str) -> "Cage":
     """A shipped cage by its name, else a file; what the cage warns of goes to stderr."""
     from seacage.cage import Cage
+    from seacage.conventions import NonsenseError
 
-    cage = Cage.read(name) if name.endswith(".toml") else Cage.named(name)
-    warn(cage.warnings)
-    return cage
+    found = read_cage_or_structure(name)
+    if not isinstance(found, Cage):
+        raise NonsenseError(
+            f"{name}: a structure of rings, nets and lines can be settled and simulated, but has "
+            "no campaign, twin, drawn mooring or animation. Give a cage's file."
+        )
+    return found
+
+
+def read_cage_or_structure(name: str) -> "Cage | Structure":
+    """The same, or a cage of another topology, whose file is one with rings."""
+    from seacage.cage import Cage, Structure
+    from seacage.conventions import parse_toml, read_text
+
+    if not name.endswith(".toml"):
+        found = Cage.named(name)
+    else:
+        is_structure = "ring" in parse_toml(read_text(name), name)
+        found = (Structure if is_structure else Cage).read(name)
+    warn(found.warnings)
+    return found
 
 
 def warn_of(mooring: str) -> tuple[str, ...]:

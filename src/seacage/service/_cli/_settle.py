@@ -12,13 +12,13 @@ from seacage.service._cli._options import (
     OutFile,
     SeaOptions,
     Without,
-    read_cage,
+    read_cage_or_structure,
     warn,
     warn_of,
 )
 
 if TYPE_CHECKING:
-    from seacage.cage import Cage
+    from seacage.cage import Cage, Structure
     from seacage.dynamics import Response
 
 
@@ -56,7 +56,7 @@ def settle(
     from seacage.dynamics import settle as settled
 
     net.check_files(out)
-    state, subject = sea.state(), read_cage(cage)
+    state, subject = sea.state(), read_cage_or_structure(cage)
     parted = without or []
     warnings = [*subject.warnings, *warn_of(mooring)]
     laws = (law,) if net.laws is None else LAWS
@@ -92,7 +92,7 @@ def settle(
         raise exit_with(f"settle: {result.name.lower()}: {RESULTS[result]}.", Exit.FAILED)
 
 
-def _answer(cage: "Cage", response: "Response") -> dict[str, object]:
+def _answer(cage: "Cage | Structure", response: "Response") -> dict[str, object]:
     tension, force = response.bridle_tension / 1e3, response.net_force / 1e3
     depth = -response.node_position[:, 2]
     return {
@@ -113,7 +113,7 @@ def _answer(cage: "Cage", response: "Response") -> dict[str, object]:
     }
 
 
-def _rows(cage: "Cage", response: "Response") -> list[tuple[str, str]]:
+def _rows(cage: "Cage | Structure", response: "Response") -> list[tuple[str, str]]:
     east, north, up = response.net_force / 1e3
     bottom = -response.node_position[cage.bottom_node, 2]
     lift = response.node_displacement[cage.bottom_node, 2]
@@ -125,7 +125,8 @@ def _rows(cage: "Cage", response: "Response") -> list[tuple[str, str]]:
     ]
     tensions = zip(cage.bridle_names, response.bridle_tension, cage.bridle_capacity, strict=True)
     rows += [
-        (n, f"{load / 1e3:6.1f} kN, {load / most:.0%} of capacity") for n, load, most in tensions
+        (n, f"{load / 1e3:6.1f} kN" + (f", {load / most:.0%} of capacity" if most > 0.0 else ""))
+        for n, load, most in tensions
     ]
     others = slice(cage.bridle_count, None)
     rows += [

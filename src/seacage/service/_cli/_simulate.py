@@ -16,6 +16,7 @@ from seacage.service._cli._options import (
     SpinUp,
     Without,
     read_cage,
+    read_cage_or_structure,
     warn,
     warn_of,
 )
@@ -23,7 +24,7 @@ from seacage.service._cli._options import (
 if TYPE_CHECKING:
     import numpy as np
 
-    from seacage.cage import Cage
+    from seacage.cage import Cage, Structure
     from seacage.dynamics import History, LineLoads, Statistics, WaterLoad
     from seacage.figures import Motion
     from seacage.ocean import SeaState, Waves
@@ -80,6 +81,7 @@ def simulate(
     animation
         Write the first minute as a GIF.
     """
+    from seacage.cage import Cage
     from seacage.conventions import InputError
     from seacage.dynamics import MOVING_LAWS
     from seacage.dynamics import simulate as simulated
@@ -97,9 +99,9 @@ def simulate(
             f"simulate: a sample every {sample_every:g} s is too seldom for an animation. "
             f"Give --sample-every {_SMOOTH:g} or less."
         )
-    if pieces is None:
-        pieces = max(1, min(16, int(duration // 60.0)))
-    subject, state = read_cage(cage), sea.state()
+    pieces = max(1, min(16, int(duration // 60.0))) if pieces is None else pieces
+    read = read_cage if mooring_draws or animation else read_cage_or_structure
+    subject, state = read(cage), sea.state()
     warnings = [*subject.warnings, *warn_of(mooring)]
     waves = sample_waves(state, seed=seed, depth=subject.site.water_depth)
     given: dict[str, Any] = {
@@ -113,7 +115,7 @@ def simulate(
         "waves": waves,
         "pieces": pieces,
     }
-    drawn = [subject.drawn(number) for number in range(mooring_draws)]
+    drawn = [subject.drawn(n) for n in range(mooring_draws) if isinstance(subject, Cage)]
     laws = (law,) if net.laws is None else MOVING_LAWS
     with progress_bar() as progress:
         history = simulated(
@@ -154,7 +156,7 @@ def simulate(
         _write(out, subject, state, history, settings | comment)
         answer["written"] = str(out)
     _refuse_failure(history)
-    if animation is not None:
+    if animation is not None and isinstance(subject, Cage):
         from seacage.dynamics import rest_shape
         from seacage.figures import write_animation
 
@@ -213,7 +215,7 @@ def _name_drowned(history: "History") -> None:
 
 
 def _answer(
-    cage: "Cage",
+    cage: "Cage | Structure",
     history: "History",
     warnings: list[str],
     settings: dict[str, str | int | float],
@@ -241,7 +243,9 @@ def _answer(
         "twine_tension_n": {
             "mean": round(float(history.twines.mean.mean()), 3),
             "maximum": round(float(history.twines.maximum.max()), 3),
-        },
+        }
+        if history.twines.mean.size
+        else None,
         "depth_m": {
             one.name: _statistics(history.node, -1.0, (one.node, 2)) for one in cage.depth_sensors
         },
@@ -299,7 +303,7 @@ def _statistics(
     }
 
 
-def _rows(cage: "Cage", history: "History") -> list[tuple[str, str]]:
+def _rows(cage: "Cage | Structure", history: "History") -> list[tuple[str, str]]:
     east, north, up = history.net_force.mean / 1e3
     volume, lines = history.volume, history.lines
     kept = f"{volume.mean:.0f} m3, {history.volume_fraction:.1%} of still water"
@@ -332,7 +336,7 @@ def _line(statistics: "Statistics", scale: float, place: int | tuple[int, ...]) 
 
 def _write(
     path: Path,
-    cage: "Cage",
+    cage: "Cage | Structure",
     sea: "SeaState",
     history: "History",
     settings: dict[str, str | int | float],

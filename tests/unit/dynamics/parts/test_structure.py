@@ -7,8 +7,8 @@ import pytest
 
 from seacage.cage import Anchor as AnchorPoint
 from seacage.cage import Line, Net, Point, Ring, Section, Site, Structure, Tie, Twine
-from seacage.conventions import GRAVITY, WATER_DENSITY, InputError
-from seacage.dynamics import simulate
+from seacage.conventions import GRAVITY, WATER_DENSITY, InputError, Result
+from seacage.dynamics import net_load, rest_shape, settle, simulate
 from seacage.dynamics._parts._structure import assemble_structure, wet_share
 from seacage.dynamics._physics._loads import bar_tension
 from seacage.dynamics._physics._motion import NetLaw, Water, moving_net_load
@@ -55,7 +55,7 @@ AREA = AROUND * 6.0
 def test_a_line_is_reported_by_its_first_bar_in_the_file_s_order():
     for line, bar in enumerate(PARTS.bridles):
         np.testing.assert_array_equal(PARTS.bars.ends[bar], DRUM.line_nodes(line)[:2])
-    assert DRUM.line_names == ("bridle", "leg", "back")
+    assert DRUM.bridle_names == ("bridle", "leg", "back")
 
 
 def test_lengths_are_those_of_the_file_or_as_built():
@@ -212,3 +212,33 @@ def test_a_ring_without_a_net_can_be_simulated_too():
     assert np.isnan(history.volume.mean)
     np.testing.assert_array_equal(history.net_force.mean, 0.0)
     assert history.node.mean[bare.ring_nodes(0), 0].mean() > 0.0
+
+
+def test_it_settles_where_a_simulation_comes_to_rest():
+    seas = [SeaState(current_speed=speed, current_to=270.0) for speed in (0.2, 0.4)]
+    settled = settle(DRUM, seas, law="loland")
+    assert np.all(settled.result == Result.CONVERGED)
+    ended = simulate(DRUM, seas, law="loland", duration=5.0, spin_up=2000.0)
+    assert ended.node.std.max() < 1e-3
+    np.testing.assert_allclose(settled.node_position, ended.node.mean, atol=0.02)
+    np.testing.assert_allclose(settled.line_tension, ended.lines.tension.mean, rtol=0.01, atol=5.0)
+    np.testing.assert_allclose(settled.net_force, ended.net_force.mean, rtol=2e-3, atol=1.0)
+    load = net_load(DRUM, settled.node_position[1], seas[1], law="loland")
+    np.testing.assert_allclose(load, settled.net_force[1])
+
+
+def test_its_displacement_is_from_the_design_and_its_anchors_are_reported():
+    still = settle(DRUM, SeaState(current_speed=0.0, current_to=0.0))
+    np.testing.assert_array_equal(rest_shape(DRUM), DRUM.design_position)
+    np.testing.assert_allclose(
+        still.node_displacement, still.node_position - DRUM.design_position, atol=1e-12
+    )
+    assert still.anchor_load.shape == (2, 3)
+    held = settle(DRUM, SeaState(current_speed=0.3, current_to=0.0), hold_collar=True)
+    assert held.anchor_load.shape == (2, 3)
+    assert DRUM.bottom_node in DRUM.ring_nodes("sinker")
+
+
+def test_springs_under_it_are_refused():
+    with pytest.raises(InputError, match="structure drum has lines and anchors of its own"):
+        settle(DRUM, SeaState(current_speed=0.1, current_to=0.0), mooring="springs")

@@ -185,15 +185,30 @@ def test_a_bridle_that_a_spoke_moves_is_warned_of_in_the_result_and_on_the_shell
 
     path, out = tmp_path / "mine.toml", tmp_path / "mine.nc"
     text = Cage.named("ace").altered(mesh={"spokes": 16}).to_toml()
-    path.write_text(text.replace("bearings_deg = [67.5", "bearings_deg = [60.0"))
+    path.write_text(text.replace("bearings_deg = [67.5", "bearings_deg = [50.0"))
     words = ("settle", "--current-speed", 0.4, "--current-to", 90, "--cage", path, "--out", out)
     result = run(*words, "--json")
     assert result.exit_code == 0
     (warning,) = json.loads(result.stdout)["warnings"]
-    assert "moves bridle-1 from 60° to 67.5°." in warning
+    assert "moves bridle-1 from 50° to 45°." in warning
     assert result.stderr == f"seacage: warning: {warning}\n"
     with xarray.open_dataset(out) as kept:
         assert kept.attrs["comment"] == warning
+
+
+def test_a_cage_of_another_topology_settles_and_is_simulated(tmp_path, pytestconfig):
+    path = pytestconfig.rootpath / "validation" / "second_solver.toml"
+    sea = ("--current-speed", 0.3, "--current-to", 90, "--cage", path, "--json")
+    for words in (("settle", *sea), ("simulate", "--duration", 5, "--spin-up", 5, *sea)):
+        result = run(*words, "--out", tmp_path / "out.nc")
+        assert result.exit_code == 0, result.stderr
+        answer = json.loads(result.stdout)
+        assert answer["cage"] == "second-solver"
+        assert answer["depth_m"] == {}
+        assert len(answer["bridle_tension_kn"]) == 18
+    refused = run("simulate", *sea, "--mooring-draws", 2)
+    assert refused.exit_code == 2
+    assert "no campaign, twin, drawn mooring or animation. Give a cage's file." in refused.stderr
 
 
 def test_waves_that_a_field_never_had_are_refused_with_its_folder(tmp_path, monkeypatch):
