@@ -40,13 +40,38 @@ def cpu_seconds(work: Callable[[], object]) -> float:
 
 
 def whole(duration: float, spin_up: float) -> None:
-    """`simulate`, from its start at the equilibrium to its statistics."""
+    """`simulate`, from its start at the equilibrium to its statistics; and one sea alone."""
     rest_shape(CAGE)  # once for any number of cases, so not counted
-    ramp = min(spin_up, 60.0)
-    taken = cpu_seconds(lambda: simulate(CAGE, SEAS, duration=duration, spin_up=spin_up, ramp=ramp))
-    print(f"simulate, {CASES} cases of plan paper, {duration:g} s and {spin_up:g} s of spin-up")
-    pace, counted = CASES * (duration + spin_up) / taken, CASES * duration / taken
-    print(f"  {pace:.0f} simulated seconds per core-second, {counted:.0f} without the spin-up's")
+    print(
+        f"simulate, plan paper, {duration:g} s after {spin_up:g} s of spin-up, "
+        "seconds that count per core-second"
+    )
+    counted = 0.0
+    for components, cases, pieces in (
+        (30, CASES, 1),
+        (200, 1, 1),
+        (200, 1, CASES),
+        (200, CASES, 1),
+    ):
+        waves = [
+            sample_waves(sea, seed=seed, components=components, depth=CAGE.site.water_depth)
+            for seed, sea in enumerate(SEAS[:cases])
+        ]
+        taken = cpu_seconds(
+            lambda seas=SEAS[:cases], waves=waves, pieces=pieces: simulate(
+                CAGE,
+                seas,
+                waves=waves,
+                duration=duration,
+                spin_up=spin_up,
+                ramp=min(spin_up, 60.0),
+                sample_every=0.5 if pieces == 1 else None,
+                pieces=pieces,
+            )
+        )
+        counted = cases * duration / taken
+        what = f"{cases} seas of {components} components" + f" in {pieces} pieces" * (pieces > 1)
+        print(f"  {what:<40}{counted:8.0f}")
     for name, theirs in FHSIM.items():
         print(f"  {counted / theirs:.0f} × {name}: {theirs:.2g}")
 
