@@ -189,7 +189,7 @@ def _structure_node(place: str, subject: Structure, where: str) -> int:
 
 def _line(place: str, subject: Cage | Structure, mooring: Mooring, where: str) -> int:
     if isinstance(subject, Structure):
-        names = tuple(subject.line_names)
+        names = tuple(subject.bridle_names)
     else:
         names = mooring_lines(subject, anchored=mooring == "catenary").names
         if place.isdecimal():

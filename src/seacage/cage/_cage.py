@@ -245,8 +245,7 @@ class Cage(TomlFile):
     @cached_property
     def sectors(self) -> Float[np.ndarray, " spoke"]:
         """Angle from each spoke to the next [rad]."""
-        angles = self.spoke_angles
-        return _read_only(np.diff(angles, append=angles[0] + 2.0 * np.pi))
+        return _read_only(np.diff(self.spoke_angles, append=self.spoke_angles[0] + 2.0 * np.pi))
 
     @cached_property
     def spoke_share(self) -> Float[np.ndarray, " spoke"]:

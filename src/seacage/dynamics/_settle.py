@@ -248,15 +248,15 @@ def _response(
     net = found.position[:, : cage.node_count]
     volume, drowned = cage.volume(net), is_drowned(cage, assembly, found.position)
     tension = bar_tension(assembly.bars, found.position)
-    is_anchor = assembly.fixed.copy()
-    is_anchor[assembly.collar] = False  # which may be held
+    # the collar may be held, too
+    anchors = np.setdiff1d(np.flatnonzero(assembly.fixed), assembly.collar)
     return Response(
         node_position=net,
         node_displacement=net - rest,
         bridle_tension=tension[:, assembly.bridles],
         line_names=assembly.lines.names,
         line_tension=tension[:, assembly.line_bars],
-        anchor_load=nodal_force(assembly, flow, found.position)[:, is_anchor],
+        anchor_load=nodal_force(assembly, flow, found.position)[:, anchors],
         net_force=total_net_force(assembly.panels, flow, found.position),
         volume=volume,
         volume_fraction=volume / cage.volume(rest),

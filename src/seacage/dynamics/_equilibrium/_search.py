@@ -55,12 +55,13 @@ class Equilibria:
 
 
 def equilibria(
-    assembly: Assembly, flow: SteadyFlow, *, starts: int = 1, workers: int = 1
+    assembly: Assembly, flow: SteadyFlow, *, starts: int = 1, relaxed: bool = True, workers: int = 1
 ) -> Equilibria:
     """Seek an equilibrium of each case from each of so many first shapes.
 
     The first found in the order of ``_first_shapes`` is taken, but one that is proved
-    unstable only for want of another. Cases without any are relaxed.
+    unstable only for want of another. Cases without any are relaxed, which takes seconds, unless
+    ``relaxed`` is left out.
     """
     cases = len(flow.direction)
     problem_of = np.repeat(np.arange(cases), starts)
@@ -68,7 +69,8 @@ def equilibria(
     balance = _balance(assembly)
     with ThreadPoolExecutor(workers) as pool:
         _seek(assembly, flow.rows(problem_of), state, balance, pool)
-        _relax_the_rest(assembly, flow, state, balance, pool)
+        if relaxed:
+            _relax_the_rest(assembly, flow, state, balance, pool)
     return _choose(assembly, state, starts)
 
 

@@ -193,9 +193,8 @@ def _frame(cage: Cage, shape: LineShape, bridles: Float[np.ndarray, "corner 3"])
     np.add.at(outward, corners, shape.tension[0] * level * directions)
     needed = outward + bridles[:, :2]  # the frame's ropes must hold this back
     pull = np.zeros((count, 2, count))  # of each rope on its two corners
-    sides = np.arange(count)
-    pull[ends[:, 0], :, sides] = side / span[:, None]
-    pull[ends[:, 1], :, sides] = -side / span[:, None]
+    pull[ends[:, 0], :, ends[:, 0]] = side / span[:, None]
+    pull[ends[:, 1], :, ends[:, 0]] = -side / span[:, None]
     tension = np.linalg.lstsq(pull.reshape(-1, count), -needed.ravel(), rcond=None)[0]
     stiffness = cage.frame.rope_axial_stiffness
     if stiffness == 0.0:

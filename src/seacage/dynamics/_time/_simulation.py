@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.cage import Cage, Structure
+from seacage.conventions import Result
 from seacage.dynamics._equilibrium import equilibria
 from seacage.dynamics._kernel import Ocean, Steps
 from seacage.dynamics._moored import Mooring, moor, part, scale_mass
@@ -89,6 +90,9 @@ class Simulation:
             wake=self.wake,
             tuning=self.tuning,
         )
-        settled = equilibria(assembly, flow).position
+        found = equilibria(assembly, flow, relaxed=False)
+        settled, rest = found.position, np.flatnonzero(found.result != Result.CONVERGED)
+        if rest.size:  # other first shapes settle most of them in a fraction of the time
+            settled[rest] = equilibria(assembly, flow.rows(rest), starts=2).position
         start[:, : self.cage.node_count] = self.rest
         return np.where(np.isfinite(settled).all(axis=(1, 2), keepdims=True), settled, start)

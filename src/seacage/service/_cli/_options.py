@@ -138,11 +138,9 @@ def read_cage_or_structure(name: str) -> "Cage | Structure":
     from seacage.cage import Cage, Structure
     from seacage.conventions import parse_toml, read_text
 
-    if not name.endswith(".toml"):
-        found = Cage.named(name)
-    else:
-        is_structure = "ring" in parse_toml(read_text(name), name)
-        found = (Structure if is_structure else Cage).read(name)
+    is_file = name.endswith(".toml")
+    kind = Structure if is_file and "ring" in parse_toml(read_text(name), name) else Cage
+    found = kind.read(name) if is_file else Cage.named(name)
     warn(found.warnings)
     return found
 
