@@ -188,13 +188,13 @@ class Cage(TomlFile):
         """A copy with so many times the rings and spokes; every old node stays a node."""
         between = np.arange(times) / times
         depths = np.array([*self.mesh.ring_depths, self.mesh.tip_depth])
-        finer = depths[:-1, None] + np.diff(depths)[:, None] * between
-        mesh = {"ring_depths_m": finer.ravel().tolist(), "spokes": times * self.spokes}
+        finer = (depths[:-1, None] + np.diff(depths)[:, None] * between).ravel().tolist()
+        mesh = {"ring_depths_m": finer, "spokes": times * self.spokes}
         even = self.altered(mesh=mesh)
         angles = self.spoke_angles[:, None] + self.sectors[:, None] * between
         if self.mesh.spoke_bearings is None and np.allclose(even.spoke_angles, angles.ravel()):
             return even
-        bearings = 90.0 - np.rad2deg(angles.ravel())
+        bearings = (90.0 - np.rad2deg(angles.ravel())) % 360.0
         return self.altered(mesh={**mesh, "spoke_bearings_deg": bearings.tolist()})
 
     # The graph

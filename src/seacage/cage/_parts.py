@@ -75,7 +75,8 @@ class Mesh(_Part):
 
     def __post_init__(self) -> None:
         super(Mesh, self).__post_init__()
-        self._check_spokes()
+        if self.spoke_bearings is not None:
+            self._check_spokes(self.spoke_bearings)
         depths = (*self.ring_depths, self.tip_depth)
         rising = all(a < b for a, b in pairwise(depths))
         if len(depths) < 3 or depths[0] != 0.0 or not rising:
@@ -89,18 +90,15 @@ class Mesh(_Part):
                 "Add it to ring_depths_m: the sinker tube is carried there."
             )
 
-    def _check_spokes(self) -> None:
-        """Refuse spokes that do not go once round the cage, each sector less than half of it."""
-        bearings = self.spoke_bearings
-        if bearings is None:
-            return
+    def _check_spokes(self, bearings: tuple[float, ...]) -> None:
+        """Refuse spokes that do not go once round the cage, or lie on one another."""
         beside = (*bearings[1:], *bearings[:1])
         sectors = [(a - b) % 360.0 for a, b in zip(bearings, beside, strict=True)]
-        round_once = math.isclose(sum(sectors), 360.0)
-        if len(bearings) != self.spokes or not round_once or not 0.0 < max(sectors) < 180.0:
+        apart = 0.1 <= min(sectors, default=0.0) <= max(sectors, default=0.0) < 180.0
+        if len(bearings) != self.spokes or not apart or not math.isclose(sum(sectors), 360.0):
             raise InputError(
                 f"Cage, Mesh: spoke_bearings_deg = {list(bearings)} must be {self.spokes} bearings "
-                "that go round the cage once, counter-clockwise, each less than 180° from the next."
+                "that go round the cage once, counter-clockwise, each 0.1° to 180° from the next."
             )
 
 
@@ -276,7 +274,10 @@ class Frame(_Part):
                 f"Cage, Frame: {counts[0]} corners_east_m with {counts[1]} corners_north_m are no "
                 f"frame. Give as many of each, 3 to {MOST_CORNERS}."
             )
-        if _turning(np.diff(self.corners, axis=0, append=self.corners[:1])).min() <= 0.0:
+        side = np.diff(self.corners, axis=0, append=self.corners[:1])
+        angle = np.arctan2(side[:, 1], side[:, 0])
+        turned = np.diff(angle, append=angle[:1]) % (2.0 * np.pi)  # a star turns more than once
+        if _turning(side).min() <= 0.0 or not math.isclose(turned.sum(), 2.0 * math.pi):
             raise InputError(
                 f"Cage, Frame: the corners {self.corners.tolist()} (east, north) are not those of "
                 "a convex polygon, counter-clockwise. Check their order and signs."

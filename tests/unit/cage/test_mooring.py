@@ -167,7 +167,13 @@ def test_a_bridle_that_a_spoke_moves_is_warned_of_from_where_to_where():
 
 @pytest.mark.parametrize(
     ("bearings", "refused"),
-    [([0.0] * 31, "32 bearings"), (list(range(32)), "round the cage once")],
+    [
+        ([], "32 bearings"),
+        ([11.25 * n for n in range(31)], "32 bearings"),
+        ([11.25 * n for n in range(32)], "round the cage once"),  # clockwise
+        ([-22.5 * n % 360.0 for n in range(32)], "round the cage once"),
+        ([0.0, 0.0, *(-11.25 * n for n in range(2, 32))], "0.1° to 180° from the next"),
+    ],
 )
 def test_spokes_that_do_not_go_round_once_are_refused(bearings, refused):
     with pytest.raises(InputError, match=refused):
@@ -208,6 +214,7 @@ def test_a_bridle_comes_from_the_nearest_corner_that_it_leaves_outwards():
         ([60.0, -60.0, 0.0], [60.0, 60.0], "3 corners_east_m with 2 corners_north_m"),
         ([42.0, 42.0, -42.0, -42.0], [42.0, -42.0, -42.0, 42.0], "counter-clockwise"),
         ([60.0, 0.0, -60.0, 0.0], [0.0, 10.0, 0.0, -60.0], "no room for a collar"),
+        ([100.0, -80.9, 30.9, 30.9, -80.9], [0.0, 58.8, -95.1, 95.1, -58.8], "a convex polygon"),
         ([np.inf, -60.0, -60.0], [0.0, 90.0, -90.0], "corners_east_m = inf must be a finite"),
         ([160.0, 60.0, 60.0], [0.0, 90.0, -90.0], "no room for a collar"),
     ],

@@ -218,7 +218,7 @@ def test_it_settles_where_a_simulation_comes_to_rest():
     seas = [SeaState(current_speed=speed, current_to=270.0) for speed in (0.2, 0.4)]
     settled = settle(DRUM, seas, law="loland")
     assert np.all(settled.result == Result.CONVERGED)
-    ended = simulate(DRUM, seas, law="loland", duration=5.0, spin_up=2000.0)
+    ended = simulate(DRUM, seas, law="loland", duration=5.0, spin_up=500.0)
     assert ended.node.std.max() < 1e-3
     np.testing.assert_allclose(settled.node_position, ended.node.mean, atol=0.02)
     np.testing.assert_allclose(settled.line_tension, ended.lines.tension.mean, rtol=0.01, atol=5.0)
