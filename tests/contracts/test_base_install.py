@@ -46,10 +46,12 @@ RECORD = "time,current_speed_m_s,current_to_deg\n2020-03-01T00:00:00Z,0.4,80\n"
     "words",
     [
         ("settle", *SEA, "--cage", "small.toml", "--out", "x.nc"),
-        ("serve", "--demo", "--data", "var", "--port", 0),
+        pytest.param(("serve", "--demo", "--data", "var", "--port", 0), marks=pytest.mark.slow),
         ("field", "import", "buoy.csv", "buoy.nc"),
         ("train", "--campaign", ".", "--out", "twin"),
-        ("study", "paper", "--campaign", ".", "--out", "study"),
+        pytest.param(
+            ("study", "paper", "--campaign", ".", "--out", "study"), marks=pytest.mark.slow
+        ),
     ],
     ids=lambda words: words[0],
 )

@@ -116,7 +116,9 @@ def long_text(path):
     return path
 
 
-@pytest.mark.parametrize("make", [repeated_cells, long_list, long_text])
+@pytest.mark.parametrize(
+    "make", [repeated_cells, long_list, pytest.param(long_text, marks=pytest.mark.slow)]
+)
 def test_a_parquet_file_is_refused_by_what_it_declares(tmp_path, make):
     path = make(tmp_path / "bomb.parquet")
     assert path.stat().st_size < 1_000_000

@@ -90,6 +90,7 @@ def test_each_measured_number_becomes_a_row(folder):
     assert third.ours == pytest.approx(response.node_displacement[cage.bottom_node, 2])
 
 
+@pytest.mark.slow
 def test_an_ensemble_spans_every_combination_and_law(folder):
     ensemble = '[ensemble]\n"tip.weight_n" = [500.0, 5000.0]\n'
     (folder / "case.toml").write_text(

@@ -50,7 +50,9 @@ def test_it_rests_on_its_pretension_and_hands_the_water_s_load_to_its_anchors(ca
     assert load @ load > load @ response.net_force[1, :2] > 0.0  # pipes and ropes are loaded, too
 
 
-@pytest.mark.parametrize("name", ["a triangle of 6", "an oblong of 8"])
+@pytest.mark.parametrize(
+    "name", ["a triangle of 6", pytest.param("an oblong of 8", marks=pytest.mark.slow)]
+)
 def test_settled_and_simulated_without_waves_agree(name):
     sea = SeaState(current_speed=0.4, current_to=110.0)
     still = settle(CAGES[name], sea)

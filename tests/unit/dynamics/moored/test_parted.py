@@ -24,6 +24,7 @@ def test_a_parted_bridle_bears_nothing_and_its_neighbours_more():
     )
 
 
+@pytest.mark.slow
 def test_settled_and_simulated_without_waves_agree():
     still = settle(SMALL, SEA, parted=["bridle-6"]).bridle_tension
     moving = simulate(SMALL, SEA, duration=20.0, spin_up=140.0, parted=["bridle-6"])

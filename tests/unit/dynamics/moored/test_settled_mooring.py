@@ -5,7 +5,7 @@ import pytest
 
 from seacage.cage import Cage
 from seacage.conventions import Result
-from seacage.dynamics import rest_shape, settle, simulate
+from seacage.dynamics import LAWS, rest_shape, settle, simulate
 from seacage.dynamics._equilibrium import equilibria
 from seacage.dynamics._moored._mooring import anchor_assembly
 from seacage.dynamics._physics._flow import steady_flow
@@ -106,11 +106,15 @@ def test_simulated_in_still_current_it_stays_where_it_settled():
 # From anywhere
 
 
-@pytest.mark.parametrize("law", ["kristiansen-faltinsen", "loland", "aarsnes"])
+@pytest.mark.parametrize(
+    "law",
+    ["kristiansen-faltinsen", *(pytest.param(law, marks=pytest.mark.slow) for law in LAWS[:2])],
+)
 def test_random_currents_settle(law):
     assert share_settled(ACE, 16, 1.5, law=law) == 1.0
 
 
+@pytest.mark.slow
 def test_grown_slack_deep_and_other_cages_settle():
     grown = ACE.fouled(shallow=0.1, deep=0.1)
     slack = ACE.altered(frame={"rope_slack_m": 3.0})

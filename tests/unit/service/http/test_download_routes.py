@@ -87,6 +87,7 @@ def blocks_seen(fed: Running, monkeypatch, size):
     return seen
 
 
+@pytest.mark.slow
 def test_a_long_netcdf_is_written_in_blocks_and_is_the_same_file(
     fed: Running, monkeypatch, tmp_path
 ):

@@ -44,6 +44,7 @@ def test_training_brings_the_network_nearer_to_its_cases() -> None:
     assert missed(parameters).mean() < 0.85 * missed(FIRST).mean()
 
 
+@pytest.mark.slow
 def test_a_node_that_weighs_nothing_is_not_learned() -> None:
     weight = np.array([2.0, 2.0, 1.0, 0.0, 0.0])
     alike, unlike = missed(train()[0]), missed(train(weight=weight)[0])
