@@ -2,8 +2,6 @@
 # Nothing is installed twice: a stamp in .venv stands for each install, until what it read changes.
 
 PYTHON ?= python3
-# The fast tests wait a quarter of their time: three of them fill two cores.
-FAST_WORKERS := $(or $(WORKERS),3)
 WORKERS ?= 2
 RECORD ?=
 # Not from the environment, where others keep a PORT of their own.
@@ -13,7 +11,7 @@ INPUTS ?= 3000
 BIN := .venv/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 # A file's tests go to one worker, so that its fixtures are made once.
-PYTEST := $(BIN)/python -m pytest --dist loadfile
+PYTEST := $(BIN)/python -m pytest -n $(WORKERS) --dist loadfile
 OUTSIDE := mosquitto,postgres,node,chromium
 FAST := not slow and not mosquitto and not postgres and not node and not chromium
 KERNEL := src/seacage/dynamics/_kernel
@@ -38,22 +36,22 @@ page: ## build the live page again from web/
 	@$(MAKE) --no-print-directory $(PAGE)
 
 test: .venv/.dev .venv/.project ## the fast tests, without any outside program
-	$(PYTEST) -n $(FAST_WORKERS) -m "$(FAST)"
+	$(PYTEST) -m "$(FAST)"
 
 test-times: .venv/.dev .venv/.project ## where the fast tests' processor time goes
-	$(PYTEST) -n $(FAST_WORKERS) -m "$(FAST)" -p tools.times
+	$(PYTEST) -m "$(FAST)" -p tools.times
 
 test-rest: .venv/.dev .venv/.project $(PAGE) ## the slow tests, and those with Mosquitto, PostgreSQL, Node or Chromium
 	tools/services.sh
-	SEACAGE_REQUIRE=$(OUTSIDE) $(PYTEST) -n $(WORKERS) -m "not ($(FAST))"
+	SEACAGE_REQUIRE=$(OUTSIDE) $(PYTEST) -m "not ($(FAST))"
 
 test-long: .venv/.dev .venv/.project $(PAGE) ## the long forms of some tests: thousands of histories, messages and calls, in hours
 	tools/services.sh
-	SEACAGE_LONG=1 SEACAGE_REQUIRE=$(OUTSIDE) $(PYTEST) -n $(WORKERS) -m "long"
+	SEACAGE_LONG=1 SEACAGE_REQUIRE=$(OUTSIDE) $(PYTEST) -m "long"
 
 test-all: .venv/.dev .venv/.project $(PAGE) ## every test; none may skip for want of an outside program
 	tools/services.sh
-	SEACAGE_REQUIRE=$(OUTSIDE) $(PYTEST) -n $(WORKERS)
+	SEACAGE_REQUIRE=$(OUTSIDE) $(PYTEST)
 
 lint: .venv/.dev .venv/.project ## style, types, imports, spelling, and what is hard to read
 	$(BIN)/ruff check
