@@ -96,7 +96,7 @@ def test_an_interrupt_stops_a_service_quietly(twin, tmp_path):
 
 @pytest.mark.slow
 def test_a_buoys_record_is_replayed_on_its_own_clock(twin, field, tmp_path):
-    words = ("--twin", twin, "--record", field / "buoy-1.nc", "--speed", "120")
+    words = ("--twin", twin, "--record", field / "buoy-1.nc", "--speed", "600")
     with serving(tmp_path, *words) as (_, client):
         ask = lambda: client.get("/api/v1/cages/ace/state").json()  # noqa: E731
         first = until(ask, lambda state: state["valid"])

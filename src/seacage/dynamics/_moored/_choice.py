@@ -28,8 +28,7 @@ def moor(cage: Cage | Structure, mooring: Mooring) -> Assembly:
         Another mooring, and what the mooring asks of the cage that its file has not.
     """
     if mooring not in get_args(Mooring):
-        known = ", ".join(get_args(Mooring))
-        raise InputError(f"mooring = {mooring!r} is none of: {known}.")
+        raise InputError(f"mooring = {mooring!r} is none of: {', '.join(get_args(Mooring))}.")
     if isinstance(cage, Structure):
         if mooring != "catenary":
             raise InputError(

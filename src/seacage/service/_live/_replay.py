@@ -61,7 +61,7 @@ def replay_of(buoy: Record, field: FieldRecord | None = None) -> Replay:
     """Replay a buoy, with the sensors of a field record where there is one.
 
     It begins some hours into the last time that the shackles listened, for that is when there
-    is most to see; a buoy alone is replayed from its start.
+    is most to see; a buoy alone some hours from its start. Of a shorter record half is left.
     """
     sensors = tuple(field.sensors.values()) if field else ()
     shackles = [one for one in sensors if "tension_kn" in one.values and len(one)]
@@ -70,7 +70,8 @@ def replay_of(buoy: Record, field: FieldRecord | None = None) -> Replay:
         time = shackles[0].time
         breaks = np.flatnonzero(np.diff(time) > _BREAK)
         start = moment(time[breaks[-1] + 1 if breaks.size else 0])
-    return Replay(records=(buoy, *sensors), start=start + _SETTLED)
+    left = _last((buoy, *sensors)) - start
+    return Replay(records=(buoy, *sensors), start=start + min(_SETTLED, left / 2))
 
 
 def _last(records: Sequence[Record]) -> datetime:

@@ -29,6 +29,14 @@ def test_a_buoy_alone_is_replayed_from_its_start(field):
     assert replay_of(field.buoy).start == moment(field.buoy.time[0]) + timedelta(hours=6)
 
 
+def test_half_of_a_short_record_is_left_to_be_replayed(field):
+    first = moment(field.buoy.time[0])
+    short = field.buoy.between(first, first + timedelta(hours=4, seconds=1))
+    assert replay_of(short).start - first == pytest.approx(
+        timedelta(hours=2), abs=timedelta(minutes=1)
+    )
+
+
 def test_a_replay_feeds_in_time_order_and_begins_anew_with_a_clean_store(field, tmp_path):
     start = moment(field.buoy.time[0]) + timedelta(hours=1)
     short = field.buoy.between(start - timedelta(hours=1), start + timedelta(hours=1))
