@@ -39,41 +39,44 @@ def cpu_seconds(work: Callable[[], object]) -> float:
     return time.process_time() - start
 
 
+def counted_pace(
+    duration: float, spin_up: float, *, components: int, cases: int, pieces: int = 1
+) -> float:
+    """Seconds that count per core-second of `simulate`, from its start to its statistics."""
+    seas, depth = SEAS[:cases], CAGE.site.water_depth
+    waves = [
+        sample_waves(s, seed=i, components=components, depth=depth) for i, s in enumerate(seas)
+    ]
+    taken = cpu_seconds(
+        lambda: simulate(
+            CAGE,
+            seas,
+            waves=waves,
+            duration=duration,
+            spin_up=spin_up,
+            ramp=min(spin_up, 60.0),
+            sample_every=0.5 if pieces == 1 else None,
+            pieces=pieces,
+        )
+    )
+    return cases * duration / taken
+
+
 def whole(duration: float, spin_up: float) -> None:
-    """`simulate`, from its start at the equilibrium to its statistics; and one sea alone."""
+    """`simulate` of many seas, and of one alone."""
     rest_shape(CAGE)  # once for any number of cases, so not counted
     print(
         f"simulate, plan paper, {duration:g} s after {spin_up:g} s of spin-up, "
         "seconds that count per core-second"
     )
-    counted = 0.0
-    for components, cases, pieces in (
-        (30, CASES, 1),
-        (200, 1, 1),
-        (200, 1, CASES),
-        (200, CASES, 1),
-    ):
-        waves = [
-            sample_waves(sea, seed=seed, components=components, depth=CAGE.site.water_depth)
-            for seed, sea in enumerate(SEAS[:cases])
-        ]
-        taken = cpu_seconds(
-            lambda seas=SEAS[:cases], waves=waves, pieces=pieces: simulate(
-                CAGE,
-                seas,
-                waves=waves,
-                duration=duration,
-                spin_up=spin_up,
-                ramp=min(spin_up, 60.0),
-                sample_every=0.5 if pieces == 1 else None,
-                pieces=pieces,
-            )
-        )
-        counted = cases * duration / taken
+    for components, cases, pieces in ((30, CASES, 1), (200, 1, 1), (200, 1, CASES)):
+        pace = counted_pace(duration, spin_up, components=components, cases=cases, pieces=pieces)
         what = f"{cases} seas of {components} components" + f" in {pieces} pieces" * (pieces > 1)
-        print(f"  {what:<40}{counted:8.0f}")
+        print(f"  {what:<40}{pace:8.0f}")
+    pace = counted_pace(duration, spin_up, components=200, cases=CASES)
+    print(f"  {f'{CASES} seas of 200 components':<40}{pace:8.0f}")
     for name, theirs in FHSIM.items():
-        print(f"  {counted / theirs:.0f} × {name}: {theirs:.2g}")
+        print(f"  {pace / theirs:.0f} × {name}: {theirs:.2g}")
 
 
 def march(

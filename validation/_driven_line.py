@@ -45,7 +45,8 @@ def _tension(
 def _alone(cage: Cage, *, stiffness: float) -> Assembly:
     """The first corner and its first line, as the whole mooring has them."""
     whole, each = anchor_assembly(cage), len(segments(cage.anchor_lines)[0])
-    nodes = np.append(cage.node_count, cage.node_count + 4 + np.arange(each))
+    first = cage.node_count + len(cage.corner_position)
+    nodes = np.append(cage.node_count, first + np.arange(each))
     number = np.full(len(whole.position), -1)
     number[nodes] = np.arange(len(nodes))
     bars, pipes, ground = whole.bars, whole.cylinders, whole.ground

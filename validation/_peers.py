@@ -63,7 +63,7 @@ def rest_by_moorpy(cage: Cage) -> dict[str, float]:
     for corner, pull in zip(corners, pulls, strict=True):
         system.pointList[corner - 1].fExt = np.array(pull)
     first = int(assembly.bridles[-1]) + 1
-    for side in range(first, first + 4):
+    for side in range(first, first + len(corners)):
         start, end = (assembly.bars.ends[side] - cage.node_count).tolist()
         length = float(assembly.bars.length[side])
         system.addLine(length, "rope", pointA=corners[start], pointB=corners[end])
@@ -76,7 +76,9 @@ def rest_by_moorpy(cage: Cage) -> dict[str, float]:
         system.addLine(parts.rope_length, "rope", pointA=joint, pointB=corners[corner])
     system.initialize()
     system.solveEquilibrium(tol=1e-6, maxIter=2000)
-    frame, chain_line, rope = (system.lineList[number] for number in (0, 4, 5))
+    frame, chain_line, rope = (
+        system.lineList[number] for number in (0, len(corners), len(corners) + 1)
+    )
     return {
         "frame line": float(max(frame.TA, frame.TB)),
         "anchor line": float(rope.TB),

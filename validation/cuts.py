@@ -36,20 +36,31 @@ CUTS = {
 """What is cut out, and what the level force left over is a share of."""
 
 
-def _at_rest() -> Iterator[Row]:
-    worst = np.max([_left_over(speed) for speed in SPEEDS], axis=0)
-    for (what, share), found in zip(CUTS.items(), worst.tolist(), strict=True):
+def _rows(
+    left_over: Sequence[tuple[float, float, float]], of: str, *, source: str, tolerance: float
+) -> Iterator[Row]:
+    """A row for each cut, of the worst of several cases [%]."""
+    worst = np.max(left_over, axis=0).tolist()
+    for (what, share), found in zip(CUTS.items(), worst, strict=True):
         yield Row(
-            what=f"Settled in {SPEEDS[0]:g} to {SPEEDS[-1]:g} m/s: {what}, level force left over, "
-            f"{share}",
+            what=f"{of}: {what}, level force left over, {share}",
             unit="%",
             reference=0.0,
             ours=found,
             kind=Kind.CLOSED_FORM,
-            source="Newton's first law, by the tensions and anchor loads that `settle` gives",
-            tolerance=0.1,
-            reason="0.1 %, as asked of the simulator",
+            source=source,
+            tolerance=tolerance,
+            reason=f"{tolerance:g} %, as asked of the simulator",
         )
+
+
+def _at_rest() -> Iterator[Row]:
+    return _rows(
+        [_left_over(speed) for speed in SPEEDS],
+        f"Settled in {SPEEDS[0]:g} to {SPEEDS[-1]:g} m/s",
+        source="Newton's first law, by the tensions and anchor loads that `settle` gives",
+        tolerance=0.1,
+    )
 
 
 def _left_over(speed: float) -> tuple[float, float, float]:
@@ -189,19 +200,13 @@ class Moving:
 
 def _in_waves() -> Iterator[Row]:
     moving = Moving.through(SEAS)
-    worst = np.max([_left_over_in_mean(moving, sea) for sea in range(len(SEAS))], axis=0)
-    for (what, share), found in zip(CUTS.items(), worst.tolist(), strict=True):
-        yield Row(
-            what=f"Mean of {DURATION / 60.0:g} min in {len(SEAS)} seas of Hs 1 to 3 m with 0.2 to "
-            f"0.8 m/s, the worst: {what}, level force left over, {share}",
-            unit="%",
-            reference=0.0,
-            ours=found,
-            kind=Kind.CLOSED_FORM,
-            source="Newton's second law, by the water's load by body and tensions every 0.1 s",
-            tolerance=0.5,
-            reason="0.5 %, as asked of the simulator",
-        )
+    return _rows(
+        [_left_over_in_mean(moving, sea) for sea in range(len(SEAS))],
+        f"Mean of {DURATION / 60.0:g} min in {len(SEAS)} seas of Hs 1 to 3 m with 0.2 to 0.8 m/s, "
+        "the worst",
+        source="Newton's second law, by the water's load by body and tensions every 0.1 s",
+        tolerance=0.5,
+    )
 
 
 def _left_over_in_mean(moving: Moving, sea: int) -> tuple[float, float, float]:

@@ -372,8 +372,8 @@ class Cage(TomlFile):
         return tuple(entry.name for entry in (*self.depth_sensor, *self.shackle))
 
     def _nearest_spoke(self, bearing: float) -> int:
-        angles = np.append(self.spoke_angles, self.spoke_angles[0] + 2.0 * np.pi)
-        at = np.deg2rad(90.0 - bearing - np.rad2deg(angles[0])) % (2.0 * np.pi) + angles[0]
+        angles = np.rad2deg(np.append(self.spoke_angles, self.spoke_angles[0] + 2.0 * np.pi))
+        at = (90.0 - bearing - angles[0]) % 360.0 + angles[0]
         # halfway between two spokes rounding must not decide
         return round(round(float(np.interp(at, angles, np.arange(len(angles)))), 6)) % self.spokes
 

@@ -4,7 +4,7 @@ import difflib
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import accumulate
-from typing import TypeVar
+from typing import ClassVar, TypeVar
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -225,15 +225,11 @@ class Structure(TomlFile):
         """The deepest node of the rings and nets as they were designed."""
         return int(np.argmin(self.design_position[: self._starts["net"][-1], 2]))
 
-    @property
-    def depth_sensors(self) -> tuple[DepthSensor, ...]:
-        """None: a structure's file names no sensors."""
-        return ()
+    depth_sensors: ClassVar[tuple[DepthSensor, ...]] = ()
+    """None: a structure's file names no sensors."""
 
-    @property
-    def warnings(self) -> tuple[str, ...]:
-        """None: nothing of the file is changed."""
-        return ()
+    warnings: ClassVar[tuple[str, ...]] = ()
+    """None: nothing of the file is changed."""
 
     def volume(
         self, node_position: Float[np.ndarray, "*case node 3"]

@@ -59,7 +59,7 @@ class Bends(Rows):
         stiffness: float | Float[np.ndarray, " spoke"],
         *,
         plane_stiffness: float | Float[np.ndarray, " spoke"] = 0.0,
-        share: float | Float[np.ndarray, " spoke"] | None = None,
+        share: Float[np.ndarray, " spoke"] | None = None,
     ) -> "Bends":
         """Joints of a pipe that closes on itself, counter-clockwise from above.
 
@@ -67,12 +67,12 @@ class Bends(Rows):
         """
         nodes = np.column_stack([np.roll(around, 1), around, np.roll(around, -1)])
         count = len(around)
-        turn = 2.0 * np.tan(np.pi * np.asarray(1.0 / count if share is None else share))
+        share = np.full(count, 1.0 / count) if share is None else share
         return cls(
             nodes=nodes,
             stiffness=np.full(count, stiffness),
             plane_stiffness=np.full(count, plane_stiffness),
-            plane_turn=np.full(count, turn),
+            plane_turn=2.0 * np.tan(np.pi * share),
         )
 
 

@@ -139,8 +139,9 @@ def read_cage_or_structure(name: str) -> "Cage | Structure":
     from seacage.conventions import parse_toml, read_text
 
     is_file = name.endswith(".toml")
-    kind = Structure if is_file and "ring" in parse_toml(read_text(name), name) else Cage
-    found = kind.read(name) if is_file else Cage.named(name)
+    text = read_text(name) if is_file else ""
+    kind = Structure if "ring" in parse_toml(text, name) else Cage
+    found = kind.from_toml(text, source=name) if is_file else Cage.named(name)
     warn(found.warnings)
     return found
 
