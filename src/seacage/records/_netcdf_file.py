@@ -92,23 +92,15 @@ def decode_times(dataset: "xarray.Dataset") -> Shaped[np.ndarray, " t"]:
 
 
 def write_netcdf(
+    # What, and where
     dataset: "xarray.Dataset",
     path: Path,
     *,
-    packed: Iterable[str] = (),
+    packed: Iterable[str] = (),  # variables to compress, in single precision
+    # What is done to the file before it takes its place
     finish: Callable[[Path], None] | None = None,
 ) -> None:
-    """Write a NetCDF file in the place of what is there, at once.
-
-    Parameters
-    ----------
-    dataset, path
-        What, and where.
-    packed
-        Variables to compress, in single precision.
-    finish
-        What is done to the file before it takes its place.
-    """
+    """Write a NetCDF file in the place of what is there, at once."""
     unborn = path.with_name(f".{path.name}.unborn")
     dataset.to_netcdf(unborn, engine="h5netcdf", encoding=dict.fromkeys(packed, _PACKED))
     if finish is not None:
@@ -137,15 +129,12 @@ def open_netcdf(path: Path, schema: str) -> "Generator[xarray.Dataset]":
         yield dataset
 
 
-def check_netcdf(path: Path, *, whole: bool) -> None:
+def check_netcdf(
+    path: Path,  # of NetCDF 4; the classic format holds nothing that its size does not show
+    *,
+    whole: bool,  # whether all of it will be read; else its axes are, and parts of the rest
+) -> None:
     """Refuse a NetCDF file that would fill the memory, or reads from other files.
-
-    Parameters
-    ----------
-    path
-        Of NetCDF 4; the classic format holds nothing that its size does not show.
-    whole
-        Whether all of it will be read; else its axes are, and parts of the rest.
 
     Raises
     ------

@@ -99,22 +99,14 @@ def store_place(settings: Settings, *, replayed: bool = False) -> Path | str:
 
 
 def assemble(
-    settings: Settings,
-    twins: Mapping[str, Twin],
+    settings: Settings,  # what it is told
+    twins: Mapping[str, Twin],  # of its cages, by name
     *,
+    # What feeds its one cage, and how fast against real time
     replay: Replay | None = None,
     speed: float = 60.0,
 ) -> Service:
     """Put a service together; it does not run yet.
-
-    Parameters
-    ----------
-    settings
-        What it is told.
-    twins
-        Of its cages, by name.
-    replay, speed
-        What feeds its one cage, and how fast against real time.
 
     Raises
     ------

@@ -47,18 +47,12 @@ Table = Float[np.ndarray, "t output"]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Replayed:
-    """A buoy's record and what a twin answered to each of its rows.
+    """A buoy's record and what a twin answered to each of its rows."""
 
-    Parameters
-    ----------
-    buoy, answer
-        Row by row.
-    cage, origin
-        Whose answers, and how the data of the training sensors were made.
-    """
-
+    # Row by row
     buoy: Record
     answer: Answer
+    # Whose answers, and how the data of the training sensors were made
     cage: Cage
     origin: str
 

@@ -29,20 +29,13 @@ class _Section(BaseModel):
 
 
 class StoreSection(_Section):
-    """The section ``[store]``.
+    """The section ``[store]``."""
 
-    Parameters
-    ----------
-    url
-        ``postgresql://user@host/name``, or a path for SQLite; in the data folder if left out.
-    keep_days
-        Samples older than this are deleted [d]; all are kept if left out.
-    archive
-        Folder that samples are written to as Parquet before they are deleted.
-    """
-
+    # ``postgresql://user@host/name``, or a path for SQLite; in the data folder if left out
     url: str | None = None
+    # Samples older than this are deleted [d]; all are kept if left out
     keep_days: float | None = Field(default=None, gt=0.0, le=36_525.0)
+    # Folder that samples are written to as Parquet before they are deleted
     archive: Path | None = None
 
     @model_validator(mode="after")
@@ -53,64 +46,36 @@ class StoreSection(_Section):
 
 
 class MqttSection(_Section):
-    """The section ``[mqtt]``.
+    """The section ``[mqtt]``."""
 
-    Parameters
-    ----------
-    url
-        ``mqtt://host:1883`` or ``mqtts://user:password@host:8883``; a password is better given
-        in the environment, as ``SEACAGE_MQTT__URL``.
-    ca
-        Certificate of the authority that the broker's is signed by; the system's if left out.
-    client_id
-        Of this process; two processes never share one. ``seacage-`` and the site if left out.
-    group
-        Name of a shared subscription; a process that stands by for another has the same.
-    state_every_s
-        How often a cage's state is published [s].
-    """
-
+    # ``mqtt://host:1883`` or ``mqtts://user:password@host:8883``; a password is better given in the
+    # environment, as ``SEACAGE_MQTT__URL``
     url: str
+    # Certificate of the authority that the broker's is signed by; the system's if left out
     ca: Path | None = None
+    # Of this process; two processes never share one. ``seacage-`` and the site if left out
     client_id: Name | None = None
+    # Name of a shared subscription; a process that stands by for another has the same
     group: Name | None = None
+    # How often a cage's state is published [s]
     state_every_s: float = Field(default=10.0, ge=1.0, le=3600.0)
 
 
 class TailSection(_Section):
-    """One ``[[cages.tail]]``: a table that a logger appends to.
+    """One ``[[cages.tail]]``: a table that a logger appends to."""
 
-    Parameters
-    ----------
-    path
-        Of the file; it may come later.
-    stream
-        What its rows are readings of.
-    """
-
-    path: Path
-    stream: Name = "buoy-1"
+    path: Path  # of the file; it may come later
+    stream: Name = "buoy-1"  # what its rows are readings of
 
 
 class CageSection(_Section):
-    """One ``[[cages]]``.
+    """One ``[[cages]]``."""
 
-    Parameters
-    ----------
-    name
-        Under which it is served; the twin's own name for its cage if left out.
-    twin
-        Folder of its trained twin.
-    tail
-        Tables that are read as they grow.
-    alarms
-        As ``[alarms]``, for this cage alone.
-    """
-
-    twin: Path
+    twin: Path  # folder of its trained twin
+    # Under which it is served; the twin's own name for its cage if left out
     name: Name | None = None
-    tail: tuple[TailSection, ...] = ()
-    alarms: dict[str, Any] = Field(default_factory=dict)
+    tail: tuple[TailSection, ...] = ()  # tables that are read as they grow
+    alarms: dict[str, Any] = Field(default_factory=dict)  # as ``[alarms]``, for this cage alone
 
 
 class Settings(BaseSettings):
@@ -212,15 +177,11 @@ class Settings(BaseSettings):
             )
 
 
-def read_settings(file: Path | None = None, **given: object) -> Settings:
+def read_settings(
+    file: Path | None = None,  # TOML; paths in it are taken from where the service is started
+    **given: object,  # by the command line; None is not given
+) -> Settings:
     """Put together what was given, the environment, a file and the defaults.
-
-    Parameters
-    ----------
-    file
-        TOML; paths in it are taken from where the service is started.
-    given
-        By the command line; None is not given.
 
     Raises
     ------

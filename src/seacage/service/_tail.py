@@ -25,19 +25,12 @@ Refuse = Callable[[str, bytes, str], None]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TailPosition:
-    """How far a file was read.
+    """How far a file was read."""
 
-    Parameters
-    ----------
-    offset, line
-        Up to the end of which row: bytes and lines.
-    head
-        Hash of what the file began with, as far as ``offset`` or a kilobyte.
-    """
-
+    # Up to the end of which row: bytes and lines
     offset: int = 0
     line: int = 0
-    head: str = ""
+    head: str = ""  # hash of what the file began with, as far as ``offset`` or a kilobyte
 
     @classmethod
     def parse(cls, text: str) -> Self:
@@ -58,26 +51,13 @@ class Tail:
     A row counts once its line has ended. The logger may begin the file anew, in its place or
     as another file of its name: the rest of the old one is read first. A row that cannot be
     read is refused and the others are not.
-
-    Parameters
-    ----------
-    path
-        Of the file; it may come later.
-    columns
-        What its columns mean; by its header where None.
-    stream
-        What to call the stream.
-    refuse
-        Is told of rows that cannot be read.
-    place
-        Where to read on, after a restart.
     """
 
-    path: Path
-    columns: ColumnMap | None = None
-    stream: str = "buoy-1"
-    refuse: Refuse
-    place: TailPosition = field(default_factory=TailPosition)
+    path: Path  # of the file; it may come later
+    columns: ColumnMap | None = None  # what its columns mean; by its header where None
+    stream: str = "buoy-1"  # what to call the stream
+    refuse: Refuse  # is told of rows that cannot be read
+    place: TailPosition = field(default_factory=TailPosition)  # where to read on, after a restart
     _file: BinaryIO | None = None
     _header: str = ""
 

@@ -34,36 +34,21 @@ TRAINING = (*_FIELD, "surrogates", "twin")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Recipe:
-    """How much of everything a study takes.
+    """How much of everything a study takes."""
 
-    Parameters
-    ----------
-    cases, held_out_cases
-        Simulations that level 1 is trained on, and held-out ones.
-    method
-        "settle" takes equilibria in currents without waves, in minutes; "simulate" the paper's
-        half-hours in waves and currents, and a virtual field in time, in hours.
-    days, teaching_days
-        Length of the generated current record, and how many of its days are training days.
-    one_in
-        Simulate one hour of the field in so many, and those of the shackles.
-    start
-        Of the record.
-    high_fidelity_points
-        Training readings of each sensor.
-    seed
-        Of plan, current, virtual field and training.
-    """
-
+    # Simulations that level 1 is trained on, and held-out ones
     cases: int = 400
     held_out_cases: int = 100
+    # "settle" takes equilibria in currents without waves, in minutes; "simulate" the paper's
+    # half-hours in waves and currents, and a virtual field in time, in hours
     method: Literal["settle", "simulate"] = "settle"
+    # Length of the generated current record, and how many of its days are training days
     days: float = 50.0
     teaching_days: int = 25
-    one_in: int = 1
-    start: datetime = datetime(2020, 1, 18, tzinfo=UTC)
-    high_fidelity_points: int = 300
-    seed: int = 0
+    one_in: int = 1  # simulate one hour of the field in so many, and those of the shackles
+    start: datetime = datetime(2020, 1, 18, tzinfo=UTC)  # of the record
+    high_fidelity_points: int = 300  # training readings of each sensor
+    seed: int = 0  # of plan, current, virtual field and training
 
     @property
     def in_time(self) -> bool:
@@ -97,36 +82,19 @@ class Recipe:
 # No slots: what has been made is found once and kept.
 @dataclass(frozen=True, kw_only=True)
 class Chain:
-    """A cage's campaign, virtual field and twin, each made when it is first asked for.
+    """A cage's campaign, virtual field and twin, each made when it is first asked for."""
 
-    Parameters
-    ----------
-    folder
-        Of the stages.
-    cage
-        The cage.
-    recipe
-        How much of everything.
-    given_campaign
-        Folder of a finished campaign to take in place of the recipe's; its last cases are held out.
-    given_field
-        Folder of a virtual field, with its truth in ``truth``, to take in place of the recipe's.
-    hidden
-        Differences of the recipe's virtual field; None for those that come with seacage.
-    workers
-        Processes for simulations; None for one per core.
-    progress
-        Called as (stage, done, total).
-    """
-
-    folder: Path
+    folder: Path  # of the stages
     cage: Cage
-    recipe: Recipe
+    recipe: Recipe  # how much of everything
+    # Folder of a finished campaign to take in place of the recipe's; its last cases are held out
     given_campaign: Path | None = None
+    # Folder of a virtual field, with its truth in ``truth``, to take in place of the recipe's
     given_field: Path | None = None
+    # Differences of the recipe's virtual field; None for those that come with seacage
     hidden: TruthParameters | None = None
-    workers: int | None = None
-    progress: Progress = no_progress
+    workers: int | None = None  # processes for simulations; None for one per core
+    progress: Progress = no_progress  # called as (stage, done, total)
 
     @property
     def campaign(self) -> CampaignRecord:
@@ -285,16 +253,11 @@ class Chain:
         made.truth.write(begun / "truth")
 
 
-def select_cases(campaign: CampaignRecord, rows: Int[np.ndarray, " row"]) -> CampaignRecord:
-    """A campaign's cases of these rows; the second moment stays that of all.
-
-    Parameters
-    ----------
-    campaign
-        The whole.
-    rows
-        From 0.
-    """
+def select_cases(
+    campaign: CampaignRecord,  # the whole
+    rows: Int[np.ndarray, " row"],  # from 0
+) -> CampaignRecord:
+    """A campaign's cases of these rows; the second moment stays that of all."""
     arrays = {
         part.name: value[rows]
         for part in fields(campaign)

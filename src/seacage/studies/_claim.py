@@ -5,20 +5,10 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Claim:
-    """A sentence that the numbers support or contradict.
-
-    Parameters
-    ----------
-    claim
-        The sentence.
-    holds
-        Whether the numbers support it; None where a run that it needs is missing.
-    finding
-        The numbers.
-    """
+    """A sentence that the numbers support or contradict."""
 
     claim: str
-    holds: bool | None
+    holds: bool | None  # whether the numbers support it; None where a run that it needs is missing
     finding: str
 
     @property

@@ -5,15 +5,9 @@ from jaxtyping import Float, Int
 
 
 def without_drift(
-    difference: Float[np.ndarray, "case node 3"], collar: Int[np.ndarray, " spoke"]
+    difference: Float[np.ndarray, "case node 3"],  # between the positions of nodes [m]
+    # Nodes of the collar, whose mean displacement counts as the drift
+    collar: Int[np.ndarray, " spoke"],
 ) -> Float[np.ndarray, "case node 3"]:
-    """Differences of two nets that are shifted so that their collars lie together [m].
-
-    Parameters
-    ----------
-    difference
-        Between the positions of nodes [m].
-    collar
-        Nodes of the collar, whose mean displacement counts as the drift.
-    """
+    """Differences of two nets that are shifted so that their collars lie together [m]."""
     return difference - difference[:, collar].mean(axis=1, keepdims=True)

@@ -12,14 +12,9 @@ _LEAST_BLOCKS = 8
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Interval:
-    """A mean and its 95 % interval, in the unit of what was averaged.
+    """A mean and its 95 % interval, in the unit of what was averaged."""
 
-    Parameters
-    ----------
-    mean, low, high
-        The mean, and the interval's ends.
-    """
-
+    # The mean, and the interval's ends
     mean: float
     low: float
     high: float
@@ -31,19 +26,16 @@ class Interval:
 
 
 def by_day(
-    series: Float[np.ndarray, " window"], day: Shaped[np.ndarray, " window"], *, seed: int
+    # In time order, and the day of each entry
+    series: Float[np.ndarray, " window"],
+    day: Shaped[np.ndarray, " window"],
+    *,
+    seed: int,  # of the draws
 ) -> Interval:
     """Mean of a series in time order, with a block bootstrap's interval.
 
     Blocks are a day long, for errors resemble themselves from tide to tide, or an eighth of
     the series where it has fewer days than eight.
-
-    Parameters
-    ----------
-    series, day
-        In time order, and the day of each entry.
-    seed
-        Of the draws.
     """
     blocks = max(_LEAST_BLOCKS, len(np.unique(day)))
     block = max(1, round(len(series) / blocks))

@@ -43,21 +43,12 @@ def embed(figure: "Figure") -> str:
 
 
 def write_report(
-    out: Path, template: str, scores: Mapping[str, object], values: Mapping[str, object]
+    out: Path,
+    template: str,  # of the page, which shows the scores
+    scores: Mapping[str, object],  # by name, as programs read them
+    values: Mapping[str, object],  # of the page alone
 ) -> tuple[Path, Path]:
-    """Write the page and the scores of a study into a folder, and name both files.
-
-    Parameters
-    ----------
-    out
-        The folder.
-    template
-        Of the page, which shows the scores.
-    scores
-        By name, as programs read them.
-    values
-        Of the page alone.
-    """
+    """Write the page and the scores of a study into a folder, and name both files."""
     page = render(template, **{**scores, **values})
     out.mkdir(parents=True, exist_ok=True)
     report, numbers = out / "report.html", out / "scores.json"

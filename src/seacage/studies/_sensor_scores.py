@@ -28,26 +28,17 @@ _PEOPLE = {"m": ("m", 1.0), "N": ("kN", 1e-3)}
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Readings(Rows):
-    """Readings of one sensor and the twin's predictions of them, in the unit that people read.
+    """Readings of one sensor and the twin's predictions of them, in the unit that people read."""
 
-    Parameters
-    ----------
-    sensor, unit, origin
-        Its name, the unit of all values (m or kN), and how the readings were made.
-    time
-        UTC.
-    reading, low, multi, multi_std
-        The sensor, the low-fidelity mean, the multifidelity mean and the standard deviation
-        that it gives for a reading [unit].
-    level
-        That answers; at level 1 the standard deviation is the emulator's own, and no interval.
-    """
-
+    # Its name, the unit of all values (m or kN), and how the readings were made
     sensor: str
     unit: str
     origin: Origin
+    # That answers; at level 1 the standard deviation is the emulator's own, and no interval
     level: int
-    time: Shaped[np.ndarray, " t"]
+    time: Shaped[np.ndarray, " t"]  # UTC
+    # The sensor, the low-fidelity mean, the multifidelity mean and the standard deviation that it
+    # gives for a reading [unit]
     reading: Float[np.ndarray, " t"]
     low: Float[np.ndarray, " t"]
     multi: Float[np.ndarray, " t"]
@@ -162,37 +153,30 @@ class SensorScore:
         return (self.raw.low_bias > 0.0) == (self.unit == "m")
 
 
-def compare(answer: Answer, field: FieldRecord) -> dict[str, Readings]:
+def compare(
+    answer: Answer,  # of the twin, one row for each row of the field record's buoy
+    field: FieldRecord,  # sensors and buoy
+) -> dict[str, Readings]:
     """Every sound reading of a field record beside a twin's prediction of it.
 
     The buoy's last sample holds until the next; where it was unsound or too old there is no
     number, and the reading is not scored. Sensors that the twin does not know are left out.
-
-    Parameters
-    ----------
-    answer
-        Of the twin, one row for each row of the field record's buoy.
-    field
-        Sensors and buoy.
     """
     known = [name for name in answer.sensor_names if name in field.sensors]
     return {name: _compare(answer, field, name) for name in known}
 
 
-def score_sensor(readings: Readings, *, seed: int, truth: Readings | None = None) -> SensorScore:
+def score_sensor(
+    readings: Readings,  # in order of time
+    *,
+    seed: int,  # of the bootstrap
+    # Predictions beside the noise-free truth, at the readings' times and perhaps at others
+    truth: Readings | None = None,
+) -> SensorScore:
     """Score one sensor: raw, and on means over one and over ten minutes.
 
     The bootstrap's blocks hold as much as a day has on average, for errors resemble themselves
     from tide to tide, or an eighth of the readings where there are fewer days than eight.
-
-    Parameters
-    ----------
-    readings
-        In order of time.
-    seed
-        Of the bootstrap.
-    truth
-        Predictions beside the noise-free truth, at the readings' times and perhaps at others.
     """
     if truth is not None:
         truth = truth.rows(np.isin(truth.time, readings.time))

@@ -35,25 +35,14 @@ class Stages:
     def ensure(
         self,
         stage: str,
-        settings: Mapping[str, object],
+        settings: Mapping[str, object],  # all that the result depends on, as JSON takes it
+        # Fills the folder it is given. After a stop it gets that folder again with what it had put
+        # there, and may go on from it.
         make: Callable[[Path], None],
         *,
-        rooms: tuple[str, ...],
+        rooms: tuple[str, ...],  # the rooms of seacage whose code makes the stage
     ) -> Path:
-        """The folder of a stage, made now unless it is there.
-
-        Parameters
-        ----------
-        stage
-            Its name.
-        settings
-            All that the result depends on, as JSON takes it.
-        make
-            Fills the folder it is given. After a stop it gets that folder again with what it
-            had put there, and may go on from it.
-        rooms
-            The rooms of seacage whose code makes the stage.
-        """
+        """The folder of a stage, made now unless it is there."""
         manifest = {
             "stage": stage,
             "seacage": version("seacage"),

@@ -43,14 +43,11 @@ class Moments(Rows):
         slope = self.mean_slope[:, None] + node[:, None] * std_slope[:, None]
         return value.ravel(), slope.reshape(value.size, -1)
 
-    def through(self, below: Float[np.ndarray, "row below"]) -> "Moments":
-        """As functions of the features alone, the last one being a function of the others.
-
-        Parameters
-        ----------
-        below
-            Gradient of that last feature.
-        """
+    def through(
+        self,
+        below: Float[np.ndarray, "row below"],  # gradient of that last feature
+    ) -> "Moments":
+        """As functions of the features alone, the last one being a function of the others."""
         return replace(
             self,
             mean_slope=self.mean_slope[:, :-1] + self.mean_slope[:, -1:] * below,
@@ -68,18 +65,12 @@ class Predicts(Protocol):
 
 
 def check_inputs(
-    x: ArrayLike, *, what: str, width: int | None = None
+    x: ArrayLike,  # one row per case, one column per feature
+    *,
+    what: str,  # who asks, for the error's sentence
+    width: int | None = None,  # the number of features that was learned; None accepts any
 ) -> Float[np.ndarray, "row feature"]:
     """Features as finite numbers, one row per case.
-
-    Parameters
-    ----------
-    x
-        One row per case, one column per feature.
-    what
-        Who asks, for the error's sentence.
-    width
-        The number of features that was learned; None accepts any.
 
     Raises
     ------
@@ -102,22 +93,15 @@ def check_inputs(
 
 
 def check_outputs(
-    y: ArrayLike, *, what: str, rows: int, shape: str, least: int = 2
+    y: ArrayLike,  # what was observed at each row
+    *,
+    what: str,  # who asks, for the error's sentence
+    rows: int,  # the number of rows of inputs
+    # The axes expected, e.g. ``"(rows, nodes, 3)"``; only their number and a last 3 count
+    shape: str,
+    least: int = 2,  # rows that are needed
 ) -> Float[np.ndarray, "row *rest"]:
     """Outputs as finite numbers, one entry per row of inputs.
-
-    Parameters
-    ----------
-    y
-        What was observed at each row.
-    what
-        Who asks, for the error's sentence.
-    rows
-        The number of rows of inputs.
-    shape
-        The axes expected, e.g. ``"(rows, nodes, 3)"``; only their number and a last 3 count.
-    least
-        Rows that are needed.
 
     Raises
     ------

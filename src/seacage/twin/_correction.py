@@ -178,17 +178,10 @@ class Correction:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Corrections:
-    """Level 2 of several sensors, predicted at once.
+    """Level 2 of several sensors, predicted at once."""
 
-    Parameters
-    ----------
-    rest
-        Of each, beside the gain.
-    gain, own, scale, water_sd, noise
-        Of each ``Correction`` and its ``Spread``.
-    """
-
-    rest: BatchedLevels
+    rest: BatchedLevels  # of each, beside the gain
+    # Of each ``Correction`` and its ``Spread``
     gain: Float[np.ndarray, " sensor"]
     own: Float[np.ndarray, " sensor"]
     scale: Float[np.ndarray, " sensor"]
@@ -208,21 +201,16 @@ class Corrections:
         )
 
     def latent(
-        self, x: Features, low: Prediction, steepness: Float[np.ndarray, "case sensor"]
+        self,
+        x: Features,  # features of the water
+        low: Prediction,  # level 1 there, (case, sensor)
+        # Of level 1: length of its gradient over the current [N s/m] or [s]
+        steepness: Float[np.ndarray, "case sensor"],
     ) -> Prediction:
         """Predict each sensor's reading without the instrument's noise, given level 1.
 
         The scatter that the water does not explain is not left out, as it is the cage's own.
         The line's and the NARGP's shares of level 1's small variance are taken as independent.
-
-        Parameters
-        ----------
-        x
-            Features of the water.
-        low
-            Level 1 there, (case, sensor).
-        steepness
-            Of level 1: length of its gradient over the current [N s/m] or [s].
         """
         rest = self.rest.predict(x, low)
         own = rest.std**2 + (self.gain * low.std) ** 2 + self.own

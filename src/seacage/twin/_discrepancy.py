@@ -105,26 +105,13 @@ class Discrepancy:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ShapeError:
-    """Distribution of the error of one predicted shape: weighted cases about their mean.
+    """Distribution of the error of one predicted shape: weighted cases about their mean."""
 
-    Parameters
-    ----------
-    ring_of
-        The ring of each node.
-    weight
-        Of each case; they sum to 1.
-    mean
-        True less predicted, to be expected, by ring [m].
-    deviation
-        Of each case from that [m].
-    rest
-        Standard deviation of a node about its ring, along each axis [m].
-    """
-
-    ring_of: Int[np.ndarray, " node"]
-    weight: Float[np.ndarray, " case"]
-    mean: Float[np.ndarray, "ring 3"]
-    deviation: Float[np.ndarray, "case ring 3"]
+    ring_of: Int[np.ndarray, " node"]  # the ring of each node
+    weight: Float[np.ndarray, " case"]  # of each case; they sum to 1
+    mean: Float[np.ndarray, "ring 3"]  # True less predicted, to be expected, by ring [m]
+    deviation: Float[np.ndarray, "case ring 3"]  # of each case from that [m]
+    # Standard deviation of a node about its ring, along each axis [m]
     rest: Float[np.ndarray, "ring 3"]
 
     @classmethod
@@ -157,17 +144,11 @@ class ShapeError:
         return along @ self.deviation.reshape(cases, -1).T
 
     def scatter(
-        self, near: Nearest, node_sigma: Float[np.ndarray, " node"]
+        self,
+        near: Nearest,  # the points of the net
+        node_sigma: Float[np.ndarray, " node"],  # of the surrogate [m]
     ) -> Float[np.ndarray, " point"]:
-        """Standard deviation across the net about the cases, with the surrogate's [m].
-
-        Parameters
-        ----------
-        near
-            The points of the net.
-        node_sigma
-            Of the surrogate [m].
-        """
+        """Standard deviation across the net about the cases, with the surrogate's [m]."""
         variance = np.einsum("pkj,pj->pk", self.rest[self.ring_of[near.node]] ** 2, near.normal**2)
         variance += node_sigma[near.node] ** 2
         return np.sqrt(np.einsum("pk,pk->p", near.weight, variance))

@@ -28,21 +28,11 @@ MeanStd = tuple[float, float]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Tracked:
-    """Prediction of a sensor's reading, and the factor on its interval.
+    """Prediction of a sensor's reading, and the factor on its interval."""
 
-    Parameters
-    ----------
-    factor
-        Of the standard deviation, from the readings so far [-].
-    expected
-        By the last answer; None where it was not valid.
-    counted
-        Time of the last reading that counted.
-    """
-
-    factor: float = 1.0
-    expected: MeanStd | None = None
-    counted: datetime | None = None
+    factor: float = 1.0  # of the standard deviation, from the readings so far [-]
+    expected: MeanStd | None = None  # by the last answer; None where it was not valid
+    counted: datetime | None = None  # time of the last reading that counted
 
 
 def adapted_at(t: datetime) -> datetime:
@@ -70,20 +60,14 @@ def counts(tracked: Tracked, sample: Sample, *, every_s: float) -> bool:
     return due and reading_of(sample)[1] == Flag.GOOD
 
 
-def adapt_factor(tracked: Tracked, sample: Sample, expected: MeanStd, *, rate: float) -> Tracked:
-    """Return a sensor's state after a reading that counts.
-
-    Parameters
-    ----------
-    tracked
-        Of the sensor.
-    sample
-        Of the sensor, in the unit of its key.
-    expected
-        In the water at its time.
-    rate
-        Step of the factor's logarithm; 0 changes nothing [-].
-    """
+def adapt_factor(
+    tracked: Tracked,  # of the sensor
+    sample: Sample,  # of the sensor, in the unit of its key
+    expected: MeanStd,  # in the water at its time
+    *,
+    rate: float,  # step of the factor's logarithm; 0 changes nothing [-]
+) -> Tracked:
+    """Return a sensor's state after a reading that counts."""
     (mean, std), (reading, _) = expected, reading_of(sample)
     held = abs(reading - mean) <= INTERVAL_SD * tracked.factor * std
     factor = AdaptiveConformal(rate=rate).stepped(tracked.factor, held=held)

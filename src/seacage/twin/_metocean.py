@@ -140,19 +140,14 @@ class Metocean(Rows):
 
 
 def nearest_inside(
-    x: Float[np.ndarray, "case feature"], domain: Domain
+    # As ``Metocean.features`` makes them: (length, east, north) of each input
+    x: Float[np.ndarray, "case feature"],
+    domain: Domain,  # of such features
 ) -> Float[np.ndarray, "case feature"]:
     """Return features of the nearest water inside a domain.
 
     Each vector is drawn into the box of its components, and then to the largest length. Slower
     water than any inside keeps its vector and takes the least length.
-
-    Parameters
-    ----------
-    x
-        As ``Metocean.features`` makes them: (length, east, north) of each input.
-    domain
-        Of such features.
     """
     inside = x.copy()
     for first in range(0, x.shape[1], 3):

@@ -35,15 +35,9 @@ Features = Float[np.ndarray, "case feature"]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Depth:
-    """Level 1 of a depth sensor: how deep its node of the shape lies.
+    """Level 1 of a depth sensor: how deep its node of the shape lies."""
 
-    Parameters
-    ----------
-    height
-        Of the node, upwards [m].
-    """
-
-    height: Predicts
+    height: Predicts  # of the node, upwards [m]
 
     def predict(self, x: Features, /) -> Prediction:
         """Predict at each row of features [m]."""

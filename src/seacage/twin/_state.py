@@ -21,21 +21,12 @@ from seacage.twin._models import Models
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Taken:
-    """A sample of a stream, and the newest values up to it.
+    """A sample of a stream, and the newest values up to it."""
 
-    Parameters
-    ----------
-    sample
-        With its flags.
-    newest
-        The last sample that carried each key.
-    quality
-        Of the checks that look back, where the sample came without flags, with the amendment of
-        the one before it. None where it was checked before it came here.
-    """
-
-    sample: Sample
-    newest: Mapping[str, Sample]
+    sample: Sample  # with its flags
+    newest: Mapping[str, Sample]  # the last sample that carried each key
+    # Of the checks that look back, where the sample came without flags, with the amendment of the
+    # one before it. None where it was checked before it came here.
     quality: QualityState | None = None
 
 
@@ -134,26 +125,19 @@ def latest_in(stream: Stream, now: datetime | None) -> Taken | None:
     return None
 
 
-def insert(stream: Stream, sample: Sample, *, horizon: datetime, disorder_s: float) -> Stream:
+def insert(
+    # Before, and the new one
+    stream: Stream,
+    sample: Sample,
+    *,
+    horizon: datetime,  # older samples are forgotten, but for the last of them
+    disorder_s: float,  # see ``StreamTimeouts`` [s]
+) -> Stream:  # the same one where the sample is known
     """Put a sample in its place in time.
 
     Whatever the order in which samples come, the stream ends the same. One that carries no flags
     yet is checked, and all after it anew, unless it is later than ``disorder_s``: then it is
     checked alone.
-
-    Parameters
-    ----------
-    stream, sample
-        Before, and the new one.
-    horizon
-        Older samples are forgotten, but for the last of them.
-    disorder_s
-        See ``StreamTimeouts`` [s].
-
-    Returns
-    -------
-    stream
-        The same one where the sample is known.
     """
     place = bisect_left(stream, _key(sample), key=lambda taken: _key(taken.sample))
     if place < len(stream) and _key(stream[place].sample) == _key(sample):

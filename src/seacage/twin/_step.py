@@ -24,27 +24,17 @@ Notice = Flagged | StreamSilent | StreamBack
 
 
 def receive(
+    # The state before, the samples, and the clock, with its zone
     state: TwinState,
     samples: Sequence[Sample],
     now: datetime,
     *,
-    timeouts: Mapping[str, float],
-    limits: StreamTimeouts,
+    timeouts: Mapping[str, float],  # the streams of the twin, and the timeout of each [s]
+    limits: StreamTimeouts,  # limits on disorder and on clocks that are ahead
+    # Flags that have changed since, of these samples or of earlier ones
     amendments: Sequence[Amendment] = (),
 ) -> tuple[TwinState, tuple[Notice, ...]]:
-    """Take samples in, or let time pass, and report notices.
-
-    Parameters
-    ----------
-    state, samples, now
-        The state before, the samples, and the clock, with its zone.
-    timeouts
-        The streams of the twin, and the timeout of each [s].
-    limits
-        Limits on disorder and on clocks that are ahead.
-    amendments
-        Flags that have changed since, of these samples or of earlier ones.
-    """
+    """Take samples in, or let time pass, and report notices."""
     if now.tzinfo is None:
         raise InputError(
             f"Twin.step: now = {now.isoformat()} does not say its zone. Give it in UTC."

@@ -36,21 +36,11 @@ from seacage.twin._step import forget, receive
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Reading:
-    """The input in force at a time: the buoy's newest reading that is not ahead of it.
+    """The input in force at a time: the buoy's newest reading that is not ahead of it."""
 
-    Parameters
-    ----------
-    metocean
-        One row; None before the first.
-    age_s
-        Of its oldest part [s].
-    trouble
-        Why it cannot be used, in one sentence; "" where it can.
-    """
-
-    metocean: Metocean | None
-    age_s: float | None
-    trouble: str
+    metocean: Metocean | None  # one row; None before the first
+    age_s: float | None  # of its oldest part [s]
+    trouble: str  # why it cannot be used, in one sentence; "" where it can
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -54,21 +54,12 @@ class _Span(NamedTuple):
 
 
 def candidate_rows(
-    group: str, time: Int[np.ndarray, " t"], columns: Columns, limits: Limits
+    group: str,  # such as ``depth``
+    time: Int[np.ndarray, " t"],  # ascending [us]
+    columns: Columns,  # the group's values by door key, one at least
+    limits: Limits,  # for the tests
 ) -> Candidates:
-    """Where in one group's readings a test may find something.
-
-    Parameters
-    ----------
-    group
-        Such as ``depth``.
-    time
-        Ascending [us].
-    columns
-        The group's values by door key, one at least.
-    limits
-        For the tests.
-    """
+    """Where in one group's readings a test may find something."""
     if not len(time):
         return Candidates([], np.zeros(0, dtype=bool))
     steadiness = limits.steadiness[group]

@@ -13,33 +13,28 @@ _log = structlog.get_logger(__name__)
 
 
 class Audit:
-    """Lines are only ever added. A token is named by its id, never shown.
+    """Lines are only ever added. A token is named by its id, never shown."""
 
-    Parameters
-    ----------
-    path
-        Of the log; None keeps none.
-    most
-        Of the log [bytes]; beyond, it becomes the one before (``audit.before.jsonl``).
-    """
-
-    def __init__(self, path: Path | None, *, most: int = 4 << 20) -> None:
+    def __init__(
+        self,
+        path: Path | None,  # of the log; None keeps none
+        *,
+        # Of the log [bytes]; beyond, it becomes the one before (``audit.before.jsonl``)
+        most: int = 4 << 20,
+    ) -> None:
         self._path, self._most = path, most
 
     def write(
-        self, did: str, *, who: str, token: str = "", source: str = "", **rest: object
+        self,
+        did: str,  # what was done, or refused
+        *,
+        # The name and the id of a token, and the address that asked
+        who: str,
+        token: str = "",
+        source: str = "",
+        **rest: object,  # what else there is to say
     ) -> None:
-        """Write one line; a disk that does not take it is reported and stops nobody.
-
-        Parameters
-        ----------
-        did
-            What was done, or refused.
-        who, token, source
-            The name and the id of a token, and the address that asked.
-        rest
-            What else there is to say.
-        """
+        """Write one line; a disk that does not take it is reported and stops nobody."""
         if self._path is None:
             return
         line = {"t": datetime.now(UTC).isoformat(), "who": who, "token": token}

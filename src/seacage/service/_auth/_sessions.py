@@ -22,37 +22,24 @@ _log = structlog.get_logger(__name__)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Session:
-    """Somebody who has signed in.
+    """Somebody who has signed in."""
 
-    Parameters
-    ----------
-    token_sha256
-        Of the token that was given; once it is revoked the session is worth nothing.
-    csrf
-        What a write has to repeat in a header, for a cookie is sent by itself.
-    expires
-        When it ends.
-    """
-
+    # Of the token that was given; once it is revoked the session is worth nothing
     token_sha256: str
-    csrf: str
-    expires: datetime
+    csrf: str  # what a write has to repeat in a header, for a cookie is sent by itself
+    expires: datetime  # when it ends
 
 
 class Sessions:
-    """The sessions of a data folder: a service that is started again knows them still.
+    """The sessions of a data folder: a service that is started again knows them still."""
 
-    Parameters
-    ----------
-    tokens
-        That they stand for; the sessions lie beside them.
-    lasting_s
-        How long one lasts after it was begun or renewed [s].
-    most
-        Of one token; its oldest ends when another begins.
-    """
-
-    def __init__(self, tokens: Tokens, *, lasting_s: float, most: int = 50) -> None:
+    def __init__(
+        self,
+        tokens: Tokens,  # that they stand for; the sessions lie beside them
+        *,
+        lasting_s: float,  # how long one lasts after it was begun or renewed [s]
+        most: int = 50,  # of one token; its oldest ends when another begins
+    ) -> None:
         self._most, self._lock = most, Lock()
         self._tokens, self._lasting = tokens, timedelta(seconds=lasting_s)
         self._path = tokens.folder / "sessions.json"

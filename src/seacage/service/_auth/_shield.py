@@ -29,14 +29,12 @@ class Shield:
     No body is read of whoever is not known, but that of who signs in. Written down are refusals,
     and what people change. Rows that a long answer took out of the
     budget are given back when it has gone.
-
-    Parameters
-    ----------
-    app
-        What is shielded.
     """
 
-    def __init__(self, app: ASGIApp) -> None:
+    def __init__(
+        self,
+        app: ASGIApp,  # what is shielded
+    ) -> None:
         self._app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:

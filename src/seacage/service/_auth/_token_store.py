@@ -23,25 +23,15 @@ _log = logging.getLogger(__name__)  # Python's own: commands keep stdout for the
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Grant:
-    """What one token may do.
+    """What one token may do."""
 
-    Parameters
-    ----------
-    sha256
-        Of the token; a token is 256 random bits, so that a plain hash cannot be guessed back.
-    scopes
-        ``read``, ``ingest``, ``ack``, each for all cages or as ``ingest:ace`` for one cage, or
-        for all of the site ``ace``; ``admin`` for everything.
-    name
-        Of whoever holds it, as the alarms' journal and the audit log name them.
-    made
-        When; empty for a token that ends with the process.
-    """
-
+    # Of the token; a token is 256 random bits, so that a plain hash cannot be guessed back
     sha256: str
+    # ``read``, ``ingest``, ``ack``, each for all cages or as ``ingest:ace`` for one cage, or for
+    # all of the site ``ace``; ``admin`` for everything
     scopes: tuple[str, ...]
-    name: str = ""
-    made: str = ""
+    name: str = ""  # of whoever holds it, as the alarms' journal and the audit log name them
+    made: str = ""  # when; empty for a token that ends with the process
 
     @property
     def id(self) -> str:
@@ -66,14 +56,12 @@ class Tokens:
     The file grows by one line per token made or revoked, and a running service sees the new line.
     A line that cannot be read is reported and shuts nobody out: all others stay in force, and so
     does what the service had read of it before.
-
-    Parameters
-    ----------
-    folder
-        The service's data folder.
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(
+        self,
+        folder: Path,  # the service's data folder
+    ) -> None:
         self.folder = folder
         self._path = folder / "tokens.jsonl"
         self._passing: list[Grant] = []
@@ -81,17 +69,14 @@ class Tokens:
         self._damaged: list[str] = []
         self._seen: tuple[int, int, int] | None = None
 
-    def mint(self, scopes: Iterable[str], *, keep: bool, name: str = "") -> str:
+    def mint(
+        self,
+        scopes: Iterable[str],  # see ``Grant``
+        *,
+        keep: bool,  # write its hash down, so that it outlives this process
+        name: str = "",  # of whoever will hold it
+    ) -> str:
         """Make a token and return it; nobody can read it again.
-
-        Parameters
-        ----------
-        scopes
-            See ``Grant``.
-        keep
-            Write its hash down, so that it outlives this process.
-        name
-            Of whoever will hold it.
 
         Raises
         ------
@@ -151,13 +136,11 @@ class Tokens:
         """Whether nobody holds everything."""
         return not any("admin" in grant.scopes for grant in self.all())
 
-    def revoke(self, named: str) -> Grant:
+    def revoke(
+        self,
+        named: str,  # the name or the id of the token
+    ) -> Grant:
         """Let a token open nothing from now on.
-
-        Parameters
-        ----------
-        named
-            The name or the id of the token.
 
         Raises
         ------

@@ -53,28 +53,19 @@ _FOR_EVER = "public, max-age=31536000, immutable"
 
 
 class Service:
-    """What the doors open to, and the work that goes on behind them.
-
-    Parameters
-    ----------
-    cages
-        By name.
-    store, tokens, metrics
-        Shared by all cages.
-    feeds
-        What runs beside the cages, such as a replay.
-    limits, site, audit
-        How much one asker may ask, where the cages lie, and where it is written who did what.
-    """
+    """What the doors open to, and the work that goes on behind them."""
 
     def __init__(
         self,
         *,
-        cages: Mapping[str, LiveCage],
+        cages: Mapping[str, LiveCage],  # by name
+        # Shared by all cages
         store: Store,
         tokens: Tokens,
         metrics: Metrics,
+        # What runs beside the cages, such as a replay
         feeds: Sequence[Callable[[], Coroutine[None, None, None]]] = (),
+        # How much one asker may ask, where the cages lie, and where it is written who did what
         limits: Limits | None = None,
         site: str = "",
         audit: Audit | None = None,

@@ -64,29 +64,6 @@ class MqttFeed:
     broker sends what is published from now on: the newest message of each stream goes before what
     waits, so that answers are those of now. It comes again in its turn, as a duplicate.
 
-    Parameters
-    ----------
-    url
-        Of the broker, see ``Broker.parse``.
-    site
-        Of the topics.
-    cages
-        Those that this process serves, by name.
-    client_id
-        Its own in the whole site, and the same after a restart: under it the broker keeps what
-        comes while the service is away.
-    metrics
-        Where samples are counted.
-    quarantine
-        Where messages that cannot be read are set aside.
-    group
-        Of the broker's shared subscriptions; a cage is served by one process all the same, as
-        its store sees to.
-    ca
-        File of the authority that signed the broker's certificate.
-    state_every_s
-        How often a cage's state is published at most [s].
-
     Raises
     ------
     InputError
@@ -95,16 +72,20 @@ class MqttFeed:
 
     def __init__(
         self,
-        url: str,
+        url: str,  # of the broker, see ``Broker.parse``
         *,
-        site: str,
-        cages: Mapping[str, LiveCage],
+        site: str,  # of the topics
+        cages: Mapping[str, LiveCage],  # those that this process serves, by name
+        # Its own in the whole site, and the same after a restart: under it the broker keeps what
+        # comes while the service is away
         client_id: str,
-        metrics: Metrics,
-        quarantine: Quarantine,
+        metrics: Metrics,  # where samples are counted
+        quarantine: Quarantine,  # where messages that cannot be read are set aside
+        # Of the broker's shared subscriptions; a cage is served by one process all the same, as its
+        # store sees to
         group: str | None = None,
-        ca: Path | None = None,
-        state_every_s: float = 10.0,
+        ca: Path | None = None,  # file of the authority that signed the broker's certificate
+        state_every_s: float = 10.0,  # how often a cage's state is published at most [s]
     ) -> None:
         self._topics, self._cages, self._metrics = Topics(site), dict(cages), metrics
         self._quarantine, self._state_every_s = quarantine, state_every_s

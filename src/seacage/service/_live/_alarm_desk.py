@@ -130,20 +130,14 @@ class AlarmDesk:
 
     def look(
         self,
+        # Of the twin
         state: TwinState,
         answered: Answered,
         *,
+        # Of the service, beside those of the store: a sentence by the alarm's name
         faults: Mapping[str, str] = MappingProxyType({}),
     ) -> tuple[AlarmEvent, ...]:
-        """Assess every alarm once more, by the answer of a tick.
-
-        Parameters
-        ----------
-        state, answered
-            Of the twin.
-        faults
-            Of the service, beside those of the store: a sentence by the alarm's name.
-        """
+        """Assess every alarm once more, by the answer of a tick."""
         self._book, happened = assess(
             self._book,
             twin=self._twin,

@@ -43,18 +43,14 @@ _ID_DIGITS = 16  # of the hash of a topology: enough that two never meet by chan
 _DECIMALS = 3  # a newton, a millimetre: below what any sensor here resolves
 
 
-def state_of(name: str, twin: Twin, answered: Answered, memory: TwinState) -> State:
-    """Say what a cage does at one time.
-
-    Parameters
-    ----------
-    name
-        Of the cage.
-    twin, answered
-        Who answered, and what.
-    memory
-        What the twin remembers of its streams.
-    """
+def state_of(
+    name: str,  # of the cage
+    # Who answered, and what
+    twin: Twin,
+    answered: Answered,
+    memory: TwinState,  # what the twin remembers of its streams
+) -> State:
+    """Say what a cage does at one time."""
     answer = answered.answer
     return State(
         cage=name,
@@ -211,21 +207,13 @@ def topology_of(name: str, twin: Twin, *, speed: float) -> Topology:
 
 
 def history_of(
-    buoy: Record, answer: Answer, measured: Mapping[str, Measured], *, thinned: bool
+    buoy: Record,
+    answer: Answer,  # one row each
+    measured: Mapping[str, Measured],  # what each sensor read in the same time
+    *,
+    thinned: bool,  # whether the buoy read more often than these readings say
 ) -> History:
-    """Say what the twin answers to each reading of a buoy.
-
-    Parameters
-    ----------
-    buoy
-        The readings.
-    answer
-        One row each.
-    measured
-        What each sensor read in the same time.
-    thinned
-        Whether the buoy read more often than these readings say.
-    """
+    """Say what the twin answers to each reading of a buoy."""
     times = [t.replace(tzinfo=UTC) for t in buoy.time.tolist()]
     return History(
         t=times,

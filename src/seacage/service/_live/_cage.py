@@ -87,22 +87,6 @@ class LiveCage:
     once they are on disk. ``run`` steps the twin with what was queued and with the ticks of the
     clock.
 
-    Parameters
-    ----------
-    name
-        Under which the cage is served.
-    twin, store, clock
-        What answers, what keeps, and what time it is; no other process may serve the cage from
-        the same store.
-    metrics
-        Where steps and samples are counted.
-    tick_s
-        Longest pause between two looks at the clock [s of the wall].
-    policy
-        Limits of the alarms; None for the usual.
-    least_volume
-        Share of the still-water volume below which the cage is not called well [-].
-
     Attributes
     ----------
     streams
@@ -114,13 +98,16 @@ class LiveCage:
     def __init__(
         self,
         *,
-        name: str,
+        name: str,  # under which the cage is served
+        # What answers, what keeps, and what time it is; no other process may serve the cage from
+        # the same store
         twin: Twin,
         store: Store,
         clock: Clock,
-        metrics: Metrics,
-        tick_s: float = 2.0,
-        policy: AlarmPolicy | None = None,
+        metrics: Metrics,  # where steps and samples are counted
+        tick_s: float = 2.0,  # longest pause between two looks at the clock [s of the wall]
+        policy: AlarmPolicy | None = None,  # limits of the alarms; None for the usual
+        # Share of the still-water volume below which the cage is not called well [-]
         least_volume: float = 0.8,
     ) -> None:
         store.claim(name)

@@ -14,14 +14,9 @@ _LASTS_S = 600.0  # an alarm stands so long after the last sign of a fault
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Step:
-    """A clock that was set.
+    """A clock that was set."""
 
-    Parameters
-    ----------
-    expected, now
-        What it would have told, and what it told.
-    """
-
+    # What it would have told, and what it told
     expected: datetime
     now: datetime
 
@@ -32,17 +27,15 @@ class Step:
 
 
 class ClockFaults:
-    """Faults of clocks: a cage's against one that never steps, and its streams' against its own.
+    """Faults of clocks: a cage's against one that never steps, and its streams' against its own."""
 
-    Parameters
-    ----------
-    clock
-        Of the cage.
-    streams
-        How many streams there are: where all are ahead it is the clock that is behind.
-    """
-
-    def __init__(self, clock: Clock, *, streams: int) -> None:
+    def __init__(
+        self,
+        clock: Clock,  # of the cage
+        *,
+        # How many streams there are: where all are ahead it is the clock that is behind
+        streams: int,
+    ) -> None:
         self._clock, self._streams = clock, streams
         self._last = clock.now(), clock.monotonic_s()
         self._step: tuple[Step, float] | None = None

@@ -29,11 +29,12 @@ class Flags(IntFlag):
 
 
 def frame_of(
+    # The same twice: for people, and in SI
     state: State,
     answered: Answered,
-    rest_position: Float[np.ndarray, "node 3"],
+    rest_position: Float[np.ndarray, "node 3"],  # that the page adds the displacement to [m]
     *,
-    about: Flags = Flags.LIVE,
+    about: Flags = Flags.LIVE,  # whether this is the past, or what would be
 ) -> bytes:
     """Say all that changes on the page, little-endian, each section aligned to 8 bytes.
 
@@ -42,15 +43,6 @@ def frame_of(
     Then int16 displacement, x y z of each node in turn; uint8 spread, empty where the flag
     ``NO_SPREAD`` says that none is known; the state. Both units follow the largest number of the
     frame, so that none is cut off.
-
-    Parameters
-    ----------
-    state, answered
-        The same twice: for people, and in SI.
-    rest_position
-        That the page adds the displacement to [m].
-    about
-        Whether this is the past, or what would be.
     """
     answer = answered.answer
     displacement, sigma = np.zeros((0, 3)), np.zeros(0)

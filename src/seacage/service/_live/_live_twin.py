@@ -39,15 +39,6 @@ class LiveTwin:
     What it shows depends on the stored samples and the clock alone, and not on the order in which
     they came or on when the service was stopped and started.
 
-    Parameters
-    ----------
-    name, twin, store, clock
-        Of the cage.
-    desk
-        Where its alarms are assessed.
-    tick_s
-        Between two assessments [s of the wall].
-
     Attributes
     ----------
     state, answered
@@ -58,7 +49,15 @@ class LiveTwin:
     answered: Answered
 
     def __init__(
-        self, *, name: str, twin: Twin, store: Store, clock: Clock, desk: AlarmDesk, tick_s: float
+        self,
+        *,
+        # Of the cage
+        name: str,
+        twin: Twin,
+        store: Store,
+        clock: Clock,
+        desk: AlarmDesk,  # where its alarms are assessed
+        tick_s: float,  # between two assessments [s of the wall]
     ) -> None:
         self._name, self._twin, self._store, self._clock = name, twin, store, clock
         self._desk, self._past = desk, Past(twin, store, name)
@@ -82,17 +81,12 @@ class LiveTwin:
         return self.answered
 
     def step(
-        self, arrived: Sequence[Stored], *, ticked: bool = True
+        self,
+        arrived: Sequence[Stored],  # in the order in which it was stored
+        *,
+        ticked: bool = True,  # assess the alarms though the clock may not have gone on
     ) -> tuple[Answered, tuple[Event, ...]]:
-        """Take in what was stored since the last step, and answer now.
-
-        Parameters
-        ----------
-        arrived
-            In the order in which it was stored.
-        ticked
-            Assess the alarms though the clock may not have gone on.
-        """
+        """Take in what was stored since the last step, and answer now."""
         now = self._clock.now()
         if (step := self.clocks.look()) is not None:
             self._follow_clock(step)

@@ -47,19 +47,16 @@ class Past:
     cage: str
 
     def state_at(
-        self, at: datetime, *, kept: Adaptation | None = None
+        self,
+        at: datetime,  # when
+        *,
+        # How far the intervals were adapted; None where the store has it
+        kept: Adaptation | None = None,
     ) -> tuple[TwinState, Answered]:
         """Fold the twin's state and answer at a time from what had been measured until then.
 
         It is what a service would have shown that had got all samples until then in the order of
         their times, with the flags that those had shown, and intervals adapted as far as then.
-
-        Parameters
-        ----------
-        at
-            When.
-        kept
-            How far the intervals were adapted; None where the store has it.
         """
         kept = kept or self.store.adaptation(self.cage, at=at)
         state = self._memory_at(at, kept=kept, until=block_begin(at))
@@ -76,17 +73,13 @@ class Past:
         )
 
     def adaptations(
-        self, kept: Adaptation | None, start: datetime, end: datetime
+        self,
+        kept: Adaptation | None,  # how far they were adapted before
+        # The first and the last time at which they change, both of them ends of blocks
+        start: datetime,
+        end: datetime,
     ) -> Iterator[Adaptation]:
-        """Adapt the twin's intervals anew, block by block, from what is stored.
-
-        Parameters
-        ----------
-        kept
-            How far they were adapted before.
-        start, end
-            The first and the last time at which they change, both of them ends of blocks.
-        """
+        """Adapt the twin's intervals anew, block by block, from what is stored."""
         at = start
         while at <= end:
             following = self._first_since(at - 2 * ADAPTATION_BLOCK)

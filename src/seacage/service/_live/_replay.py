@@ -20,18 +20,10 @@ _BREAK = np.timedelta64(6, "h")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Replay:
-    """What is replayed, and where it begins.
+    """What is replayed, and where it begins."""
 
-    Parameters
-    ----------
-    records
-        One per stream.
-    start
-        Where the clock stands first; the day before is there from the beginning.
-    """
-
-    records: tuple[Record, ...]
-    start: datetime
+    records: tuple[Record, ...]  # one per stream
+    start: datetime  # where the clock stands first; the day before is there from the beginning
 
     async def feed(self, cage: LiveCage, clock: ReplayClock) -> None:
         """Feed the samples when their time has come; begin anew at the end, for ever."""

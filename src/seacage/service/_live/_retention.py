@@ -18,26 +18,16 @@ class Retention:
 
     A day leaves the store when it is archived, if the store has an archive, and its aggregates
     are final. The work goes in small pieces between those of the ingest.
-
-    Parameters
-    ----------
-    store
-        Where old samples are.
-    clocks
-        Of each cage, as old is what its clock says.
-    keep_days
-        UTC days that ended longer ago leave [d]; above zero, as the settings say.
-    every_s
-        Between two looks [s of the wall].
     """
 
     def __init__(
         self,
-        store: Store,
+        store: Store,  # where old samples are
         *,
-        clocks: Mapping[str, Clock],
+        clocks: Mapping[str, Clock],  # of each cage, as old is what its clock says
+        # UTC days that ended longer ago leave [d]; above zero, as the settings say
         keep_days: float,
-        every_s: float = 3600.0,
+        every_s: float = 3600.0,  # between two looks [s of the wall]
     ) -> None:
         self._store, self._clocks = store, clocks
         self._keep, self._every_s = timedelta(days=keep_days), every_s

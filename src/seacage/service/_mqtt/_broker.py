@@ -22,25 +22,16 @@ KEEPALIVE_S = 30
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Broker:
-    """A broker's place and what it asks of its clients.
+    """A broker's place and what it asks of its clients."""
 
-    Parameters
-    ----------
-    host, port
-        Where it listens.
-    tls
-        Whether it speaks TLS, and shows a certificate.
-    user, password
-        None where it asks for none; never shown.
-    ca
-        File of the authority that signed its certificate; the system's where None.
-    """
-
+    # Where it listens
     host: str
     port: int
-    tls: bool = False
+    tls: bool = False  # whether it speaks TLS, and shows a certificate
+    # None where it asks for none; never shown
     user: str | None = None
     password: str | None = field(default=None, repr=False)
+    # File of the authority that signed its certificate; the system's where None
     ca: Path | None = None
 
     @classmethod
@@ -124,16 +115,13 @@ class _Greeting(ssl.SSLSocket):
             raise
 
 
-def connecting(*, receive_maximum: int, session_s: int) -> Properties:
-    """What a client asks of its connection.
-
-    Parameters
-    ----------
-    receive_maximum
-        The broker sends at most so many messages ahead of their acknowledgements.
-    session_s
-        It keeps what comes for the client so long after the connection ended [s].
-    """
+def connecting(
+    *,
+    # The broker sends at most so many messages ahead of their acknowledgements
+    receive_maximum: int,
+    session_s: int,  # it keeps what comes for the client so long after the connection ended [s]
+) -> Properties:
+    """What a client asks of its connection."""
     properties = Properties(PacketTypes.CONNECT)
     properties.ReceiveMaximum = receive_maximum
     properties.SessionExpiryInterval = session_s

@@ -26,23 +26,15 @@ _log = structlog.get_logger(__name__)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Received:
-    """A message that came.
+    """A message that came."""
 
-    Parameters
-    ----------
-    topic, payload
-        The message, and its topic; the topic is empty where its bytes are no text.
-    acknowledge
-        Tells the broker that it need not send the message again. After the connection that
-        brought it has ended this does nothing, for the message will come again.
-    sure
-        Whether the broker waits for that; without it, it sends as much as it likes.
-    """
-
+    # The message, and its topic; the topic is empty where its bytes are no text
     topic: str
     payload: bytes
+    # Tells the broker that it need not send the message again. After the connection that brought it
+    # has ended this does nothing, for the message will come again.
     acknowledge: Callable[[], object]
-    sure: bool
+    sure: bool  # whether the broker waits for that; without it, it sends as much as it likes
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -79,23 +71,6 @@ class Link:
     is made once all that the last one brought is dealt with; what the broker has sent ahead is
     then never more than the receive maximum.
 
-    Parameters
-    ----------
-    broker
-        Where to connect.
-    client_id
-        Under which the broker keeps what comes while the client is away.
-    filters
-        What to listen to.
-    listener
-        Who hears it.
-    receive_maximum, session_s
-        See ``connecting``.
-    will
-        What the broker says when this client is lost.
-    qos
-        0 to get only what is published from now on, of which the broker keeps nothing.
-
     Attributes
     ----------
     fault
@@ -104,14 +79,16 @@ class Link:
 
     def __init__(
         self,
-        broker: Broker,
+        broker: Broker,  # where to connect
         *,
-        client_id: str,
-        filters: Sequence[str],
-        listener: Listener,
+        client_id: str,  # under which the broker keeps what comes while the client is away
+        filters: Sequence[str],  # what to listen to
+        listener: Listener,  # who hears it
+        # See ``connecting``
         receive_maximum: int,
         session_s: int,
-        will: Will | None = None,
+        will: Will | None = None,  # what the broker says when this client is lost
+        # 0 to get only what is published from now on, of which the broker keeps nothing
         qos: int = 1,
     ) -> None:
         self._broker, self._client_id, self._filters = broker, client_id, tuple(filters)

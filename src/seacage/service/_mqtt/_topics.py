@@ -26,18 +26,13 @@ class Address(NamedTuple):
 class Topics:
     """Topics below ``seacage/v1/{site}``.
 
-    Parameters
-    ----------
-    site
-        Its name: up to 64 letters, digits and ``_ . -``.
-
     Raises
     ------
     InputError
         Another name, which could not be a level of a topic.
     """
 
-    site: str
+    site: str  # its name: up to 64 letters, digits and ``_ . -``
 
     def __post_init__(self) -> None:
         if re.fullmatch(_LEVEL, self.site) is None:

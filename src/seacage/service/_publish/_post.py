@@ -19,20 +19,13 @@ POST_FAILED = (OSError, http.client.HTTPException)
 
 
 def post(
-    address: str, body: str, *, headers: Mapping[str, str], timeout_s: float
+    address: str,  # whole, with its path and query
+    body: str,  # JSON
+    *,
+    headers: Mapping[str, str],  # besides the type of the content
+    timeout_s: float,  # for the connection and for each part of the answer [s]
 ) -> tuple[int, bytes]:
     """Post a body of JSON and return the status and body of the answer.
-
-    Parameters
-    ----------
-    address
-        Whole, with its path and query.
-    body
-        JSON.
-    headers
-        Besides the type of the content.
-    timeout_s
-        For the connection and for each part of the answer [s].
 
     Raises
     ------
@@ -62,31 +55,19 @@ def _check_address(url: str) -> str:
 
 
 class Webhook(BaseModel):
-    """One ``[[webhooks]]``: an address that alarms are posted to as JSON.
-
-    Parameters
-    ----------
-    url
-        http or https.
-    severity
-        The least that is posted, 1 to 1000.
-    after_s
-        0 tells at once whatever is raised, repeated, cleared or acknowledged. More tells only
-        of an alarm that is still active and not acknowledged so long after it was raised [s],
-        which is how one escalates to the next on duty.
-    secret
-        Signs each body: ``X-Seacage-Signature`` is its HMAC-SHA256, in hexadecimal.
-    cages
-        Whose alarms; all where empty.
-    """
+    """One ``[[webhooks]]``: an address that alarms are posted to as JSON."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
-    url: Annotated[str, AfterValidator(_check_address)]
-    severity: int = Field(default=500, ge=1, le=1000)
+    url: Annotated[str, AfterValidator(_check_address)]  # http or https
+    severity: int = Field(default=500, ge=1, le=1000)  # the least that is posted, 1 to 1000
+    # 0 tells at once whatever is raised, repeated, cleared or acknowledged. More tells only of an
+    # alarm that is still active and not acknowledged so long after it was raised [s], which is how
+    # one escalates to the next on duty.
     after_s: float = Field(default=0.0, ge=0.0, le=86_400.0)
+    # Signs each body: ``X-Seacage-Signature`` is its HMAC-SHA256, in hexadecimal
     secret: str = Field(default="", repr=False)
-    cages: tuple[Name, ...] = ()
+    cages: tuple[Name, ...] = ()  # whose alarms; all where empty
 
     def wants(self, cage: str, severity: int) -> bool:
         """Whether an alarm of this severity is posted here."""
@@ -95,21 +76,11 @@ class Webhook(BaseModel):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AbstractCaller(ABC):
-    """Calls about one cage of one service.
+    """Calls about one cage of one service."""
 
-    Parameters
-    ----------
-    address
-        Of the service: ``http://127.0.0.1:8000``.
-    cage
-        Its name there.
-    token
-        With the scope that the calls take.
-    """
-
-    address: str
+    address: str  # of the service: ``http://127.0.0.1:8000``
     cage: str
-    token: str
+    token: str  # with the scope that the calls take
 
     def post(self, call: str, body: str, *, timeout_s: float = 60.0) -> tuple[int, bytes]:
         """Post JSON to one of the cage's calls, once; see ``post`` of this module."""

@@ -30,32 +30,18 @@ class Batch:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Published:
-    """What a publisher did.
+    """What a publisher did."""
 
-    Parameters
-    ----------
-    read
-        Samples that came from the source.
-    acknowledged
-        Samples that the service has.
-    rejected, reasons
-        Samples that it refused, and why, of the first ones.
-    dropped
-        Samples that had to make room in the spool.
-    spooled, ahead
-        Samples that are still in the spool, and how many of these as their time has not come.
-    quarantined
-        Samples that were set aside, beside the spool.
-    """
-
-    read: int
-    acknowledged: int
+    read: int  # samples that came from the source
+    acknowledged: int  # samples that the service has
+    # Samples that it refused, and why, of the first ones
     rejected: int
     reasons: tuple[str, ...]
-    dropped: int
+    dropped: int  # samples that had to make room in the spool
+    # Samples that are still in the spool, and how many of these as their time has not come
     spooled: int
     ahead: int
-    quarantined: int
+    quarantined: int  # samples that were set aside, beside the spool
 
 
 class Publisher:
@@ -67,29 +53,21 @@ class Publisher:
 
     Samples that are ahead of the service's clock go last, with what room a request has, those
     first whose time comes first. Where the service still takes none of these, all wait.
-
-    Parameters
-    ----------
-    spool, transport
-        Where samples wait, and what carries them.
-    retry_s, keep_ahead
-        How long samples ahead of the service's clock wait until they are tried again [s], and
-        for how long they are tried before they are set aside.
-    patience_s
-        How long nothing may be acknowledged before it gives up [s]; None never does.
-    progress
-        Is told how many were acknowledged, of how many.
     """
 
     def __init__(
         self,
+        # Where samples wait, and what carries them
         spool: Spool,
         transport: Transport,
         *,
+        # How long samples ahead of the service's clock wait until they are tried again [s], and for
+        # how long they are tried before they are set aside
         retry_s: float = 60.0,
         keep_ahead: timedelta = timedelta(days=7),
+        # How long nothing may be acknowledged before it gives up [s]; None never does
         patience_s: float | None = None,
-        progress: Progress = no_progress,
+        progress: Progress = no_progress,  # is told how many were acknowledged, of how many
     ) -> None:
         self._spool, self._transport = spool, transport
         self._retry_s, self._keep_ahead, self._retry_at = retry_s, keep_ahead, float("-inf")

@@ -19,19 +19,12 @@ _ALWAYS = datetime.max.replace(tzinfo=UTC)
 
 
 def pace(
-    records: Sequence[Record], *, speed: float | None, since: datetime | None = None
+    records: Sequence[Record],  # one per stream
+    *,
+    speed: float | None,  # against real time; None is as fast as they are taken
+    since: datetime | None = None,  # samples before this are left out
 ) -> Iterator[list[Sample]]:
-    """Give out samples in time order, in batches: those that are due, or as many as go at once.
-
-    Parameters
-    ----------
-    records
-        One per stream.
-    speed
-        Against real time; None is as fast as they are taken.
-    since
-        Samples before this are left out.
-    """
+    """Give out samples in time order, in batches: those that are due, or as many as go at once."""
     merged = heapq.merge(*(one.samples() for one in records), key=lambda sample: sample.t)
     began, start, batch = time.monotonic(), None, list[Sample]()
     for sample in merged:
@@ -82,20 +75,13 @@ def arriving(descriptor: int) -> Iterator[list[bytes]]:
 
 
 def line_batches(
-    arrived: Iterable[Sequence[bytes]],
+    arrived: Iterable[Sequence[bytes]],  # lines, each with its end; one without counts as cut
     *,
-    refuse: Refuse,
+    refuse: Refuse,  # is told which line, the line, and why it cannot be read
 ) -> Iterator[Batch]:
     """Read one sample from each line of JSON, as in a request to the service.
 
     Whether its time has come, the service says: its clock counts, and not this machine's.
-
-    Parameters
-    ----------
-    arrived
-        Lines, each with its end; one without counts as cut.
-    refuse
-        Is told which line, the line, and why it cannot be read.
     """
     number = 0
     for lines in arrived:

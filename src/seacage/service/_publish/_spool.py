@@ -74,20 +74,6 @@ class Spool:
     holds of others, so that they take no room from these. What cannot be sent is set aside in a
     file beside the spool: it is named like it and ends with ``.quarantine.jsonl``.
 
-    Parameters
-    ----------
-    path
-        Of the file; made where there is none.
-    to
-        Where its samples go; a spool serves one destination.
-    most
-        Samples it holds.
-    drop_oldest
-        What happens where it is full: with it the oldest samples make room, and ``dropped``
-        counts them; without it ``put`` says so, and the source has to wait.
-    now
-        Tells the time by which samples wait.
-
     Attributes
     ----------
     ahead
@@ -103,11 +89,14 @@ class Spool:
 
     def __init__(
         self,
-        path: Path,
+        path: Path,  # of the file; made where there is none
         *,
-        to: str,
-        most: int = 1_000_000,
+        to: str,  # where its samples go; a spool serves one destination
+        most: int = 1_000_000,  # samples it holds
+        # What happens where it is full: with it the oldest samples make room, and ``dropped``
+        # counts them; without it ``put`` says so, and the source has to wait
         drop_oldest: bool = False,
+        # Tells the time by which samples wait
         now: Callable[[], datetime] = lambda: datetime.now(UTC),
     ) -> None:
         self._path, self._most, self._drop_oldest, self._now = path, most, drop_oldest, now
@@ -146,16 +135,15 @@ class Spool:
         with self._lock:
             return self._all("SELECT coalesce(max(id), 0) FROM sample")[0][0]
 
-    def put(self, samples: Sequence[Sample], *, source: str, place: str) -> bool:
-        """Keep samples; True once they are on disk, False where the spool is full.
-
-        Parameters
-        ----------
-        samples
-            Those that wait already are kept once.
-        source, place
-            Whose, and how far it is read with them.
-        """
+    def put(
+        self,
+        samples: Sequence[Sample],  # those that wait already are kept once
+        *,
+        # Whose, and how far it is read with them
+        source: str,
+        place: str,
+    ) -> bool:
+        """Keep samples; True once they are on disk, False where the spool is full."""
         with self._lock, self._transaction():
             if self._count + len(samples) > self._most and self._count and not self._drop_oldest:
                 return False
@@ -172,16 +160,14 @@ class Spool:
         with self._lock:
             return self._all("SELECT max(place) FROM place WHERE source = ?", source)[0][0]
 
-    def next(self, limit: int, *, live_after: int) -> list[Sample]:
-        """The samples to send: those put in after one number first, then the others.
-
-        Parameters
-        ----------
-        limit
-            At most so many.
-        live_after
-            Samples after this number are live; older ones fill what is left, oldest first.
-        """
+    def next(
+        self,
+        limit: int,  # at most so many
+        *,
+        # Samples after this number are live; older ones fill what is left, oldest first
+        live_after: int,
+    ) -> list[Sample]:
+        """The samples to send: those put in after one number first, then the others."""
         query = "SELECT stream, t, seq, said FROM sample WHERE id {} ? ORDER BY id LIMIT ?"
         with self._lock:
             rows = self._all(query.format(">"), live_after, limit)

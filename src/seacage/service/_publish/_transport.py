@@ -40,15 +40,12 @@ class Transport(Protocol):
 
 
 class HttpTransport:
-    """Carries samples by HTTP; the answer 201 is the acknowledgement.
+    """Carries samples by HTTP; the answer 201 is the acknowledgement."""
 
-    Parameters
-    ----------
-    sender
-        To which service, cage and with which token.
-    """
-
-    def __init__(self, sender: Sender) -> None:
+    def __init__(
+        self,
+        sender: Sender,  # to which service, cage and with which token
+    ) -> None:
         self._sender = sender
 
     def send(self, samples: Sequence[Sample]) -> list[Settled]:

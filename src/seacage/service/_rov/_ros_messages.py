@@ -29,11 +29,6 @@ class NoRosbagsError(SeacageError):
 class RosMessages:
     """Messages of one time, in the types of ROS 2.
 
-    Parameters
-    ----------
-    t
-        Of all messages.
-
     Raises
     ------
     NoRosbagsError
@@ -42,7 +37,10 @@ class RosMessages:
         ROS has no such time.
     """
 
-    def __init__(self, t: datetime) -> None:
+    def __init__(
+        self,
+        t: datetime,  # of all messages
+    ) -> None:
         try:
             from rosbags.typesys import Stores, get_typestore
         except ImportError as error:

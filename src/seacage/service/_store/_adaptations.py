@@ -24,34 +24,18 @@ _FOLDED = "DELETE FROM refold WHERE cage = ? AND t >= ? AND touched = ?"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Adaptation:
-    """Factors of the intervals, as the twin writes them.
+    """Factors of the intervals, as the twin writes them."""
 
-    Parameters
-    ----------
-    t
-        From when on they held; None where it is not known, as in a store of 0.1.0.
-    factors
-        JSON.
-    """
-
-    t: datetime | None
-    factors: str
+    t: datetime | None  # from when on they held; None where it is not known, as in a store of 0.1.0
+    factors: str  # JSON
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Refold:
-    """What has to be adapted anew, as samples came too late.
+    """What has to be adapted anew, as samples came too late."""
 
-    Parameters
-    ----------
-    t
-        From when on.
-    touched
-        When the last of them came.
-    """
-
-    t: datetime
-    touched: datetime
+    t: datetime  # from when on
+    touched: datetime  # when the last of them came
 
 
 def keep_adaptations(

@@ -42,22 +42,15 @@ _SUMMED = "SELECT 1 FROM aggregate WHERE cage = ? AND stream = ? AND t >= ? AND 
 
 
 class Caretaker:
-    """A thread that reads every row once a day, and copies what is intact of damaged files.
-
-    Parameters
-    ----------
-    database, writer, read
-        Of the store.
-    look
-        Done about every second.
-    """
+    """A thread that reads every row once a day, and copies what is intact of damaged files."""
 
     def __init__(
         self,
+        # Of the store
         database: AbstractDatabase,
         writer: Writer,
         read: Read[Answer],
-        look: Callable[[], object],
+        look: Callable[[], object],  # done about every second
     ) -> None:
         self._database, self._writer, self._read, self._look = database, writer, read, look
         self._cages = set[str]()

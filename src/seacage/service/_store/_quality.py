@@ -89,24 +89,13 @@ _END: Key = (2**62, 2**62)
 
 @dataclass(frozen=True, slots=True)
 class Memory:
-    """What the checks remember after a stream's samples up to one of them.
+    """What the checks remember after a stream's samples up to one of them."""
 
-    Parameters
-    ----------
-    quality
-        Of the tests that look back.
-    newest
-        The last sample that carried each quantity, by door key.
-    at
-        The last sample of all.
-    since
-        Samples since the last checkpoint.
-    """
-
-    quality: QualityState = field(default_factory=QualityState)
+    quality: QualityState = field(default_factory=QualityState)  # of the tests that look back
+    # The last sample that carried each quantity, by door key
     newest: Mapping[str, Key] = field(default_factory=dict[str, Key])
-    at: Key = _FIRST
-    since: int = 0
+    at: Key = _FIRST  # the last sample of all
+    since: int = 0  # samples since the last checkpoint
 
     def same(self, other: "Memory") -> bool:
         """Whether whatever comes next is checked the same."""
@@ -133,27 +122,17 @@ class Memory:
 
 @dataclass(slots=True)
 class Checked:
-    """What one transaction does to a stream.
+    """What one transaction does to a stream."""
 
-    Parameters
-    ----------
-    fresh
-        The samples that were not known, by key, with their flags.
-    amended
-        Of these, where a later one has amended a flag already.
-    again
-        Those among them whose row is there: they had been withdrawn.
-    amendments
-        Flags of stored samples that change.
-    walked
-        Whether stored samples were checked again.
-    """
-
+    # The samples that were not known, by key, with their flags
     fresh: dict[Key, Sample] = field(default_factory=dict[Key, Sample])
+    # Of these, where a later one has amended a flag already
     amended: dict[Key, dict[str, Own]] = field(default_factory=dict[Key, dict[str, Own]])
+    # Those among them whose row is there: they had been withdrawn
     again: set[Key] = field(default_factory=set[Key])
+    # Flags of stored samples that change
     amendments: list[Amendment] = field(default_factory=list[Amendment])
-    walked: bool = False
+    walked: bool = False  # whether stored samples were checked again
 
 
 class QualityControl:
@@ -175,19 +154,15 @@ class QualityControl:
             self._memory.pop(of, None)
 
     def check(
-        self, session: AbstractSession, of: Of, samples: Mapping[Key, Sample], limits: Limits
+        self,
+        # The transaction, and whose samples
+        session: AbstractSession,
+        of: Of,
+        # As they came. Those that come back as ``fresh`` are the caller's to write.
+        samples: Mapping[Key, Sample],
+        limits: Limits,  # to check with
     ) -> Checked:
-        """Check samples of one stream, each in its place, and write what they amend.
-
-        Parameters
-        ----------
-        session, of
-            The transaction, and whose samples.
-        samples
-            As they came. Those that come back as ``fresh`` are the caller's to write.
-        limits
-            To check with.
-        """
+        """Check samples of one stream, each in its place, and write what they amend."""
         stream = _Stream(session, of)
         end = self._memory_of(stream, limits)
         doubtful = [key for key in samples if key <= end.at or of in self._beyond]

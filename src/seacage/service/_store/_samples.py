@@ -87,28 +87,15 @@ class Append:
 
 @dataclass(frozen=True, slots=True)
 class Stored:
-    """What has become of samples that were to be stored.
+    """What has become of samples that were to be stored."""
 
-    Parameters
-    ----------
-    new
-        For each sample whether it was not known before.
-    samples
-        The same samples, those that are new with their flags.
-    amendments
-        Flags of samples before them, of the same streams, that have changed; those who stored in
-        one transaction have them in common.
-    late
-        Whether any came too late for what the intervals were adapted to.
-    again
-        Whether samples before them were checked again.
-    """
-
-    new: tuple[bool, ...]
-    samples: tuple[Sample, ...]
+    new: tuple[bool, ...]  # for each sample whether it was not known before
+    samples: tuple[Sample, ...]  # the same samples, those that are new with their flags
+    # Flags of samples before them, of the same streams, that have changed; those who stored in one
+    # transaction have them in common
     amendments: tuple[Amendment, ...]
-    late: bool = False
-    again: bool = False
+    late: bool = False  # whether any came too late for what the intervals were adapted to
+    again: bool = False  # whether samples before them were checked again
 
     @property
     def fresh(self) -> list[Sample]:

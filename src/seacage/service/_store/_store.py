@@ -51,16 +51,14 @@ _AHEAD = timedelta(seconds=60)  # so far a source's clock may be ahead
 _TABLES = (*CHECKED, "tally")
 
 
-def open_store(place: Path | str, *, archive: Path | None = None) -> "Store":
+def open_store(
+    # A path, for SQLite; or ``postgresql://user@host/name``, which several processes may share
+    place: Path | str,
+    *,
+    # A folder of Parquet files: where old samples go, and where they are still found
+    archive: Path | None = None,
+) -> "Store":
     """Open the store of samples and alarms.
-
-    Parameters
-    ----------
-    place
-        A path, for SQLite; or ``postgresql://user@host/name``, which several processes may
-        share.
-    archive
-        A folder of Parquet files: where old samples go, and where they are still found.
 
     Raises
     ------
@@ -132,25 +130,17 @@ class Store:
 
     def append(
         self,
+        # What to store, and whose
         cage: str,
         samples: Sequence[Sample],
         *,
-        ingested: datetime,
-        limits: Limits | None = None,
+        ingested: datetime,  # when they came
+        limits: Limits | None = None,  # to check with; None stores the flags that they carry
     ) -> "Future[Stored]":
         """Check samples and store each once by (stream, t, seq); resolves after the commit.
 
         Their flags, and those of what is stored already, come out as if all had come in the order
         of their times.
-
-        Parameters
-        ----------
-        cage, samples
-            What to store, and whose.
-        ingested
-            When they came.
-        limits
-            To check with; None stores the flags that they carry.
 
         Raises
         ------
@@ -161,25 +151,19 @@ class Store:
             check_seq(sample)
         return self._writer.ask(Append(cage, tuple(samples), ingested, limits))
 
-    def withdraw(self, cage: str, stream: str, *, clock: datetime, now: datetime) -> "Future[int]":
+    def withdraw(
+        self,
+        # Whose
+        cage: str,
+        stream: str,
+        *,
+        clock: datetime,  # what it was set to
+        now: datetime,  # what it says now; samples up to a minute ahead of it stay
+    ) -> "Future[int]":  # how many flags changed; 0 once nothing is left to withdraw
         """Withdraw samples that are ahead of a clock that has stepped back, some at a time.
 
         They are flagged FAIL and count no more, until they are sent again: nothing is compared
         with them, and they are no stream's latest.
-
-        Parameters
-        ----------
-        cage, stream
-            Whose.
-        clock
-            What it was set to.
-        now
-            What it says now; samples up to a minute ahead of it stay.
-
-        Returns
-        -------
-        count
-            How many flags changed; 0 once nothing is left to withdraw.
         """
         after, control, of = now + _AHEAD, self._writer.control, (cage, stream)
         return self._writer.ask(
@@ -283,19 +267,16 @@ class Store:
             lambda session: aggregates_between(session, (cage, stream), key, width_s, bounds),
         )
 
-    def keep_alarms(self, cage: str, *, book: str, journal: Sequence[AlarmEvent]) -> "Future[None]":
+    def keep_alarms(
+        self,
+        cage: str,  # whose
+        *,
+        book: str,  # as JSON; it takes the place of the one before
+        journal: Sequence[AlarmEvent],  # lines to add
+    ) -> "Future[None]":
         """Keep the book of alarms and what happened to them, both or neither.
 
         Where the disk is full this goes on, in room that was held for it.
-
-        Parameters
-        ----------
-        cage
-            Whose.
-        book
-            As JSON; it takes the place of the one before.
-        journal
-            Lines to add.
         """
         lines = tuple(journal)
         return self._writer.ask(lambda session: keep_alarms(session, cage, book, lines), vital=True)
@@ -323,17 +304,15 @@ class Store:
         )
 
     def keep_adaptations(
-        self, cage: str, kept: Sequence[Adaptation], *, refold: Refold | None = None
+        self,
+        # Whose, and from when on
+        cage: str,
+        kept: Sequence[Adaptation],
+        *,
+        # What was asked for by ``refold`` and is done: all from then on is replaced
+        refold: Refold | None = None,
     ) -> "Future[None]":
-        """Keep how far the intervals of a cage's twin were adapted.
-
-        Parameters
-        ----------
-        cage, kept
-            Whose, and from when on.
-        refold
-            What was asked for by ``refold`` and is done: all from then on is replaced.
-        """
+        """Keep how far the intervals of a cage's twin were adapted."""
         rows = tuple(kept)
         return self._writer.ask(lambda session: keep_adaptations(session, cage, rows, refold))
 
@@ -347,47 +326,29 @@ class Store:
 
     def journal(
         self,
-        cage: str,
+        cage: str,  # whose
         *,
+        # Bounds; open where None
         start: datetime | None = None,
         end: datetime | None = None,
-        limit: int,
-        newest: bool = False,
+        limit: int,  # at most so many
+        newest: bool = False,  # of more than ``limit`` the last rather than the first
     ) -> list[AlarmEvent]:
-        """Read what happened to alarms, in time order, start <= t < end.
-
-        Parameters
-        ----------
-        cage
-            Whose.
-        start, end
-            Bounds; open where None.
-        limit
-            At most so many.
-        newest
-            Of more than ``limit`` the last rather than the first.
-        """
+        """Read what happened to alarms, in time order, start <= t < end."""
         bounds = Bounds(start=start, end=end, limit=limit, newest=newest)
         return self._read("journal", lambda session: journal_between(session, cage, bounds))
 
-    def retire(self, cage: str, *, before: datetime) -> int:
+    def retire(
+        self,
+        cage: str,  # whose
+        *,
+        before: datetime,  # only days that have ended by then
+    ) -> int:  # how many samples were deleted
         """Delete the samples of whole UTC days before a time; their aggregates stay, final.
 
         With an archive a day is there before it leaves the store. Ingest goes on meanwhile.
         Samples that come later for such a day are stored, and archived the next time, but no
         longer change its aggregates: so one that is sent twice counts once.
-
-        Parameters
-        ----------
-        cage
-            Whose.
-        before
-            Only days that have ended by then.
-
-        Returns
-        -------
-        count
-            How many samples were deleted.
 
         Raises
         ------

@@ -46,14 +46,12 @@ class Writer:
     reserve; all else is taken again when that room is held again.
 
     About every second, between two transactions, it renews aggregates.
-
-    Parameters
-    ----------
-    database
-        Where to.
     """
 
-    def __init__(self, database: AbstractDatabase) -> None:
+    def __init__(
+        self,
+        database: AbstractDatabase,  # where to
+    ) -> None:
         self._database = database
         self.control = QualityControl()  # to be used in a transaction alone
         self._next_chore = time.monotonic() + _CHORE_S

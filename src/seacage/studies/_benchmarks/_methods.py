@@ -20,24 +20,14 @@ EMUKIT, SMT, HIGH_ONLY = "emukit-nargp", "smt-mfk", "high-only"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Method:
-    """How one method is run.
+    """How one method is run."""
 
-    Parameters
-    ----------
-    name, title
-        For files; for tables.
-    maker
-        The package that it is from.
-    settings
-        What it is given beyond the package's defaults, for the page.
-    python, script
-        Interpreter and script, as the harness takes them.
-    """
-
+    # For files; for tables
     name: str
     title: str
-    maker: str
-    settings: str
+    maker: str  # the package that it is from
+    settings: str  # what it is given beyond the package's defaults, for the page
+    # Interpreter and script, as the harness takes them
     python: Path
     script: Path
 

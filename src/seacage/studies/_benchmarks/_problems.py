@@ -32,37 +32,21 @@ class Sample:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Problem:
-    """Functions of rising fidelity on a box, and how many cases of each a learner gets.
+    """Functions of rising fidelity on a box, and how many cases of each a learner gets."""
 
-    Parameters
-    ----------
-    name, title
-        For files and commands; for tables.
-    source
-        Where functions and sizes are from.
-    lower, upper
-        Ends of the box, in the units of the source.
-    functions
-        From low to high fidelity; (row, feature) to (row,).
-    sizes
-        Training cases of each fidelity.
-    noise
-        Standard deviation of the noise on the highest fidelity's training cases.
-    tests
-        Number of test points.
-    polar
-        The box is of speed and direction [rad], and learners get the vector (east, north).
-    """
-
+    # For files and commands; for tables
     name: str
     title: str
-    source: str
+    source: str  # where functions and sizes are from
+    # Ends of the box, in the units of the source
     lower: tuple[float, ...]
     upper: tuple[float, ...]
+    # From low to high fidelity; (row, feature) to (row,)
     functions: tuple[Callable[[functions.Rows], functions.Answers], ...]
-    sizes: tuple[int, ...]
-    noise: float = 0.0
-    tests: int = 1000
+    sizes: tuple[int, ...]  # training cases of each fidelity
+    noise: float = 0.0  # standard deviation of the noise on the highest fidelity's training cases
+    tests: int = 1000  # number of test points
+    # The box is of speed and direction [rad], and learners get the vector (east, north)
     polar: bool = False
 
     @property
@@ -70,15 +54,13 @@ class Problem:
         """Sizes, low to high, in a few characters."""
         return " / ".join(str(size) for size in self.sizes)
 
-    def sample(self, seed: int) -> Sample:
+    def sample(
+        self,
+        seed: int,  # of all that is drawn; the problem's name joins it
+    ) -> Sample:
         """A Latin hypercube for each fidelity and for the tests, each on its own.
 
         The designs are not nested: no input of a fidelity is among those of another.
-
-        Parameters
-        ----------
-        seed
-            Of all that is drawn; the problem's name joins it.
         """
         root = np.random.SeedSequence([seed, zlib.crc32(self.name.encode())])
         *draws, for_tests, for_noise = map(np.random.default_rng, root.spawn(len(self.sizes) + 2))

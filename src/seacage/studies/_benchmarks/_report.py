@@ -12,23 +12,14 @@ from seacage.studies._page import embed
 
 
 def page_values(
+    # What was run, by whom
     problems: Sequence[Problem],
     methods: Sequence[Method],
-    report: Summaries,
+    report: Summaries,  # summaries by problem and method, over the seeds that count
     *,
-    seeds: Sequence[int],
+    seeds: Sequence[int],  # which those are
 ) -> dict[str, object]:
-    """Figures and tables of the page.
-
-    Parameters
-    ----------
-    problems, methods
-        What was run, by whom.
-    report
-        Summaries by problem and method, over the seeds that count.
-    seeds
-        Which those are.
-    """
+    """Figures and tables of the page."""
     timed = CAGE_SIZE if CAGE_SIZE in problems else problems[-1]
     titles = [method.title for method in methods]
     ours = [place for place, method in enumerate(methods) if method.ours]

@@ -20,29 +20,20 @@ ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Run:
-    """One method's answer to one problem and seed, or why there is none.
+    """One method's answer to one problem and seed, or why there is none."""
 
-    Parameters
-    ----------
-    problem, method, seed
-        Names, and the seed of the problem's sample.
-    mean, std
-        At the test points; None after an error.
-    fit_s, predict_s, tick_s
-        Of the processor: to fit, to answer all test points, and to answer one [s].
-    error
-        Message of the method that failed.
-    """
-
+    # Names, and the seed of the problem's sample
     problem: str
     method: str
     seed: int
+    # At the test points; None after an error
     mean: Float[np.ndarray, " row"] | None = None
     std: Float[np.ndarray, " row"] | None = None
+    # Of the processor: to fit, to answer all test points, and to answer one [s]
     fit_s: float = np.nan
     predict_s: float = np.nan
     tick_s: float = np.nan
-    error: str | None = None
+    error: str | None = None  # message of the method that failed
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,21 +48,14 @@ class Runs:
 
     def ensure(
         self,
+        # The question, the method, and the samples
         problem: Problem,
         method: Method,
         seeds: Sequence[int],
         *,
-        on_done: Callable[[int], None],
+        on_done: Callable[[int], None],  # called with the number of seeds that are done
     ) -> list[Run]:
-        """The method's answers for some seeds; those that are there are not made again.
-
-        Parameters
-        ----------
-        problem, method, seeds
-            The question, the method, and the samples.
-        on_done
-            Called with the number of seeds that are done.
-        """
+        """The method's answers for some seeds; those that are there are not made again."""
         out = self._answers(method)
         out.mkdir(parents=True, exist_ok=True)
         jobs = {seed: self._job(problem, seed) for seed in seeds}

@@ -51,39 +51,26 @@ class RunScore:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Summary:
-    """A method's scores on a problem over its seeds.
-
-    Parameters
-    ----------
-    problem, method
-        Names.
-    seeds, failures
-        How many were scored, and how many failed.
-    rmse, rmse_median, mnll, mnll_median, crps, coverage
-        Means over seeds where nothing else is said.
-    fit_s, predict_s, tick_s
-        Medians over seeds, of the processor [s].
-    rmses
-        By seed, in their order; NaN where it failed.
-    error
-        The first failure's words.
-    """
+    """A method's scores on a problem over its seeds."""
 
     problem: str
     method: str
+    # How many were scored, and how many failed
     seeds: int
     failures: int
+    # Means over seeds where nothing else is said
     rmse: float
     rmse_median: float
     mnll: float
     mnll_median: float
     crps: float
     coverage: float
+    # Medians over seeds, of the processor [s]
     fit_s: float
     predict_s: float
     tick_s: float
-    rmses: tuple[float, ...]
-    error: str | None
+    rmses: tuple[float, ...]  # by seed, in their order; NaN where it failed
+    error: str | None  # the first failure's words
 
 
 def score_run(run: Run, truth: Float[np.ndarray, " row"]) -> RunScore:

@@ -27,53 +27,31 @@ _LEAST = 8
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class MetGap:
-    """What the record has while the net is about as grown.
+    """What the record has while the net is about as grown."""
 
-    Parameters
-    ----------
-    growth
-        Mean share of the whole growth [-].
-    windows
-        How many.
-    gap
-        Truth less low fidelity, in the mean over whatever the currents were [m] or [kN].
-    """
-
-    growth: float
-    windows: int
+    growth: float  # mean share of the whole growth [-]
+    windows: int  # how many
+    # Truth less low fidelity, in the mean over whatever the currents were [m] or [kN]
     gap: Float[np.ndarray, " sensor"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class FoulingGap:
-    """Truth less low fidelity, by how grown the net is: [m] of rise, [kN] of tension.
+    """Truth less low fidelity, by how grown the net is: [m] of rise, [kN] of tension."""
 
-    Parameters
-    ----------
-    sensors, units
-        Their names, and the units of their responses.
-    current_to
-        Where the settled currents go [deg].
-    growth, speed
-        At which the true cage was settled [-] and [m/s].
-    gap
-        Between settled cages in the same current.
-    distance, distance_without_drift
-        Of the nodes of both cages in the same current, on average, and without the drift of
-        the collars [m].
-    met
-        Of the record, by growth.
-    """
-
+    # Their names, and the units of their responses
     sensors: tuple[str, ...]
     units: tuple[str, ...]
-    current_to: float
+    current_to: float  # where the settled currents go [deg]
+    # At which the true cage was settled [-] and [m/s]
     growth: Float[np.ndarray, " growth"]
     speed: Float[np.ndarray, " speed"]
-    gap: Float[np.ndarray, "growth speed sensor"]
+    gap: Float[np.ndarray, "growth speed sensor"]  # between settled cages in the same current
+    # Of the nodes of both cages in the same current, on average, and without the drift of the
+    # collars [m]
     distance: Float[np.ndarray, "growth speed"]
     distance_without_drift: Float[np.ndarray, "growth speed"]
-    met: tuple[MetGap, ...]
+    met: tuple[MetGap, ...]  # of the record, by growth
 
     @property
     def widening(self) -> Float[np.ndarray, "speed sensor"]:
@@ -82,25 +60,15 @@ class FoulingGap:
 
 
 def fouling_gap(
-    windows: Windows,
-    hidden: TruthParameters,
+    windows: Windows,  # with the low fidelity's answers
+    hidden: TruthParameters,  # how the truth differs; the field was made with it
     stages: Stages,
     *,
-    begin: np.datetime64,
+    begin: np.datetime64,  # of the record, from which growth is counted
     workers: int | None,
     progress: Progress,
 ) -> FoulingGap:
-    """Settle both cages in the same currents at several growths, and sort the record by growth.
-
-    Parameters
-    ----------
-    windows
-        With the low fidelity's answers.
-    hidden
-        How the truth differs; the field was made with it.
-    begin
-        Of the record, from which growth is counted.
-    """
+    """Settle both cages in the same currents at several growths, and sort the record by growth."""
     sensors = windows.sensors
     to = sensors.cage.site.current_to
     plan = Plan.grid(current_speed=SPEEDS, current_to=(to,), name="fouling")

@@ -15,25 +15,14 @@ SECTORS = ("N", "NE", "E", "SE", "S", "SW", "W", "NW")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SectorGap:
-    """Low fidelity against the truth while the current goes one way.
+    """Low fidelity against the truth while the current goes one way."""
 
-    Parameters
-    ----------
-    sector
-        Where the current goes.
-    windows
-        How many.
-    truth, low
-        Mean responses [m] or [kN].
-    mae
-        Mean absolute error of the low fidelity [m] or [kN].
-    """
-
-    sector: str
-    windows: int
+    sector: str  # where the current goes
+    windows: int  # how many
+    # Mean responses [m] or [kN]
     truth: float
     low: float
-    mae: float
+    mae: float  # mean absolute error of the low fidelity [m] or [kN]
 
     @property
     def bias(self) -> float:
@@ -43,32 +32,18 @@ class SectorGap:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SensorGap:
-    """Low fidelity against the truth at one sensor, on 10-minute means.
+    """Low fidelity against the truth at one sensor, on 10-minute means."""
 
-    Parameters
-    ----------
-    sensor, unit
-        Its name, and the unit of its response: rise in m, tension in kN.
-    windows
-        How many.
-    truth, low
-        Mean responses.
-    bias
-        Low fidelity less truth: negative where it underestimates.
-    mae
-        Mean absolute error of the low fidelity.
-    sectors
-        The same by direction of the current, of those that it had.
-    """
-
+    # Its name, and the unit of its response: rise in m, tension in kN
     sensor: str
     unit: str
-    windows: int
+    windows: int  # how many
+    # Mean responses
     truth: float
     low: float
-    bias: Interval
-    mae: float
-    sectors: tuple[SectorGap, ...]
+    bias: Interval  # low fidelity less truth: negative where it underestimates
+    mae: float  # mean absolute error of the low fidelity
+    sectors: tuple[SectorGap, ...]  # the same by direction of the current, of those that it had
 
     @property
     def underestimates(self) -> bool:

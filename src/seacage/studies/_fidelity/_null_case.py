@@ -29,32 +29,20 @@ Series = Float[np.ndarray, " reading"]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class SensorTrial:
-    """One sensor's readings beside the low fidelity's answers, some to train on, some to score on.
+    """A sensor's readings beside the low fidelity's answers, to train on and to score on."""
 
-    Parameters
-    ----------
-    sensor, unit
-        Its name, and the unit of its responses, m or kN.
-    mean_s
-        Length of the means that count as readings [s].
-    window
-        The window that each reading is of; the low fidelity's answer is the window's.
-    time
-        UTC, ascending.
-    reading, truth, low
-        Responses: of the sensor, without its error, of the low fidelity.
-    teach
-        Training readings: those before the midnight that parts the days; the others are scored.
-    """
-
+    # Its name, and the unit of its responses, m or kN
     sensor: str
     unit: str
-    mean_s: float
+    mean_s: float  # length of the means that count as readings [s]
+    # The window that each reading is of; the low fidelity's answer is the window's
     window: Int[np.ndarray, " reading"]
-    time: Shaped[np.ndarray, " reading"]
+    time: Shaped[np.ndarray, " reading"]  # UTC, ascending
+    # Responses: of the sensor, without its error, of the low fidelity
     reading: Series
     truth: Series
     low: Series
+    # Training readings: those before the midnight that parts the days; the others are scored
     teach: Bool[np.ndarray, " reading"]
 
     @property
@@ -65,27 +53,18 @@ class SensorTrial:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Gain:
-    """What multifidelity gains on low fidelity at one sensor.
+    """What multifidelity gains on low fidelity at one sensor."""
 
-    Parameters
-    ----------
-    sensor, unit
-        Its name, and the unit of its responses.
-    teaching, judging
-        How many readings.
-    low_mae, multi_mae
-        Mean absolute errors against the readings that are scored.
-    gain
-        Low-fidelity less multifidelity absolute error, paired, by blocks of a day.
-    """
-
+    # Its name, and the unit of its responses
     sensor: str
     unit: str
+    # How many readings
     teaching: int
     judging: int
+    # Mean absolute errors against the readings that are scored
     low_mae: float
     multi_mae: float
-    gain: Interval
+    gain: Interval  # low-fidelity less multifidelity absolute error, paired, by blocks of a day
 
     @property
     def share(self) -> Interval:
@@ -103,59 +82,37 @@ ScoredSensor = tuple[Gain, Float[np.ndarray, " _"], SensorTrial]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Gains:
-    """Of all sensors with enough readings.
+    """Of all sensors with enough readings."""
 
-    Parameters
-    ----------
-    sensors
-        One each.
-    together
-        Mean over the sensors of the gain as a share of the low fidelity's error [-].
-    """
-
-    sensors: tuple[Gain, ...]
+    sensors: tuple[Gain, ...]  # one each
+    # Mean over the sensors of the gain as a share of the low fidelity's error [-]
     together: Interval
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NullCase:
-    """Multifidelity on the field as it is, and where the truth is the low fidelity itself.
+    """Multifidelity on the field as it is, and where the truth is the low fidelity itself."""
 
-    Parameters
-    ----------
-    null, real
-        Gains where there is nothing to gain, and where there is.
-    unjudged
-        Sensors with too few readings.
-    mean_s
-        By sensor, the length of the means that count as readings [s].
-    """
-
+    # Gains where there is nothing to gain, and where there is
     null: Gains
     real: Gains
-    unjudged: tuple[str, ...]
-    mean_s: dict[str, float]
+    unjudged: tuple[str, ...]  # sensors with too few readings
+    mean_s: dict[str, float]  # by sensor, the length of the means that count as readings [s]
 
 
 def null_case(
-    windows: Windows, field: FieldRecord, *, points: int, seed: int, progress: Progress
+    windows: Windows,  # with the low fidelity's answers
+    field: FieldRecord,  # whose sensors teach
+    *,
+    points: int,  # readings that each sensor teaches with, at most
+    seed: int,  # of the choice of readings, the searches and the draws
+    progress: Progress,
 ) -> NullCase:
     """Train and score twice alike: on the sensors' readings, and on a truth that is null.
 
     In the null case a sensor reads the low fidelity's own answer in the water that the
     buoy reports, and its own noise: its reading less the truth, less what lasts for days in that.
     Level 1 is the low fidelity itself, not a model of it, in both.
-
-    Parameters
-    ----------
-    windows
-        With the low fidelity's answers.
-    field
-        Whose sensors teach.
-    points
-        Readings that each sensor teaches with, at most.
-    seed
-        Of the choice of readings, the searches and the draws.
     """
     trials = [_trial(windows, field, column) for column in range(len(windows.sensors.names))]
     usable = [trial for trial in trials if trial.enough]

@@ -41,34 +41,24 @@ Columns = Float[np.ndarray, "window sensor"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Rescaling:
-    """The best that rescaling and rotating the low fidelity does for one sensor.
+    """The best that rescaling and rotating the low fidelity does for one sensor."""
 
-    Parameters
-    ----------
-    sensor, unit
-        Its name, and the unit of its response.
-    factor, turn
-        Of the current's speed [-] and direction, clockwise [deg].
-    gain, offset
-        Of the answer [-] and [m] or [kN].
-    teaching, judging
-        How many windows.
-    low_mae, left_mae
-        Mean absolute errors on the test days, before and after [m] or [kN].
-    above_least
-        What is left less a tenth of what there was: above 0 where more than a tenth is left.
-    """
-
+    # Its name, and the unit of its response
     sensor: str
     unit: str
+    # Of the current's speed [-] and direction, clockwise [deg]
     factor: float
     turn: float
+    # Of the answer [-] and [m] or [kN]
     gain: float
     offset: float
+    # How many windows
     teaching: int
     judging: int
+    # Mean absolute errors on the test days, before and after [m] or [kN]
     low_mae: float
     left_mae: float
+    # What is left less a tenth of what there was: above 0 where more than a tenth is left
     above_least: Interval
 
     @property
@@ -84,34 +74,20 @@ class Rescaling:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Rescalings:
-    """Of all sensors.
+    """Of all sensors."""
 
-    Parameters
-    ----------
-    sensors
-        One each.
-    emulation_mae
-        Error of the interpolation between settled currents, each left out in turn, by sensor
-        [m] or [kN].
-    """
-
-    sensors: tuple[Rescaling, ...]
+    sensors: tuple[Rescaling, ...]  # one each
+    # Error of the interpolation between settled currents, each left out in turn, by sensor [m] or
+    # [kN]
     emulation_mae: dict[str, float]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Moving:
-    """How the low fidelity's answers move when the current of each window is changed.
+    """How the low fidelity's answers move when the current of each window is changed."""
 
-    Parameters
-    ----------
-    windows
-        With the answers as they are; what waves add to them stays.
-    settled
-        Of each sensor, in (east, north): smooth, without a seam at any direction.
-    """
-
-    windows: Windows
+    windows: Windows  # with the answers as they are; what waves add to them stays
+    # Of each sensor, in (east, north): smooth, without a seam at any direction
     settled: "tuple[RectBivariateSpline, ...]"
 
     def answers_at(self, factor: float, turn: float) -> Columns:

@@ -43,16 +43,10 @@ class Sensors:
 
     A depth sensor's response is how far it has risen above its place in still water [m], a
     shackle's is the tension [kN]: both grow with the load.
-
-    Parameters
-    ----------
-    cage
-        As drawn.
-    rest
-        Depths in still water of the drawn cage [m]; zero for shackles.
     """
 
-    cage: Cage
+    cage: Cage  # as drawn
+    # Depths in still water of the drawn cage [m]; zero for shackles
     rest: Float[np.ndarray, " sensor"]
 
     @classmethod
@@ -90,31 +84,17 @@ class Sensors:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Windows(Rows):
-    """Some 10-minute windows of a field record.
+    """Some 10-minute windows of a field record."""
 
-    Parameters
-    ----------
-    sensors
-        Whose responses these are.
-    end
-        Of each window, UTC, ascending.
-    water
-        Means of what the buoy reports to the twin.
-    period
-        Peak period of the waves, 0 without [s].
-    surveyed
-        Windows that are spread evenly over the days; the others are those in which a shackle
-        lives besides.
-    truth, low
-        Mean responses without any sensor's error: of the virtual field, and of the low
-        fidelity in the water reported; NaN before it is computed.
-    """
-
-    sensors: Sensors
-    end: Shaped[np.ndarray, " window"]
-    water: Metocean
-    period: Float[np.ndarray, " window"]
+    sensors: Sensors  # whose responses these are
+    end: Shaped[np.ndarray, " window"]  # of each window, UTC, ascending
+    water: Metocean  # means of what the buoy reports to the twin
+    period: Float[np.ndarray, " window"]  # peak period of the waves, 0 without [s]
+    # Windows that are spread evenly over the days; the others are those in which a shackle lives
+    # besides
     surveyed: Bool[np.ndarray, " window"]
+    # Mean responses without any sensor's error: of the virtual field, and of the low fidelity in
+    # the water reported; NaN before it is computed
     truth: Responses
     low: Responses
 
@@ -196,19 +176,12 @@ def choose_windows(
 
 
 def window_means(
-    record: Record, field: FieldRecord, *, length: float = MEAN_S
+    record: Record,  # one sensor; suspect values are left out
+    field: FieldRecord,  # whose buoy says which time
+    *,
+    length: float = MEAN_S,  # of a window [s]
 ) -> tuple[Shaped[np.ndarray, " window"], Float[np.ndarray, " window"]]:
-    """Ends of all windows of a field's time, and a sensor's mean over each that it has whole.
-
-    Parameters
-    ----------
-    record
-        One sensor; suspect values are left out.
-    field
-        Whose buoy says which time.
-    length
-        Of a window [s].
-    """
+    """Ends of all windows of a field's time, and a sensor's mean over each that it has whole."""
     clock = Clock(
         every_s=length, window_s=length, max_gap_s=min(length, _LONGEST_GAP_S), suspect=False
     )

@@ -39,44 +39,25 @@ _FOLD, _TOLERANCE = 4, 0.02
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ShapeModel:
-    """A model to compare.
+    """A model to compare."""
 
-    Parameters
-    ----------
-    name
-        In tables and figures.
-    inputs
-        Its inputs.
-    settings
-        All that its answers depend on beside the simulations, as JSON takes it.
-    fit
-        Takes features, shapes [m], a seed and what ``needs`` names.
-    needs
-        What its fit takes besides: the shapes over time, the shape at rest, or a
-        callback for progress.
-    """
-
-    name: str
+    name: str  # in tables and figures
     inputs: tuple[Input, ...]
+    # All that its answers depend on beside the simulations, as JSON takes it
     settings: Mapping[str, object]
-    fit: Callable[..., Any]
+    fit: Callable[..., Any]  # takes features, shapes [m], a seed and what ``needs`` names
+    # What its fit takes besides: the shapes over time, the shape at rest, or a callback for
+    # progress
     needs: tuple[Need, ...] = ()
 
 
 def shape_models(
-    cage: Cage, *, waves: bool, networks: bool
+    cage: Cage,  # whose net it is
+    *,
+    waves: bool,  # whether there are waves
+    networks: bool,  # whether to train graph networks, which takes minutes and needs JAX
 ) -> tuple[tuple[ShapeModel, ...], tuple[str, ...]]:
-    """The paper's models and ours, and a sentence on each that cannot be had here.
-
-    Parameters
-    ----------
-    cage
-        Whose net it is.
-    waves
-        Whether there are waves.
-    networks
-        Whether to train graph networks, which takes minutes and needs JAX.
-    """
+    """The paper's models and ours, and a sentence on each that cannot be had here."""
     inputs = ALL if waves else CURRENT
     pca, process = PcaGP(modes=3), ShapeGP(tolerance=_TOLERANCE)
     turns = Symmetry.of(cage.design_position, fold=_FOLD, mirror=0.0)

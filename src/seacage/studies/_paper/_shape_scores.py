@@ -64,25 +64,14 @@ class ShapeScore:
 
 def shape_score(
     model: str,
+    # One shape per case [m]
     predicted: Prediction,
     computed: Float[np.ndarray, "case node 3"],
     *,
-    collar: Int[np.ndarray, " spoke"],
-    **known: Any,
+    collar: Int[np.ndarray, " spoke"],  # nodes of the collar
+    **known: Any,  # inputs, modes and times, as in ``ShapeScore``
 ) -> ShapeScore:
-    """Score a model's shapes.
-
-    Parameters
-    ----------
-    model
-        Its name.
-    predicted, computed
-        One shape per case [m].
-    collar
-        Nodes of the collar.
-    known
-        Inputs, modes and times, as in ``ShapeScore``.
-    """
+    """Score a model's shapes."""
     difference = predicted.mean - computed
     error, distance = np.abs(difference), np.linalg.norm(difference, axis=-1)
     deformed = without_drift(difference, collar)

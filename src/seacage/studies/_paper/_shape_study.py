@@ -39,22 +39,13 @@ _TIMED = 20
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ShapeTrial:
-    """Training and test cases of models of the shape.
+    """Training and test cases of models of the shape."""
 
-    Parameters
-    ----------
-    cage
-        That was simulated.
-    campaign, held_out
-        Training and test cases, of which the converged ones count.
-    seed
-        Of the trainings.
-    """
-
-    cage: Cage
+    cage: Cage  # that was simulated
+    # Training and test cases, of which the converged ones count
     campaign: CampaignRecord
     held_out: CampaignRecord
-    seed: int
+    seed: int  # of the trainings
 
     @property
     def computed(self) -> Float[np.ndarray, "case node 3"]:
@@ -87,56 +78,28 @@ class ShapeTrial:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ShapeCase:
-    """One of the nets that are drawn.
+    """One of the nets that are drawn."""
 
-    Parameters
-    ----------
-    called
-        "Harsh" or "Mild".
-    row
-        Of the test cases, from 0.
-    sea
-        Its sea state.
-    computed
-        [m].
-    predicted
-        By name of the model [m].
-    """
-
-    called: str
-    row: int
+    called: str  # "Harsh" or "Mild"
+    row: int  # of the test cases, from 0
     sea: SeaState
-    computed: Float[np.ndarray, "node 3"]
-    predicted: Mapping[str, Float[np.ndarray, "node 3"]]
+    computed: Float[np.ndarray, "node 3"]  # [m]
+    predicted: Mapping[str, Float[np.ndarray, "node 3"]]  # by name of the model [m]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ShapeStudy:
-    """What became of the models.
+    """What became of the models."""
 
-    Parameters
-    ----------
-    training_cases, test_cases
-        Number of simulations to train on, and to test on.
-    current_speed
-        Of the test cases [m/s].
-    scores
-        By model, in the order of the tables.
-    cases
-        The nets to draw.
-    variance
-        Share of the variance in the first three modes, by how it is counted [-].
-    left_out
-        Why some models are missing, a sentence each.
-    """
-
+    # Number of simulations to train on, and to test on
     training_cases: int
     test_cases: int
-    current_speed: Float[np.ndarray, " case"]
-    scores: Mapping[str, ShapeScore]
-    cases: tuple[ShapeCase, ...]
+    current_speed: Float[np.ndarray, " case"]  # of the test cases [m/s]
+    scores: Mapping[str, ShapeScore]  # by model, in the order of the tables
+    cases: tuple[ShapeCase, ...]  # the nets to draw
+    # Share of the variance in the first three modes, by how it is counted [-]
     variance: Mapping[str, float]
-    left_out: tuple[str, ...]
+    left_out: tuple[str, ...]  # why some models are missing, a sentence each
 
     @property
     def best(self) -> ShapeScore:
@@ -145,29 +108,16 @@ class ShapeStudy:
 
 
 def shape_study(
-    models: Sequence[ShapeModel],
-    trial: ShapeTrial,
-    stages: Stages,
+    models: Sequence[ShapeModel],  # to compare
+    trial: ShapeTrial,  # their simulations
+    stages: Stages,  # where answers are kept
     *,
-    left_out: tuple[str, ...] = (),
+    left_out: tuple[str, ...] = (),  # passed on
+    # Called as ("shape", done, total) in models when one is trained, and by the networks as they
+    # like
     progress: Progress,
 ) -> ShapeStudy:
-    """Train each model on one campaign and score it on another; what is trained is kept.
-
-    Parameters
-    ----------
-    models
-        To compare.
-    trial
-        Their simulations.
-    stages
-        Where answers are kept.
-    left_out
-        Passed on.
-    progress
-        Called as ("shape", done, total) in models when one is trained, and by the networks
-        as they like.
-    """
+    """Train each model on one campaign and score it on another; what is trained is kept."""
     answers: dict[str, Prediction] = {}
     scores: dict[str, ShapeScore] = {}
     for number, model in enumerate(models):

@@ -41,21 +41,11 @@ class WayScore:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ScoredWays:
-    """All ways, and the readings behind the first.
+    """All ways, and the readings behind the first."""
 
-    Parameters
-    ----------
-    twin
-        Of the first way, which the page shows.
-    readings
-        By sensor, of the first way.
-    ways
-        Their scores, on the same readings each.
-    """
-
-    twin: Twin
-    readings: Mapping[str, Readings]
-    ways: tuple[WayScore, ...]
+    twin: Twin  # of the first way, which the page shows
+    readings: Mapping[str, Readings]  # by sensor, of the first way
+    ways: tuple[WayScore, ...]  # their scores, on the same readings each
 
     @property
     def sensors(self) -> tuple[SensorScore, ...]:

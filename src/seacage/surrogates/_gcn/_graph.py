@@ -17,18 +17,10 @@ Propagate = Callable[[Any], Any]
 # No slots here: the propagation is computed once and kept.
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Graph:
-    """Nodes at rest and the pairs of them that are tied; ties have no direction and no length.
+    """Nodes at rest and the pairs of them that are tied; ties have no direction and no length."""
 
-    Parameters
-    ----------
-    edges
-        Pairs of nodes, from 0; a pair given twice counts once.
-    rest_position
-        Of the nodes, x east, y north, z up [m].
-    """
-
-    edges: Int[np.ndarray, "edge 2"]
-    rest_position: Float[np.ndarray, "node 3"]
+    edges: Int[np.ndarray, "edge 2"]  # pairs of nodes, from 0; a pair given twice counts once
+    rest_position: Float[np.ndarray, "node 3"]  # of the nodes, x east, y north, z up [m]
 
     @classmethod
     def of(cls, edges: np.ndarray, rest_position: np.ndarray) -> Self:

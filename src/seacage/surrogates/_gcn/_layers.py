@@ -58,34 +58,16 @@ def parameter_shapes(
 
 
 def paper_network(
-    xp: Any,
-    parameters: Mapping[str, Numbers],
-    rest: Numbers,
-    x: Numbers,
-    propagate: Propagate,
-) -> Numbers:
+    xp: Any,  # NumPy or JAX's copy of it
+    parameters: Mapping[str, Numbers],  # by the names of ``parameter_shapes``
+    rest: Numbers,  # standardised rest position (node, 3)
+    x: Numbers,  # standardised features (row, feature)
+    propagate: Propagate,  # applies the normalised adjacency to (row, node, channel)
+) -> Numbers:  # standardised (row, node, 3)
     """Three graph convolutions of (rest position, sea state), Swish between them.
 
     All nodes hear the same sea state, so the first layer propagates its share once for all
     cases; the numbers are those of the full node table.
-
-    Parameters
-    ----------
-    xp
-        NumPy or JAX's copy of it.
-    parameters
-        By the names of ``parameter_shapes``.
-    rest
-        Standardised rest position (node, 3).
-    x
-        Standardised features (row, feature).
-    propagate
-        Applies the normalised adjacency to (row, node, channel).
-
-    Returns
-    -------
-    position
-        Standardised (row, node, 3).
     """
     p = parameters
     received = propagate(xp.ones((1, len(rest), 1), rest.dtype))

@@ -19,30 +19,14 @@ BLOCK = 64
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Network:
-    """A network with what brings its inputs and outputs to their units.
+    """A network with what brings its inputs and outputs to their units."""
 
-    Parameters
-    ----------
-    kind
-        Which network.
-    graph
-        Of the net.
-    scaling
-        Of the features.
-    centre
-        What an answer of 0 means [m].
-    spread
-        What an answer of 1 adds [m].
-    parameters
-        By name.
-    """
-
-    kind: Kind
-    graph: Graph
-    scaling: Scaling
-    centre: Float[np.ndarray, "node 3"]
-    spread: float
-    parameters: Parameters
+    kind: Kind  # which network
+    graph: Graph  # of the net
+    scaling: Scaling  # of the features
+    centre: Float[np.ndarray, "node 3"]  # what an answer of 0 means [m]
+    spread: float  # what an answer of 1 adds [m]
+    parameters: Parameters  # by name
 
     def answer(self, x: Float[np.ndarray, "row feature"]) -> Float[np.ndarray, "row node 3"]:
         """Shapes at standardised features [m]."""

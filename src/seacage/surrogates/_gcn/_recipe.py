@@ -8,23 +8,12 @@ from seacage.conventions import InputError
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Recipe:
-    """The choices of a training.
+    """The choices of a training."""
 
-    Parameters
-    ----------
-    width
-        Channels per node.
-    epochs
-        Most passes through the cases.
-    patience
-        Epochs without a better answer to the held-out cases, after which training ends.
-    learning_rate
-        Of Adam, at its largest; it rises over the first twentieth and falls as a cosine to 0.
-    """
-
-    width: int
-    epochs: int
-    patience: int
+    width: int  # channels per node
+    epochs: int  # most passes through the cases
+    patience: int  # epochs without a better answer to the held-out cases, after which training ends
+    # Of Adam, at its largest; it rises over the first twentieth and falls as a cosine to 0
     learning_rate: float
 
 

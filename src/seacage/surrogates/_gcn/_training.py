@@ -23,27 +23,15 @@ ADAM = optax.chain(optax.clip_by_global_norm(1.0), optax.scale_by_adam())
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class TrainingSet:
-    """Inputs and targets of a training, standardised.
+    """Inputs and targets of a training, standardised."""
 
-    Parameters
-    ----------
-    rest
-        Rest position of the nodes.
-    propagation
-        The normalised adjacency.
-    weight
-        Of each node's error in the loss, 1 on average.
-    x, target
-        The cases.
-    train, held_out
-        Which cases train, and which decide when to stop.
-    """
-
-    rest: Float[np.ndarray, "node 3"]
-    propagation: Float[np.ndarray, "node node"]
-    weight: Float[np.ndarray, " node"]
+    rest: Float[np.ndarray, "node 3"]  # rest position of the nodes
+    propagation: Float[np.ndarray, "node node"]  # the normalised adjacency
+    weight: Float[np.ndarray, " node"]  # of each node's error in the loss, 1 on average
+    # The cases
     x: Float[np.ndarray, "case feature"]
     target: Float[np.ndarray, "case node 3"]
+    # Which cases train, and which decide when to stop
     train: Int[np.ndarray, " train"]
     held_out: Int[np.ndarray, " held"]
 

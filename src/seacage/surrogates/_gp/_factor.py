@@ -16,15 +16,9 @@ JITTERS = (1e-9, 1e-8, 1e-7, 1e-6)
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Cholesky:
-    """Of a covariance whose noise is the same for all outputs.
+    """Of a covariance whose noise is the same for all outputs."""
 
-    Parameters
-    ----------
-    lower
-        Triangular factor of the covariance with noise.
-    """
-
-    lower: Float[np.ndarray, "n n"]
+    lower: Float[np.ndarray, "n n"]  # triangular factor of the covariance with noise
 
     @classmethod
     def of(cls, covariance: Float[np.ndarray, "n n"], noise: Float[np.ndarray, " n"]) -> Self:
@@ -68,18 +62,12 @@ class Cholesky:
 
     def extended(
         self,
+        # Covariance of the new cases with the old and with one another
         cross: Float[np.ndarray, "new n"],
         corner: Float[np.ndarray, "new new"],
-        noise: Float[np.ndarray, " new"],
+        noise: Float[np.ndarray, " new"],  # of the new cases
     ) -> Self:
         """The factor with more cases, in O(n^2) for each.
-
-        Parameters
-        ----------
-        cross, corner
-            Covariance of the new cases with the old and with one another.
-        noise
-            Of the new cases.
 
         Raises
         ------
@@ -99,22 +87,14 @@ class Cholesky:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Spectrum:
-    """Of a covariance under noise of another size for each output: one basis serves all.
+    """Of a covariance under noise of another size for each output: one basis serves all."""
 
-    Parameters
-    ----------
-    basis, value
-        Eigenvectors (columns) and eigenvalues of the covariance.
-    noise
-        Variance of each output's.
-    mixture
-        Shares of the outputs' variance in the one answer that is a sum of them; None answers
-        with each output.
-    """
-
+    # Eigenvectors (columns) and eigenvalues of the covariance
     basis: Float[np.ndarray, "n n"]
     value: Float[np.ndarray, " n"]
-    noise: Float[np.ndarray, " output"]
+    noise: Float[np.ndarray, " output"]  # variance of each output's
+    # Shares of the outputs' variance in the one answer that is a sum of them; None answers with
+    # each output
     mixture: Float[np.ndarray, " output"] | None = None
 
     @classmethod

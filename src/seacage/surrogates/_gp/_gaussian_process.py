@@ -434,35 +434,24 @@ def processes_from_arrays(
 
 
 def fit_process(
-    kernel: AbstractKernel,
+    kernel: AbstractKernel,  # that all outputs share
+    # Inputs and outputs in their own units
     x: Float[np.ndarray, "n feature"],
     y: Float[np.ndarray, "n output"],
     *,
+    # Outputs of the likelihood that is maximised, of unit variance all in all
     likelihood_outputs: Float[np.ndarray, "n some"],
+    # As for ``GaussianProcess``
     noise: NoiseName = "white",
     ensemble: Ensemble = "never",
+    # What each output is expected to rise by per unit of each feature; None for nothing. The
+    # outputs of the likelihood are without it.
     slope: Float[np.ndarray, " feature"] | None = None,
+    # Of the search
     restarts: int,
     seed: int,
 ) -> FittedGaussianProcess:
-    """Fit the hyperparameters, then condition on the outputs.
-
-    Parameters
-    ----------
-    kernel
-        That all outputs share.
-    x, y
-        Inputs and outputs in their own units.
-    likelihood_outputs
-        Outputs of the likelihood that is maximised, of unit variance all in all.
-    noise, ensemble
-        As for ``GaussianProcess``.
-    slope
-        What each output is expected to rise by per unit of each feature; None for nothing. The
-        outputs of the likelihood are without it.
-    restarts, seed
-        Of the search.
-    """
+    """Fit the hyperparameters, then condition on the outputs."""
     inputs, outputs = Scaling.of(x), Scaling.of(y)
     standardised = inputs.standardise(x)
     line = np.zeros((x.shape[1], y.shape[1]))
@@ -501,17 +490,12 @@ def fit_process(
 
 
 def select_likelihood_outputs(
-    y: Float[np.ndarray, "n output"], *, unlike: bool = False
+    y: Float[np.ndarray, "n output"],  # all outputs
+    *,
+    # Each output has noise of its own to learn, so that none can stand for others
+    unlike: bool = False,
 ) -> Float[np.ndarray, "n some"]:
-    """Standardised outputs of the likelihood, all of the same importance.
-
-    Parameters
-    ----------
-    y
-        All outputs.
-    unlike
-        Each output has noise of its own to learn, so that none can stand for others.
-    """
+    """Standardised outputs of the likelihood, all of the same importance."""
     standardised = Scaling.of(y).standardise(y)
     if unlike or y.shape[1] <= MANY_OUTPUTS:
         return standardised

@@ -50,26 +50,16 @@ ROUND = 4
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Evidence(Rows):
-    """Posterior of hyperparameters, given points.
+    """Posterior of hyperparameters, given points."""
 
-    Parameters
-    ----------
-    kernel, noise
-        Whose logarithmic hyperparameters are wanted, the kernel's first.
-    x, y
-        Standardised inputs, and outputs of unit variance, which share the hyperparameters.
-    noise_factor
-        Factor on each point's noise.
-    prior
-        Of all hyperparameters.
-    """
-
+    # Whose logarithmic hyperparameters are wanted, the kernel's first
     kernel: AbstractKernel
     noise: AbstractNoise
+    # Standardised inputs, and outputs of unit variance, which share the hyperparameters
     x: Float[np.ndarray, "n feature"]
     y: Float[np.ndarray, "n output"]
-    noise_factor: Float[np.ndarray, " n"]
-    prior: Prior
+    noise_factor: Float[np.ndarray, " n"]  # factor on each point's noise
+    prior: Prior  # of all hyperparameters
 
     @classmethod
     def of(
@@ -178,36 +168,23 @@ class Evidence(Rows):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Mode:
-    """Hyperparameters that no small change makes more probable.
+    """Hyperparameters that no small change makes more probable."""
 
-    Parameters
-    ----------
-    log_parameters
-        Of the kernel, then of the noise.
-    loss
-        Negative log posterior there.
-    evidence
-        All points, with the noise factors that were found.
-    """
-
-    log_parameters: Float[np.ndarray, " parameter"]
-    loss: float
-    evidence: Evidence
+    log_parameters: Float[np.ndarray, " parameter"]  # of the kernel, then of the noise
+    loss: float  # negative log posterior there
+    evidence: Evidence  # all points, with the noise factors that were found
 
 
-def most_probable(evidence: Evidence, *, restarts: int, seed: int) -> Mode:
+def most_probable(
+    evidence: Evidence,  # all points
+    *,
+    # Starts beside the one at the prior's mean; few points get several times as many
+    restarts: int,
+    seed: int,  # of the subset and of the starts
+) -> Mode:
     """Most probable log hyperparameters.
 
     Each start is improved on a random subset, the best one then on all points.
-
-    Parameters
-    ----------
-    evidence
-        All points.
-    restarts
-        Starts beside the one at the prior's mean; few points get several times as many.
-    seed
-        Of the subset and of the starts.
     """
     random = np.random.default_rng(seed)
     if len(evidence.x) <= SMALL:

@@ -53,22 +53,15 @@ def _no_pullback(_: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Evaluation:
-    """Covariances of pairs of inputs, with what their gradients need; they add and multiply.
+    """Covariances of pairs of inputs, with what their gradients need; they add and multiply."""
 
-    Parameters
-    ----------
-    value
-        Of each row of x with each row of z, or of each row of x with itself.
-    slope
-        From a share of each covariance to the gradient in each row of x of their sum by shares;
-        one row of shares stands for all.
-    pull
-        From a loss's gradient in each covariance to its gradient in each log hyperparameter,
-        where z is x and the gradient symmetric.
-    """
-
+    # Of each row of x with each row of z, or of each row of x with itself
     value: Float[np.ndarray, "*pair"]
+    # From a share of each covariance to the gradient in each row of x of their sum by shares; one
+    # row of shares stands for all
     slope: Callable[[np.ndarray], np.ndarray]
+    # From a loss's gradient in each covariance to its gradient in each log hyperparameter, where z
+    # is x and the gradient symmetric
     pull: Callable[[np.ndarray], np.ndarray] = _no_pullback
 
     def __add__(self, other: "Evaluation") -> "Evaluation":
@@ -181,20 +174,13 @@ class StationaryKernel(AbstractKernel):
     """Variance times a correlation that falls with distance, one length per feature (ARD).
 
     Hyperparameters: log variance, then one log length per feature.
-
-    Parameters
-    ----------
-    shape
-        Of the correlation.
-    variance, length
-        Priors; that of the length is for a single feature. No variance is one of 1, known.
-    lengths
-        Prior of each feature's length, where the general one is not meant.
     """
 
-    shape: KernelName
+    shape: KernelName  # of the correlation
+    # Priors; that of the length is for a single feature. No variance is one of 1, known.
     variance: Normal | None = VARIANCE_PRIOR
     length: Normal = LENGTH_PRIOR
+    # Prior of each feature's length, where the general one is not meant
     lengths: tuple[Normal, ...] = ()
 
     @property

@@ -217,40 +217,25 @@ def restore_noise(
 
 
 def noise_factor_of(
-    square: Float[np.ndarray, " row"], *, scale: float, outputs: int
+    square: Float[np.ndarray, " row"],  # expected square of the residuals, summed over the outputs
+    *,
+    scale: float,  # variance of the noise of a case whose factor is 1
+    outputs: int,  # how many
 ) -> Float[np.ndarray, " row"]:
-    """Factor on a case's noise that its squared residuals call for, under Student's t.
-
-    Parameters
-    ----------
-    square
-        Expected square of the residuals, summed over the outputs.
-    scale
-        Variance of the noise of a case whose factor is 1.
-    outputs
-        How many.
-    """
+    """Factor on a case's noise that its squared residuals call for, under Student's t."""
     return (FREEDOM + square / scale) / (FREEDOM + outputs)
 
 
 def noise_factor_of_new(
+    # Squared distance from the predicted mean, summed over the outputs
     square: Float[np.ndarray, " row"],
-    variance: Float[np.ndarray, " row"],
+    variance: Float[np.ndarray, " row"],  # of the prediction, without noise
     *,
+    # As for ``noise_factor_of``
     scale: float,
     outputs: int,
 ) -> Float[np.ndarray, " row"]:
-    """Noise factor of new cases, each from the prediction of it by the others.
-
-    Parameters
-    ----------
-    square
-        Squared distance from the predicted mean, summed over the outputs.
-    variance
-        Of the prediction, without noise.
-    scale, outputs
-        As for ``noise_factor_of``.
-    """
+    """Noise factor of new cases, each from the prediction of it by the others."""
     noise_factor = np.ones(len(square))
     for _ in range(SETTLING):
         noise = scale * noise_factor

@@ -23,18 +23,12 @@ CHUNK = 2**22
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Process:
-    """A zero-mean Gaussian process with its noise, for standardised inputs.
+    """A zero-mean Gaussian process with its noise, for standardised inputs."""
 
-    Parameters
-    ----------
-    kernel, log_parameters
-        The covariance.
-    noise, log_noise
-        What the outputs scatter by, as a share of their unit variance.
-    """
-
+    # The covariance
     kernel: AbstractKernel
     log_parameters: Float[np.ndarray, " parameter"]
+    # What the outputs scatter by, as a share of their unit variance
     noise: AbstractNoise
     log_noise: Float[np.ndarray, " noise"]
 
@@ -213,22 +207,17 @@ class Posterior(Process):
 
     def updated(
         self,
+        # The new points
         x: Float[np.ndarray, "new feature"],
         y: Float[np.ndarray, "new output"],
         *,
+        # Standard deviation of each output that the kernel's is a share of
         amplitude: Float[np.ndarray, " output"],
     ) -> "Posterior":
         """Conditioned on more points, with the same hyperparameters.
 
         The Cholesky factor is extended, in O(n^2) per point; noise unlike between the outputs
         needs the decomposition anew, in O(n^3).
-
-        Parameters
-        ----------
-        x, y
-            The new points.
-        amplitude
-            Standard deviation of each output that the kernel's is a share of.
         """
         noise_factor = np.append(self.noise_factor, self._new_noise_factors(x, y, amplitude))
         all_x, all_y = np.concatenate([self.x, x]), np.concatenate([self.observations(), y])
@@ -256,17 +245,13 @@ class Posterior(Process):
             return None  # The whole can afford a larger jitter.
 
     def combined(
-        self, share: Float[np.ndarray, " output"], *, amplitude: Float[np.ndarray, " output"]
+        self,
+        share: Float[np.ndarray, " output"],  # of each output
+        *,
+        # Standard deviation of each output that the kernel's is a share of
+        amplitude: Float[np.ndarray, " output"],
     ) -> "Posterior":
-        """With one output: the sum of the outputs times their share.
-
-        Parameters
-        ----------
-        share
-            Of each output.
-        amplitude
-            Standard deviation of each output that the kernel's is a share of.
-        """
+        """With one output: the sum of the outputs times their share."""
         weights = self.weights @ share[:, None]
         if isinstance(self.factor, Cholesky):
             return replace(self, weights=weights)

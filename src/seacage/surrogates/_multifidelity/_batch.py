@@ -39,20 +39,13 @@ class BatchedLinks:
 
     The level below may have several values for each row of features: what depends on the
     features alone is evaluated once for all of them.
-
-    Parameters
-    ----------
-    members
-        How many.
-    covariance
-        From features (member, row, feature) and values below (member, row, node) to covariances
-        with the points (member, row, node, n).
-    variance
-        From the same to variances (member, row, node).
     """
 
-    members: int
+    members: int  # how many
+    # From features (member, row, feature) and values below (member, row, node) to covariances with
+    # the points (member, row, node, n)
     covariance: Callable[[np.ndarray, np.ndarray], np.ndarray]
+    # From the same to variances (member, row, node)
     variance: Callable[[np.ndarray, np.ndarray], np.ndarray]
 
     @classmethod

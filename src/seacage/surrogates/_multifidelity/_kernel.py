@@ -114,18 +114,10 @@ class HeldBend(AbstractKernel):
 
 @dataclass(frozen=True, slots=True)
 class LinearKernel(AbstractKernel):
-    """s (offset + x x'): a straight line through 0, or at random height.
+    """s (offset + x x'): a straight line through 0, or at random height."""
 
-    Parameters
-    ----------
-    offset
-        Variance at 0, as a share of that of the slope.
-    variance
-        Prior of s.
-    """
-
-    offset: float = 0.0
-    variance: Normal = VARIANCE_PRIOR
+    offset: float = 0.0  # variance at 0, as a share of that of the slope
+    variance: Normal = VARIANCE_PRIOR  # prior of s
 
     def prior(self, width: int) -> Prior:  # noqa: ARG002
         return Prior.of(self.variance)
@@ -183,7 +175,14 @@ class LinkKernel(Sum):
 
 
 def autoregressive(
-    *, linear: bool, lengths: tuple[float, ...] = (), alike: bool = False
+    *,
+    linear: bool,  # whether there is a line, and the bend is held
+    # Log lengths of the lowest level, in spreads of the inputs; empty where they are not known.
+    # They shape the prior alone.
+    lengths: tuple[float, ...] = (),
+    # Whether the level below explains most of this one as it is: the line is then about a ratio of
+    # 1, in the units of the levels, and not about 0
+    alike: bool = False,
 ) -> LinkKernel:
     """The NARGP's covariance.
 
@@ -196,17 +195,6 @@ def autoregressive(
     The priors expect the level above to be near a line in the level below, to bend smoothly
     about it, with a bend that hardly changes over the inputs, and to leave little else, which
     varies over the inputs about as fast as the lowest level does where that is fast.
-
-    Parameters
-    ----------
-    linear
-        Whether there is a line, and the bend is held.
-    lengths
-        Log lengths of the lowest level, in spreads of the inputs; empty where they are not
-        known. They shape the prior alone.
-    alike
-        Whether the level below explains most of this one as it is: the line is then about a ratio
-        of 1, in the units of the levels, and not about 0.
 
     References
     ----------

@@ -61,40 +61,30 @@ class AbstractMultifidelity(ABC):
         check_options(noise=self.noise, ensemble=self.ensemble, restarts=self.restarts)
 
     @abstractmethod
-    def link(self, lengths: tuple[float, ...], *, alike: bool) -> LinkKernel:
-        """Covariance of a level over its inputs and the level below.
-
-        Parameters
-        ----------
-        lengths
-            Log lengths of the lowest level, in spreads of this level's inputs; empty where a
-            lent one has none.
-        alike
-            Whether the level below explains most of this one as it is.
-        """
+    def link(
+        self,
+        # Log lengths of the lowest level, in spreads of this level's inputs; empty where a lent one
+        # has none
+        lengths: tuple[float, ...],
+        *,
+        alike: bool,  # whether the level below explains most of this one as it is
+    ) -> LinkKernel:
+        """Covariance of a level over its inputs and the level below."""
 
     def fit(
         self,
+        # Inputs (n, features) and outputs (n,) of each level, from low to high fidelity
         levels: Sequence[Cases],
         *,
-        seed: int = 0,
+        seed: int = 0,  # of the subsets of points and of the random starts
+        # Demand that the inputs of each level are among those of the level below, and use the
+        # outputs observed there instead of the posterior mean
         nested: bool = False,
+        # A fitted model that serves as level 1; ``levels`` then begins at level 2. It has to answer
+        # with one number per row.
         lower: Predicts | None = None,
     ) -> "FittedNARGP":
         """Learn each level from its own cases.
-
-        Parameters
-        ----------
-        levels
-            Inputs (n, features) and outputs (n,) of each level, from low to high fidelity.
-        seed
-            Of the subsets of points and of the random starts.
-        nested
-            Demand that the inputs of each level are among those of the level below, and use the
-            outputs observed there instead of the posterior mean.
-        lower
-            A fitted model that serves as level 1; ``levels`` then begins at level 2. It has to
-            answer with one number per row.
 
         Raises
         ------

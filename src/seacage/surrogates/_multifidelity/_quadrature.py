@@ -54,8 +54,9 @@ class SlopedLevel(Level, Protocol):
 
 
 def propagate_moments(
-    levels: Sequence[Level],
-    x: Float[np.ndarray, "row feature"],
+    levels: Sequence[Level],  # from the lowest to the last
+    x: Float[np.ndarray, "row feature"],  # features of each row
+    # Of the value below the first level
     mean: Float[np.ndarray, " row"],
     variance: Float[np.ndarray, " row"],
 ) -> tuple[Float[np.ndarray, " row"], Float[np.ndarray, " row"]]:
@@ -64,15 +65,6 @@ def propagate_moments(
     Nested quadrature, one rule inside the other, so that no level's answer is taken for
     Gaussian on the way; deterministic, and the limit of nested Monte Carlo. Each row chooses
     its own rule, so its answer does not depend on the rows beside it.
-
-    Parameters
-    ----------
-    levels
-        From the lowest to the last.
-    x
-        Features of each row.
-    mean, variance
-        Of the value below the first level.
 
     References
     ----------
@@ -93,17 +85,12 @@ def propagate_moments(
 
 
 def propagate_slope(
-    levels: Sequence[SlopedLevel], x: Float[np.ndarray, "row feature"], below: Moments
+    # As there
+    levels: Sequence[SlopedLevel],
+    x: Float[np.ndarray, "row feature"],
+    below: Moments,  # of the value below the first level, with their gradients
 ) -> Float[np.ndarray, "row feature"]:
-    """Gradient in each row of the mean that ``carried`` gives there.
-
-    Parameters
-    ----------
-    levels, x
-        As there.
-    below
-        Of the value below the first level, with their gradients.
-    """
+    """Gradient in each row of the mean that ``carried`` gives there."""
     slope = np.empty_like(x)
     for count, rows in _by_rule(levels, x, below.mean, below.variance):
         node, weight = rule(count)

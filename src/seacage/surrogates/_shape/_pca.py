@@ -27,20 +27,12 @@ PAPER_VARIANCE = 0.93
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Modes:
-    """Orthonormal directions of a table of shapes.
+    """Orthonormal directions of a table of shapes."""
 
-    Parameters
-    ----------
-    centre
-        The mean shape, or zero [m].
-    direction
-        One row per mode, most important first, of unit length over all coordinates.
-    truncation
-        Root mean square of what the modes leave out, per coordinate [m].
-    """
-
-    centre: Float[np.ndarray, " coordinate"]
+    centre: Float[np.ndarray, " coordinate"]  # the mean shape, or zero [m]
+    # One row per mode, most important first, of unit length over all coordinates
     direction: Float[np.ndarray, "mode coordinate"]
+    # Root mean square of what the modes leave out, per coordinate [m]
     truncation: Float[np.ndarray, " coordinate"]
 
     @property
@@ -123,19 +115,12 @@ class OverTime:
 
 
 def all_modes(
-    shape: Float[np.ndarray, "row coordinate"],
+    shape: Float[np.ndarray, "row coordinate"],  # one row per case [m]
     *,
+    # Where the modes start, "variance" being the mean square from there; None for the mean
     about: Float[np.ndarray, " coordinate"] | None = None,
 ) -> tuple[Modes, Float[np.ndarray, " mode"]]:
-    """Every mode of a table of shapes, and the share of the variance up to each.
-
-    Parameters
-    ----------
-    shape
-        One row per case [m].
-    about
-        Where the modes start, "variance" being the mean square from there; None for the mean.
-    """
+    """Every mode of a table of shapes, and the share of the variance up to each."""
     centre = shape.mean(axis=0) if about is None else about
     _, size, direction = np.linalg.svd(shape - centre, full_matrices=False)
     return _sort_modes(centre, direction, size**2)

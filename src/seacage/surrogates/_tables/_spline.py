@@ -28,22 +28,15 @@ class Spline:
     polynomial (not-a-knot), so that the error is of fourth order up to the edge; a periodic
     axis has no ends.
 
-    Parameters
-    ----------
-    shape
-        Nodes of each axis; the last node of a periodic axis lies one cell before its end.
-    periodic
-        Whether each axis closes on itself.
-    coefficients
-        Of the B-splines, one row for each, the last axis running fastest, one column per field.
-
     References
     ----------
     de Boor (1978), "A Practical Guide to Splines", chapters IV, IX and XVII.
     """
 
+    # Nodes of each axis; the last node of a periodic axis lies one cell before its end
     shape: tuple[int, ...]
-    periodic: tuple[bool, ...]
+    periodic: tuple[bool, ...]  # whether each axis closes on itself
+    # Of the B-splines, one row for each, the last axis running fastest, one column per field
     coefficients: Float[np.ndarray, "coefficient field"]
 
     @classmethod

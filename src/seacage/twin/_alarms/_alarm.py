@@ -102,21 +102,11 @@ class AlarmEvent:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AlarmInput:
-    """The number that raises and clears an alarm.
-
-    Parameters
-    ----------
-    alarm
-        The alarm's name.
-    value
-        None where it is not known: it then neither raises nor clears.
-    detail
-        An addition to the alarm's message, in a sentence.
-    """
+    """The number that raises and clears an alarm."""
 
     alarm: str
-    value: float | None
-    detail: str = ""
+    value: float | None  # None where it is not known: it then neither raises nor clears
+    detail: str = ""  # an addition to the alarm's message, in a sentence
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -15,17 +15,14 @@ MEASURED_S = 60.0
 
 
 def alarm_inputs(
-    twin: Twin, state: TwinState, answered: Answered, *, distrusted: frozenset[str]
+    # The twin, its state, and its last answer
+    twin: Twin,
+    state: TwinState,
+    answered: Answered,
+    *,
+    distrusted: frozenset[str],  # streams whose readings are not to be used
 ) -> Iterator[AlarmInput]:
-    """Return the inputs of all alarms but those of the fault detector.
-
-    Parameters
-    ----------
-    twin, state, answered
-        The twin, its state, and its last answer.
-    distrusted
-        Streams whose readings are not to be used.
-    """
+    """Return the inputs of all alarms but those of the fault detector."""
     answer, now = answered.answer, answered.t
     valid = bool(answer.valid[0])
     detail = answer.reason[0] if valid else ""  # why the answer extrapolates, if it does

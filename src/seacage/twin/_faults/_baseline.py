@@ -31,22 +31,13 @@ class Shift:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Baseline:
-    """Estimate of the residuals without any fault.
+    """Estimate of the residuals without any fault."""
 
-    Parameters
-    ----------
-    sensors
-        Their names; none before the first block.
-    size, covariance
-        The offset of each, in standard deviations, then the relative drag of each [-].
-    mean_square
-        Of each one's own residuals, in variances.
-    """
-
-    sensors: tuple[str, ...] = ()
+    sensors: tuple[str, ...] = ()  # their names; none before the first block
+    # The offset of each, in standard deviations, then the relative drag of each [-]
     size: tuple[float, ...] = ()
     covariance: tuple[tuple[float, ...], ...] = ()
-    mean_square: tuple[float, ...] = ()
+    mean_square: tuple[float, ...] = ()  # of each one's own residuals, in variances
 
     __pydantic_config__ = json_keys(mean_square="restless")
 
@@ -74,19 +65,12 @@ class Baseline:
         )
 
     def updated(
-        self, block: ResidualBlock, faults: Iterable[Shift], settings: FaultDetectorSettings
+        self,
+        block: ResidualBlock,  # of sensors of the same names
+        faults: Iterable[Shift],  # the shifts of active faults
+        settings: FaultDetectorSettings,  # of the fault detector
     ) -> Self:
-        """Return a copy updated by a block, less the shifts of active faults.
-
-        Parameters
-        ----------
-        block
-            Of sensors of the same names.
-        faults
-            The shifts of active faults.
-        settings
-            Of the fault detector.
-        """
+        """Return a copy updated by a block, less the shifts of active faults."""
         received = block.received
         shift = self.shift(block, settings).plus(faults)
         residual = (block.residual - shift.mean)[received]

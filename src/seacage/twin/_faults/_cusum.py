@@ -16,17 +16,11 @@ from seacage.twin._settings import FaultDetectorSettings
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Evidence:
-    """Evidence for a hypothesis since the time at which the fault most likely began.
+    """Evidence for a hypothesis since the time at which the fault most likely began."""
 
-    Parameters
-    ----------
-    cusum
-        Sum of the log-likelihood ratios against no fault since it was last zero; above zero.
-    size, covariance
-        Of the sensors that respond [-].
-    """
-
+    # Sum of the log-likelihood ratios against no fault since it was last zero; above zero
     cusum: float
+    # Of the sensors that respond [-]
     size: tuple[float, ...]
     covariance: tuple[tuple[float, ...], ...]
 

@@ -29,30 +29,16 @@ _LOSS = "A large hole does that, and so does a cleaning."
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FaultDetector:
-    """State of the fault detector.
+    """State of the fault detector."""
 
-    Parameters
-    ----------
-    monitors
-        By stream, the buoy's too.
-    sums
-        Of the running block.
-    baseline
-        Of the residuals.
-    evidence
-        By hypothesis: "irregular.depth-1 more" is one of the alarm "irregular.depth-1".
-    active
-        The alarms that were raised at the last block.
-    waited
-        Blocks for which some evidence has been beyond the limit without an alarm.
-    """
-
+    # By stream, the buoy's too
     monitors: Mapping[str, SensorMonitor] = field(default_factory=dict[str, SensorMonitor])
-    sums: BlockSums = field(default_factory=BlockSums)
-    baseline: Baseline = field(default_factory=Baseline)
+    sums: BlockSums = field(default_factory=BlockSums)  # of the running block
+    baseline: Baseline = field(default_factory=Baseline)  # of the residuals
+    # By hypothesis: "irregular.depth-1 more" is one of the alarm "irregular.depth-1"
     evidence: EvidenceByName = field(default_factory=dict[str, Evidence])
-    active: tuple[str, ...] = ()
-    waited: int = 0
+    active: tuple[str, ...] = ()  # the alarms that were raised at the last block
+    waited: int = 0  # blocks for which some evidence has been beyond the limit without an alarm
 
     __pydantic_config__ = json_keys(
         monitors="senses", sums="opened", baseline="usual", evidence="beliefs", active="told"
@@ -64,17 +50,16 @@ class FaultDetector:
         return replace(self, monitors=monitors, sums=BlockSums())
 
     def stepped(
-        self, twin: Twin, state: TwinState, answered: Answered, *, active: frozenset[str]
+        self,
+        # The twin, its state, and its answer now
+        twin: Twin,
+        state: TwinState,
+        answered: Answered,
+        *,
+        # The alarms that are raised: residuals that they explain count for no other
+        active: frozenset[str],
     ) -> Self:
-        """Return a copy with the samples since the last step, and with a block that has ended.
-
-        Parameters
-        ----------
-        twin, state, answered
-            The twin, its state, and its answer now.
-        active
-            The alarms that are raised: residuals that they explain count for no other.
-        """
+        """Return a copy with the samples since the last step, and with a block that has ended."""
         after, settings = self, twin.fault_detector
         sums = self.sums.extended(answered, settings.block_s)
         if self.sums.number is not None and sums.number != self.sums.number:
@@ -89,23 +74,14 @@ class FaultDetector:
 
     def updated(
         self,
+        # The residuals, and the cage they are of
         block: ResidualBlock,
         cage: Cage,
-        settings: FaultDetectorSettings,
+        settings: FaultDetectorSettings,  # of the twin
         *,
-        active: frozenset[str],
+        active: frozenset[str],  # the alarms that are raised
     ) -> Self:
-        """Return a copy with the evidence of one more block for all hypotheses.
-
-        Parameters
-        ----------
-        block, cage
-            The residuals, and the cage they are of.
-        settings
-            Of the twin.
-        active
-            The alarms that are raised.
-        """
+        """Return a copy with the evidence of one more block for all hypotheses."""
         ours = tuple(sorted(name for name in active if name.partition(".")[0] in _KINDS))
         before = self._beside(ours, block, settings)
         among = list(hypotheses(block, cage, settings))
@@ -151,16 +127,12 @@ class FaultDetector:
         found = ((name, value) for name, value in self.cusums().items() if name not in self.active)
         return sorted(found, key=lambda one: -one[1])
 
-    def inputs(self, cage: Cage, settings: FaultDetectorSettings) -> Iterator[AlarmInput]:
-        """Return the inputs of all its alarms at the end of a block.
-
-        Parameters
-        ----------
-        cage
-            Has the bridles and sensors.
-        settings
-            Of the twin.
-        """
+    def inputs(
+        self,
+        cage: Cage,  # has the bridles and sensors
+        settings: FaultDetectorSettings,  # of the twin
+    ) -> Iterator[AlarmInput]:
+        """Return the inputs of all its alarms at the end of a block."""
         stuck = {one.alarm: one for one in self.stuck_inputs(settings)}
         for name in (
             *(f"bridle.{bridle}" for bridle in cage.bridle_names),

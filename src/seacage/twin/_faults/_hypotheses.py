@@ -16,30 +16,16 @@ class Hypothesis:
     """A fault, and the shift of the sensors' readings by it.
 
     The shift is ``scale`` times an unknown size with a normal prior.
-
-    Parameters
-    ----------
-    alarm
-        Raised for it.
-    variant
-        Distinguishes the hypotheses of one alarm.
-    scale
-        Of each sensor, zero where it does not respond [N] or [m].
-    size, sd
-        Prior mean and standard deviation of the size [-].
-    walk
-        Standard deviation of the size's change from block to block [-].
-    lasts
-        Whether an estimate of the size from one block holds in the next.
     """
 
-    alarm: str
-    variant: str = ""
-    scale: Float[np.ndarray, " sensor"]
+    alarm: str  # raised for it
+    variant: str = ""  # distinguishes the hypotheses of one alarm
+    scale: Float[np.ndarray, " sensor"]  # of each sensor, zero where it does not respond [N] or [m]
+    # Prior mean and standard deviation of the size [-]
     size: Float[np.ndarray, " sensor"]
     sd: Float[np.ndarray, " sensor"]
-    walk: float = 0.0
-    lasts: bool = True
+    walk: float = 0.0  # standard deviation of the size's change from block to block [-]
+    lasts: bool = True  # whether an estimate of the size from one block holds in the next
 
     @property
     def name(self) -> str:

@@ -14,17 +14,10 @@ from seacage.twin._twin import Twin
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BlockSums:
-    """Sums of the buoy's current over the running block.
+    """Sums of the buoy's current over the running block."""
 
-    Parameters
-    ----------
-    number
-        Of the block, counted since 1970; None before the first.
-    ticks, east, north
-        How often the current was known, and its sums over these [m/s].
-    """
-
-    number: int | None = None
+    number: int | None = None  # of the block, counted since 1970; None before the first
+    # How often the current was known, and its sums over these [m/s]
     ticks: int = 0
     east: float = 0.0
     north: float = 0.0
@@ -42,32 +35,18 @@ class BlockSums:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ResidualBlock:
-    """Mean residuals over a block, of all sensors that have a level-2 model.
-
-    Parameters
-    ----------
-    sensors
-        Their names.
-    received
-        Which of them sent enough readings.
-    residual, own_sd
-        Mean reading less prediction, zero where not received, and the standard deviation of the
-        part that is independent of the other sensors [N] or [m].
-    gradient
-        Of the prediction over the current (east, north) [N s/m] or [s].
-    current
-        At the buoy, (east, north) [m/s].
-    tension
-        Of each bridle, predicted [N].
-    """
+    """Mean residuals over a block, of all sensors that have a level-2 model."""
 
     sensors: tuple[str, ...]
-    received: Bool[np.ndarray, " sensor"]
+    received: Bool[np.ndarray, " sensor"]  # which of them sent enough readings
+    # Mean reading less prediction, zero where not received, and the standard deviation of the part
+    # that is independent of the other sensors [N] or [m]
     residual: Float[np.ndarray, " sensor"]
     own_sd: Float[np.ndarray, " sensor"]
+    # Of the prediction over the current (east, north) [N s/m] or [s]
     gradient: Float[np.ndarray, "sensor 2"]
-    current: Float[np.ndarray, "2"]
-    tension: Float[np.ndarray, " line"]
+    current: Float[np.ndarray, "2"]  # at the buoy, (east, north) [m/s]
+    tension: Float[np.ndarray, " line"]  # of each bridle, predicted [N]
 
     @property
     def drag(self) -> Float[np.ndarray, " sensor"]:
@@ -79,17 +58,14 @@ class ResidualBlock:
 
 
 def close_block(
-    sums: BlockSums, monitors: Mapping[str, SensorMonitor], twin: Twin, answered: Answered
+    # The sums over it
+    sums: BlockSums,
+    monitors: Mapping[str, SensorMonitor],
+    # Predicts once more, at the block's mean current and around it; its waves are the last
+    twin: Twin,
+    answered: Answered,
 ) -> ResidualBlock | None:
-    """Make the residuals of the block that has just ended; None where too little was received.
-
-    Parameters
-    ----------
-    sums, monitors
-        The sums over it.
-    twin, answered
-        Predicts once more, at the block's mean current and around it; its waves are the last.
-    """
+    """Make the residuals of the block that has just ended; None where too little was received."""
     settings = twin.fault_detector
     names = tuple(name for name in twin.sensor_names if name in twin.models.upper)
     each = [monitors.get(name, SensorMonitor()) for name in names]

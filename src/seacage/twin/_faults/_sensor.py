@@ -18,23 +18,15 @@ _COUNTED = (Flag.GOOD, Flag.NOT_EVALUATED)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SensorMonitor:
-    """State of the checks of one sensor.
+    """State of the checks of one sensor."""
 
-    Parameters
-    ----------
-    latest
-        Observation time of the newest reading taken in.
-    values, since, repeats
-        The values of that reading by its door keys, None for what is no number; the time since
-        which they have been exactly the same, and the number of repetitions.
-    count, error
-        Good readings in the running block, and the sum of their residuals [N] or [m].
-    """
-
-    latest: datetime | None = None
+    latest: datetime | None = None  # observation time of the newest reading taken in
+    # The values of that reading by its door keys, None for what is no number; the time since which
+    # they have been exactly the same, and the number of repetitions
     values: tuple[float | None, ...] = ()
     since: datetime | None = None
     repeats: int = 0
+    # Good readings in the running block, and the sum of their residuals [N] or [m]
     count: int = 0
     error: float = 0.0
 
@@ -48,16 +40,13 @@ class SensorMonitor:
         """Return a copy in which the next block begins."""
         return replace(self, count=0, error=0.0)
 
-    def extended(self, sample: Sample, predicted: float | None) -> Self:
-        """Return a copy with one more reading.
-
-        Parameters
-        ----------
-        sample
-            With its flags; one that did not pass its checks is not averaged.
-        predicted
-            The reading that the twin predicts [N] or [m]; None where it predicts nothing.
-        """
+    def extended(
+        self,
+        sample: Sample,  # with its flags; one that did not pass its checks is not averaged
+        # The reading that the twin predicts [N] or [m]; None where it predicts nothing
+        predicted: float | None,
+    ) -> Self:
+        """Return a copy with one more reading."""
         values = tuple(one if math.isfinite(one) else None for one in sample.values.values())
         same = values == self.values and None not in values
         monitor = replace(

@@ -19,27 +19,18 @@ def log_density(
 
 
 def kalman_update(
+    # Before
     size: Float[np.ndarray, " size"],
     covariance: Float[np.ndarray, "size size"],
     *,
-    response: Float[np.ndarray, "row size"],
+    response: Float[np.ndarray, "row size"],  # change of each row per unit of each size
+    # Readings less those expected with the sizes before, and the errors' covariance; it is widened
+    # where the residuals are larger than expected, and never narrowed
     residual: Float[np.ndarray, " row"],
     noise: Float[np.ndarray, "row row"],
-    degrees_of_freedom: float,
+    degrees_of_freedom: float,  # of the errors' t distribution [-]
 ) -> tuple[Float[np.ndarray, " size"], Float[np.ndarray, "size size"]]:
     """Update sizes and their covariance by residuals.
-
-    Parameters
-    ----------
-    size, covariance
-        Before.
-    response
-        Change of each row per unit of each size.
-    residual, noise
-        Readings less those expected with the sizes before, and the errors' covariance; it is
-        widened where the residuals are larger than expected, and never narrowed.
-    degrees_of_freedom
-        Of the errors' t distribution [-].
 
     References
     ----------

@@ -57,44 +57,24 @@ class Training:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class SensorTraining:
-    """Training data of one sensor.
-
-    Parameters
-    ----------
-    window
-        Its training window.
-    pairs, selected
-        All its readings in the window, and those that level 2 is fitted to.
-    calibrates
-        Whether the remaining readings calibrate the intervals.
-    """
+    """Training data of one sensor."""
 
     window: TrainingWindow
+    # All its readings in the window, and those that level 2 is fitted to
     pairs: Pairs
     selected: Pairs
-    calibrates: bool
+    calibrates: bool  # whether the remaining readings calibrate the intervals
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class CageTraining:
-    """Training data of all sensors of a cage, and the settings of their fits.
+    """Training data of all sensors of a cage, and the settings of their fits."""
 
-    Parameters
-    ----------
-    models
-        Level 1.
-    sensors
-        The data by sensor.
-    training
-        The settings.
-    held_out
-        Held-out readings of models fitted within another sensor's short window, by sensor and
-        hours; filled on demand.
-    """
-
-    models: Models
-    sensors: Mapping[str, SensorTraining]
+    models: Models  # level 1
+    sensors: Mapping[str, SensorTraining]  # the data by sensor
     training: Training
+    # Held-out readings of models fitted within another sensor's short window, by sensor and hours;
+    # filled on demand
     held_out: dict[tuple[str, int, int], HeldOut] = field(
         default_factory=dict[tuple[str, int, int], HeldOut]
     )

@@ -33,24 +33,13 @@ Series = Float[np.ndarray, " pair"]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class HeldOut:
-    """Errors of held-out readings.
+    """Errors of held-out readings."""
 
-    Parameters
-    ----------
-    error
-        Reading less predicted mean [N] or [m].
-    variance
-        Of the prediction without the instrument's noise, before calibration [N2] or [m2].
-    steepness
-        Of level 1, times the gain [N s/m] or [s].
-    white
-        Variance of the instrument's noise, which the readings have.
-    """
-
-    error: Series
+    error: Series  # reading less predicted mean [N] or [m]
+    # Of the prediction without the instrument's noise, before calibration [N2] or [m2]
     variance: Series
-    steepness: Series
-    white: float
+    steepness: Series  # of level 1, times the gain [N s/m] or [s]
+    white: float  # variance of the instrument's noise, which the readings have
 
     def scores(self, spread: Spread) -> Series:
         """Absolute errors over the standard deviations of readings by a calibration."""
@@ -77,16 +66,11 @@ def independent_count(pairs: Pairs) -> int:
     return len(np.unique(np.floor(second / length)))
 
 
-def white_noise(error: Series, time: Shaped[np.ndarray, " pair"]) -> float:
-    """Variance of an instrument's noise: the part of its errors independent of the next one's.
-
-    Parameters
-    ----------
-    error
-        Readings less predictions, in runs of consecutive readings.
-    time
-        Of the readings.
-    """
+def white_noise(
+    error: Series,  # readings less predictions, in runs of consecutive readings
+    time: Shaped[np.ndarray, " pair"],  # of the readings
+) -> float:
+    """Variance of an instrument's noise: the part of its errors independent of the next one's."""
     second = (time - time[0]) / np.timedelta64(1, "s")
     step = float(np.median(np.diff(second))) if len(second) > 1 else 0.0
     parts = np.split(error, np.flatnonzero(np.diff(second) > 10.0 * step) + 1)
@@ -106,20 +90,15 @@ def stretch_rows(count: int) -> Int[np.ndarray, " row"]:
 
 
 def cross_validate(
-    model: Correction, selected: Pairs, held_out: Pairs, x: Float[np.ndarray, "pair feature"]
+    model: Correction,  # fitted to the selected pairs
+    # The readings that it was fitted to, in its order, and those to predict
+    selected: Pairs,
+    held_out: Pairs,
+    x: Float[np.ndarray, "pair feature"],  # features of the water at the held-out pairs
 ) -> tuple[Series, Series]:
     """Mean and variance at readings, each without the part of the training window it is in.
 
     The hyperparameters stay those of the whole window.
-
-    Parameters
-    ----------
-    model
-        Fitted to the selected pairs.
-    selected, held_out
-        The readings that it was fitted to, in its order, and those to predict.
-    x
-        Features of the water at the held-out pairs.
     """
     start, end = held_out.time[[0, -1]]
     edges = start + (end - start) / FOLDS * np.arange(1, FOLDS)

@@ -104,18 +104,10 @@ def _are_related(of: str, id: str, to: str, other: str) -> bool:  # noqa: A002
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Catalogue:
-    """All entities that somebody may see.
+    """All entities that somebody may see."""
 
-    Parameters
-    ----------
-    cages
-        Those that the token may read.
-    address
-        Of the service's own root, as the client knows it.
-    """
-
-    cages: Cages
-    address: str
+    cages: Cages  # those that the token may read
+    address: str  # of the service's own root, as the client knows it
     _made: dict[str, list[Entity]] = field(default_factory=dict[str, list[Entity]], init=False)
 
     def all(self, of: str) -> list[Entity]:

@@ -27,33 +27,18 @@ Span = tuple[datetime | None, datetime | None]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class QueryOptions:
-    """The options of a question, or of one relation that it expands.
+    """The options of a question, or of one relation that it expands."""
 
-    Parameters
-    ----------
-    texts
-        As they were written, by their names.
-    top, skip
-        How many at most, and how many of the first are left out.
-    count
-        Whether to say how many there are in all.
-    select
-        Names of the properties that are wanted; all where empty.
-    order
-        What to order by, and whether the largest comes first; None as usual.
-    within
-        ``$filter``, a span of time.
-    expand
-        What is asked of each relation that is to be told in full.
-    """
-
-    texts: Mapping[str, str]
+    texts: Mapping[str, str]  # as they were written, by their names
+    # How many at most, and how many of the first are left out
     top: int
     skip: int
-    count: bool
-    select: tuple[str, ...]
+    count: bool  # whether to say how many there are in all
+    select: tuple[str, ...]  # names of the properties that are wanted; all where empty
+    # What to order by, and whether the largest comes first; None as usual
     order: tuple[str, bool] | None
-    within: Span | None
+    within: Span | None  # ``$filter``, a span of time
+    # What is asked of each relation that is to be told in full
     expand: Mapping[str, "QueryOptions"]
 
 

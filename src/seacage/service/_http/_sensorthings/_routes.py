@@ -157,15 +157,12 @@ Telling = Annotated[QueryOptions, Depends(_options_of_one)]
 
 
 class _Answer:
-    """Tells entities as they were asked for.
+    """Tells entities as they were asked for."""
 
-    Parameters
-    ----------
-    catalogue
-        That they are of.
-    """
-
-    def __init__(self, catalogue: Catalogue) -> None:
+    def __init__(
+        self,
+        catalogue: Catalogue,  # that they are of
+    ) -> None:
         self.catalogue = catalogue
         self._left = _AT_ONCE
 

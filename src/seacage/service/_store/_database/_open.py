@@ -18,13 +18,10 @@ def database_at(place: Path | str) -> AbstractDatabase:
 
 
 @contextmanager
-def look_into(place: Path | str) -> Generator[AbstractSession]:
+def look_into(
+    place: Path | str,  # as for ``open_store``, but there already
+) -> Generator[AbstractSession]:
     """Read one moment of a store that a service may be writing.
-
-    Parameters
-    ----------
-    place
-        As for ``open_store``, but there already.
 
     Raises
     ------

@@ -119,18 +119,17 @@ class PostgresSession(AbstractSession):
 class PostgresDatabase(AbstractDatabase):
     """A database on a server, its samples parted by month.
 
-    Parameters
-    ----------
-    url
-        ``postgresql://user@host/name``; the tables lie in the first schema of its search path.
-
     Raises
     ------
     StoreError
         The driver is not installed, or the server cannot be reached.
     """
 
-    def __init__(self, url: str) -> None:
+    def __init__(
+        self,
+        # ``postgresql://user@host/name``; the tables lie in the first schema of its search path
+        url: str,
+    ) -> None:
         try:
             import psycopg
             from psycopg.conninfo import conninfo_to_dict

@@ -17,17 +17,14 @@ _log = structlog.get_logger(__name__)
 
 
 class Reserve:
-    """A file that holds room on the disk and nothing else.
+    """A file that holds room on the disk and nothing else."""
 
-    Parameters
-    ----------
-    path
-        Of the file; one that a killed process left is taken over.
-    size
-        Of the room [bytes].
-    """
-
-    def __init__(self, path: Path, *, size: int = SIZE) -> None:
+    def __init__(
+        self,
+        path: Path,  # of the file; one that a killed process left is taken over
+        *,
+        size: int = SIZE,  # of the room [bytes]
+    ) -> None:
         self._path, self._size = path, size
         self._held = self._unable = False
 

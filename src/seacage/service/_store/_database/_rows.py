@@ -32,18 +32,12 @@ Own = tuple[int, int]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Bounds:
-    """Times of the rows that are read, start <= t < end, and how many are read at most.
+    """Times of the rows that are read, start <= t < end, and how many are read at most."""
 
-    Parameters
-    ----------
-    start, end
-        Open where None.
-    limit, newest
-        At most so many, the first; with ``newest`` the last.
-    """
-
+    # Open where None
     start: datetime | None = None
     end: datetime | None = None
+    # At most so many, the first; with ``newest`` the last
     limit: int = _ALL
     newest: bool = False
 
@@ -54,16 +48,15 @@ class Bounds:
         return start, _ALL if self.end is None else microseconds(self.end)
 
 
-def row_of(cage: str, sample: Sample, ingested: datetime, amended: Mapping[str, Own]) -> Row:
-    """Write a sample as a row.
-
-    Parameters
-    ----------
-    cage, sample, ingested
-        Whose, with the flags that it has now, and when it came.
-    amended
-        By key, where a later sample changed a flag: the flag before, and the later one's time.
-    """
+def row_of(
+    # Whose, with the flags that it has now, and when it came
+    cage: str,
+    sample: Sample,
+    ingested: datetime,
+    # By key, where a later sample changed a flag: the flag before, and the later one's time
+    amended: Mapping[str, Own],
+) -> Row:
+    """Write a sample as a row."""
     return (
         cage,
         sample.stream,
@@ -109,16 +102,13 @@ def remarks_text(sample: Sample) -> str:
     return json.dumps(sample.remarks)
 
 
-def sample_of_row(row: tuple[Any, ...], *, at: int | None = None) -> Sample:
-    """Read a sample.
-
-    Parameters
-    ----------
-    row
-        As stored.
-    at
-        Give the flags that the samples until then had shown [us]; all samples where None.
-    """
+def sample_of_row(
+    row: tuple[Any, ...],  # as stored
+    *,
+    # Give the flags that the samples until then had shown [us]; all samples where None
+    at: int | None = None,
+) -> Sample:
+    """Read a sample."""
     stream, t, seq, readings, remarks, *_ = row
     pairs: dict[str, list[Any]] = json.loads(readings)
     return Sample(

@@ -53,31 +53,16 @@ class AbstractSession(ABC):
 
     def intact(
         self,
-        table: str,
+        table: str,  # from which it selects
+        # It answers whole rows but for ``head``, the checksum last
         sql: str,
         values: Sequence[object] = (),
-        head: Sequence[object] = (),
+        head: Sequence[object] = (),  # the first columns
         *,
+        # The last value, where the statement has one: so many intact rows are wanted
         limit: int | None = None,
-    ) -> Answer:
-        """Run a SELECT and leave out the rows that are not as they were written.
-
-        Parameters
-        ----------
-        table
-            From which it selects.
-        sql, values
-            It answers whole rows but for ``head``, the checksum last.
-        head
-            The first columns.
-        limit
-            The last value, where the statement has one: so many intact rows are wanted.
-
-        Returns
-        -------
-        rows
-            Without the checksum.
-        """
+    ) -> Answer:  # without the checksum
+        """Run a SELECT and leave out the rows that are not as they were written."""
         spare = 0
         while True:
             bound = () if limit is None else (limit + spare,)
