@@ -68,10 +68,7 @@ DIRECTIONS = frozenset(name for name, key in KEYS.items() if key.unit == "deg")
 def check_keys(names: Mapping[str, object], *, where: str) -> None:
     """Refuse a key that no quantity has.
 
-    Raises
-    ------
-    InputError
-        At the first unknown key.
+    Raises InputError: at the first unknown key.
     """
     if not KEYS.keys() >= names.keys():
         unknown = next(name for name in names if name not in KEYS)

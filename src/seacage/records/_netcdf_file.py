@@ -112,10 +112,8 @@ def write_netcdf(
 def open_netcdf(path: Path, schema: str) -> "Generator[xarray.Dataset]":
     """Open a file that seacage wrote, its times as numbers.
 
-    Raises
-    ------
-    OSError, KeyError, ValueError
-        As ``check_netcdf``, or for another schema; what else the libraries raise.
+    Raises OSError, KeyError, ValueError: as ``check_netcdf``, or for another schema; what else the
+    libraries raise.
     """
     import xarray
 
@@ -136,12 +134,8 @@ def check_netcdf(
 ) -> None:
     """Refuse a NetCDF file that would fill the memory, or reads from other files.
 
-    Raises
-    ------
-    OSError
-        No regular file, too large a one, or no HDF5.
-    ValueError
-        It declares too much, or links to another file.
+    Raises OSError: no regular file, too large a one, or no HDF5.
+    Raises ValueError: it declares too much, or links to another file.
     """
     size = check_file(path, most=_FILE_BYTES).st_size
     with path.open("rb") as stream:

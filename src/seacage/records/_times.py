@@ -13,10 +13,7 @@ _MICROSECOND = timedelta(microseconds=1)
 def microseconds(time: datetime) -> int:
     """Since 1970-01-01 UTC, exactly.
 
-    Raises
-    ------
-    InputError
-        Where the time does not say its zone.
+    Raises InputError: where the time does not say its zone.
     """
     if time.tzinfo is None:
         raise InputError(

@@ -12,10 +12,7 @@ Table = Mapping[str, object]
 def check_names(table: Table, known: Iterable[str], *, where: str) -> None:
     """Refuse a misspelt key, with the likely one.
 
-    Raises
-    ------
-    RecordError
-        At the first key that is not known.
+    Raises RecordError: at the first key that is not known.
     """
     known = tuple(known)
     for name in table:
@@ -28,10 +25,7 @@ def check_names(table: Table, known: Iterable[str], *, where: str) -> None:
 def check_filled(table: Table, *, where: str) -> None:
     """Refuse a map that still holds a question of the wizard's.
 
-    Raises
-    ------
-    RecordError
-        At the first value that is "?".
+    Raises RecordError: at the first value that is "?".
     """
     for name, value in table.items():
         if isinstance(value, dict):

@@ -37,13 +37,9 @@ Feed = Callable[[], Coroutine[None, None, None]]
 def read_twins(settings: Settings) -> dict[str, Twin]:
     """Read the twin of each cage that this worker serves, by the name under which it does.
 
-    Raises
-    ------
-    InputError
-        There is a key for twins, and it cannot be used.
-    ModelError
-        A folder is no twin's, changed by as little as a byte or not signed by the key, and none
-        was served before.
+    Raises InputError: there is a key for twins, and it cannot be used.
+    Raises ModelError: a folder is no twin's, changed by as little as a byte or not signed by the
+    key, and none was served before.
     """
     key = read_key(settings.twin_key) if settings.twin_key else None
     sections = own_cages(settings)
@@ -78,10 +74,7 @@ def own_cages(settings: Settings) -> tuple[CageSection, ...]:
 def policy_of(settings: Settings, name: str, twin: Twin) -> AlarmPolicy:
     """Take the limits of a cage's alarms from ``[alarms]`` and from its own table.
 
-    Raises
-    ------
-    InputError
-        A limit for an alarm that there cannot be, or one that makes no sense.
+    Raises InputError: a limit for an alarm that there cannot be, or one that makes no sense.
     """
     own = [cage.alarms for cage in settings.cages if (cage.name or twin.cage.name) == name]
     table = {**settings.alarms, **(own[0] if own else {})}
@@ -108,12 +101,8 @@ def assemble(
 ) -> Service:
     """Put a service together; it does not run yet.
 
-    Raises
-    ------
-    InputError
-        A replay for more than one cage, or settings that cannot be.
-    StoreError
-        The store does not open, or another process serves one of the cages from it.
+    Raises InputError: a replay for more than one cage, or settings that cannot be.
+    Raises StoreError: the store does not open, or another process serves one of the cages from it.
     """
     if replay is not None and len(twins) != 1:
         raise InputError(f"serve: a record is replayed into one cage, and there are {len(twins)}.")

@@ -59,10 +59,7 @@ class Replayed:
     def write(self, path: Path) -> None:
         """Write the answers in the form that the path's ending names.
 
-        Raises
-        ------
-        InputError
-            Another ending than ``.csv``, ``.jsonl`` or ``.nc``.
+        Raises InputError: another ending than ``.csv``, ``.jsonl`` or ``.nc``.
         """
         check_form(path)
         unborn = path.with_name(f".{path.name}.unborn")
@@ -73,10 +70,7 @@ class Replayed:
 def check_form(path: Path) -> None:
     """Refuse a path whose ending names no form.
 
-    Raises
-    ------
-    InputError
-        Another ending than ``.csv``, ``.jsonl`` or ``.nc``.
+    Raises InputError: another ending than ``.csv``, ``.jsonl`` or ``.nc``.
     """
     if path.suffix not in _FORMS:
         raise InputError(f"{path} ends in no form that is known. End it in {', '.join(_FORMS)}.")

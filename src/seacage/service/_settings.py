@@ -183,10 +183,7 @@ def read_settings(
 ) -> Settings:
     """Put together what was given, the environment, a file and the defaults.
 
-    Raises
-    ------
-    InputError
-        The file cannot be read, or a setting is unknown or does not do.
+    Raises InputError: the file cannot be read, or a setting is unknown or does not do.
     """
     sources = _above({} if file is None else _read(file))
     try:

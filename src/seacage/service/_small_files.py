@@ -13,10 +13,7 @@ _OWNERS = 0o600
 def write_small(path: Path, content: str | bytes, *, mode: int = _OWNERS) -> None:
     """Replace a file by another one, whole or not at all; what was written is on the disk.
 
-    Raises
-    ------
-    OSError
-        The disk does not take it; the file is as it was.
+    Raises OSError: the disk does not take it; the file is as it was.
     """
     path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
     fresh = path.with_name(path.name + ".new")
@@ -50,10 +47,7 @@ def append_line(path: Path, line: str, *, most: int, sync: bool = False) -> None
     A line before it that was cut off, as a lost supply leaves it, gets an end: it spoils no other.
     With ``sync`` the line is on the disk afterwards.
 
-    Raises
-    ------
-    OSError
-        The disk does not take it.
+    Raises OSError: the disk does not take it.
     """
     path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
     written = line.encode() + b"\n"

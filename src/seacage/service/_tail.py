@@ -64,12 +64,8 @@ class Tail:
     def poll(self) -> tuple[Sample, ...]:
         """Read the rows that are new; afterwards ``place`` is behind them.
 
-        Raises
-        ------
-        OSError
-            The file is there and cannot be read.
-        RecordError
-            Its header is not that of its map, so no row can be read.
+        Raises OSError: the file is there and cannot be read.
+        Raises RecordError: its header is not that of its map, so no row can be read.
         """
         if self._file is None and not self._open():
             return ()

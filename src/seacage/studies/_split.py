@@ -23,10 +23,7 @@ def split(
     two windows, one before the cut and one after, is trained on the first and scored on the
     second.
 
-    Raises
-    ------
-    InputError
-        A sensor would have no reading on one side.
+    Raises InputError: a sensor would have no reading on one side.
     """
     cut = moment(field.buoy.time[0].astype("datetime64[D]")) + timedelta(days=teaching_days)
     teaching = {name: sensor.between(_FIRST, cut) for name, sensor in field.sensors.items()}
@@ -47,10 +44,7 @@ def unseen(field: FieldRecord, windows: Mapping[str, TrainingWindow]) -> FieldRe
     Of a sensor with a training window, the days after it, or those before where none follow;
     all days of any other.
 
-    Raises
-    ------
-    InputError
-        A sensor has no such day.
+    Raises InputError: a sensor has no such day.
     """
     return replace(
         field,

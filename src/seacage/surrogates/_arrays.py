@@ -19,10 +19,7 @@ Kind = TypeVar("Kind")
 def setting(settings: Mapping[str, object], name: str, kind: type[Kind]) -> Kind:
     """One setting of the kind that the model needs.
 
-    Raises
-    ------
-    ModelError
-        Missing, or of another kind.
+    Raises ModelError: missing, or of another kind.
     """
     value = settings.get(name)
     if not isinstance(value, kind):
@@ -41,10 +38,7 @@ def setting_list(settings: Mapping[str, object], name: str, kind: type[Kind]) ->
 def array(arrays: Mapping[str, np.ndarray], name: str, *shape: int | None) -> np.ndarray:
     """One array of the shape that the model needs; None accepts any length of at least 1.
 
-    Raises
-    ------
-    ModelError
-        Missing, not float64, of another shape, or with a number that is not finite.
+    Raises ModelError: missing, not float64, of another shape, or with a number that is not finite.
     """
     values = arrays.get(name)
     if values is None:

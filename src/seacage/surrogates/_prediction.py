@@ -72,10 +72,7 @@ def check_inputs(
 ) -> Float[np.ndarray, "row feature"]:
     """Features as finite numbers, one row per case.
 
-    Raises
-    ------
-    InputError
-        Not a table, of another width, or with a number that is not finite.
+    Raises InputError: not a table, of another width, or with a number that is not finite.
     """
     rows = np.asarray(x, dtype=np.float64, order="C")
     if rows.ndim != 2 or rows.shape[1] == 0:
@@ -103,10 +100,7 @@ def check_outputs(
 ) -> Float[np.ndarray, "row *rest"]:
     """Outputs as finite numbers, one entry per row of inputs.
 
-    Raises
-    ------
-    InputError
-        Of another shape, too few rows, or with a number that is not finite.
+    Raises InputError: of another shape, too few rows, or with a number that is not finite.
     """
     axes = [axis.strip() for axis in shape.strip("()").split(",") if axis.strip()]
     outputs = np.asarray(y, dtype=np.float64, order="C")

@@ -96,10 +96,7 @@ def factors_to_json(tracked: Mapping[str, Tracked]) -> str:
 def factors_from_json(text: str) -> dict[str, Tracked]:
     """Read back what ``factors_to_json`` wrote; the predictions are made again.
 
-    Raises
-    ------
-    InputError
-        The text is something else.
+    Raises InputError: the text is something else.
     """
     try:
         return {

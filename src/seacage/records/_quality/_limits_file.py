@@ -56,10 +56,7 @@ def _ranges(table: Table, where: str) -> dict[str, Range]:
 def parse_range(table: Table, usual: Range, where: str) -> Range:
     """Bounds of a table; those that it leaves out stay the usual ones.
 
-    Raises
-    ------
-    RecordError
-        Bounds that are not two ascending numbers.
+    Raises RecordError: bounds that are not two ascending numbers.
     """
     check_names(table, ("fail", "suspect"), where=where)
     return Range(

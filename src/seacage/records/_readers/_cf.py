@@ -166,10 +166,8 @@ class NetcdfMap:
 def read_cf(path: Path, choice: NetcdfMap, *, stream: str) -> Record:
     """Read a foreign NetCDF file, unchecked.
 
-    Raises
-    ------
-    RecordError
-        No NetCDF, nothing to read, a unit, sense, zone, place or origin that nothing tells.
+    Raises RecordError: no NetCDF, nothing to read, a unit, sense, zone, place or origin that
+    nothing tells.
     """
     with open_foreign(path) as dataset:
         return _record(path, dataset, choice, stream=stream)
@@ -179,10 +177,7 @@ def read_cf(path: Path, choice: NetcdfMap, *, stream: str) -> Record:
 def open_foreign(path: Path) -> "Generator[xarray.Dataset]":
     """Open a NetCDF file that others wrote, its times as numbers.
 
-    Raises
-    ------
-    RecordError
-        No such file, or one that cannot be read, within too.
+    Raises RecordError: no such file, or one that cannot be read, within too.
     """
     import xarray
 
@@ -209,10 +204,7 @@ def is_netcdf(path: Path) -> bool:
 def _engine_of(path: Path) -> str:
     """The engine that xarray reads a file with, by the file's first bytes.
 
-    Raises
-    ------
-    RecordError
-        No NetCDF.
+    Raises RecordError: no NetCDF.
     """
     with path.open("rb") as file:
         start = file.read(8)

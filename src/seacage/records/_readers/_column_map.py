@@ -378,10 +378,7 @@ class ColumnMap:
 def parse_time(text: str, form: str) -> datetime:
     """A time as a cell says it, of a form that ``ColumnMap`` knows.
 
-    Raises
-    ------
-    ValueError
-        The text is no time of this form.
+    Raises ValueError: the text is no time of this form.
     """
     if form == "unix":
         return datetime.fromtimestamp(float(text), tz=UTC)
@@ -392,10 +389,7 @@ def parse_time(text: str, form: str) -> datetime:
 def parse_column(columns: Table, name: str, file: str) -> Column:
     """A column as its table in a map declares it.
 
-    Raises
-    ------
-    RecordError
-        A misspelt key or a refused value, said with the file's name.
+    Raises RecordError: a misspelt key or a refused value, said with the file's name.
     """
     where = f"[columns.{name}]"
     table = table_of(columns, name, where=file)
@@ -416,10 +410,7 @@ def parse_column(columns: Table, name: str, file: str) -> Column:
 def parse_origin(text: str, where: str) -> Origin:
     """How numbers were made, as a map says it.
 
-    Raises
-    ------
-    RecordError
-        An unknown word.
+    Raises RecordError: an unknown word.
     """
     try:
         return Origin(text)
@@ -431,10 +422,7 @@ def parse_origin(text: str, where: str) -> Origin:
 def parse_zone(text: str) -> timezone | None:
     """A zone of fixed offset; None for ``stated``.
 
-    Raises
-    ------
-    RecordError
-        Any other text, names of zones too.
+    Raises RecordError: any other text, names of zones too.
     """
     if text == "stated":
         return None
@@ -453,10 +441,7 @@ def parse_zone(text: str) -> timezone | None:
 def check_components(keys: Iterable[str], *, where: str) -> None:
     """Refuse half a vector, and a current that is declared in two ways.
 
-    Raises
-    ------
-    RecordError
-        One component without the other, or components beside speed or direction.
+    Raises RecordError: one component without the other, or components beside speed or direction.
     """
     keys = set(keys)
     components = keys & set(_COMPONENTS)

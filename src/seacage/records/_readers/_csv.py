@@ -152,10 +152,7 @@ def _last_row_doubted(record: Record, table: Table, columns: ColumnMap) -> Recor
 def recognise(table: Table) -> ColumnMap:
     """Return the one shipped map, or the house's own, that a table's header fits.
 
-    Raises
-    ------
-    RecordError
-        None fits, or more than one.
+    Raises RecordError: none fits, or more than one.
     """
     keys = [name for name in table.header if name != "time"]
     if "time" in table.header and KEYS.keys() >= set(keys):

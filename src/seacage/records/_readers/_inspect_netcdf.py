@@ -24,10 +24,7 @@ if TYPE_CHECKING:
 def inspect_netcdf(path: Path) -> tuple[tuple[str, ...], str]:
     """Look at a NetCDF file's variables and begin its map: findings, and the map's text.
 
-    Raises
-    ------
-    RecordError
-        No NetCDF file.
+    Raises RecordError: no NetCDF file.
     """
     with open_foreign(path) as dataset:
         return _find(path, dataset)

@@ -51,10 +51,8 @@ def ndbc_table(
 ) -> tuple[Table, ColumnMap]:
     """Split a file of NDBC and say what its columns mean.
 
-    Raises
-    ------
-    RecordError
-        A unit that is not the documented one, columns of neither kind, a moving depth.
+    Raises RecordError: a unit that is not the documented one, columns of neither kind, a moving
+    depth.
     """
     numbered = [
         (number, tuple(line.removeprefix("#").split()))

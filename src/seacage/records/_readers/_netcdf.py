@@ -47,10 +47,7 @@ def write_record(record: Record, path: Path | str) -> None:
 def read_netcdf(path: Path) -> Record:
     """Read back what ``write_record`` wrote.
 
-    Raises
-    ------
-    RecordError
-        No such file, no NetCDF, or one of another schema.
+    Raises RecordError: no such file, no NetCDF, or one of another schema.
     """
     try:
         _check_seal(path)

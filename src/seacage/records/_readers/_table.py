@@ -75,10 +75,8 @@ class Table:
 def read_table(path: Path, layout: "ColumnMap | Layout") -> Table:
     """Read a table by its ending: ``.parquet``, ``.json`` (NOAA CO-OPS), else text.
 
-    Raises
-    ------
-    RecordError
-        No such file, no such format, rows of unequal length, a column twice, no rows.
+    Raises RecordError: no such file, no such format, rows of unequal length, a column twice, no
+    rows.
     """
     if path.suffix.lower() == ".parquet":
         return _read_parquet(path)
@@ -121,10 +119,7 @@ def read_text(path: Path, encoding: str = "utf-8") -> str:
 def text_table(path: Path, text: str, *, delimiter: str, skip_lines: int = 0) -> Table:
     """Split text into a table.
 
-    Raises
-    ------
-    RecordError
-        A row that cannot be split, or of another length than the header; no rows.
+    Raises RecordError: a row that cannot be split, or of another length than the header; no rows.
     """
     rows, lines = _split(path, text, delimiter, skip_lines)
     if not rows:
@@ -138,10 +133,7 @@ def make_table(
 ) -> Table:
     """Make a table of rows whose first is the header.
 
-    Raises
-    ------
-    RecordError
-        As ``text_table``.
+    Raises RecordError: as ``text_table``.
     """
     header = tuple(cell.strip() for cell in rows[0])
     twice = [name for name, count in Counter(header).items() if count > 1]

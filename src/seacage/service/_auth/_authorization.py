@@ -89,10 +89,7 @@ class Gate:
     def admit(self, connection: HTTPConnection) -> tuple[Grant, Session | None]:
         """Find who asks, by what the headers carry.
 
-        Raises
-        ------
-        HTTPException
-            As for ``refuse``.
+        Raises HTTPException: as for ``refuse``.
         """
         scheme, sent = get_authorization_scheme_param(connection.headers.get("authorization"))
         token = sent if sent and scheme.lower() == "bearer" else None
@@ -106,20 +103,14 @@ class Gate:
     def pace(self, grant: Grant) -> None:
         """Hold up whoever asks too often.
 
-        Raises
-        ------
-        HTTPException
-            429, with the time to wait.
+        Raises HTTPException: 429, with the time to wait.
         """
         _hold_up(self._asked.wait_s(grant.id, time.monotonic()), "This token asks too often.")
 
     def refuse(self, source: str, *, sent: bool) -> NoReturn:
         """Refuse whoever is not known, and say whether a token or a session was sent at all.
 
-        Raises
-        ------
-        HTTPException
-            401, or 429 where the address has tried often.
+        Raises HTTPException: 401, or 429 where the address has tried often.
         """
         wait_s = self._refused.wait_s(source, time.monotonic())
         _hold_up(wait_s, "This address has tried too many tokens that are not known.")
@@ -190,10 +181,7 @@ Who = Annotated[str, Depends(_who)]
 def check_csrf(request: Request, session: Session) -> None:
     """Let a cookie write only for our own page, which knows what no other page can read.
 
-    Raises
-    ------
-    HTTPException
-        403 where another page asks, or the header is missing or wrong.
+    Raises HTTPException: 403 where another page asks, or the header is missing or wrong.
     """
     sent = request.headers.get(CSRF_HEADER, "")
     same = hmac.compare_digest(sent.encode(), session.csrf.encode())

@@ -25,10 +25,7 @@ class Reads:
     async def take(self, token: str, rows: int) -> None:
         """Take rows out of the budget for a while; wait a moment where it is used up.
 
-        Raises
-        ------
-        HTTPException
-            429, with the time to wait.
+        Raises HTTPException: 429, with the time to wait.
         """
         mine = False
         for _ in range(_LOOKS):

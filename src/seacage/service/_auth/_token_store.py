@@ -78,10 +78,8 @@ class Tokens:
     ) -> str:
         """Make a token and return it; nobody can read it again.
 
-        Raises
-        ------
-        InputError
-            A scope that does not exist, or a name that is too long or already another's.
+        Raises InputError: a scope that does not exist, or a name that is too long or already
+        another's.
         """
         token = secrets.token_urlsafe(32)
         grant = Grant(
@@ -142,10 +140,7 @@ class Tokens:
     ) -> Grant:
         """Let a token open nothing from now on.
 
-        Raises
-        ------
-        InputError
-            No token is called so, or more than one.
+        Raises InputError: no token is called so, or more than one.
         """
         found = [grant for grant in self.all() if named in {grant.name, grant.id}]
         if len(found) != 1:
@@ -196,10 +191,7 @@ class Tokens:
 def check_scopes(scopes: Iterable[str]) -> tuple[str, ...]:
     """Refuse a scope that does not exist.
 
-    Raises
-    ------
-    InputError
-        At the first unknown scope, or where there is none.
+    Raises InputError: at the first unknown scope, or where there is none.
     """
     chosen = tuple(scope.strip() for scope in scopes if scope.strip())
     unknown = [scope for scope in chosen if _SCOPE.fullmatch(scope) is None]

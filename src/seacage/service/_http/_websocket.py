@@ -99,10 +99,7 @@ async def _send(socket: WebSocket, one: LiveCage, token: str | None) -> None:
 async def _admit(socket: WebSocket, cage: str) -> tuple[str | None, Grant]:
     """Read the token, None where the session's cookie stands for it, and find what it may do.
 
-    Raises
-    ------
-    WebSocketException
-        With the code and the reason to close for.
+    Raises WebSocketException: with the code and the reason to close for.
     """
     gate, token = gate_of(socket), await _first_message(socket)
     grant = _grant(socket, token)

@@ -64,10 +64,7 @@ class MqttFeed:
     broker sends what is published from now on: the newest message of each stream goes before what
     waits, so that answers are those of now. It comes again in its turn, as a duplicate.
 
-    Raises
-    ------
-    InputError
-        An address or a site's name that is none.
+    Raises InputError: an address or a site's name that is none.
     """
 
     def __init__(

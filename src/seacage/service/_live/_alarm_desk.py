@@ -158,6 +158,8 @@ class AlarmDesk:
     ) -> tuple[Alarm, Future[None]]:
         """Do what a person asks with an alarm.
 
+        Raises InputError: there is no such alarm, or the action makes no sense with it.
+
         Parameters
         ----------
         name, how
@@ -169,11 +171,6 @@ class AlarmDesk:
         -------
         alarm, kept
             As it now stands, and when that is on disk.
-
-        Raises
-        ------
-        InputError
-            There is no such alarm, or the action makes no sense with it.
         """
         if name not in self.alarms:
             raise InputError(f"No alarm is called {name!r} here, or it was never assessed.")

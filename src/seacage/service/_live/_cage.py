@@ -162,15 +162,12 @@ class LiveCage:
         Where the twin has fallen far behind, samples are taken once it has caught up: their
         senders keep them, and this process does not fill the memory with them.
 
+        Raises StoreError: the disk did not take them; then none of them counts.
+
         Returns
         -------
         new
             For each sample whether it was not known before.
-
-        Raises
-        ------
-        StoreError
-            The disk did not take them; then none of them counts.
         """
         await self._room.wait()
         if isinstance(self.clock, FollowingClock):
@@ -212,19 +209,15 @@ class LiveCage:
     ) -> Alarm:
         """Do what a person asks with an alarm; returns when that is on disk.
 
+        Raises InputError: the action makes no sense as the alarm stands.
+        Raises StoreError: the disk did not take it.
+
         Parameters
         ----------
         alarm, how
             Its name, and one of ``HANDLES``.
         who, why, seconds
             For the journal, and how long to shelve [s].
-
-        Raises
-        ------
-        InputError
-            The action makes no sense as the alarm stands.
-        StoreError
-            The disk did not take it.
         """
         async with self._stepping:
             now = self.clock.now()

@@ -40,10 +40,7 @@ class Broker:
 
         A user's name and password say ``%40`` for ``@`` and the like.
 
-        Raises
-        ------
-        InputError
-            Another scheme, no host, a port that is none, a CA file without TLS.
+        Raises InputError: another scheme, no host, a port that is none, a CA file without TLS.
         """
         try:
             place = urlsplit(url)
@@ -76,10 +73,7 @@ class Broker:
     def client(self, client_id: str, *, manual_ack: bool = False) -> Client:
         """Make a client of MQTT 5 that is not yet connected.
 
-        Raises
-        ------
-        InputError
-            The CA file cannot be read.
+        Raises InputError: the CA file cannot be read.
         """
         made = Client(
             CallbackAPIVersion.VERSION2,

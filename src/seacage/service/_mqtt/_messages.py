@@ -121,10 +121,7 @@ def acknowledgement_text(settled: Sequence[Settled]) -> bytes:
 def read_settled(stream: str, payload: bytes) -> tuple[Settled, ...]:
     """Read acknowledgements.
 
-    Raises
-    ------
-    InputError
-        The message holds none.
+    Raises InputError: the message holds none.
     """
     try:
         read = _SETTLED.validate_json(_as_list(payload))

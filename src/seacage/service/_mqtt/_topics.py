@@ -26,10 +26,7 @@ class Address(NamedTuple):
 class Topics:
     """Topics below ``seacage/v1/{site}``.
 
-    Raises
-    ------
-    InputError
-        Another name, which could not be a level of a topic.
+    Raises InputError: another name, which could not be a level of a topic.
     """
 
     site: str  # its name: up to 64 letters, digits and ``_ . -``

@@ -27,12 +27,8 @@ def post(
 ) -> tuple[int, bytes]:
     """Post a body of JSON and return the status and body of the answer.
 
-    Raises
-    ------
-    InputError
-        The address is none.
-    OSError, http.client.HTTPException
-        Nobody answers, or not in HTTP.
+    Raises InputError: the address is none.
+    Raises OSError, http.client.HTTPException: nobody answers, or not in HTTP.
     """
     place = urlsplit(address)
     if place.scheme not in _KINDS or place.hostname is None:

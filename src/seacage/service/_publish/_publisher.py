@@ -81,10 +81,8 @@ class Publisher:
     def run(self, source: Iterable[Batch]) -> Published:
         """Publish until the source has ended and all but what is ahead is acknowledged.
 
-        Raises
-        ------
-        SendError
-            Nobody acknowledged anything for too long; what was read waits in the spool.
+        Raises SendError: nobody acknowledged anything for too long; what was read waits in the
+        spool.
         """
         with self._reading(source) as reader:
             acknowledged_at, live_after, silent = time.monotonic(), self._spool.newest, False

@@ -35,12 +35,8 @@ class Sender(AbstractCaller):
     def send(self, samples: Sequence[Sample]) -> Receipt:
         """Send as many samples as one request takes, again where the service is away for a moment.
 
-        Raises
-        ------
-        InputError
-            The address is none, or the service refused the request.
-        SendError
-            Nobody answers.
+        Raises InputError: the address is none, or the service refused the request.
+        Raises SendError: nobody answers.
         """
         body = json.dumps(
             {"samples": [{"stream": one.stream} | sample_fields(one) for one in samples]}

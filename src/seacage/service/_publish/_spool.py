@@ -74,17 +74,13 @@ class Spool:
     holds of others, so that they take no room from these. What cannot be sent is set aside in a
     file beside the spool: it is named like it and ends with ``.quarantine.jsonl``.
 
+    Raises InputError: the spool is of another destination.
+    Raises SpoolError: it cannot be opened.
+
     Attributes
     ----------
     ahead
         How many of those that wait are ahead of the service's clock.
-
-    Raises
-    ------
-    InputError
-        The spool is of another destination.
-    SpoolError
-        It cannot be opened.
     """
 
     def __init__(

@@ -51,10 +51,7 @@ class HttpTransport:
     def send(self, samples: Sequence[Sample]) -> list[Settled]:
         """See ``Transport``.
 
-        Raises
-        ------
-        InputError
-            The service refuses the request, as for a token that it does not know.
+        Raises InputError: the service refuses the request, as for a token that it does not know.
         """
         try:
             receipt = self._sender.send(samples)
@@ -104,10 +101,7 @@ class MqttTransport:
     def send(self, samples: Sequence[Sample]) -> list[Settled]:
         """See ``Transport``.
 
-        Raises
-        ------
-        InputError
-            The broker refuses the client.
+        Raises InputError: the broker refuses the client.
         """
         with self._changed:
             self._changed.wait_for(lambda: self._listening or self._refused, _ANSWER_S)

@@ -54,14 +54,9 @@ class ServiceAsker(AbstractCaller, AbstractAsker):
     def ask(self, call: str, query: Query) -> bytes:
         """Post a question and return the answer's body.
 
-        Raises
-        ------
-        InputError
-            The address is none, or the question was refused.
-        StaleError
-            There is no net now.
-        AskError
-            Nobody answers, or not so.
+        Raises InputError: the address is none, or the question was refused.
+        Raises StaleError: there is no net now.
+        Raises AskError: nobody answers, or not so.
         """
         try:
             status, answer = self.post(call, query.model_dump_json(exclude_none=True))

@@ -53,10 +53,7 @@ def net_geojson(net: PredictedNet) -> bytes:
 
     The collar is an area, the rings and meridians are lines; heights are minus the depth.
 
-    Raises
-    ------
-    InputError
-        The cage's file does not say where it lies.
+    Raises InputError: the cage's file does not say where it lies.
     """
     cage, place = net.cage, _geographic(net, net.node_position)
     rings = [place[[*cage.ring_nodes(ring), cage.node(ring, 0)]] for ring in range(cage.rings)]

@@ -14,10 +14,7 @@ Points = Float[np.ndarray, "point 3"]
 def local_points(cage: Cage, query: ClearanceQuery) -> Points:
     """East, north and up of the cage's centre [m].
 
-    Raises
-    ------
-    InputError
-        Latitudes for a cage that does not say where it lies.
+    Raises InputError: latitudes for a cage that does not say where it lies.
     """
     if query.places is not None:
         rows = [[one.latitude_deg, one.longitude_deg, one.depth_m] for one in query.places]

@@ -29,12 +29,8 @@ class NoRosbagsError(SeacageError):
 class RosMessages:
     """Messages of one time, in the types of ROS 2.
 
-    Raises
-    ------
-    NoRosbagsError
-        The package that writes them is not installed.
-    InputError
-        ROS has no such time.
+    Raises NoRosbagsError: the package that writes them is not installed.
+    Raises InputError: ROS has no such time.
     """
 
     def __init__(

@@ -28,10 +28,7 @@ Row = tuple[float, float, float]
 def read_points(path: Path) -> tuple[FrameName, list[Row]]:
     """Read points from a CSV file, whose header says in which frame they are.
 
-    Raises
-    ------
-    InputError
-        No such header, or a cell that is no number, with its line.
+    Raises InputError: no such header, or a cell that is no number, with its line.
     """
     try:
         text = read_text(path, most=TABLE_BYTES).removeprefix("\ufeff")
@@ -52,10 +49,7 @@ def read_points(path: Path) -> tuple[FrameName, list[Row]]:
 def query_of(frame: FrameName, rows: Sequence[Row], **options: object) -> ClearanceQuery:
     """Ask about points of a frame, with the other fields of the query as options.
 
-    Raises
-    ------
-    InputError
-        More points than one request takes, or coordinates that are none.
+    Raises InputError: more points than one request takes, or coordinates that are none.
     """
     geographic = [
         {"latitude_deg": latitude, "longitude_deg": longitude, "depth_m": depth}

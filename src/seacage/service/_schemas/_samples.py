@@ -173,10 +173,7 @@ def read_samples(
 def time_of(one: SampleIn) -> datetime:
     """Read the time of a sample.
 
-    Raises
-    ------
-    InputError
-        It is not written as a time, or does not say its zone.
+    Raises InputError: it is not written as a time, or does not say its zone.
     """
     try:
         return _TIME.validate_python(one.t)

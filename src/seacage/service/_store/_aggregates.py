@@ -67,10 +67,7 @@ Span = tuple[str, str, int]
 def check_aggregate(key: str, width_s: int) -> None:
     """Refuse a quantity or a width that is not aggregated.
 
-    Raises
-    ------
-    InputError
-        With what there is instead.
+    Raises InputError: with what there is instead.
     """
     if key in _DIRECTIONS:
         raise InputError(

@@ -42,10 +42,7 @@ class Archive:
     def write(self, cage: str, stream: str, day: date, samples: Sequence[Sample]) -> None:
         """Add samples to a day; of two with one time and number the one given now counts.
 
-        Raises
-        ------
-        ArchiveError
-            The disk does not take them, or pyarrow is not installed.
+        Raises ArchiveError: the disk does not take them, or pyarrow is not installed.
         """
         folder = self._folder(cage, stream)
         with _translate_errors(folder, "cannot be written"), _lock(folder):
@@ -77,10 +74,7 @@ class Archive:
     def read(self, cage: str, stream: str, day: date, bounds: Bounds = _ALL) -> list[Sample]:
         """Read samples of one day in time order.
 
-        Raises
-        ------
-        ArchiveError
-            The file is not there, or is not what was written.
+        Raises ArchiveError: the file is not there, or is not what was written.
         """
         folder = self._folder(cage, stream)
         for again in (True, False):

@@ -60,10 +60,7 @@ def open_store(
 ) -> "Store":
     """Open the store of samples and alarms.
 
-    Raises
-    ------
-    StoreError
-        It cannot be opened, or the driver of PostgreSQL is not installed.
+    Raises StoreError: it cannot be opened, or the driver of PostgreSQL is not installed.
     """
     return Store(place, archive=None if archive is None else Archive(archive))
 
@@ -113,10 +110,7 @@ class Store:
         Two would each step its twin with half of the samples, and write over each other's alarms.
         A file of SQLite is claimed as a whole.
 
-        Raises
-        ------
-        StoreError
-            Another process serves it.
+        Raises StoreError: another process serves it.
         """
         end = time.monotonic() + _PATIENCE_S
         while not self._writer.claim(cage).result():
@@ -142,10 +136,7 @@ class Store:
         Their flags, and those of what is stored already, come out as if all had come in the order
         of their times.
 
-        Raises
-        ------
-        InputError
-            A number that is negative or has more than 63 bits.
+        Raises InputError: a number that is negative or has more than 63 bits.
         """
         for sample in samples:
             check_seq(sample)
@@ -244,6 +235,8 @@ class Store:
         A current has no mean direction: it is aggregated as ``current_east_m_s`` and
         ``current_north_m_s``. Aggregates outlive the samples that they were made from.
 
+        Raises InputError: a direction, no quantity, or a width that is not kept.
+
         Parameters
         ----------
         cage, stream, key
@@ -254,11 +247,6 @@ class Store:
             Bounds of the spans' begins; open where None.
         limit
             At most so many, the first.
-
-        Raises
-        ------
-        InputError
-            A direction, no quantity, or a width that is not kept.
         """
         check_aggregate(key, width_s)
         bounds = Bounds(start=start, end=end, limit=limit)
@@ -350,11 +338,8 @@ class Store:
         Samples that come later for such a day are stored, and archived the next time, but no
         longer change its aggregates: so one that is sent twice counts once.
 
-        Raises
-        ------
-        StoreError
-            The archive or the database does not take it; then nothing is deleted that is not
-            archived.
+        Raises StoreError: the archive or the database does not take it; then nothing is deleted
+        that is not archived.
         """
         return retire_days(self._read, self._writer, self._archive, cage, microseconds(before))
 

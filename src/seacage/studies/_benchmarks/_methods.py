@@ -74,10 +74,7 @@ def own_methods() -> tuple[Method, ...]:
 def peer_methods(environment: str | Path) -> tuple[Method, ...]:
     """The peers of the environment that ``make bench-peers`` made.
 
-    Raises
-    ------
-    InputError
-        There is no such environment, or no link to the scripts in it.
+    Raises InputError: there is no such environment, or no link to the scripts in it.
     """
     python = Path(environment) / "bin" / "python"
     scripts = Path(environment) / "scripts"

@@ -138,10 +138,7 @@ def choose_windows(
     windows, so that no hour of the tide is preferred; besides all in which a shackle's own
     readings are whole.
 
-    Raises
-    ------
-    InputError
-        There are too few such windows to say anything.
+    Raises InputError: there are too few such windows to say anything.
     """
     means = [window_means(truth.sensors[name], field) for name in sensors.names]
     end = means[0][0]

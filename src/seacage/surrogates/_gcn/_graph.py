@@ -26,10 +26,8 @@ class Graph:
     def of(cls, edges: np.ndarray, rest_position: np.ndarray) -> Self:
         """Check and keep copies.
 
-        Raises
-        ------
-        InputError
-            A node that does not exist or is tied to itself, or a position that is not finite.
+        Raises InputError: a node that does not exist or is tied to itself, or a position that is
+        not finite.
         """
         pairs, rest = np.array(edges), np.array(rest_position, dtype=np.float64)
         if rest.ndim != 2 or rest.shape[1:] != (3,) or not np.isfinite(rest).all():

@@ -59,10 +59,8 @@ class Network:
     def from_arrays(cls, settings: Mapping[str, object], arrays: Mapping[str, np.ndarray]) -> Self:
         """The network that ``to_arrays`` described.
 
-        Raises
-        ------
-        ModelError
-            A setting or an array is missing, of another kind or shape, or not finite.
+        Raises ModelError: a setting or an array is missing, of another kind or shape, or not
+        finite.
         """
         kind = setting(settings, "kind", str)
         if kind not in NETWORKS:

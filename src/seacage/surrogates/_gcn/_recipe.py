@@ -29,10 +29,7 @@ LARGEST_BATCH, FEWEST_BATCHES = 64, 10
 def recipe_of(kind: str, **wanted: float | None) -> Recipe:
     """The recipe of a kind, changed where a value is given.
 
-    Raises
-    ------
-    InputError
-        There is no such network, or a value is not above 0.
+    Raises InputError: there is no such network, or a value is not above 0.
     """
     if kind not in RECIPES:
         raise InputError(f"GCN: no network {kind!r}; there are: {', '.join(RECIPES)}.")

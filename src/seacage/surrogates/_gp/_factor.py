@@ -24,10 +24,7 @@ class Cholesky:
     def of(cls, covariance: Float[np.ndarray, "n n"], noise: Float[np.ndarray, " n"]) -> Self:
         """Factorise the covariance plus the noise of each case.
 
-        Raises
-        ------
-        LinAlgError
-            It is not positive definite, even with the largest jitter.
+        Raises LinAlgError: it is not positive definite, even with the largest jitter.
         """
         from scipy.linalg import LinAlgError
 
@@ -69,10 +66,7 @@ class Cholesky:
     ) -> Self:
         """The factor with more cases, in O(n^2) for each.
 
-        Raises
-        ------
-        LinAlgError
-            A new case repeats an old one more closely than its noise tells apart.
+        Raises LinAlgError: a new case repeats an old one more closely than its noise tells apart.
         """
         from scipy.linalg import solve_triangular
 

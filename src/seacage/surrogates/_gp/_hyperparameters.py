@@ -100,10 +100,7 @@ class Evidence(Rows):
 
         The likelihood is summed over the outputs; constants are left out.
 
-        Raises
-        ------
-        LinAlgError
-            The covariance has no factor in float64.
+        Raises LinAlgError: the covariance has no factor in float64.
 
         References
         ----------

@@ -41,10 +41,7 @@ class Process:
     ) -> "Posterior":
         """Condition on outputs of zero mean; a posterior forgets the points that it had.
 
-        Raises
-        ------
-        InputError
-            The covariance has no factor in float64.
+        Raises InputError: the covariance has no factor in float64.
         """
         from scipy.linalg import LinAlgError
 
@@ -66,10 +63,7 @@ class Process:
     ) -> "Posterior":
         """The posterior that was saved; the factor is cheaper to make than to store.
 
-        Raises
-        ------
-        ModelError
-            The covariance has no factor, so this was never a fitted model.
+        Raises ModelError: the covariance has no factor, so this was never a fitted model.
         """
         from scipy.linalg import LinAlgError
 

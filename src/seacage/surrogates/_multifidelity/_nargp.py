@@ -86,10 +86,8 @@ class AbstractMultifidelity(ABC):
     ) -> "FittedNARGP":
         """Learn each level from its own cases.
 
-        Raises
-        ------
-        InputError
-            No level, tables that do not fit, or inputs that are not nested though they should be.
+        Raises InputError: no level, tables that do not fit, or inputs that are not nested though
+        they should be.
         """
         what = f"{type(self).__name__}.fit"
         cases = _check_cases(levels, first=1 if lower is None else 2, what=what)

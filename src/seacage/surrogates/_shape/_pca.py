@@ -372,10 +372,7 @@ def modes_to_arrays(modes: Modes) -> Arrays:
 def modes_from_arrays(arrays: Mapping[str, np.ndarray], *, modes: int) -> Modes:
     """The other way.
 
-    Raises
-    ------
-    ModelError
-        An array is missing, of another shape, or not finite.
+    Raises ModelError: an array is missing, of another shape, or not finite.
     """
     direction = array(arrays, "direction", modes, None)
     coordinates = direction.shape[1]

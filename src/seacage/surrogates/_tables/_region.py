@@ -53,10 +53,7 @@ class AbstractRegion(ABC):
     ) -> Float[np.ndarray, "row axis"]:
         """Place of each input, all of them inside.
 
-        Raises
-        ------
-        InputError
-            An input lies outside.
+        Raises InputError: an input lies outside.
         """
         place = self.places(x)
         outside = np.flatnonzero(~_inside(place))
@@ -193,10 +190,7 @@ class Disc(AbstractRegion):
 def restore_region(settings: Mapping[str, object]) -> AbstractRegion:
     """Region that ``to_settings`` described.
 
-    Raises
-    ------
-    ModelError
-        Of another kind, or with a value missing or wrong.
+    Raises ModelError: of another kind, or with a value missing or wrong.
     """
     kind = setting(settings, "kind", str)
     try:

@@ -313,10 +313,7 @@ def _finer(
 ) -> tuple[int, ...]:
     """Grid to try next: each axis finer by what its own error asks for.
 
-    Raises
-    ------
-    InputError
-        The grid is as large as it may be.
+    Raises InputError: the grid is as large as it may be.
     """
     axes, size = len(table.nodes), prod(table.nodes)
     excess = np.array([_excess_along(axis, table, query, random) for axis in range(axes)])

@@ -60,10 +60,7 @@ def write_folder(
 ) -> None:
     """Write the files beside the folder, with a key also a signature, then put them in its place.
 
-    Raises
-    ------
-    ModelError
-        The folder exists and is no twin's.
+    Raises ModelError: the folder exists and is no twin's.
     """
     from safetensors.numpy import save
 
@@ -98,11 +95,8 @@ def read_folder(
 
     With a key the manifest must be signed by it; without one a signature is passed by.
 
-    Raises
-    ------
-    ModelError
-        A file is missing, foreign, changed, too large or a link, an array is not plain numbers,
-        or the signature is missing or another's.
+    Raises ModelError: a file is missing, foreign, changed, too large or a link, an array is not
+    plain numbers, or the signature is missing or another's.
     """
     expected = {SETTINGS, ARRAYS, MANIFEST}
     found = {path.name for path in folder.iterdir()} if folder.is_dir() else set[str]()

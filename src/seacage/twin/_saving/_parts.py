@@ -106,10 +106,7 @@ def from_parts(
 ) -> dict[str, Any]:
     """Return the fields of the twin that ``to_parts`` took apart.
 
-    Raises
-    ------
-    ModelError
-        Another format or version, or parts that do not fit together.
+    Raises ModelError: another format or version, or parts that do not fit together.
     """
     from pydantic import TypeAdapter
 

@@ -117,10 +117,7 @@ class Catalogue:
     def one(self, of: str, id: str) -> Entity:  # noqa: A002 (the standard's word)
         """Find an entity.
 
-        Raises
-        ------
-        HTTPException
-            404, where there is none.
+        Raises HTTPException: 404, where there is none.
         """
         for entity in self._plain(of):
             if entity["@iot.id"] == id:

@@ -45,10 +45,7 @@ class QueryOptions:
 def read_query(texts: Mapping[str, str], *, depth: int = 0) -> QueryOptions:
     """Read options.
 
-    Raises
-    ------
-    InputError
-        One is not known or not understood, or relations lead too far.
+    Raises InputError: one is not known or not understood, or relations lead too far.
     """
     if depth > _DEEPEST:
         raise InputError(f"$expand: at most {_DEEPEST} relations lie within each other.")

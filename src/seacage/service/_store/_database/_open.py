@@ -23,10 +23,7 @@ def look_into(
 ) -> Generator[AbstractSession]:
     """Read one moment of a store that a service may be writing.
 
-    Raises
-    ------
-    StoreError
-        It cannot be read.
+    Raises StoreError: it cannot be read.
     """
     if _is_server(place):
         with closing(database_at(place)) as database, database.reading() as session:

@@ -119,10 +119,7 @@ class PostgresSession(AbstractSession):
 class PostgresDatabase(AbstractDatabase):
     """A database on a server, its samples parted by month.
 
-    Raises
-    ------
-    StoreError
-        The driver is not installed, or the server cannot be reached.
+    Raises StoreError: the driver is not installed, or the server cannot be reached.
     """
 
     def __init__(

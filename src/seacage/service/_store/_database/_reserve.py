@@ -31,11 +31,8 @@ class Reserve:
     def hold(self) -> None:
         """Hold the room, once.
 
-        Raises
-        ------
-        FullError
-            The disk has not twice as much: samples that are taken again are not to fill it
-            again at once.
+        Raises FullError: the disk has not twice as much: samples that are taken again are not to
+        fill it again at once.
         """
         if self._held or self._unable:
             return

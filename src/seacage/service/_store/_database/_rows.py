@@ -75,10 +75,7 @@ def key_of(sample: Sample) -> tuple[int, int]:
 def check_seq(sample: Sample) -> None:
     """Refuse a number that no row holds.
 
-    Raises
-    ------
-    InputError
-        It is negative or has more than 63 bits.
+    Raises InputError: it is negative or has more than 63 bits.
     """
     if sample.seq is not None and sample.seq not in _SEQS:
         raise InputError(

@@ -113,10 +113,7 @@ class SqliteDatabase(AbstractDatabase):
     WAL-reset fault in SQLite before 3.51.3. Beside the file lies another that holds room for
     alarms while a process serves from it.
 
-    Raises
-    ------
-    StoreError
-        The file cannot be opened for writing.
+    Raises StoreError: the file cannot be opened for writing.
     """
 
     def __init__(

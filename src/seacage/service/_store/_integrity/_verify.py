@@ -25,15 +25,12 @@ def verify(
 ) -> Iterator[tuple[int, int]]:
     """Verify every row and count the rows of every day.
 
+    Raises DamageError: the rows are out of their order: none can be found by its key.
+
     Yields
     ------
     rows, unverified
         How many were read, and how many of them have no checksum.
-
-    Raises
-    ------
-    DamageError
-        The rows are out of their order: none can be found by its key.
     """
     after: Answer = []
     while after := read("tally", partial(_days, cages=cages, after=after[-1:])):
