@@ -224,10 +224,7 @@ def count_bar(
 
 
 def _draw_readings(
-    axes: "Axes",
-    sensor: str,
-    time: Shaped[np.ndarray, " t"],
-    reading: Float[np.ndarray, " t"],
+    axes: "Axes", sensor: str, time: Shaped[np.ndarray, " t"], reading: Float[np.ndarray, " t"]
 ) -> None:
     """A line, or where it would be denser than print the least and the largest of each stroke."""
     if len(time) <= _MOST_POINTS:

@@ -80,11 +80,7 @@ def sector_figure(
 
 
 def left_figure(
-    sensors: Sequence[str],
-    left: Float[np.ndarray, " sensor"],
-    *,
-    least: float,
-    origin: Origin,
+    sensors: Sequence[str], left: Float[np.ndarray, " sensor"], *, least: float, origin: Origin
 ) -> "Figure":
     """Share of the low fidelity's error that the best rescaling leaves, one bar each.
 

@@ -284,11 +284,7 @@ def _variables(*, in_time: bool, quantiles: bool, moment: bool, lines: bool) -> 
 
 
 def _create_array(
-    group: Any,
-    name: str,
-    variable: Variable,
-    size: Mapping[str, int],
-    chunk: Mapping[str, int],
+    group: Any, name: str, variable: Variable, size: Mapping[str, int], chunk: Mapping[str, int]
 ) -> None:
     empty: Mapping[str, float] = {"int8": NOT_RUN, "int64": 0}
     group.create_array(

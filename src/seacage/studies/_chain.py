@@ -208,10 +208,7 @@ class Chain:
             )
         count = min(recipe.held_out_cases, len(whole) // 2)
         rows = np.flatnonzero(whole.converged)
-        return (
-            select_cases(whole, rows[:-count]),
-            select_cases(whole, rows[-count:]),
-        )
+        return (select_cases(whole, rows[:-count]), select_cases(whole, rows[-count:]))
 
     def _run(self, stage: str, plan: Plan) -> CampaignRecord:
         return self.stages.ensure_campaign(

@@ -144,9 +144,7 @@ def score_paths(
 def _water(velocity: Float[np.ndarray, "case 2"]) -> Metocean:
     still = np.zeros(len(velocity))
     return Metocean(
-        current_velocity=velocity,
-        hs=still,
-        wave_direction=np.column_stack([still, still + 1.0]),
+        current_velocity=velocity, hs=still, wave_direction=np.column_stack([still, still + 1.0])
     )
 
 

@@ -9,9 +9,7 @@ ROUNDED = 1e-3
 """Share by which a length may differ from that of its vector: features may come rounded."""
 
 
-def current_features(
-    current_velocity: Float[np.ndarray, "row 2"],
-) -> Float[np.ndarray, "row 3"]:
+def current_features(current_velocity: Float[np.ndarray, "row 2"]) -> Float[np.ndarray, "row 3"]:
     """Features (U, U cos phi, U sin phi) of currents, phi from east.
 
     The vector alone would do, but loads grow with the speed, and the speed has a kink at slack

@@ -121,11 +121,7 @@ class ShapeError:
         rings = int(ring_of[-1]) + 1
         nothing = np.zeros((rings, 3))
         return cls(
-            ring_of=ring_of,
-            weight=np.ones(1),
-            mean=nothing,
-            deviation=nothing[None],
-            rest=nothing,
+            ring_of=ring_of, weight=np.ones(1), mean=nothing, deviation=nothing[None], rest=nothing
         )
 
     @property

@@ -10,13 +10,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from seacage.cage import Cage
-from seacage.surrogates import (
-    Domain,
-    FittedGaussianProcess,
-    FittedShapeGP,
-    Prediction,
-    Predicts,
-)
+from seacage.surrogates import Domain, FittedGaussianProcess, FittedShapeGP, Prediction, Predicts
 from seacage.twin._answer import Answer
 from seacage.twin._correction import Correction, Corrections
 from seacage.twin._metocean import Input, Metocean, nearest_inside

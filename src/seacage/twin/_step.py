@@ -10,15 +10,7 @@ from seacage.records import Amendment, Sample, amended
 from seacage.twin._events import Flagged, StreamBack, StreamSilent
 from seacage.twin._interval_factors import ADAPTATION_BLOCK
 from seacage.twin._settings import StreamTimeouts
-from seacage.twin._state import (
-    Stream,
-    TwinState,
-    amendments_in,
-    insert,
-    is_flagged,
-    is_worse,
-    trim,
-)
+from seacage.twin._state import Stream, TwinState, amendments_in, insert, is_flagged, is_worse, trim
 
 Notice = Flagged | StreamSilent | StreamBack
 

@@ -205,10 +205,7 @@ def _inspect_table(table: Table, layout: Layout) -> Inspection:
             seen = {(one.quantity, _depth(one.name)) for one in guesses}
             guesses.append(_guess(table, name, layout.decimal, seen))
     findings += [one.finding for one in guesses]
-    return Inspection(
-        findings=tuple(findings),
-        map_text=_toml(table, layout, time_lines, guesses),
-    )
+    return Inspection(findings=tuple(findings), map_text=_toml(table, layout, time_lines, guesses))
 
 
 def _time(table: Table) -> tuple[tuple[str, ...], list[str], list[str]]:
@@ -353,10 +350,7 @@ def _depth(name: str) -> float | None:
 
 
 def _toml(
-    table: Table,
-    layout: Layout,
-    time_lines: Sequence[str],
-    guesses: Sequence[_Guess],
+    table: Table, layout: Layout, time_lines: Sequence[str], guesses: Sequence[_Guess]
 ) -> str:
     ignored = ", ".join(_quote(one.name) for one in guesses if not one.quantity)
     depths = sorted({d for one in guesses if one.quantity and (d := _depth(one.name)) is not None})

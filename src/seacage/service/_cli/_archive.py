@@ -78,12 +78,7 @@ def write(
 @group.command()
 @guard
 def read(
-    folder: Folder,
-    *,
-    cage: str,
-    stream: str | None = None,
-    start: Day = None,
-    end: Day = None,
+    folder: Folder, *, cage: str, stream: str | None = None, start: Day = None, end: Day = None
 ) -> None:
     """Print archived samples in time order, one JSON object a line.
 

@@ -8,14 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from seacage.service._cli._console import (
-    Exit,
-    exit_with,
-    guard,
-    progress_bar,
-    report,
-    wants_json,
-)
+from seacage.service._cli._console import Exit, exit_with, guard, progress_bar, report, wants_json
 from seacage.service._cli._options import (
     CageName,
     Law,
@@ -169,10 +162,7 @@ def finish(store: Store) -> None:
 
 @group.command()
 @guard
-def export(
-    store: Store,
-    out: Annotated[Path, typer.Argument(dir_okay=False)],
-) -> None:
+def export(store: Store, out: Annotated[Path, typer.Argument(dir_okay=False)]) -> None:
     """Write a campaign as one CF-NetCDF file.
 
     Example:

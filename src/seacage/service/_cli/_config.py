@@ -23,9 +23,7 @@ Config = Annotated[
 @group.command()
 @guard
 def check(
-    *,
-    config: Config = None,
-    reach: Annotated[bool, typer.Option("--reach")] = False,
+    *, config: Config = None, reach: Annotated[bool, typer.Option("--reach")] = False
 ) -> None:
     """Check settings before a service starts with them: all that can be known now.
 

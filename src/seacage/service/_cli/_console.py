@@ -24,8 +24,7 @@ if TYPE_CHECKING:
 R = TypeVar("R")
 
 Json = Annotated[
-    bool,
-    typer.Option("--json", help="Print one JSON object on stdout, for programs."),
+    bool, typer.Option("--json", help="Print one JSON object on stdout, for programs.")
 ]
 _MEANING = re.compile(r"^(\w+)\n((?: {4}.+\n?)+)", re.MULTILINE)  # of a parameter
 _LINE_EVERY_S = 5.0  # of progress in a log

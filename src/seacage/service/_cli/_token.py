@@ -16,12 +16,7 @@ group = typer.Typer(help="Tokens of the service.")
 
 @group.command()
 @guard
-def new(
-    *,
-    data: DataFolder = Path("var"),
-    scope: str,
-    name: str = "",
-) -> None:
+def new(*, data: DataFolder = Path("var"), scope: str, name: str = "") -> None:
     """Make a token; it is printed once, and only its hash is kept.
 
     A running service knows it at once. The last line is the token and nothing else.
@@ -73,11 +68,7 @@ def show(*, data: DataFolder = Path("var")) -> None:
 
 @group.command()
 @guard
-def revoke(
-    *,
-    data: DataFolder = Path("var"),
-    token: Annotated[str, typer.Argument()],
-) -> None:
+def revoke(*, data: DataFolder = Path("var"), token: Annotated[str, typer.Argument()]) -> None:
     """Let a token open nothing from now on, in a running service too.
 
     Example:

@@ -16,14 +16,7 @@ from seacage.service._http._dependencies import (
     may_acknowledge,
     may_read,
 )
-from seacage.service._schemas._alarms import (
-    Alarms,
-    AlarmState,
-    Handling,
-    Journal,
-    Kpi,
-    alarm_state,
-)
+from seacage.service._schemas._alarms import Alarms, AlarmState, Handling, Journal, Kpi, alarm_state
 from seacage.twin import alarm_kpi
 
 _WATCH = timedelta(days=7)

@@ -68,11 +68,7 @@ def ask_inspection(live: Live, body: InspectionQuery, at: At = None) -> Inspecti
     return inspection_answer(_net_for(live, body, at), body)
 
 
-@rov.post(
-    "/{cage}/inspection.mcap",
-    response_class=Response,
-    responses=WRITE | _STALE | _MCAP,
-)
+@rov.post("/{cage}/inspection.mcap", response_class=Response, responses=WRITE | _STALE | _MCAP)
 def ask_inspection_mcap(live: Live, body: InspectionQuery, at: At = None) -> Response:
     """Give the same way as a nav_msgs/Path in an MCAP file, with the net it follows."""
     net = _net_for(live, body, at)
@@ -80,9 +76,7 @@ def ask_inspection_mcap(live: Live, body: InspectionQuery, at: At = None) -> Res
 
 
 @rov.post(
-    "/{cage}/inspection.geojson",
-    response_class=Response,
-    responses=WRITE | _STALE | _GEOJSON,
+    "/{cage}/inspection.geojson", response_class=Response, responses=WRITE | _STALE | _GEOJSON
 )
 def ask_inspection_geojson(live: Live, body: InspectionQuery, at: At = None) -> Response:
     """Give the same way as lines by latitude and longitude."""
@@ -90,21 +84,13 @@ def ask_inspection_geojson(live: Live, body: InspectionQuery, at: At = None) -> 
     return Response(inspection_geojson(net, inspection_of(net, body)), media_type=GEOJSON)
 
 
-@rov.get(
-    "/{cage}/shape.mcap",
-    response_class=Response,
-    responses=READ | _STALE | _MCAP,
-)
+@rov.get("/{cage}/shape.mcap", response_class=Response, responses=READ | _STALE | _MCAP)
 def get_shape_mcap(live: Live, at: At = None, *, allow_stale: Stale = False) -> Response:
     """Give the net for ROS 2: a PointCloud2, a Marker of triangles, and the collar's Path."""
     return Response(net_mcap(_net(live, at, allow_stale=allow_stale)), media_type=MCAP)
 
 
-@rov.get(
-    "/{cage}/shape.geojson",
-    response_class=Response,
-    responses=READ | _STALE | _GEOJSON,
-)
+@rov.get("/{cage}/shape.geojson", response_class=Response, responses=READ | _STALE | _GEOJSON)
 def get_shape_geojson(live: Live, at: At = None, *, allow_stale: Stale = False) -> Response:
     """Give the net for a map; the cage's file must say where it lies."""
     return Response(net_geojson(_net(live, at, allow_stale=allow_stale)), media_type=GEOJSON)

@@ -29,13 +29,7 @@ _SPEED = "current_speed_m_s"
 
 
 def history_between(
-    twin: Twin,
-    store: Store,
-    cage: str,
-    *,
-    start: datetime | None,
-    end: datetime | None,
-    limit: int,
+    twin: Twin, store: Store, cage: str, *, start: datetime | None, end: datetime | None, limit: int
 ) -> History:
     """Answer to a buoy's readings in a span, and show what the sensors read.
 

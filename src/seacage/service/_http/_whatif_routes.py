@@ -11,10 +11,7 @@ from seacage.service._schemas._cages import Learned, LearnedInput, WhatIf
 from seacage.service._schemas._state import Water
 from seacage.twin import Answered, Metocean, Twin
 
-_KEYS = {
-    "current": ("current_speed_m_s", "current_to_deg"),
-    "waves": ("hs_m", "wave_from_deg"),
-}
+_KEYS = {"current": ("current_speed_m_s", "current_to_deg"), "waves": ("hs_m", "wave_from_deg")}
 """Strength and direction of each kind of input, in the order of the twin's edges."""
 
 what_if = APIRouter(prefix="/api/v1/cages", tags=["cages"])
@@ -27,10 +24,7 @@ async def get_training_domain(live: Live) -> Learned:
 
 
 @what_if.post(
-    "/{cage}/whatif",
-    dependencies=may_read,
-    response_class=Response,
-    responses={**WRITE, **FRAME},
+    "/{cage}/whatif", dependencies=may_read, response_class=Response, responses={**WRITE, **FRAME}
 )
 def ask_what_if(live: Live, body: WhatIf) -> Response:
     """Answer to water that is only imagined, as a frame with the flag 8; nothing is kept.

@@ -27,15 +27,7 @@ from seacage.service._schemas._state import (
     State,
     Water,
 )
-from seacage.twin import (
-    Answer,
-    Answered,
-    Metocean,
-    Twin,
-    TwinState,
-    interval_reason,
-    shackle_loads,
-)
+from seacage.twin import Answer, Answered, Metocean, Twin, TwinState, interval_reason, shackle_loads
 
 _UNUSABLE = (Flag.FAIL, Flag.MISSING)
 _PERIOD = "tp_s"

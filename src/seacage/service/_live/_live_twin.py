@@ -14,14 +14,7 @@ from seacage.service._store._adaptations import Adaptation, Refold
 from seacage.service._store._database._session import StoreError
 from seacage.service._store._samples import Stored
 from seacage.service._store._store import Store
-from seacage.twin import (
-    ADAPTATION_BLOCK,
-    Answered,
-    Event,
-    Twin,
-    TwinState,
-    block_begin,
-)
+from seacage.twin import ADAPTATION_BLOCK, Answered, Event, Twin, TwinState, block_begin
 
 _RESTED = timedelta(seconds=30)  # without late samples, before the intervals are adapted anew
 _AT_ONCE = 6  # blocks of intervals adapted anew in one step

@@ -13,15 +13,7 @@ from seacage.records import Amendment, Record, Sample, instant
 from seacage.service._schemas._samples import BUOY_KEYS
 from seacage.service._store._adaptations import Adaptation
 from seacage.service._store._store import Store
-from seacage.twin import (
-    ADAPTATION_BLOCK,
-    Answered,
-    Event,
-    Twin,
-    TwinState,
-    adapted_at,
-    block_begin,
-)
+from seacage.twin import ADAPTATION_BLOCK, Answered, Event, Twin, TwinState, adapted_at, block_begin
 
 _MOST = 1_000_000  # samples of a stream in the minutes that a twin remembers
 _INSTANT = timedelta(microseconds=1)

@@ -76,9 +76,7 @@ class Receipt(AbstractAnswer):
         {
             "accepted": 1,
             "duplicates": 0,
-            "rejected": [
-                {"index": 1, "reason": "No stream is called 'buoy-9'.", "retry": False},
-            ],
+            "rejected": [{"index": 1, "reason": "No stream is called 'buoy-9'.", "retry": False}],
         }
     )
 

@@ -5,12 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from seacage.service._schemas._base import (
-    EXAMPLE_T,
-    EXAMPLE_WATER,
-    AbstractAnswer,
-    example,
-)
+from seacage.service._schemas._base import EXAMPLE_T, EXAMPLE_WATER, AbstractAnswer, example
 from seacage.twin import interval_reason
 
 

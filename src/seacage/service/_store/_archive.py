@@ -124,12 +124,7 @@ class Archive:
         return None
 
     def _read(
-        self,
-        folder: Path,
-        stream: str,
-        day: date,
-        entry: Mapping[str, Any],
-        bounds: Bounds = _ALL,
+        self, folder: Path, stream: str, day: date, entry: Mapping[str, Any], bounds: Bounds = _ALL
     ) -> list[Sample]:
         path = folder / entry["file"]
         with _translate_errors(path, f"cannot be read, so {stream} has no samples of {day}"):

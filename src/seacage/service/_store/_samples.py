@@ -25,13 +25,7 @@ from seacage.service._store._database._rows import (
 )
 from seacage.service._store._database._session import AbstractSession
 from seacage.service._store._integrity._tally import count_new
-from seacage.service._store._quality import (
-    Checked,
-    Key,
-    Of,
-    QualityControl,
-    withdrawn_samples,
-)
+from seacage.service._store._quality import Checked, Key, Of, QualityControl, withdrawn_samples
 from seacage.twin import adapted_at_us
 
 # A bucket of a sealed day is left as it is: of its samples only the late ones are still here.
@@ -190,9 +184,7 @@ def _outcome(work: Append, checked: Mapping[Of, Checked], *, late: bool) -> Stor
 
 
 def _mark_refold(
-    session: AbstractSession,
-    streams: Mapping[Of, _Incoming],
-    checked: Mapping[Of, Checked],
+    session: AbstractSession, streams: Mapping[Of, _Incoming], checked: Mapping[Of, Checked]
 ) -> set[str]:
     """Mark from when on intervals were adapted without samples that came too late for it."""
     late = dict[str, tuple[int, int]]()

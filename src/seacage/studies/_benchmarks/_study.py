@@ -132,11 +132,7 @@ def _of(problem: Problem, tuning: Sequence[int], report: Sequence[int]) -> list[
 
 
 def _scores(
-    runs: Runs,
-    problem: Problem,
-    methods: Sequence[Method],
-    seeds: Sequence[int],
-    notify: Progress,
+    runs: Runs, problem: Problem, methods: Sequence[Method], seeds: Sequence[int], notify: Progress
 ) -> list[RunScore]:
     truths = {seed: problem.sample(seed).y_test for seed in seeds}
     total = len(methods) * len(seeds)

@@ -17,10 +17,7 @@ THOUSANDTH = {"m": "mm", "kN": "N"}
 
 
 def claims(
-    gaps: Sequence[SensorGap],
-    rescalings: Sequence[Rescaling],
-    null: NullCase,
-    fouling: FoulingGap,
+    gaps: Sequence[SensorGap], rescalings: Sequence[Rescaling], null: NullCase, fouling: FoulingGap
 ) -> tuple[Claim, ...]:
     """The rules against an inverse crime, and what growth does."""
     return (

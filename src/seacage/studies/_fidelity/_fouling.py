@@ -117,9 +117,7 @@ def _gaps_by_growth(windows: Windows, growth: Float[np.ndarray, " window"]) -> t
     gap = windows.truth - windows.low
     return tuple(
         MetGap(
-            growth=float(growth[here].mean()),
-            windows=int(np.sum(here)),
-            gap=gap[here].mean(axis=0),
+            growth=float(growth[here].mean()), windows=int(np.sum(here)), gap=gap[here].mean(axis=0)
         )
         for here in (share == number for number in range(_BINS))
         if np.sum(here) >= _LEAST

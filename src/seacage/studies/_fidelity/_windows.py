@@ -12,13 +12,7 @@ from seacage.campaigns import Plan
 from seacage.conventions import GRAVITY, Flag, InputError, Progress, Result, Rows, compass
 from seacage.dynamics import rest_shape
 from seacage.ocean import SeaState
-from seacage.records import (
-    Clock,
-    FieldRecord,
-    Record,
-    aligned,
-    moment,
-)
+from seacage.records import Clock, FieldRecord, Record, aligned, moment
 from seacage.studies._sensor_scores import MEAN_S
 from seacage.studies._stages import Stages
 from seacage.twin import Metocean, StreamTimeouts

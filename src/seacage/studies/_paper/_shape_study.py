@@ -185,9 +185,7 @@ def _make(begun: Path, model: ShapeModel, trial: ShapeTrial, progress: Progress)
         "predict_ms": _one_shape_ms(fitted, test_features),
     }
     np.savez(
-        begun / "shapes.npz",
-        mean=answer.mean.astype(np.float32),
-        std=answer.std.astype(np.float32),
+        begun / "shapes.npz", mean=answer.mean.astype(np.float32), std=answer.std.astype(np.float32)
     )
     (begun / "cost.json").write_text(json.dumps(cost), encoding="utf-8")
 

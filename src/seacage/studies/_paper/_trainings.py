@@ -100,9 +100,7 @@ def compare_ways(chain: Chain, ways: Mapping[str, Training]) -> ScoredWays:
             )
         scores.append(
             WayScore(
-                name=way,
-                trained=tuple(twin.provenance.training_windows),
-                sensors=tuple(sensors),
+                name=way, trained=tuple(twin.provenance.training_windows), sensors=tuple(sensors)
             )
         )
     chain.progress("score", total, total)

@@ -283,9 +283,7 @@ def _training() -> ModuleType:
 def _cases(
     x: np.ndarray, node_position: np.ndarray, graph: Graph, validation: object, seed: int
 ) -> tuple[
-    Float[np.ndarray, "case feature"],
-    Float[np.ndarray, "case node 3"],
-    Int[np.ndarray, " held"],
+    Float[np.ndarray, "case feature"], Float[np.ndarray, "case node 3"], Int[np.ndarray, " held"]
 ]:
     """All cases, and which of them are held out."""
     x, shape = _check_cases(x, node_position, graph, what="GCN.fit")

@@ -78,11 +78,7 @@ def paper_network(
 
 
 def modal_network(
-    xp: Any,
-    parameters: Mapping[str, Numbers],
-    rest: Numbers,
-    x: Numbers,
-    propagate: Propagate,
+    xp: Any, parameters: Mapping[str, Numbers], rest: Numbers, x: Numbers, propagate: Propagate
 ) -> Numbers:
     """Modes of the whole net, made on its graph and driven by the sea state.
 

@@ -80,8 +80,7 @@ class Network:
             kind=kind,
             graph=_restore_graph(array(arrays, "edges", None, 2), rest),
             scaling=Scaling(
-                centre=feature_centre,
-                spread=array(arrays, "feature_spread", len(feature_centre)),
+                centre=feature_centre, spread=array(arrays, "feature_spread", len(feature_centre))
             ),
             centre=array(arrays, "centre", len(rest), 3),
             spread=setting(settings, "spread", float),

@@ -21,10 +21,7 @@ from seacage.surrogates._gp import (
     Posterior,
     chunks,
 )
-from seacage.surrogates._multifidelity._kernel import (
-    LOCAL,
-    bend_of,
-)
+from seacage.surrogates._multifidelity._kernel import LOCAL, bend_of
 from seacage.surrogates._multifidelity._quadrature import node_counts, rule, total_moments
 from seacage.surrogates._prediction import Prediction, check_inputs
 from seacage.surrogates._scaling import Scaling

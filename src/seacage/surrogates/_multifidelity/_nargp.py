@@ -22,12 +22,7 @@ from seacage.surrogates._gp import (
     processes_from_arrays,
     processes_to_arrays,
 )
-from seacage.surrogates._multifidelity._kernel import (
-    LinkKernel,
-    autoregressive,
-    bend_of,
-    straight,
-)
+from seacage.surrogates._multifidelity._kernel import LinkKernel, autoregressive, bend_of, straight
 from seacage.surrogates._multifidelity._quadrature import propagate_moments, propagate_slope
 from seacage.surrogates._prediction import (
     Moments,
@@ -484,10 +479,7 @@ def _central_differences(
         mean_slope[:, feature] = (up.mean - down.mean) / (2.0 * size)
         variance_slope[:, feature] = (up.std**2 - down.std**2) / (2.0 * size)
     return Moments(
-        mean=here.mean,
-        variance=here.std**2,
-        mean_slope=mean_slope,
-        variance_slope=variance_slope,
+        mean=here.mean, variance=here.std**2, mean_slope=mean_slope, variance_slope=variance_slope
     )
 
 

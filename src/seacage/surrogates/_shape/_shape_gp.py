@@ -196,11 +196,7 @@ class FittedShapeGP:
         return self.predict_nodes(x, EVERY, noisy=noisy)
 
     def predict_nodes(
-        self,
-        x: Float[np.ndarray, "row feature"],
-        nodes: Nodes,
-        *,
-        noisy: bool = False,
+        self, x: Float[np.ndarray, "row feature"], nodes: Nodes, *, noisy: bool = False
     ) -> Prediction:
         """These nodes alone at each row of features [m].
 

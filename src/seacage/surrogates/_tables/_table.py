@@ -221,10 +221,7 @@ class Table:
             "mean_error": self.mean_error,
             "std_error": self.std_error,
         }
-        return settings, {
-            "coefficients": self.spline.coefficients,
-            "least_std": self.least_std,
-        }
+        return settings, {"coefficients": self.spline.coefficients, "least_std": self.least_std}
 
     @classmethod
     def from_arrays(cls, settings: Mapping[str, object], arrays: Mapping[str, np.ndarray]) -> Self:
@@ -260,11 +257,7 @@ class Table:
 
 
 def _tabulate(
-    query: Query,
-    region: AbstractRegion,
-    shape: tuple[int, ...],
-    *,
-    least_std: ArrayLike,
+    query: Query, region: AbstractRegion, shape: tuple[int, ...], *, least_std: ArrayLike
 ) -> Table:
     """Table through the model's answers at a grid's nodes, its errors not yet known."""
     quiet, noisy = query(region.inputs(nodes(shape, region.periodic)))

@@ -9,12 +9,7 @@ from seacage.cage import Cage
 from seacage.twin._alarms import AlarmInput
 from seacage.twin._events import Answered
 from seacage.twin._faults._baseline import Baseline
-from seacage.twin._faults._cusum import (
-    Evidence,
-    EvidenceByName,
-    shifts_of_active,
-    update_evidence,
-)
+from seacage.twin._faults._cusum import Evidence, EvidenceByName, shifts_of_active, update_evidence
 from seacage.twin._faults._hypotheses import hypotheses
 from seacage.twin._faults._residuals import BlockSums, ResidualBlock, close_block
 from seacage.twin._faults._sensor import SensorMonitor, new_samples

@@ -59,11 +59,7 @@ def hypotheses(
 
 
 def _sensor_faults(
-    block: ResidualBlock,
-    row: int,
-    alarm: str,
-    load: float | None,
-    settings: FaultDetectorSettings,
+    block: ResidualBlock, row: int, alarm: str, load: float | None, settings: FaultDetectorSettings
 ) -> Iterator[Hypothesis]:
     """List the faults of a sensor alone.
 

@@ -206,10 +206,7 @@ def _from_base(cage: Cage, base: Twin, training: Training) -> Twin:
 
 
 def _level_one(
-    cage: Cage,
-    campaign: CampaignRecord,
-    training: Training,
-    report: Callable[[str, int], None],
+    cage: Cage, campaign: CampaignRecord, training: Training, report: Callable[[str, int], None]
 ) -> Twin:
     """Fit level 1 to the cases of a campaign that converged."""
     rows = np.flatnonzero(campaign.converged)

@@ -60,12 +60,7 @@ def clearance(
 
     frame, rows = _points(points, point or [])
     query = query_of(
-        frame,
-        rows,
-        as_path=path,
-        below_m=below,
-        allow_stale=net.allow_stale,
-        max_age_s=net.max_age,
+        frame, rows, as_path=path, below_m=below, allow_stale=net.allow_stale, max_age_s=net.max_age
     )
     answer = ClearanceAnswer.model_validate_json(net.asker().ask("clearance", query))
     if out is not None:

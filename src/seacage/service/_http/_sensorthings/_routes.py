@@ -100,11 +100,7 @@ class Entities(AbstractAnswer):
     """A set of entities, as SensorThings says it; the links and the count where they belong."""
 
     model_config = example(
-        {
-            "value": [_ENTITY],
-            "@iot.count": 2,
-            "@iot.nextLink": f"{_ADDRESS}/Things?$top=1&$skip=1",
-        }
+        {"value": [_ENTITY], "@iot.count": 2, "@iot.nextLink": f"{_ADDRESS}/Things?$top=1&$skip=1"}
     )
 
     value: list[Entity]
