@@ -250,10 +250,7 @@ class Chain:
         made.truth.write(begun / "truth")
 
 
-def select_cases(
-    campaign: CampaignRecord,  # the whole
-    rows: Int[np.ndarray, " row"],  # from 0
-) -> CampaignRecord:
+def select_cases(campaign: CampaignRecord, rows: Int[np.ndarray, " row"]) -> CampaignRecord:
     """A campaign's cases of these rows; the second moment stays that of all."""
     arrays = {
         part.name: value[rows]

@@ -31,10 +31,7 @@ class Shield:
     budget are given back when it has gone.
     """
 
-    def __init__(
-        self,
-        app: ASGIApp,  # what is shielded
-    ) -> None:
+    def __init__(self, app: ASGIApp) -> None:
         self._app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:

@@ -42,14 +42,10 @@ def write(
     Example: archive all that was measured until yesterday.
         seacage archive write archive --store var/samples.sqlite
 
-    Parameters
-    ----------
-    store
-        postgresql://user@host/name, or a file of SQLite.
-    cage
-        Only its samples.
-    before
-        Only days before it, UTC. [default: today]
+    Options:
+        store: postgresql://user@host/name, or a file of SQLite.
+        cage: Only its samples.
+        before: Only days before it, UTC. [default: today]
     """
     from seacage.service._store._archive import Archive
     from seacage.service._store._database._rows import microseconds, moment_of, readable
@@ -85,12 +81,9 @@ def read(
     Example: a day of a buoy.
         seacage archive read archive --cage ace --stream buoy-1 --start 2020-02-01 --end 2020-02-02
 
-    Parameters
-    ----------
-    cage
-        Whose samples.
-    stream
-        Only this stream's.
+    Options:
+        cage: Whose samples.
+        stream: Only this stream's.
     """
     from seacage.conventions import InputError
     from seacage.service._store._archive import Archive

@@ -76,20 +76,13 @@ def run(
     Example:
         seacage campaign run ace.zarr --plan paper --cases 400 --seed 1
 
-    Parameters
-    ----------
-    method
-        simulate: in time; settle: equilibria, waves by their mean loads.
-    ramp
-        Over which the waves rise, s.
-    time_step
-        s
-    second_moment
-        Keep the second moment of all node coordinates.
-    cluster
-        Of a Dask scheduler you trust: tcp://host:8786.
-    share
-        Only the I-th of N shares, from 0; others run the rest.
+    Options:
+        method: simulate: in time; settle: equilibria, waves by their mean loads.
+        ramp: Over which the waves rise, s.
+        time_step: s
+        second_moment: Keep the second moment of all node coordinates.
+        cluster: Of a Dask scheduler you trust: tcp://host:8786.
+        share: Only the I-th of N shares, from 0; others run the rest.
     """
     from seacage.campaigns import Simulator, campaign_status, run_share
 
@@ -168,10 +161,8 @@ def export(store: Store, out: Annotated[Path, typer.Argument(dir_okay=False)]) -
     Example:
         seacage campaign export ace.zarr ace.nc
 
-    Parameters
-    ----------
-    out
-        The CF-NetCDF file to write.
+    Options:
+        out: The CF-NetCDF file to write.
     """
     from seacage.records import export_campaign
 
@@ -193,12 +184,9 @@ def slurm(
     Example:
         seacage campaign slurm --tasks 50 ace.zarr --plan paper > job.sh
 
-    Parameters
-    ----------
-    words
-        As of `campaign run`.
-    tasks
-        Of the job array: one share each.
+    Options:
+        words: As of `campaign run`.
+        tasks: Of the job array: one share each.
     """
     from seacage.campaigns import Simulator
 

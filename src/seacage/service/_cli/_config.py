@@ -33,10 +33,8 @@ def check(
     Example:
         seacage config check --config seacage.toml
 
-    Parameters
-    ----------
-    reach
-        Also open the store and knock at the broker.
+    Options:
+        reach: Also open the store and knock at the broker.
     """
     from seacage.service._settings import read_settings
 

@@ -6,6 +6,7 @@ import json
 import os
 import re
 import sys
+import textwrap
 import time
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -26,7 +27,8 @@ R = TypeVar("R")
 Json = Annotated[
     bool, typer.Option("--json", help="Print one JSON object on stdout, for programs.")
 ]
-_MEANING = re.compile(r"^(\w+)\n((?: {4}.+\n?)+)", re.MULTILINE)  # of a parameter
+_SECTION = re.compile(r"\n\n(?:Options:|Parameters\n-+)\n")
+_MEANING = re.compile(r"^(\w+):?\s+(.+(?:\n {4}.+)*)", re.MULTILINE)  # of an option
 _LINE_EVERY_S = 5.0  # of progress in a log
 _wants_json = ContextVar("_wants_json", default=False)
 
@@ -97,9 +99,10 @@ def guard(command: Callable[..., R]) -> Callable[..., R]:
 
 
 def _split_docstring(docstring: str | None) -> tuple[str, dict[str, str]]:
-    """The text of a docstring, and the meanings of its parameters."""
-    text, _, section = inspect.cleandoc(docstring or "").partition("\n\nParameters\n----------\n")
-    return text, {name: " ".join(meaning.split()) for name, meaning in _MEANING.findall(section)}
+    """The text of a docstring, and the meanings of its options."""
+    text, *section = _SECTION.split(inspect.cleandoc(docstring or ""))
+    found = _MEANING.findall(textwrap.dedent("".join(section)))
+    return text, {name: " ".join(meaning.split()) for name, meaning in found}
 
 
 def _with_options(
@@ -153,16 +156,12 @@ def wants_json() -> bool:
     return _wants_json.get()
 
 
-def report(answer: Mapping[str, object], *, rows: Sequence[tuple[str, str]] = ()) -> None:
-    """Print a command's answer.
-
-    Parameters
-    ----------
-    answer
-        What a program gets with ``--json``; NaN becomes null.
-    rows
-        What a person gets: names and values, in two columns.
-    """
+def report(
+    answer: Mapping[str, object],  # what a program gets with ``--json``; NaN becomes null
+    *,
+    rows: Sequence[tuple[str, str]] = (),  # what a person gets: names and values, in two columns
+) -> None:
+    """Print a command's answer."""
     if wants_json():
         typer.echo(json.dumps(without_nan(answer), default=str))
         return
@@ -232,18 +231,13 @@ class Finding:
     message: str
 
 
-def report_findings(command: str, findings: Sequence[Finding], *, code: Exit) -> None:
-    """Print what was found, and end with a code where something is wrong.
-
-    Parameters
-    ----------
-    command
-        Whose findings they are.
-    findings
-        All of them, in the order in which they are read.
-    code
-        To end with where one is wrong.
-    """
+def report_findings(
+    command: str,  # whose findings they are
+    findings: Sequence[Finding],  # all of them, in the order in which they are read
+    *,
+    code: Exit,  # to end with where one is wrong
+) -> None:
+    """Print what was found, and end with a code where something is wrong."""
     wrong = [one for one in findings if one.state == "wrong"]
     report(
         {"ok": not wrong}

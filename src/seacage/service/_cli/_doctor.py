@@ -38,12 +38,9 @@ def doctor(
     Example:
         seacage doctor
 
-    Parameters
-    ----------
-    store
-        postgresql://user@host/name, or a file. [default: that in --data]
-    port
-        The service's port.
+    Options:
+        store: postgresql://user@host/name, or a file. [default: that in --data]
+        port: The service's port.
     """
     checks: tuple[Callable[[], Finding], ...] = (
         _python,

@@ -66,35 +66,21 @@ def virtual(
         seacage field virtual field --record buoy.csv --waves nora10.csv --one-in 8
         seacage field virtual field --event "net-hole ring-3/spoke-24 2020-02-01T12:00Z"
 
-    Parameters
-    ----------
-    out
-        Folder of the field record.
-    method
-        In time, in waves: hours. Or equilibria in the current: minutes.
-    record
-        A buoy's record; else one is generated.
-    days
-        Its first days. [default: 48 generated, or the whole record]
-    start
-        Of a generated current, UTC.
-    waves
-        A record of waves, brought to the same days of the year and to a sheltered site; else the
-        buoy's own, else they are generated.
-    calm
-        No waves at all.
-    one_in
-        Simulate one hour in so many, and those of the shackles.
-    event
-        What goes wrong, as "bridle-cut bridle-8 2020-02-01T12:00Z".
-    events
-        A TOML file of events.
-    seed
-        Of weather, noise and outages.
-    hidden
-        Hidden parameters; else those shipped.
-    share
-        Only simulate the I-th of N shares of the hours, from 0; others do the rest.
+    Options:
+        out: Folder of the field record.
+        method: In time, in waves: hours. Or equilibria in the current: minutes.
+        record: A buoy's record; else one is generated.
+        days: Its first days. [default: 48 generated, or the whole record]
+        start: Of a generated current, UTC.
+        waves: A record of waves, brought to the same days of the year and to a sheltered site; else
+            the buoy's own, else they are generated.
+        calm: No waves at all.
+        one_in: Simulate one hour in so many, and those of the shackles.
+        event: What goes wrong, as "bridle-cut bridle-8 2020-02-01T12:00Z".
+        events: A TOML file of events.
+        seed: Of weather, noise and outages.
+        hidden: Hidden parameters; else those shipped.
+        share: Only simulate the I-th of N shares of the hours, from 0; others do the rest.
     """
     from seacage.campaigns import Timetable, TruthParameters, virtual_field, virtual_field_share
 
@@ -196,16 +182,11 @@ def _report_field(record: "FieldRecord", out: Path) -> None:
 class MapOptions:
     """The meaning of a file's columns, as far as the file does not say it.
 
-    Parameters
-    ----------
-    origin
-        Of a foreign NetCDF file: measured or computed.
-    zone
-        Of a foreign NetCDF file's times, where it names none.
-    depth_m
-        Which depth of a profile.
-    range_m
-        Which bin of a profile, from the instrument.
+    Options:
+        origin: Of a foreign NetCDF file: measured or computed.
+        zone: Of a foreign NetCDF file's times, where it names none.
+        depth_m: Which depth of a profile.
+        range_m: Which bin of a profile, from the instrument.
     """
 
     columns: Columns = None
@@ -258,16 +239,11 @@ def import_(
         seacage field import logger.csv map.toml --inspect
         seacage field import logger.csv buoy-1.nc --columns map.toml
 
-    Parameters
-    ----------
-    path
-        A table (text, Parquet, CO-OPS, NDBC) or NetCDF.
-    out
-        To write: CF-NetCDF, or with --inspect a map.
-    inspect
-        Say what the file seems to be; begin its map.
-    stream
-        What to call the stream.
+    Options:
+        path: A table (text, Parquet, CO-OPS, NDBC) or NetCDF.
+        out: To write: CF-NetCDF, or with --inspect a map.
+        inspect: Say what the file seems to be; begin its map.
+        stream: What to call the stream.
     """
     from seacage.records import read_record, write_record
 
@@ -320,12 +296,9 @@ def check(
     Example:
         seacage field check buoy.csv --report quality.html
 
-    Parameters
-    ----------
-    path
-        A record's file, or a field record's folder.
-    report
-        An HTML page to write: what, when, why, with figures.
+    Options:
+        path: A record's file, or a field record's folder.
+        report: An HTML page to write: what, when, why, with figures.
     """
     from seacage.records import check_record
 

@@ -49,18 +49,12 @@ DataFolder = Annotated[Path, typer.Option(file_okay=False, help="The service's d
 class SeaOptions:
     """One sea state.
 
-    Parameters
-    ----------
-    current_speed
-        m/s
-    current_to
-        Where the current goes, degrees clockwise from north.
-    hs
-        Significant wave height, m.
-    tp
-        Peak period, s. [default: 5 √hs]
-    wave_from
-        Where the waves come from, degrees clockwise from north.
+    Options:
+        current_speed: m/s
+        current_to: Where the current goes, degrees clockwise from north.
+        hs: Significant wave height, m.
+        tp: Peak period, s. [default: 5 √hs]
+        wave_from: Where the waves come from, degrees clockwise from north.
     """
 
     current_speed: float
@@ -82,14 +76,11 @@ class SeaOptions:
 class LawOptions:
     """What the water does to the netting.
 
-    Parameters
-    ----------
-    laws
-        Answer by every law instead of one: lowest, central and highest.
-    skin_friction
-        Drag coefficient of a panel along the flow, of screen laws. [default: the law's own]
-    lift_factor
-        Factor on the lift of screen laws.
+    Options:
+        laws: Answer by every law instead of one: lowest, central and highest.
+        skin_friction: Drag coefficient of a panel along the flow, of screen laws. [default: the
+            law's own]
+        lift_factor: Factor on the lift of screen laws.
     """
 
     laws: Literal["all"] | None = None

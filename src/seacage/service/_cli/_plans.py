@@ -24,23 +24,16 @@ _AXES = {
 class PlanOptions:
     """Which sea states, as a shell gives them.
 
-    Parameters
-    ----------
-    plan
-        paper: its ranges; default: also other periods than 5 √Hs; current: no waves; or the path of
-        a plan that was written, ending in .json.
-    grid
-        Instead of a plan every combination, e.g. hs_m=0,1,2 or, 11 values from 0 to 1,
-        current_speed_m_s=0:1:11.
-    listed
-        Instead of a plan a CSV file of sea states: current_speed_m_s, current_to_deg and, if there
-        are waves, hs_m, tp_s, wave_from_deg.
-    cases
-        Sea states to draw of a plan. [default: 1000]
-    duration
-        Of each sea state, s. [default: 1800, or as written]
-    seed
-        Of the draw and of the waves. [default: 0, or as written]
+    Options:
+        plan: paper: its ranges; default: also other periods than 5 √Hs; current: no waves; or the
+            path of a plan that was written, ending in .json.
+        grid: Instead of a plan every combination, e.g. hs_m=0,1,2 or, 11 values from 0 to 1,
+            current_speed_m_s=0:1:11.
+        listed: Instead of a plan a CSV file of sea states: current_speed_m_s, current_to_deg and,
+            if there are waves, hs_m, tp_s, wave_from_deg.
+        cases: Sea states to draw of a plan. [default: 1000]
+        duration: Of each sea state, s. [default: 1800, or as written]
+        seed: Of the draw and of the waves. [default: 0, or as written]
     """
 
     plan: str = "default"

@@ -55,34 +55,20 @@ def publish(
     Example: lines like {"stream": "depth-2", "t": "2026-01-02T03:04:05Z", "values": {…}}.
         read-sensors | seacage publish - --to http://127.0.0.1:8000 --token TOKEN
 
-    Parameters
-    ----------
-    source
-        A buoy's record, a field record's folder, or - for lines of JSON on stdin.
-    to
-        mqtt://host:1883, mqtts://user:password@host:8883, or http://host:8000.
-    site
-        By MQTT: the site's name in the topics.
-    stream
-        What to call the stream of a file.
-    follow
-        Go on with the rows that a logger appends.
-    speed
-        Of a record, against real time. [default: as fast as it goes]
-    spool
-        File of what is not yet acknowledged.
-    spool_most
-        Samples that it holds.
-    when_full
-        Then the source waits, or the oldest samples are given up.
-    keep_ahead_days
-        Try samples ahead of the service's clock for so long [d].
-    patience_s
-        Give up when nothing is acknowledged for so long [s].
-    token
-        By HTTP: with the scope ingest.
-    ca
-        By MQTT: whom the certificate is from.
+    Options:
+        source: A buoy's record, a field record's folder, or - for lines of JSON on stdin.
+        to: mqtt://host:1883, mqtts://user:password@host:8883, or http://host:8000.
+        site: By MQTT: the site's name in the topics.
+        stream: What to call the stream of a file.
+        follow: Go on with the rows that a logger appends.
+        speed: Of a record, against real time. [default: as fast as it goes]
+        spool: File of what is not yet acknowledged.
+        spool_most: Samples that it holds.
+        when_full: Then the source waits, or the oldest samples are given up.
+        keep_ahead_days: Try samples ahead of the service's clock for so long [d].
+        patience_s: Give up when nothing is acknowledged for so long [s].
+        token: By HTTP: with the scope ingest.
+        ca: By MQTT: whom the certificate is from.
     """
     from seacage.conventions import InputError
     from seacage.service._logs import begin_logs

@@ -39,22 +39,14 @@ def replay(
         seacage replay buoy.csv --twin twin --out answers.csv --out answers.nc
         seacage replay field --to http://127.0.0.1:8000 --token TOKEN --speed 100
 
-    Parameters
-    ----------
-    record
-        A buoy's record, or a field record's folder.
-    twin
-        The twin that answers.
-    out
-        File of the answers: .csv, .jsonl or .nc; repeatable.
-    batched
-        Answer in blocks, not step by step: the same, faster.
-    to
-        Send to a running service: http://127.0.0.1:8000.
-    token
-        For the service, with the scope ingest.
-    speed
-        Against real time. [default: as fast as it goes]
+    Options:
+        record: A buoy's record, or a field record's folder.
+        twin: The twin that answers.
+        out: File of the answers: .csv, .jsonl or .nc; repeatable.
+        batched: Answer in blocks, not step by step: the same, faster.
+        to: Send to a running service: http://127.0.0.1:8000.
+        token: For the service, with the scope ingest.
+        speed: Against real time. [default: as fast as it goes]
     """
     from seacage.conventions import InputError
 

@@ -30,16 +30,11 @@ def score(
     Example:
         seacage score --twin twin --field field --out scores
 
-    Parameters
-    ----------
-    twin
-        Folder of the twin.
-    field
-        Folder of a field record.
-    out
-        Folder for tables and figures.
-    seed
-        Of the bootstrap.
+    Options:
+        twin: Folder of the twin.
+        field: Folder of a field record.
+        out: Folder for tables and figures.
+        seed: Of the bootstrap.
     """
     from seacage.records import FieldRecord
     from seacage.studies import score_record

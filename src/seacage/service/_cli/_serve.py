@@ -56,42 +56,25 @@ def serve(
     Example: serve a farm as its file says.
         seacage serve --config seacage.toml
 
-    Parameters
-    ----------
-    config
-        Settings as TOML; options go before it.
-    data
-        Folder for everything the service writes. [default: var]
-    twin
-        A trained twin; the demonstration's if left out.
-    cage
-        Name to serve the cage under. [default: the cage's own]
-    host
-        Address to listen on. [default: 127.0.0.1]
-    port
-        Port to listen on; 0 takes a free one. [default: 8000]
-    site
-        Where the cages lie, in topics and scopes. [default: site]
-    store
-        postgresql://user@host/name, or a file of SQLite. [default: in --data]
-    mqtt
-        Broker that samples come by, as mqtt://host:1883.
-    certificate
-        PEM, to speak HTTPS.
-    key
-        PEM, of the certificate.
-    demo
-        Feed the demonstration: a buoy and virtual sensors.
-    record
-        A buoy's record to replay, over and over.
-    clock
-        The time at the cage: this machine's, or that of the newest sample, for a record that is
-        published as if it were live. [default: wall]
-    speed
-        Of a replay, or of --clock samples between two of them, against real time. [default: 60 of a
-        replay, else 1]
-    insecure_http
-        Listen beyond this machine without encryption.
+    Options:
+        config: Settings as TOML; options go before it.
+        data: Folder for everything the service writes. [default: var]
+        twin: A trained twin; the demonstration's if left out.
+        cage: Name to serve the cage under. [default: the cage's own]
+        host: Address to listen on. [default: 127.0.0.1]
+        port: Port to listen on; 0 takes a free one. [default: 8000]
+        site: Where the cages lie, in topics and scopes. [default: site]
+        store: postgresql://user@host/name, or a file of SQLite. [default: in --data]
+        mqtt: Broker that samples come by, as mqtt://host:1883.
+        certificate: PEM, to speak HTTPS.
+        key: PEM, of the certificate.
+        demo: Feed the demonstration: a buoy and virtual sensors.
+        record: A buoy's record to replay, over and over.
+        clock: The time at the cage: this machine's, or that of the newest sample, for a record that
+            is published as if it were live. [default: wall]
+        speed: Of a replay, or of --clock samples between two of them, against real time. [default:
+            60 of a replay, else 1]
+        insecure_http: Listen beyond this machine without encryption.
     """
     from seacage.conventions import InputError
     from seacage.service._assembly import assemble, server

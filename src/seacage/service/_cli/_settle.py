@@ -42,14 +42,10 @@ def settle(
     Example: half a metre per second towards east.
         seacage settle --current-speed 0.5 --current-to 90
 
-    Parameters
-    ----------
-    mean_waves
-        Take the waves in by their mean drag.
-    law
-        How the water loads the netting.
-    out
-        Write the response as CF-NetCDF.
+    Options:
+        mean_waves: Take the waves in by their mean drag.
+        law: How the water loads the netting.
+        out: Write the response as CF-NetCDF.
     """
     from seacage.conventions import RESULTS, Result
     from seacage.dynamics import LAWS

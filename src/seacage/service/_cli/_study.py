@@ -42,22 +42,14 @@ def paper(
         seacage study paper --quick --out study
         seacage study paper --full --campaign campaign.zarr --field field --out study
 
-    Parameters
-    ----------
-    quick
-        400 equilibria without waves, or the paper's 1,000 half-hours and a field in time.
-    campaign
-        A finished campaign to take; its last 100 cases judge.
-    field
-        A folder of `seacage field virtual` to take, truth included.
-    days
-        Of a field made with --full.
-    one_in
-        With --full: simulate one hour in so many, and those of the shackles.
-    networks
-        Train graph networks too (JAX). [default: with --full]
-    seed
-        Of everything that is drawn.
+    Options:
+        quick: 400 equilibria without waves, or the paper's 1,000 half-hours and a field in time.
+        campaign: A finished campaign to take; its last 100 cases judge.
+        field: A folder of `seacage field virtual` to take, truth included.
+        days: Of a field made with --full.
+        one_in: With --full: simulate one hour in so many, and those of the shackles.
+        networks: Train graph networks too (JAX). [default: with --full]
+        seed: Of everything that is drawn.
     """
     from seacage.studies import paper_study
 
@@ -142,18 +134,12 @@ def fidelity(
     Example:
         seacage study fidelity --field field --out fidelity
 
-    Parameters
-    ----------
-    field
-        A folder of `seacage field virtual`, truth included; else one is made.
-    hidden
-        What the field was made with; else as shipped.
-    cage
-        The cage drawn; else the shipped one of the field's name.
-    windows
-        10-minute windows that survey the days, about.
-    seed
-        Of everything that is drawn.
+    Options:
+        field: A folder of `seacage field virtual`, truth included; else one is made.
+        hidden: What the field was made with; else as shipped.
+        cage: The cage drawn; else the shipped one of the field's name.
+        windows: 10-minute windows that survey the days, about.
+        seed: Of everything that is drawn.
     """
     from seacage.campaigns import TruthParameters
     from seacage.studies import fidelity_study
@@ -197,18 +183,12 @@ def benchmarks(
     Example:
         seacage study benchmarks --peers .venv-peers --out benchmarks-report
 
-    Parameters
-    ----------
-    peers
-        The environment of `make bench-peers`; else ours alone.
-    seeds
-        First and last seed; those below 5 tune and decide nothing.
-    quick
-        Two seeds of each kind, no cage-size problem.
-    fresh
-        Time the cage-size problem again, all in one run.
-    kept
-        Run nothing; write the page from what is there.
+    Options:
+        peers: The environment of `make bench-peers`; else ours alone.
+        seeds: First and last seed; those below 5 tune and decide nothing.
+        quick: Two seeds of each kind, no cage-size problem.
+        fresh: Time the cage-size problem again, all in one run.
+        kept: Run nothing; write the page from what is there.
     """
     from seacage.studies import benchmark_study
 

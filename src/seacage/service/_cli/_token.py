@@ -25,12 +25,9 @@ def new(*, data: DataFolder = Path("var"), scope: str, name: str = "") -> None:
         seacage token new --data var --scope ingest
         seacage token new --data var --scope read,ack --name "Night shift"
 
-    Parameters
-    ----------
-    scope
-        read, ingest, ack (or for one cage or site: ingest:ace), admin; by commas.
-    name
-        Of whoever will hold it, as journals and logs name them.
+    Options:
+        scope: read, ingest, ack (or for one cage or site: ingest:ace), admin; by commas.
+        name: Of whoever will hold it, as journals and logs name them.
     """
     from seacage.service._auth._token_store import Tokens
 
@@ -74,10 +71,8 @@ def revoke(*, data: DataFolder = Path("var"), token: Annotated[str, typer.Argume
     Example:
         seacage token revoke --data var "Night shift"
 
-    Parameters
-    ----------
-    token
-        Its name or id, as `seacage token list` says.
+    Options:
+        token: Its name or id, as `seacage token list` says.
     """
     from seacage.service._auth._token_store import Tokens
 

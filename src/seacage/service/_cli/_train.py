@@ -38,31 +38,19 @@ def train(
     Example:
         seacage train --campaign ace.zarr --field field --out twin
 
-    Parameters
-    ----------
-    campaign
-        Simulations, as `campaign run` left.
-    base
-        A twin whose level 1 is taken, instead of --campaign: only sensors that moved, or are new,
-        are trained at level 2.
-    field
-        A field record; else level 1 alone.
-    out
-        Folder of the twin.
-    cage
-        Where sensors have moved: a TOML file. [default: as simulated]
-    inputs
-        What the twin is asked with.
-    points
-        Readings that each sensor teaches with.
-    choice
-        spread over currents and time, or the paper's few minutes or seconds.
-    days
-        Longest that a sensor teaches; the rest can judge.
-    seed
-        Of the choice and the searches.
-    sign
-        Sign the twin with this key.
+    Options:
+        campaign: Simulations, as `campaign run` left.
+        base: A twin whose level 1 is taken, instead of --campaign: only sensors that moved, or are
+            new, are trained at level 2.
+        field: A field record; else level 1 alone.
+        out: Folder of the twin.
+        cage: Where sensors have moved: a TOML file. [default: as simulated]
+        inputs: What the twin is asked with.
+        points: Readings that each sensor teaches with.
+        choice: spread over currents and time, or the paper's few minutes or seconds.
+        days: Longest that a sensor teaches; the rest can judge.
+        seed: Of the choice and the searches.
+        sign: Sign the twin with this key.
     """
     from seacage.conventions import NonsenseError
     from seacage.records import FieldRecord

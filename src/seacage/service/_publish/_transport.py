@@ -42,10 +42,7 @@ class Transport(Protocol):
 class HttpTransport:
     """Carries samples by HTTP; the answer 201 is the acknowledgement."""
 
-    def __init__(
-        self,
-        sender: Sender,  # to which service, cage and with which token
-    ) -> None:
+    def __init__(self, sender: Sender) -> None:
         self._sender = sender
 
     def send(self, samples: Sequence[Sample]) -> list[Settled]:

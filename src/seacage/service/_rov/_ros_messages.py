@@ -33,10 +33,7 @@ class RosMessages:
     Raises InputError: ROS has no such time.
     """
 
-    def __init__(
-        self,
-        t: datetime,  # of all messages
-    ) -> None:
+    def __init__(self, t: datetime) -> None:
         try:
             from rosbags.typesys import Stores, get_typestore
         except ImportError as error:

@@ -48,10 +48,7 @@ class Writer:
     About every second, between two transactions, it renews aggregates.
     """
 
-    def __init__(
-        self,
-        database: AbstractDatabase,  # where to
-    ) -> None:
+    def __init__(self, database: AbstractDatabase) -> None:
         self._database = database
         self.control = QualityControl()  # to be used in a transaction alone
         self._next_chore = time.monotonic() + _CHORE_S

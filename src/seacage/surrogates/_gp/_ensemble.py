@@ -45,11 +45,7 @@ def widening(points: int) -> float:
     return 1.0 + 1.0 / points
 
 
-def draw_members(
-    mode: Mode,  # of the posterior
-    *,
-    seed: int,  # of all draws
-) -> Float[np.ndarray, "member parameter"]:
+def draw_members(mode: Mode, *, seed: int) -> Float[np.ndarray, "member parameter"]:
     """Log hyperparameters from their posterior, the most probable first.
 
     Hamiltonian Monte Carlo from the mode, in the scales of the curvature there. A log variance

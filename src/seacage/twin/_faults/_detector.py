@@ -122,11 +122,7 @@ class FaultDetector:
         found = ((name, value) for name, value in self.cusums().items() if name not in self.active)
         return sorted(found, key=lambda one: -one[1])
 
-    def inputs(
-        self,
-        cage: Cage,  # has the bridles and sensors
-        settings: FaultDetectorSettings,  # of the twin
-    ) -> Iterator[AlarmInput]:
+    def inputs(self, cage: Cage, settings: FaultDetectorSettings) -> Iterator[AlarmInput]:
         """Return the inputs of all its alarms at the end of a block."""
         stuck = {one.alarm: one for one in self.stuck_inputs(settings)}
         for name in (

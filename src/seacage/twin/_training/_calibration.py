@@ -29,11 +29,7 @@ LEAST_REFERENCE_PAIRS = 20
 """Readings of another sensor within a short training window."""
 
 
-def calibrate(
-    model: Correction,  # as fitted
-    training: CageTraining,  # of all sensors
-    sensor: str,
-) -> Correction:
+def calibrate(model: Correction, training: CageTraining, sensor: str) -> Correction:
     """Calibrate the intervals of a sensor's level 2."""
     pairs = training.sensors[sensor].pairs
     model = _with_white_noise(model, training, pairs)

@@ -41,18 +41,13 @@ def clearance(
         seacage clearance way.csv --path --most 0.05 --to http://127.0.0.1:8000 --token TOKEN
         seacage clearance --point 20,0,-8 --twin twin --current-speed 0.4 --current-to 90
 
-    Parameters
-    ----------
-    points
-        CSV with east_m,north_m,up_m or north_m,east_m,down_m or latitude_deg,longitude_deg,depth_m.
-    point
-        One point, "EAST,NORTH,UP" in m; may be repeated.
-    path
-        Look at the straight lines between the points, too.
-    most
-        End with 4 where the probability is higher.
-    out
-        Write one line per point as CSV.
+    Options:
+        points: CSV with east_m,north_m,up_m or north_m,east_m,down_m or
+            latitude_deg,longitude_deg,depth_m.
+        point: One point, "EAST,NORTH,UP" in m; may be repeated.
+        path: Look at the straight lines between the points, too.
+        most: End with 4 where the probability is higher.
+        out: Write one line per point as CSV.
     """
     from seacage.conventions import InputError
     from seacage.service._rov._table import query_of, write_clearances

@@ -37,24 +37,15 @@ def inspect_path(
         seacage inspect-path --to http://127.0.0.1:8000 --token TOKEN --out way.csv
         seacage inspect-path --twin twin --current-speed 0.4 --current-to 90 --out way.mcap
 
-    Parameters
-    ----------
-    stand_off
-        Distance to keep, m.
-    side
-        Of the net.
-    pattern
-        Rows there and back, or one spiral.
-    row_spacing
-        Between rows, m.
-    step
-        Between waypoints, m.
-    top
-        Depth of the first row, m.
-    frame
-        Of the waypoints.
-    out
-        Write the way as .csv, .mcap or .geojson.
+    Options:
+        stand_off: Distance to keep, m.
+        side: Of the net.
+        pattern: Rows there and back, or one spiral.
+        row_spacing: Between rows, m.
+        step: Between waypoints, m.
+        top: Depth of the first row, m.
+        frame: Of the waypoints.
+        out: Write the way as .csv, .mcap or .geojson.
     """
     from seacage.service._schemas._clearance import InspectionAnswer, InspectionQuery
 

@@ -19,26 +19,16 @@ Below = Annotated[float, typer.Option(min=0.0, max=100.0, help="Distance asked a
 class NetOptions:
     """The net that is asked about: of a twin's folder in a current, or of a running service.
 
-    Parameters
-    ----------
-    twin
-        Folder of a twin, to be asked here.
-    current_speed
-        With --twin: the current, m/s.
-    current_to
-        With --twin: where it goes, degrees clockwise from north.
-    hs
-        With --twin: significant wave height, m.
-    wave_from
-        With --twin: where the waves come from, degrees.
-    to
-        Address of a running service, as http://127.0.0.1:8000.
-    token
-        For the service, with the scope read.
-    allow_stale
-        Take the last reading however old it is.
-    max_age
-        Refuse a reading older than this, s.
+    Options:
+        twin: Folder of a twin, to be asked here.
+        current_speed: With --twin: the current, m/s.
+        current_to: With --twin: where it goes, degrees clockwise from north.
+        hs: With --twin: significant wave height, m.
+        wave_from: With --twin: where the waves come from, degrees.
+        to: Address of a running service, as http://127.0.0.1:8000.
+        token: For the service, with the scope read.
+        allow_stale: Take the last reading however old it is.
+        max_age: Refuse a reading older than this, s.
     """
 
     twin: InFolder = None

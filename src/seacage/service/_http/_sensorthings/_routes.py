@@ -155,10 +155,7 @@ Telling = Annotated[QueryOptions, Depends(_options_of_one)]
 class _Answer:
     """Tells entities as they were asked for."""
 
-    def __init__(
-        self,
-        catalogue: Catalogue,  # that they are of
-    ) -> None:
+    def __init__(self, catalogue: Catalogue) -> None:
         self.catalogue = catalogue
         self._left = _AT_ONCE
 
