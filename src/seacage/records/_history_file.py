@@ -70,79 +70,48 @@ _ENDING = {
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class HistoryRecord:
-    """One cage in one sea state over time, as a simulator answered it.
+    """One cage in one sea state over time, as a simulator answered it."""
 
-    Parameters
-    ----------
-    cage_name, cage_toml
-        The cage, the latter as its file.
-    bridle_names
-        In the order of the tensions.
-    sea
-        The sea state.
-    line_names, line_kinds
-        Ropes and chains, the bridles first; none in a file of version 0.1.
-    lines
-        By the names of ``LINES``; NaN where something is not known.
-    time
-        Of the series, from the end of the spin-up [s]; empty where none was kept.
-    kept_node
-        The nodes of the series.
-    node_position, bridle_tension, surface_elevation
-        Series: the kept nodes [m], the bridles [N], the water at the origin [m].
-    statistics
-        By name, such as ``bridle_tension_mean``: each of ``STATISTICS`` of the positions of all
-        nodes [m], the bridles' tensions [N], the load on the netting [N] and the volume [m3],
-        over the duration, not over the samples of the series alone.
-    quantile_level
-        Of the quantiles, their first axis [-].
-    node_displacement
-        Mean position less the rest shape [m].
-    volume_fraction
-        Mean volume over that in still water [-].
-    result
-        How the case ended, a ``Result``.
-    diverged_at
-        When it was given up, NaN where it was not [s].
-    water_load
-        ``mean``, ``std``, ``minimum`` and ``maximum`` of the load on netting, collar, sinker
-        tube and ropes, and of the waves' push [N]; empty in files of earlier versions.
-    twines
-        ``mean``, ``maximum`` [N] and ``slack_share`` of a twine in each panel, round the cage and
-        down the net; empty as above.
-    settings
-        What the simulation was asked for, such as ``law``, ``mooring``, ``seed``,
-        ``duration_s``: an attribute each.
-    version
-        Of the seacage that computed it.
-    """
-
+    # The cage, the latter as its file
     cage_name: str
     cage_toml: str
-    bridle_names: tuple[str, ...]
+    bridle_names: tuple[str, ...]  # in the order of the tensions
     sea: SeaState
+    # Ropes and chains, the bridles first; none in a file of version 0.1
     line_names: tuple[str, ...] = ()
     line_kinds: tuple[str, ...] = ()
+    # By the names of ``LINES``; NaN where something is not known
     lines: Mapping[str, Float[np.ndarray, " line"]] = field(default_factory=dict[str, np.ndarray])
+    # ``mean``, ``std``, ``minimum`` and ``maximum`` of the load on netting, collar, sinker tube and
+    # ropes, and of the waves' push [N]; empty in files of earlier versions
     water_load: Mapping[str, Float[np.ndarray, "body 3"]] = field(
         default_factory=dict[str, np.ndarray]
     )
+    # ``mean``, ``maximum`` [N] and ``slack_share`` of a twine in each panel, round the cage and
+    # down the net; empty as above
     twines: Mapping[str, Float[np.ndarray, "panel 2"]] = field(
         default_factory=dict[str, np.ndarray]
     )
+    # Of the series, from the end of the spin-up [s]; empty where none was kept
     time: Float[np.ndarray, " t"]
-    kept_node: Int[np.ndarray, " kept"]
+    kept_node: Int[np.ndarray, " kept"]  # the nodes of the series
+    # Series: the kept nodes [m], the bridles [N], the water at the origin [m]
     node_position: Float[np.ndarray, "t kept 3"]
     bridle_tension: Float[np.ndarray, "t bridle"]
     surface_elevation: Float[np.ndarray, " t"]
+    # By name, such as ``bridle_tension_mean``: each of ``STATISTICS`` of the positions of all nodes
+    # [m], the bridles' tensions [N], the load on the netting [N] and the volume [m3], over the
+    # duration, not over the samples of the series alone
     statistics: Mapping[str, Float[np.ndarray, "..."]]
-    quantile_level: Float[np.ndarray, " quantile"]
-    node_displacement: Float[np.ndarray, "node 3"]
-    volume_fraction: float
-    result: int
-    diverged_at: float
+    quantile_level: Float[np.ndarray, " quantile"]  # of the quantiles, their first axis [-]
+    node_displacement: Float[np.ndarray, "node 3"]  # mean position less the rest shape [m]
+    volume_fraction: float  # mean volume over that in still water [-]
+    result: int  # how the case ended, a ``Result``
+    diverged_at: float  # when it was given up, NaN where it was not [s]
+    # What the simulation was asked for, such as ``law``, ``mooring``, ``seed``, ``duration_s``: an
+    # attribute each
     settings: Mapping[str, str | int | float]
-    version: str
+    version: str  # of the seacage that computed it
 
     __repr__ = brief
 

@@ -163,10 +163,7 @@ class Settings(BaseSettings):
     def check_host(self) -> None:
         """Refuse to speak plain HTTP where others can hear.
 
-        Raises
-        ------
-        InputError
-            An address beyond loopback without a certificate or ``--insecure-http``.
+        Raises InputError: an address beyond loopback without a certificate or ``--insecure-http``.
         """
         safe = self.host in _LOOPBACK or self.certificate is not None
         if not safe and not self.insecure_http:

@@ -14,24 +14,12 @@ from seacage.twin import Twin
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Demonstration:
-    """What a demonstration shows.
+    """What a demonstration shows."""
 
-    Parameters
-    ----------
-    cage
-        The cage.
-    twin_folder
-        Of its trained twin.
-    buoy
-        What drives the twin: the record given, or a generated one.
-    field
-        The buoy and the virtual sensors beside it.
-    """
-
-    cage: Cage
-    twin_folder: Path
-    buoy: Record
-    field: FieldRecord
+    cage: Cage  # the cage
+    twin_folder: Path  # of its trained twin
+    buoy: Record  # what drives the twin: the record given, or a generated one
+    field: FieldRecord  # the buoy and the virtual sensors beside it
 
 
 def prepare_demonstration(

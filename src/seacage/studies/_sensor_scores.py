@@ -114,36 +114,25 @@ class Errors:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SensorScore:
-    """Scores of one sensor on validation days.
+    """Scores of one sensor on validation days."""
 
-    Parameters
-    ----------
-    sensor, unit, origin
-        Its name, the unit of all errors, and how its readings were made.
-    span_h, told_h
-        From the first reading to the last, and hours of it that have readings [h].
-    blocks
-        Of the bootstrap: the days that have readings, eight at least.
-    raw, minutes, means
-        Errors on single readings, on means over a minute as in training, and on 10-minute means.
-        Coverage and CRPS are those of minutes: the twin's interval is of such means.
-    low_line, multi_line
-        Slope [-] and intercept [unit] of the best fit of the prediction on the reading.
-    low_truth_mae, multi_truth_mae
-        Mean absolute errors against the noise-free truth that only a virtual field has.
-    """
-
+    # Its name, the unit of all errors, and how its readings were made
     sensor: str
     unit: str
     origin: Origin
+    # From the first reading to the last, and hours of it that have readings [h]
     span_h: float
     told_h: float
-    blocks: int
+    blocks: int  # of the bootstrap: the days that have readings, eight at least
+    # Errors on single readings, on means over a minute as in training, and on 10-minute means.
+    # Coverage and CRPS are those of minutes: the twin's interval is of such means.
     raw: Errors
     minutes: Errors
     means: Errors
+    # Slope [-] and intercept [unit] of the best fit of the prediction on the reading
     low_line: tuple[float, float]
     multi_line: tuple[float, float]
+    # Mean absolute errors against the noise-free truth that only a virtual field has
     low_truth_mae: float | None
     multi_truth_mae: float | None
 

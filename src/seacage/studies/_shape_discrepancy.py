@@ -24,21 +24,11 @@ _NOW = datetime(2020, 1, 18, tzinfo=UTC)  # any time will do
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Reliability:
-    """Predicted probabilities of some events, and what happened.
+    """Predicted probabilities of some events, and what happened."""
 
-    Parameters
-    ----------
-    p
-        That the true net is nearer than the given distance [-].
-    happened
-        Whether it was.
-    speed
-        Of the current that the buoy reported [m/s].
-    """
-
-    p: Float[np.ndarray, " event"]
-    happened: Bool[np.ndarray, " event"]
-    speed: Float[np.ndarray, " event"]
+    p: Float[np.ndarray, " event"]  # that the true net is nearer than the given distance [-]
+    happened: Bool[np.ndarray, " event"]  # whether it was
+    speed: Float[np.ndarray, " event"]  # of the current that the buoy reported [m/s]
 
     def table(self, *, bins: int = 10) -> list[tuple[int, float, float]]:
         """Reliability: events, mean probability and share that happened, by probability."""

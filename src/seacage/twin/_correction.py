@@ -50,24 +50,15 @@ class FixedPrediction:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Spread:
-    """Calibration of level 2's standard deviations, by held-out readings.
+    """Calibration of level 2's standard deviations, by held-out readings."""
 
-    Parameters
-    ----------
-    scale
-        Calibration factor of the model's own standard deviation [-].
-    water_sd
-        Standard deviation of each component of the current at the cage that the buoy does not
-        measure [m/s]: eddies on the way, and the time it takes. It counts where level 1 is steep.
-    white
-        Variance of the instrument's own noise [N2] or [m2], which the truth does not have.
-    by
-        "own" readings, "carried" from sensors with longer windows, or "none".
-    """
-
-    scale: float = 1.0
+    scale: float = 1.0  # calibration factor of the model's own standard deviation [-]
+    # Standard deviation of each component of the current at the cage that the buoy does not measure
+    # [m/s]: eddies on the way, and the time it takes. It counts where level 1 is steep.
     water_sd: float = 0.0
+    # Variance of the instrument's own noise [N2] or [m2], which the truth does not have
     white: float = 0.0
+    # "own" readings, "carried" from sensors with longer windows, or "none"
     by: Literal["own", "carried", "none"] = "none"
 
     def __post_init__(self) -> None:
@@ -85,20 +76,11 @@ class Correction:
     A NARGP alone returns to the mean of its training data in water unlike that of the training
     window. A shackle's window is half a day, so its correction has to extrapolate: the gain
     does, and the NARGP is fitted to the remainder.
-
-    Parameters
-    ----------
-    gain
-        Change of the reading per change of level 1 [-].
-    rest
-        Of the reading less gain times level 1 [N] or [m]; its own level 1 is lent.
-    spread
-        Calibration of the standard deviation.
     """
 
-    gain: float
-    rest: FittedNARGP
-    spread: Spread = Spread()
+    gain: float  # change of the reading per change of level 1 [-]
+    rest: FittedNARGP  # of the reading less gain times level 1 [N] or [m]; its own level 1 is lent
+    spread: Spread = Spread()  # calibration of the standard deviation
 
     @classmethod
     def fit(cls, pairs: Pairs, x: Features, lower: Predicts, *, restarts: int, seed: int) -> Self:

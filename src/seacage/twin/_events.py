@@ -32,21 +32,11 @@ class Answered:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Flagged:
-    """A sample was set aside, or a value in it did not pass its checks.
+    """A sample was set aside, or a value in it did not pass its checks."""
 
-    Parameters
-    ----------
-    sample
-        As it came, with its flags.
-    reason
-        One sentence for a person.
-    used
-        False where the sample was set aside whole and changed nothing.
-    """
-
-    sample: Sample
-    reason: str
-    used: bool
+    sample: Sample  # as it came, with its flags
+    reason: str  # one sentence for a person
+    used: bool  # False where the sample was set aside whole and changed nothing
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -41,35 +41,17 @@ class Depth:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Models:
-    """Level 1 of loads and shape, and level 2 of the sensors that have it.
+    """Level 1 of loads and shape, and level 2 of the sensors that have it."""
 
-    Parameters
-    ----------
-    cage
-        As it was simulated, with the places of the sensors.
-    inputs
-        Inputs of the models.
-    domain
-        Of the features that level 1 was trained on.
-    edge
-        The largest current speed [m/s] and wave height [m] among them, rounded up to 0.01.
-    still_volume
-        Of the shape in still water [m3].
-    bridles
-        Level 1 of all bridle tensions [N].
-    shape
-        Level 1 of the node positions [m].
-    upper
-        Level 2 by sensor, of its readings [N] or [m].
-    """
-
-    cage: Cage
-    inputs: tuple[Input, ...]
-    domain: Domain
+    cage: Cage  # as it was simulated, with the places of the sensors
+    inputs: tuple[Input, ...]  # inputs of the models
+    domain: Domain  # of the features that level 1 was trained on
+    # The largest current speed [m/s] and wave height [m] among them, rounded up to 0.01
     edge: tuple[float, float]
-    still_volume: float
-    bridles: FittedGaussianProcess
-    shape: FittedShapeGP
+    still_volume: float  # of the shape in still water [m3]
+    bridles: FittedGaussianProcess  # level 1 of all bridle tensions [N]
+    shape: FittedShapeGP  # level 1 of the node positions [m]
+    # Level 2 by sensor, of its readings [N] or [m]
     upper: Mapping[str, Correction] = field(default_factory=dict[str, Correction])
 
     @cached_property

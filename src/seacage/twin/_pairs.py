@@ -29,21 +29,11 @@ def reading_of(sample: Sample) -> tuple[float, Flag]:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Pairs(Rows):
-    """Readings of one sensor, each with the water that the buoy had reported.
+    """Readings of one sensor, each with the water that the buoy had reported."""
 
-    Parameters
-    ----------
-    time
-        UTC, ascending.
-    metocean
-        At the buoy.
-    value
-        Of the sensor [N] or [m].
-    """
-
-    time: Shaped[np.ndarray, " pair"]
-    metocean: Metocean
-    value: Float[np.ndarray, " pair"]
+    time: Shaped[np.ndarray, " pair"]  # UTC, ascending
+    metocean: Metocean  # at the buoy
+    value: Float[np.ndarray, " pair"]  # of the sensor [N] or [m]
 
     def __len__(self) -> int:
         return len(self.value)

@@ -11,56 +11,32 @@ from seacage.twin._json_keys import json_keys
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrainingWindow:
-    """Training window of one sensor.
+    """Training window of one sensor."""
 
-    Parameters
-    ----------
-    start, end
-        Of the window; readings outside it may validate the twin.
-    points
-        Number of readings that level 2 was fitted to.
-    calibrated
-        Readings that its intervals were calibrated on: its "own", those of sensors with longer
-        windows ("carried"), or "none".
-    """
-
+    # Of the window; readings outside it may validate the twin
     start: datetime
     end: datetime
-    points: int
+    points: int  # number of readings that level 2 was fitted to
+    # Readings that its intervals were calibrated on: its "own", those of sensors with longer
+    # windows ("carried"), or "none"
     calibrated: Literal["own", "carried", "none"] = "none"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Provenance:
-    """Provenance of a twin.
+    """Provenance of a twin."""
 
-    Parameters
-    ----------
-    version
-        Of the seacage that trained it.
-    law, campaign_seed, campaign_sha256, cases
-        Of the simulations behind level 1; the hash is over their inputs and results.
-    kernel
-        Of the bridles' level 1, the better of two by leave-one-out.
-    origin
-        Of the sensors' data; "computed" where no sensor has level 2.
-    hidden_sha256
-        Of a virtual field's hidden parameters.
-    seed
-        Of the training.
-    training_windows
-        By sensor; a sensor that is not here is predicted at level 1.
-    """
-
-    version: str
+    version: str  # of the seacage that trained it
+    # Of the simulations behind level 1; the hash is over their inputs and results
     law: str
     campaign_seed: int
     campaign_sha256: str
     cases: int
-    kernel: str
-    origin: Origin
-    hidden_sha256: str | None
-    seed: int
+    kernel: str  # of the bridles' level 1, the better of two by leave-one-out
+    origin: Origin  # of the sensors' data; "computed" where no sensor has level 2
+    hidden_sha256: str | None  # of a virtual field's hidden parameters
+    seed: int  # of the training
+    # By sensor; a sensor that is not here is predicted at level 1
     training_windows: Mapping[str, TrainingWindow] = field(
         default_factory=dict[str, TrainingWindow]
     )

@@ -49,33 +49,20 @@ class Held:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TwinState:
-    """State that ``step`` carries on; two equal ones give equal answers ever after.
+    """State that ``step`` carries on; two equal ones give equal answers ever after."""
 
-    Parameters
-    ----------
-    clock
-        Of the last step; None before the first.
-    streams
-        By name, those with at least one sample.
-    silent
-        Streams that have exceeded their timeout.
-    tracked
-        Prediction and factor of the interval, of each sensor that has level 2.
-    adapted_until
-        The intervals are adapted to the readings of blocks that had passed by then; None before
-        the first step.
-    amendments
-        Flags that have changed since the samples came, of the last minutes.
-    held
-        The last answer, given again while the water is the same.
-    """
-
-    clock: datetime | None = None
+    clock: datetime | None = None  # of the last step; None before the first
+    # By name, those with at least one sample
     streams: Mapping[str, Stream] = field(default_factory=dict[str, Stream])
-    silent: frozenset[str] = frozenset()
+    silent: frozenset[str] = frozenset()  # streams that have exceeded their timeout
+    # Prediction and factor of the interval, of each sensor that has level 2
     tracked: Mapping[str, Tracked] = field(default_factory=dict[str, Tracked])
+    # The intervals are adapted to the readings of blocks that had passed by then; None before the
+    # first step
     adapted_until: datetime | None = None
+    # Flags that have changed since the samples came, of the last minutes
     amendments: tuple[Amendment, ...] = ()
+    # The last answer, given again while the water is the same
     held: Held | None = field(default=None, compare=False)
 
     def latest(self, stream: str, now: datetime | None = None) -> Sample | None:

@@ -23,64 +23,39 @@ class Amendment:
     """A flag of a sample that changed after the sample was checked.
 
     The next sample may show that one was a spike, and a late sample that it was none.
-
-    Parameters
-    ----------
-    stream, t
-        Of the sample that is meant; t in UTC.
-    key
-        Of the value.
-    flag
-        The flag from now on; of a spike, to be taken where it is worse than the value's own.
-    remark
-        Why: one sentence.
-    was
-        The flag before; None where only the next sample is known, and not the one meant.
     """
 
+    # Of the sample that is meant; t in UTC
     stream: str
     t: datetime
-    key: str
+    key: str  # of the value
+    # The flag from now on; of a spike, to be taken where it is worse than the value's own
     flag: Flag
-    remark: str
+    remark: str  # why: one sentence
+    # The flag before; None where only the next sample is known, and not the one meant
     was: Flag | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class QualityState:
-    """State of the checks of one stream; the first state is ``QualityState()``.
+    """State of the checks of one stream; the first state is ``QualityState()``."""
 
-    Parameters
-    ----------
-    anchors
-        By group: the latest readings in range, to compare the next with.
-    amended
-        What the last sample showed of an earlier one: that it was a spike.
-    """
-
+    # By group: the latest readings in range, to compare the next with
     anchors: Mapping[str, Anchor] = field(default_factory=dict[str, Anchor])
+    # What the last sample showed of an earlier one: that it was a spike
     amended: tuple[Amendment, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Verdict:
-    """Findings of one test in one quantity of a record.
+    """Findings of one test in one quantity of a record."""
 
-    Parameters
-    ----------
-    key, test, flag
-        The quantity, the test's name, and the flag that it gave.
-    rows
-        Where, ascending.
-    example
-        Why, of the first row: one sentence.
-    """
-
+    # The quantity, the test's name, and the flag that it gave
     key: str
     test: str
     flag: Flag
-    rows: Int[np.ndarray, " row"]
-    example: str
+    rows: Int[np.ndarray, " row"]  # where, ascending
+    example: str  # why, of the first row: one sentence
 
 
 def check_sample(

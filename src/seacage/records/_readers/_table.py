@@ -41,29 +41,14 @@ PLAIN = Layout()
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Table:
-    """Rows of cells with the lines that they end on.
+    """Rows of cells with the lines that they end on."""
 
-    Parameters
-    ----------
-    path
-        Of the file, for messages.
-    header
-        The columns' names, each once.
-    header_line
-        The line of the header.
-    lines
-        The line of each row; the row's number where the file has no lines.
-    rows
-        Cells, as many in each row as in the header.
-    cut
-        The file ends inside its last row, for all that can be seen: it has no line end.
-    """
-
-    path: Path
-    header: tuple[str, ...]
-    header_line: int = 1
-    lines: tuple[int, ...]
-    rows: tuple[tuple[str, ...], ...]
+    path: Path  # of the file, for messages
+    header: tuple[str, ...]  # the columns' names, each once
+    header_line: int = 1  # the line of the header
+    lines: tuple[int, ...]  # the line of each row; the row's number where the file has no lines
+    rows: tuple[tuple[str, ...], ...]  # cells, as many in each row as in the header
+    # The file ends inside its last row, for all that can be seen: it has no line end
     cut: bool = False
 
     def column(self, name: str) -> list[str]:
@@ -89,10 +74,7 @@ def read_table(path: Path, layout: "ColumnMap | Layout") -> Table:
 def read_text(path: Path, encoding: str = "utf-8") -> str:
     """Read the text of a file, in one encoding and no other.
 
-    Raises
-    ------
-    RecordError
-        No such file, or bytes that are no text.
+    Raises RecordError: no such file, or bytes that are no text.
     """
     try:
         most = _JSON_BYTES if path.suffix.lower() == ".json" else TABLE_BYTES

@@ -15,17 +15,11 @@ SIZES_SOURCE = "sizes and designs of Cutajar et al. (2019), arXiv:1903.07320"
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Sample:
-    """Training and test cases of a problem.
+    """Training and test cases of a problem."""
 
-    Parameters
-    ----------
-    levels
-        Inputs (n, features) and outputs (n,) of each fidelity, from low to high.
-    x_test, y_test
-        Where the highest fidelity is asked for, and its answer without noise.
-    """
-
+    # Inputs (n, features) and outputs (n,) of each fidelity, from low to high
     levels: tuple[tuple[Float[np.ndarray, "_ _"], Float[np.ndarray, " _"]], ...]
+    # Where the highest fidelity is asked for, and its answer without noise
     x_test: Float[np.ndarray, "row feature"]
     y_test: Float[np.ndarray, " row"]
 

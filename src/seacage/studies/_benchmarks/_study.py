@@ -27,22 +27,13 @@ _NO_PEERS = (
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class BenchmarkStudy:
-    """Where the study's report is, and what it found.
+    """Where the study's report is, and what it found."""
 
-    Parameters
-    ----------
-    report, scores
-        The HTML page and the same numbers as JSON.
-    verdicts
-        Each promise with its verdict.
-    summaries
-        Of the report seeds, one for each problem and method.
-    """
-
+    # The HTML page and the same numbers as JSON
     report: Path
     scores: Path
-    verdicts: tuple[Claim, ...]
-    summaries: tuple[Summary, ...]
+    verdicts: tuple[Claim, ...]  # each promise with its verdict
+    summaries: tuple[Summary, ...]  # of the report seeds, one for each problem and method
 
 
 def benchmark_study(

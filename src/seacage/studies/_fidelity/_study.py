@@ -30,31 +30,16 @@ _POINTS = 300
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class FidelityStudy:
-    """Where the study's report is, and what it found.
+    """Where the study's report is, and what it found."""
 
-    Parameters
-    ----------
-    report, scores
-        The HTML page and the same numbers as JSON.
-    claims
-        Each with its verdict.
-    gaps
-        Low fidelity against the truth, by sensor.
-    rescalings
-        What the best rescaling leaves, by sensor.
-    null
-        The null case beside the real one.
-    fouling
-        The gap by growth.
-    """
-
+    # The HTML page and the same numbers as JSON
     report: Path
     scores: Path
-    claims: tuple[Claim, ...]
-    gaps: tuple[SensorGap, ...]
-    rescalings: tuple[Rescaling, ...]
-    null: NullCase
-    fouling: FoulingGap
+    claims: tuple[Claim, ...]  # each with its verdict
+    gaps: tuple[SensorGap, ...]  # low fidelity against the truth, by sensor
+    rescalings: tuple[Rescaling, ...]  # what the best rescaling leaves, by sensor
+    null: NullCase  # the null case beside the real one
+    fouling: FoulingGap  # the gap by growth
 
 
 def fidelity_study(

@@ -25,21 +25,11 @@ Verdict = Literal["reproduced", "partly", "not reproduced", "not evaluated"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PaperClaim:
-    """A statement of the paper, held against the study's numbers.
+    """A statement of the paper, held against the study's numbers."""
 
-    Parameters
-    ----------
-    claim
-        The statement.
-    verdict
-        What the numbers say of it.
-    finding
-        The numbers.
-    """
-
-    claim: str
-    verdict: Verdict
-    finding: str
+    claim: str  # the statement
+    verdict: Verdict  # what the numbers say of it
+    finding: str  # the numbers
 
 
 def paper_claims(scored: ScoredWays, shapes: ShapeStudy) -> tuple[PaperClaim, ...]:

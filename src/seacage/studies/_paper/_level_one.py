@@ -11,17 +11,10 @@ from seacage.twin import Twin
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class LevelOneScore:
-    """Level 1 against simulations that it has not seen.
+    """Level 1 against simulations that it has not seen."""
 
-    Parameters
-    ----------
-    cases
-        How many.
-    bridle_names, bridle_mae, bridle_mean
-        Mean absolute error and mean tension of each bridle [N].
-    """
-
-    cases: int
+    cases: int  # how many
+    # Mean absolute error and mean tension of each bridle [N]
     bridle_names: tuple[str, ...]
     bridle_mae: Float[np.ndarray, " line"]
     bridle_mean: Float[np.ndarray, " line"]

@@ -17,42 +17,26 @@ class ShapeScore:
     Coordinates and displacements from rest differ by a constant, so the errors are of either.
     A cage on its mooring also moves as a whole. Errors without drift are of shapes whose collar
     lies in its place: both nets are shifted by the mean displacement of the collar's nodes.
-
-    Parameters
-    ----------
-    model, inputs
-        Its name, and what it was asked with.
-    modes
-        Principal components that it keeps; None for a model without.
-    axis_mae
-        Mean absolute error along x, y and z [m].
-    p99, worst
-        Of the distance between the predicted and the computed node [m].
-    mae_without_drift, p99_without_drift, worst_without_drift
-        The same, without the drift of the collar [m].
-    coverage
-        Share of all coordinates inside the 95 % interval [-].
-    crps
-        Continuous ranked probability score of a coordinate, on average [m].
-    fit_cpu_s, predict_ms
-        Processor time of the training [s], and of one shape by itself [ms].
-    case_axis_mae, case_worst
-        The same errors for each case, over its nodes [m].
     """
 
+    # Its name, and what it was asked with
     model: str
     inputs: str = "current"
-    modes: int | None = None
-    axis_mae: tuple[float, float, float]
+    modes: int | None = None  # principal components that it keeps; None for a model without
+    axis_mae: tuple[float, float, float]  # mean absolute error along x, y and z [m]
+    # Of the distance between the predicted and the computed node [m]
     p99: float
     worst: float
+    # The same, without the drift of the collar [m]
     mae_without_drift: float
     p99_without_drift: float
     worst_without_drift: float
-    coverage: float
-    crps: float
+    coverage: float  # share of all coordinates inside the 95 % interval [-]
+    crps: float  # continuous ranked probability score of a coordinate, on average [m]
+    # Processor time of the training [s], and of one shape by itself [ms]
     fit_cpu_s: float = float("nan")
     predict_ms: float = float("nan")
+    # The same errors for each case, over its nodes [m]
     case_axis_mae: Float[np.ndarray, "case 3"]
     case_worst: Float[np.ndarray, " case"]
 

@@ -25,31 +25,16 @@ from seacage.twin import TrainingWindow
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PaperStudy:
-    """Where the study's report is, and what it found.
+    """Where the study's report is, and what it found."""
 
-    Parameters
-    ----------
-    report, scores
-        The HTML page and the same numbers as JSON.
-    sensors
-        The score of each sensor on days that it was not trained on.
-    level_one
-        The score of level 1 on simulations that it has not seen.
-    ways
-        The scores of each way of training, that of ``sensors`` first.
-    shapes
-        The score of each model of the whole shape.
-    claims
-        Of the paper, with their verdicts.
-    """
-
+    # The HTML page and the same numbers as JSON
     report: Path
     scores: Path
-    sensors: tuple[SensorScore, ...]
-    level_one: LevelOneScore
-    ways: tuple[WayScore, ...]
-    shapes: tuple[ShapeScore, ...]
-    claims: tuple[PaperClaim, ...]
+    sensors: tuple[SensorScore, ...]  # the score of each sensor on days that it was not trained on
+    level_one: LevelOneScore  # the score of level 1 on simulations that it has not seen
+    ways: tuple[WayScore, ...]  # the scores of each way of training, that of ``sensors`` first
+    shapes: tuple[ShapeScore, ...]  # the score of each model of the whole shape
+    claims: tuple[PaperClaim, ...]  # of the paper, with their verdicts
 
 
 def paper_study(

@@ -22,21 +22,12 @@ SPREAD, IN_A_ROW, HEARING = (
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class WayScore:
-    """Score of a way of training on validation days.
+    """Score of a way of training on validation days."""
 
-    Parameters
-    ----------
-    name
-        Of the way.
-    trained
-        Sensors with a level-2 model; the others answer at level 1.
-    sensors
-        The score of each sensor.
-    """
-
-    name: str
+    name: str  # of the way
+    # Sensors with a level-2 model; the others answer at level 1
     trained: tuple[str, ...] = field(metadata={"key": "taught"})
-    sensors: tuple[SensorScore, ...]
+    sensors: tuple[SensorScore, ...]  # the score of each sensor
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

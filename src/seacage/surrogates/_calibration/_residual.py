@@ -107,29 +107,17 @@ class ResidualModel:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class FittedResidual:
-    """A slow series observed with noise.
+    """A slow series observed with noise."""
 
-    Parameters
-    ----------
-    sd, memory_s
-        Standard deviation of the slow part, and time scale of its covariance [s].
-    noise_sd
-        Scale of the noise; the standard deviation where it is Gaussian.
-    degrees_of_freedom
-        Of the noise; None for Gaussian.
-    time_s, value
-        The series [s].
-    weight
-        Of each value: 1 for a usual one, near 0 for an outlier.
-    """
-
+    # Standard deviation of the slow part, and time scale of its covariance [s]
     sd: float
     memory_s: float
-    noise_sd: float
-    degrees_of_freedom: float | None
+    noise_sd: float  # scale of the noise; the standard deviation where it is Gaussian
+    degrees_of_freedom: float | None  # of the noise; None for Gaussian
+    # The series [s]
     time_s: Series
     value: Series
-    weight: Series
+    weight: Series  # of each value: 1 for a usual one, near 0 for an outlier
 
     @property
     def noise_variance(self) -> float:

@@ -210,23 +210,13 @@ class GCN:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class FittedGCN:
-    """A trained network and how far it is off; it needs no JAX.
-
-    Parameters
-    ----------
-    network
-        Gives the mean.
-    off
-        Gives the standard deviation.
-    epochs
-        Passes through the cases that it took.
-    """
+    """A trained network and how far it is off; it needs no JAX."""
 
     MODEL: ClassVar[str] = "gcn"
 
-    network: Network
-    off: Spread
-    epochs: int
+    network: Network  # gives the mean
+    off: Spread  # gives the standard deviation
+    epochs: int  # passes through the cases that it took
 
     def predict(self, x: Float[np.ndarray, "row feature"], *, noisy: bool = False) -> Prediction:
         """Shape at each row of features [m].

@@ -31,45 +31,27 @@ class Spread:
     coordinate has the miss that 95 % of them stay within (split conformal), made larger or
     smaller by the misses of the nearest of them. Beyond the farthest that a held-out case lay
     from its nearest training case, it grows in proportion to that distance.
-
-    Parameters
-    ----------
-    train, held_out
-        Standardised features of the cases that trained the network, and of the others.
-    size
-        Of the miss of each held-out case, 1 on average.
-    miss
-        Of each coordinate, where the size is 1 [m].
-    noise
-        Share of the variance that differs between neighbouring cases.
     """
 
+    # Standardised features of the cases that trained the network, and of the others
     train: Float[np.ndarray, "train feature"]
     held_out: Float[np.ndarray, "held feature"]
-    size: Float[np.ndarray, " held"]
-    miss: Float[np.ndarray, "node 3"]
+    size: Float[np.ndarray, " held"]  # of the miss of each held-out case, 1 on average
+    miss: Float[np.ndarray, "node 3"]  # of each coordinate, where the size is 1 [m]
+    # Share of the variance that differs between neighbouring cases
     noise: Float[np.ndarray, "node 3"]
 
     @classmethod
     def of(
         cls,
-        x: Float[np.ndarray, "case feature"],
-        residual: Float[np.ndarray, "case node 3"],
+        x: Float[np.ndarray, "case feature"],  # standardised features of all cases
+        residual: Float[np.ndarray, "case node 3"],  # truth less the network's answer [m]
         *,
+        # Which cases are which
         train: Int[np.ndarray, " train"],
         held_out: Int[np.ndarray, " held"],
     ) -> Self:
-        """From the residuals of a network.
-
-        Parameters
-        ----------
-        x
-            Standardised features of all cases.
-        residual
-            Truth less the network's answer [m].
-        train, held_out
-            Which cases are which.
-        """
+        """From the residuals of a network."""
         missed = residual[held_out]
         # Coordinates that never move are never missed, and must not divide by 0.
         tiny = 1e-9 * max(1.0, float(np.abs(residual).max()))
@@ -90,17 +72,13 @@ class Spread:
         )
 
     def std(
-        self, x: Float[np.ndarray, "row feature"], *, noisy: bool
+        self,
+        x: Float[np.ndarray, "row feature"],  # one row per case
+        *,
+        # Of a case as it was learned from; otherwise without what differs between neighbours
+        noisy: bool,
     ) -> Float[np.ndarray, "row node 3"]:
-        """At standardised features [m].
-
-        Parameters
-        ----------
-        x
-            One row per case.
-        noisy
-            Of a case as it was learned from; otherwise without what differs between neighbours.
-        """
+        """At standardised features [m]."""
         around = np.sqrt(_nearest_mean(x, self.held_out, self.size**2))
         grown = np.maximum(1.0, _nearest(x, self.train) / self._reach)
         kept = grown[:, None, None] ** 2 - (0.0 if noisy else self.noise)
@@ -122,10 +100,7 @@ class Spread:
     def from_arrays(cls, arrays: Mapping[str, np.ndarray], *, features: int, nodes: int) -> Self:
         """The other way.
 
-        Raises
-        ------
-        ModelError
-            An array is missing, of another shape, or not finite.
+        Raises ModelError: an array is missing, of another shape, or not finite.
         """
         held_out = array(arrays, "held_out", None, features)
         noise = array(arrays, "noise", nodes, 3)

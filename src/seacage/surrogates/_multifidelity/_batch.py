@@ -82,40 +82,25 @@ def _nest(leaf: Columns, evaluate: Callable[[np.ndarray], Evaluation]) -> Leaf:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class BatchedLevels:
-    """Processes of the same features, each with a level below of its own as the last input.
+    """Processes of the same features, each with a level below of its own as the last input."""
 
-    Parameters
-    ----------
-    levels
-        The processes, such as ``FittedNARGP.upper`` holds.
-    members, owner
-        Of all their ensembles, one after the other, and whose each is.
-    share
-        Probability of each member within its level, 0 in the others.
-    links
-        The members' covariances with their points, a kernel after the other.
-    weights
-        By which each member's mean is summed; 0 for points that it does not have.
-    line
-        What each member's outputs are about, by its inputs.
-    centre, unit
-        Of each member's inputs.
-    outputs
-        Centre and amplitude of each level's.
-    bend
-        Length over which each level bends with the one below, in that one's unit.
-    """
-
-    levels: tuple[FittedGaussianProcess, ...]
+    levels: tuple[FittedGaussianProcess, ...]  # the processes, such as ``FittedNARGP.upper`` holds
+    # Of all their ensembles, one after the other, and whose each is
     members: tuple[Posterior, ...]
     owner: Int[np.ndarray, " member"]
+    # Probability of each member within its level, 0 in the others
     share: Float[np.ndarray, "level member"]
+    # The members' covariances with their points, a kernel after the other
     links: tuple[BatchedLinks, ...]
+    # By which each member's mean is summed; 0 for points that it does not have
     weights: Float[np.ndarray, "member n 1"]
+    # What each member's outputs are about, by its inputs
     line: Float[np.ndarray, "member feature 1"]
+    # Of each member's inputs
     centre: Float[np.ndarray, "member 1 feature"]
     unit: Float[np.ndarray, "member 1 feature"]
-    outputs: Scaling
+    outputs: Scaling  # centre and amplitude of each level's
+    # Length over which each level bends with the one below, in that one's unit
     bend: Float[np.ndarray, " level"]
 
     @classmethod

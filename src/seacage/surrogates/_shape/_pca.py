@@ -283,23 +283,13 @@ class PcaGP:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class FittedPcaGP:
-    """Principal modes of the shape and a process for each score.
-
-    Parameters
-    ----------
-    basis
-        The modes kept.
-    scores
-        One process per mode.
-    explained_variance
-        Share of the training variance that the modes hold.
-    """
+    """Principal modes of the shape and a process for each score."""
 
     MODEL: ClassVar[str] = "pca-gp"
 
-    basis: Modes
-    scores: tuple[FittedGaussianProcess, ...]
-    explained_variance: float
+    basis: Modes  # the modes kept
+    scores: tuple[FittedGaussianProcess, ...]  # one process per mode
+    explained_variance: float  # share of the training variance that the modes hold
 
     @property
     def modes(self) -> int:

@@ -128,40 +128,23 @@ class FittedShapeGP:
     """The whole shape: compressed modes, and one process for all their scores.
 
     With a symmetry all of this is of the sector in which it was learned.
-
-    Parameters
-    ----------
-    basis
-        The modes kept, of displacements from the mean shape.
-    scores
-        One process with an output per mode.
-    centre
-        The mean shape [m].
-    left_out
-        Root mean square over the training cases of what the modes leave out [m].
-    scale
-        What the standard deviation of each coordinate is multiplied by: with it 95 % of the
-        training cases lie inside 1.96 of them, each predicted from all others.
-    features
-        How many the sea state has.
-    symmetry
-        As in ``ShapeGP``.
-    products
-        Of the modes' coordinates at each node, which variances are sums of: x x, y y, z z, x y.
-    prior_moments
-        These sums where every score is as uncertain as before the training [m2].
     """
 
     MODEL: ClassVar[str] = "shape-gp"
 
-    basis: Modes
-    scores: FittedGaussianProcess
-    centre: Float[np.ndarray, "node 3"]
+    basis: Modes  # the modes kept, of displacements from the mean shape
+    scores: FittedGaussianProcess  # one process with an output per mode
+    centre: Float[np.ndarray, "node 3"]  # the mean shape [m]
+    # Root mean square over the training cases of what the modes leave out [m]
     left_out: Float[np.ndarray, "node 3"]
+    # What the standard deviation of each coordinate is multiplied by: with it 95 % of the training
+    # cases lie inside 1.96 of them, each predicted from all others
     scale: Float[np.ndarray, "node 3"]
-    features: int
-    symmetry: Symmetry | None
+    features: int  # how many the sea state has
+    symmetry: Symmetry | None  # as in ``ShapeGP``
+    # Of the modes' coordinates at each node, which variances are sums of: x x, y y, z z, x y
     products: Float[np.ndarray, "mode product node"] = field(init=False, repr=False)
+    # These sums where every score is as uncertain as before the training [m2]
     prior_moments: Float[np.ndarray, "product node"] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -366,17 +349,10 @@ class FittedShapeGP:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class FittedCoordinate:
-    """One coordinate of one node; it shares the shape's factor and is not saved by itself.
+    """One coordinate of one node; it shares the shape's factor and is not saved by itself."""
 
-    Parameters
-    ----------
-    shape
-        What it is a coordinate of.
-    node, axis
-        Which.
-    """
-
-    shape: FittedShapeGP
+    shape: FittedShapeGP  # what it is a coordinate of
+    # Which
     node: int
     axis: int
 

@@ -30,22 +30,14 @@ class Symmetry:
     every case can be learned in one sector of the current's directions, which a fold of four
     with mirrors fills eight times as densely. That the net coincides with its images says
     nothing of its mooring and its parts: ``check_symmetry`` asks the shapes themselves.
-
-    Parameters
-    ----------
-    centre
-        Where the axis stands, (east, north) [m].
-    turn
-        What each image does to a vector (east, north); the first leaves it as it is.
-    source
-        The node whose place in the net each node takes in each image.
-    middle, half
-        Direction of the sector's middle from east, and half its width [rad].
     """
 
-    centre: Float[np.ndarray, "2"]
+    centre: Float[np.ndarray, "2"]  # where the axis stands, (east, north) [m]
+    # What each image does to a vector (east, north); the first leaves it as it is
     turn: Float[np.ndarray, "image 2 2"]
+    # The node whose place in the net each node takes in each image
     source: Int[np.ndarray, "image node"]
+    # Direction of the sector's middle from east, and half its width [rad]
     middle: float
     half: float
 

@@ -77,26 +77,17 @@ class Limit:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AlarmEvent:
-    """One line of the alarm journal.
+    """One line of the alarm journal."""
 
-    Parameters
-    ----------
-    alarm, action, t
-        The alarm's name, the change of its state, and the twin's clock.
-    value
-        The number at that time; None where there was none.
-    who, why
-        The person and the reason; empty where no person acted.
-    quiet
-        Suppressed, so that nobody is notified: the alarm is shelved or out of service.
-    """
-
+    # The alarm's name, the change of its state, and the twin's clock
     alarm: str
     action: Action
     t: datetime
-    value: float | None = None
+    value: float | None = None  # the number at that time; None where there was none
+    # The person and the reason; empty where no person acted
     who: str = ""
     why: str = ""
+    # Suppressed, so that nobody is notified: the alarm is shelved or out of service
     quiet: bool = False
 
 
@@ -116,47 +107,28 @@ class Alarm:
     Active and acknowledged are independent: an alarm that has cleared still waits to be
     acknowledged. A number that is not known neither raises nor clears.
 
-    Parameters
-    ----------
-    name
-        Its kind and its source, e.g. ``load.bridle-3``.
-    active, acknowledged
-        Whether its cause lasts, and whether somebody has acknowledged it.
-    since
-        Of the last change of ``active``; None if it never was.
-    crossed
-        Since when the number has been beyond the limit that would change ``active``.
-    notified
-        Time of the last notification.
-    value, worst
-        The last known number, and the largest since it was raised.
-    shelved_until, shelved_once
-        Shelved until that time, or until it clears.
-    in_service
-        Whether it is notified at all.
-    comment
-        The last comment of a person.
-    detail
-        Of the input that raised it; empty for none.
-
     References
     ----------
     OPC UA Part 9, Alarms and Conditions: AcknowledgeableConditionType, ShelvedStateMachineType.
     """
 
-    name: str
+    name: str  # its kind and its source, e.g. ``load.bridle-3``
+    # Whether its cause lasts, and whether somebody has acknowledged it
     active: bool = False
     acknowledged: bool = True
-    since: datetime | None = None
+    since: datetime | None = None  # of the last change of ``active``; None if it never was
+    # Since when the number has been beyond the limit that would change ``active``
     crossed: datetime | None = None
-    notified: datetime | None = None
+    notified: datetime | None = None  # time of the last notification
+    # The last known number, and the largest since it was raised
     value: float | None = None
     worst: float | None = None
+    # Shelved until that time, or until it clears
     shelved_until: datetime | None = None
     shelved_once: bool = False
-    in_service: bool = True
-    comment: str = ""
-    detail: str = ""
+    in_service: bool = True  # whether it is notified at all
+    comment: str = ""  # the last comment of a person
+    detail: str = ""  # of the input that raised it; empty for none
 
     __pydantic_config__ = json_keys(notified="said")
 

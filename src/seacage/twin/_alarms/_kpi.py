@@ -21,40 +21,23 @@ class AlarmKpi:
     """Key figures of a journal over a span of time.
 
     Suppressed alarms, which were shelved or out of service, count in ``raised`` alone.
-
-    Parameters
-    ----------
-    start, end
-        The span.
-    raised
-        How often each alarm was raised, suppressed or not; the most frequent first.
-    per_day
-        Alarms raised and notified, over the days of the span [1/day].
-    most_in_an_hour
-        The most that were notified within any hour.
-    standing
-        Alarms that were raised at the end, the longest first, and since when; a raise before
-        the span counts where its line is among those given.
-    longest_s
-        By alarm, the longest that it stood within the span [s].
-    chattering
-        Alarms raised three times or more within an hour.
-    to_acknowledge_s
-        Median time from raise to acknowledgement [s]; None where nothing was acknowledged.
-    unacknowledged
-        Alarms that were notified and not acknowledged within the span.
     """
 
+    # The span
     start: datetime
     end: datetime
+    # How often each alarm was raised, suppressed or not; the most frequent first
     raised: Mapping[str, int]
-    per_day: float
-    most_in_an_hour: int
+    per_day: float  # alarms raised and notified, over the days of the span [1/day]
+    most_in_an_hour: int  # the most that were notified within any hour
+    # Alarms that were raised at the end, the longest first, and since when; a raise before the span
+    # counts where its line is among those given
     standing: Mapping[str, datetime]
-    longest_s: Mapping[str, float]
-    chattering: tuple[str, ...]
+    longest_s: Mapping[str, float]  # by alarm, the longest that it stood within the span [s]
+    chattering: tuple[str, ...]  # alarms raised three times or more within an hour
+    # Median time from raise to acknowledgement [s]; None where nothing was acknowledged
     to_acknowledge_s: float | None
-    unacknowledged: int
+    unacknowledged: int  # alarms that were notified and not acknowledged within the span
 
 
 def alarm_kpi(journal: Iterable[AlarmEvent], *, start: datetime, end: datetime) -> AlarmKpi:

@@ -10,24 +10,12 @@ from seacage.twin._alarms._policy import AlarmPolicy
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AlarmText:
-    """Texts of an alarm for its operator.
+    """Texts of an alarm for its operator."""
 
-    Parameters
-    ----------
-    title
-        A few words.
-    message
-        The alarm's state, in a sentence or two.
-    advice
-        The action to take.
-    unit
-        Of the alarm's number and limits; "1" where it has none.
-    """
-
-    title: str
-    message: str
-    advice: str
-    unit: str
+    title: str  # a few words
+    message: str  # the alarm's state, in a sentence or two
+    advice: str  # the action to take
+    unit: str  # of the alarm's number and limits; "1" where it has none
 
 
 def alarm_text(alarm: Alarm, policy: AlarmPolicy) -> AlarmText:

@@ -16,39 +16,24 @@ MOST_POINTS = 8_000
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Clearance(Rows):
-    """Clearance of points from a net.
+    """Clearance of points from a net."""
 
-    Parameters
-    ----------
-    distance
-        To the predicted net, on either side of it [m].
-    inside
-        Whether a point is within the predicted net.
-    position, normal
-        The nearest point of the predicted net [m], and its normal out of the cage.
-    expected
-        Distance of the point from the expected net, the predicted one corrected by the twin's
-        mean error; negative where that net lies beyond the point [m].
-    sigma
-        Standard deviation of that distance, across the net [m]. Where the twin has no discrepancy
-        (``PredictedNet.error_origin`` is None) it is the emulator's own, about the simulations, and
-        the probabilities below are no statement about the true net.
-    below
-        Distance of ``p_below`` [m].
-    p_below
-        Probability that the true net is nearer than ``below``, on whichever side [-].
-    p_through
-        Probability that the point truly is on the net's other side [-].
-    """
-
-    distance: Float[np.ndarray, " point"]
-    inside: Bool[np.ndarray, " point"]
+    distance: Float[np.ndarray, " point"]  # to the predicted net, on either side of it [m]
+    inside: Bool[np.ndarray, " point"]  # whether a point is within the predicted net
+    # The nearest point of the predicted net [m], and its normal out of the cage
     position: Float[np.ndarray, "point 3"]
     normal: Float[np.ndarray, "point 3"]
+    # Distance of the point from the expected net, the predicted one corrected by the twin's mean
+    # error; negative where that net lies beyond the point [m]
     expected: Float[np.ndarray, " point"]
+    # Standard deviation of that distance, across the net [m]. Where the twin has no discrepancy
+    # (``PredictedNet.error_origin`` is None) it is the emulator's own, about the simulations, and
+    # the probabilities below are no statement about the true net.
     sigma: Float[np.ndarray, " point"]
-    below: float
+    below: float  # distance of ``p_below`` [m]
+    # Probability that the true net is nearer than ``below``, on whichever side [-]
     p_below: Float[np.ndarray, " point"]
+    # Probability that the point truly is on the net's other side [-]
     p_through: Float[np.ndarray, " point"]
 
     def __len__(self) -> int:
@@ -64,26 +49,15 @@ class PathClearance:
     share it; the scatter about the cases is taken as one number over a patch of the net, three
     rings high and a quarter of the way round, and independent in the next: on the virtual field
     that was nearest to the truth. Left out: that the net moves while the path is swum.
-
-    Parameters
-    ----------
-    point
-        Samples of the path [m].
-    along
-        Distance of each along the path [m].
-    clearance
-        At the samples.
-    p_below
-        Probability that the path comes nearer to the true net than ``clearance.below`` [-].
-    p_least, p_most
-        The same if the scatter about the cases were one number all over the net, and if it were
-        independent from each point to the next: the one is too low and the other too high.
     """
 
-    point: Float[np.ndarray, "point 3"]
-    along: Float[np.ndarray, " point"]
-    clearance: Clearance
+    point: Float[np.ndarray, "point 3"]  # samples of the path [m]
+    along: Float[np.ndarray, " point"]  # distance of each along the path [m]
+    clearance: Clearance  # at the samples
+    # Probability that the path comes nearer to the true net than ``clearance.below`` [-]
     p_below: float
+    # The same if the scatter about the cases were one number all over the net, and if it were
+    # independent from each point to the next: the one is too low and the other too high
     p_least: float
     p_most: float
 

@@ -27,31 +27,18 @@ _STRIDES = 3.0
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class InspectionPath:
-    """Waypoints along a net.
+    """Waypoints along a net."""
 
-    Parameters
-    ----------
-    position
-        East, north, up [m].
-    facing
-        Unit vector from each waypoint to the net.
-    row
-        The row, or turn of the spiral, that it belongs to, from the top.
-    part
-        Number of its part: a new one begins where waypoints were left out, or where the straight
-        line to the next would come nearer to the net than half the stand-off.
-    clearance
-        Of each waypoint.
-    left_out
-        Number of waypoints without room for the stand-off: near the tip from inside, in a narrow
-        fold, or at the surface.
-    """
-
-    position: Float[np.ndarray, "waypoint 3"]
-    facing: Float[np.ndarray, "waypoint 3"]
+    position: Float[np.ndarray, "waypoint 3"]  # east, north, up [m]
+    facing: Float[np.ndarray, "waypoint 3"]  # unit vector from each waypoint to the net
+    # The row, or turn of the spiral, that it belongs to, from the top
     row: Int[np.ndarray, " waypoint"]
+    # Number of its part: a new one begins where waypoints were left out, or where the straight line
+    # to the next would come nearer to the net than half the stand-off
     part: Int[np.ndarray, " waypoint"]
-    clearance: Clearance
+    clearance: Clearance  # of each waypoint
+    # Number of waypoints without room for the stand-off: near the tip from inside, in a narrow
+    # fold, or at the surface
     left_out: int
 
     def __len__(self) -> int:
