@@ -5,15 +5,12 @@ import math
 from seacage.conventions._errors import InputError
 
 
-def duration_text(seconds: float) -> str:
+def duration_text(
+    seconds: float,  # the duration, not below 0 [s]
+) -> str:
     """Short text of a duration: "45 s", "20 min", "4 h" or "3 days".
 
     The unit is the largest of which the duration holds two; one decimal is kept where it is not 0.
-
-    Parameters
-    ----------
-    seconds
-        The duration, not below 0 [s].
     """
     for unit, length in (("days", 86400.0), ("h", 3600.0), ("min", 60.0)):
         if seconds >= 2.0 * length:
@@ -24,6 +21,8 @@ def duration_text(seconds: float) -> str:
 def count_times(whole: float, part: float, what: str, *, least: int = 1) -> int:
     """Number of times that one time fits into another, to the last bit of a step.
 
+    Raises InputError: no whole number, or too small a one.
+
     Parameters
     ----------
     whole, part
@@ -32,11 +31,6 @@ def count_times(whole: float, part: float, what: str, *, least: int = 1) -> int:
         Of the whole, for the message, such as "follow: duration".
     least
         Smallest number that is allowed.
-
-    Raises
-    ------
-    InputError
-        No whole number, or too small a one.
     """
     count = round(whole / part) if part > 0.0 and math.isfinite(whole) else -1
     if count < least or not math.isclose(count * part, whole, rel_tol=1e-9, abs_tol=1e-9):

@@ -34,19 +34,12 @@ class Contest:
 
 
 def error_figure(
-    methods: Sequence[str], contests: Sequence[Contest], *, ours: Sequence[int]
+    methods: Sequence[str],  # names, top to bottom
+    contests: Sequence[Contest],  # one panel each
+    *,
+    ours: Sequence[int],  # which of the methods are ours, the first of them the one to look at
 ) -> "Figure":
-    """Error of each method on each problem: a dot per seed, and a mark at the mean.
-
-    Parameters
-    ----------
-    methods
-        Names, top to bottom.
-    contests
-        One panel each.
-    ours
-        Which of the methods are ours, the first of them the one to look at.
-    """
+    """Error of each method on each problem: a dot per seed, and a mark at the mean."""
     with style():
         figure, panels = _grid(methods, contests, "Root mean square error")
         for axes, contest in zip(panels, contests, strict=True):

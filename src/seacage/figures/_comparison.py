@@ -96,18 +96,13 @@ def series_figure(comparison: Comparison, *, start: np.datetime64, end: np.datet
 
 
 def rows_figure(
-    comparisons: Sequence[Comparison], spans: Sequence[tuple[np.datetime64, np.datetime64]]
+    comparisons: Sequence[Comparison],  # one for each row
+    # Start and end of each row's series [UTC]
+    spans: Sequence[tuple[np.datetime64, np.datetime64]],
 ) -> "Figure":
     """The paper's figure of some sensors: one row each of two density scatters and a series.
 
     All scatters share the scale of their counts; each row has limits of its own.
-
-    Parameters
-    ----------
-    comparisons
-        One for each row.
-    spans
-        Start and end of each row's series [UTC].
     """
     with style():
         figure = blank_figure(11.0, 0.75 + 2.6 * len(comparisons))

@@ -46,26 +46,15 @@ class Panel:
 
 
 def sector_figure(
-    panels: Sequence[Panel],
-    sectors: Sequence[str],
+    panels: Sequence[Panel],  # one for each sensor
+    sectors: Sequence[str],  # where the current goes
+    # Means; NaN where there is none
     truth: Float[np.ndarray, "sensor sector"],
     low: Float[np.ndarray, "sensor sector"],
     *,
-    origin: Origin,
+    origin: Origin,  # of the truth
 ) -> "Figure":
-    """Mean response of the truth and of the low fidelity by direction of the current.
-
-    Parameters
-    ----------
-    panels
-        One for each sensor.
-    sectors
-        Where the current goes.
-    truth, low
-        Means; NaN where there is none.
-    origin
-        Of the truth.
-    """
+    """Mean response of the truth and of the low fidelity by direction of the current."""
     place = np.arange(len(sectors))
     with style():
         figure, axes = panel_grid(len(panels), 2.05, room=0.45, sharex=True)
@@ -126,23 +115,14 @@ def left_figure(
 
 
 def gain_figure(
-    names: Sequence[str],
+    names: Sequence[str],  # of the rows: sensors, and all of them together
+    # Mean and ends of the interval, as shares of the low fidelity's error [-]
     null: Float[np.ndarray, "row 3"],
     real: Float[np.ndarray, "row 3"],
     *,
-    origin: Origin,
+    origin: Origin,  # of the readings
 ) -> "Figure":
-    """Gains with their intervals, where there is nothing to gain and where there is.
-
-    Parameters
-    ----------
-    names
-        Of the rows: sensors, and all of them together.
-    null, real
-        Mean and ends of the interval, as shares of the low fidelity's error [-].
-    origin
-        Of the readings.
-    """
+    """Gains with their intervals, where there is nothing to gain and where there is."""
     place = np.arange(len(names))[::-1]
     with style():
         figure = blank_figure(_WIDTH, 0.75 + 0.29 * len(names))
@@ -163,30 +143,18 @@ def gain_figure(
 
 
 def fouling_figure(
-    panels: Sequence[Panel],
+    panels: Sequence[Panel],  # one for each sensor
+    # At which both cages were settled [-] and [m/s]
     growth: Float[np.ndarray, " growth"],
     speed: Float[np.ndarray, " speed"],
-    gap: Float[np.ndarray, "growth speed sensor"],
+    gap: Float[np.ndarray, "growth speed sensor"],  # between them
     *,
+    # Of the record, over whatever its currents were
     met_growth: Float[np.ndarray, " bin"],
     met_gap: Float[np.ndarray, "bin sensor"],
-    origin: Origin,
+    origin: Origin,  # of the truth
 ) -> "Figure":
-    """Truth less low fidelity while the net grows.
-
-    Parameters
-    ----------
-    panels
-        One for each sensor.
-    growth, speed
-        At which both cages were settled [-] and [m/s].
-    gap
-        Between them.
-    met_growth, met_gap
-        Of the record, over whatever its currents were.
-    origin
-        Of the truth.
-    """
+    """Truth less low fidelity while the net grows."""
     from matplotlib import colormaps
 
     shades = colormaps[AMOUNT](np.linspace(0.15, 0.8, len(speed)))

@@ -19,7 +19,10 @@ _LIMIT = 1.0
 
 
 def shape_cases_figure(
-    errors: Mapping[str, Float[np.ndarray, "case 3"]], *, origin: Origin = Origin.COMPUTED
+    # By name of the model, averaged over nodes [m]; at most five models
+    errors: Mapping[str, Float[np.ndarray, "case 3"]],
+    *,
+    origin: Origin = Origin.COMPUTED,  # of the shapes that the models were compared with
 ) -> "Figure":
     """Mean absolute node error along x, y and z of each test case, and over all of them.
 
@@ -27,13 +30,6 @@ def shape_cases_figure(
     panel has the mean over the cases and, as the paper, one standard deviation to either side;
     all scales are logarithmic, where the paper's are linear, so that no model hides at the
     bottom. A bar that would reach below zero ends at the least case.
-
-    Parameters
-    ----------
-    errors
-        By name of the model, averaged over nodes [m]; at most five models.
-    origin
-        Of the shapes that the models were compared with.
     """
     least = min(float(error[error > 0.0].min(initial=_LIMIT)) for error in errors.values())
     with style():

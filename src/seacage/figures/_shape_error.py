@@ -20,27 +20,18 @@ ABREAST = 3
 
 
 def shape_error_figure(
-    current_speed: Float[np.ndarray, " case"],
+    current_speed: Float[np.ndarray, " case"],  # [m/s]
+    # By name of the model, averaged over nodes and axes [m]
     errors: Mapping[str, Float[np.ndarray, " case"]],
     *,
+    # What no model can go below: the same between a half hour's mean and the mean of many half
+    # hours of the same sea [m]
     floor: float | None = None,
-    origin: Origin = Origin.COMPUTED,
+    origin: Origin = Origin.COMPUTED,  # of the shapes that the models were compared with
 ) -> "Figure":
     """Mean absolute node error of each model in each held-out case, against the speed.
 
     The line at 1 m is the distance that the paper would have an ROV keep from the net.
-
-    Parameters
-    ----------
-    current_speed
-        [m/s].
-    errors
-        By name of the model, averaged over nodes and axes [m].
-    floor
-        What no model can go below: the same between a half hour's mean and the mean of many
-        half hours of the same sea [m].
-    origin
-        Of the shapes that the models were compared with.
     """
     if len(errors) > len(_COLOURS):
         raise InputError(

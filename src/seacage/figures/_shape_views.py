@@ -36,24 +36,15 @@ class ShapeView:
 
 
 def shape_views_figure(
-    views: Sequence[ShapeView],
-    edges: Int[np.ndarray, "edge 2"],
+    views: Sequence[ShapeView],  # with the same models each
+    edges: Int[np.ndarray, "edge 2"],  # of the net, as pairs of nodes
     *,
-    origin: Origin = Origin.COMPUTED,
+    origin: Origin = Origin.COMPUTED,  # of the computed shapes
 ) -> "Figure":
     """Each sea in a row, each model in a column, its net in red over the computed one in blue.
 
     Positions are drawn, x east, y north and z up, all to one scale; the worst node and its
     distance are marked.
-
-    Parameters
-    ----------
-    views
-        With the same models each.
-    edges
-        Of the net, as pairs of nodes.
-    origin
-        Of the computed shapes.
     """
     models = list(views[0].predicted)
     with style():

@@ -39,19 +39,12 @@ class TrainingScores:
 
 
 def training_scores_figure(
-    sensors: Sequence[str], ways: Mapping[str, TrainingScores], *, origin: Origin
+    sensors: Sequence[str],  # their names, from top to bottom
+    ways: Mapping[str, TrainingScores],  # by name
+    *,
+    origin: Origin,  # of the readings
 ) -> "Figure":
-    """Error, score and coverage of each sensor, one mark for each way of training.
-
-    Parameters
-    ----------
-    sensors
-        Their names, from top to bottom.
-    ways
-        By name.
-    origin
-        Of the readings.
-    """
+    """Error, score and coverage of each sensor, one mark for each way of training."""
     place = np.arange(len(sensors))[::-1]
     with style():
         figure = blank_figure(11.0, 1.35 + 0.36 * len(sensors))

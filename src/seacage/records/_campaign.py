@@ -138,10 +138,7 @@ class CampaignRecord:
 def read_campaign(path: str | Path) -> CampaignRecord:
     """A finished campaign from its Zarr store, or from the NetCDF file exported from it.
 
-    Raises
-    ------
-    RecordError
-        No campaign is there, or some of its cases have not been run.
+    Raises RecordError: no campaign is there, or some of its cases have not been run.
     """
     path = Path(path)
     with _open(path) as dataset:

@@ -99,15 +99,17 @@ _LOADS = {
 
 
 def create_campaign(
-    path: Path,
+    path: Path,  # where
     *,
-    seas: Sequence[SeaState],
+    seas: Sequence[SeaState],  # the sea state of each case
+    # Sizes of the cage: nodes of the net, and bridles
     nodes: int,
     lines: int,
-    mooring: MooringLines | None = None,
-    block: int,
-    attributes: Mapping[str, Any],
-    wave_seeds: Sequence[int] | None = None,
+    mooring: MooringLines | None = None,  # all its lines, whose loads a campaign in time keeps
+    block: int,  # cases written at a time: the store's chunk along ``case``
+    attributes: Mapping[str, Any],  # of the whole store, beside those that every campaign carries
+    wave_seeds: Sequence[int] | None = None,  # of each case's waves; None for equilibria
+    # What a campaign in time keeps of its statistics
     quantile_levels: Sequence[float] = (),
     second_moment: bool = False,
 ) -> None:
@@ -115,25 +117,6 @@ def create_campaign(
 
     It appears at ``path`` whole or not at all. If another process made it meanwhile, that one
     stays.
-
-    Parameters
-    ----------
-    path
-        Where.
-    seas
-        The sea state of each case.
-    nodes, lines
-        Sizes of the cage: nodes of the net, and bridles.
-    mooring
-        All its lines, whose loads a campaign in time keeps.
-    block
-        Cases written at a time: the store's chunk along ``case``.
-    attributes
-        Of the whole store, beside those that every campaign carries.
-    wave_seeds
-        Of each case's waves; None for equilibria.
-    quantile_levels, second_moment
-        What a campaign in time keeps of its statistics.
     """
     import zarr
 
@@ -178,23 +161,15 @@ def create_campaign(
 def write_cases(
     path: Path,
     first: int,
-    answers: Mapping[str, np.ndarray],
+    answers: Mapping[str, np.ndarray],  # by the names of the store's variables
     *,
+    # Sum of the second moments of the block's converged cases [m2]
     moment: Float[np.ndarray, "coordinate coordinate"] | None = None,
-    core_seconds: float = np.nan,
+    core_seconds: float = np.nan,  # what the block took
 ) -> None:
     """Write one block of answers, from case ``first`` on.
 
     ``result`` goes last: a block whose results are there is there whole.
-
-    Parameters
-    ----------
-    answers
-        By the names of the store's variables.
-    moment
-        Sum of the second moments of the block's converged cases [m2].
-    core_seconds
-        What the block took.
     """
     number = first // int(_array(path, "result").chunks[0])
     if moment is not None:
@@ -210,10 +185,7 @@ def write_cases(
 def campaign_results(path: Path) -> tuple[dict[str, Any], Int[np.ndarray, " case"], int]:
     """Attributes, result of each case (``NOT_RUN`` where there is none) and block size.
 
-    Raises
-    ------
-    RecordError
-        There is no campaign at ``path``.
+    Raises RecordError: there is no campaign at ``path``.
     """
     import zarr
 

@@ -152,10 +152,7 @@ def write_history(record: HistoryRecord, path: Path | str) -> None:
 def read_history(path: Path | str) -> HistoryRecord:
     """Read back what ``write_history`` wrote.
 
-    Raises
-    ------
-    RecordError
-        No such file, no NetCDF, or one of another schema.
+    Raises RecordError: no such file, no NetCDF, or one of another schema.
     """
     try:
         with open_netcdf(Path(path), _SCHEMA) as dataset:

@@ -62,10 +62,8 @@ class Sample:
 def check_stream(name: str) -> None:
     """Refuse a stream's name that could not be a file's name or a topic's level.
 
-    Raises
-    ------
-    InputError
-        Empty, longer than 64, or with other characters than letters, digits and ``_ . -``.
+    Raises InputError: empty, longer than 64, or with other characters than letters, digits and ``_
+    . -``.
     """
     if _STREAM.fullmatch(name) is None:
         raise InputError(

@@ -23,27 +23,16 @@ class Demonstration:
 
 
 def prepare_demonstration(
-    folder: str | Path,
+    folder: str | Path,  # keeps the stages; after a stop the work goes on where it was
     *,
-    record: Record | None = None,
-    workers: int | None = None,
-    progress: Progress | None = None,
+    record: Record | None = None,  # of a real buoy; None for the generated one
+    workers: int | None = None,  # processes for simulations; None for one per core
+    progress: Progress | None = None,  # called as (stage, done, total)
 ) -> Demonstration:
     """Make the demonstration twin, or find it made: campaign, field, training, shape error.
 
     The twin learns from a generated current record. Another buoy's record may drive the show
     instead: the twin stays the same, and the sensors beside that record are virtual too.
-
-    Parameters
-    ----------
-    folder
-        Keeps the stages; after a stop the work goes on where it was.
-    record
-        Of a real buoy; None for the generated one.
-    workers
-        Processes for simulations; None for one per core.
-    progress
-        Called as (stage, done, total).
     """
     chain = Chain(
         folder=Path(folder),

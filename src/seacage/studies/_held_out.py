@@ -24,6 +24,8 @@ def score_record(
 ) -> tuple[SensorScore, ...]:
     """Score a twin on the days of a field record that it was not trained on.
 
+    Raises InputError: a sensor of the record has no held-out day.
+
     Parameters
     ----------
     twin
@@ -35,11 +37,6 @@ def score_record(
         fidelities (SVG); None writes nothing.
     seed
         Of the bootstrap.
-
-    Raises
-    ------
-    InputError
-        A sensor of the record has no held-out day.
     """
     judging = unseen(field, twin.provenance.training_windows)
     readings = compare(twin.predict_record(field.buoy), judging)

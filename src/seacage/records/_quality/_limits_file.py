@@ -26,10 +26,7 @@ def read_limits(path: Path | str) -> Limits:
         months = [6, 7, 8]
         suspect = [0, 4]
 
-    Raises
-    ------
-    RecordError
-        No TOML, an unknown quantity, group or limit, a value that is no number.
+    Raises RecordError: no TOML, an unknown quantity, group or limit, a value that is no number.
     """
     where = str(path)
     table = parse_toml(read_text(path, refusal=RecordError), where, refusal=RecordError)

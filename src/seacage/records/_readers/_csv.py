@@ -99,11 +99,8 @@ def read_rows(
 def check_rows(path: Path, header: str, *, columns: ColumnMap | None = None) -> None:
     """Refuse a table whose rows could not be read, by its header alone.
 
-    Raises
-    ------
-    RecordError
-        The header is not that of the map; without one, of no shipped map. An encoding that
-        cannot be read in parts.
+    Raises RecordError: the header is not that of the map; without one, of no shipped map. An
+    encoding that cannot be read in parts.
     """
     if columns is not None and columns.encoding == "utf-16":
         raise RecordError(f"{path}: UTF-16 cannot be read in parts. Let the logger write UTF-8.")

@@ -18,19 +18,14 @@ from seacage.records._record import Record
 _NETCDF = re.compile(r'^\s*kind\s*=\s*"netcdf"', re.MULTILINE)
 
 
-def read_map(source: Path | str) -> ColumnMap | NetcdfMap:
+def read_map(
+    # A TOML file, with ``kind = "netcdf"`` where it is a ``NetcdfMap``'s; or the name of a shipped
+    # column map
+    source: Path | str,
+) -> ColumnMap | NetcdfMap:
     """Read what a foreign file's columns or variables mean.
 
-    Parameters
-    ----------
-    source
-        A TOML file, with ``kind = "netcdf"`` where it is a ``NetcdfMap``'s; or the name of a
-        shipped column map.
-
-    Raises
-    ------
-    RecordError
-        No such file and no such name, or a map that is refused.
+    Raises RecordError: no such file and no such name, or a map that is refused.
     """
     if str(source) in shipped_maps():
         return shipped_maps()[str(source)]
@@ -93,10 +88,7 @@ def read_record(
 def known_map(path: Path | str) -> ColumnMap | None:
     """Return the map by which a table is read that is given none; None for NetCDF.
 
-    Raises
-    ------
-    RecordError
-        A table that cannot be split, or whose header no shipped map fits.
+    Raises RecordError: a table that cannot be split, or whose header no shipped map fits.
     """
     path = Path(path)
     return None if is_netcdf(path) else split_table(path, None)[1]

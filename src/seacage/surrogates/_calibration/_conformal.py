@@ -67,19 +67,14 @@ def conformal_factor(score: Series, *, independent: float, level: float = 0.95) 
 
 
 def variance_components(
-    terms: Float[np.ndarray, "n term"], square: Series
+    # Variances that each cause would have at share 1, one column per cause
+    terms: Float[np.ndarray, "n term"],
+    square: Series,  # squared errors; less what is known of them, so that some may be below 0
 ) -> Float[np.ndarray, " term"]:
     """How much of each term squared errors hold: shares, none negative, whose sum is their size.
 
     Least squares on squared errors, each weighed by the variance it is expected to have, again
     and again as in a generalised linear model of gamma errors.
-
-    Parameters
-    ----------
-    terms
-        Variances that each cause would have at share 1, one column per cause.
-    square
-        Squared errors; less what is known of them, so that some may be below 0.
 
     References
     ----------

@@ -244,10 +244,8 @@ class FittedGCN:
     def from_arrays(cls, settings: Mapping[str, object], arrays: Mapping[str, np.ndarray]) -> Self:
         """The model that ``to_arrays`` described.
 
-        Raises
-        ------
-        ModelError
-            A setting or an array is missing, of another kind or shape, or not finite.
+        Raises ModelError: a setting or an array is missing, of another kind or shape, or not
+        finite.
         """
         network = Network.from_arrays(settings, arrays)
         features, nodes = len(network.scaling.centre), network.graph.nodes

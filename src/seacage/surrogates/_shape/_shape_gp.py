@@ -265,10 +265,8 @@ class FittedShapeGP:
     def from_arrays(cls, settings: Mapping[str, object], arrays: Mapping[str, np.ndarray]) -> Self:
         """The model that ``to_arrays`` described.
 
-        Raises
-        ------
-        ModelError
-            A setting or an array is missing, of another kind or shape, or not finite.
+        Raises ModelError: a setting or an array is missing, of another kind or shape, or not
+        finite.
         """
         processes = processes_from_arrays(settings, "scores", arrays)
         if len(processes) != 1:

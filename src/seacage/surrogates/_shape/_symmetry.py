@@ -125,10 +125,8 @@ class Symmetry:
     def from_arrays(cls, arrays: Mapping[str, np.ndarray], *, nodes: int) -> Self:
         """The symmetry that ``to_arrays`` described.
 
-        Raises
-        ------
-        ModelError
-            An array is missing or of another shape, or names nodes that do not exist.
+        Raises ModelError: an array is missing or of another shape, or names nodes that do not
+        exist.
         """
         turn = array(arrays, "symmetry_turn", None, 2, 2)
         source = array(arrays, "symmetry_source", len(turn), nodes)
