@@ -12,6 +12,7 @@ from seacage.service._cli._console import (
     exit_with,
     guard,
     progress_bar,
+    refusal,
     report,
     wants_json,
     without_nan,
@@ -85,7 +86,6 @@ def read(
         cage: Whose samples.
         stream: Only this stream's.
     """
-    from seacage.conventions import InputError
     from seacage.service._store._archive import Archive
     from seacage.service._store._archive_reads import read_archive_between
     from seacage.service._store._database._rows import Bounds
@@ -93,7 +93,7 @@ def read(
     archive = Archive(folder)
     if cage not in archive.cages():
         there = ", ".join(archive.cages()) or "none"
-        raise InputError(f"{folder} has no samples of cage {cage!r}. It has: {there}.")
+        raise refusal(f"{folder} has no samples of cage {cage!r}. It has: {there}.")
     bounds = Bounds(start=start and start.replace(tzinfo=UTC), end=end and end.replace(tzinfo=UTC))
     rows = (
         {
@@ -121,11 +121,10 @@ def check(folder: Folder) -> None:
     Example:
         seacage archive check archive
     """
-    from seacage.conventions import InputError
     from seacage.service._store._archive import Archive
 
     if not folder.is_dir():
-        raise InputError(f"{folder} is no folder. Name the folder of the archive.")
+        raise refusal(f"{folder} is no folder. Name the folder of the archive.")
     looked = list(Archive(folder).faults())
     faults = [fault for _, fault in looked if fault]
     report(

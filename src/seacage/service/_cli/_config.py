@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
-from seacage.service._cli._console import Exit, Finding, guard, report, report_findings
+from seacage.service._cli._console import Exit, Finding, guard, refusal, report, report_findings
 
 if TYPE_CHECKING:
     from seacage.service._settings import Settings
@@ -113,15 +113,13 @@ def _listens(settings: "Settings") -> str:
 
 
 def _check_certificate(settings: "Settings") -> str:
-    from seacage.conventions import InputError
-
     assert settings.certificate
     try:
         ssl.create_default_context(ssl.Purpose.CLIENT_AUTH).load_cert_chain(
             settings.certificate, settings.key
         )
     except (ssl.SSLError, OSError) as error:
-        raise InputError(
+        raise refusal(
             f"{settings.certificate} and {settings.key} are no PEM certificate and its key "
             f"({error})."
         ) from error
@@ -131,11 +129,9 @@ def _check_certificate(settings: "Settings") -> str:
 def _writable(folder: Path) -> str:
     import os
 
-    from seacage.conventions import InputError
-
     there = next(one for one in (folder, *folder.absolute().parents) if one.exists())
     if not there.is_dir() or not os.access(there, os.W_OK | os.X_OK):
-        raise InputError(f"{there} takes no files. Mend its rights, or name another as data.")
+        raise refusal(f"{there} takes no files. Mend its rights, or name another as data.")
     return f"{folder} can be written"
 
 
@@ -150,7 +146,6 @@ def _check_cage(settings: "Settings", folder: Path, name: str | None) -> str:
 
 
 def _check_store(settings: "Settings", *, reach: bool) -> str:
-    from seacage.conventions import InputError
     from seacage.service._assembly import store_place
     from seacage.service._settings import without_password
     from seacage.service._store._store import open_store
@@ -161,7 +156,7 @@ def _check_store(settings: "Settings", *, reach: bool) -> str:
         ("archive", "pyarrow", settings.store.archive is not None),
     ):
         if wanted and importlib.util.find_spec(package) is None:
-            raise InputError(f"{package} is not installed. Install seacage[{extra}].")
+            raise refusal(f"{package} is not installed. Install seacage[{extra}].")
     if reach:
         open_store(place).close()
     return f"{without_password(str(place))}{' opens' if reach else ''}"
@@ -183,10 +178,8 @@ def _check_broker(settings: "Settings", *, reach: bool) -> str:
 
 
 def _check_webhooks(settings: "Settings", cages: tuple[str, ...]) -> str:
-    from seacage.conventions import InputError
-
     served = {cage.name for cage in settings.cages}
     unknown = [cage for cage in cages if None not in served and cage not in served]
     if unknown:
-        raise InputError(f"No cage is called {unknown[0]!r}, whose alarms it would be told.")
+        raise refusal(f"No cage is called {unknown[0]!r}, whose alarms it would be told.")
     return "alarms of " + (", ".join(cages) or "all cages")

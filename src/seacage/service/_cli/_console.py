@@ -145,6 +145,13 @@ def _of_an_extra(error: ModuleNotFoundError) -> str:
     raise error
 
 
+def refusal(sentence: str) -> Exception:
+    """The error to raise where options make no sense."""
+    from seacage.conventions import InputError
+
+    return InputError(sentence)
+
+
 def exit_with(sentence: str, code: Exit) -> typer.Exit:
     """Say a sentence on stderr and return the exit to raise."""
     typer.echo(f"seacage: {sentence}", err=True)

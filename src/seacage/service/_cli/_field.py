@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from seacage.service._cli._console import guard, progress_bar, report
+from seacage.service._cli._console import guard, progress_bar, refusal, report
 from seacage.service._cli._options import (
     CageName,
     Columns,
@@ -153,10 +153,8 @@ def _events(words: list[str] | None, path: Path | None) -> "list[Event]":
 
 
 def _check_settled(*, waves: Path | None, calm: bool, one_in: int, share: str | None) -> None:
-    from seacage.conventions import InputError
-
     if waves is not None or calm or one_in > 1 or share is not None:
-        raise InputError(
+        raise refusal(
             "--waves, --calm, --one-in and --share are for --method simulate. Leave them out."
         )
 
@@ -197,14 +195,14 @@ class MapOptions:
 
     def of(self, path: Path) -> "ColumnMap | NetcdfMap | None":
         """The map that was named, with what the other options add to it."""
-        from seacage.conventions import InputError, Origin
+        from seacage.conventions import Origin
         from seacage.records import NetcdfMap, known_map, read_map
 
         options = {"time_zone": self.zone, "depth_m": self.depth_m, "range_m": self.range_m}
         given: dict[str, Any] = {name: one for name, one in options.items() if one is not None}
         if self.origin is not None:
             if self.origin not in {str(Origin.MEASURED), str(Origin.COMPUTED)}:
-                raise InputError(f"--origin {self.origin!r} is unknown. Say measured or computed.")
+                raise refusal(f"--origin {self.origin!r} is unknown. Say measured or computed.")
             given |= {"origin": Origin(self.origin)}
         chosen = read_map(self.columns) if self.columns else known_map(path) if given else None
         if isinstance(chosen, NetcdfMap) or (chosen is None and given):
@@ -212,9 +210,7 @@ class MapOptions:
         if chosen is not None and self.depth_m is not None and len(given) == 1:
             return chosen.taken_at(self.depth_m)
         if given:
-            raise InputError(
-                "--origin, --zone and --range-m are for NetCDF; a table's map says them."
-            )
+            raise refusal("--origin, --zone and --range-m are for NetCDF; a table's map says them.")
         return chosen
 
 
@@ -256,11 +252,10 @@ def import_(
 
 
 def _inspect(path: Path, out: Path) -> None:
-    from seacage.conventions import InputError
     from seacage.records import inspect_file
 
     if out.exists():
-        raise InputError(f"{out}: the file is there already, and may hold your answers. Move it.")
+        raise refusal(f"{out}: the file is there already, and may hold your answers. Move it.")
     found = inspect_file(path)
     if found.map_text:
         out.write_text(found.map_text, encoding="utf-8")

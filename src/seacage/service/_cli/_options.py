@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
+from seacage.service._cli._console import refusal
+
 if TYPE_CHECKING:
     from seacage.cage import Cage, Structure
     from seacage.ocean import SeaState
@@ -95,10 +97,8 @@ class LawOptions:
 
     def check_files(self, *files: Path | None) -> None:
         """Refuse files where several laws answer: they hold one."""
-        from seacage.conventions import InputError
-
         if self.laws is not None and any(files):
-            raise InputError(
+            raise refusal(
                 "--laws all has one answer for each law, and a file holds one. Leave --laws out, "
                 "or the file."
             )
@@ -148,11 +148,9 @@ def warn_of(mooring: str) -> tuple[str, ...]:
 
 def read_share(text: str | None) -> tuple[int, int]:
     """Which share of how many, from I/N."""
-    from seacage.conventions import InputError
-
     which, slash, shares = (text or "0/1").partition("/")
     if not (slash and which.isdigit() and shares.isdigit()):
-        raise InputError(f"--share {text}: expected I/N, as 0/8 for the first of 8 shares.")
+        raise refusal(f"--share {text}: expected I/N, as 0/8 for the first of 8 shares.")
     return int(which), int(shares)
 
 

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from seacage.service._cli._console import refusal
+
 if TYPE_CHECKING:
     from seacage.campaigns import Plan
 
@@ -52,13 +54,7 @@ class PlanOptions:
     seed: Annotated[int | None, typer.Option(min=0)] = None
 
     def read(self) -> "Plan":
-        """The one plan that the options describe.
-
-        Raises
-        ------
-        InputError
-            Options that contradict each other or that no plan understands.
-        """
+        """The one plan that the options describe; refused where they contradict each other."""
         from seacage.campaigns import Plan
 
         self._check_alone()
@@ -79,15 +75,13 @@ class PlanOptions:
         return Plan.named(self.plan, seed, cases, duration=duration, ranges=ranges)
 
     def _check_alone(self) -> None:
-        from seacage.conventions import InputError
-
         written = self.plan.endswith(".json")
         whole = {"--plan with a file": written, "--grid": self.grid, "--list": self.listed}
         given = [name for name, value in whole.items() if value]
         some = {"--range": self.ranges, "--cases": self.cases}
         drawn = [name for name, value in some.items() if value]
         if len(given) > 1 or (given and drawn):
-            raise InputError(
+            raise refusal(
                 f"{' and '.join([*given, *drawn])} exclude each other: {given[0]} names every sea "
                 "state. Give one of them."
             )
@@ -95,13 +89,11 @@ class PlanOptions:
 
 def _pairs(option: str, given: Iterable[str]) -> dict[str, str]:
     """What stands before and after each equals sign."""
-    from seacage.conventions import InputError
-
     pairs: dict[str, str] = {}
     for text in given:
         key, _, values = text.partition("=")
         if key not in _AXES or not values or key in pairs:
-            raise InputError(
+            raise refusal(
                 f"{option} {text}: expected a key, = and numbers, each key once. Keys: "
                 f"{', '.join(_AXES)}."
             )
@@ -110,21 +102,18 @@ def _pairs(option: str, given: Iterable[str]) -> dict[str, str]:
 
 
 def _least_and_most(key: str, values: str) -> tuple[float, float]:
-    from seacage.conventions import InputError
-
     numbers = _numbers(f"--range {key}", values.split(","))
     if len(numbers) != 2:
-        raise InputError(f"--range {key}={values}: expected two numbers, the least and the most.")
+        raise refusal(f"--range {key}={values}: expected two numbers, the least and the most.")
     return numbers[0], numbers[1]
 
 
 def _grid_plan(pairs: dict[str, str], duration: float, seed: int) -> "Plan":
     from seacage.campaigns import Plan
-    from seacage.conventions import InputError
 
     axes: dict[str, Any] = {_AXES[key]: _steps(key, values) for key, values in pairs.items()}
     if not {"current_speed", "current_to"} <= axes.keys():
-        raise InputError("--grid: give at least current_speed_m_s and current_to_deg.")
+        raise refusal("--grid: give at least current_speed_m_s and current_to_deg.")
     return Plan.grid(**axes, duration=duration, seed=seed)
 
 
@@ -132,19 +121,15 @@ def _steps(key: str, values: str) -> list[float]:
     """Numbers as they stand, or first:last:count."""
     if ":" not in values:
         return _numbers(f"--grid {key}", values.split(","))
-    from seacage.conventions import InputError
-
     numbers = _numbers(f"--grid {key}", values.split(":"))
     if len(numbers) != 3 or numbers[2] < 2 or numbers[2] != int(numbers[2]):
-        raise InputError(f"--grid {key}={values}: expected first:last:count, the count 2 or more.")
+        raise refusal(f"--grid {key}={values}: expected first:last:count, the count 2 or more.")
     first, last, count = numbers[0], numbers[1], int(numbers[2])
     return [first + (last - first) * step / (count - 1) for step in range(count)]
 
 
 def _numbers(where: str, words: Iterable[str]) -> list[float]:
-    from seacage.conventions import InputError
-
     try:
         return [float(word) for word in words]
     except ValueError as error:
-        raise InputError(f"{where}: {error}.") from error
+        raise refusal(f"{where}: {error}.") from error

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from seacage.service._cli._console import Exit, exit_with, guard, progress_bar, report
+from seacage.service._cli._console import Exit, exit_with, guard, progress_bar, refusal, report
 from seacage.service._cli._options import Columns, InFile, ServedCage, read_streams
 
 if TYPE_CHECKING:
@@ -70,13 +70,12 @@ def publish(
         token: By HTTP: with the scope ingest.
         ca: By MQTT: whom the certificate is from.
     """
-    from seacage.conventions import InputError
     from seacage.service._logs import begin_logs
     from seacage.service._publish._publisher import Publisher
     from seacage.service._publish._spool import Spool
 
     if follow and (source == "-" or Path(source).is_dir() or speed is not None):
-        raise InputError("publish: --follow is for a growing file, at the speed at which it grows.")
+        raise refusal("publish: --follow is for a growing file, at the speed at which it grows.")
     begin_logs("lines")
     refused, pace, drop_oldest = _Refused(), speed or 1.0, when_full == "drop-oldest"
     place = to.rpartition("://")[2].rpartition("@")[2]  # a password may change
@@ -130,7 +129,6 @@ def _batches(
     follow: bool,
     speed: float | None,
 ) -> "Iterator[Batch]":
-    from seacage.conventions import InputError
     from seacage.records import ColumnMap, read_map
     from seacage.service._publish._sources import (
         arriving,
@@ -144,13 +142,13 @@ def _batches(
         return line_batches(arriving(sys.stdin.fileno()), refuse=refused)
     path = Path(source)
     if not path.exists() and not follow:
-        raise InputError(f"{path}: there is no such record. Name a file, a folder, or - for stdin.")
+        raise refusal(f"{path}: there is no such record. Name a file, a folder, or - for stdin.")
     choice = read_map(columns) if columns else None
     name = f"{path.resolve()} {stream}"
     place = spool.place(name)
     if follow:
         if choice is not None and not isinstance(choice, ColumnMap):
-            raise InputError("publish: only tables can be followed, and this map is of NetCDF.")
+            raise refusal("publish: only tables can be followed, and this map is of NetCDF.")
         at = TailPosition() if place is None else TailPosition.parse(place)
         tail = Tail(path=path, columns=choice, stream=stream, refuse=refused, place=at)
         return tail_batches(tail, source=name)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from seacage.service._cli._console import guard, progress_bar, report
+from seacage.service._cli._console import guard, progress_bar, refusal, report
 from seacage.service._cli._options import InFolder, ServedCage, read_streams
 
 if TYPE_CHECKING:
@@ -48,14 +48,12 @@ def replay(
         token: For the service, with the scope ingest.
         speed: Against real time. [default: as fast as it goes]
     """
-    from seacage.conventions import InputError
-
     if to is not None and twin is None and not out:
         _send(record, to, cage, token, speed)
     elif to is None and twin is not None and out:
         _answer(record, twin, out, batched=batched)
     else:
-        raise InputError(
+        raise refusal(
             "replay: say where to. Give --twin and --out for files, or --to for a service."
         )
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from seacage.service._cli._console import guard, progress_bar, report
+from seacage.service._cli._console import guard, progress_bar, refusal, report
 from seacage.service._cli._options import InFile, InFolder
 
 if TYPE_CHECKING:
@@ -76,7 +76,6 @@ def serve(
             60 of a replay, else 1]
         insecure_http: Listen beyond this machine without encryption.
     """
-    from seacage.conventions import InputError
     from seacage.service._assembly import assemble, server
     from seacage.service._logs import begin_logs
     from seacage.service._settings import read_settings
@@ -97,7 +96,7 @@ def serve(
         cages=[{"twin": twin, "name": cage}] if twin else None,
     )
     if demo and settings.cages:
-        raise InputError("serve: --demo shows the demonstration's own twin. Leave --twin out.")
+        raise refusal("serve: --demo shows the demonstration's own twin. Leave --twin out.")
     settings.check_host()
     begin_logs(settings.log)
     os.umask(0o077)  # what a service writes is its owner's alone

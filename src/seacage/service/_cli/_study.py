@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from seacage.service._cli._console import guard, progress_bar, report
+from seacage.service._cli._console import guard, progress_bar, refusal, report
 from seacage.service._cli._options import InFile, InFolder, Seed, Workers, read_cage
 from seacage.service._cli._score import error_rows
 
@@ -213,9 +213,7 @@ def benchmarks(
 
 def _seeds(written: str) -> range:
     """The seeds of ``5``, or of ``0-9``."""
-    from seacage.conventions import InputError
-
     first, dash, last = written.partition("-")
     if not first.isdecimal() or (dash and not last.isdecimal()):
-        raise InputError(f"--seeds {written} is not a range of seeds. Write 0-9, or a single one.")
+        raise refusal(f"--seeds {written} is not a range of seeds. Write 0-9, or a single one.")
     return range(int(first), int(last or first) + 1)

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from seacage.service._cli._console import guard, progress_bar, report
+from seacage.service._cli._console import guard, progress_bar, refusal, report
 from seacage.service._cli._options import InFolder, Seed, read_cage
 
 if TYPE_CHECKING:
@@ -100,7 +100,6 @@ def _level_one(
 ) -> "tuple[Cage, CampaignRecord | None, Twin | None]":
     """The cage as simulated, and what teaches level 1 or has it."""
     from seacage.cage import Cage
-    from seacage.conventions import InputError
     from seacage.records import read_campaign
     from seacage.twin import Twin
 
@@ -110,4 +109,4 @@ def _level_one(
     if base and not campaign:
         begun = Twin.read(base)
         return begun.cage, None, begun
-    raise InputError("train: give either --campaign, which teaches level 1, or --base.")
+    raise refusal("train: give either --campaign, which teaches level 1, or --base.")

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from seacage.service._cli._console import Exit, exit_with, guard, report
+from seacage.service._cli._console import Exit, exit_with, guard, refusal, report
 from seacage.service._cli._options import OutFile
 from seacage.service._cli._rov._options import Below, NetOptions, about_rows
 
@@ -49,7 +49,6 @@ def clearance(
         most: End with 4 where the probability is higher.
         out: Write one line per point as CSV.
     """
-    from seacage.conventions import InputError
     from seacage.service._rov._table import query_of, write_clearances
     from seacage.service._schemas._clearance import ClearanceAnswer
 
@@ -64,7 +63,7 @@ def clearance(
     p = answer.path.p_below if answer.path else max(known, default=None)
     report(answer.model_dump(mode="json"), rows=_clearance_rows(answer, out))
     if most is not None and p is None:
-        raise InputError(
+        raise refusal(
             f"clearance: whether the net is nearer than {below:g} m cannot be held against --most "
             f"{most:g}, for this twin's shape error is not known. Leave --most out and go by the "
             "distance."
@@ -78,11 +77,10 @@ def clearance(
 
 
 def _points(path: Path | None, given: list[str]) -> "tuple[FrameName, list[Row]]":
-    from seacage.conventions import InputError
     from seacage.service._rov._table import read_points
 
     if (path is None) == (not given):
-        raise InputError("clearance: give a CSV file of points, or some with --point; one of them.")
+        raise refusal("clearance: give a CSV file of points, or some with --point; one of them.")
     if path is not None:
         return read_points(path)
     rows = list["Row"]()
@@ -90,7 +88,7 @@ def _points(path: Path | None, given: list[str]) -> "tuple[FrameName, list[Row]]
         try:
             east, north, up = (float(part) for part in one.split(","))
         except ValueError as error:
-            raise InputError(
+            raise refusal(
                 f'clearance: --point {one!r} is not three numbers. Give "EAST,NORTH,UP" in m.'
             ) from error
         rows.append((east, north, up))

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from seacage.service._cli._console import guard, report
+from seacage.service._cli._console import guard, refusal, report
 from seacage.service._cli._options import OutFile
 from seacage.service._cli._rov._options import Below, NetOptions, about_rows
 
@@ -71,7 +71,6 @@ def inspect_path(
 def _write_way(
     out: Path, query: "InspectionQuery", answer: "InspectionAnswer", asker: "AbstractAsker"
 ) -> None:
-    from seacage.conventions import InputError
     from seacage.service._rov._table import write_waypoints
 
     form = out.suffix.lower()
@@ -80,7 +79,7 @@ def _write_way(
     elif form in {".mcap", ".geojson"}:
         out.write_bytes(asker.ask(f"inspection{form}", query))
     else:
-        raise InputError(f"{out}: a way is written as .csv, .mcap or .geojson.")
+        raise refusal(f"{out}: a way is written as .csv, .mcap or .geojson.")
 
 
 def _inspection_rows(answer: "InspectionAnswer", out: Path | None) -> list[tuple[str, str]]:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from seacage.service._cli._console import refusal
 from seacage.service._cli._options import InFolder, ServedCage
 
 if TYPE_CHECKING:
@@ -50,15 +51,14 @@ class NetOptions:
         InputError
             Both or neither was named, or the twin without a current.
         """
-        from seacage.conventions import InputError
         from seacage.service._rov._client import LocalAsker, ServiceAsker
 
         if (self.twin is None) == (self.to is None):
-            raise InputError("Say whom to ask: --twin for a folder, or --to for a service.")
+            raise refusal("Say whom to ask: --twin for a folder, or --to for a service.")
         if self.to is not None:
             return ServiceAsker(address=self.to, cage=self.cage, token=self.token)
         if self.twin is None or self.current_speed is None or self.current_to is None:
-            raise InputError(
+            raise refusal(
                 "With --twin the current has to be said: --current-speed in m/s and --current-to "
                 "in degrees."
             )
