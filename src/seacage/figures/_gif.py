@@ -9,16 +9,13 @@ from seacage.conventions import InputError
 
 
 class Gif:
-    """A GIF of few, chosen colours, so that it stays small and flat areas stay flat."""
+    """A GIF of few, chosen colours, so that it stays small and flat areas stay flat.
 
-    def __init__(
-        self,
-        *,
-        colours: list[str],  # as ``#rrggbb``, at most 255; each pixel takes the nearest
-        # Between pictures. A GIF counts hundredths; pictures are spread so that the whole keeps
-        # time.
-        seconds: float,
-    ) -> None:
+    ``colours``: as ``#rrggbb``, at most 255; each pixel takes the nearest. ``seconds``: between
+    pictures. A GIF counts hundredths; pictures are spread so that the whole keeps time.
+    """
+
+    def __init__(self, *, colours: list[str], seconds: float) -> None:
         from PIL import Image
 
         if seconds < 0.02:

@@ -127,12 +127,11 @@ def open_netcdf(path: Path, schema: str) -> "Generator[xarray.Dataset]":
         yield dataset
 
 
-def check_netcdf(
-    path: Path,  # of NetCDF 4; the classic format holds nothing that its size does not show
-    *,
-    whole: bool,  # whether all of it will be read; else its axes are, and parts of the rest
-) -> None:
+def check_netcdf(path: Path, *, whole: bool) -> None:
     """Refuse a NetCDF file that would fill the memory, or reads from other files.
+
+    ``path``: of NetCDF 4; the classic format holds nothing that its size does not show. ``whole``:
+    whether all of it will be read; else its axes are, and parts of the rest.
 
     Raises OSError: no regular file, too large a one, or no HDF5.
     Raises ValueError: it declares too much, or links to another file.

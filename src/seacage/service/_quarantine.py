@@ -19,15 +19,12 @@ class Quarantine:
 
     Logs say the first of a burst and how many followed, for whoever sends nonsense should not
     fill the disk with it.
+
+    ``path``: of the file; None counts and logs only. ``most``: of the file [bytes]; beyond, it
+    becomes the file before and a new one begins.
     """
 
-    def __init__(
-        self,
-        path: Path | None,  # of the file; None counts and logs only
-        *,
-        # Of the file [bytes]; beyond, it becomes the file before and a new one begins
-        most: int = 4 << 20,
-    ) -> None:
+    def __init__(self, path: Path | None, *, most: int = 4 << 20) -> None:
         self._path, self._most = path, most
         self._count = self._unsaid = 0
         self._said = float("-inf")

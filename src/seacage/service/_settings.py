@@ -174,11 +174,11 @@ class Settings(BaseSettings):
             )
 
 
-def read_settings(
-    file: Path | None = None,  # TOML; paths in it are taken from where the service is started
-    **given: object,  # by the command line; None is not given
-) -> Settings:
+def read_settings(file: Path | None = None, **given: object) -> Settings:
     """Put together what was given, the environment, a file and the defaults.
+
+    ``file``: TOML; paths in it are taken from where the service is started. ``given``: by the
+    command line; None is not given.
 
     Raises InputError: the file cannot be read, or a setting is unknown or does not do.
     """

@@ -142,14 +142,14 @@ class SensorScore:
         return (self.raw.low_bias > 0.0) == (self.unit == "m")
 
 
-def compare(
-    answer: Answer,  # of the twin, one row for each row of the field record's buoy
-    field: FieldRecord,  # sensors and buoy
-) -> dict[str, Readings]:
+def compare(answer: Answer, field: FieldRecord) -> dict[str, Readings]:
     """Every sound reading of a field record beside a twin's prediction of it.
 
     The buoy's last sample holds until the next; where it was unsound or too old there is no
     number, and the reading is not scored. Sensors that the twin does not know are left out.
+
+    ``answer``: of the twin, one row for each row of the field record's buoy. ``field``: sensors and
+    buoy.
     """
     known = [name for name in answer.sensor_names if name in field.sensors]
     return {name: _compare(answer, field, name) for name in known}

@@ -11,17 +11,15 @@ from seacage.twin import TrainingWindow
 _FIRST, _LAST = datetime.min.replace(tzinfo=UTC), datetime.max.replace(tzinfo=UTC)
 
 
-def split(
-    # The whole record; both parts keep its buoy whole, which is an input of the twin
-    field: FieldRecord,
-    *,
-    teaching_days: int,  # counted from the midnight (UTC) before the buoy's first sample
-) -> tuple[FieldRecord, FieldRecord]:
+def split(field: FieldRecord, *, teaching_days: int) -> tuple[FieldRecord, FieldRecord]:
     """Cut a field record at a midnight: training days before, validation days after.
 
     Neighbours in time are the same sample, so no day is in both parts. A shackle that came in
     two windows, one before the cut and one after, is trained on the first and scored on the
     second.
+
+    ``field``: the whole record; both parts keep its buoy whole, which is an input of the twin.
+    ``teaching_days``: counted from the midnight (UTC) before the buoy's first sample.
 
     Raises InputError: a sensor would have no reading on one side.
     """

@@ -43,11 +43,11 @@ class Moments(Rows):
         slope = self.mean_slope[:, None] + node[:, None] * std_slope[:, None]
         return value.ravel(), slope.reshape(value.size, -1)
 
-    def through(
-        self,
-        below: Float[np.ndarray, "row below"],  # gradient of that last feature
-    ) -> "Moments":
-        """As functions of the features alone, the last one being a function of the others."""
+    def through(self, below: Float[np.ndarray, "row below"]) -> "Moments":
+        """As functions of the features alone, the last one being a function of the others.
+
+        ``below``: gradient of that last feature.
+        """
         return replace(
             self,
             mean_slope=self.mean_slope[:, :-1] + self.mean_slope[:, -1:] * below,

@@ -114,13 +114,13 @@ class _Guess(NamedTuple):
     finding: str
 
 
-def inspect_file(
-    path: Path | str,  # a table of text or Parquet, or NetCDF
-) -> Inspection:
+def inspect_file(path: Path | str) -> Inspection:
     """Look at a foreign file and begin its map.
 
     Units, senses and zones are taken from what the file says: a name, a suffix, an offset. What
     it does not say stays ``"?"`` with a hint beside it, and importing refuses such a map.
+
+    ``path``: a table of text or Parquet, or NetCDF.
 
     Raises RecordError: a file that cannot be read as any of them.
     """

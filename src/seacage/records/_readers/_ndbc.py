@@ -43,13 +43,11 @@ def is_ndbc(text: str) -> bool:
     return _START.match(text) is not None
 
 
-def ndbc_table(
-    path: Path,  # of the file, for messages
-    # Waves of the standard meteorological data, or currents of an ADCP, whose depths are read from
-    # the file where they never change
-    text: str,
-) -> tuple[Table, ColumnMap]:
+def ndbc_table(path: Path, text: str) -> tuple[Table, ColumnMap]:
     """Split a file of NDBC and say what its columns mean.
+
+    ``path``: of the file, for messages. ``text``: waves of the standard meteorological data, or
+    currents of an ADCP, whose depths are read from the file where they never change.
 
     Raises RecordError: a unit that is not the documented one, columns of neither kind, a moving
     depth.

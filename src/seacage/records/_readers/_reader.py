@@ -18,12 +18,11 @@ from seacage.records._record import Record
 _NETCDF = re.compile(r'^\s*kind\s*=\s*"netcdf"', re.MULTILINE)
 
 
-def read_map(
-    # A TOML file, with ``kind = "netcdf"`` where it is a ``NetcdfMap``'s; or the name of a shipped
-    # column map
-    source: Path | str,
-) -> ColumnMap | NetcdfMap:
+def read_map(source: Path | str) -> ColumnMap | NetcdfMap:
     """Read what a foreign file's columns or variables mean.
+
+    ``source``: a TOML file, with ``kind = "netcdf"`` where it is a ``NetcdfMap``'s; or the name of
+    a shipped column map.
 
     Raises RecordError: no such file and no such name, or a map that is refused.
     """

@@ -13,15 +13,13 @@ _log = structlog.get_logger(__name__)
 
 
 class Audit:
-    """Lines are only ever added. A token is named by its id, never shown."""
+    """Lines are only ever added. A token is named by its id, never shown.
 
-    def __init__(
-        self,
-        path: Path | None,  # of the log; None keeps none
-        *,
-        # Of the log [bytes]; beyond, it becomes the one before (``audit.before.jsonl``)
-        most: int = 4 << 20,
-    ) -> None:
+    ``path``: of the log; None keeps none. ``most``: of the log [bytes]; beyond, it becomes the one
+    before (``audit.before.jsonl``).
+    """
+
+    def __init__(self, path: Path | None, *, most: int = 4 << 20) -> None:
         self._path, self._most = path, most
 
     def write(

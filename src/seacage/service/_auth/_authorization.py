@@ -144,15 +144,12 @@ class Permit:
 
     What follows finds the name of the token as ``request.state.who``, and its id as
     ``request.state.token``.
+
+    ``action``: the scope it takes. ``open_to_loopback``: ask no token of this machine's own
+    programs; what a proxy brings is not theirs.
     """
 
-    def __init__(
-        self,
-        action: str,  # the scope it takes
-        *,
-        # Ask no token of this machine's own programs; what a proxy brings is not theirs
-        open_to_loopback: bool = False,
-    ) -> None:
+    def __init__(self, action: str, *, open_to_loopback: bool = False) -> None:
         self._action, self._open_to_loopback = action, open_to_loopback
 
     async def __call__(self, request: Request, _bearer: Credentials, _cookie: Cookie) -> None:

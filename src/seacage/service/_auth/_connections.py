@@ -20,13 +20,12 @@ class Connections:
     A connection is a stranger's until a token or a session came over it. Strangers hold half of
     all at most, and the oldest gives way to the newest: half a request, sent a thousand times,
     keeps nobody out who sends a whole one.
+
+    ``limits``: how many in all, of an address and of a token. ``metrics``: where it is counted what
+    was dropped.
     """
 
-    def __init__(
-        self,
-        limits: Limits,  # how many in all, of an address and of a token
-        metrics: Metrics,  # where it is counted what was dropped
-    ) -> None:
+    def __init__(self, limits: Limits, metrics: Metrics) -> None:
         self._limits, self._dropped = limits, metrics.dropped
         self._most = min(limits.connections, _descriptors())
         self._strangers, self._known = dict[Any, str](), dict[Any, str]()

@@ -6,23 +6,20 @@ _MOST_ASKERS = 10_000
 
 
 class Rates:
-    """Token buckets of many askers; those that asked longest ago are forgotten first."""
+    """Token buckets of many askers; those that asked longest ago are forgotten first.
 
-    def __init__(
-        self,
-        *,
-        per_s: float,  # how quickly a bucket fills [1/s]
-        burst: float,  # how much it holds [-]
-    ) -> None:
+    ``per_s``: how quickly a bucket fills [1/s]. ``burst``: how much it holds [-].
+    """
+
+    def __init__(self, *, per_s: float, burst: float) -> None:
         self._per_s, self._burst = per_s, burst
         self._buckets: OrderedDict[str, tuple[float, float]] = OrderedDict()
 
-    def wait_s(
-        self,
-        asker: str,  # whose bucket
-        now: float,  # on a clock that never goes back [s]
-    ) -> float:
-        """Take one from the bucket; how long to wait [s] where it is empty, else 0."""
+    def wait_s(self, asker: str, now: float) -> float:
+        """Take one from the bucket; how long to wait [s] where it is empty, else 0.
+
+        ``asker``: whose bucket. ``now``: on a clock that never goes back [s].
+        """
         held, since = self._buckets.get(asker, (self._burst, now))
         held = min(self._burst, held + (now - since) * self._per_s)
         wait_s = 0.0 if held >= 1.0 else (1.0 - held) / self._per_s

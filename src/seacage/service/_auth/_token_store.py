@@ -56,12 +56,11 @@ class Tokens:
     The file grows by one line per token made or revoked, and a running service sees the new line.
     A line that cannot be read is reported and shuts nobody out: all others stay in force, and so
     does what the service had read of it before.
+
+    ``folder``: the service's data folder.
     """
 
-    def __init__(
-        self,
-        folder: Path,  # the service's data folder
-    ) -> None:
+    def __init__(self, folder: Path) -> None:
         self.folder = folder
         self._path = folder / "tokens.jsonl"
         self._passing: list[Grant] = []
@@ -134,11 +133,10 @@ class Tokens:
         """Whether nobody holds everything."""
         return not any("admin" in grant.scopes for grant in self.all())
 
-    def revoke(
-        self,
-        named: str,  # the name or the id of the token
-    ) -> Grant:
+    def revoke(self, named: str) -> Grant:
         """Let a token open nothing from now on.
+
+        ``named``: the name or the id of the token.
 
         Raises InputError: no token is called so, or more than one.
         """

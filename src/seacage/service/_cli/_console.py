@@ -163,12 +163,12 @@ def wants_json() -> bool:
     return _wants_json.get()
 
 
-def report(
-    answer: Mapping[str, object],  # what a program gets with ``--json``; NaN becomes null
-    *,
-    rows: Sequence[tuple[str, str]] = (),  # what a person gets: names and values, in two columns
-) -> None:
-    """Print a command's answer."""
+def report(answer: Mapping[str, object], *, rows: Sequence[tuple[str, str]] = ()) -> None:
+    """Print a command's answer.
+
+    ``answer``: what a program gets with ``--json``; NaN becomes null. ``rows``: what a person gets:
+    names and values, in two columns.
+    """
     if wants_json():
         typer.echo(json.dumps(without_nan(answer), default=str))
         return

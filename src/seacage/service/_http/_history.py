@@ -125,14 +125,13 @@ class _Span:
         return width, [found[row] for row in telling(means, self.limit)]
 
 
-def telling(
-    value: Float[np.ndarray, " reading"],  # what counts, in any unit; NaN where it is not known
-    limit: int,  # at most so many
-) -> list[int]:
+def telling(value: Float[np.ndarray, " reading"], limit: int) -> list[int]:
     """Choose the readings that tell most of a series.
 
     They are the first and the last, and of each of equal runs between them the least and the
     most: what a curve would show of them, so that no storm is thinned away.
+
+    ``value``: what counts, in any unit; NaN where it is not known. ``limit``: at most so many.
     """
     count = len(value)
     if count <= limit:

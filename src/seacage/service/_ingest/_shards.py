@@ -4,13 +4,12 @@ from collections.abc import Sequence
 from hashlib import blake2b
 
 
-def worker_of(
-    cage: str,
-    workers: Sequence[str],  # the names of all workers, in any order; at least one
-) -> str:
+def worker_of(cage: str, workers: Sequence[str]) -> str:
     """The one worker of a cage, the same in every process.
 
     When a worker comes or goes, only the cages that it gets or had move.
+
+    ``workers``: the names of all workers, in any order; at least one.
 
     References
     ----------

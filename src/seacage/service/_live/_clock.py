@@ -51,14 +51,12 @@ class FollowingClock:
     For records that somebody publishes as if they were live: what is ahead of it is not a fault
     of the sender but the time itself. It never goes back, and never further than a minute beyond
     the wall's time, which no record has reached yet; before the first sample it tells the wall's.
+
+    ``speed``: seconds at the cage per second of the wall, between samples [-]. ``newest``: of the
+    samples that are known already.
     """
 
-    def __init__(
-        self,
-        *,
-        speed: float = 1.0,  # seconds at the cage per second of the wall, between samples [-]
-        newest: datetime | None = None,  # of the samples that are known already
-    ) -> None:
+    def __init__(self, *, speed: float = 1.0, newest: datetime | None = None) -> None:
         self.speed = speed
         self._at, self._received = newest, time.monotonic()
 
@@ -85,14 +83,12 @@ class FollowingClock:
 
 
 class ReplayClock:
-    """A clock that starts in the past and runs fast; it follows the monotonic clock."""
+    """A clock that starts in the past and runs fast; it follows the monotonic clock.
 
-    def __init__(
-        self,
-        start: datetime,  # where it stands when made
-        *,
-        speed: float,  # seconds at the cage per second of the wall [-]
-    ) -> None:
+    ``start``: where it stands when made. ``speed``: seconds at the cage per second of the wall [-].
+    """
+
+    def __init__(self, start: datetime, *, speed: float) -> None:
         self.speed = speed
         self._start = start
         self._began = time.monotonic()
@@ -115,11 +111,12 @@ class ReplayClock:
         self._began = time.monotonic()
 
 
-def latest_allowed(
-    clock: Clock,  # of the cage; one that follows its samples believes them up to the wall's time
-    ahead_s: float,  # how far a source's clock may be ahead [s]
-) -> datetime:
-    """Return the time after which a sample's own clock must be wrong."""
+def latest_allowed(clock: Clock, ahead_s: float) -> datetime:
+    """Return the time after which a sample's own clock must be wrong.
+
+    ``clock``: of the cage; one that follows its samples believes them up to the wall's time.
+    ``ahead_s``: how far a source's clock may be ahead [s].
+    """
     if isinstance(clock, FollowingClock):
         return clock.latest_allowed()
     return clock.now() + timedelta(seconds=ahead_s)

@@ -27,15 +27,13 @@ class Step:
 
 
 class ClockFaults:
-    """Faults of clocks: a cage's against one that never steps, and its streams' against its own."""
+    """Faults of clocks: a cage's against one that never steps, and its streams' against its own.
 
-    def __init__(
-        self,
-        clock: Clock,  # of the cage
-        *,
-        # How many streams there are: where all are ahead it is the clock that is behind
-        streams: int,
-    ) -> None:
+    ``clock``: of the cage. ``streams``: how many streams there are: where all are ahead it is the
+    clock that is behind.
+    """
+
+    def __init__(self, clock: Clock, *, streams: int) -> None:
         self._clock, self._streams = clock, streams
         self._last = clock.now(), clock.monotonic_s()
         self._step: tuple[Step, float] | None = None

@@ -109,13 +109,12 @@ class _Greeting(ssl.SSLSocket):
             raise
 
 
-def connecting(
-    *,
-    # The broker sends at most so many messages ahead of their acknowledgements
-    receive_maximum: int,
-    session_s: int,  # it keeps what comes for the client so long after the connection ended [s]
-) -> Properties:
-    """What a client asks of its connection."""
+def connecting(*, receive_maximum: int, session_s: int) -> Properties:
+    """What a client asks of its connection.
+
+    ``receive_maximum``: the broker sends at most so many messages ahead of their acknowledgements.
+    ``session_s``: it keeps what comes for the client so long after the connection ended [s].
+    """
     properties = Properties(PacketTypes.CONNECT)
     properties.ReceiveMaximum = receive_maximum
     properties.SessionExpiryInterval = session_s

@@ -74,14 +74,13 @@ def arriving(descriptor: int) -> Iterator[list[bytes]]:
         yield [rest]
 
 
-def line_batches(
-    arrived: Iterable[Sequence[bytes]],  # lines, each with its end; one without counts as cut
-    *,
-    refuse: Refuse,  # is told which line, the line, and why it cannot be read
-) -> Iterator[Batch]:
+def line_batches(arrived: Iterable[Sequence[bytes]], *, refuse: Refuse) -> Iterator[Batch]:
     """Read one sample from each line of JSON, as in a request to the service.
 
     Whether its time has come, the service says: its clock counts, and not this machine's.
+
+    ``arrived``: lines, each with its end; one without counts as cut. ``refuse``: is told which
+    line, the line, and why it cannot be read.
     """
     number = 0
     for lines in arrived:

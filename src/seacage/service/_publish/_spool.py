@@ -131,15 +131,12 @@ class Spool:
         with self._lock:
             return self._all("SELECT coalesce(max(id), 0) FROM sample")[0][0]
 
-    def put(
-        self,
-        samples: Sequence[Sample],  # those that wait already are kept once
-        *,
-        # Whose, and how far it is read with them
-        source: str,
-        place: str,
-    ) -> bool:
-        """Keep samples; True once they are on disk, False where the spool is full."""
+    def put(self, samples: Sequence[Sample], *, source: str, place: str) -> bool:
+        """Keep samples; True once they are on disk, False where the spool is full.
+
+        ``samples``: those that wait already are kept once. ``source`` and ``place``: whose, and how
+        far it is read with them.
+        """
         with self._lock, self._transaction():
             if self._count + len(samples) > self._most and self._count and not self._drop_oldest:
                 return False
@@ -156,14 +153,12 @@ class Spool:
         with self._lock:
             return self._all("SELECT max(place) FROM place WHERE source = ?", source)[0][0]
 
-    def next(
-        self,
-        limit: int,  # at most so many
-        *,
-        # Samples after this number are live; older ones fill what is left, oldest first
-        live_after: int,
-    ) -> list[Sample]:
-        """The samples to send: those put in after one number first, then the others."""
+    def next(self, limit: int, *, live_after: int) -> list[Sample]:
+        """The samples to send: those put in after one number first, then the others.
+
+        ``limit``: at most so many. ``live_after``: samples after this number are live; older ones
+        fill what is left, oldest first.
+        """
         query = "SELECT stream, t, seq, said FROM sample WHERE id {} ? ORDER BY id LIMIT ?"
         with self._lock:
             rows = self._all(query.format(">"), live_after, limit)

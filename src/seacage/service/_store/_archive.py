@@ -30,12 +30,11 @@ class Archive:
     A file's name carries its hash. It is written and synchronised beside its final name; only
     then the manifest of its stream, replaced in one step, points to it. So whatever is cut off,
     the manifest names whole files.
+
+    ``folder``: made where there is none.
     """
 
-    def __init__(
-        self,
-        folder: Path,  # made where there is none
-    ) -> None:
+    def __init__(self, folder: Path) -> None:
         self.folder = folder
         self._known: dict[Path, tuple[tuple[int, int], Manifest]] = {}
 

@@ -51,14 +51,12 @@ _AHEAD = timedelta(seconds=60)  # so far a source's clock may be ahead
 _TABLES = (*CHECKED, "tally")
 
 
-def open_store(
-    # A path, for SQLite; or ``postgresql://user@host/name``, which several processes may share
-    place: Path | str,
-    *,
-    # A folder of Parquet files: where old samples go, and where they are still found
-    archive: Path | None = None,
-) -> "Store":
+def open_store(place: Path | str, *, archive: Path | None = None) -> "Store":
     """Open the store of samples and alarms.
+
+    ``place``: a path, for SQLite; or ``postgresql://user@host/name``, which several processes may
+    share. ``archive``: a folder of Parquet files: where old samples go, and where they are still
+    found.
 
     Raises StoreError: it cannot be opened, or the driver of PostgreSQL is not installed.
     """

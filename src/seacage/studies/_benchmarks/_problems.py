@@ -48,13 +48,12 @@ class Problem:
         """Sizes, low to high, in a few characters."""
         return " / ".join(str(size) for size in self.sizes)
 
-    def sample(
-        self,
-        seed: int,  # of all that is drawn; the problem's name joins it
-    ) -> Sample:
+    def sample(self, seed: int) -> Sample:
         """A Latin hypercube for each fidelity and for the tests, each on its own.
 
         The designs are not nested: no input of a fidelity is among those of another.
+
+        ``seed``: of all that is drawn; the problem's name joins it.
         """
         root = np.random.SeedSequence([seed, zlib.crc32(self.name.encode())])
         *draws, for_tests, for_noise = map(np.random.default_rng, root.spawn(len(self.sizes) + 2))

@@ -56,15 +56,12 @@ class AbstractMultifidelity(ABC):
         check_options(noise=self.noise, ensemble=self.ensemble, restarts=self.restarts)
 
     @abstractmethod
-    def link(
-        self,
-        # Log lengths of the lowest level, in spreads of this level's inputs; empty where a lent one
-        # has none
-        lengths: tuple[float, ...],
-        *,
-        alike: bool,  # whether the level below explains most of this one as it is
-    ) -> LinkKernel:
-        """Covariance of a level over its inputs and the level below."""
+    def link(self, lengths: tuple[float, ...], *, alike: bool) -> LinkKernel:
+        """Covariance of a level over its inputs and the level below.
+
+        ``lengths``: log lengths of the lowest level, in spreads of this level's inputs; empty where
+        a lent one has none. ``alike``: whether the level below explains most of this one as it is.
+        """
 
     def fit(
         self,

@@ -40,13 +40,12 @@ class SensorMonitor:
         """Return a copy in which the next block begins."""
         return replace(self, count=0, error=0.0)
 
-    def extended(
-        self,
-        sample: Sample,  # with its flags; one that did not pass its checks is not averaged
-        # The reading that the twin predicts [N] or [m]; None where it predicts nothing
-        predicted: float | None,
-    ) -> Self:
-        """Return a copy with one more reading."""
+    def extended(self, sample: Sample, predicted: float | None) -> Self:
+        """Return a copy with one more reading.
+
+        ``sample``: with its flags; one that did not pass its checks is not averaged. ``predicted``:
+        the reading that the twin predicts [N] or [m]; None where it predicts nothing.
+        """
         values = tuple(one if math.isfinite(one) else None for one in sample.values.values())
         same = values == self.values and None not in values
         monitor = replace(

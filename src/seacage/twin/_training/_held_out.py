@@ -66,11 +66,12 @@ def independent_count(pairs: Pairs) -> int:
     return len(np.unique(np.floor(second / length)))
 
 
-def white_noise(
-    error: Series,  # readings less predictions, in runs of consecutive readings
-    time: Shaped[np.ndarray, " pair"],  # of the readings
-) -> float:
-    """Variance of an instrument's noise: the part of its errors independent of the next one's."""
+def white_noise(error: Series, time: Shaped[np.ndarray, " pair"]) -> float:
+    """Variance of an instrument's noise: the part of its errors independent of the next one's.
+
+    ``error``: readings less predictions, in runs of consecutive readings. ``time``: of the
+    readings.
+    """
     second = (time - time[0]) / np.timedelta64(1, "s")
     step = float(np.median(np.diff(second))) if len(second) > 1 else 0.0
     parts = np.split(error, np.flatnonzero(np.diff(second) > 10.0 * step) + 1)

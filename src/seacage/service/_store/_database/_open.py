@@ -18,10 +18,10 @@ def database_at(place: Path | str) -> AbstractDatabase:
 
 
 @contextmanager
-def look_into(
-    place: Path | str,  # as for ``open_store``, but there already
-) -> Generator[AbstractSession]:
+def look_into(place: Path | str) -> Generator[AbstractSession]:
     """Read one moment of a store that a service may be writing.
+
+    ``place``: as for ``open_store``, but there already.
 
     Raises StoreError: it cannot be read.
     """

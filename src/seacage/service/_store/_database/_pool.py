@@ -15,16 +15,13 @@ C = TypeVar("C", bound=_Closable)
 
 
 class Pool(Generic[C]):
-    """So many connections at most; who finds none free waits."""
+    """So many connections at most; who finds none free waits.
 
-    def __init__(
-        self,
-        opened: Callable[[], C],  # opens one
-        *,
-        # How many there may be: opening one costs more than a query, and a server has no end of
-        # them
-        size: int = 8,
-    ) -> None:
+    ``opened``: opens one. ``size``: how many there may be: opening one costs more than a query, and
+    a server has no end of them.
+    """
+
+    def __init__(self, opened: Callable[[], C], *, size: int = 8) -> None:
         self._opened = opened
         self._places = threading.BoundedSemaphore(size)
         self._idle: list[C] = []

@@ -119,14 +119,12 @@ class PostgresSession(AbstractSession):
 class PostgresDatabase(AbstractDatabase):
     """A database on a server, its samples parted by month.
 
+    ``url``: ``postgresql://user@host/name``; the tables lie in the first schema of its search path.
+
     Raises StoreError: the driver is not installed, or the server cannot be reached.
     """
 
-    def __init__(
-        self,
-        # ``postgresql://user@host/name``; the tables lie in the first schema of its search path
-        url: str,
-    ) -> None:
+    def __init__(self, url: str) -> None:
         try:
             import psycopg
             from psycopg.conninfo import conninfo_to_dict

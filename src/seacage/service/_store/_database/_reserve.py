@@ -17,14 +17,13 @@ _log = structlog.get_logger(__name__)
 
 
 class Reserve:
-    """A file that holds room on the disk and nothing else."""
+    """A file that holds room on the disk and nothing else.
 
-    def __init__(
-        self,
-        path: Path,  # of the file; one that a killed process left is taken over
-        *,
-        size: int = SIZE,  # of the room [bytes]
-    ) -> None:
+    ``path``: of the file; one that a killed process left is taken over. ``size``: of the room
+    [bytes].
+    """
+
+    def __init__(self, path: Path, *, size: int = SIZE) -> None:
         self._path, self._size = path, size
         self._held = self._unable = False
 

@@ -99,13 +99,12 @@ def remarks_text(sample: Sample) -> str:
     return json.dumps(sample.remarks)
 
 
-def sample_of_row(
-    row: tuple[Any, ...],  # as stored
-    *,
-    # Give the flags that the samples until then had shown [us]; all samples where None
-    at: int | None = None,
-) -> Sample:
-    """Read a sample."""
+def sample_of_row(row: tuple[Any, ...], *, at: int | None = None) -> Sample:
+    """Read a sample.
+
+    ``row``: as stored. ``at``: give the flags that the samples until then had shown [us]; all
+    samples where None.
+    """
     stream, t, seq, readings, remarks, *_ = row
     pairs: dict[str, list[Any]] = json.loads(readings)
     return Sample(

@@ -118,11 +118,11 @@ def tables(words: Mapping[str, str]) -> list[str]:
     return [table.format_map(words) for table in _TABLES]
 
 
-def upgrade(
-    words: Mapping[str, str],  # the database's
-    without: Iterable[str],  # tables that there are without a checksum, in any order
-) -> list[str]:
-    """Statements that bring tables of 0.1.0 up to date."""
+def upgrade(words: Mapping[str, str], without: Iterable[str]) -> list[str]:
+    """Statements that bring tables of 0.1.0 up to date.
+
+    ``words``: the database's. ``without``: tables that there are without a checksum, in any order.
+    """
     old = CHECKED.keys() & set(without)
     column = f"crc {words['integer']} DEFAULT {UNVERIFIED}"
     added = [f"ALTER TABLE {name} ADD COLUMN {column}" for name in sorted(old)]

@@ -113,14 +113,13 @@ class SqliteDatabase(AbstractDatabase):
     WAL-reset fault in SQLite before 3.51.3. Beside the file lies another that holds room for
     alarms while a process serves from it.
 
+    ``path``: of the file; made where there is none. A damaged one is moved aside, and ``lost`` says
+    so.
+
     Raises StoreError: the file cannot be opened for writing.
     """
 
-    def __init__(
-        self,
-        # Of the file; made where there is none. A damaged one is moved aside, and ``lost`` says so.
-        path: Path,
-    ) -> None:
+    def __init__(self, path: Path) -> None:
         self._path, self.damage = path, Damage()
         self._readers = Pool(partial(_reading, path))
         self._claim: TextIO | None = None

@@ -19,11 +19,11 @@ Read = Callable[[str, Callable[[AbstractSession], T]], T]
 """Does a transaction that reads; its name comes first."""
 
 
-def verify(
-    read: Read[Answer],  # its sessions count what is damaged or missing
-    cages: Sequence[str] = (),  # only their rows; all where there are none
-) -> Iterator[tuple[int, int]]:
+def verify(read: Read[Answer], cages: Sequence[str] = ()) -> Iterator[tuple[int, int]]:
     """Verify every row and count the rows of every day.
+
+    ``read``: its sessions count what is damaged or missing. ``cages``: only their rows; all where
+    there are none.
 
     Raises DamageError: the rows are out of their order: none can be found by its key.
 
