@@ -9,14 +9,10 @@ from seacage.conventions._errors import InputError
 def fold_degrees(degrees: float, *, what: str) -> float:
     """Fold a compass direction into [0, 360): only 360 itself moves.
 
-    Raises InputError: below 0, above 360 or not a number.
+    ``degrees``: clockwise from true north [deg]. ``what``: the name of the quantity, for the
+    error's sentence.
 
-    Parameters
-    ----------
-    degrees
-        Clockwise from true north [deg].
-    what
-        The name of the quantity, for the error's sentence.
+    Raises InputError: below 0, above 360 or not a number.
     """
     if not 0.0 <= degrees <= 360.0:
         raise InputError(

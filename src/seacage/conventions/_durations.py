@@ -21,16 +21,11 @@ def duration_text(seconds: float) -> str:
 def count_times(whole: float, part: float, what: str, *, least: int = 1) -> int:
     """Number of times that one time fits into another, to the last bit of a step.
 
-    Raises InputError: no whole number, or too small a one.
+    ``whole`` and ``part``: [s].
+    ``what``: of the whole, for the message, such as "follow: duration".
+    ``least``: smallest number that is allowed.
 
-    Parameters
-    ----------
-    whole, part
-        [s].
-    what
-        Of the whole, for the message, such as "follow: duration".
-    least
-        Smallest number that is allowed.
+    Raises InputError: no whole number, or too small a one.
     """
     count = round(whole / part) if part > 0.0 and math.isfinite(whole) else -1
     if count < least or not math.isclose(count * part, whole, rel_tol=1e-9, abs_tol=1e-9):

@@ -61,12 +61,8 @@ def coverage_figure(
 ) -> "Figure":
     """Share of the truth inside 95 % intervals, by method and problem.
 
-    Parameters
-    ----------
-    methods, contests, ours
-        As for the errors.
-    wanted
-        The band that is promised, which is shaded [-].
+    ``methods``, ``contests``, ``ours``: as for the errors. ``wanted``: the band that is promised,
+    which is shaded [-].
     """
     with style():
         figure, panels = _grid(methods, contests, "Inside 95 % intervals")
@@ -90,12 +86,8 @@ def cost_figure(
 ) -> "Figure":
     """What each method takes, and how many times ours that is.
 
-    Parameters
-    ----------
-    methods, ours
-        As for the errors.
-    costs
-        By what is done: one core's time [s]; NaN where a method did not do it.
+    ``methods`` and ``ours``: as for the errors. ``costs``: by what is done: one core's time [s];
+    NaN where a method did not do it.
     """
     place = np.arange(len(methods))
     with style():

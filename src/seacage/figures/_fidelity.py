@@ -73,16 +73,10 @@ def left_figure(
 ) -> "Figure":
     """Share of the low fidelity's error that the best rescaling leaves, one bar each.
 
-    Parameters
-    ----------
-    sensors
-        Their names.
-    left
-        Shares [-].
-    least
-        What has to be left; drawn as a line [-].
-    origin
-        Of the truth.
+    ``sensors``: their names.
+    ``left``: shares [-].
+    ``least``: what has to be left; drawn as a line [-].
+    ``origin``: of the truth.
     """
     place = np.arange(len(sensors))[::-1]
     with style():

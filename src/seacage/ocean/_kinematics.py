@@ -207,14 +207,9 @@ def surface_elevation(
 ) -> Float[np.ndarray, "*n"]:
     """Height of the water's surface above still water [m].
 
-    Parameters
-    ----------
-    waves
-        The sea.
-    position
-        East, north [m].
-    time
-        Broadcast against the positions: ``time[:, None]`` gives all points at all times [s].
+    ``waves``: the sea.
+    ``position``: east, north [m].
+    ``time``: broadcast against the positions: ``time[:, None]`` gives all points at all times [s].
     """
     return np.asarray(np.cos(_angle(waves, position, time)) @ waves.amplitude)
 

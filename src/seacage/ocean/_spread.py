@@ -78,12 +78,8 @@ class WaveDraw:
 def spread_angle(share: Float[np.ndarray, " n"], *, spreading: float) -> Float[np.ndarray, " n"]:
     """Angle off a sea's direction that leaves a share of the energy on its left [rad].
 
-    Parameters
-    ----------
-    share
-        From 0 to 1; 0.5 is straight ahead [-].
-    spreading
-        s of cos^2s of half the angle: about 10 for wind sea at its peak, more for swell [-].
+    ``share``: from 0 to 1; 0.5 is straight ahead [-]. ``spreading``: s of cos^2s of half the angle:
+    about 10 for wind sea at its peak, more for swell [-].
 
     References
     ----------
@@ -110,12 +106,7 @@ def on_current(waves: Waves, current: Float[np.ndarray, "2"]) -> Waves:
 
     The water's motion under them stays as it was. Left out: what a current does to heights.
 
-    Parameters
-    ----------
-    waves
-        With frequencies as in still water.
-    current
-        At the surface, (east, north) [m/s].
+    ``waves``: with frequencies as in still water. ``current``: at the surface, (east, north) [m/s].
 
     References
     ----------

@@ -138,12 +138,8 @@ class HistoryRecord:
 def write_history(record: HistoryRecord, path: Path | str) -> None:
     """Write one simulation as CF-NetCDF: series in single precision, statistics in double.
 
-    Parameters
-    ----------
-    record
-        What to write.
-    path
-        Ends in ``.nc``. What is there is replaced at once, by the whole file.
+    ``record``: what to write. ``path``: ends in ``.nc``. What is there is replaced at once, by the
+    whole file.
     """
     packed = [f"{name}_series" for name in _SERIES if len(record.time)]
     write_netcdf(_dataset(record), Path(path), packed=packed)

@@ -39,14 +39,9 @@ class Quarantine:
     ) -> bool:
         """Set a message aside; False where the disk did not take it.
 
-        Parameters
-        ----------
-        origin
-            The topic, or the file and line, that it came by.
-        payload, reason, now
-            What, why and when.
-        sync
-            Wait until this and all before it are on disk.
+        ``origin``: the topic, or the file and line, that it came by.
+        ``payload``, ``reason``, ``now``: what, why and when.
+        ``sync``: wait until this and all before it are on disk.
         """
         self._count += 1
         self._say(origin, reason)

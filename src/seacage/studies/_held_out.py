@@ -24,19 +24,13 @@ def score_record(
 ) -> tuple[SensorScore, ...]:
     """Score a twin on the days of a field record that it was not trained on.
 
-    Raises InputError: a sensor of the record has no held-out day.
+    ``twin``: its provenance holds the training window of each sensor.
+    ``field``: the record that it was trained on, whose later days are scored, or another.
+    ``out``: folder for ``scores.json``, and per sensor a density scatter and a time series of both
+    fidelities (SVG); None writes nothing.
+    ``seed``: of the bootstrap.
 
-    Parameters
-    ----------
-    twin
-        Its provenance holds the training window of each sensor.
-    field
-        The record that it was trained on, whose later days are scored, or another.
-    out
-        Folder for ``scores.json``, and per sensor a density scatter and a time series of both
-        fidelities (SVG); None writes nothing.
-    seed
-        Of the bootstrap.
+    Raises InputError: a sensor of the record has no held-out day.
     """
     judging = unseen(field, twin.provenance.training_windows)
     readings = compare(twin.predict_record(field.buoy), judging)

@@ -18,12 +18,8 @@ _NAMED = 3  # streams in the title; of more it says how many
 def quality_page(records: Sequence[Record], limits: Limits = DEFAULT_LIMITS) -> str:
     """Return an HTML document that needs nothing beside itself.
 
-    Parameters
-    ----------
-    records
-        Checked streams; their flags are shown as they are.
-    limits
-        That they were checked with, to say which test found what.
+    ``records``: checked streams; their flags are shown as they are. ``limits``: that they were
+    checked with, to say which test found what.
     """
     names = [record.stream for record in records]
     few = len(names) <= _NAMED

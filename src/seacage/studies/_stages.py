@@ -76,12 +76,8 @@ class Stages:
     ) -> CampaignRecord:
         """A cage in the seas of a plan, kept on disk case by case.
 
-        Parameters
-        ----------
-        stage
-            Its name, which the progress is called with.
-        cage, plan, method, law, second_moment, workers, progress
-            As for ``run_campaign``.
+        ``stage``: its name, which the progress is called with. ``cage``, ``plan``, ``method``,
+        ``law``, ``second_moment``, ``workers``, ``progress``: as for ``run_campaign``.
         """
 
         def make(begun: Path) -> None:

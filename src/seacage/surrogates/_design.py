@@ -51,16 +51,10 @@ def window_design(
 ) -> Int[np.ndarray, " chosen"]:
     """Choose the points of a window that begins with the first one.
 
-    Parameters
-    ----------
-    time_s
-        Ascending [s].
-    span_s
-        Length of the window [s].
-    least
-        So many in a row where the window holds fewer, for a slow sensor.
-    most
-        At most so many, evenly spread over the window where it holds more.
+    ``time_s``: ascending [s].
+    ``span_s``: length of the window [s].
+    ``least``: so many in a row where the window holds fewer, for a slow sensor.
+    ``most``: at most so many, evenly spread over the window where it holds more.
 
     Returns
     -------

@@ -96,12 +96,7 @@ class Correction:
         Each reading is left out in turn. Readings within an hour share their error and count
         as one. A model fitted to noise alone seldom passes, and would only add noise.
 
-        Parameters
-        ----------
-        pairs
-            The training readings.
-        low
-            Level 1 at them [N] or [m].
+        ``pairs``: the training readings. ``low``: level 1 at them [N] or [m].
         """
         (rest,) = self.rest.upper
         left_out = self.gain * low + np.ravel(rest.leave_one_out().mean)
@@ -140,12 +135,7 @@ class Correction:
 
         The current that the buoy does not measure is left out of the standard deviation.
 
-        Parameters
-        ----------
-        x
-            Features of the water.
-        low
-            Level 1 there.
+        ``x``: features of the water. ``low``: level 1 there.
         """
         column = Prediction(mean=low.mean[:, None], std=low.std[:, None])
         latent = self.alone.latent(x, column, np.zeros_like(column.mean))

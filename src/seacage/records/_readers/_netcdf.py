@@ -34,12 +34,8 @@ _SEALED = -(len(_SEAL) + _DIGEST)
 def write_record(record: Record, path: Path | str) -> None:
     """Write one stream as CF-NetCDF; values, flags and times to the last bit.
 
-    Parameters
-    ----------
-    record
-        Origin and notes are kept too.
-    path
-        Ends in ``.nc``. What is there is replaced at once, by the whole file.
+    ``record``: origin and notes are kept too. ``path``: ends in ``.nc``. What is there is replaced
+    at once, by the whole file.
     """
     write_netcdf(_dataset(record), Path(path), finish=_seal)
 

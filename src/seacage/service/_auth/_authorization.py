@@ -45,16 +45,10 @@ Cookie = Annotated[str | None, Depends(_cookie)]
 class Gate:
     """What every door of a service asks before it opens.
 
-    Parameters
-    ----------
-    tokens, metrics
-        Those that are known, and where it is counted who is turned away.
-    limits
-        How much one asker may ask.
-    audit
-        Where it is written down who did what.
-    site
-        That the cages lie at: a scope may name it in place of a cage.
+    ``tokens`` and ``metrics``: those that are known, and where it is counted who is turned away.
+    ``limits``: how much one asker may ask.
+    ``audit``: where it is written down who did what.
+    ``site``: that the cages lie at: a scope may name it in place of a cage.
     """
 
     def __init__(

@@ -12,10 +12,7 @@ _LATER_S = 5  # a long answer takes about as long
 class Reads:
     """A budget of rows for the answers that are being made: their memory and time go with these.
 
-    Parameters
-    ----------
-    rows, rows_per_token
-        That may be in the making at one time, of all and of one token.
+    ``rows`` and ``rows_per_token``: that may be in the making at one time, of all and of one token.
     """
 
     def __init__(self, *, rows: int, rows_per_token: int) -> None:

@@ -21,23 +21,12 @@ class FileTail:
     After a restart it reads on where it stopped: the place is written once the samples are on
     disk, so some may be read twice, and are known again by stream and time.
 
-    Parameters
-    ----------
-    path, stream
-        See ``Tail``.
-    cage
-        Whose samples they are.
-    quarantine
-        Where rows that cannot be read are set aside.
-    kept
-        File of the place; None reads from the beginning after each restart.
-    every_s
-        How often to look [s].
-
-    Attributes
-    ----------
-    fault
-        Why the file cannot be read; None while it can.
+    ``path`` and ``stream``: see ``Tail``.
+    ``cage``: whose samples they are.
+    ``quarantine``: where rows that cannot be read are set aside.
+    ``kept``: file of the place; None reads from the beginning after each restart.
+    ``every_s``: how often to look [s].
+    ``fault``: why the file cannot be read; None while it can.
     """
 
     def __init__(

@@ -72,12 +72,8 @@ class AlarmDesk:
     every alarm stands as it was last announced. Lines that the disk did not take are written
     with those that come after them.
 
-    Parameters
-    ----------
-    cage
-        Its name in the service.
-    twin, store, policy
-        Whose answers are assessed, where it is kept, and by which limits.
+    ``cage``: its name in the service. ``twin``, ``store``, ``policy``: whose answers are assessed,
+    where it is kept, and by which limits.
     """
 
     def __init__(self, *, cage: str, twin: Twin, store: Store, policy: AlarmPolicy) -> None:
@@ -158,14 +154,10 @@ class AlarmDesk:
     ) -> tuple[Alarm, Future[None]]:
         """Do what a person asks with an alarm.
 
-        Raises InputError: there is no such alarm, or the action makes no sense with it.
+        ``name`` and ``how``: of the alarm, and one of ``HANDLES``. ``who``, ``now``, ``why``,
+        ``seconds``: for the journal, and how long to shelve [s].
 
-        Parameters
-        ----------
-        name, how
-            Of the alarm, and one of ``HANDLES``.
-        who, now, why, seconds
-            For the journal, and how long to shelve [s].
+        Raises InputError: there is no such alarm, or the action makes no sense with it.
 
         Returns
         -------

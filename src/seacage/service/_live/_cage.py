@@ -87,12 +87,8 @@ class LiveCage:
     once they are on disk. ``run`` steps the twin with what was queued and with the ticks of the
     clock.
 
-    Attributes
-    ----------
-    streams
-        The streams listened to, and the quantities that each carries.
-    topology
-        What of the cage does not change.
+    ``streams``: the streams listened to, and the quantities that each carries. ``topology``: what
+    of the cage does not change.
     """
 
     def __init__(
@@ -209,15 +205,11 @@ class LiveCage:
     ) -> Alarm:
         """Do what a person asks with an alarm; returns when that is on disk.
 
+        ``alarm`` and ``how``: its name, and one of ``HANDLES``. ``who``, ``why``, ``seconds``: for
+        the journal, and how long to shelve [s].
+
         Raises InputError: the action makes no sense as the alarm stands.
         Raises StoreError: the disk did not take it.
-
-        Parameters
-        ----------
-        alarm, how
-            Its name, and one of ``HANDLES``.
-        who, why, seconds
-            For the journal, and how long to shelve [s].
         """
         async with self._stepping:
             now = self.clock.now()

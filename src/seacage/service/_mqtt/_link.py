@@ -71,10 +71,7 @@ class Link:
     is made once all that the last one brought is dealt with; what the broker has sent ahead is
     then never more than the receive maximum.
 
-    Attributes
-    ----------
-    fault
-        Why there is no connection; None while there is one.
+    ``fault``: why there is no connection; None while there is one.
     """
 
     def __init__(

@@ -69,14 +69,9 @@ def read_observed(
 ) -> Observed:
     """Read a message of samples; whatever its bytes are, nothing is raised.
 
-    Parameters
-    ----------
-    stream
-        Whose topic it came by.
-    payload
-        ``{"t": …, "seq": …, "values": {…}}``, or a list of such.
-    streams, until
-        As for ``read_samples``.
+    ``stream``: whose topic it came by.
+    ``payload``: ``{"t": …, "seq": …, "values": {…}}``, or a list of such.
+    ``streams`` and ``until``: as for ``read_samples``.
     """
     if len(payload) > LARGEST:
         return Observed(fault=f"{len(payload)} bytes are more than {LARGEST} of one message.")

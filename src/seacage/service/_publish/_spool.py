@@ -74,13 +74,10 @@ class Spool:
     holds of others, so that they take no room from these. What cannot be sent is set aside in a
     file beside the spool: it is named like it and ends with ``.quarantine.jsonl``.
 
+    ``ahead``: how many of those that wait are ahead of the service's clock.
+
     Raises InputError: the spool is of another destination.
     Raises SpoolError: it cannot be opened.
-
-    Attributes
-    ----------
-    ahead
-        How many of those that wait are ahead of the service's clock.
     """
 
     def __init__(

@@ -70,10 +70,7 @@ class HttpTransport:
 class MqttTransport:
     """Carries samples by MQTT; the service's own acknowledgement counts, not the broker's.
 
-    Parameters
-    ----------
-    broker, site, cage
-        Where to.
+    ``broker``, ``site``, ``cage``: where to.
     """
 
     def __init__(self, broker: Broker, *, site: str, cage: str) -> None:

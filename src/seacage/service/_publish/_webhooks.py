@@ -45,10 +45,7 @@ class WebhookNotifier:
     Each hook has its own queue, so that one that does not answer holds nobody up; a message is
     tried again for some minutes, in order, and then dropped with a line in the log.
 
-    Parameters
-    ----------
-    hooks, cages
-        Where to, and whose alarms.
+    ``hooks`` and ``cages``: where to, and whose alarms.
     """
 
     def __init__(self, hooks: Sequence[Webhook], cages: Mapping[str, Alarmed]) -> None:

@@ -144,14 +144,9 @@ def read_samples(
 ) -> tuple[list[Sample], list[Rejection]]:
     """Read samples one by one; a bad one does not take the others with it.
 
-    Parameters
-    ----------
-    asked
-        As they came.
-    streams
-        The streams of the cage, and the quantities that each carries.
-    until
-        A sample of a later time has a wrong clock.
+    ``received``: as they came.
+    ``streams``: the streams of the cage, and the quantities that each carries.
+    ``until``: a sample of a later time has a wrong clock.
 
     Returns
     -------

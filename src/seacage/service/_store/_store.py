@@ -70,10 +70,7 @@ class Store:
     transaction (group commit) and answers after the commit has reached the disk. Reading waits
     for nobody.
 
-    Parameters
-    ----------
-    place, archive
-        As for ``open_store``.
+    ``place`` and ``archive``: as for ``open_store``.
     """
 
     def __init__(self, place: Path | str, *, archive: Archive | None = None) -> None:
@@ -180,21 +177,14 @@ class Store:
     ) -> list[Sample]:
         """Read samples in time order, start <= t < end.
 
-        Parameters
-        ----------
-        cage, stream
-            Of which; all streams where None.
-        start, end
-            Bounds in the source's time; open where None.
-        limit
-            At most so many.
-        newest
-            Of more than ``limit`` the last rather than the first.
-        withdrawn
-            Those too that were withdrawn, as they are ahead of a clock that has stepped back.
-        known_at
-            Give the flags that the samples until then had shown; None for those of now. What is
-            archived has those of now.
+        ``cage`` and ``stream``: of which; all streams where None.
+        ``start`` and ``end``: bounds in the source's time; open where None.
+        ``limit``: at most so many.
+        ``newest``: of more than ``limit`` the last rather than the first.
+        ``withdrawn``: those too that were withdrawn, as they are ahead of a clock that has stepped
+        back.
+        ``known_at``: give the flags that the samples until then had shown; None for those of now.
+        What is archived has those of now.
         """
         bounds = Bounds(start=start, end=end, limit=limit, newest=newest)
         found = self._read(
@@ -233,18 +223,12 @@ class Store:
         A current has no mean direction: it is aggregated as ``current_east_m_s`` and
         ``current_north_m_s``. Aggregates outlive the samples that they were made from.
 
-        Raises InputError: a direction, no quantity, or a width that is not kept.
+        ``cage``, ``stream``, ``key``: of which quantity.
+        ``width_s``: 60 or 600 [s].
+        ``start`` and ``end``: bounds of the spans' begins; open where None.
+        ``limit``: at most so many, the first.
 
-        Parameters
-        ----------
-        cage, stream, key
-            Of which quantity.
-        width_s
-            60 or 600 [s].
-        start, end
-            Bounds of the spans' begins; open where None.
-        limit
-            At most so many, the first.
+        Raises InputError: a direction, no quantity, or a width that is not kept.
         """
         check_aggregate(key, width_s)
         bounds = Bounds(start=start, end=end, limit=limit)

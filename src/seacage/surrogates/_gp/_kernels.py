@@ -153,12 +153,8 @@ class AbstractKernel(ABC):
     ) -> Leaf:
         """Function that adds and multiplies what its leaves give, as the kernel does.
 
-        Parameters
-        ----------
-        log_parameters, width
-            Of the kernel, and the number of features.
-        leaf
-            Called with each kernel that is no composition and its own hyperparameters.
+        ``log_parameters`` and ``width``: of the kernel, and the number of features. ``leaf``:
+        called with each kernel that is no composition and its own hyperparameters.
         """
         return leaf(self, log_parameters)
 

@@ -45,16 +45,10 @@ def update_evidence(
     a fault does not count against it. All hypotheses are compared with the same: the baseline and
     the shifts of the active alarms.
 
-    Parameters
-    ----------
-    evidence, baseline
-        So far.
-    block, among
-        The residuals, and the hypotheses.
-    active
-        Alarms that are raised; a hypothesis of one of them is compared with the others.
-    settings
-        Of the fault detector.
+    ``evidence`` and ``baseline``: so far.
+    ``block`` and ``among``: the residuals, and the hypotheses.
+    ``active``: alarms that are raised; a hypothesis of one of them is compared with the others.
+    ``settings``: of the fault detector.
 
     References
     ----------
