@@ -8,25 +8,14 @@ from seacage.conventions import InputError
 
 @dataclass(frozen=True, slots=True)
 class Key:
-    """A quantity at the door: its unit is in its name.
+    """A quantity at the door: its unit is in its name."""
 
-    Parameters
-    ----------
-    name
-        As in JSON, MQTT and column names: ``tension_kn``.
-    unit
-        As people write it.
-    cf_unit, standard_name
-        As CF-1.11 spells them; the standard name is None where CF has none.
-    long_name
-        One line for a figure's axis.
-    """
-
-    name: str
-    unit: str
+    name: str  # as in JSON, MQTT and column names: ``tension_kn``
+    unit: str  # as people write it
+    # As CF-1.11 spells them; the standard name is None where CF has none
     cf_unit: str
     standard_name: str | None
-    long_name: str
+    long_name: str  # one line for a figure's axis
 
 
 KEYS: Mapping[str, Key] = {

@@ -65,35 +65,23 @@ class Readings(Rows):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Errors:
-    """Errors of both fidelities on the same readings [m] or [kN].
+    """Errors of both fidelities on the same readings [m] or [kN]."""
 
-    Parameters
-    ----------
-    readings
-        How many.
-    low_mae, multi_mae
-        Mean absolute errors.
-    low_bias, multi_bias
-        Mean of prediction less reading.
-    gain, gain_low, gain_high
-        Low-fidelity less multifidelity absolute error: its mean, and the 95 % interval by a
-        paired block bootstrap. An interval above 0 says that multifidelity is better.
-    coverage
-        Share of readings inside the multifidelity's 95 % interval [-].
-    crps
-        Continuous ranked probability score of multifidelity; for a forecast without spread,
-        as the low fidelity is, it would be the mean absolute error.
-    """
-
-    readings: int
+    readings: int  # how many
+    # Mean absolute errors
     low_mae: float
     multi_mae: float
+    # Mean of prediction less reading
     low_bias: float
     multi_bias: float
+    # Low-fidelity less multifidelity absolute error: its mean, and the 95 % interval by a paired
+    # block bootstrap. An interval above 0 says that multifidelity is better.
     gain: float
     gain_low: float
     gain_high: float
-    coverage: float
+    coverage: float  # share of readings inside the multifidelity's 95 % interval [-]
+    # Continuous ranked probability score of multifidelity; for a forecast without spread, as the
+    # low fidelity is, it would be the mean absolute error
     crps: float
 
     @property

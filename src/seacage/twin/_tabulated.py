@@ -24,24 +24,15 @@ class Loads:
     """Loads of a tabulated twin: an ``Answer`` without the shape.
 
     A row that is not valid holds NaN in every number.
-
-    Parameters
-    ----------
-    valid
-        The input was known.
-    in_domain
-        The input lies inside what level 1 was trained on.
-    bridle_tension, bridle_low
-        Best mean and standard deviation of each bridle's tension, and the simulations alone [N].
-    sensor, sensor_low
-        What each sensor would read with the scatter of its readings, and the simulations alone
-        with the emulator's spread [N] or [m] depth.
     """
 
-    valid: Bool[np.ndarray, " case"]
-    in_domain: Bool[np.ndarray, " case"]
+    valid: Bool[np.ndarray, " case"]  # the input was known
+    in_domain: Bool[np.ndarray, " case"]  # the input lies inside what level 1 was trained on
+    # Best mean and standard deviation of each bridle's tension, and the simulations alone [N]
     bridle_tension: Prediction
     bridle_low: Float[np.ndarray, "case line"]
+    # What each sensor would read with the scatter of its readings, and the simulations alone with
+    # the emulator's spread [N] or [m] depth
     sensor: Prediction
     sensor_low: Prediction
 

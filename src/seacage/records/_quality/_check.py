@@ -128,12 +128,8 @@ AHEAD = "ahead of the clock"
 def withdrawn(sample: Sample, *, clock: datetime) -> Sample:
     """Return a sample that counts no more: its time is ahead of a clock that has stepped back.
 
-    Parameters
-    ----------
-    sample
-        Of which every value is flagged FAIL; the raw values are kept.
-    clock
-        The time that it was set to.
+    ``sample``: of which every value is flagged FAIL; the raw values are kept. ``clock``: the time
+    that it was set to.
     """
     by_s = (sample.t - clock).total_seconds()
     remark = (
