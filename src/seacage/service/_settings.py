@@ -82,67 +82,45 @@ class Settings(BaseSettings):
     """Settings of ``seacage serve``; each is also an environment variable, ``SEACAGE_PORT``.
 
     A variable of a section has two underscores: ``SEACAGE_STORE__URL``.
-
-    Parameters
-    ----------
-    site
-        Where the cages lie, as topics and scopes name it.
-    twin_key
-        File of the key that twins are signed with (``seacage train --sign``): with it no other
-        twin is taken, and where one is refused, the one that was served last goes on.
-    data
-        The folder that keeps everything the service writes.
-    host, port
-        Where it listens.
-    certificate, key
-        PEM files: with them it speaks HTTPS.
-    insecure_http
-        Listen without TLS where others can hear.
-    trusted_proxies
-        Addresses or networks of proxies that are believed about whose request they bring.
-    tick_s
-        Longest pause between two looks at the clock [s of the wall].
-    clock, speed
-        The machine's, or one that stands where the newest sample stands and runs so fast
-        between samples: for a record that is published as if it were live.
-    worker, workers
-        Of a farm that several processes serve: which one this is, from 0, and how many there
-        are. It serves the cages that fall to it.
-    log
-        Lines for people or JSON for machines.
-    store, mqtt, cages, webhooks, limits
-        See their sections.
-    alarms
-        Limits by kind or name, as ``seacage.twin.AlarmPolicy.from_dict`` takes them.
-    least_volume
-        Share of the still-water volume below which a cage is not called well [-].
     """
 
     model_config = SettingsConfigDict(
         env_prefix="SEACAGE_", env_nested_delimiter="__", extra="ignore", frozen=True
     )
 
-    site: Name = "site"
+    site: Name = "site"  # where the cages lie, as topics and scopes name it
+    # File of the key that twins are signed with (``seacage train --sign``): with it no other twin
+    # is taken, and where one is refused, the one that was served last goes on
     twin_key: Path | None = None
-    data: Path = Path("var")
+    data: Path = Path("var")  # the folder that keeps everything the service writes
+    # Where it listens
     host: str = "127.0.0.1"
     port: int = Field(default=8000, ge=0, le=65535)
+    # PEM files: with them it speaks HTTPS
     certificate: Path | None = None
     key: Path | None = None
-    insecure_http: bool = False
+    insecure_http: bool = False  # listen without TLS where others can hear
+    # Addresses or networks of proxies that are believed about whose request they bring
     trusted_proxies: tuple[Network, ...] = ()
+    # Longest pause between two looks at the clock [s of the wall]
     tick_s: float = Field(default=2.0, gt=0.0, le=60.0)
+    # The machine's, or one that stands where the newest sample stands and runs so fast between
+    # samples: for a record that is published as if it were live
     clock: Literal["wall", "samples"] = "wall"
     speed: float = Field(default=1.0, ge=0.1, le=10_000.0)
+    # Of a farm that several processes serve: which one this is, from 0, and how many there are. It
+    # serves the cages that fall to it.
     worker: int = Field(default=0, ge=0)
     workers: int = Field(default=1, ge=1, le=10_000)
-    log: Literal["lines", "json"] = "lines"
+    log: Literal["lines", "json"] = "lines"  # lines for people or JSON for machines
     store: StoreSection = StoreSection()
     mqtt: MqttSection | None = None
     cages: tuple[CageSection, ...] = ()
+    # Limits by kind or name, as ``seacage.twin.AlarmPolicy.from_dict`` takes them
     alarms: dict[str, Any] = Field(default_factory=dict)
     webhooks: tuple[Webhook, ...] = ()
     limits: Limits = Limits()
+    # Share of the still-water volume below which a cage is not called well [-]
     least_volume: float = Field(default=0.8, ge=0.0, le=1.0)
 
     @model_validator(mode="after")

@@ -92,8 +92,6 @@ class Inspection:
         One sentence each.
     map_text
         The map to edit, in TOML; a value that only the user knows is ``"?"``.
-    open_questions
-        How many of them there are.
     """
 
     findings: tuple[str, ...]

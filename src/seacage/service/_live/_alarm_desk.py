@@ -158,11 +158,7 @@ class AlarmDesk:
         ``seconds``: for the journal, and how long to shelve [s].
 
         Raises InputError: there is no such alarm, or the action makes no sense with it.
-
-        Returns
-        -------
-        alarm, kept
-            As it now stands, and when that is on disk.
+        Returns the alarm as it now stands, and when that is on disk.
         """
         if name not in self.alarms:
             raise InputError(f"No alarm is called {name!r} here, or it was never assessed.")

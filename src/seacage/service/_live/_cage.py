@@ -153,17 +153,12 @@ class LiveCage:
         self.live.clocks.note_refusal(stream, t)
 
     async def take(self, samples: Sequence[Sample]) -> tuple[bool, ...]:
-        """Check, store and queue samples; returns after the commit.
+        """Check, store and queue samples; returns after the commit which of them are new.
 
         Where the twin has fallen far behind, samples are taken once it has caught up: their
         senders keep them, and this process does not fill the memory with them.
 
         Raises StoreError: the disk did not take them; then none of them counts.
-
-        Returns
-        -------
-        new
-            For each sample whether it was not known before.
         """
         await self._room.wait()
         if isinstance(self.clock, FollowingClock):

@@ -31,15 +31,10 @@ class LiveTwin:
 
     What it shows depends on the stored samples and the clock alone, and not on the order in which
     they came or on when the service was stopped and started.
-
-    Attributes
-    ----------
-    state, answered
-        What the twin remembers now, and the answer of its last step.
     """
 
-    state: TwinState
-    answered: Answered
+    state: TwinState  # what the twin remembers now
+    answered: Answered  # the answer of its last step
 
     def __init__(
         self,

@@ -20,16 +20,9 @@ class SendError(SeacageError):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sender(AbstractCaller):
-    """Sends samples to one cage of one service.
+    """Sends samples to one cage of one service; the token has the scope ingest."""
 
-    Parameters
-    ----------
-    address, cage, token
-        Where to; the token has the scope ingest.
-    patience_s
-        Pauses between tries while the service is away or has too much to do [s].
-    """
-
+    # Pauses between tries while the service is away or has too much to do [s]
     patience_s: tuple[float, ...] = (0.5, 1.0, 2.0, 4.0, 8.0)
 
     def send(self, samples: Sequence[Sample]) -> Receipt:

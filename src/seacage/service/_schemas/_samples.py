@@ -147,11 +147,7 @@ def read_samples(
     ``received``: as they came.
     ``streams``: the streams of the cage, and the quantities that each carries.
     ``until``: a sample of a later time has a wrong clock.
-
-    Returns
-    -------
-    samples, rejected
-        Those that can be stored, and the rest; ``retry`` is true of those after ``until``.
+    Returns those that can be stored, and the rest; ``retry`` is true of those after ``until``.
     """
     samples, rejected = list[Sample](), list[Rejection]()
     for index, one in enumerate(received):

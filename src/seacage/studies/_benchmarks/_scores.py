@@ -18,35 +18,21 @@ A likelihood does not exist at zero, which some peers answer at their training p
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunScore:
-    """Scores of one run against the truth without noise.
+    """Scores of one run against the truth without noise, in its unit where nothing else is said."""
 
-    Parameters
-    ----------
-    problem, method, seed
-        Of the run.
-    rmse, crps
-        In the unit of the truth.
-    mnll
-        Mean negative log likelihood [nat].
-    coverage
-        Of the 95 % intervals [-].
-    fit_s, predict_s, tick_s
-        Of the processor [s].
-    error
-        Why there is no score; then all are NaN.
-    """
-
+    # Of the run
     problem: str
     method: str
     seed: int
     rmse: float = np.nan
-    mnll: float = np.nan
+    mnll: float = np.nan  # mean negative log likelihood [nat]
     crps: float = np.nan
-    coverage: float = np.nan
+    coverage: float = np.nan  # of the 95 % intervals [-]
+    # Of the processor [s]
     fit_s: float = np.nan
     predict_s: float = np.nan
     tick_s: float = np.nan
-    error: str | None = None
+    error: str | None = None  # why there is no score; then all are NaN
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -185,12 +185,8 @@ def buoy_water(
 ) -> tuple[Metocean, Float[np.ndarray, " window"]]:
     """Mean water over each window as a twin receives it: the buoy's last sample, held.
 
-    Returns
-    -------
-    water
-        Vectors; NaN where the buoy was silent, stale or unsound for too long.
-    period
-        Peak period of the waves, 0 where there is none [s].
+    Vectors, NaN where the buoy was silent, stale or unsound for too long; and the peak period of
+    the waves, 0 where there is none [s].
     """
     ago = np.arange(MEAN_S - _EVERY_S, -_EVERY_S / 2.0, -_EVERY_S)
     at = end[:, None] - (ago * 1e6).astype("timedelta64[us]")

@@ -111,26 +111,14 @@ class Process:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Posterior(Process):
-    """The process conditioned on standardised points.
+    """The process conditioned on standardised points."""
 
-    Parameters
-    ----------
-    kernel, log_parameters, noise, log_noise
-        As in ``Process``.
-    x
-        Standardised inputs.
-    noise_factor
-        Factor on the noise of each point; other than 1 for Student's t alone.
-    weights
-        Inverse covariance times outputs, so that the mean is one product.
-    factor
-        Of the covariance with noise.
-    """
-
-    x: Float[np.ndarray, "n feature"]
+    x: Float[np.ndarray, "n feature"]  # standardised inputs
+    # Factor on the noise of each point; other than 1 for Student's t alone
     noise_factor: Float[np.ndarray, " n"]
+    # Inverse covariance times outputs, so that the mean is one product
     weights: Float[np.ndarray, "n output"]
-    factor: Factor
+    factor: Factor  # of the covariance with noise
 
     def noise_at(self, x: Float[np.ndarray, "row feature"]) -> Float[np.ndarray, "row output"]:
         """Variance of the noise of a new measurement; one column stands for all outputs."""

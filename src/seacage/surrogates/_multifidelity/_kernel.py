@@ -150,23 +150,12 @@ class LinearKernel(AbstractKernel):
 
 @dataclass(frozen=True, slots=True)
 class LinkKernel(Sum):
-    """Covariance of a level over (x, f), f being the level below: the last feature.
+    """Covariance of a level over (x, f), f being the level below: the last feature."""
 
-    Parameters
-    ----------
-    one, other
-        What it is composed of.
-    kind
-        Name under which a saved model finds it again.
-    ratio
-        Expected change of the level per change of the one below.
-    bends
-        Whether the level bends with the one below, over a length that comes first after rho's
-        hyperparameters.
-    """
-
-    kind: str
-    ratio: float = 0.0
+    kind: str  # name under which a saved model finds it again
+    ratio: float = 0.0  # expected change of the level per change of the one below
+    # Whether the level bends with the one below, over a length that comes first after rho's
+    # hyperparameters
     bends: bool = True
 
     @property
