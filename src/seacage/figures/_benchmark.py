@@ -7,7 +7,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 from jaxtyping import Float
 
-from seacage.figures._style import FAINT, LOW, MULTI, MUTED, SENSOR, blank_figure, panel_grid, style
+from seacage.figures._style import (
+    FAINT,
+    LOW,
+    MULTI,
+    MUTED,
+    SENSOR,
+    blank_figure,
+    note,
+    panel_grid,
+    style,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -99,14 +109,8 @@ def cost_figure(
             axes.barh(place[done], 1e3 * cost[done], 0.62, color=colours, lw=0)
             axes.set_xscale("log")
             for at, taken in zip(place[done].tolist(), cost[done].tolist(), strict=True):
-                axes.annotate(
-                    f"{taken / cost[ours[0]]:.2g} ×",
-                    (1e3 * taken, at),
-                    xytext=(4, 0),
-                    textcoords="offset points",
-                    va="center",
-                    fontsize=7.5,
-                )
+                times = f"{taken / cost[ours[0]]:.2g} ×"
+                note(axes, times, (1e3 * taken, at), (4, 0), va="center")
             least, most = axes.get_xlim()
             axes.set_xlim(least, most * (most / least) ** 0.18)
             _few_ticks(axes, cost[done])

@@ -18,6 +18,7 @@ from seacage.figures._style import (
     SENSOR,
     blank_figure,
     head,
+    note,
     panel_grid,
     style,
 )
@@ -85,19 +86,10 @@ def left_figure(
         axes.barh(place, np.ones(len(left)), 0.62, color=LOW, alpha=0.18, lw=0)
         axes.barh(place, left, 0.62, color=LOW, lw=0)
         for at, share in zip(place.tolist(), left.tolist(), strict=True):
-            axes.annotate(
-                f"{share:.0%}", (share, at), xytext=(4, 0), textcoords="offset points", va="center"
-            )
+            note(axes, f"{share:.0%}", (share, at), (4, 0), va="center", fontsize=8.5)
         axes.axvline(least, color=FIT, lw=1.2)
-        axes.annotate(
-            f"{least:.0%} must be left",
-            (least, 0.0),
-            xycoords=("data", "axes fraction"),
-            xytext=(4, 3),
-            textcoords="offset points",
-            color=FIT,
-            fontsize=7.5,
-        )
+        left_over, below = f"{least:.0%} must be left", ("data", "axes fraction")
+        note(axes, left_over, (least, 0.0), (4, 3), xycoords=below, color=FIT)
         axes.set_yticks(place, sensors)
         axes.set_ylim(-1.1, len(sensors) - 0.5)
         axes.set_xlim(0.0, max(1.0, 1.12 * float(np.max(left))))
@@ -130,7 +122,8 @@ def gain_figure(
             axes.grid(visible=False, axis="y")
         left.set_yticks(place, names)
         left.set_ylim(-0.6, len(names) - 0.4)
-        _centre(left, null)
+        most = max(1.15 * float(np.max(np.abs(null))), 0.01)
+        left.set_xlim(-most, most)
         head(left, "Null case: the truth is the low fidelity")
         head(right, "Real case", origin=origin)
     return figure
@@ -178,8 +171,3 @@ def _explain(figure: "Figure", axes: "Axes", title: str, origin: Origin) -> None
     handles, labels = axes.get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper right", ncols=len(handles))
     figure.suptitle(f"{title} ({origin})", x=0.01, ha="left", fontsize=9.5, fontweight="bold")
-
-
-def _centre(axes: "Axes", gain: Float[np.ndarray, "row 3"]) -> None:
-    most = max(1.15 * float(np.max(np.abs(gain))), 0.01)
-    axes.set_xlim(-most, most)

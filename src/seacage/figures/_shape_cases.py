@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.conventions import Origin
-from seacage.figures._style import FIT, LOW, MULTI, MUTED, blank_figure, head, style
+from seacage.figures._style import FIT, LOW, MULTI, MUTED, blank_figure, head, note, style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -49,14 +49,8 @@ def shape_cases_figure(
             axes.set_yscale("log")
         panels[0].set_ylim(bottom=0.7 * least)
         panels[0].set_ylabel("Mean absolute node error [m]")
-        panels[0].annotate(
-            "1 m",
-            (0.0, _LIMIT),
-            xycoords=("axes fraction", "data"),
-            xytext=(3, 3),
-            textcoords="offset points",
-            color=FIT,
-        )
+        beside = {"xycoords": ("axes fraction", "data"), "color": FIT, "fontsize": 8.5}
+        note(panels[0], "1 m", (0.0, _LIMIT), (3, 3), **beside)
         handles, names = panels[3].get_legend_handles_labels()
         figure.legend(handles, names, loc="outside lower center", ncols=len(errors))
     return figure

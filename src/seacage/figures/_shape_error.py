@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.conventions import InputError, Origin
-from seacage.figures._style import FIT, LOW, MULTI, MUTED, blank_figure, head, style
+from seacage.figures._style import FIT, LOW, MULTI, MUTED, blank_figure, head, note, style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -64,12 +64,4 @@ def shape_error_figure(
 
 def _mark(axes: "Axes", height: float, name: str, *, colour: str) -> None:
     axes.axhline(height, color=colour, lw=1.0)
-    axes.annotate(
-        name,
-        (0.0, height),
-        xycoords=("axes fraction", "data"),
-        xytext=(4, 3),
-        textcoords="offset points",
-        color=colour,
-        fontsize=7.5,
-    )
+    note(axes, name, (0.0, height), (4, 3), xycoords=("axes fraction", "data"), color=colour)

@@ -4,7 +4,7 @@ import io
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from seacage.conventions import Origin
 
@@ -86,6 +86,14 @@ def head(axes: "Axes", title: str, *, origin: Origin | None = None, legend: int 
         )
     if legend:
         axes.legend(loc="lower left", bbox_to_anchor=(-0.01, 0.985), ncols=legend, handlelength=1.6)
+
+
+def note(
+    axes: "Axes", text: str, at: tuple[float, float], away: tuple[float, float], **look: Any
+) -> None:
+    """Small text so many points away from a place."""
+    look = {"fontsize": 7.5, **look}
+    axes.annotate(text, at, xytext=away, textcoords="offset points", **look)
 
 
 def panel_grid(

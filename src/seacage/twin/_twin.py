@@ -227,7 +227,8 @@ class Twin:
             state,
             samples,
             now,
-            timeouts=self._timeout_by_stream(),
+            timeouts={self.buoy: self.timeouts.stale_after_s}
+            | dict.fromkeys(self.sensor_names, self.timeouts.sensor_silent_after_s),
             limits=self.timeouts,
             amendments=amendments,
         )
@@ -329,10 +330,6 @@ class Twin:
                 f"{duration_text(limit_s)} is the limit."
             )
         return Reading(metocean=Metocean.from_columns(columns, 1), age_s=age_s, trouble=trouble)
-
-    def _timeout_by_stream(self) -> dict[str, float]:
-        sensors = dict.fromkeys(self.sensor_names, self.timeouts.sensor_silent_after_s)
-        return {self.buoy: self.timeouts.stale_after_s, **sensors}
 
 
 def replay(twin: Twin, samples: Iterable[Sample]) -> Iterator[Event]:

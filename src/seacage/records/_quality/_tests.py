@@ -151,7 +151,8 @@ def _next_anchor(
     gap = anchor is None or time - anchor.time > limits.gap_s * SECOND
     # A point of another kind (a current without its direction) is nothing to compare with.
     if anchor is None or gap or len(anchor.point) != len(point):
-        return Anchor(time, values, time, 1, point, None, _open_spread(time, point, limits))
+        spread = Spread(time, _bucket(time, limits), point, point, (), point, point)
+        return Anchor(time, values, time, 1, point, None, spread)
     spread = _spread(anchor.spread, anchor.time, time, point, limits)
     if values != anchor.values:
         return Anchor(time, values, time, 1, point, anchor.point, spread)
@@ -161,10 +162,6 @@ def _next_anchor(
 def _bucket(time: int, limits: Steadiness) -> int:
     width = limits.attenuated_s * SECOND / BUCKETS
     return 0 if math.isinf(width) else int(time // width)
-
-
-def _open_spread(time: int, point: Point, limits: Steadiness) -> Spread:
-    return Spread(time, _bucket(time, limits), point, point, (), point, point)
 
 
 def _spread(last: Spread, last_time: int, time: int, point: Point, limits: Steadiness) -> Spread:

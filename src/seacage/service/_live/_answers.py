@@ -12,7 +12,7 @@ from jaxtyping import Float
 from seacage.cage import Cage
 from seacage.conventions import Flag, compass
 from seacage.ocean import SeaState
-from seacage.records import Amendment, Record, Sample
+from seacage.records import Record, Sample
 from seacage.service._export import Output, bridle_outputs, sensor_outputs
 from seacage.service._schemas._cages import CageSummary, Position, ShacklePlace, Topology
 from seacage.service._schemas._history import History, Measured, Series
@@ -59,7 +59,10 @@ def state_of(
         shape=_shape_state(answer),
         volume_fraction=_number(answer.volume_fraction[0], 4),
         silent=sorted(memory.silent),
-        amended=[_amendment(one) for one in memory.amended],
+        amended=[
+            Amended.model_validate(asdict(one) | {"quantity": one.key, "reason": one.remark})
+            for one in memory.amended
+        ],
     )
 
 
@@ -139,10 +142,6 @@ def _sensors(
             )
         )
     return states
-
-
-def _amendment(one: Amendment) -> Amended:
-    return Amended.model_validate(asdict(one) | {"quantity": one.key, "reason": one.remark})
 
 
 def usable_value(sample: Sample) -> float | None:

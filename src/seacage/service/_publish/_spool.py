@@ -137,7 +137,8 @@ class Spool:
         with self._lock, self._transaction():
             if self._count + len(samples) > self._most and self._count and not self._drop_oldest:
                 return False
-            self._count += self._execute(_INSERT, [_row(sample) for sample in samples])
+            rows = [(*_key(one), json.dumps(sample_fields(one))) for one in samples]
+            self._count += self._execute(_INSERT, rows)
             self._execute(_PLACE, [(source, place)])
             if self._drop_oldest and self._count > self._most:
                 gone = self._execute(_OLDEST, [(self._count - self._most,)])
@@ -256,10 +257,6 @@ def _open(path: Path) -> sqlite3.Connection:
         connection.close()
         raise
     return connection
-
-
-def _row(sample: Sample) -> tuple[object, ...]:
-    return (*_key(sample), json.dumps(sample_fields(sample)))
 
 
 def _key(one: Settled | Sample) -> tuple[object, ...]:

@@ -159,7 +159,10 @@ def aggregates_between(
         )
         if len(found) >= bounds.limit:
             break
-    return [_aggregate(row) for row in found[: bounds.limit]]
+    return [
+        AggregateOut(t=moment_of(int(t)), count=int(n), mean=mean, least=least, most=most)
+        for t, n, mean, least, most in found[: bounds.limit]
+    ]
 
 
 def _marks(session: AbstractSession, cage: str, stream: str, start: int, end: int) -> set[int]:
@@ -189,8 +192,3 @@ def _renew(session: AbstractSession, spans: Sequence[Span]) -> None:
 def _sum_up(session: AbstractSession, span: Span) -> list[Summary]:
     rows = session.intact("sample", _SAMPLES, (*span, span[2] + WIDEST_US), span[:1])
     return summaries((row[1], row[3]) for row in rows)
-
-
-def _aggregate(row: Sequence[float]) -> AggregateOut:
-    t, n, mean, least, most = row
-    return AggregateOut(t=moment_of(int(t)), count=int(n), mean=mean, least=least, most=most)

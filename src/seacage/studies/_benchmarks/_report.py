@@ -1,6 +1,6 @@
 """The benchmarks study's page: its figures, for the template ``benchmarks.html``."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -46,8 +46,9 @@ def page_values(
         "nargp": OURS,
         "wanted": COVERAGE,
         "least": {
-            problem.name: _least(_of(report, problem, method, "rmse") for method in methods)
+            problem.name: min(filter(np.isfinite, errors), default=np.nan)
             for problem in problems
+            for errors in [[_of(report, problem, method, "rmse") for method in methods]]
         },
         "answered": {
             problem.name: [one for one in methods if (problem.name, one.name) in report]
@@ -66,10 +67,6 @@ def _contest(problem: Problem, methods: Sequence[Method], report: Summaries, see
         error=np.array([gone if one is None else one.rmses for one in found]),
         coverage=np.array([_of(report, problem, method, "coverage") for method in methods]),
     )
-
-
-def _least(errors: Iterable[float]) -> float:
-    return min(filter(np.isfinite, errors), default=np.nan)
 
 
 def _of(report: Summaries, problem: Problem, method: Method, name: str) -> float:

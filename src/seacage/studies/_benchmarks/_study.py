@@ -82,7 +82,8 @@ def benchmark_study(
             runs.forget(CAGE_SIZE, method)
     scores: list[RunScore] = []
     for problem in problems:
-        each = _of(problem, tuning, report)
+        # Nothing was tuned on the large one.
+        each = report if problem is CAGE_SIZE else [*tuning, *report]
         there = [one for one in methods if not kept or runs.complete(problem, one, each)]
         scores += _scores(runs, problem, there, each, notify)
     found, tuned = _summaries(scores, report), _summaries(scores, tuning)
@@ -115,11 +116,6 @@ def _split_seeds(seeds: Sequence[int], *, quick: bool) -> tuple[list[int], list[
             "to 4 tune; add some from 5 on."
         )
     return (tuning[:2], report[:2]) if quick else (tuning, report)
-
-
-def _of(problem: Problem, tuning: Sequence[int], report: Sequence[int]) -> list[int]:
-    """The seeds that a problem is run on: nothing was tuned on the large one."""
-    return [*report] if problem is CAGE_SIZE else [*tuning, *report]
 
 
 def _scores(

@@ -242,11 +242,7 @@ class FittedGCN:
 
     @classmethod
     def from_arrays(cls, settings: Mapping[str, object], arrays: Mapping[str, np.ndarray]) -> Self:
-        """The model that ``to_arrays`` described.
-
-        Raises ModelError: a setting or an array is missing, of another kind or shape, or not
-        finite.
-        """
+        """The model that ``to_arrays`` described; ``ModelError`` where it is damaged."""
         network = Network.from_arrays(settings, arrays)
         features, nodes = len(network.scaling.centre), network.graph.nodes
         return cls(

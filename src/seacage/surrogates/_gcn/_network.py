@@ -57,11 +57,7 @@ class Network:
 
     @classmethod
     def from_arrays(cls, settings: Mapping[str, object], arrays: Mapping[str, np.ndarray]) -> Self:
-        """The network that ``to_arrays`` described.
-
-        Raises ModelError: a setting or an array is missing, of another kind or shape, or not
-        finite.
-        """
+        """The network that ``to_arrays`` described; ``ModelError`` where it is damaged."""
         kind = setting(settings, "kind", str)
         if kind not in NETWORKS:
             raise ModelError(

@@ -322,13 +322,7 @@ class FittedGaussianProcess:
 
     @classmethod
     def from_arrays(cls, settings: Mapping[str, object], arrays: Mapping[str, np.ndarray]) -> Self:
-        """The model that ``to_arrays`` described; it factorises its covariance again.
-
-        Raises
-        ------
-        ModelError
-            A setting or an array is missing, of another kind or shape, or not finite.
-        """
+        """The model that ``to_arrays`` described; ``ModelError`` where it is damaged."""
         kernel = restore_kernel(setting(settings, "kernel", str))
         single = setting(settings, "single", bool)
         x = array(arrays, "inputs", None, None)

@@ -335,11 +335,7 @@ class FittedPcaGP:
 
     @classmethod
     def from_arrays(cls, settings: Mapping[str, object], arrays: Mapping[str, np.ndarray]) -> Self:
-        """The model that ``to_arrays`` described.
-
-        Raises ModelError: a setting or an array is missing, of another kind or shape, or not
-        finite.
-        """
+        """The model that ``to_arrays`` described; ``ModelError`` where it is damaged."""
         scores = processes_from_arrays(settings, "scores", arrays)
         return cls(
             basis=modes_from_arrays(arrays, modes=len(scores)),

@@ -263,11 +263,7 @@ class FittedShapeGP:
 
     @classmethod
     def from_arrays(cls, settings: Mapping[str, object], arrays: Mapping[str, np.ndarray]) -> Self:
-        """The model that ``to_arrays`` described.
-
-        Raises ModelError: a setting or an array is missing, of another kind or shape, or not
-        finite.
-        """
+        """The model that ``to_arrays`` described; ``ModelError`` where it is damaged."""
         processes = processes_from_arrays(settings, "scores", arrays)
         if len(processes) != 1:
             raise ModelError(f"The saved ShapeGP holds {len(processes)} processes; expected 1.")

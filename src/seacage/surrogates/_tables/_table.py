@@ -225,13 +225,7 @@ class Table:
 
     @classmethod
     def from_arrays(cls, settings: Mapping[str, object], arrays: Mapping[str, np.ndarray]) -> Self:
-        """The table that ``to_arrays`` described.
-
-        Raises
-        ------
-        ModelError
-            A setting or an array is missing, of another kind or shape, or not finite.
-        """
+        """The table that ``to_arrays`` described; ``ModelError`` where it is damaged."""
         region = restore_region(setting(settings, "region", dict))
         shape = _counts(settings, "nodes", least=FEWEST)
         output_shape = _counts(settings, "output_shape", least=1)

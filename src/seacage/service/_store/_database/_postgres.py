@@ -208,7 +208,7 @@ class PostgresDatabase(AbstractDatabase):
             there = {name for (name,) in self._writer.execute(_THERE).fetchall()}
             for statement in (*tables(_WORDS), _BRIN):
                 # Even "if not exists" locks a table that is there, against all that write into it.
-                if _object_name(statement) not in there:
+                if statement.split()[5] not in there:  # CREATE TABLE IF NOT EXISTS name
                     self._writer.execute(statement.encode())
             checked = {name for (name,) in self._writer.execute(_WITH_CHECKSUM).fetchall()}
             for statement in upgrade(_WORDS, there - checked):
@@ -275,11 +275,6 @@ def _spelt(sql: str) -> bytes:
 def _month(t: int) -> datetime:
     when = moment_of(t)
     return datetime(when.year, when.month, 1, tzinfo=UTC)
-
-
-def _object_name(statement: str) -> str:
-    """Name what "CREATE TABLE IF NOT EXISTS name" and its like would make."""
-    return statement.split()[5]
 
 
 def _partition(month: datetime) -> str:
