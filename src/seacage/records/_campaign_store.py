@@ -99,7 +99,7 @@ _LOADS = {
 
 
 def create_campaign(
-    path: Path,  # where
+    path: Path,
     *,
     seas: Sequence[SeaState],  # the sea state of each case
     # Sizes of the cage: nodes of the net, and bridles

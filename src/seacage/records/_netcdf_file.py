@@ -92,7 +92,6 @@ def decode_times(dataset: "xarray.Dataset") -> Shaped[np.ndarray, " t"]:
 
 
 def write_netcdf(
-    # What, and where
     dataset: "xarray.Dataset",
     path: Path,
     *,

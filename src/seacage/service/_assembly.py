@@ -92,7 +92,7 @@ def store_place(settings: Settings, *, replayed: bool = False) -> Path | str:
 
 
 def assemble(
-    settings: Settings,  # what it is told
+    settings: Settings,
     twins: Mapping[str, Twin],  # of its cages, by name
     *,
     # What feeds its one cage, and how fast against real time

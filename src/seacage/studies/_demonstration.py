@@ -16,7 +16,7 @@ from seacage.twin import Twin
 class Demonstration:
     """What a demonstration shows."""
 
-    cage: Cage  # the cage
+    cage: Cage
     twin_folder: Path  # of its trained twin
     buoy: Record  # what drives the twin: the record given, or a generated one
     field: FieldRecord  # the buoy and the virtual sensors beside it

@@ -30,7 +30,7 @@ def by_day(
     series: Float[np.ndarray, " window"],
     day: Shaped[np.ndarray, " window"],
     *,
-    seed: int,  # of the draws
+    seed: int,
 ) -> Interval:
     """Mean of a series in time order, with a block bootstrap's interval.
 

@@ -67,7 +67,7 @@ class Readings(Rows):
 class Errors:
     """Errors of both fidelities on the same readings [m] or [kN]."""
 
-    readings: int  # how many
+    readings: int
     # Mean absolute errors
     low_mae: float
     multi_mae: float

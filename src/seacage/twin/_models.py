@@ -44,7 +44,7 @@ class Models:
     """Level 1 of loads and shape, and level 2 of the sensors that have it."""
 
     cage: Cage  # as it was simulated, with the places of the sensors
-    inputs: tuple[Input, ...]  # inputs of the models
+    inputs: tuple[Input, ...]
     domain: Domain  # of the features that level 1 was trained on
     # The largest current speed [m/s] and wave height [m] among them, rounded up to 0.01
     edge: tuple[float, float]

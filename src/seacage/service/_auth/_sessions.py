@@ -27,7 +27,7 @@ class Session:
     # Of the token that was given; once it is revoked the session is worth nothing
     token_sha256: str
     csrf: str  # what a write has to repeat in a header, for a cookie is sent by itself
-    expires: datetime  # when it ends
+    expires: datetime
 
 
 class Sessions:

@@ -35,14 +35,11 @@ _ID_DIGITS = 16  # of the hash of a topology: enough that two never meet by chan
 _DECIMALS = 3  # a newton, a millimetre: below what any sensor here resolves
 
 
-def state_of(
-    name: str,  # of the cage
-    # Who answered, and what
-    twin: Twin,
-    answered: Answered,
-    memory: TwinState,  # what the twin remembers of its streams
-) -> State:
-    """Say what a cage does at one time."""
+def state_of(name: str, twin: Twin, answered: Answered, memory: TwinState) -> State:
+    """Say what a cage does at one time.
+
+    ``name``: of the cage. ``memory``: what the twin remembers of its streams.
+    """
     answer = answered.answer
     return State(
         cage=name,

@@ -39,7 +39,6 @@ class LiveTwin:
     def __init__(
         self,
         *,
-        # Of the cage
         name: str,
         twin: Twin,
         store: Store,

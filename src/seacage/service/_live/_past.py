@@ -40,7 +40,7 @@ class Past:
 
     def state_at(
         self,
-        at: datetime,  # when
+        at: datetime,
         *,
         # How far the intervals were adapted; None where the store has it
         kept: Adaptation | None = None,

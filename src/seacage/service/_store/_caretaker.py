@@ -46,7 +46,6 @@ class Caretaker:
 
     def __init__(
         self,
-        # Of the store
         database: AbstractDatabase,
         writer: Writer,
         read: Read[Answer],

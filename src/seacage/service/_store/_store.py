@@ -119,7 +119,6 @@ class Store:
 
     def append(
         self,
-        # What to store, and whose
         cage: str,
         samples: Sequence[Sample],
         *,
@@ -139,7 +138,6 @@ class Store:
 
     def withdraw(
         self,
-        # Whose
         cage: str,
         stream: str,
         *,
@@ -237,16 +235,12 @@ class Store:
             lambda session: aggregates_between(session, (cage, stream), key, width_s, bounds),
         )
 
-    def keep_alarms(
-        self,
-        cage: str,  # whose
-        *,
-        book: str,  # as JSON; it takes the place of the one before
-        journal: Sequence[AlarmEvent],  # lines to add
-    ) -> "Future[None]":
+    def keep_alarms(self, cage: str, *, book: str, journal: Sequence[AlarmEvent]) -> "Future[None]":
         """Keep the book of alarms and what happened to them, both or neither.
 
         Where the disk is full this goes on, in room that was held for it.
+
+        ``book``: as JSON; it takes the place of the one before. ``journal``: lines to add.
         """
         lines = tuple(journal)
         return self._writer.ask(lambda session: keep_alarms(session, cage, book, lines), vital=True)
@@ -275,7 +269,6 @@ class Store:
 
     def keep_adaptations(
         self,
-        # Whose, and from when on
         cage: str,
         kept: Sequence[Adaptation],
         *,
@@ -296,7 +289,7 @@ class Store:
 
     def journal(
         self,
-        cage: str,  # whose
+        cage: str,
         *,
         # Bounds; open where None
         start: datetime | None = None,
@@ -310,7 +303,7 @@ class Store:
 
     def retire(
         self,
-        cage: str,  # whose
+        cage: str,
         *,
         before: datetime,  # only days that have ended by then
     ) -> int:  # how many samples were deleted

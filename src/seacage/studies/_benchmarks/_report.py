@@ -12,7 +12,6 @@ from seacage.studies._page import embed
 
 
 def page_values(
-    # What was run, by whom
     problems: Sequence[Problem],
     methods: Sequence[Method],
     report: Summaries,  # summaries by problem and method, over the seeds that count

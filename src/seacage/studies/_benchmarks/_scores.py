@@ -20,7 +20,6 @@ A likelihood does not exist at zero, which some peers answer at their training p
 class RunScore:
     """Scores of one run against the truth without noise, in its unit where nothing else is said."""
 
-    # Of the run
     problem: str
     method: str
     seed: int
@@ -56,7 +55,7 @@ class Summary:
     predict_s: float
     tick_s: float
     rmses: tuple[float, ...]  # by seed, in their order; NaN where it failed
-    error: str | None  # the first failure's words
+    error: str | None
 
 
 def score_run(run: Run, truth: Float[np.ndarray, " row"]) -> RunScore:

@@ -30,7 +30,7 @@ class MetGap:
     """What the record has while the net is about as grown."""
 
     growth: float  # mean share of the whole growth [-]
-    windows: int  # how many
+    windows: int
     # Truth less low fidelity, in the mean over whatever the currents were [m] or [kN]
     gap: Float[np.ndarray, " sensor"]
 

@@ -18,7 +18,7 @@ class SectorGap:
     """Low fidelity against the truth while the current goes one way."""
 
     sector: str  # where the current goes
-    windows: int  # how many
+    windows: int
     # Mean responses [m] or [kN]
     truth: float
     low: float
@@ -37,7 +37,7 @@ class SensorGap:
     # Its name, and the unit of its response: rise in m, tension in kN
     sensor: str
     unit: str
-    windows: int  # how many
+    windows: int
     # Mean responses
     truth: float
     low: float

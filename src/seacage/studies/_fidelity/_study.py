@@ -39,7 +39,7 @@ class FidelityStudy:
     gaps: tuple[SensorGap, ...]  # low fidelity against the truth, by sensor
     rescalings: tuple[Rescaling, ...]  # what the best rescaling leaves, by sensor
     null: NullCase  # the null case beside the real one
-    fouling: FoulingGap  # the gap by growth
+    fouling: FoulingGap
 
 
 def fidelity_study(

@@ -27,9 +27,9 @@ Verdict = Literal["reproduced", "partly", "not reproduced", "not evaluated"]
 class PaperClaim:
     """A statement of the paper, held against the study's numbers."""
 
-    claim: str  # the statement
+    claim: str
     verdict: Verdict  # what the numbers say of it
-    finding: str  # the numbers
+    finding: str
 
 
 def paper_claims(scored: ScoredWays, shapes: ShapeStudy) -> tuple[PaperClaim, ...]:

@@ -13,7 +13,7 @@ from seacage.twin import Twin
 class LevelOneScore:
     """Level 1 against simulations that it has not seen."""
 
-    cases: int  # how many
+    cases: int
     # Mean absolute error and mean tension of each bridle [N]
     bridle_names: tuple[str, ...]
     bridle_mae: Float[np.ndarray, " line"]

@@ -484,7 +484,7 @@ def fit_process(
 
 
 def select_likelihood_outputs(
-    y: Float[np.ndarray, "n output"],  # all outputs
+    y: Float[np.ndarray, "n output"],
     *,
     # Each output has noise of its own to learn, so that none can stand for others
     unlike: bool = False,

@@ -220,7 +220,7 @@ def noise_factor_of(
     square: Float[np.ndarray, " row"],  # expected square of the residuals, summed over the outputs
     *,
     scale: float,  # variance of the noise of a case whose factor is 1
-    outputs: int,  # how many
+    outputs: int,
 ) -> Float[np.ndarray, " row"]:
     """Factor on a case's noise that its squared residuals call for, under Student's t."""
     return (FREEDOM + square / scale) / (FREEDOM + outputs)

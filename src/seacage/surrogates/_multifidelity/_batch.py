@@ -38,7 +38,7 @@ class BatchedLinks:
     features alone is evaluated once for all of them.
     """
 
-    members: int  # how many
+    members: int
     # From features (member, row, feature) and values below (member, row, node) to covariances with
     # the points (member, row, node, n)
     covariance: Callable[[np.ndarray, np.ndarray], np.ndarray]

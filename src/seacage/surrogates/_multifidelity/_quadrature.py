@@ -55,7 +55,7 @@ class SlopedLevel(Level, Protocol):
 
 def propagate_moments(
     levels: Sequence[Level],  # from the lowest to the last
-    x: Float[np.ndarray, "row feature"],  # features of each row
+    x: Float[np.ndarray, "row feature"],
     # Of the value below the first level
     mean: Float[np.ndarray, " row"],
     variance: Float[np.ndarray, " row"],

@@ -346,7 +346,6 @@ class FittedCoordinate:
     """One coordinate of one node; it shares the shape's factor and is not saved by itself."""
 
     shape: FittedShapeGP  # what it is a coordinate of
-    # Which
     node: int
     axis: int
 

@@ -23,7 +23,6 @@ class AlarmKpi:
     Suppressed alarms, which were shelved or out of service, count in ``raised`` alone.
     """
 
-    # The span
     start: datetime
     end: datetime
     # How often each alarm was raised, suppressed or not; the most frequent first

@@ -71,7 +71,7 @@ class CageTraining:
     """Training data of all sensors of a cage, and the settings of their fits."""
 
     models: Models  # level 1
-    sensors: Mapping[str, SensorTraining]  # the data by sensor
+    sensors: Mapping[str, SensorTraining]
     training: Training
     # Held-out readings of models fitted within another sensor's short window, by sensor and hours;
     # filled on demand
