@@ -20,19 +20,15 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
-_SIZE = (7.2, 4.25)
-"""Of the picture [inch]; its width in pixels is the caller's."""
-
-_TILT = np.deg2rad(8.0)
-"""How far the eye looks down, so that the collar is seen as a ring."""
+_SIZE = (7.2, 4.25)  # of the picture [inch]; its width in pixels is the caller's
+_TILT = np.deg2rad(8.0)  # how far the eye looks down, so that the collar is seen as a ring
 
 _WATER, _SURFACE, _CREST = "#f0f6fb", "#e0edf7", "#8fbce0"
 _NET = ("#2a5590", "#2f7fc1", "#37a0a6", "#9ccf5e", "#f7dd4a")
 _TWINE = "#1c3a5e"
 _TENSION = ("#a3b1bd", "#efb04c", "#d3222a")
 _NET_LEVELS, _TENSION_LEVELS = 8, 5
-_MARGIN = 7.0
-"""Water drawn outside the frame [m]."""
+_MARGIN = 7.0  # water drawn outside the frame [m]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -27,8 +27,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_WIDTH = 10.0
-"""Of a whole page [inch]."""
+_WIDTH = 10.0  # of a whole page [inch]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -25,8 +25,7 @@ _LABELS = {
     "tension_kn": "Tension",
     "depth_m": "Depth",
 }
-_DRAWN = 4000
-"""Points of the line, at most about; of each kind of mark, half as many."""
+_DRAWN = 4000  # points of the line, at most about; of each kind of mark, half as many
 
 
 def quality_figure(record: Record) -> "Figure":

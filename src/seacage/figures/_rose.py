@@ -13,11 +13,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.projections.polar import PolarAxes
 
-_HOLE = 0.3
-"""Radius of the empty middle over that of the bars' longest, so that bars begin apart."""
-
-_FAN = 0.8
-"""Share of the least angle between bridles that the bars of one bridle take."""
+_HOLE = 0.3  # radius of the empty middle over that of the bars' longest, so that bars begin apart
+_FAN = 0.8  # share of the least angle between bridles that the bars of one bridle take
 
 
 def tension_rose_figure(

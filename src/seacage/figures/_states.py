@@ -14,8 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_ROOM = 3.0
-"""Shown round the outermost net [m]."""
+_ROOM = 3.0  # shown round the outermost net [m]
 
 _COLUMN, _LABELS = 1.95, 0.95
 """Width of a column, and what titles and axis labels take of the height [inch]."""

@@ -16,8 +16,7 @@ if TYPE_CHECKING:
 
 _LOOKS = ((LOW, "o"), (MULTI, "D"), ("#4f8a4c", "s"), ("#7d5ba6", "^"), (SENSOR, "v"))
 _NOMINAL = 0.95
-_MOST = 2.0
-"""Times the low fidelity's error that are drawn; what is more stands at this edge."""
+_MOST = 2.0  # times the low fidelity's error that are drawn; what is more stands at this edge
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -12,8 +12,7 @@ from seacage.records._quality import GROUPS
 from seacage.records._record import Record
 from seacage.records._times import instant
 
-_OPPOSED = 0.1
-"""Where the mean of unit vectors is shorter, they have no common direction [-]."""
+_OPPOSED = 0.1  # where the mean of unit vectors is shorter, they have no common direction [-]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -21,8 +21,7 @@ LINES = {
 }
 """Unit and meaning of each, by the names of ``HistoryRecord.lines``; in files after ``line_``."""
 
-CONSTANT = ("capacity", "tn_slope")
-"""Those that do not depend on the sea."""
+CONSTANT = ("capacity", "tn_slope")  # those that do not depend on the sea
 
 
 def line_variable(name: str, *dims: str, dtype: str = "float64") -> Variable:

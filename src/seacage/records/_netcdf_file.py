@@ -34,10 +34,8 @@ NETCDF_TROUBLE = (
 
 _FILE_BYTES = 4 << 30
 _DECLARED_BYTES = 2 << 30
-_INFLATION = 1100
-"""Deflate makes at most 1032 bytes of one; more was never written [-]."""
-_SMALL_BYTES = 16 << 20
-"""What any file may ask for, however small."""
+_INFLATION = 1100  # deflate makes at most 1032 bytes of one; more was never written [-]
+_SMALL_BYTES = 16 << 20  # what any file may ask for, however small
 _MOST_TEXTS = 4096
 """Texts of any length that one variable may hold: each of them can be the same long one."""
 

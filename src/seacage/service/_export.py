@@ -27,8 +27,7 @@ if TYPE_CHECKING:
 
     from seacage.dynamics import Response
 
-BLOCK = 512
-"""Rows that are answered and written at once; the shapes of more would crowd the memory."""
+BLOCK = 512  # rows that are answered and written at once; the shapes of more would crowd the memory
 
 _SAME_IN_ALL_ROWS = {
     "bridle_names",

@@ -24,12 +24,10 @@ from seacage.studies._split import split
 from seacage.studies._stages import SIMULATION, Stages, code_sha256
 from seacage.twin import Training, train
 
-_OF_ALL = ("quantile", "second_moment")
-"""Arrays that have no axis of cases."""
+_OF_ALL = ("quantile", "second_moment")  # arrays that have no axis of cases
 
 _FIELD = (*SIMULATION, "records")
-TRAINING = (*_FIELD, "surrogates", "twin")
-"""Rooms whose code makes a twin."""
+TRAINING = (*_FIELD, "surrogates", "twin")  # rooms whose code makes a twin
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -12,11 +12,8 @@ from seacage.studies._sensor_scores import Readings, SensorScore, compare, score
 from seacage.studies._split import unseen
 from seacage.twin import Twin
 
-SHOWN_DAYS = 5
-"""A series shows so many unseen days; the scores take them all."""
-
-_BREAK = np.timedelta64(12, "h")
-"""A silence as long breaks a series: what was between is not known."""
+SHOWN_DAYS = 5  # a series shows so many unseen days; the scores take them all
+_BREAK = np.timedelta64(12, "h")  # a silence as long breaks a series: what was between is not known
 
 
 def score_record(

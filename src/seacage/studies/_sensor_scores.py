@@ -11,8 +11,7 @@ from seacage.records import FieldRecord
 from seacage.surrogates import block_bootstrap, block_means, coverage, crps, mae
 from seacage.twin import Answer, align
 
-MEAN_S = 600.0
-"""Scores are given raw and on means of this length [s]."""
+MEAN_S = 600.0  # scores are given raw and on means of this length [s]
 
 MINUTE_S = 60.0
 """Readings teach as means of this length, and the twin's intervals are of such means [s]."""

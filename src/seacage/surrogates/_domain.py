@@ -8,8 +8,7 @@ from jaxtyping import Bool, Float
 
 from seacage.surrogates._prediction import check_inputs
 
-MARGIN = 0.01
-"""Of each feature's range: a sampled campaign never quite reaches its own limits."""
+MARGIN = 0.01  # of each feature's range: a sampled campaign never quite reaches its own limits
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

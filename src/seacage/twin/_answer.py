@@ -10,8 +10,7 @@ from seacage.surrogates import Prediction
 
 Interval = tuple[Float[np.ndarray, "case output"], Float[np.ndarray, "case output"]]
 
-INTERVAL_SD = 1.96
-"""Half the width of an interval, in standard deviations; it holds 95 %."""
+INTERVAL_SD = 1.96  # half the width of an interval, in standard deviations; it holds 95 %
 
 NO_INTERVAL = "No sensor has trained level 2: how far the simulation is from the sea is not known."
 """Why an answer of level 1 has no interval."""

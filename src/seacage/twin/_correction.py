@@ -21,14 +21,9 @@ from seacage.surrogates import (
 )
 from seacage.twin._pairs import Pairs
 
-GAIN_SD = 0.5
-"""How far from 1 a gain is expected: the simulations may be half wrong, seldom more."""
-
-HOUR = 3_600_000_000
-"""[us]"""
-
-PROOF_SD = 2.0
-"""Standard errors by which level 2 has to beat level 1 to be used [-]."""
+GAIN_SD = 0.5  # how far from 1 a gain is expected: the simulations may be half wrong, seldom more
+HOUR = 3_600_000_000  # [us]
+PROOF_SD = 2.0  # standard errors by which level 2 has to beat level 1 to be used [-]
 
 LEAST_SHARE = 0.5
 """Least share of the fitted noise variance that is the cage's and not the instrument's. Where the

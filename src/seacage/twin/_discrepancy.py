@@ -16,8 +16,7 @@ SIMILAR_SPEED = 0.15
 SIMILAR_DIRECTION = math.radians(35.0)
 """The same difference of directions [rad]; slack water has none."""
 
-NEGLIGIBLE = 0.02
-"""Least weight of a case, over the largest; cases with less are left out."""
+NEGLIGIBLE = 0.02  # least weight of a case, over the largest; cases with less are left out
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -15,11 +15,8 @@ from seacage.twin._answer import Answer
 from seacage.twin._correction import Correction, Corrections
 from seacage.twin._metocean import Input, Metocean, nearest_inside
 
-BLOCK_ROWS = 512
-"""Rows predicted at once: the shapes of more would crowd a small computer's memory."""
-
-ROUNDING = 1e-9
-"""What sines and cosines may add to a speed [m/s]."""
+BLOCK_ROWS = 512  # rows predicted at once: the shapes of more would crowd a small computer's memory
+ROUNDING = 1e-9  # what sines and cosines may add to a speed [m/s]
 
 STRIDE = 0.02
 """Either way, of the central difference over the current [m/s]: well below what bends a load."""

@@ -12,8 +12,7 @@ from seacage.records import FieldRecord, Record, Sample, instant
 from seacage.surrogates import block_means, spread_design
 from seacage.twin._metocean import Metocean, input_keys
 
-HOLD_S = 10800.0
-"""Longest time for which a buoy's value is held [s]; the live twin's default."""
+HOLD_S = 10800.0  # longest time for which a buoy's value is held [s]; the live twin's default
 
 SI = {"tension_kn": 1000.0, "depth_m": 1.0}
 """Factors on values by the door keys of cage sensors, to N and m."""

@@ -41,8 +41,7 @@ _ANGLE = {"deg": 1.0, "rad": 180.0 / np.pi}
 _COMPONENTS = ("current_east_m_s", "current_north_m_s")
 _CURRENT = ("current_speed_m_s", "current_to_deg")
 
-ENCODINGS = ("utf-8", "utf-16", "latin-1", "cp1252")
-"""Of text, as a column map may declare them."""
+ENCODINGS = ("utf-8", "utf-16", "latin-1", "cp1252")  # of text, as a column map may declare them
 
 _QUANTITIES: Mapping[str, _Quantity] = {
     "current_speed": _Quantity(key="current_speed_m_s", units=_SPEED),

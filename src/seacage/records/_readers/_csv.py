@@ -17,8 +17,7 @@ from seacage.records._record import Record
 from seacage.records._times import microseconds
 
 _YEARS = range(1900, 2200)
-_CONSTANT = 12
-"""Equal values that make a column one that never changes."""
+_CONSTANT = 12  # equal values that make a column one that never changes
 _NO_VALUE = frozenset({"", "nan", "na", "n/a", "null", "none", "mm", "-"})
 
 

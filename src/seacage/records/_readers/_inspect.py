@@ -28,8 +28,7 @@ from seacage.records._readers._table import (
 )
 from seacage.records._times import microseconds
 
-_ROWS = 20_000
-"""As many rows are looked at."""
+_ROWS = 20_000  # as many rows are looked at
 _FORMATS = (
     "iso",
     "%d.%m.%Y %H:%M:%S",

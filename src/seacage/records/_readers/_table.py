@@ -14,8 +14,7 @@ from seacage.conventions import TABLE_BYTES, RecordError, check_file, parse_json
 if TYPE_CHECKING:
     from seacage.records._readers._column_map import ColumnMap
 
-WHITESPACE = "whitespace"
-"""The delimiter of tables whose cells any number of blanks part."""
+WHITESPACE = "whitespace"  # the delimiter of tables whose cells any number of blanks part
 
 _JSON_BYTES = 16 << 20
 """Most of a JSON answer, whose smallest parts take 30 times as much in memory."""
@@ -35,8 +34,7 @@ class Layout(NamedTuple):
     skip_lines: int = 0
 
 
-PLAIN = Layout()
-"""Of a table of which nothing else is known."""
+PLAIN = Layout()  # of a table of which nothing else is known
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

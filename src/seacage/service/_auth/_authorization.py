@@ -22,14 +22,9 @@ from seacage.service._auth._sessions import Session, Sessions
 from seacage.service._auth._token_store import Grant, Tokens
 from seacage.service._live._metrics import Metrics
 
-COOKIE = "seacage_session"
-"""Name of the cookie of a session."""
-
-CSRF_HEADER = "x-csrf-token"
-"""What a write by cookie repeats from the session."""
-
-READING = {"GET", "HEAD", "OPTIONS"}
-"""Methods that change nothing."""
+COOKIE = "seacage_session"  # name of the cookie of a session
+CSRF_HEADER = "x-csrf-token"  # what a write by cookie repeats from the session
+READING = {"GET", "HEAD", "OPTIONS"}  # methods that change nothing
 
 _FORWARDED = {"forwarded", "x-forwarded-for", "x-real-ip"}
 
@@ -165,8 +160,7 @@ def _who(request: Request) -> str:
     return request.state.who
 
 
-Who = Annotated[str, Depends(_who)]
-"""The name of the token that asks; after a ``Permit``."""
+Who = Annotated[str, Depends(_who)]  # the name of the token that asks; after a ``Permit``
 
 
 def check_csrf(request: Request, session: Session) -> None:

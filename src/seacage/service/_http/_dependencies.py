@@ -51,8 +51,7 @@ BODY: Responses = {
 }
 """What a call may answer that takes a body."""
 
-WRITE: Responses = {**READ, **BODY}
-"""What a call may answer that takes a body for a cage."""
+WRITE: Responses = {**READ, **BODY}  # what a call may answer that takes a body for a cage
 
 
 def cages_of(request: Request) -> dict[str, LiveCage]:
@@ -87,8 +86,7 @@ From = Annotated[
 To = Annotated[
     Reach | None, Query(alias="to", description="Last time, left out.", examples=[_WHEN])
 ]
-MOST_ROWS = 10_000
-"""Of an answer."""
+MOST_ROWS = 10_000  # of an answer
 
 Limit = Annotated[int, Query(ge=1, le=MOST_ROWS, description="At most so many.", examples=[1000])]
 Stream = Annotated[
@@ -104,8 +102,7 @@ Width = Annotated[
 
 may_read, may_ingest = [Depends(Permit("read"))], [Depends(Permit("ingest"))]
 
-PAGE = 2000
-"""Samples that an answer without an end holds at a time."""
+PAGE = 2000  # samples that an answer without an end holds at a time
 
 
 async def _costs(request: Request) -> None:

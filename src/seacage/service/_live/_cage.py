@@ -40,8 +40,7 @@ from seacage.twin import (
     TwinState,
 )
 
-_GATHERED_S = 0.1
-"""What comes within so long is stepped through together, and shown once [s]."""
+_GATHERED_S = 0.1  # what comes within so long is stepped through together, and shown once [s]
 
 MOST_WAITING = 20_000
 """Samples that may wait to be stepped through, some 20 MB; who sends more is made to wait."""

@@ -5,8 +5,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from typing import Protocol, runtime_checkable
 
-AHEAD_S = 60.0
-"""How far ahead of the wall a clock that follows its samples may go [s]."""
+AHEAD_S = 60.0  # how far ahead of the wall a clock that follows its samples may go [s]
 
 
 @runtime_checkable

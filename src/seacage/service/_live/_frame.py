@@ -9,8 +9,7 @@ from jaxtyping import Float
 from seacage.service._schemas._state import State
 from seacage.twin import Answered
 
-MEDIA_TYPE = "application/vnd.seacage.frame"
-"""Of a frame in an HTTP answer."""
+MEDIA_TYPE = "application/vnd.seacage.frame"  # of a frame in an HTTP answer
 
 _HEADER = struct.Struct("<4sHHdIIff")
 _MAGIC, _VERSION, _ALIGNED = b"SCFR", 2, 8

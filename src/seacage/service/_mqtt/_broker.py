@@ -16,8 +16,7 @@ from seacage.conventions import InputError
 _PORTS = {"mqtt": 1883, "mqtts": 8883}
 _LARGEST_PACKET = 1 << 20  # bytes; the broker keeps longer ones to itself
 
-KEEPALIVE_S = 30
-"""A connection on which nothing came for so long is dead."""
+KEEPALIVE_S = 30  # a connection on which nothing came for so long is dead
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

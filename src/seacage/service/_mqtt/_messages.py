@@ -13,8 +13,7 @@ from seacage.records import Sample
 from seacage.service._schemas._base import Time
 from seacage.service._schemas._samples import BATCH_LIMIT, SampleIn, read_samples
 
-LARGEST = 1 << 18
-"""Of a message [bytes]; a longer one is not read."""
+LARGEST = 1 << 18  # of a message [bytes]; a longer one is not read
 
 
 class _Settled(BaseModel):

@@ -11,8 +11,7 @@ from jaxtyping import Float, Int
 
 from seacage.conventions import InputError, SeacageError
 
-FRAME_ID = "seacage_enu"
-"""Of all messages: metres east, north and up of the cage's centre."""
+FRAME_ID = "seacage_enu"  # of all messages: metres east, north and up of the cage's centre
 
 TRIANGLE_LIST = 11
 _POINT_FLOAT = 7

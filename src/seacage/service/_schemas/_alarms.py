@@ -10,8 +10,7 @@ from seacage.service._schemas._base import EXAMPLE_T, AbstractAnswer, AbstractRe
 from seacage.service._schemas._state import EXAMPLE_ALARM_BRIEF
 from seacage.twin import Alarm, AlarmPolicy, alarm_text
 
-LONGEST_WORDS = 500
-"""Of a reason or a comment [characters]."""
+LONGEST_WORDS = 500  # of a reason or a comment [characters]
 
 _ALARM = EXAMPLE_ALARM_BRIEF | {
     "kind": "load",

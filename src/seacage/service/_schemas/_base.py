@@ -5,8 +5,7 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
-Name = Annotated[str, Field(min_length=1, max_length=64)]
-"""Of a cage, a stream, a sensor."""
+Name = Annotated[str, Field(min_length=1, max_length=64)]  # of a cage, a stream, a sensor
 
 _YEARS = range(1900, 2200)
 

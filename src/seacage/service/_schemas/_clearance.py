@@ -7,8 +7,7 @@ from pydantic import Field, model_validator
 
 from seacage.service._schemas._base import EXAMPLE_T, AbstractAnswer, AbstractRequest, example
 
-POINT_LIMIT = 10_000
-"""Points in one request."""
+POINT_LIMIT = 10_000  # points in one request
 
 FrameName = Literal["enu", "ned", "wgs84"]
 """Metres east, north, up of the cage's centre; north, east, down; or latitude and longitude."""

@@ -27,8 +27,7 @@ _TIME = TypeAdapter[datetime](Time)
 
 BUOY_KEYS = ("current_speed_m_s", "current_to_deg", "hs_m", "tp_s", "wave_from_deg")
 
-BATCH_LIMIT = 1000
-"""Samples in one request."""
+BATCH_LIMIT = 1000  # samples in one request
 
 _T: JsonDict = {"anyOf": [{"type": "string", "format": "date-time"}, {}]}
 

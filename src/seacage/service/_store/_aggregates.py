@@ -18,8 +18,7 @@ from seacage.service._store._database._rows import DAY_US, SAMPLES, Bounds, mome
 from seacage.service._store._database._session import AbstractSession
 from seacage.service._store._integrity._tally import recount
 
-WIDTHS_S = (60, 600)
-"""Of the spans; each divides the next, and the last divides a day."""
+WIDTHS_S = (60, 600)  # of the spans; each divides the next, and the last divides a day
 
 WIDEST_US = WIDTHS_S[-1] * 1_000_000
 
@@ -36,8 +35,7 @@ _USELESS = (Flag.FAIL, Flag.MISSING)
 Summary = tuple[str, int, int, int, float, float, float]
 """Quantity, width [s], t [µs], n, mean, least, most."""
 
-RESTED = timedelta(seconds=30)
-"""A span is summed up when nothing has come for it for so long."""
+RESTED = timedelta(seconds=30)  # a span is summed up when nothing has come for it for so long
 
 _AT_ONCE = 20  # spans in one transaction: ten minutes at 2 s are 300 samples each
 
@@ -60,8 +58,7 @@ SELECT t, n, mean, least, most, crc FROM aggregate
 WHERE cage = ? AND stream = ? AND quantity = ? AND width = ? AND t >= ? AND t < ?
 ORDER BY t LIMIT ?"""
 
-Span = tuple[str, str, int]
-"""Cage, stream, and where ten minutes begin [µs]."""
+Span = tuple[str, str, int]  # cage, stream, and where ten minutes begin [µs]
 
 
 def check_aggregate(key: str, width_s: int) -> None:

@@ -77,11 +77,8 @@ DELETE FROM quality WHERE cage = ? AND stream = ? AND t < (
 
 _SEALED = "SELECT t, crc FROM sealed WHERE cage = ? AND stream = ? AND t >= ? AND t <= ?"
 
-Key = tuple[int, int]
-"""Time [us] and number: what a sample is known by in its stream."""
-
-Of = tuple[str, str]
-"""Cage and stream."""
+Key = tuple[int, int]  # time [us] and number: what a sample is known by in its stream
+Of = tuple[str, str]  # cage and stream
 
 _FIRST: Key = (-(2**62), -1)
 _END: Key = (2**62, 2**62)

@@ -21,11 +21,8 @@ from typing import Any
 
 import numpy as np
 
-TICKS = 20
-"""Single rows that are asked for, one at a time."""
-
-LEAST_S = 0.05
-"""Predictions are repeated until they took so long together [s], three times at most."""
+TICKS = 20  # single rows that are asked for, one at a time
+LEAST_S = 0.05  # predictions are repeated until they took so long together [s], three times at most
 
 
 def main(script: Path, method: str, out: Path, jobs: list[Path]) -> None:

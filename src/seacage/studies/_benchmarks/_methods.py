@@ -11,11 +11,8 @@ from pathlib import Path
 from seacage.conventions import InputError
 from seacage.surrogates import AR1, NARGP, GaussianProcess
 
-OURS = "nargp"
-"""The method that the verdicts are about."""
-
-EMUKIT, SMT, HIGH_ONLY = "emukit-nargp", "smt-mfk", "high-only"
-"""Those that it is held against."""
+OURS = "nargp"  # the method that the verdicts are about
+EMUKIT, SMT, HIGH_ONLY = "emukit-nargp", "smt-mfk", "high-only"  # those that it is held against
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -15,8 +15,7 @@ from seacage.studies._claim import Claim
 from seacage.studies._page import write_report
 from seacage.studies._text import join_names
 
-TUNING_SEEDS = range(5)
-"""Settings may be chosen by these, so they decide no verdict."""
+TUNING_SEEDS = range(5)  # settings may be chosen by these, so they decide no verdict
 
 SEEDS = range(10)
 

@@ -11,11 +11,8 @@ from seacage.studies._text import join_names, number, percent
 RATIOS = {"pedagogical": 1.0, "branin-3": 0.7, "park": 0.5, "borehole": 0.3}
 """Our mean RMSE over that of Emukit's NARGP, at most."""
 
-SLACK = 1.1
-"""Our mean RMSE over that of the best rival, at most."""
-
-COVERAGE = (0.85, 1.0)
-"""Of 95 % intervals, on every problem."""
+SLACK = 1.1  # our mean RMSE over that of the best rival, at most
+COVERAGE = (0.85, 1.0)  # of 95 % intervals, on every problem
 
 SPEEDS = {
     "fit_s": ("A fit", 5.0),
@@ -24,8 +21,7 @@ SPEEDS = {
 }
 """On the cage-size problem, Emukit's time over ours, at least."""
 
-Summaries = Mapping[tuple[str, str], Summary]
-"""By problem and method."""
+Summaries = Mapping[tuple[str, str], Summary]  # by problem and method
 
 
 def verdicts(found: Summaries) -> tuple[Claim, ...]:

@@ -12,8 +12,7 @@ from seacage.studies._fidelity._rescaling import LEAST_LEFT, Rescaling
 from seacage.studies._interval import Interval
 from seacage.studies._text import join_names, number, percent
 
-THOUSANDTH = {"m": "mm", "kN": "N"}
-"""Units that a null case's errors are read in."""
+THOUSANDTH = {"m": "mm", "kN": "N"}  # units that a null case's errors are read in
 
 
 def claims(

@@ -12,17 +12,10 @@ from seacage.studies._interval import Interval, by_day
 from seacage.surrogates import Prediction
 from seacage.twin import Correction, FixedPrediction, Pairs, spread_out
 
-LEAST = 20
-"""Least number of readings to train on, and to score on."""
-
-_SHORT_S = 60.0
-"""Means of this length where a sensor lives too shortly for 10-minute means [s]."""
-
-_MOST = 6.0
-"""Errors beyond so many times the usual one are faults and no noise [-]."""
-
-_RESTARTS = 3
-"""Of each search for hyperparameters, as a twin makes them."""
+LEAST = 20  # least number of readings to train on, and to score on
+_SHORT_S = 60.0  # means of this length where a sensor lives too shortly for 10-minute means [s]
+_MOST = 6.0  # errors beyond so many times the usual one are faults and no noise [-]
+_RESTARTS = 3  # of each search for hyperparameters, as a twin makes them
 
 Series = Float[np.ndarray, " reading"]
 

@@ -14,8 +14,7 @@ from seacage.studies._fidelity._null_case import Gains, NullCase
 from seacage.studies._fidelity._rescaling import LEAST_LEFT, Rescalings
 from seacage.studies._page import embed
 
-ORIGIN = Origin.VIRTUAL_FIELD
-"""Of every truth and every reading here."""
+ORIGIN = Origin.VIRTUAL_FIELD  # of every truth and every reading here
 
 _QUANTITIES = {"m": "Rise", "kN": "Tension"}
 

@@ -17,15 +17,13 @@ from seacage.surrogates import FittedGaussianProcess, GaussianProcess, current_f
 if TYPE_CHECKING:
     from scipy.interpolate import RectBivariateSpline
 
-LEAST_LEFT = 0.10
-"""Share of the low fidelity's error that no rescaling may remove."""
+LEAST_LEFT = 0.10  # share of the low fidelity's error that no rescaling may remove
 
 _FACTORS = np.arange(0.2, 2.01, 0.1)
 _TURNS = np.arange(-90.0, 91.0, 10.0)
 """Factors of the current's speed [-] and turns, clockwise [deg], that are tried first."""
 
-_FINER = 5
-"""Around the best, so many times finer steps are tried."""
+_FINER = 5  # around the best, so many times finer steps are tried
 
 _CURRENTS = 400
 _FASTEST = 1.8

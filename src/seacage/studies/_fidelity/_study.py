@@ -21,11 +21,8 @@ from seacage.studies._fidelity._windows import Sensors, Windows, answer_windows,
 from seacage.studies._page import write_report
 from seacage.studies._stages import Stages
 
-_DAYS = 48.0
-"""Of the field that is made where none is given."""
-
-_POINTS = 300
-"""Readings that each sensor teaches with at most, as a twin's do."""
+_DAYS = 48.0  # of the field that is made where none is given
+_POINTS = 300  # readings that each sensor teaches with at most, as a twin's do
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -17,11 +17,8 @@ from seacage.studies._sensor_scores import MEAN_S
 from seacage.studies._stages import Stages
 from seacage.twin import Metocean, StreamTimeouts
 
-_EVERY_S = 2.0
-"""Interval at which the buoy's held sample enters a window's mean [s]."""
-
-_LEAST_SHARE = 0.9
-"""Share of a window in which the buoy's sample must be sound and fresh."""
+_EVERY_S = 2.0  # interval at which the buoy's held sample enters a window's mean [s]
+_LEAST_SHARE = 0.9  # share of a window in which the buoy's sample must be sound and fresh
 
 _LONGEST_GAP_S = 200.0
 _LEAST = 40

@@ -27,14 +27,12 @@ from seacage.studies._paper._shape_scores import ShapeScore, shape_score
 from seacage.studies._stages import Stages
 from seacage.surrogates import OverTime, Prediction, metocean_features
 
-_ROOMS = ("conventions", "surrogates")
-"""Whose code makes a model's answers, its features included."""
+_ROOMS = ("conventions", "surrogates")  # whose code makes a model's answers, its features included
 
 _HARSH, _MILD = 0.95, 0.2
 """Quantiles of the test cases' current speeds that the two nets drawn are taken at."""
 
-_TIMED = 20
-"""Shapes asked for one by one to say what one takes."""
+_TIMED = 20  # shapes asked for one by one to say what one takes
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -10,14 +10,9 @@ from seacage.conventions import InputError
 
 Series = Float[np.ndarray, " n"]
 
-FAR = 16.0
-"""A squared error counts as at most so many variances, lest one reading rule the search."""
-
-LEAST = 1e-6
-"""Share of the squared errors' size that is expected anywhere, at least."""
-
-ROUNDS = 8
-"""Of reweighting; the shares settle in four or five."""
+FAR = 16.0  # a squared error counts as at most so many variances, lest one reading rule the search
+LEAST = 1e-6  # share of the squared errors' size that is expected anywhere, at least
+ROUNDS = 8  # of reweighting; the shares settle in four or five
 
 
 def conformal_factor(score: Series, *, independent: float, level: float = 0.95) -> float:

@@ -14,14 +14,9 @@ from seacage.surrogates._prediction import Prediction
 SD_PRIOR_SD = 2.0
 """Prior standard deviation of the logarithm of each size, about the residual's own size."""
 
-NOISE_SHARE = 0.3
-"""Prior median of the noise's scale, as a share of the residual's size."""
-
-REACH = 4.0
-"""Half-width of the search, in prior standard deviations."""
-
-SETTLED = 1e-3
-"""Largest change of a weight at which the reweighting ends."""
+NOISE_SHARE = 0.3  # prior median of the noise's scale, as a share of the residual's size
+REACH = 4.0  # half-width of the search, in prior standard deviations
+SETTLED = 1e-3  # largest change of a weight at which the reweighting ends
 
 Series = Float[np.ndarray, " t"]
 

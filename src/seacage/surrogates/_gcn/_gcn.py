@@ -20,11 +20,8 @@ from seacage.surrogates._prediction import Prediction, check_inputs, check_shape
 from seacage.surrogates._scaling import Scaling
 from seacage.surrogates._shape import all_modes
 
-MODES = 48
-"""Most modes of the modal network."""
-
-HELD_OUT = 0.1
-"""Default share of held-out cases."""
+MODES = 48  # most modes of the modal network
+HELD_OUT = 0.1  # default share of held-out cases
 
 FEWEST_HELD_OUT, FEWEST_TRAINING = 2, 2
 

@@ -10,17 +10,13 @@ from seacage.surrogates._gcn._graph import Propagate
 
 Kind = Literal["paper", "modal"]
 
-Numbers = Any
-"""An array of NumPy, or of JAX while it trains."""
-
-Parameters = dict[str, np.ndarray]
-"""What training changes, by name."""
+Numbers = Any  # an array of NumPy, or of JAX while it trains
+Parameters = dict[str, np.ndarray]  # what training changes, by name
 
 Shape = tuple[int, ...]
 
 
-TOKEN = 128
-"""Channels of the modal network's sea state."""
+TOKEN = 128  # channels of the modal network's sea state
 
 
 def parameter_shapes(

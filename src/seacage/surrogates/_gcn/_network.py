@@ -13,8 +13,7 @@ from seacage.surrogates._gcn._graph import Graph
 from seacage.surrogates._gcn._layers import NETWORKS, Kind, Parameters, parameter_shapes
 from seacage.surrogates._scaling import Scaling
 
-BLOCK = 64
-"""Rows answered at once, so that the channels of all nodes stay in the cache."""
+BLOCK = 64  # rows answered at once, so that the channels of all nodes stay in the cache
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -22,8 +22,7 @@ RECIPES: Mapping[str, Recipe] = {
     "modal": Recipe(width=16, epochs=800, patience=200, learning_rate=3e-3),
 }
 
-LARGEST_BATCH, FEWEST_BATCHES = 64, 10
-"""Cases per step of the optimiser, and steps per epoch."""
+LARGEST_BATCH, FEWEST_BATCHES = 64, 10  # cases per step of the optimiser, and steps per epoch
 
 
 def recipe_of(kind: str, **wanted: float | None) -> Recipe:

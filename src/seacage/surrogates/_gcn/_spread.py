@@ -12,14 +12,9 @@ from jaxtyping import Float, Int
 from seacage.conventions import ModelError
 from seacage.surrogates._arrays import Arrays, array
 
-NEIGHBOURS = 10
-"""Held-out cases whose misses make the size of a miss at a place."""
-
-TWO_SIGMA = 1.959963984540054
-"""Standard deviations that hold 95 % of a Gaussian."""
-
-NOISE_SHARE = (0.01, 0.98)
-"""Least and largest share of the variance that may be called noise."""
+NEIGHBOURS = 10  # held-out cases whose misses make the size of a miss at a place
+TWO_SIGMA = 1.959963984540054  # standard deviations that hold 95 % of a Gaussian
+NOISE_SHARE = (0.01, 0.98)  # least and largest share of the variance that may be called noise
 
 
 # No slots here: the reach is computed once and kept.

@@ -10,23 +10,15 @@ from seacage.surrogates._gp._hyperparameters import Evidence, Mode
 
 Ensemble = Literal["auto", "always", "never"]
 
-FEW = 40
-"""Up to so many observations ``"auto"`` draws an ensemble; more leave little open."""
-
-MEMBERS = 16
-"""Draws that are kept."""
-
-WARM_UP, THINNING = 24, 3
-"""Trajectories before the first draw, and from one draw to the next."""
-
-LEAPS, LENGTH = 6, 1.2
-"""Leapfrog steps of a trajectory, and its length in standard deviations."""
+FEW = 40  # up to so many observations ``"auto"`` draws an ensemble; more leave little open
+MEMBERS = 16  # draws that are kept
+WARM_UP, THINNING = 24, 3  # trajectories before the first draw, and from one draw to the next
+LEAPS, LENGTH = 6, 1.2  # leapfrog steps of a trajectory, and its length in standard deviations
 
 ACCEPTED = 0.8
 """Share of the trajectories to be accepted, which the step is adapted to in the warm-up."""
 
-STEP = 1e-3
-"""Of the differences of gradients that give the curvature at the mode."""
+STEP = 1e-3  # of the differences of gradients that give the curvature at the mode
 
 Parameters = Float[np.ndarray, " parameter"]
 

@@ -22,14 +22,9 @@ from seacage.surrogates._gp._posterior import Posterior, Process
 from seacage.surrogates._prediction import Moments, Prediction, check_inputs, check_outputs
 from seacage.surrogates._scaling import Scaling
 
-MANY_OUTPUTS = 16
-"""More outputs than this are condensed before the kernel is fitted to them."""
-
-CONDENSED = 1e-6
-"""Share of the outputs' variance that condensing may leave out."""
-
-SHARED_POINTS = 5.0
-"""Weight of the shared variance against each output's own roughness, in points."""
+MANY_OUTPUTS = 16  # more outputs than this are condensed before the kernel is fitted to them
+CONDENSED = 1e-6  # share of the outputs' variance that condensing may leave out
+SHARED_POINTS = 5.0  # weight of the shared variance against each output's own roughness, in points
 
 
 Answer = tuple[Float[np.ndarray, "_ _"], Float[np.ndarray, "_ _"]]

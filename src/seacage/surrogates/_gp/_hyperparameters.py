@@ -20,14 +20,9 @@ from seacage.surrogates._gp._noise import (
 )
 from seacage.surrogates._gp._posterior import Process
 
-SUBSET = 250
-"""Points that the hyperparameters are first learned from."""
-
-POLISH = 12
-"""L-BFGS steps on all points from there; without them coverage falls far below nominal."""
-
-REACH = 4.0
-"""Sd of the prior either way that the kernel's hyperparameters may lie in."""
+SUBSET = 250  # points that the hyperparameters are first learned from
+POLISH = 12  # L-BFGS steps on all points from there; without them coverage falls far below nominal
+REACH = 4.0  # sd of the prior either way that the kernel's hyperparameters may lie in
 
 NOISE_STARTS = (math.log(1e-3), math.log(0.1))
 """Logarithms of the noise's share of the outputs' unit variance."""
@@ -44,8 +39,7 @@ SMALL, MORE = 40, 4
 ROUNDS, ROUNDS_ALL = 25, 6
 """Rounds of noise factors and search with Student's t, on the subset and then on all points."""
 
-ROUND = 4
-"""L-BFGS steps in each of them."""
+ROUND = 4  # L-BFGS steps in each of them
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -15,11 +15,8 @@ KernelName = Literal["squared-exponential", "matern-5/2", "matern-3/2"]
 
 PUBLIC: tuple[KernelName, ...] = get_args(KernelName)
 
-Normal = tuple[float, float]
-"""Mean and standard deviation of a log hyperparameter."""
-
-VARIANCE_PRIOR: Normal = (0.0, 2.0)
-"""Of a log variance: the outputs have unit variance."""
+Normal = tuple[float, float]  # mean and standard deviation of a log hyperparameter
+VARIANCE_PRIOR: Normal = (0.0, 2.0)  # of a log variance: the outputs have unit variance
 
 LENGTH_PRIOR: Normal = (math.log(3.0), 1.5)
 """Of a log length in spreads of a feature, which is about 3.5 across.
@@ -83,8 +80,7 @@ class Evaluation:
 Covariances = Callable[[np.ndarray], Evaluation]
 """Function of inputs: their covariances with some points."""
 
-Leaf = Callable[..., Any]
-"""Function of inputs whose results add and multiply."""
+Leaf = Callable[..., Any]  # function of inputs whose results add and multiply
 
 
 class AbstractKernel(ABC):

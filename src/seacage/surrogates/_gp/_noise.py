@@ -18,17 +18,10 @@ NOISE_PRIOR = (math.log(1e-5), 2.5)
 NOISE_BOUNDS = (math.log(1e-6), math.log(10.0))
 """Of the logarithm of the noise's share of the outputs' unit variance."""
 
-FREEDOM = 4.0
-"""Degrees of freedom of Student's t: outliers are common, and the variance exists."""
-
-SETTLING = 50
-"""Steps of the fixed-point iteration for a case's noise factor."""
-
-ANCHORS = 20
-"""Places that noise by input is learned at, at most."""
-
-SWING = 1.5
-"""Prior sd of the log variance of noise by input, about its mean."""
+FREEDOM = 4.0  # degrees of freedom of Student's t: outliers are common, and the variance exists
+SETTLING = 50  # steps of the fixed-point iteration for a case's noise factor
+ANCHORS = 20  # places that noise by input is learned at, at most
+SWING = 1.5  # prior sd of the log variance of noise by input, about its mean
 
 PullDiagonal = Callable[[Float[np.ndarray, " n"]], Float[np.ndarray, " parameter"]]
 """From the loss's gradient in each case's noise to its gradient in each log parameter."""

@@ -17,8 +17,7 @@ from seacage.surrogates._gp._noise import (
 )
 from seacage.surrogates._prediction import Moments
 
-CHUNK = 2**22
-"""Covariances held at once while predicting: 32 MiB whatever the number of rows."""
+CHUNK = 2**22  # covariances held at once while predicting: 32 MiB whatever the number of rows
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -21,11 +21,8 @@ from seacage.surrogates._gp import (
 
 BELL = "squared-exponential"
 
-LOCAL, BELOW = slice(None, -1), slice(-1, None)
-"""Columns of the features, and of the level below."""
-
-RANGE = 3.5
-"""Spreads that the level below goes through, about."""
+LOCAL, BELOW = slice(None, -1), slice(-1, None)  # columns of the features, and of the level below
+RANGE = 3.5  # spreads that the level below goes through, about
 
 RHO_VARIANCE = (0.0, 4.0)
 RHO_SLOPE = (-3.6, 4.0)
@@ -35,10 +32,10 @@ DELTA_VARIANCE = (-5.5, 3.0)
 With a held bend rho's is that of a slope: the same at the link's median length of 6 spreads.
 """
 
+# Mean and sd of a log length in spreads, for one feature
 RHO_LENGTH = (math.log(8.0), 1.1)
 DELTA_LENGTH = (math.log(3.0), 1.1)
 LINK_LENGTH = (math.log(6.0), 0.9)
-"""Mean and sd of a log length in spreads, for one feature."""
 
 ALIKE_LINE = (-4.0, 2.0)
 """Mean and sd of the line's log variance about a ratio of 1, in spreads of both levels."""

@@ -19,11 +19,8 @@ On random levels the mean is then within 0.005 sd and the sd within 0.5 % of a d
 GAUSS_HERMITE_UP_TO = 13
 """Above it even spacing needs fewer nodes: Gauss-Hermite puts many where there is no weight."""
 
-CHUNK = 2**18
-"""Nodes held at once by each level, whatever the number of rows."""
-
-REACH = 5.0
-"""Of the evenly spaced nodes, in sd either way."""
+CHUNK = 2**18  # nodes held at once by each level, whatever the number of rows
+REACH = 5.0  # of the evenly spaced nodes, in sd either way
 
 
 @runtime_checkable

@@ -21,8 +21,7 @@ from seacage.surrogates._gp import (
 )
 from seacage.surrogates._prediction import Prediction, check_inputs, check_outputs, check_shapes
 
-PAPER_VARIANCE = 0.93
-"""Share of the variance that the paper keeps, in three modes."""
+PAPER_VARIANCE = 0.93  # share of the variance that the paper keeps, in three modes
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -28,13 +28,11 @@ from seacage.surrogates._shape._symmetry_check import check_symmetry
 LEVEL, DEVIATIONS = 0.95, 1.959964
 """Share of the cases that an interval of so many standard deviations is to cover."""
 
-Nodes = slice | Int[np.ndarray, " node"]
-"""Some nodes: a slice, or their numbers."""
+Nodes = slice | Int[np.ndarray, " node"]  # some nodes: a slice, or their numbers
 
 EVERY = slice(None)
 
-BLOCK = 4096
-"""Rows of one coordinate that are answered at a time."""
+BLOCK = 4096  # rows of one coordinate that are answered at a time
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

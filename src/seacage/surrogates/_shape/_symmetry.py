@@ -15,11 +15,8 @@ from seacage.surrogates._features import vector_columns
 BAND = math.radians(3.0)
 """Half the width over which neighbouring sectors pass into one another [rad]."""
 
-SLACK_SPEED = 0.02
-"""Below this the current's direction fades, and all images have a share [m/s]."""
-
-COINCIDE = 0.01
-"""How far a node's image may lie from a node [m]."""
+SLACK_SPEED = 0.02  # below this the current's direction fades, and all images have a share [m/s]
+COINCIDE = 0.01  # how far a node's image may lie from a node [m]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

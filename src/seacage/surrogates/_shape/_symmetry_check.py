@@ -13,11 +13,8 @@ from seacage.surrogates._shape._symmetry import Symmetry
 TEACH, JUDGE = 400, 100
 """Cases that the trial model learns from, and cases that it is asked about, at most."""
 
-COMPRESSION = 0.01
-"""Of the trial model [m]."""
-
-FEW = 20
-"""Least number of cases that can show an asymmetry."""
+COMPRESSION = 0.01  # of the trial model [m]
+FEW = 20  # least number of cases that can show an asymmetry
 
 
 def check_symmetry(

@@ -11,8 +11,7 @@ from jaxtyping import Bool, Float
 from seacage.conventions import InputError, ModelError
 from seacage.surrogates._arrays import Settings, setting, setting_list
 
-MARGIN = 1e-9
-"""Of an axis: what rounding may put outside it."""
+MARGIN = 1e-9  # of an axis: what rounding may put outside it
 
 
 class AbstractRegion(ABC):

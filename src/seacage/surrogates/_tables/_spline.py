@@ -13,11 +13,8 @@ from seacage.surrogates._gp import chunks
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
-FEWEST = 4
-"""Nodes of an axis: four fix a cubic."""
-
-CHUNK = 2**13
-"""Rows weighed at once: their weights stay in a core's own cache."""
+FEWEST = 4  # nodes of an axis: four fix a cubic
+CHUNK = 2**13  # rows weighed at once: their weights stay in a core's own cache
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

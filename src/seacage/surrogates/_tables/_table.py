@@ -15,17 +15,10 @@ from seacage.surrogates._prediction import Prediction, Predicts, check_inputs
 from seacage.surrogates._tables._region import AbstractRegion, restore_region
 from seacage.surrogates._tables._spline import FEWEST, Spline, coefficient_count, nodes
 
-START = 12
-"""Nodes along each axis of the first grid."""
-
-CHECKS = 2000
-"""Random inputs at which a grid is held against the model, each round anew."""
-
-PROBES = 250
-"""Random inputs on the grid's lines along one axis, to see which axis is too coarse."""
-
-GROWTH = (1.25, 3.0)
-"""Least and most that an axis grows from one round to the next."""
+START = 12  # nodes along each axis of the first grid
+CHECKS = 2000  # random inputs at which a grid is held against the model, each round anew
+PROBES = 250  # random inputs on the grid's lines along one axis, to see which axis is too coarse
+GROWTH = (1.25, 3.0)  # least and most that an axis grows from one round to the next
 
 ROUNDING = 1e-9
 """Share of the answers' size that a standard deviation has to reach to be worth following."""

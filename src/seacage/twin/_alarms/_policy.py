@@ -50,8 +50,7 @@ DEFAULT_LIMITS: Mapping[str, Limit] = {
 }
 """Default limit of each kind of alarm."""
 
-FAULT = "history"
-"""Kind whose limit serves for faults of the service that have none of their own."""
+FAULT = "history"  # kind whose limit serves for faults of the service that have none of their own
 
 _WHOLE = ("severity",)
 _KEYS = tuple(one.name for one in fields(Limit))

@@ -7,11 +7,8 @@ from jaxtyping import Bool, Float
 
 from seacage.conventions import InputError, Rows
 
-SPACING = 0.25
-"""Largest distance between two sampled points of a path [m]."""
-
-MOST_POINTS = 8_000
-"""Sampled points of a path at most: two kilometres."""
+SPACING = 0.25  # largest distance between two sampled points of a path [m]
+MOST_POINTS = 8_000  # sampled points of a path at most: two kilometres
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -14,15 +14,11 @@ from seacage.twin._rov._predicted_net import PredictedNet
 Side = Literal["inside", "outside"]
 Pattern = Literal["rows", "spiral"]
 
-MOST_WAYPOINTS = 10_000
-"""Waypoints at most."""
+MOST_WAYPOINTS = 10_000  # waypoints at most
 
 _ROUNDS = 8  # of moving waypoints to their stand-off; in a corner of the net each helps a little
-_TOO_NEAR = 0.9
-"""Least distance over the stand-off; a waypoint with less is left out."""
-
-_STRIDES = 3.0
-"""Largest distance of two neighbours of a part, in steps or rows."""
+_TOO_NEAR = 0.9  # least distance over the stand-off; a waypoint with less is left out
+_STRIDES = 3.0  # largest distance of two neighbours of a part, in steps or rows
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

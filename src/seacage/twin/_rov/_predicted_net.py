@@ -17,11 +17,8 @@ from seacage.twin._metocean import Metocean
 from seacage.twin._rov._clearance import Clearance, PathClearance, sample_path
 from seacage.twin._twin import Twin
 
-PATCH_RINGS = 3
-"""Height of a patch of the net over which the scatter about the cases is one number."""
-
-POINTS_AT_ONCE = 2000
-"""Points at once: each is compared with every case of the error."""
+PATCH_RINGS = 3  # height of a patch of the net over which the scatter about the cases is one number
+POINTS_AT_ONCE = 2000  # points at once: each is compared with every case of the error
 
 
 class StaleError(SeacageError):

@@ -33,16 +33,13 @@ VERSION = 2
 TUNED_VERSION = 3
 """With a fault detector of other settings, which version 0.1.0 would ignore: it refuses these."""
 
-UPPER = "upper/"
-"""Before the sensor's name, in the names of level 2's parts."""
-
-DISCREPANCY = "discrepancy:"
-"""Before the names of the arrays of the shapes' errors."""
+UPPER = "upper/"  # before the sensor's name, in the names of level 2's parts
+DISCREPANCY = "discrepancy:"  # before the names of the arrays of the shapes' errors
 
 _ERRORS = ("current_velocity", "ring", "rest")
+# Fields that the header has as they are
 _OF_TWIN = ("provenance", "buoy", "timeouts", "fault_detector")
 _OF_MODELS = ("inputs", "edge", "still_volume")
-"""Fields that the header has as they are."""
 
 Kind = TypeVar("Kind", FittedGaussianProcess, FittedNARGP, FittedShapeGP)
 

@@ -22,11 +22,8 @@ from seacage.twin._training._held_out import (
     white_noise,
 )
 
-SHORT = 2.0 * DAY
-"""A training window shorter than this is calibrated by other sensors [s]."""
-
-LEAST_REFERENCE_PAIRS = 20
-"""Readings of another sensor within a short training window."""
+SHORT = 2.0 * DAY  # a training window shorter than this is calibrated by other sensors [s]
+LEAST_REFERENCE_PAIRS = 20  # readings of another sensor within a short training window
 
 
 def calibrate(model: Correction, training: CageTraining, sensor: str) -> Correction:

@@ -9,21 +9,17 @@ from seacage.surrogates import FittedGaussianProcess, ResidualModel
 from seacage.twin._correction import Correction, Spread
 from seacage.twin._pairs import Pairs
 
-DAY = 86400.0
-QUARTER_TIDE = 10800.0
-"""[s]"""
+DAY, QUARTER_TIDE = 86400.0, 10800.0  # [s]
 
 LONG = 8.0 * DAY
 """Readings over so long are counted by days, over a shorter time by quarters of a tide [s]."""
 
-FOLDS = 10
-"""Parts of a training window that are held out in turn, without a gap in any."""
+FOLDS = 10  # parts of a training window that are held out in turn, without a gap in any
 
 MARGIN = 0.5 * DAY
 """Least time between a training window and held-out readings [s]: closer ones are too alike."""
 
-MOST_READINGS = 1500
-"""Held-out readings at most, evenly taken: more say the same again."""
+MOST_READINGS = 1500  # held-out readings at most, evenly taken: more say the same again
 
 STRETCHES, STRETCH_READINGS = 8, 50
 """Runs of readings that separate the instrument's noise from slower errors, and their length."""

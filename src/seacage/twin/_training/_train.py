@@ -32,9 +32,8 @@ from seacage.twin._twin import Twin
 KERNELS = ("matern-5/2", "squared-exponential")
 """For the bridles: the one with kinks, as of lines going slack, and the smooth one."""
 
-LEAST_CASES = 20
-LEAST_PAIRS = 20
-"""Least converged cases of a campaign, and least readings of a sensor."""
+LEAST_CASES = 20  # of a campaign, converged
+LEAST_PAIRS = 20  # readings of a sensor
 
 PAPER_WINDOW_S = {"depth_m": 300.0, "tension_kn": 10.0}
 PAPER_LEAST = 5

@@ -32,8 +32,7 @@ from seacage.service._http._sensorthings._query import (
 )
 from seacage.service._schemas._base import AbstractAnswer, example
 
-_AT_ONCE = 30_000
-"""Entities told and samples looked at, in one answer: expansions multiply."""
+_AT_ONCE = 30_000  # entities told and samples looked at, in one answer: expansions multiply
 
 _TIMES = ("phenomenonTime", "resultTime")
 _CONFORMS = "http://www.opengis.net/spec/iot_sensing/1.1/req/"

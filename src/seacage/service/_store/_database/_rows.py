@@ -23,8 +23,7 @@ SAMPLES = "SELECT stream, t, seq, readings, remarks, t_ingest, crc FROM sample W
 Row = tuple[str, str, int, int, str, str, int]
 """Cage, stream, t, seq, readings, remarks, t_ingest: as in the schema."""
 
-SampleRow = tuple[Any, ...]
-"""Stream, t, seq, readings, remarks and t_ingest."""
+SampleRow = tuple[Any, ...]  # stream, t, seq, readings, remarks and t_ingest
 
 Own = tuple[int, int]
 """The flag that a value got from its own check, and when the sample came that amended it [us]."""
