@@ -72,7 +72,9 @@ def a_body(rng: np.random.Generator, nodes: int) -> tuple[Any, dict[str, int]]:
     lines = rng.integers(0, max(1, parts["bars"]), int(rng.integers(0, 4)), dtype=np.int32)
     lines = lines[: 4 if parts["bars"] else 0]
     twines = rng.integers(0, max(1, parts["bars"]), 3 if parts["bars"] else 0, dtype=np.int32)
-    parts |= {"floats": len(floats), "lines": len(lines), "twines": len(twines)}
+    buoys = rng.integers(0, max(1, len(floats)), 2 if len(floats) else 0, dtype=np.int32)
+    parts |= {"floats": len(floats), "buoys": len(buoys), "twines": len(twines)}
+    parts["lines"] = len(lines) + len(buoys)
     shapes = {
         **dict.fromkeys(("weight", "mass", "water_mass"), (nodes,)),
         "place": (nodes, 3),
@@ -101,7 +103,10 @@ def a_body(rng: np.random.Generator, nodes: int) -> tuple[Any, dict[str, int]]:
         slender_nodes=indices(rng, nodes, parts["slenders"], 1),
         float_nodes=floats,
         line_bars=lines,
-        anchor_bars=np.where(rng.random(len(lines)) < 0.5, -1, lines).astype(np.int32),
+        line_floats=buoys,
+        anchor_bars=np.append(
+            np.where(rng.random(len(lines)) < 0.5, -1, lines), 0 * buoys - 1
+        ).astype(np.int32),
         twine_bars=twines,
         cylinder_body=rng.integers(0, 5, parts["cylinders"], dtype=np.int32),
         cage_nodes=int(rng.integers(0, nodes + 1)),

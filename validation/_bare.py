@@ -79,6 +79,7 @@ def chain(
         bridles=NO_INDEX,
         lines=MooringLines.alike((), "line"),
         line_bars=NO_INDEX,
+        line_floats=NO_INDEX,
         anchor_bars=NO_INDEX,
         net_bars=NO_INDEX,
         bends=Bends.none(),

@@ -64,6 +64,7 @@ def bare_ring(inert):
         fixed=ACE.fixed[RING],
         chord=ACE.chord[RING],
         line_bars=np.zeros(0, dtype=np.int64),
+        line_floats=np.zeros(0, dtype=np.int64),
         anchor_bars=np.zeros(0, dtype=np.int64),
         net_bars=np.zeros(0, dtype=np.int64),
         bridles=np.zeros(0, dtype=np.int64),

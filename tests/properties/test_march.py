@@ -19,6 +19,7 @@ from seacage.dynamics._physics._loads import (
     _gather,
     bend_force,
     float_force,
+    float_lift,
     spring_force,
     wet_share,
 )
@@ -28,6 +29,7 @@ from seacage.dynamics._physics._motion import (
     _spring_damping,
     bar_damping,
     damped_bar_force,
+    damped_tension,
     moving_cylinder_force,
     moving_force,
     net_load_under_water,
@@ -294,6 +296,7 @@ class Stepper:
     surface: np.ndarray
     rise: np.ndarray
     wet: np.ndarray = field(init=False)  # held from look to look
+    tension: list[np.ndarray] = field(default_factory=list)  # of the lines, step by step
 
     @classmethod
     def begun(cls, assembly, law, ocean, steps, position):
@@ -410,6 +413,10 @@ class Stepper:
     def step(self, since):
         """Symplectic Euler, drag taken at the new speed."""
         a, x, v, h = self.assembly, self.position, self.velocity, self.steps.time_step
+        buoys, surface = a.floats.rows(a.line_floats), self.present(since).elevation
+        above = (x[..., 2] - surface)[:, buoys.nodes]
+        pull = damped_tension(a.bars.rows(a.line_bars), a.mass, x, v)
+        self.tension.append(np.hstack([pull, float_lift(buoys, above)]))
         force = self.load + damped_bar_force(a.bars, a.mass, x, v) + bend_force(a.bends, x)
         force += float_force(a.floats, x, self.present(since).elevation)
         force += spring_force(a.springs, a.position, x) + _spring_damping(a.springs, v)
@@ -455,6 +462,9 @@ def check_steps(mesh, law, cases, each, hold, held, seed):
         time_step=0.1 / each, each=each, hold=hold, ramp=0.15, spin_up=1, counted=2, sample_every=1
     )
     assembly = Assembly.of(cage)
+    buoys = rng.permutation(len(assembly.floats.nodes))[: rng.integers(4)]
+    anchor_bars = np.append(assembly.anchor_bars, np.full(len(buoys), -1))
+    assembly = replace(assembly, line_floats=buoys, anchor_bars=anchor_bars)
     if held:
         assembly = replace(assembly, fixed=np.arange(len(assembly.position)) < cage.spokes)
     assembly, _ = scale_mass(assembly, steps.time_step)
@@ -486,3 +496,20 @@ def check_steps(mesh, law, cases, each, hold, held, seed):
         off = np.sort(np.linalg.norm(ours - outcome, axis=-1).max(axis=0))[:-2]
         assert np.linalg.norm(off) <= 5e-4 * np.linalg.norm(change)
     assert np.all(np.isnan(march.lost_at))
+    check_tensions(march, np.array(plain.tension)[each:])
+
+
+def check_tensions(march, counted):
+    """Of lines at bars and at floats: at each look, and over all steps that count."""
+    cases, each, most = march.cases, march.steps.each, counted.max()
+    kept = np.moveaxis(march.samples["tensions"][..., :cases], -1, 1)
+    account = {
+        name: march.account[f"line_{name}"][:, :cases].T for name in ("sum", "least", "most")
+    }
+    for ours, outcome in (
+        (kept, counted[::each]),
+        (account["sum"] / len(counted), counted.mean(axis=0)),
+        (account["least"], counted.min(axis=0)),
+        (account["most"], counted.max(axis=0)),
+    ):
+        np.testing.assert_allclose(ours, outcome, atol=1e-3 * most)

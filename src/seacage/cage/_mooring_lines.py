@@ -16,7 +16,8 @@ class MooringLines:
     Parameters
     ----------
     names, kinds
-        Such as "anchor-1" and "bridle", "frame line", "anchor line" or a structure's "line".
+        Such as "anchor-1" and "bridle", "frame line", "anchor line", "buoy line" or a structure's
+        "line".
     capacity
         Breaking load over material factor; NaN where it is not known [N].
     pretension
@@ -51,19 +52,20 @@ class MooringLines:
             tn_slope=np.full(count, np.nan if tn_slope is None else tn_slope),
         )
 
-    def joined(self, other: "MooringLines") -> "MooringLines":
+    def joined(self, *others: "MooringLines") -> "MooringLines":
         """These, and then others."""
+        every = (self, *others)
         return MooringLines(
-            names=self.names + other.names,
-            kinds=self.kinds + other.kinds,
-            capacity=np.concatenate([self.capacity, other.capacity]),
-            pretension=np.concatenate([self.pretension, other.pretension]),
-            tn_slope=np.concatenate([self.tn_slope, other.tn_slope]),
+            names=sum((one.names for one in every), ()),
+            kinds=sum((one.kinds for one in every), ()),
+            capacity=np.concatenate([one.capacity for one in every]),
+            pretension=np.concatenate([one.pretension for one in every]),
+            tn_slope=np.concatenate([one.tn_slope for one in every]),
         )
 
 
 def mooring_lines(cage: Cage, *, anchored: bool) -> MooringLines:
-    """A cage's bridles; with its frame on anchors also frame lines and anchor lines."""
+    """A cage's bridles; with its frame on anchors also frame lines, anchor lines and buoy lines."""
     parts, anchors = cage.bridles, cage.anchor_lines
     bridles = MooringLines.alike(
         cage.bridle_names,
@@ -78,9 +80,9 @@ def mooring_lines(cage: Cage, *, anchored: bool) -> MooringLines:
     frame = [f"frame-{number}" for number in sides]
     moored = [f"anchor-{number + 1}" for number in range(len(sides) * anchors.per_corner)]
     return bridles.joined(
-        MooringLines.alike(frame, "frame line", tn_slope=cage.frame.rope_tn_slope)
-    ).joined(
+        MooringLines.alike(frame, "frame line", tn_slope=cage.frame.rope_tn_slope),
         MooringLines.alike(
             moored, "anchor line", pretension=anchors.pretension, tn_slope=anchors.rope_tn_slope
-        )
+        ),
+        MooringLines.alike([f"buoy-{number}" for number in sides], "buoy line"),
     )

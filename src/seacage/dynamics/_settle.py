@@ -16,10 +16,10 @@ from seacage.dynamics._physics import (
     Law,
     SteadyFlow,
     Tuning,
-    bar_tension,
     flow_of_laws,
     law_of_each,
     law_warnings,
+    line_tension,
     nodal_force,
     steady_flow,
     total_net_force,
@@ -38,7 +38,8 @@ class Response:
     bridle_tension
         Of each bridle [N].
     line_names, line_tension
-        Of all lines of the mooring, the bridles first; an anchor line's at its corner [N].
+        Of all lines of the mooring, the bridles first; an anchor line's at its corner, a buoy
+        line's as its buoy lifts [N].
     anchor_load
         Of each anchor line on its anchor, as the anchor lines are numbered, or of all lines on
         each of a structure's anchors: what points up is uplift, what points down lies on the sea
@@ -247,15 +248,15 @@ def _response(
 ) -> Response:
     net = found.position[:, : cage.node_count]
     volume, drowned = cage.volume(net), is_drowned(cage, assembly, found.position)
-    tension = bar_tension(assembly.bars, found.position)
+    tension = line_tension(assembly, found.position)
     # the collar may be held, too
     anchors = np.setdiff1d(np.flatnonzero(assembly.fixed), assembly.collar)
     return Response(
         node_position=net,
         node_displacement=net - rest,
-        bridle_tension=tension[:, assembly.bridles],
+        bridle_tension=tension[:, : len(assembly.bridles)],
         line_names=assembly.lines.names,
-        line_tension=tension[:, assembly.line_bars],
+        line_tension=tension,
         anchor_load=nodal_force(assembly, flow, found.position)[:, anchors],
         net_force=total_net_force(assembly.panels, flow, found.position),
         volume=volume,

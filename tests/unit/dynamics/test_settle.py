@@ -82,7 +82,7 @@ def test_several_seas_have_a_leading_axis_and_one_sea_has_none():
         "node_position": (81, 3),
         "node_displacement": (81, 3),
         "bridle_tension": (12,),
-        "line_tension": (24,),
+        "line_tension": (28,),
         "anchor_load": (8, 3),
         "net_force": (3,),
         "volume": (),

@@ -27,10 +27,12 @@ enum { NETTING, COLLAR, TUBE, ROPES, PUSH, BODIES }; /* PUSH: of the waves' acce
 enum { SCREENS = 0, TWINES = 1 }; /* kinds of law of the netting */
 
 typedef struct {
-    int32_t nodes, bars, bends, panels, cylinders, floats, springs, grounds, lines, twines, slenders;
+    int32_t nodes, bars, bends, panels, cylinders, floats, springs, grounds, lines;
+    int32_t buoys; /* lines at floats, not bars: the last ones */
+    int32_t twines, slenders;
     int32_t cage_nodes; /* the first ones; PUSH is on them */
     const int32_t *bar_ends, *bend_nodes, *panel_corners, *cylinder_ends, *float_nodes,
-        *spring_nodes, *ground_nodes, *line_bars, *slender_nodes;
+        *spring_nodes, *ground_nodes, *line_bars, *line_floats, *slender_nodes;
     const int32_t *cylinder_body; /* of BODIES */
     const int32_t *twine_bars;    /* of the netting */
     const int32_t *anchor_bars;   /* [line] the bar that ends at its anchor, or -1 */
@@ -418,6 +420,13 @@ static void add_cylinders(const body *b, const state *s, const vec *restrict x, 
     }
 }
 
+/* How deep a float lies: not above the water, and no deeper than its box. */
+static inline float draft_of(float draft, float height)
+{
+    draft = draft > 0.0f ? draft : 0.0f;
+    return draft < height ? draft : height;
+}
+
 static void add_supports(const body *b, const state *s, float since, const vec *restrict x,
                          const vec *restrict v)
 {
@@ -427,10 +436,8 @@ static void add_supports(const body *b, const state *s, float since, const vec *
         const float still = b->float_draft[n], height = b->float_height[n];
         const float stiffness = b->float_stiffness[n];
         EACH_LANE {
-            float draft = still - x[i][2][k] + s->elevation[i][k] + since * s->rise[i][k];
-            draft = draft > 0.0f ? draft : 0.0f;
-            draft = draft < height ? draft : height;
-            f[i][2][k] += stiffness * draft;
+            const float draft = still - x[i][2][k] + s->elevation[i][k] + since * s->rise[i][k];
+            f[i][2][k] += stiffness * draft_of(draft, height);
         }
     }
     for (int n = 0; n < b->springs; n++) {
@@ -925,6 +932,18 @@ static void count_anchors(const body *b, const state *s, record *r)
     }
 }
 
+/* Tension of a buoy's chain: what the buoy lifts. */
+static void buoy_tension(const body *b, int n, const state *s, float since, float *restrict tension)
+{
+    const int i = b->float_nodes[n];
+    const float still = b->float_draft[n], height = b->float_height[n];
+    const float stiffness = b->float_stiffness[n];
+    EACH_LANE {
+        const float surface = s->elevation[i][k] + since * s->rise[i][k];
+        tension[k] = stiffness * draft_of(still - s->position[i][2][k] + surface, height);
+    }
+}
+
 /* Where the present refresh keeps its tensions. */
 static float *line_row(const body *b, const record *r)
 {
@@ -933,12 +952,16 @@ static float *line_row(const body *b, const record *r)
 
 /* Lines are counted at every step, as a snap is shorter than a refresh, and sampled at every
  * refresh into `row` (else null), as what wears a line is shorter than most samples' distance. */
-static void count_lines(const body *b, const state *s, record *r, float *restrict row)
+static void count_lines(const body *b, const state *s, float since, record *r, float *restrict row)
 {
     const vec *x = (const vec *)s->position, *v = (const vec *)s->velocity;
+    const int bars = b->lines - b->buoys;
     for (int n = 0; n < b->lines; n++) {
         lane tension;
-        bar_tension(b, b->line_bars[n], x, v, tension);
+        if (n < bars)
+            bar_tension(b, b->line_bars[n], x, v, tension);
+        else
+            buoy_tension(b, b->line_floats[n - bars], s, since, tension);
         if (row)
             memcpy(row + LANES * n, tension, sizeof tension);
         EACH_LANE {
@@ -1041,7 +1064,7 @@ void seacage_march(const body *b, const netting *net, const sea *w, const schedu
             }
             add_forces(b, s, since);
             if (counts)
-                count_lines(b, s, r, i == 0 && t->sample_every > 0 ? line_row(b, r) : 0);
+                count_lines(b, s, since, r, i == 0 && t->sample_every > 0 ? line_row(b, r) : 0);
             if (i == 0 && counts) {
                 count_nodes(b, s, r);
                 count_loads(b, s, loads, r);
@@ -1063,10 +1086,10 @@ void seacage_march(const body *b, const netting *net, const sea *w, const schedu
 #define FIELD(name) LAYOUT_FIELD(body, name)
 const layout_row seacage_layout_body[] = {
     FIELD(nodes), FIELD(bars), FIELD(bends), FIELD(panels), FIELD(cylinders), FIELD(floats),
-    FIELD(springs), FIELD(grounds), FIELD(lines), FIELD(twines), FIELD(slenders),
-    FIELD(cage_nodes), FIELD(bar_ends), FIELD(bend_nodes), FIELD(panel_corners),
+    FIELD(springs), FIELD(grounds), FIELD(lines), FIELD(buoys), FIELD(twines),
+    FIELD(slenders), FIELD(cage_nodes), FIELD(bar_ends), FIELD(bend_nodes), FIELD(panel_corners),
     FIELD(cylinder_ends), FIELD(float_nodes), FIELD(spring_nodes), FIELD(ground_nodes),
-    FIELD(line_bars), FIELD(slender_nodes), FIELD(cylinder_body), FIELD(twine_bars),
+    FIELD(line_bars), FIELD(line_floats), FIELD(slender_nodes), FIELD(cylinder_body), FIELD(twine_bars),
     FIELD(anchor_bars), FIELD(weight), FIELD(mass), FIELD(water_mass), FIELD(place), FIELD(chord),
     FIELD(slender_tangent), FIELD(slender_mass), FIELD(bar_length), FIELD(bar_rate),
     FIELD(bar_damping), FIELD(bar_least), FIELD(bend_stiffness), FIELD(bend_plane),

@@ -90,7 +90,7 @@ class March:
         self._net = netting_of(assembly, *([law] if isinstance(law, NetLaw) else law))
         self._sea = sea_tables(ocean)
         self._motion = motion_of(assembly, to_lanes(position))
-        lanes, lines = simulation_lanes(), len(assembly.line_bars)
+        lanes, lines = simulation_lanes(), len(assembly.anchor_bars)
         sizes = {"node": (3 * nodes, lanes), "line": (lines, lanes), "load": (3 * len(Body), lanes)}
         twines = len(assembly.net_bars)
         self.account = {
@@ -221,7 +221,7 @@ class March:
 def _counts(assembly: Assembly) -> str:
     """Of what a march has numbers for."""
     panels, floats = len(assembly.panels.area), len(assembly.floats.nodes)
-    nodes, lines = len(assembly.position), len(assembly.line_bars)
+    nodes, lines = len(assembly.position), len(assembly.anchor_bars)
     return f"{nodes} nodes, {panels} panels, {floats} floats and {lines} lines"
 
 

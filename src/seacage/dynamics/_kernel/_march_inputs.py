@@ -91,10 +91,12 @@ def body_of(assembly: Assembly) -> BodyStruct:
     bars, new = _in_node_order(assembly.bars)
     a = replace(assembly, bars=bars)
     return BodyStruct.cast(
-        lines=len(a.line_bars),
+        lines=len(a.anchor_bars),
+        buoys=len(a.line_floats),
         twines=len(a.net_bars),
         cage_nodes=a.cage_nodes,
         line_bars=new[a.line_bars],
+        line_floats=a.line_floats,
         twine_bars=new[a.net_bars],
         anchor_bars=np.where(a.anchor_bars < 0, -1, new[a.anchor_bars])
         if len(new)

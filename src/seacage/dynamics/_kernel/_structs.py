@@ -179,10 +179,10 @@ class BodyStruct(Struct):
     c_name = "body"
     _fields_ = (
         *_each(ctypes.c_int32, "nodes bars bends panels cylinders floats springs grounds lines"),
-        *_each(ctypes.c_int32, "twines slenders cage_nodes"),
+        *_each(ctypes.c_int32, "buoys twines slenders cage_nodes"),
         *_each(INTEGERS, "bar_ends bend_nodes panel_corners cylinder_ends float_nodes"),
-        *_each(INTEGERS, "spring_nodes ground_nodes line_bars slender_nodes cylinder_body"),
-        *_each(INTEGERS, "twine_bars anchor_bars"),
+        *_each(INTEGERS, "spring_nodes ground_nodes line_bars line_floats slender_nodes"),
+        *_each(INTEGERS, "cylinder_body twine_bars anchor_bars"),
         *_each(FLOATS, "weight mass water_mass place chord slender_tangent slender_mass"),
         *_each(FLOATS, "bar_length bar_rate bar_damping bar_least"),
         *_each(FLOATS, "bend_stiffness bend_plane bend_turn panel_share panel_outline panel_mass"),

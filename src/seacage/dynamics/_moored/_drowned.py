@@ -25,6 +25,6 @@ def is_drowned(
         return np.zeros(len(position), dtype=bool)
     floats = assembly.floats
     draft = floats.draft - position[:, floats.nodes, 2]
-    is_buoy = floats.nodes >= assembly.cage_nodes
+    is_buoy = (floats.nodes >= assembly.cage_nodes) & (floats.stiffness > 0.0)  # not parted
     under = np.any((draft >= floats.height) & is_buoy, axis=1)
     return under | (position[:, assembly.collar, 2].mean(axis=1) < -COLLAR_UNDER)

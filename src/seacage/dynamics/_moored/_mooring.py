@@ -43,7 +43,8 @@ def anchor_assembly(cage: Cage) -> Assembly:
     on from the frame's sides, rope over chain, in lumped segments; the rope weighs nothing in
     water, as it is filled with it. In still water the bridles bear their pretension, as on
     springs, and the anchor lines theirs at the corners; what they leave, the frame ropes bear.
-    Left out: friction on the sea bed, the buoys' own sideways motion, drag on the bridles.
+    A buoy line's tension is its buoy's lift. Left out: friction on the sea bed, the buoys' own
+    sideways motion, drag on the bridles.
 
     Raises
     ------
@@ -69,7 +70,8 @@ def anchor_assembly(cage: Cage) -> Assembly:
         fixed=np.concatenate([base.fixed, anchors.is_anchor]),
         chord=np.vstack([base.chord, np.zeros((len(anchors.position), 2))]),
         bars=Bars.joined(base.bars, frame, anchors.bars),
-        lines=_lines(cage, frame),
+        lines=_lines(cage, frame, lift),
+        line_floats=len(base.floats.nodes) + np.arange(len(lift)),
         line_bars=_line_bars(cage, base, frame, anchors),
         anchor_bars=_anchor_bars(base, frame, anchors),
         cylinders=_cylinders(cage, base, frame, anchors),
@@ -127,19 +129,20 @@ def _line_bars(
 
 
 def _anchor_bars(base: Assembly, frame: Bars, anchors: _AnchorLines) -> Int[np.ndarray, " line"]:
-    """The last bar of each anchor line; -1 for bridles and frame lines."""
-    before = len(base.bars.length) + len(frame.length)
-    without = np.full(len(base.bridles) + len(frame.length), -1)
-    return np.concatenate([without, before + np.flatnonzero(anchors.is_anchor)])
+    """The last bar of each anchor line; -1 for other lines."""
+    corners, before = len(frame.length), len(base.bars.length) + len(frame.length)
+    last = before + np.flatnonzero(anchors.is_anchor)
+    return np.pad(last, (len(base.bridles) + corners, corners), constant_values=-1)
 
 
-def _lines(cage: Cage, frame: Bars) -> MooringLines:
-    """All lines; a frame line's pretension is what it bears between its corners at rest."""
+def _lines(cage: Cage, frame: Bars, lift: Float[np.ndarray, " corner"]) -> MooringLines:
+    """All lines; frame and buoy lines' pretension is what they bear at rest, as designed."""
     lines, corners = mooring_lines(cage, anchored=True), cage.corner_position
     span = np.linalg.norm(np.roll(corners, -1, axis=0) - corners, axis=1)
-    taut = np.maximum(frame.stiffness * (span / frame.length - 1.0), 0.0)
     pretension = lines.pretension.copy()
-    pretension[[kind == "frame line" for kind in lines.kinds]] = np.where(taut > 0.0, taut, np.nan)
+    loads = {"frame line": frame.stiffness * (span / frame.length - 1.0), "buoy line": lift}
+    for kind, load in loads.items():
+        pretension[[one == kind for one in lines.kinds]] = np.where(load > 0.0, load, np.nan)
     return replace(lines, pretension=pretension)
 
 

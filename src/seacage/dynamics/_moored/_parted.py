@@ -16,7 +16,7 @@ def part(assembly: Assembly, names: Sequence[str]) -> Assembly:
     """A copy whose lines of these names bear nothing.
 
     Their weight, drag and mass stay, as if they hung from where they parted. An anchor line
-    parts at its corner.
+    parts at its corner. A buoy whose line parts drifts off: its corner has no lift.
 
     Raises
     ------
@@ -29,6 +29,12 @@ def part(assembly: Assembly, names: Sequence[str]) -> Assembly:
             raise InputError(
                 f"parted = {name!r}: there is no such line. This mooring has: {', '.join(known)}."
             )
-    stiffness = assembly.bars.stiffness.copy()
-    stiffness[assembly.line_bars[np.isin(known, names)]] = NOTHING
-    return replace(assembly, bars=replace(assembly.bars, stiffness=stiffness))
+    parted, bars = np.isin(known, names), len(assembly.line_bars)
+    stiffness, lift = assembly.bars.stiffness.copy(), assembly.floats.stiffness.copy()
+    stiffness[assembly.line_bars[parted[:bars]]] = NOTHING
+    lift[assembly.line_floats[parted[bars:]]] = 0.0
+    return replace(
+        assembly,
+        bars=replace(assembly.bars, stiffness=stiffness),
+        floats=replace(assembly.floats, stiffness=lift),
+    )

@@ -152,6 +152,11 @@ class Floats(Rows):
     draft: Float[np.ndarray, " float"]  # with the node at z = 0 [m]
     height: Float[np.ndarray, " float"]  # of the box [m]
 
+    @property
+    def buoyancy(self) -> Float[np.ndarray, " float"]:
+        """What each bears wholly under water [N]."""
+        return self.stiffness * self.height
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Springs(Rows):
@@ -198,7 +203,8 @@ class Assembly:
     bars: Bars
     bridles: Int[np.ndarray, " bridle"]  # which bars are the bridles
     lines: MooringLines  # whose tension is reported
-    line_bars: Int[np.ndarray, " line"]  # at which bar
+    line_bars: Int[np.ndarray, " first"]  # at which bar, of those that are bars
+    line_floats: Int[np.ndarray, " last"]  # at which float, of the others: chains under buoys
     anchor_bars: Int[np.ndarray, " line"]  # which bar ends at the line's anchor, or -1
     net_bars: Int[np.ndarray, " edge"]  # which bars are the netting, in the order of its edges
     bends: Bends
@@ -240,6 +246,7 @@ class Assembly:
             bridles=bridles,
             lines=mooring_lines(cage, anchored=False),
             line_bars=bridles,
+            line_floats=np.zeros(0, dtype=np.int64),
             anchor_bars=np.full(len(bridles), -1),
             net_bars=np.arange(len(cage.edges)),
             bends=_bends(cage),

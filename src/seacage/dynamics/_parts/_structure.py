@@ -82,6 +82,7 @@ def assemble_structure(structure: Structure) -> Assembly:
         bridles=lines,
         lines=MooringLines.alike(structure.bridle_names, "line"),
         line_bars=lines,
+        line_floats=np.zeros(0, dtype=np.int64),
         anchor_bars=np.full(len(lines), -1),
         net_bars=np.zeros(0, dtype=np.int64),
         bends=_bends(structure),

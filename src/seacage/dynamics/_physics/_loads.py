@@ -230,16 +230,25 @@ def cylinder_force(cylinders: Cylinders, flow: SteadyFlow, position: Nodal) -> N
 def float_force(
     floats: Floats, position: Nodal, elevation: Float[np.ndarray, "case node"] | None = None
 ) -> Nodal:
-    """Buoyancy of floats: none out of the water, no more than all when drowned [N].
-
-    The surface lies at its elevation at each node [m]; still water at 0.
-    """
+    """Buoyancy of floats [N]; the surface lies at its elevation at each node [m]."""
     surface = 0.0 if elevation is None else elevation[:, floats.nodes]
-    height = position[:, floats.nodes, 2] - surface
-    draft = np.clip(floats.draft - height, 0.0, floats.height)
     force = np.zeros_like(position)
-    force[:, floats.nodes, 2] = floats.stiffness * draft
+    force[:, floats.nodes, 2] = float_lift(floats, position[:, floats.nodes, 2] - surface)
     return force
+
+
+def float_lift(
+    floats: Floats, height: Float[np.ndarray, "case float"]
+) -> Float[np.ndarray, "case float"]:
+    """Lift of floats over the surface: none out of the water, no more than all when drowned [N]."""
+    return floats.stiffness * np.clip(floats.draft - height, 0.0, floats.height)
+
+
+def line_tension(assembly: Assembly, position: Nodal) -> Float[np.ndarray, "case line"]:
+    """Tension of the reported lines at rest in still water, that of buoys' chains last [N]."""
+    buoys = assembly.floats.rows(assembly.line_floats)
+    pull = bar_tension(assembly.bars.rows(assembly.line_bars), position)
+    return np.hstack([pull, float_lift(buoys, position[:, buoys.nodes, 2])])
 
 
 def spring_force(springs: Springs, design: Float[np.ndarray, "node 3"], position: Nodal) -> Nodal:

@@ -132,7 +132,10 @@ def upcrossing_peaks(
 def _tail_maxima(
     height: Float[np.ndarray, " peak"], times: Int[np.ndarray, "draw peak"], longer: float
 ) -> Float[np.ndarray, "2 draw"]:
-    """Most probable and expected largest height, each peak counted so many times in each draw."""
+    """Most probable and expected largest height, each peak counted so many times in each draw.
+
+    NaN of a draw that has no two peaks in its tail, as where blocks without peaks are drawn.
+    """
     order = np.argsort(height)
     top = max(int(TAIL * len(order)) - len(order) // 5, 0)  # a draw's upper fifth may reach lower
     weight = times[:, order]
@@ -140,6 +143,8 @@ def _tail_maxima(
     rank = np.cumsum(weight, axis=1) - 0.5 * (weight - 1.0)
     share = ((rank - 0.3) / (count + 0.4))[:, top:]
     weight = (weight[:, top:] * (share > TAIL)).astype(np.float64)
+    known = np.count_nonzero(weight, axis=1) > 1
+    weight, share, count = weight[known], share[known], count[known]
     x = np.log(-np.log1p(-np.clip(share, 0.0, 1.0 - 1e-9)))
     y = np.log(height[order][top:])
     total = weight.sum(axis=1, keepdims=True)
@@ -152,4 +157,6 @@ def _tail_maxima(
     mpm = scale * np.log(number) ** slope
     largest = -np.log(-np.expm1(np.log(_SHARES) / number[:, None]))
     expected = scale * np.mean(largest ** slope[:, None], axis=1)
-    return np.stack([mpm, expected])
+    found = np.full((2, len(times)), np.nan)
+    found[:, known] = mpm, expected
+    return found

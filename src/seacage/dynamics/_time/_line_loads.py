@@ -1,6 +1,6 @@
 """Loads of the lines of a mooring: statistics, extremes, slack, snaps and fatigue."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -21,13 +21,15 @@ class LineLoads:
     Attributes
     ----------
     names, kinds
-        The bridles first; "bridle", "frame line", "anchor line", or a structure's "line".
+        The bridles first; "bridle", "frame line", "anchor line", "buoy line", or a structure's
+        "line".
     capacity
         Breaking load over material factor; NaN where the file gives none [N].
     tension
         Over all time steps, the quantiles from samples [N].
     extremes
-        Of three hours, from tensions every 0.1 s [N].
+        Of three hours, from tensions every 0.1 s; a buoy line's are no more than its buoy's
+        buoyancy [N].
     slack_share
         Share of the time below a hundredth of the pretension; NaN where that is not known [-].
     snaps
@@ -86,20 +88,26 @@ def line_loads(
     *,
     anchor_pull: Float[np.ndarray, "line 3"],
     uplift: Float[np.ndarray, " line"],
+    most: Float[np.ndarray, " line"],
     every: float,
     waves: bool,
 ) -> LineLoads:
-    """Of one simulation, from its statistics and its tensions ``every`` so many seconds."""
+    """Of one simulation, from its statistics and its tensions ``every`` so many seconds.
+
+    No line bears more than ``most``: for a buoy line all its buoy's buoyancy [N].
+    """
     slack = tension < SLACK * lines.pretension
     known = np.isfinite(lines.pretension)
     snaps = [_snaps(slack[:, line], tension[:, line]) for line in range(len(known))]
+    tail = extremes([tension], every=every, has_waves=waves)
+    mpm, expected = np.minimum(tail.mpm, most), np.minimum(tail.expected, most)
     return LineLoads(
         names=lines.names,
         kinds=lines.kinds,
         capacity=lines.capacity,
         tn_slope=lines.tn_slope,
         tension=statistics,
-        extremes=extremes([tension], every=every, has_waves=waves),
+        extremes=replace(tail, mpm=mpm, expected=expected),
         slack_share=np.where(known, slack.mean(axis=0), np.nan),
         snaps=np.where(known, snaps, np.nan),
         anchor_pull=anchor_pull,

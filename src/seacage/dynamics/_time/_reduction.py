@@ -61,11 +61,12 @@ def _history(
     volume = cage.volume(net[::every].astype(np.float64))
     node = of("node", net, counted, assembly.position[: cage.node_count])
     tension = sampled["tensions"][:: steps.sample_every]
-    lines = of("line", tension, counted * steps.each, np.zeros(len(assembly.line_bars)))
+    lines = of("line", tension, counted * steps.each, np.zeros(len(assembly.anchor_bars)))
     bridles = slice(len(assembly.bridles))
     kept = slice(None) if simulation.series else slice(0)
     waves = march.has_waves(lanes[0])
     at_anchor = assembly.anchor_bars >= 0
+    buoys = assembly.floats.rows(assembly.line_floats)
     pull = _join(march, "anchor_sum", lanes).reshape(-1, 3) / counted
     history = History(
         time=(np.arange(len(net)) * steps.sample_every * REFRESH)[kept],
@@ -84,6 +85,7 @@ def _history(
             sampled["tensions"],
             anchor_pull=np.where(at_anchor[:, None], pull, np.nan),
             uplift=np.where(at_anchor, _join(march, "uplift_most", lanes), np.nan),
+            most=np.append(np.full(len(assembly.line_bars), np.inf), buoys.buoyancy),
             every=REFRESH,
             waves=waves,
         ),

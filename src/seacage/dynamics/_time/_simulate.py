@@ -307,7 +307,7 @@ def _steps(
 def _check_room(steps: Steps, assembly: Assembly) -> None:
     """Positions, tensions, net force and surface are kept in single precision to the end."""
     sampled = steps.samples * (3 * len(assembly.position) + 4)
-    room = 4e-9 * simulation_lanes() * (sampled + steps.counted * len(assembly.line_bars))
+    room = 4e-9 * simulation_lanes() * (sampled + steps.counted * len(assembly.anchor_bars))
     if room > MOST_ROOM:
         duration, every = steps.counted * REFRESH, steps.sample_every * REFRESH
         raise InputError(

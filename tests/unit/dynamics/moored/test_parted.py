@@ -40,6 +40,18 @@ def test_a_whole_mooring_may_lose_a_frame_line_or_an_anchor_line():
     assert np.all(history.lines.tension.mean[~lost] >= 0.0)
 
 
+def test_a_corner_whose_buoy_is_gone_hangs_on_its_other_lines():
+    whole, parted = settle(SMALL, SEA), settle(SMALL, SEA, parted=["buoy-2"])
+    assert parted.result == Result.CONVERGED
+    gone = np.array(parted.line_names) == "buoy-2"
+    np.testing.assert_array_equal(parted.line_tension[gone], 0.0)
+    share = (parted.line_tension[24:].sum() / whole.line_tension[24:][~gone[24:]].sum()).item()
+    assert 0.7 < share < 1.0  # lines that no buoy holds up hang less on the other buoys, too
+    moving = simulate(SMALL, SEA, duration=10.0, spin_up=60.0, parted=["buoy-2"])
+    assert moving.result == Result.CONVERGED
+    np.testing.assert_array_equal(moving.lines.tension.maximum[gone], 0.0)
+
+
 @pytest.mark.parametrize("run", [settle, lambda *a, **k: simulate(*a, duration=1.0, **k)])
 @pytest.mark.parametrize("name", ["bridle-99", "anchor-9", ""])
 def test_a_line_that_does_not_exist_is_refused(run, name):

@@ -22,6 +22,7 @@ from seacage.ocean import SeaState
 ACE = Cage.named("ace")
 COARSE = ACE.altered(mesh={"spokes": 16, "ring_depths_m": [0.0, 7.0, 15.0, 21.4, 27.8]})
 LINES = [f"anchor-{number}" for number in range(1, 9)]
+ANCHORS, BUOYS = slice(16, 24), slice(24, 28)
 
 
 def current(speed, to):
@@ -41,10 +42,13 @@ def share_settled(cage, cases, fastest, **options):
 def test_still_water_leaves_the_whole_mooring_at_rest():
     still = settle(ACE, current(0.0, 0.0), mooring="catenary")
     assert still.result == Result.CONVERGED
-    assert still.line_names[-8:] == tuple(LINES)
+    assert still.line_names[ANCHORS] == tuple(LINES)
+    assert still.line_names[BUOYS] == ("buoy-1", "buoy-2", "buoy-3", "buoy-4")
     # what the cage file says, but that the frame is balanced against bridles as designed
     np.testing.assert_allclose(still.line_tension[:12], 10e3, rtol=0.025)
-    np.testing.assert_allclose(still.line_tension[-8:], 45.9e3, rtol=1e-3)
+    np.testing.assert_allclose(still.line_tension[ANCHORS], 45.9e3, rtol=1e-3)
+    pretension = anchor_assembly(ACE).lines.pretension[BUOYS]
+    np.testing.assert_allclose(still.line_tension[BUOYS], pretension, rtol=0.01)
     np.testing.assert_array_equal(still.node_position, rest_shape(ACE, mooring="catenary"))
     np.testing.assert_allclose(still.node_position, rest_shape(ACE, mooring="springs"), atol=0.01)
 
@@ -56,7 +60,7 @@ def test_at_rest_anchors_and_frame_are_pulled_as_by_elastic_catenaries():
     # a frame rope bears, over √2, what the anchors pull outwards (√2 × 43,478 N) less the 28,629 N
     # of three bridles of 9,979 N, which a collar stiff in its plane leaves near their pretension
     np.testing.assert_allclose(still.line_tension[12:16], 23_234.0, rtol=0.01)
-    np.testing.assert_allclose(still.line_tension[16:], 45_931.0, rtol=0.01)
+    np.testing.assert_allclose(still.line_tension[ANCHORS], 45_931.0, rtol=0.01)
     level = np.linalg.norm(still.anchor_load[:, :2], axis=1)
     np.testing.assert_allclose(level, 43_500.0, rtol=0.01)
     np.testing.assert_allclose(still.anchor_load[:, 2], 6_145.0, rtol=0.01)
@@ -86,6 +90,8 @@ def test_whatever_is_cut_out_is_in_balance(speed):
     # all lines at each corner
     largest = bar_tension(assembly.bars, x).max()
     np.testing.assert_allclose(borne[corners], -pushed[corners], atol=1e-3 * largest)
+    held = -(borne + water)[corners, 2] - assembly.weight[corners]
+    np.testing.assert_allclose(response.line_tension[BUOYS], held, atol=1e-3 * largest)
     # all anchors against the whole
     total = response.anchor_load.sum(axis=0)
     np.testing.assert_allclose(total, pushed.sum(axis=0), atol=1e-3 * np.abs(total[:2]).max())
@@ -143,11 +149,11 @@ def test_turning_cage_and_current_together_turns_the_answer():
 def test_a_parted_anchor_line_leaves_its_load_to_others():
     sea = current(0.6, 0.0)
     whole = settle(COARSE, sea, mooring="catenary")
-    most = int(np.argmax(whole.line_tension[-8:]))
+    most = int(np.argmax(whole.line_tension[ANCHORS]))
     parted = settle(COARSE, sea, mooring="catenary", parted=[LINES[most]])
     assert parted.result == Result.CONVERGED
     assert parted.line_tension[16 + most] < 10.0
-    assert parted.line_tension[16:].max() > 1.2 * whole.line_tension[16:].max()
+    assert parted.line_tension[ANCHORS].max() > 1.2 * whole.line_tension[ANCHORS].max()
     frameless = settle(COARSE, sea, mooring="catenary", parted=["frame-1"])
     assert frameless.result == Result.CONVERGED
     assert frameless.line_tension[12] < 1.0

@@ -51,6 +51,13 @@ def test_more_seeds_are_surer():
     assert ten.mpm_std[0] < 0.6 * one.mpm_std[0]
 
 
+def test_peaks_of_one_block_alone_leave_the_uncertainty_unknown():
+    waving, calm = waves(0)[:6000], np.full((6000, 1), 29.0)
+    found = extremes([np.concatenate([waving, calm])], every=EVERY / 2.0)  # two blocks
+    assert found.mpm[0] > 30.0
+    assert np.isnan(found.mpm_std[0])
+
+
 def test_lines_do_not_depend_on_the_lines_beside_them():
     several = waves(3, lines=3)
     together = extremes([several], every=EVERY)

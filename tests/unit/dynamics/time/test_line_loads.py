@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from seacage.cage import Cage, mooring_lines
-from seacage.dynamics import simulate
-from seacage.dynamics._time._line_loads import _snaps
+from seacage.cage import Cage, MooringLines, mooring_lines
+from seacage.dynamics import Statistics, simulate
+from seacage.dynamics._time._line_loads import _snaps, line_loads
 from seacage.ocean import SeaState
 
 ACE = Cage.named("ace")
@@ -22,11 +22,40 @@ def moored():
 
 def test_a_whole_mooring_has_its_frame_ropes_and_anchor_lines(moored):
     lines = moored.lines
-    assert lines.kinds == ("bridle",) * 12 + ("frame line",) * 4 + ("anchor line",) * 8
-    assert len(set(lines.names)) == 24
+    counts = {"bridle": 12, "frame line": 4, "anchor line": 8, "buoy line": 4}
+    assert lines.kinds == sum(((kind,) * count for kind, count in counts.items()), ())
+    assert len(set(lines.names)) == 28
     assert lines.names[:12] == ACE.bridle_names
     assert np.all(lines.tension.mean[12:] > 0.0)
     assert np.isnan(lines.capacity[12:]).all()
+
+
+def test_a_buoy_line_bears_its_buoy_s_lift_as_the_surface_passes(moored):
+    lines, buoys = moored.lines, slice(24, 28)
+    buoyancy = ACE.frame.buoy_buoyancy
+    assert np.all(lines.tension.minimum[buoys] >= 0.0)
+    assert np.all(lines.tension.maximum[buoys] < buoyancy)
+    # waves of 1.5 m over a buoy that sinks by 1.8 m under all its load
+    assert np.all(lines.tension.std[buoys] > 0.02 * buoyancy)
+    np.testing.assert_array_equal(lines.slack_share[buoys], 0.0)
+    assert np.isnan(lines.tn_slope[buoys]).all()
+
+
+def test_no_line_is_said_to_bear_more_than_it_can():
+    waves = 30e3 + 15e3 * np.random.default_rng(0).rayleigh(size=(7000, 1)).repeat(2, axis=1)
+    waves[::2] = 20e3
+    loads = line_loads(
+        MooringLines.alike(("bridle-1", "buoy-1"), "line"),
+        Statistics(**dict.fromkeys(Statistics.__slots__, waves.mean(axis=0))),
+        waves,
+        anchor_pull=np.zeros((2, 3)),
+        uplift=np.zeros(2),
+        most=np.array([np.inf, 60e3]),
+        every=0.1,
+        waves=True,
+    )
+    for value in (loads.extremes.mpm, loads.extremes.expected):
+        assert value[0] > value[1] == 60e3
 
 
 def test_lines_can_be_named_before_anything_is_simulated(moored):

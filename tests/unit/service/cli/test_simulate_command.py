@@ -54,7 +54,8 @@ def test_every_line_of_a_whole_mooring_is_reported(small_cage, tmp_path):
     lines = json.loads(run(*words, "--json").stdout)["lines"]
     history = read_history(out)
     assert tuple(lines) == history.line_names
-    assert {"bridle-12", "frame-4", "anchor-8"} < set(lines)
+    assert {"bridle-12", "frame-4", "anchor-8", "buoy-4"} < set(lines)
+    assert lines["buoy-1"]["kind"] == "buoy line"
     assert lines["anchor-1"]["kind"] == "anchor line"
     assert lines["anchor-1"]["capacity_kn"] is None
     assert lines["bridle-1"]["capacity_kn"] == 160.0
