@@ -12,18 +12,15 @@ class _Closable(Protocol):
 
 
 C = TypeVar("C", bound=_Closable)
+_MOST = 8  # opening one costs more than a query, and a server has no end of them
 
 
 class Pool(Generic[C]):
-    """So many connections at most; who finds none free waits.
+    """So many connections at most, each as ``opened`` opens it; who finds none free waits."""
 
-    ``opened``: opens one. ``size``: how many there may be: opening one costs more than a query, and
-    a server has no end of them.
-    """
-
-    def __init__(self, opened: Callable[[], C], *, size: int = 8) -> None:
+    def __init__(self, opened: Callable[[], C]) -> None:
         self._opened = opened
-        self._places = threading.BoundedSemaphore(size)
+        self._places = threading.BoundedSemaphore(_MOST)
         self._idle: list[C] = []
         self._round = 0
 
