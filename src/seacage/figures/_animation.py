@@ -101,6 +101,8 @@ def write_animation(
     by their tension, the water's surface, and one bridle's tension as a running trace below. Left
     out: the motion of the frame's corners, which are drawn where they are in still water.
 
+    Raises InputError: another ending than ``.gif``.
+
     Parameters
     ----------
     path
@@ -115,11 +117,6 @@ def write_animation(
         Of the picture [pixel].
     progress
         Called as ("draw", done, total), in pictures.
-
-    Raises
-    ------
-    InputError
-        Another ending than ``.gif``.
     """
     if path.suffix != ".gif":
         raise InputError(f"{path}: animations are written as GIF. End the name in .gif.")

@@ -146,6 +146,8 @@ def regular_wave(*, height: float, period: float, wave_from: float, depth: float
 
     Its crest passes the origin at time 0.
 
+    Raises InputError: a height, period or depth that is no positive number, or a wave that breaks.
+
     Parameters
     ----------
     height
@@ -156,11 +158,6 @@ def regular_wave(*, height: float, period: float, wave_from: float, depth: float
         Where it comes from, clockwise from true north [deg].
     depth
         Of the water [m].
-
-    Raises
-    ------
-    InputError
-        A height, period or depth that is no positive number, or a wave that breaks.
 
     References
     ----------

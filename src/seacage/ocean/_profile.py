@@ -16,6 +16,9 @@ class CurrentProfile:
 
     Straight between the depths given, constant above the first and below the last.
 
+    Raises InputError: depths that do not grow, a number for each depth that is missing, or a factor
+    below 0.
+
     Parameters
     ----------
     depth
@@ -24,11 +27,6 @@ class CurrentProfile:
         Speed over the sea's ``current_speed`` [-].
     turned
         Clockwise from the sea's ``current_to`` [deg]; none by default.
-
-    Raises
-    ------
-    InputError
-        Depths that do not grow, a number for each depth that is missing, or a factor below 0.
     """
 
     depth: tuple[float, ...]

@@ -27,6 +27,9 @@ def steepness_limit(tp: float) -> float:
 class SeaState:
     """Uniform current and irregular waves, validated.
 
+    Raises InputError: a negative, infinite or missing number, a direction outside [0, 360], or a
+    sea steeper than ``steepness_limit``.
+
     Parameters
     ----------
     current_speed
@@ -39,12 +42,6 @@ class SeaState:
         Peak period [s]; None means 5 sqrt(hs), the steepest sea the default spectrum takes.
     wave_from
         Where the waves come from, clockwise from true north [deg].
-
-    Raises
-    ------
-    InputError
-        A negative, infinite or missing number, a direction outside [0, 360], or a sea
-        steeper than ``steepness_limit``.
     """
 
     current_speed: float

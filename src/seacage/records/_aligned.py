@@ -19,6 +19,8 @@ _OPPOSED = 0.1  # where the mean of unit vectors is shorter, they have no common
 class Clock:
     """Times that streams are brought to, and what counts at each.
 
+    Raises InputError: a length that is not above zero, a lag that is no number.
+
     Parameters
     ----------
     every_s
@@ -33,11 +35,6 @@ class Clock:
         has no mean [s].
     suspect
         Use suspect values too; their means are suspect.
-
-    Raises
-    ------
-    InputError
-        A length that is not above zero, a lag that is no number.
     """
 
     every_s: float

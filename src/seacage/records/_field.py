@@ -22,6 +22,9 @@ _SENSOR = (("tension_kn",), ("depth_m",))
 class FieldRecord:
     """A buoy and the shackles and depth sensors on one cage, over one time.
 
+    Raises InputError: a buoy without a current, a sensor with other quantities or under another's
+    name.
+
     Parameters
     ----------
     cage
@@ -37,11 +40,6 @@ class FieldRecord:
         Of the hidden parameters behind a virtual field; None where it was measured.
     notes
         What the maker noticed, one sentence each.
-
-    Raises
-    ------
-    InputError
-        A buoy without a current, a sensor with other quantities or under another's name.
     """
 
     cage: str
@@ -99,10 +97,7 @@ class FieldRecord:
     def read(cls, folder: Path | str) -> Self:
         """Read back what ``write`` wrote.
 
-        Raises
-        ------
-        RecordError
-            A file that is missing or damaged, or of another schema.
+        Raises RecordError: a file that is missing or damaged, or of another schema.
         """
         folder = Path(folder)
         description = _description(folder / _FILE)

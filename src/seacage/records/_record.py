@@ -21,6 +21,8 @@ _USABLE = (Flag.GOOD, Flag.NOT_EVALUATED, Flag.SUSPECT)
 class Record:
     """Values of one stream over time, in house units.
 
+    Raises InputError: arrays of unequal length, unknown keys, times that do not ascend.
+
     Parameters
     ----------
     stream
@@ -35,11 +37,6 @@ class Record:
         How the numbers were made.
     notes
         What reader and check noticed, one sentence each.
-
-    Raises
-    ------
-    InputError
-        Arrays of unequal length, unknown keys, times that do not ascend.
     """
 
     stream: str

@@ -15,6 +15,8 @@ _STREAM = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,63}")
 class Sample:
     """Values of one stream at one time, in house units.
 
+    Raises InputError: an unknown key, a time without a zone, a stream's name that is no name.
+
     Parameters
     ----------
     stream
@@ -29,11 +31,6 @@ class Sample:
         Why a value is not good: one sentence each, from the check.
     seq
         The source's own number of the sample, where it counts.
-
-    Raises
-    ------
-    InputError
-        An unknown key, a time without a zone, a stream's name that is no name.
     """
 
     stream: str

@@ -52,40 +52,20 @@ _STATISTICS = {"std": CELL_METHODS["std"], "max": CELL_METHODS["maximum"]}
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class TrueMeans:
-    """Means of what was true in a virtual field, over short times one after another.
+    """Means of what was true in a virtual field, over short times one after another."""
 
-    Parameters
-    ----------
-    time
-        When each mean begins, UTC; gaps are left out.
-    length
-        Of the time of each mean [s].
-    bridle_names
-        Of the cage.
-    level_depth
-        Of the current [m].
-    bridle_tension_mean, bridle_tension_std, bridle_tension_max
-        Of the readings [N].
-    node_position
-        Of the nodes of the cage as drawn [m].
-    current_velocity
-        East and north at each level [m/s].
-    hs
-        Significant wave height [m].
-    growth
-        Of what grows on the netting, 0 just cleaned, 1 grown out [-].
-    """
-
-    time: Shaped[np.ndarray, " mean"]
-    length: float
-    bridle_names: tuple[str, ...]
-    level_depth: Float[np.ndarray, " level"]
+    time: Shaped[np.ndarray, " mean"]  # when each mean begins, UTC; gaps are left out
+    length: float  # of the time of each mean [s]
+    bridle_names: tuple[str, ...]  # of the cage
+    level_depth: Float[np.ndarray, " level"]  # of the current [m]
+    # Of the readings [N]
     bridle_tension_mean: Float[np.ndarray, "mean bridle"]
     bridle_tension_std: Float[np.ndarray, "mean bridle"]
     bridle_tension_max: Float[np.ndarray, "mean bridle"]
-    node_position: Float[np.ndarray, "mean node 3"]
-    current_velocity: Float[np.ndarray, "mean level 2"]
-    hs: Float[np.ndarray, " mean"]
+    node_position: Float[np.ndarray, "mean node 3"]  # of the nodes of the cage as drawn [m]
+    current_velocity: Float[np.ndarray, "mean level 2"]  # east and north at each level [m/s]
+    hs: Float[np.ndarray, " mean"]  # significant wave height [m]
+    # Of what grows on the netting, 0 just cleaned, 1 grown out [-]
     growth: Float[np.ndarray, " mean"]
 
     __repr__ = brief
@@ -101,10 +81,7 @@ class TrueMeans:
     def read(cls, folder: Path | str) -> Self:
         """Read back what ``write`` wrote.
 
-        Raises
-        ------
-        RecordError
-            A file that is missing or damaged, or of another schema.
+        Raises RecordError: a file that is missing or damaged, or of another schema.
         """
         values: dict[str, Any] = {}
         for file, names in _FILES.items():

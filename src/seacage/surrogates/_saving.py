@@ -36,17 +36,14 @@ def decode(
 ) -> Fitted:
     """The fitted model that was encoded.
 
+    Raises ModelError: of a kind that this version does not know, or with a part missing or damaged.
+
     Parameters
     ----------
     settings, arrays
         As ``encode`` gave them.
     lower
         Level 1 of a NARGP that had it lent.
-
-    Raises
-    ------
-    ModelError
-        Of a kind that this version does not know, or with a part missing or damaged.
     """
     model = setting(settings, "model", str)
     if model == FittedNARGP.MODEL:

@@ -19,24 +19,13 @@ BOOK_FORMAT = "seacage alarms 1"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AlarmBook:
-    """The state of all alarms of one cage.
+    """The state of all alarms of one cage."""
 
-    Parameters
-    ----------
-    alarms
-        By name, those that have been assessed at least once.
-    t
-        The twin's clock at the last assessment; None before the first.
-    detector
-        State of the fault detector.
-    format
-        Of the JSON, checked by ``from_json``.
-    """
-
+    # By name, those that have been assessed at least once
     alarms: Mapping[str, Alarm] = field(default_factory=dict[str, Alarm])
-    t: datetime | None = None
-    detector: FaultDetector = field(default_factory=FaultDetector)
-    format: str = BOOK_FORMAT
+    t: datetime | None = None  # the twin's clock at the last assessment; None before the first
+    detector: FaultDetector = field(default_factory=FaultDetector)  # state of the fault detector
+    format: str = BOOK_FORMAT  # of the JSON, checked by ``from_json``
 
     __pydantic_config__ = json_keys(detector="suspicion")
 
@@ -49,10 +38,7 @@ class AlarmBook:
     def from_json(cls, text: str) -> "AlarmBook":
         """Read back what ``to_json`` wrote.
 
-        Raises
-        ------
-        InputError
-            The text is something else, or of another version.
+        Raises InputError: the text is something else, or of another version.
         """
         from pydantic import ValidationError
 

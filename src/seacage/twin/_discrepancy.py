@@ -27,23 +27,14 @@ class Discrepancy:
     each ring's nodes, and the scatter of nodes about it. In a current, the cases with similar
     currents are the distribution of the error; as each is a whole net, errors are correlated
     along it as they were there.
-
-    Parameters
-    ----------
-    current_velocity
-        As reported, (east, north) [m/s].
-    ring
-        True less predicted, east, north and up [m]; the last "ring" is the tip.
-    rest
-        Standard deviation of the nodes about their ring's mean, along the same axes [m].
-    origin
-        How the true shapes were made.
     """
 
-    current_velocity: Float[np.ndarray, "case 2"]
+    current_velocity: Float[np.ndarray, "case 2"]  # as reported, (east, north) [m/s]
+    # True less predicted, east, north and up [m]; the last "ring" is the tip
     ring: Float[np.ndarray, "case ring 3"]
+    # Standard deviation of the nodes about their ring's mean, along the same axes [m]
     rest: Float[np.ndarray, "case ring 3"]
-    origin: Origin
+    origin: Origin  # how the true shapes were made
 
     def __post_init__(self) -> None:
         if not len(self.ring):

@@ -10,24 +10,12 @@ from seacage.twin._metocean import Metocean
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Answered:
-    """An answer of the twin, with or without a number.
+    """An answer of the twin, with or without a number."""
 
-    Parameters
-    ----------
-    t
-        The twin's clock.
-    answer
-        One row.
-    metocean
-        The reading it rests on, one row; None before the first.
-    input_age_s
-        Of that reading [s].
-    """
-
-    t: datetime
-    answer: Answer
-    metocean: Metocean | None
-    input_age_s: float | None
+    t: datetime  # the twin's clock
+    answer: Answer  # one row
+    metocean: Metocean | None  # the reading it rests on, one row; None before the first
+    input_age_s: float | None  # of that reading [s]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -45,17 +45,11 @@ class TabulatedTwin:
     """The bridles and the sensors of a twin, both levels, from one table of the current.
 
     Beyond the table, where the twin extrapolates, the twin itself predicts.
-
-    Parameters
-    ----------
-    twin
-        That the table was made of.
-    table
-        Of the bridles at level 1 and at their best, of the sensors at level 1 and at their
-        best, one output for each; tensions before they are held to what a rope can carry.
     """
 
-    twin: Twin
+    twin: Twin  # that the table was made of
+    # Of the bridles at level 1 and at their best, of the sensors at level 1 and at their best, one
+    # output for each; tensions before they are held to what a rope can carry
     table: Table
 
     @classmethod
@@ -71,6 +65,8 @@ class TabulatedTwin:
     ) -> Self:
         """Tabulate a twin over every current that level 1 was trained on.
 
+        Raises InputError: the twin has waves as an input too, or the tolerance cannot be met.
+
         Parameters
         ----------
         twin
@@ -83,11 +79,6 @@ class TabulatedTwin:
             with almost no variance close to its own cases, more sharply than any sensor sees.
         most_nodes
             Largest size; a node takes 0.64 kB for 12 bridles and 8 sensors.
-
-        Raises
-        ------
-        InputError
-            The twin has waves as an input too, or the tolerance cannot be met.
         """
         inputs = twin.models.inputs
         if inputs != ("current",):

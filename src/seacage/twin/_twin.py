@@ -76,10 +76,8 @@ class Twin:
     def read(cls, folder: str | Path, *, key: bytes | None = None) -> Self:
         """Read a twin that ``write`` saved, and with a key only one that the key signs.
 
-        Raises
-        ------
-        ModelError
-            A file is missing, foreign, of another version, or changed by as little as a byte.
+        Raises ModelError: a file is missing, foreign, of another version, or changed by as little
+        as a byte.
         """
         return cls(**from_parts(*read_folder(Path(folder), key=key), source=str(folder)))
 
@@ -90,10 +88,7 @@ class Twin:
 
         An earlier twin there is replaced.
 
-        Raises
-        ------
-        ModelError
-            The folder holds something else.
+        Raises ModelError: the folder holds something else.
         """
         parts = {one.name: getattr(self, one.name) for one in fields(self)}
         write_folder(Path(folder), *to_parts(**parts), key=key)
@@ -158,6 +153,8 @@ class Twin:
     def start(self, adapted: str | None = None, *, until: datetime | None = None) -> TwinState:
         """Return the state before the first step.
 
+        Raises InputError: ``adapted`` is something else.
+
         Parameters
         ----------
         adapted
@@ -165,11 +162,6 @@ class Twin:
             trained.
         until
             And its ``adapted_until``; None goes on from the first step.
-
-        Raises
-        ------
-        InputError
-            ``adapted`` is something else.
         """
         tracked = factors_from_json(adapted) if adapted is not None else {}
         return TwinState(tracked=tracked, adapted_until=until)

@@ -102,6 +102,8 @@ class ZoneConflict(NamedTuple):
 class NetcdfMap:
     """Declarations about a foreign NetCDF file that the file itself lacks.
 
+    Raises RecordError: an unknown zone.
+
     Parameters
     ----------
     title
@@ -119,11 +121,6 @@ class NetcdfMap:
     columns
         Variables by name, where their standard names do not tell; a component of a vector is
         ``name.E`` or ``name.N``. Left empty, standard names decide.
-
-    Raises
-    ------
-    RecordError
-        An unknown zone.
     """
 
     title: str = "NetCDF file"
@@ -142,10 +139,7 @@ class NetcdfMap:
     def from_toml(cls, text: str, *, where: str = "NetCDF map") -> Self:
         """Read a map from TOML: ``kind = "netcdf"``, and keys as the parameters above.
 
-        Raises
-        ------
-        RecordError
-            No TOML, a misspelt key, a value that is refused or still ``?``.
+        Raises RecordError: no TOML, a misspelt key, a value that is refused or still ``?``.
         """
         table = parse_toml(text, where, refusal=RecordError)
         check_filled(table, where=where)

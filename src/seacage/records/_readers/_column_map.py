@@ -60,6 +60,8 @@ _QUANTITIES: Mapping[str, _Quantity] = {
 class Column:
     """One column of a foreign file.
 
+    Raises RecordError: anything unknown, and a unit or a direction's sense that is not said.
+
     Parameters
     ----------
     name
@@ -76,11 +78,6 @@ class Column:
         Where the file holds a profile: of this column [m].
     missing
         Numbers that stand for no value, such as 99.0, in the file's unit.
-
-    Raises
-    ------
-    RecordError
-        Anything unknown, and a unit or a direction's sense that is not said.
     """
 
     name: str
@@ -138,6 +135,9 @@ class ColumnMap:
     A file must have all the columns that its map names, and no other: a column that nobody
     expected is more often a shifted table than a bonus.
 
+    Raises RecordError: a column or a quantity declared twice, one component of the current without
+    the other, nothing to read, an unknown time zone, encoding, delimiter or decimal mark.
+
     Parameters
     ----------
     title
@@ -165,12 +165,6 @@ class ColumnMap:
         Of the text: ``utf-8``, ``utf-16``, ``latin-1`` or ``cp1252``.
     skip_lines
         Lines before the header.
-
-    Raises
-    ------
-    RecordError
-        A column or a quantity declared twice, one component of the current without the other,
-        nothing to read, an unknown time zone, encoding, delimiter or decimal mark.
     """
 
     title: str
@@ -207,10 +201,7 @@ class ColumnMap:
     def read(cls, path: Path | str) -> Self:
         """Read a map from a TOML file, see ``from_toml``.
 
-        Raises
-        ------
-        RecordError
-            Also where the file cannot be read.
+        Raises RecordError: also where the file cannot be read.
         """
         return cls.from_toml(read_text(path, refusal=RecordError), where=str(path))
 
@@ -238,17 +229,14 @@ class ColumnMap:
             unit = "deg"
             sense = "towards"               # or "from"
 
+        Raises RecordError: no TOML, a misspelt or missing key, a value that is refused.
+
         Parameters
         ----------
         text
             Its other keys are those of ``ColumnMap`` and of ``Column``.
         where
             Of the text, for messages.
-
-        Raises
-        ------
-        RecordError
-            No TOML, a misspelt or missing key, a value that is refused.
         """
         table = parse_toml(text, where, refusal=RecordError)
         check_filled(table, where=where)
@@ -316,10 +304,7 @@ class ColumnMap:
     def taken_at(self, depth_m: float) -> Self:
         """The same map, reading another depth of the profile [m].
 
-        Raises
-        ------
-        RecordError
-            Where the profile has no such depth.
+        Raises RecordError: where the profile has no such depth.
         """
         if all(column.depth_m != depth_m for column in self.columns):
             raise RecordError(
@@ -330,10 +315,8 @@ class ColumnMap:
     def parse_time(self, text: str) -> datetime:
         """The time that a cell says, in UTC.
 
-        Raises
-        ------
-        ValueError
-            Where the text is no time of the map's format, or does not say its zone and must.
+        Raises ValueError: where the text is no time of the map's format, or does not say its zone
+        and must.
         """
         time = parse_time(text, self.time_format)
         if time.tzinfo is None:

@@ -69,6 +69,9 @@ def read_rows(
 
     The values are not checked, for what went before is not at hand.
 
+    Raises RecordError: as ``read_record``; also where there is no row. A header that does not fit
+    its map is not looked at, see ``check_rows``.
+
     Parameters
     ----------
     path
@@ -81,12 +84,6 @@ def read_rows(
         On which line of the file the rows begin, for messages.
     stream
         What to call the stream.
-
-    Raises
-    ------
-    RecordError
-        As ``read_record``; also where there is no row. A header that does not fit its map is
-        not looked at, see ``check_rows``.
     """
     between = "\n" * max(1, first_line - 1)  # blank lines are skipped, and counted
     table = text_table(

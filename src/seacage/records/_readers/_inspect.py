@@ -83,18 +83,10 @@ _UNITS_OF: Mapping[str, tuple[str, ...]] = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Inspection:
-    """What a file seems to be.
+    """What a file seems to be."""
 
-    Parameters
-    ----------
-    findings
-        One sentence each.
-    map_text
-        The map to edit, in TOML; a value that only the user knows is ``"?"``.
-    """
-
-    findings: tuple[str, ...]
-    map_text: str
+    findings: tuple[str, ...]  # one sentence each
+    map_text: str  # the map to edit, in TOML; a value that only the user knows is ``"?"``
 
     @property
     def open_questions(self) -> int:

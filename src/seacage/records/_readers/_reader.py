@@ -55,6 +55,9 @@ def read_record(
     NetCDF files are those that ``write_record`` wrote, which say their own stream and carry
     their flags, or, with a ``NetcdfMap``, any that follow CF.
 
+    Raises RecordError: a file whose structure is wrong: no such file, no text, no rows, columns
+    that the map does not know or misses, a row of another length, a time that is none.
+
     Parameters
     ----------
     path
@@ -65,12 +68,6 @@ def read_record(
         What to call the stream.
     limits
         To check the values of a foreign file against.
-
-    Raises
-    ------
-    RecordError
-        A file whose structure is wrong: no such file, no text, no rows, columns that the map does
-        not know or misses, a row of another length, a time that is none.
     """
     path = Path(path)
     if is_netcdf(path):

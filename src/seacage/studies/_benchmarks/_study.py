@@ -47,6 +47,9 @@ def benchmark_study(
 ) -> BenchmarkStudy:
     """Compare learners on published multifidelity problems, into one HTML page.
 
+    Raises InputError: no report seed among the seeds, or no environment of peers where one is
+    named.
+
     Parameters
     ----------
     out
@@ -65,11 +68,6 @@ def benchmark_study(
         problem are not all there is left out of it.
     progress
         Called as (problem, done, total), in runs.
-
-    Raises
-    ------
-    InputError
-        No report seed among the seeds, or no environment of peers where one is named.
     """
     out, notify = Path(out), progress or no_progress
     tuning, report = _split_seeds(seeds, quick=quick)

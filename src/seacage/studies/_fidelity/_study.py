@@ -56,6 +56,9 @@ def fidelity_study(
     rescaling and rotation leaves; that multifidelity gains nothing where the truth is the low
     fidelity itself; and how the gap changes with the net's growth.
 
+    Raises InputError: the field is not virtual, was made with other hidden parameters, or is too
+    short.
+
     Parameters
     ----------
     out
@@ -77,11 +80,6 @@ def fidelity_study(
         Processes for simulations; None for one per core.
     progress
         Called as (stage, done, total).
-
-    Raises
-    ------
-    InputError
-        The field is not virtual, was made with other hidden parameters, or is too short.
     """
     out, report = Path(out), progress or no_progress
     stages = Stages(folder=out / "stages")

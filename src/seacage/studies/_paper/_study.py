@@ -57,6 +57,8 @@ def paper_study(
     their errors; beside them other training readings and inputs, other models of the shape, and
     which of the paper's statements these numbers repeat.
 
+    Raises InputError: the field is not virtual, or has too little on one side of the cut.
+
     Parameters
     ----------
     out
@@ -84,11 +86,6 @@ def paper_study(
         Processes for simulations; None for one per core.
     progress
         Called as (stage, done, total).
-
-    Raises
-    ------
-    InputError
-        The field is not virtual, or has too little on one side of the cut.
     """
     quick = quick and campaign is None and field is None
     chain = Chain(

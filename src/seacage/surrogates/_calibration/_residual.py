@@ -65,17 +65,15 @@ class ResidualModel:
     def fit(self, time_s: ArrayLike, value: ArrayLike) -> "FittedResidual":
         """Find the most probable sizes and memory under the priors.
 
+        Raises InputError: fewer than 3 values, times that do not ascend, or a number that is not
+        finite.
+
         Parameters
         ----------
         time_s
             Ascending, from any moment [s].
         value
             Residuals of a model, in their own unit.
-
-        Raises
-        ------
-        InputError
-            Fewer than 3 values, times that do not ascend, or a number that is not finite.
         """
         time, residual = _check_series(time_s, value)
         size = math.sqrt(float(np.mean(residual**2)))

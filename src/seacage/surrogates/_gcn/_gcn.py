@@ -99,6 +99,9 @@ class GCN:
     ) -> "FittedGCN":
         """Learn from features and shapes; the seed and the machine fix the answer.
 
+        Raises InputError: what was given does not fit together or is too little, or JAX is not
+        installed.
+
         Parameters
         ----------
         x
@@ -113,11 +116,6 @@ class GCN:
             their own, as for a record in time, where neighbours are the same sample.
         progress
             Called as ("gcn", epoch, epochs).
-
-        Raises
-        ------
-        InputError
-            What was given does not fit together or is too little, or JAX is not installed.
         """
         training = _training()
         graph = self._graph()

@@ -104,34 +104,21 @@ class GaussianProcess:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class FittedGaussianProcess:
-    """Gaussian process conditioned on its training cases.
-
-    Parameters
-    ----------
-    members
-        Of the outputs less their centre, at standardised inputs; more than one for an ensemble
-        of hyperparameters, the most probable ones first.
-    share
-        Probability of each member.
-    inputs
-        Centre and spread of each feature.
-    centre, amplitude
-        Of each output: its mean, and the standard deviation that the kernel's is a share of.
-    single
-        Whether the answer is (row,) rather than (row, output).
-    line
-        What each output is expected to rise by with each standardised feature; the members are
-        of what is left.
-    """
+    """Gaussian process conditioned on its training cases."""
 
     MODEL: ClassVar[str] = "gaussian-process"
 
+    # Of the outputs less their centre, at standardised inputs; more than one for an ensemble of
+    # hyperparameters, the most probable ones first
     members: tuple[Posterior, ...]
-    share: Float[np.ndarray, " member"]
-    inputs: Scaling
+    share: Float[np.ndarray, " member"]  # probability of each member
+    inputs: Scaling  # centre and spread of each feature
+    # Of each output: its mean, and the standard deviation that the kernel's is a share of
     centre: Float[np.ndarray, " output"]
     amplitude: Float[np.ndarray, " output"]
-    single: bool
+    single: bool  # whether the answer is (row,) rather than (row, output)
+    # What each output is expected to rise by with each standardised feature; the members are of
+    # what is left
     line: Float[np.ndarray, "feature output"]
 
     @property

@@ -188,22 +188,15 @@ class AR1(AbstractMultifidelity):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class FittedNARGP:
-    """Levels of fidelity, each answering from the one below.
-
-    Parameters
-    ----------
-    own
-        The levels learned here: from level 1, or from level 2 where level 1 is lent.
-    lent
-        Level 1 where another model serves as it; it is not saved with this one.
-    nested
-        Whether each level was fitted at the observations of the level below, not at its mean.
-    """
+    """Levels of fidelity, each answering from the one below."""
 
     MODEL: ClassVar[str] = "nargp"
 
+    # The levels learned here: from level 1, or from level 2 where level 1 is lent
     own: tuple[FittedGaussianProcess, ...]
+    # Level 1 where another model serves as it; it is not saved with this one
     lent: Predicts | None = None
+    # Whether each level was fitted at the observations of the level below, not at its mean
     nested: bool = False
 
     @property
@@ -372,17 +365,15 @@ class FittedNARGP:
     ) -> Self:
         """The model that ``to_arrays`` described.
 
+        Raises ModelError: a part is missing or damaged, or ``lower`` is given or left out against
+        the settings.
+
         Parameters
         ----------
         settings, arrays
             As ``to_arrays`` gave them.
         lower
             Level 1, where another model had lent it.
-
-        Raises
-        ------
-        ModelError
-            A part is missing or damaged, or ``lower`` is given or left out against the settings.
         """
         lent = setting(settings, "lent", bool)
         if lent != (lower is not None):

@@ -32,6 +32,9 @@ def check_symmetry(
     asymmetry of the cage, its mooring or the sea can make the images miss by more. The cases
     must cover the images: currents and waves from all round.
 
+    Raises InputError: the asymmetry is above the tolerance, or the cases are too few, or too hard
+    for the trial model, to tell.
+
     Parameters
     ----------
     symmetry
@@ -50,12 +53,6 @@ def check_symmetry(
     -------
     asymmetry
         [m]
-
-    Raises
-    ------
-    InputError
-        The asymmetry is above the tolerance, or the cases are too few, or too hard for the trial
-        model, to tell.
     """
     x, node_position = check_shapes(x, node_position, what="check_symmetry")
     check_turnable(x, what="check_symmetry")

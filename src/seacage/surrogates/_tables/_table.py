@@ -43,34 +43,22 @@ class Table:
 
     It answers as the model does, to an error that was measured when it was made, and thousands
     of times faster. Outside its region it does not answer at all.
-
-    Parameters
-    ----------
-    region
-        Where it answers.
-    spline
-        Of the means, the variances and, where it was asked for, the noise's variances.
-    output_shape
-        Of one row's answer: () for a number.
-    tolerance, std_tolerance
-        Errors of the mean and of the standard deviation that were asked for, in predictive
-        standard deviations.
-    mean_error, std_error
-        Largest differences from the model's mean and standard deviation that were found, in
-        the model's own standard deviations, at thousands of random inputs.
-    least_std
-        The standard deviation below which precision was no longer asked for, by output.
     """
 
     MODEL: ClassVar[str] = "table"
 
-    region: AbstractRegion
-    spline: Spline
-    output_shape: tuple[int, ...]
+    region: AbstractRegion  # where it answers
+    spline: Spline  # of the means, the variances and, where it was asked for, the noise's variances
+    output_shape: tuple[int, ...]  # of one row's answer: () for a number
+    # Errors of the mean and of the standard deviation that were asked for, in predictive standard
+    # deviations
     tolerance: float
     std_tolerance: float
+    # Largest differences from the model's mean and standard deviation that were found, in the
+    # model's own standard deviations, at thousands of random inputs
     mean_error: float
     std_error: float
+    # The standard deviation below which precision was no longer asked for, by output
     least_std: Float[np.ndarray, " output"]
 
     @staticmethod
@@ -92,6 +80,8 @@ class Table:
         standard deviation, in the model's standard deviations without noise. A grid that
         passes is held against 2,000 more, and the larger of the two is what it states: it is
         found, not proven.
+
+        Raises InputError: the tolerance cannot be met within the size.
 
         Parameters
         ----------
@@ -115,11 +105,6 @@ class Table:
             Tabulate the noise too, so that ``noisy=True`` can be asked; not every model has it.
         seed
             Of the random inputs.
-
-        Raises
-        ------
-        InputError
-            The tolerance cannot be met within the size.
         """
         std_tolerance = tolerance if std_tolerance is None else std_tolerance
         shape = (START,) * len(region.periodic)
@@ -171,17 +156,14 @@ class Table:
     def predict(self, x: Float[np.ndarray, "row feature"], *, noisy: bool = False) -> Prediction:
         """Answer at each row of features, as the model would.
 
+        Raises InputError: a row lies outside the table, or it has no noise.
+
         Parameters
         ----------
         x
             One row per case, the features of the model.
         noisy
             Of a new observation: adds the noise.
-
-        Raises
-        ------
-        InputError
-            A row lies outside the table, or it has no noise.
         """
         if noisy and not self.has_noise:
             raise InputError(

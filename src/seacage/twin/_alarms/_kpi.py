@@ -41,6 +41,8 @@ class AlarmKpi:
 def alarm_kpi(journal: Iterable[AlarmEvent], *, start: datetime, end: datetime) -> AlarmKpi:
     """Count the key figures of a journal over a span of time.
 
+    Raises InputError: the span does not end after it starts.
+
     Parameters
     ----------
     journal
@@ -48,11 +50,6 @@ def alarm_kpi(journal: Iterable[AlarmEvent], *, start: datetime, end: datetime) 
         that stood when it began.
     start, end
         Of the span, with their zones.
-
-    Raises
-    ------
-    InputError
-        The span does not end after it starts.
     """
     if not start < end:
         raise InputError(

@@ -41,10 +41,7 @@ def end_shelving(alarm: Alarm, now: datetime, *, who: str = "", why: str = "") -
 def acknowledge(alarm: Alarm, *, who: str, now: datetime, why: str = "") -> Changed:
     """Acknowledge an alarm.
 
-    Raises
-    ------
-    InputError
-        There is nothing to acknowledge.
+    Raises InputError: there is nothing to acknowledge.
     """
     if alarm.acknowledged:
         raise InputError(f"{alarm.name}: there is nothing to acknowledge.")
@@ -55,10 +52,7 @@ def acknowledge(alarm: Alarm, *, who: str, now: datetime, why: str = "") -> Chan
 def remark(alarm: Alarm, *, who: str, now: datetime, why: str) -> Changed:
     """Comment on an alarm.
 
-    Raises
-    ------
-    InputError
-        The comment is empty.
+    Raises InputError: the comment is empty.
     """
     _demand(alarm, why, "a comment without words is refused")
     return _change(alarm, Action.COMMENTED, now, who, why, comment=why)
@@ -69,10 +63,8 @@ def shelve(
 ) -> Changed:
     """Shelve an alarm for some seconds, or, with None, until it has cleared once.
 
-    Raises
-    ------
-    InputError
-        Without a reason, for no time, for longer than a week, or once while not active.
+    Raises InputError: without a reason, for no time, for longer than a week, or once while not
+    active.
     """
     _demand(alarm, why, "shelving needs a reason")
     if seconds is None and not alarm.active:
@@ -92,10 +84,7 @@ def shelve(
 def unshelve(alarm: Alarm, *, who: str, now: datetime, why: str = "") -> Changed:
     """End the shelving of an alarm.
 
-    Raises
-    ------
-    InputError
-        It is not shelved.
+    Raises InputError: it is not shelved.
     """
     if not alarm.shelved:
         raise InputError(f"{alarm.name}: it is not shelved.")
@@ -105,10 +94,7 @@ def unshelve(alarm: Alarm, *, who: str, now: datetime, why: str = "") -> Changed
 def take_out_of_service(alarm: Alarm, *, who: str, now: datetime, why: str) -> Changed:
     """Take an alarm out of service until it is put back.
 
-    Raises
-    ------
-    InputError
-        Without a reason.
+    Raises InputError: without a reason.
     """
     _demand(alarm, why, "a change of service needs a reason")
     return _change(alarm, Action.OUT_OF_SERVICE, now, who, why, in_service=False)
@@ -117,10 +103,7 @@ def take_out_of_service(alarm: Alarm, *, who: str, now: datetime, why: str) -> C
 def put_in_service(alarm: Alarm, *, who: str, now: datetime, why: str) -> Changed:
     """Put an alarm back in service.
 
-    Raises
-    ------
-    InputError
-        Without a reason.
+    Raises InputError: without a reason.
     """
     _demand(alarm, why, "a change of service needs a reason")
     return _change(alarm, Action.IN_SERVICE, now, who, why, in_service=True)

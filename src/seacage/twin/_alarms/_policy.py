@@ -118,11 +118,8 @@ class AlarmPolicy:
         ``{"load": {"raise_at": 0.7, "clear_at": 0.6}, "load.bridle-3": {"raise_at": 0.6}}``;
         what a table leaves out stays as it is for the kind.
 
-        Raises
-        ------
-        InputError
-            A kind, a name or a key that is unknown, a value that is no number, or limits that
-            ``Limit`` refuses.
+        Raises InputError: a kind, a name or a key that is unknown, a value that is no number, or
+        limits that ``Limit`` refuses.
         """
         policy = cls.default(cage, buoy=buoy, timeouts=timeouts)
         limits = dict(policy.limits)

@@ -69,6 +69,9 @@ def inspection_path(
     and come back, each a little deeper; a spiral goes down as it goes round. The path between
     two waypoints of a part is straight.
 
+    Raises InputError: a size that is not above 0, too many waypoints, or none with room for the
+    stand-off.
+
     Parameters
     ----------
     net
@@ -87,11 +90,6 @@ def inspection_path(
         Depth of the first row, and of the shallowest waypoint [m].
     below
         Distance of ``p_below`` in the clearance of the waypoints [m].
-
-    Raises
-    ------
-    InputError
-        A size that is not above 0, too many waypoints, or none with room for the stand-off.
     """
     _check(stand_off=stand_off, row_spacing=row_spacing, step=step)
     rings = _rings(net)

@@ -45,34 +45,18 @@ class _ExpectedNet:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PredictedNet:
-    """The net as a twin predicts it at one time.
-
-    Parameters
-    ----------
-    cage
-        Whose net.
-    node_position
-        As predicted [m].
-    node_sigma
-        Standard deviation of the surrogate [m].
-    error
-        Distribution of the prediction's error, beyond the surrogate's.
-    error_origin
-        Origin of the true shapes behind ``error``; None where there are none.
-    t, age_s
-        The time of the prediction, and the age of the reading it rests on [s].
-    in_domain
-        Whether the current is in the twin's training domain.
-    """
+    """The net as a twin predicts it at one time."""
 
     cage: Cage
-    node_position: Float[np.ndarray, "node 3"]
-    node_sigma: Float[np.ndarray, " node"]
-    error: ShapeError
+    node_position: Float[np.ndarray, "node 3"]  # as predicted [m]
+    node_sigma: Float[np.ndarray, " node"]  # standard deviation of the surrogate [m]
+    error: ShapeError  # distribution of the prediction's error, beyond the surrogate's
+    # Origin of the true shapes behind ``error``; None where there are none
     error_origin: Origin | None
+    # The time of the prediction, and the age of the reading it rests on [s]
     t: datetime
     age_s: float
-    in_domain: bool
+    in_domain: bool  # whether the current is in the twin's training domain
 
     @classmethod
     def of(
@@ -85,6 +69,8 @@ class PredictedNet:
     ) -> Self:
         """Take the net from a twin's answer.
 
+        Raises StaleError: there is no valid answer, or it rests on too old a reading.
+
         Parameters
         ----------
         twin, answered
@@ -93,11 +79,6 @@ class PredictedNet:
             Accept the last sound reading however old it is.
         most_age_s
             Refuse a reading older than this [s]; None for the twin's own timeout.
-
-        Raises
-        ------
-        StaleError
-            There is no valid answer, or it rests on too old a reading.
         """
         answer, age_s = answered.answer, answered.input_age_s
         water = answered.metocean

@@ -31,10 +31,8 @@ _LEAST, _MOST = 16, 4096  # bytes of a key
 def read_key(path: Path | str) -> bytes:
     """Read a key that twins are signed with; every byte of the file counts.
 
-    Raises
-    ------
-    InputError
-        No such file, one that others than its owner may read, too short or too long a one.
+    Raises InputError: no such file, one that others than its owner may read, too short or too long
+    a one.
     """
     key = read_bytes(path, most=_MOST)
     rights = Path(path).stat().st_mode & 0o777

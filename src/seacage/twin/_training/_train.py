@@ -59,6 +59,8 @@ def train(
     level 1. The intervals are calibrated on held-out readings: a sensor's own, or for a short
     training window those of sensors with longer ones.
 
+    Raises NonsenseError: inputs that the field's buoy or the campaign never had.
+
     Parameters
     ----------
     cage
@@ -74,11 +76,6 @@ def train(
         Settings; the default suits one buoy and 300 readings of each sensor.
     progress
         Called after each model.
-
-    Raises
-    ------
-    NonsenseError
-        Inputs that the field's buoy or the campaign never had.
     """
     training = Training() if training is None else training
     _check_inputs(campaign, field, training)
