@@ -194,9 +194,8 @@ def fit_gain(
 
     Readings within an hour share their error, and weigh as one against the expectation.
 
-    References
-    ----------
-    Bayesian linear regression with a Gaussian prior, Rasmussen & Williams (2006), eq. (2.8).
+    Source: Bayesian linear regression with a Gaussian prior, Rasmussen & Williams (2006), eq.
+    (2.8).
     """
     variance = float(np.var(low))
     if variance == 0.0:

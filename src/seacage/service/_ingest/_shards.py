@@ -11,10 +11,8 @@ def worker_of(cage: str, workers: Sequence[str]) -> str:
 
     ``workers``: the names of all workers, in any order; at least one.
 
-    References
-    ----------
-    Thaler & Ravishankar (1998), Using name-based mappings to increase hit rates: the highest
-    random weight.
+    Source: Thaler & Ravishankar (1998), Using name-based mappings to increase hit rates: the
+    highest random weight.
     """
     return max(workers, key=lambda worker: (_weight(cage, worker), worker))
 

@@ -191,9 +191,7 @@ def _fit_gain_and_offset(
 ) -> Float[np.ndarray, "change 2"]:
     """Gain and offset of least mean absolute error, for each row of answers.
 
-    References
-    ----------
-    Iteratively reweighted least squares: Schlossmacher (1973).
+    Source: Iteratively reweighted least squares: Schlossmacher (1973).
     """
     weight = np.ones_like(answers)
     smallest = 1e-4 * max(float(np.std(truth)), 1e-9)

@@ -206,9 +206,7 @@ class _Filtered(NamedTuple):
     def smooth(self) -> Prediction:
         """The slow part from all values.
 
-        References
-        ----------
-        Durbin & Koopman (2012), eqs. (4.44) and (4.43).
+        Source: Durbin & Koopman (2012), eqs. (4.44) and (4.43).
         """
         total = np.where(self.seen, self.variance + self.noise, np.inf)
         gain = (self.variance / total).tolist()

@@ -63,9 +63,7 @@ class Graph:
 
         A is the adjacency matrix and D the diagonal of the row sums of A + I.
 
-        References
-        ----------
-        Kipf & Welling (2017), the renormalisation of their eq. (2).
+        Source: Kipf & Welling (2017), the renormalisation of their eq. (2).
         """
         adjacency = np.eye(self.nodes)
         one, other = self.edges.T

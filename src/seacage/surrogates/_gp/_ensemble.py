@@ -43,9 +43,7 @@ def draw_members(mode: Mode, *, seed: int) -> Float[np.ndarray, "member paramete
     Hamiltonian Monte Carlo from the mode, in the scales of the curvature there. A log variance
     of noise beyond its bounds acts as one on them.
 
-    References
-    ----------
-    Neal (2011), "MCMC using Hamiltonian dynamics", sections 2 and 4.1; Lalchand & Rasmussen
+    Source: Neal (2011), "MCMC using Hamiltonian dynamics", sections 2 and 4.1; Lalchand & Rasmussen
     (2020), "Approximate inference for fully Bayesian Gaussian process regression".
     """
     random = np.random.default_rng(seed)

@@ -96,9 +96,7 @@ class Evidence(Rows):
 
         Raises LinAlgError: the covariance has no factor in float64.
 
-        References
-        ----------
-        Rasmussen & Williams (2006), eqs. (5.8) and (5.9).
+        Source: Rasmussen & Williams (2006), eqs. (5.8) and (5.9).
         """
         unlike = isinstance(self.noise, NoisePerOutput)
         misfit = self._misfit_per_output if unlike else self._misfit
@@ -141,9 +139,7 @@ class Evidence(Rows):
     def reweighted(self, log_parameters: Float[np.ndarray, " parameter"]) -> Self:
         """With the noise factor that each point has under these hyperparameters.
 
-        References
-        ----------
-        Tipping & Lawrence (2005), the update of the noise's precisions.
+        Source: Tipping & Lawrence (2005), the update of the noise's precisions.
         """
         kernel, noise = self.split(log_parameters)
         scale = float(np.exp(noise[0]))

@@ -30,8 +30,7 @@ PullDiagonal = Callable[[Float[np.ndarray, " n"]], Float[np.ndarray, " parameter
 class AbstractNoise(ABC):
     """Variance of independent noise, as a share of the outputs' unit variance."""
 
-    name: ClassVar[NoiseName]
-    """Under which a user asks for it and a saved model finds it again."""
+    name: ClassVar[NoiseName]  # under which a user asks for it and a saved model finds it again
 
     @abstractmethod
     def prior(self) -> Prior:
@@ -88,9 +87,7 @@ class StudentNoise(WhiteNoise):
     Each case has a factor on its noise variance, found by variational inference while
     fitting: large for an outlier, which so has little weight. Outputs of one case share it.
 
-    References
-    ----------
-    Tipping & Lawrence (2005), "Variational inference for Student-t models", Neurocomputing
+    Source: Tipping & Lawrence (2005), "Variational inference for Student-t models", Neurocomputing
     69:123-141.
     """
 
@@ -135,10 +132,8 @@ class NoiseByInput(AbstractNoise):
     A Gaussian process of unit length (times the root of the number of features) through a few
     anchors spread over the training inputs, its weights learned with the kernel.
 
-    References
-    ----------
-    Goldberg, Williams & Bishop (1998), "Regression with input-dependent noise"; the process of
-    the noise held by a few inducing inputs, at its most probable value.
+    Source: Goldberg, Williams & Bishop (1998), "Regression with input-dependent noise"; the process
+    of the noise held by a few inducing inputs, at its most probable value.
     """
 
     name: ClassVar[NoiseName] = "by-input"

@@ -175,9 +175,7 @@ class Posterior(Process):
     def leave_one_out(self) -> tuple[Float[np.ndarray, "n output"], Float[np.ndarray, "n shared"]]:
         """Residual of each point against all the others, and its variance with noise.
 
-        References
-        ----------
-        Rasmussen & Williams (2006), eqs. (5.10)-(5.12).
+        Source: Rasmussen & Williams (2006), eqs. (5.10)-(5.12).
         """
         precision = self.factor.precision()
         return self.weights / precision, 1.0 / precision

@@ -65,9 +65,7 @@ class HeldBend(AbstractKernel):
     a product with a function of the inputs, slope, bend and offset change over the inputs, and
     a longer length straightens the curve without making its slope or the offset smaller.
 
-    References
-    ----------
-    Rasmussen & Williams (2006), eq. (2.19), for a process that is known at a point.
+    Source: Rasmussen & Williams (2006), eq. (2.19), for a process that is known at a point.
     """
 
     def prior(self, width: int) -> Prior:
@@ -182,9 +180,7 @@ def autoregressive(
     about it, with a bend that hardly changes over the inputs, and to leave little else, which
     varies over the inputs about as fast as the lowest level does where that is fast.
 
-    References
-    ----------
-    Perdikaris et al. (2017), eq. (2.14), for the kernel without ``linear``.
+    Source: Perdikaris et al. (2017), eq. (2.14), for the kernel without ``linear``.
     """
     rho = StationaryKernel(BELL, variance=RHO_SLOPE if linear else RHO_VARIANCE, length=RHO_LENGTH)
     delta = StationaryKernel(
@@ -207,10 +203,8 @@ def straight() -> LinkKernel:
     Hyperparameters, in logarithms: s, then delta's variance and lengths. A ratio of any size and
     sign is expected.
 
-    References
-    ----------
-    Kennedy & O'Hagan (2000), Biometrika 87:1-13, eq. (1), the ratio being integrated out under
-    a Gaussian prior; one level at a time as in Le Gratiet & Garnier (2014).
+    Source: Kennedy & O'Hagan (2000), Biometrika 87:1-13, eq. (1), the ratio being integrated out
+    under a Gaussian prior; one level at a time as in Le Gratiet & Garnier (2014).
     """
     line, rest = Columns(LinearKernel(), BELOW), Columns(StationaryKernel(BELL), LOCAL)
     return LinkKernel(line, rest, "straight", bends=False)

@@ -63,9 +63,7 @@ def propagate_moments(
     Gaussian on the way; deterministic, and the limit of nested Monte Carlo. Each row chooses
     its own rule, so its answer does not depend on the rows beside it.
 
-    References
-    ----------
-    Perdikaris et al. (2017), eq. (2.15), for the integral; the law of total variance.
+    Source: Perdikaris et al. (2017), eq. (2.15), for the integral; the law of total variance.
     """
     top_mean, top_variance = np.empty(len(x)), np.empty(len(x))
     for count, rows in _by_rule(levels, x, mean, variance):

@@ -25,9 +25,7 @@ class Spline:
     polynomial (not-a-knot), so that the error is of fourth order up to the edge; a periodic
     axis has no ends.
 
-    References
-    ----------
-    de Boor (1978), "A Practical Guide to Splines", chapters IV, IX and XVII.
+    Source: de Boor (1978), "A Practical Guide to Splines", chapters IV, IX and XVII.
     """
 
     # Nodes of each axis; the last node of a periodic axis lies one cell before its end

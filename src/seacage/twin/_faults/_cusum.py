@@ -50,9 +50,7 @@ def update_evidence(
     ``active``: alarms that are raised; a hypothesis of one of them is compared with the others.
     ``settings``: of the fault detector.
 
-    References
-    ----------
-    Page (1954), Continuous inspection schemes; Lorden (1971), Procedures for reacting to a
+    Source: Page (1954), Continuous inspection schemes; Lorden (1971), Procedures for reacting to a
     change in distribution, for sizes that are not known.
     """
     received = block.received

@@ -32,10 +32,8 @@ def kalman_update(
 ) -> tuple[Float[np.ndarray, " size"], Float[np.ndarray, "size size"]]:
     """Update sizes and their covariance by residuals.
 
-    References
-    ----------
-    Kalman (1960), the update by a measurement; Lange, Little & Taylor (1989), weights of the t
-    distribution: the errors' covariance is widened by one over theirs.
+    Source: Kalman (1960), the update by a measurement; Lange, Little & Taylor (1989), weights of
+    the t distribution: the errors' covariance is widened by one over theirs.
     """
     known = response @ covariance @ response.T
     far = residual @ np.linalg.solve(noise + known, residual)

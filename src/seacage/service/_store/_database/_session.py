@@ -36,11 +36,8 @@ class AbstractSession(ABC):
     passing: str = ""
     """What a SELECT ends with to lock its rows, but for those that another process holds."""
 
-    lateral: bool = False
-    """Whether a subquery of FROM may look at its neighbours."""
-
-    ordered: bool = False
-    """Whether names are ordered as Python does."""
+    lateral: bool = False  # whether a subquery of FROM may look at its neighbours
+    ordered: bool = False  # whether names are ordered as Python does
 
     @property
     def checksums(self) -> str | None:
@@ -98,19 +95,13 @@ class AbstractDatabase(ABC):
     ``FullError`` where it cannot grow.
     """
 
-    lost: str | None = None
-    """Why history was moved aside; None where nothing was."""
+    lost: str | None = None  # why history was moved aside; None where nothing was
 
     damage: Damage
 
-    damaged: list[Path]
-    """Files that were moved aside and are still to be salvaged."""
-
-    shared: bool = False
-    """Whether other processes may serve other cages from it."""
-
-    round: int = 0
-    """How often it was begun anew."""
+    damaged: list[Path]  # files that were moved aside and are still to be salvaged
+    shared: bool = False  # whether other processes may serve other cages from it
+    round: int = 0  # how often it was begun anew
 
     @abstractmethod
     def writing(self) -> AbstractContextManager[AbstractSession]:
