@@ -85,8 +85,8 @@ def simulate(
     Parameters
     ----------
     cage
-        A ``Structure`` starts as it was designed, in still water: give it a longer spin-up.
-        Its "bridles" are its lines, its displacement is from the design.
+        A ``Structure`` whose equilibrium is not found starts as it was designed. Its "bridles"
+        are its lines, its displacement is from the design.
     sea
         One sea state, or several: a leading case axis.
     duration
@@ -200,7 +200,15 @@ def _simulate(
     """Each case's history; as many cases as the kernel has lanes travel together."""
     steps, assembly, rest = simulation.steps, simulation.assembly(), simulation.rest
     _check_room(steps, assembly)
-    report = _Report(progress, steps.whole * len(seas) * simulation.pieces)
+    whole, done, lock = steps.whole * len(seas) * simulation.pieces, 0, Lock()
+
+    def report(refreshes: int) -> None:
+        """Add up what the threads have simulated, and report it, one thread at a time."""
+        nonlocal done
+        with lock:
+            done += refreshes
+            if progress is not None:
+                progress("simulate", round(done * REFRESH), round(whole * REFRESH))
 
     def run(block: Int[np.ndarray, " case"]) -> list[History]:
         piece = steps.counted * REFRESH
@@ -329,28 +337,11 @@ def _levels(levels: Sequence[float]) -> Float[np.ndarray, " quantile"]:
 def _series_nodes(
     cage: Cage | Structure, series_nodes: Sequence[int] | None
 ) -> Int[np.ndarray, " kept"]:
-    nodes = (
-        np.arange(cage.node_count)
-        if series_nodes is None
-        else np.array(series_nodes, dtype=np.int64)
-    )
+    every = range(cage.node_count)
+    nodes = np.array(every if series_nodes is None else series_nodes, dtype=np.int64)
     if np.any((nodes < 0) | (nodes >= cage.node_count)):
         raise InputError(
             f"simulate: series_nodes = {nodes.tolist()} has a node that the net has not. "
             f"Give nodes from 0 … {cage.node_count - 1}."
         )
     return nodes
-
-
-class _Report:
-    """Adds up what the threads have simulated, and reports it, one thread at a time."""
-
-    def __init__(self, progress: Progress | None, whole: int) -> None:
-        self._progress, self._whole, self._done, self._lock = progress, whole, 0, Lock()
-
-    def __call__(self, refreshes: int) -> None:
-        with self._lock:
-            self._done += refreshes
-            if self._progress is not None:
-                seconds = (round(count * REFRESH) for count in (self._done, self._whole))
-                self._progress("simulate", *seconds)

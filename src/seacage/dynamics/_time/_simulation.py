@@ -79,10 +79,10 @@ class Simulation:
     def start(
         self, assembly: Assembly, laws: Sequence[MovingLaw], seas: Sequence[SeaState]
     ) -> Float[np.ndarray, "case node 3"]:
-        """Equilibria in the sea's surface current; it is only a start, so any will do."""
-        start = np.repeat(assembly.position[None], len(seas), axis=0)
-        if isinstance(self.cage, Structure):
-            return start
+        """Equilibria in the sea's surface current; it is only a start, so any will do.
+
+        A structure starts from its design rather than from a shape that is no equilibrium.
+        """
         flow = flow_of_laws(
             assembly,
             np.array([sea.current_velocity for sea in seas]),
@@ -91,8 +91,13 @@ class Simulation:
             tuning=self.tuning,
         )
         found = equilibria(assembly, flow, relaxed=False)
-        settled, rest = found.position, np.flatnonzero(found.result != Result.CONVERGED)
-        if rest.size:  # other first shapes settle most of them in a fraction of the time
-            settled[rest] = equilibria(assembly, flow.rows(rest), starts=2).position
+        settled, result = found.position, found.result
+        if (rest := np.flatnonzero(result != Result.CONVERGED)).size:
+            # other first shapes settle most of them in a fraction of the time
+            again = equilibria(assembly, flow.rows(rest), starts=2)
+            settled[rest], result[rest] = again.position, again.result
+        start = np.repeat(assembly.position[None], len(seas), axis=0)
         start[:, : self.cage.node_count] = self.rest
+        if isinstance(self.cage, Structure):
+            settled[result != Result.CONVERGED] = np.nan
         return np.where(np.isfinite(settled).all(axis=(1, 2), keepdims=True), settled, start)

@@ -9,6 +9,7 @@ from seacage.cage import Anchor as AnchorPoint
 from seacage.cage import Line, Net, Point, Ring, Section, Site, Structure, Tie, Twine
 from seacage.conventions import GRAVITY, WATER_DENSITY, InputError, Result
 from seacage.dynamics import net_load, rest_shape, settle, simulate
+from seacage.dynamics._equilibrium import equilibria
 from seacage.dynamics._parts._structure import assemble_structure, wet_share
 from seacage.dynamics._physics._loads import bar_tension
 from seacage.dynamics._physics._motion import NetLaw, Water, moving_net_load
@@ -225,6 +226,22 @@ def test_it_settles_where_a_simulation_comes_to_rest():
     np.testing.assert_allclose(settled.net_force, ended.net_force.mean, rtol=2e-3, atol=1.0)
     load = net_load(DRUM, settled.node_position[1], seas[1], law="loland")
     np.testing.assert_allclose(load, settled.net_force[1])
+
+
+def test_a_simulation_starts_where_it_settles_or_else_as_designed(monkeypatch):
+    sea = SeaState(current_speed=0.3, current_to=70.0)
+    settled = settle(DRUM, sea)
+    short = simulate(DRUM, sea, duration=5.0, spin_up=10.0, ramp=0.0)
+    # from the design it is 2 m off after a minute
+    np.testing.assert_allclose(short.node.mean, settled.node_position, atol=0.01)
+
+    def lost(assembly, flow, **_):
+        found = equilibria(assembly, flow)
+        return replace(found, result=np.full_like(found.result, Result.NOT_CONVERGED))
+
+    monkeypatch.setattr("seacage.dynamics._time._simulation.equilibria", lost)
+    begun = simulate(DRUM, sea, duration=0.1, spin_up=0.0, ramp=0.0, sample_every=0.1)
+    np.testing.assert_allclose(begun.node_position[0], DRUM.design_position, atol=0.02)
 
 
 def test_its_displacement_is_from_the_design_and_its_anchors_are_reported():
