@@ -15,7 +15,7 @@ from seacage.cage._parts import (
     Site,
     Tip,
 )
-from seacage.cage._structure import Structure
+from seacage.cage._structure import Structure, cage_or_structure
 from seacage.cage._structure_parts import Anchor, Line, Net, Point, Ring, Section, Tie, Twine
 from seacage.cage._tangent_plane import TangentPlane
 
@@ -45,5 +45,6 @@ __all__ = [
     "Tie",
     "Tip",
     "Twine",
+    "cage_or_structure",
     "mooring_lines",
 ]

@@ -31,7 +31,7 @@ from seacage.cage._parts import (
 from seacage.cage._tangent_plane import TangentPlane
 from seacage.cage._toml import TomlFile, alter
 from seacage.cage._volume import enclosed_volume
-from seacage.conventions import InputError, towards
+from seacage.conventions import InputError, NonsenseError, parse_toml, towards
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -117,6 +117,16 @@ class Cage(TomlFile):
             )
         return cls.from_toml((shelf / f"{name}.toml").read_text("utf-8"), source=f"{name}.toml")
 
+    @classmethod
+    def from_toml(cls, text: str, *, source: str = "") -> Self:
+        """Read TOML text; ``source`` names it in errors. A ``Structure``'s is refused."""
+        if "ring" in parse_toml(text, source or "cage"):
+            raise NonsenseError(
+                f"{source or 'cage'}: a structure of rings, nets and lines can be simulated, alone "
+                "and in campaigns, but has no twin, drawn mooring or animation. Give a cage's file."
+            )
+        return super().from_toml(text, source=source)
+
     @property
     def sha256(self) -> str:
         """Hash of the whole cage."""
@@ -174,15 +184,11 @@ class Cage(TomlFile):
             )
         pretension_sd, length_sd, slack_sd = (value or 0.0 for value in spread)
         normal = np.random.default_rng(seed).standard_normal(2 + self.bridle_count)
-        pretension = bridles.pretension + pretension_sd * normal[0]
-        offset = np.array(bridles.length_offset) + length_sd * normal[2:]
-        return self.altered(
-            bridles={
-                "pretension_n": float(max(pretension, 0.1 * bridles.pretension)),
-                "length_offset_m": np.maximum(offset, -5.0).tolist(),
-            },
-            frame={"rope_slack_m": float(max(frame.rope_slack + slack_sd * normal[1], -1.0))},
-        )
+        pretension = max(bridles.pretension + pretension_sd * normal[0], 0.1 * bridles.pretension)
+        offset = np.maximum(np.array(bridles.length_offset) + length_sd * normal[2:], -5.0)
+        slack = max(frame.rope_slack + slack_sd * normal[1], -1.0)
+        held = {"pretension_n": float(pretension), "length_offset_m": offset.tolist()}
+        return self.altered(bridles=held, frame={"rope_slack_m": float(slack)})
 
     def refined(self, times: int = 2) -> Self:
         """A copy with so many times the rings and spokes; every old node stays a node."""

@@ -4,17 +4,17 @@ import difflib
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import accumulate
-from typing import ClassVar, TypeVar
+from typing import ClassVar, Self, TypeVar
 
 import numpy as np
 from jaxtyping import Float, Int
 
-from seacage.cage._cage import DepthSensor
+from seacage.cage._cage import Cage, DepthSensor
 from seacage.cage._parts import Site, check_bounds, quantity
 from seacage.cage._structure_parts import Anchor, Line, Named, Net, Point, Ring, Section, Tie, Twine
 from seacage.cage._toml import TomlFile
 from seacage.cage._volume import enclosed_volume
-from seacage.conventions import InputError
+from seacage.conventions import InputError, parse_toml
 
 _Part = TypeVar("_Part", bound=Named)
 
@@ -205,6 +205,11 @@ class Structure(TomlFile):
 
     # What commands ask of any cage
 
+    def drawn(self, seed: int) -> Self:
+        """No copy with a drawn mooring, as a cage has: a structure states no uncertainty."""
+        why = "its file states no uncertainty of its mooring"
+        raise InputError(f"Structure {self.name}: {why}, so seed {seed} draws none. Leave it out.")
+
     @property
     def bridle_names(self) -> tuple[str, ...]:
         """The lines, in the order in which their tensions are reported."""
@@ -327,6 +332,12 @@ class Structure(TomlFile):
                 f"{hint}"
             )
         return known[name]
+
+
+def cage_or_structure(text: str, *, source: str = "") -> Cage | Structure:
+    """A cage from TOML text, or a structure where the text has rings."""
+    kind = Structure if "ring" in parse_toml(text, source or "cage") else Cage
+    return kind.from_toml(text, source=source)
 
 
 def _fill(position: Float[np.ndarray, "node 3"], chains: Int[np.ndarray, "chain link"]) -> None:

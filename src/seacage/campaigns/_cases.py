@@ -1,7 +1,7 @@
 """Simulator of a campaign's cases, and the work of one block of them."""
 
 import time
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from importlib.metadata import version
 from typing import Any, Literal
@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 from jaxtyping import Float
 
-from seacage.cage import Cage
+from seacage.cage import Cage, Structure, cage_or_structure
 from seacage.campaigns._pool import one_thread
 from seacage.conventions import InputError, Result, SeacageError
 from seacage.dynamics import LAWS, PHYSICS, History, Mooring, MovingLaw, settle, simulate
@@ -17,6 +17,9 @@ from seacage.ocean import SeaState
 
 _BLOCK = {"simulate": 16, "settle": 32}
 """Cases computed and written at a time: enough to fill the kernel's lanes, few enough to lose."""
+
+_PIECE = 60.0
+"""Least length of the pieces that a case on a mooring of its own is simulated in [s]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,6 +44,9 @@ class Simulator:
         Of the quantiles over time [-].
     second_moment
         Whether to keep the second moment of all node coordinates over the campaign.
+    draw_mooring
+        Whether each case has a mooring of its own, ``Cage.drawn`` by a seed of the case. It is
+        simulated alone, in pieces of a minute and more.
     """
 
     method: Literal["simulate", "settle"] = "simulate"
@@ -51,6 +57,7 @@ class Simulator:
     time_step: float = 0.002
     quantile_levels: tuple[float, ...] = (0.05, 0.5, 0.95)
     second_moment: bool = True
+    draw_mooring: bool = False
 
     def __post_init__(self) -> None:
         if self.method not in _BLOCK:
@@ -74,7 +81,8 @@ class Simulator:
     @property
     def attributes(self) -> dict[str, Any]:
         """What to write into a store, with units, beside ``law`` and ``method``."""
-        moored = {"mooring": self.mooring}
+        drawn = {"mooring_drawn": 1} if self.draw_mooring else {}
+        moored: dict[str, Any] = {"mooring": self.mooring, **drawn}
         if not self.in_time:
             return moored
         return moored | {
@@ -88,7 +96,7 @@ class Simulator:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CaseBlock:
-    """Neighbouring cases, as they travel to a worker."""
+    """Neighbouring cases, as they travel to a worker; with seeds where moorings are drawn."""
 
     first: int
     cage_toml: str
@@ -97,6 +105,7 @@ class CaseBlock:
     duration: float
     simulator: Simulator
     made_by: str
+    mooring_seeds: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -138,8 +147,24 @@ def answer_block(block: CaseBlock) -> Answers:
         )
     began = time.process_time()
     with one_thread():
-        values, moment = (_simulate_block if block.simulator.in_time else _settle_block)(block)
-    return Answers(values=values, moment=moment, core_seconds=time.process_time() - began)
+        answer = _simulate_block if block.simulator.in_time else _settle_block
+        values, moments = zip(*(answer(one) for one in _alike(block)), strict=True)
+    return Answers(
+        values={name: np.concatenate([one[name] for one in values]) for name in values[0]},
+        moment=None if moments[0] is None else np.sum(moments, axis=0),
+        core_seconds=time.process_time() - began,
+    )
+
+
+def _alike(block: CaseBlock) -> list[CaseBlock]:
+    """Blocks of cases on one mooring: the block itself, or each case on the one drawn for it."""
+    if not block.mooring_seeds:
+        return [block]
+    cage, alone = _cage(block.cage_toml), replace(block, mooring_seeds=())
+    return [
+        replace(alone, cage_toml=cage.drawn(drawn).to_toml(), seas=(sea,), wave_seeds=(wave,))
+        for sea, wave, drawn in zip(block.seas, block.wave_seeds, block.mooring_seeds, strict=True)
+    ]
 
 
 def _settle_block(block: CaseBlock) -> tuple[dict[str, np.ndarray], None]:
@@ -155,33 +180,32 @@ def _simulate_block(
     block: CaseBlock,
 ) -> tuple[dict[str, np.ndarray], Float[np.ndarray, "coordinate coordinate"] | None]:
     by = block.simulator
-    settings = {one.name: getattr(by, one.name) for one in fields(by) if one.name != "method"}
+    ours = ("method", "draw_mooring")
+    settings = {one.name: getattr(by, one.name) for one in fields(by) if one.name not in ours}
     history = simulate(
         _cage(block.cage_toml),
         block.seas,
         duration=block.duration,
         seed=block.wave_seeds,
         sample_every=None,
+        pieces=max(1, min(16, int(block.duration // _PIECE))) if by.draw_mooring else 1,
         **settings,
     )
     return _statistics(history), _moment(history) if by.second_moment else None
 
 
 def _statistics(history: History) -> dict[str, np.ndarray]:
-    values = {
-        "net_force": history.net_force.mean,
-        "net_force_std": history.net_force.std,
-        "volume": history.volume.mean,
-        "volume_std": history.volume.std,
-        "result": history.result,
-        "diverged_at": history.diverged_at,
-    }
-    for name, of_lines in history.lines.columns.items():
-        values[f"line_{name}"] = of_lines
-    for name, over_time in (("node_position", history.node), ("bridle_tension", history.bridle)):
-        values[name] = over_time.mean
-        for statistic in ("std", "minimum", "maximum", "quantile"):
-            values[f"{name}_{statistic}"] = getattr(over_time, statistic)
+    values = {f"line_{name}": each for name, each in history.lines.columns.items()}
+    values |= {"result": history.result, "diverged_at": history.diverged_at}
+    ranges = ("std", "minimum", "maximum", "quantile")
+    for name, over_time, kinds in (
+        ("node_position", history.node, ranges),
+        ("bridle_tension", history.bridle, ranges),
+        ("net_force", history.net_force, ("std",)),
+        ("volume", history.volume, ("std",)),
+    ):
+        values |= {name: over_time.mean}
+        values |= {f"{name}_{kind}": getattr(over_time, kind) for kind in kinds}
     return values
 
 
@@ -194,5 +218,5 @@ def _moment(history: History) -> Float[np.ndarray, "coordinate coordinate"]:
 
 
 @lru_cache(maxsize=4)
-def _cage(toml: str) -> Cage:
-    return Cage.from_toml(toml)
+def _cage(toml: str) -> Cage | Structure:
+    return cage_or_structure(toml)

@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import closing
 from importlib.metadata import version
 from pathlib import Path
@@ -11,8 +11,8 @@ from typing import Any, Literal
 import numpy as np
 from jaxtyping import Int
 
-from seacage.cage import Cage, mooring_lines
-from seacage.campaigns._cases import Answers, CaseBlock, Simulator, answer_block, software_version
+from seacage.cage import Cage, MooringLines, Structure, mooring_lines
+from seacage.campaigns._cases import CaseBlock, Simulator, answer_block, software_version
 from seacage.campaigns._cluster import map_on_cluster
 from seacage.campaigns._pool import map_tasks
 from seacage.campaigns._sea_state_plan import Plan
@@ -36,6 +36,7 @@ _IDENTITY = {
     "product_version": "version of seacage",
     "physics": "revision of the physics",
     "mooring": "mooring",
+    "mooring_drawn": "choice of one mooring for all cases or one for each",
     "ramp_s": "ramp",
     "spin_up_s": "spin-up",
     "time_step_s": "time step",
@@ -46,7 +47,7 @@ _IDENTITY = {
 
 
 def run_campaign(
-    cage: Cage,
+    cage: Cage | Structure,
     plan: Plan,
     out: str | Path,
     *,
@@ -59,6 +60,7 @@ def run_campaign(
     time_step: float = 0.002,
     quantile_levels: Sequence[float] = (0.05, 0.5, 0.95),
     second_moment: bool = True,
+    draw_mooring: bool = False,
     cluster: str | None = None,
     progress: Progress | None = None,
 ) -> CampaignRecord:
@@ -71,7 +73,7 @@ def run_campaign(
     Parameters
     ----------
     cage
-        The cage.
+        The cage; a ``Structure``'s lines take the bridles' place.
     plan
         The sea states, how long each lasts, and the seed of their waves.
     out
@@ -79,7 +81,7 @@ def run_campaign(
     workers
         Processes; None for one per available core, 1 for none beside this one. The answers
         do not depend on it.
-    law, method, mooring, ramp, spin_up, time_step, quantile_levels, second_moment
+    law, method, mooring, ramp, spin_up, time_step, quantile_levels, second_moment, draw_mooring
         As in ``Simulator``; "settle" takes the equilibrium in each current instead.
     cluster
         Address of a Dask scheduler, ``tcp://host:8786``, whose workers take the place of the
@@ -90,7 +92,7 @@ def run_campaign(
     Raises
     ------
     InputError
-        ``out`` holds another campaign.
+        ``out`` holds another campaign, or moorings are to be drawn of what states no uncertainty.
     """
     simulator = Simulator(
         method=method,
@@ -101,13 +103,14 @@ def run_campaign(
         time_step=time_step,
         quantile_levels=tuple(quantile_levels),
         second_moment=second_moment,
+        draw_mooring=draw_mooring,
     )
     run_share(cage, plan, out, by=simulator, workers=workers, cluster=cluster, progress=progress)
     return read_campaign(out)
 
 
 def run_share(
-    cage: Cage,
+    cage: Cage | Structure,
     plan: Plan,
     out: str | Path,
     *,
@@ -132,6 +135,8 @@ def run_share(
     """
     import zarr  # noqa: F401  # where it is absent this is said before hours of work, not after
 
+    if by.draw_mooring:
+        cage.drawn(0)  # refused now, and not in a worker
     store = Path(out)
     attributes = _attributes(cage, plan, by)
     result, size = _results_so_far(store, attributes, cases=len(plan), block=by.block)
@@ -141,25 +146,23 @@ def run_share(
     done = sum(int(result[case]) != NOT_RUN for case in cases)
     report = progress or no_progress
     report("campaign", done, len(cases))
-    with closing(_map_blocks(blocks, workers=workers, cluster=cluster)) as finished:
+    ends = map_tasks(answer_block, blocks, workers=workers)
+    if cluster is not None and blocks:
+        ends = map_on_cluster(answer_block, blocks, address=cluster)
+    with closing(ends) as finished:
         for block, answers in finished:
             if not store.exists():  # a cage or a law that cannot be run leaves no store
                 _create(store, cage, plan, by, attributes)
                 _results_so_far(store, attributes, cases=len(plan), block=by.block)
-            write_cases(
-                store,
-                block.first,
-                answers.values,
-                moment=answers.moment,
-                core_seconds=answers.core_seconds,
-            )
+            spent, moment = answers.core_seconds, answers.moment
+            write_cases(store, block.first, answers.values, moment=moment, core_seconds=spent)
             done += len(block.seas)
             report("campaign", done, len(cases))
     if store.exists():
         finish_campaign(store)
 
 
-def campaign_key(cage: Cage, plan: Plan, by: Simulator) -> str:
+def campaign_key(cage: Cage | Structure, plan: Plan, by: Simulator) -> str:
     """A short name that only campaigns with the same numbers share."""
     attributes = _attributes(cage, plan, by)
     same = json.dumps([attributes[name] for name in _IDENTITY if name in attributes])
@@ -199,16 +202,18 @@ def _results_so_far(
 
 
 def _blocks(
-    cage: Cage, plan: Plan, by: Simulator, size: int, firsts: Sequence[int]
+    cage: Cage | Structure, plan: Plan, by: Simulator, size: int, firsts: Sequence[int]
 ) -> list[CaseBlock]:
     toml = cage.to_toml()
     spans = [slice(first, first + size) for first in firsts]
+    waves, moorings = _seeds(plan).T.tolist()
     return [
         CaseBlock(
             first=span.start,
             cage_toml=toml,
             seas=plan.seas[span],
-            wave_seeds=tuple(_wave_seed(plan, case) for case in range(len(plan))[span]),
+            wave_seeds=tuple(waves[span]),
+            mooring_seeds=tuple(moorings[span] if by.draw_mooring else ()),
             duration=plan.duration,
             simulator=by,
             made_by=software_version(),
@@ -217,44 +222,45 @@ def _blocks(
     ]
 
 
-def _wave_seed(plan: Plan, case: int) -> int:
-    """Of one case's waves: it knows the plan's seed and the case, and nothing of neighbours."""
-    return int(np.random.SeedSequence([plan.seed, case]).generate_state(1)[0])
-
-
-def _map_blocks(
-    blocks: Sequence[CaseBlock], *, workers: int | None, cluster: str | None
-) -> Generator[tuple[CaseBlock, Answers], None, None]:
-    if cluster is not None and blocks:
-        return map_on_cluster(answer_block, blocks, address=cluster)
-    return map_tasks(answer_block, blocks, workers=workers)
+def _seeds(plan: Plan) -> Int[np.ndarray, "case 2"]:
+    """Of each case's waves and mooring: they know the plan's seed and the case, no neighbours."""
+    cases = range(len(plan))
+    return np.array([np.random.SeedSequence([plan.seed, n]).generate_state(2) for n in cases], int)
 
 
 def _create(
-    store: Path, cage: Cage, plan: Plan, by: Simulator, attributes: Mapping[str, Any]
+    store: Path, cage: Cage | Structure, plan: Plan, by: Simulator, attributes: Mapping[str, Any]
 ) -> None:
-    anchored = by.mooring == "catenary"
+    waves, moorings = _seeds(plan).T.tolist()
     create_campaign(
         store,
         seas=plan.seas,
         nodes=cage.node_count,
         lines=cage.bridle_count,
-        mooring=mooring_lines(cage, anchored=anchored) if by.in_time else None,
+        mooring=_lines(cage, by) if by.in_time else None,
         block=by.block,
         attributes=attributes,
-        wave_seeds=[_wave_seed(plan, case) for case in range(len(plan))] if by.in_time else None,
+        wave_seeds=waves if by.in_time else None,
+        mooring_seeds=moorings if by.draw_mooring else None,
         quantile_levels=by.quantile_levels if by.in_time else (),
         second_moment=by.in_time and by.second_moment,
     )
 
 
-def _attributes(cage: Cage, plan: Plan, by: Simulator) -> dict[str, Any]:
+def _lines(cage: Cage | Structure, by: Simulator) -> MooringLines:
+    if isinstance(cage, Structure):
+        return MooringLines.alike(cage.bridle_names, "line")
+    return mooring_lines(cage, anchored=by.mooring == "catenary")
+
+
+def _attributes(cage: Cage | Structure, plan: Plan, by: Simulator) -> dict[str, Any]:
     """Attributes of the store: the campaign and its software, by names of ACDD-1.3 where known."""
     number = version("seacage")
     what = "Simulations in time" if by.in_time else "Equilibria"
+    drawn = ", each on a mooring drawn for it" if by.draw_mooring else ""
     return {
         "title": f"Campaign {plan.name!r} of cage {cage.name!r}",
-        "summary": f"{what} of a moored net cage in {len(plan)} sea states.",
+        "summary": f"{what} of a moored net cage in {len(plan)} sea states{drawn}.",
         "keywords": "aquaculture, net cage, mooring, numerical simulation",
         "source": f"seacage {number}, {by.method}, netting law {by.law}",
         "product_version": number,

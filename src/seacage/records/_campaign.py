@@ -56,6 +56,9 @@ class CampaignRecord:
         Of the seacage that computed the answers.
     wave_seed
         Of each case's waves.
+    mooring_seed
+        Of each case's mooring: ``Cage.drawn`` by it is the case's cage. None where all cases have
+        the cage's own mooring.
     diverged_at
         Simulated time at which a case was given up, spin-up included; NaN for the others [s].
     quantile
@@ -87,6 +90,7 @@ class CampaignRecord:
     seed: int
     version: str
     wave_seed: Int[np.ndarray, " case"] | None = None
+    mooring_seed: Int[np.ndarray, " case"] | None = None
     diverged_at: Float[np.ndarray, " case"] | None = None
     quantile: Float[np.ndarray, " quantile"] | None = None
     node_position_std: Float[np.ndarray, "case node 3"] | None = None

@@ -56,6 +56,9 @@ _RESIDUAL = Variable(_CASE, "N", "largest unbalanced force at a node")
 _WAVE_SEED = Variable(
     _CASE, "1", "seed of the waves: a simulation with it repeats the case", dtype="int64"
 )
+_MOORING_SEED = Variable(
+    _CASE, "1", "seed of the drawn mooring: the cage drawn with it is the case's", dtype="int64"
+)
 _QUANTILE = Variable(("quantile",), "1", "probability of not exceeding")
 _SECOND_MOMENT = Variable(
     ("coordinate", "other_coordinate"),
@@ -109,6 +112,7 @@ def create_campaign(
     block: int,  # cases written at a time: the store's chunk along ``case``
     attributes: Mapping[str, Any],  # of the whole store, beside those that every campaign carries
     wave_seeds: Sequence[int] | None = None,  # of each case's waves; None for equilibria
+    mooring_seeds: Sequence[int] | None = None,  # of each case's drawn mooring, if they are drawn
     # What a campaign in time keeps of its statistics
     quantile_levels: Sequence[float] = (),
     second_moment: bool = False,
@@ -126,12 +130,13 @@ def create_campaign(
         moment=second_moment,
         lines=mooring is not None,
     )
+    variables |= {} if mooring_seeds is None else {"mooring_seed": _MOORING_SEED}
     size = {"case": len(seas), "block": -(-len(seas) // block)}
     size |= {"node": nodes, "axis": 3, "line": lines, "quantile": len(quantile_levels)}
     size |= {"coordinate": 3 * nodes, "other_coordinate": 3 * nodes}
     chunk = {**size, "case": min(block, len(seas)), "block": 1}
     given: dict[str, Any] = {name: [getattr(sea, name) for sea in seas] for name in SEA}
-    given |= {"wave_seed": wave_seeds, "quantile": quantile_levels}
+    given |= {"wave_seed": wave_seeds, "mooring_seed": mooring_seeds, "quantile": quantile_levels}
     if mooring is not None:
         size |= {"mooring_line": len(mooring.names)}
         chunk |= size | {"case": chunk["case"], "block": 1}

@@ -9,8 +9,11 @@ from seacage.conventions import InputError
 
 def test_a_drawn_mooring_keeps_to_what_the_file_states():
     ace = Cage.named("ace")
+    certain = ace.altered(
+        bridles={"pretension_sd_n": 0.0, "length_sd_m": 0.0}, frame={"rope_slack_sd_m": 0.0}
+    )
     with pytest.raises(InputError, match="states no uncertainty of the mooring"):
-        ace.drawn(0)
+        certain.drawn(0)
     uncertain = ace.altered(
         bridles={"pretension_sd_n": 2e3, "length_sd_m": 0.15}, frame={"rope_slack_sd_m": 0.5}
     )

@@ -15,7 +15,7 @@ from seacage.service._cli._options import (
     Mooring,
     SpinUp,
     Workers,
-    read_cage,
+    read_cage_or_structure,
     read_share,
     warn_of,
 )
@@ -64,6 +64,7 @@ def run(
     spin_up: SpinUp = 300.0,
     time_step: float = 0.002,
     second_moment: bool = True,
+    draw_mooring: bool = False,
     workers: Workers = None,
     cluster: Annotated[str | None, typer.Option(metavar="ADDRESS")] = None,
     share: Annotated[str | None, typer.Option(metavar="I/N")] = None,
@@ -81,6 +82,7 @@ def run(
         ramp: Over which the waves rise, s.
         time_step: s
         second_moment: Keep the second moment of all node coordinates.
+        draw_mooring: Draw each case a mooring from the uncertainty that the cage file states.
         cluster: Of a Dask scheduler you trust: tcp://host:8786.
         share: Only the I-th of N shares, from 0; others run the rest.
     """
@@ -96,10 +98,11 @@ def run(
         spin_up=spin_up,
         time_step=time_step,
         second_moment=second_moment,
+        draw_mooring=draw_mooring,
     )
     with progress_bar() as progress:
         run_share(
-            read_cage(cage),
+            read_cage_or_structure(cage),
             chosen,
             store,
             by=by,
@@ -196,7 +199,7 @@ def slurm(
             "campaign slurm: it makes the shares. Leave --share and --cluster out.", Exit.USAGE
         )
     chosen = PlanOptions(**{one.name: given[one.name] for one in fields(PlanOptions)}).read()
-    read_cage(given["cage"])
+    read_cage_or_structure(given["cage"])
     blocks = -(-len(chosen) // Simulator(method=given["method"]).block)
     alone = [] if given["workers"] else ["--workers", "1"]
     script = _SCRIPT.format(

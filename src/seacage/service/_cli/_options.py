@@ -113,26 +113,20 @@ def warn(sentences: Iterable[str]) -> None:
 def read_cage(name: str) -> "Cage":
     """A shipped cage by its name, else a file; what the cage warns of goes to stderr."""
     from seacage.cage import Cage
-    from seacage.conventions import NonsenseError
 
-    found = read_cage_or_structure(name)
-    if not isinstance(found, Cage):
-        raise NonsenseError(
-            f"{name}: a structure of rings, nets and lines can be settled and simulated, but has "
-            "no campaign, twin, drawn mooring or animation. Give a cage's file."
-        )
+    found = Cage.read(name) if name.endswith(".toml") else Cage.named(name)
+    warn(found.warnings)
     return found
 
 
 def read_cage_or_structure(name: str) -> "Cage | Structure":
     """The same, or a cage of another topology, whose file is one with rings."""
-    from seacage.cage import Cage, Structure
-    from seacage.conventions import parse_toml, read_text
+    from seacage.cage import cage_or_structure
+    from seacage.conventions import read_text
 
-    is_file = name.endswith(".toml")
-    text = read_text(name) if is_file else ""
-    kind = Structure if "ring" in parse_toml(text, name) else Cage
-    found = kind.from_toml(text, source=name) if is_file else Cage.named(name)
+    if not name.endswith(".toml"):
+        return read_cage(name)
+    found = cage_or_structure(read_text(name), source=name)
     warn(found.warnings)
     return found
 

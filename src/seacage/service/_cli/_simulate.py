@@ -149,8 +149,8 @@ def simulate(
         report_band("simulate", subject, laws, history.result, about, band)
         return
     answer = _answer(subject, history, warnings, settings)
-    if others:
-        answer["mooring_draws"] = {"draws": mooring_draws, "lines": _bands(others)}
+    bands = _bands(others)
+    answer |= {"mooring_draws": {"draws": mooring_draws, "lines": bands}} if others else {}
     if out is not None:
         comment = {"comment": " ".join(warnings)} if warnings else {}
         _write(out, subject, state, history, settings | comment)
@@ -165,7 +165,7 @@ def simulate(
         with progress_bar() as progress:
             write_animation(animation, subject, motion, progress=progress)
         answer["animation"] = str(animation)
-    report(answer, rows=_rows(subject, history))
+    report(answer, rows=_rows(subject, history) + _band_rows(bands))
     _name_drowned(history)
 
 
@@ -285,7 +285,22 @@ def _bands(others: "list[History]") -> dict[str, dict[str, dict[str, float]]]:
             for kind in ("mean", "std", "maximum")
         }
 
-    return {name: one(index) for index, name in enumerate(others[0].lines.names)}
+    names = others[0].lines.names if others else ()
+    return {name: one(index) for index, name in enumerate(names)}
+
+
+def _band_rows(bands: dict[str, dict[str, dict[str, float]]]) -> list[tuple[str, str]]:
+    """Each line's band over the drawn moorings, of its mean and its largest tension."""
+
+    def shown(band: dict[str, float]) -> str:
+        return f"{band['mean']:7.2f} ({band['p05']:.2f} to {band['p95']:.2f})"
+
+    rows = (
+        [("Moorings drawn", "mean and 5 to 95 % over them, of mean and of most")] if bands else []
+    )
+    for name, band in bands.items():
+        rows.append((name, f"{shown(band['mean_kn'])} and {shown(band['maximum_kn'])} kN"))
+    return rows
 
 
 def _statistics(

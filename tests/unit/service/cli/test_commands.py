@@ -208,7 +208,7 @@ def test_a_cage_of_another_topology_settles_and_is_simulated(tmp_path, pytestcon
         assert len(answer["bridle_tension_kn"]) == 18
     refused = run("simulate", *sea, "--mooring-draws", 2)
     assert refused.exit_code == 2
-    assert "no campaign, twin, drawn mooring or animation. Give a cage's file." in refused.stderr
+    assert "no twin, drawn mooring or animation. Give a cage's file." in refused.stderr
 
 
 def test_waves_that_a_field_never_had_are_refused_with_its_folder(tmp_path, monkeypatch):

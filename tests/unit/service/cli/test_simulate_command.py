@@ -1,6 +1,7 @@
 """``seacage simulate``: a sea state in time, on the console and on disk."""
 
 import json
+from dataclasses import replace
 
 import pytest
 from typer.testing import CliRunner
@@ -66,14 +67,18 @@ def test_every_line_of_a_whole_mooring_is_reported(small_cage, tmp_path):
 
 
 def test_drawn_moorings_answer_with_a_band(small_cage, tmp_path):
-    path = tmp_path / "uncertain.toml"
-    Cage.read(small_cage).altered(bridles={"pretension_sd_n": 2e3}).write(path)
-    words = (*SEA, *SHORT, "--cage", path, "--mooring-draws", "2", "--json")
+    words = (*SEA, *SHORT, "--cage", small_cage, "--mooring-draws", "2", "--json")
     bands = json.loads(run(*words).stdout)["mooring_draws"]
     assert bands["draws"] == 2
     band = bands["lines"]["bridle-6"]["mean_kn"]
     assert band["p05"] < band["mean"] < band["p95"]
-    refused = run(*SEA, *SHORT, "--cage", small_cage, "--mooring-draws", "2")
+    table = run(*words[:-1]).stdout
+    assert "mean and 5 to 95 % over them" in table
+    assert f"({band['p05']:.2f} to {band['p95']:.2f}) and" in table
+    path, cage = tmp_path / "certain.toml", Cage.read(small_cage)
+    bridles = replace(cage.bridles, pretension_sd=None, length_sd=None)
+    replace(cage, bridles=bridles, frame=replace(cage.frame, rope_slack_sd=None)).write(path)
+    refused = run(*SEA, *SHORT, "--cage", path, "--mooring-draws", "2")
     assert refused.exit_code == Exit.REFUSED
     assert "states no uncertainty" in refused.stderr
 
