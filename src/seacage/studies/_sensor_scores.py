@@ -142,17 +142,16 @@ def compare(answer: Answer, field: FieldRecord) -> dict[str, Readings]:
     return {name: _compare(answer, field, name) for name in known}
 
 
-def score_sensor(
-    readings: Readings,  # in order of time
-    *,
-    seed: int,  # of the bootstrap
-    # Predictions beside the noise-free truth, at the readings' times and perhaps at others
-    truth: Readings | None = None,
-) -> SensorScore:
+def score_sensor(readings: Readings, *, seed: int, truth: Readings | None = None) -> SensorScore:
     """Score one sensor: raw, and on means over one and over ten minutes.
 
     The bootstrap's blocks hold as much as a day has on average, for errors resemble themselves
     from tide to tide, or an eighth of the readings where there are fewer days than eight.
+
+    ``readings``: in order of time.
+    ``seed``: of the bootstrap.
+    ``truth``: predictions beside the noise-free truth, at the readings' times and perhaps at
+    others.
     """
     if truth is not None:
         truth = truth.rows(np.isin(truth.time, readings.time))

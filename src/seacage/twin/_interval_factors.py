@@ -60,14 +60,14 @@ def counts(tracked: Tracked, sample: Sample, *, every_s: float) -> bool:
     return due and reading_of(sample)[1] == Flag.GOOD
 
 
-def adapt_factor(
-    tracked: Tracked,  # of the sensor
-    sample: Sample,  # of the sensor, in the unit of its key
-    expected: MeanStd,  # in the water at its time
-    *,
-    rate: float,  # step of the factor's logarithm; 0 changes nothing [-]
-) -> Tracked:
-    """Return a sensor's state after a reading that counts."""
+def adapt_factor(tracked: Tracked, sample: Sample, expected: MeanStd, *, rate: float) -> Tracked:
+    """Return a sensor's state after a reading that counts.
+
+    ``tracked``: of the sensor.
+    ``sample``: of the sensor, in the unit of its key.
+    ``expected``: in the water at its time.
+    ``rate``: step of the factor's logarithm; 0 changes nothing [-].
+    """
     (mean, std), (reading, _) = expected, reading_of(sample)
     held = abs(reading - mean) <= INTERVAL_SD * tracked.factor * std
     factor = AdaptiveConformal(rate=rate).stepped(tracked.factor, held=held)

@@ -31,15 +31,14 @@ class Session:
 
 
 class Sessions:
-    """The sessions of a data folder: a service that is started again knows them still."""
+    """The sessions of a data folder: a service that is started again knows them still.
 
-    def __init__(
-        self,
-        tokens: Tokens,  # that they stand for; the sessions lie beside them
-        *,
-        lasting_s: float,  # how long one lasts after it was begun or renewed [s]
-        most: int = 50,  # of one token; its oldest ends when another begins
-    ) -> None:
+    ``tokens``: that they stand for; the sessions lie beside them.
+    ``lasting_s``: how long one lasts after it was begun or renewed [s].
+    ``most``: of one token; its oldest ends when another begins.
+    """
+
+    def __init__(self, tokens: Tokens, *, lasting_s: float, most: int = 50) -> None:
         self._most, self._lock = most, Lock()
         self._tokens, self._lasting = tokens, timedelta(seconds=lasting_s)
         self._path = tokens.folder / "sessions.json"

@@ -68,14 +68,12 @@ class Tokens:
         self._damaged: list[str] = []
         self._seen: tuple[int, int, int] | None = None
 
-    def mint(
-        self,
-        scopes: Iterable[str],  # see ``Grant``
-        *,
-        keep: bool,  # write its hash down, so that it outlives this process
-        name: str = "",  # of whoever will hold it
-    ) -> str:
+    def mint(self, scopes: Iterable[str], *, keep: bool, name: str = "") -> str:
         """Make a token and return it; nobody can read it again.
+
+        ``scopes``: see ``Grant``.
+        ``keep``: write its hash down, so that it outlives this process.
+        ``name``: of whoever will hold it.
 
         Raises InputError: a scope that does not exist, or a name that is too long or already
         another's.

@@ -238,13 +238,13 @@ class Finding:
     message: str
 
 
-def report_findings(
-    command: str,  # whose findings they are
-    findings: Sequence[Finding],  # all of them, in the order in which they are read
-    *,
-    code: Exit,  # to end with where one is wrong
-) -> None:
-    """Print what was found, and end with a code where something is wrong."""
+def report_findings(command: str, findings: Sequence[Finding], *, code: Exit) -> None:
+    """Print what was found, and end with a code where something is wrong.
+
+    ``command``: whose findings they are.
+    ``findings``: all of them, in the order in which they are read.
+    ``code``: to end with where one is wrong.
+    """
     wrong = [one for one in findings if one.state == "wrong"]
     report(
         {"ok": not wrong}

@@ -37,14 +37,14 @@ _DRAWN_MODELS = (PCA_PAPER, GCN_PAPER, GCN_OURS, SHAPE_CURRENT)
 _NETS = (PCA_PAPER, GCN_PAPER)
 
 
-def page_values(
-    # Its cage is drawn in one sea state; its progress is called as ("draw", done, total) in figures
-    # of sensors
-    chain: Chain,
-    scored: ScoredWays,  # ways of training and their scores, with the readings of the first
-    shapes: ShapeStudy,  # scores of models of the whole shape on held-out simulations
-) -> dict[str, object]:
-    """Figures and names of the page besides the scores."""
+def page_values(chain: Chain, scored: ScoredWays, shapes: ShapeStudy) -> dict[str, object]:
+    """Figures and names of the page besides the scores.
+
+    ``chain``: its cage is drawn in one sea state; its progress is called as ("draw", done, total)
+    in figures of sensors.
+    ``scored``: ways of training and their scores, with the readings of the first.
+    ``shapes``: scores of models of the whole shape on held-out simulations.
+    """
     sea = SeaState(current_speed=_SHOWN_SPEED, current_to=chain.cage.site.current_to)
     return {
         "cage": chain.cage,

@@ -162,16 +162,14 @@ class Mode:
     evidence: Evidence  # all points, with the noise factors that were found
 
 
-def most_probable(
-    evidence: Evidence,  # all points
-    *,
-    # Starts beside the one at the prior's mean; few points get several times as many
-    restarts: int,
-    seed: int,  # of the subset and of the starts
-) -> Mode:
+def most_probable(evidence: Evidence, *, restarts: int, seed: int) -> Mode:
     """Most probable log hyperparameters.
 
     Each start is improved on a random subset, the best one then on all points.
+
+    ``evidence``: all points.
+    ``restarts``: starts beside the one at the prior's mean; few points get several times as many.
+    ``seed``: of the subset and of the starts.
     """
     random = np.random.default_rng(seed)
     if len(evidence.x) <= SMALL:

@@ -11,13 +11,14 @@ LONGEST_SHELF_S = 7 * 86400.0
 """Longest time to shelve an alarm for [s]; take it out of service for longer."""
 
 
-def evaluate(
-    alarm: Alarm,  # before
-    value: float | None,  # None where it is not known: it neither raises nor clears
-    limit: Limit,  # in the number's unit
-    now: datetime,  # the twin's clock
-) -> Changed:
-    """Evaluate an alarm with one more number."""
+def evaluate(alarm: Alarm, value: float | None, limit: Limit, now: datetime) -> Changed:
+    """Evaluate an alarm with one more number.
+
+    ``alarm``: before.
+    ``value``: None where it is not known: it neither raises nor clears.
+    ``limit``: in the number's unit.
+    ``now``: the twin's clock.
+    """
     ended = changed = ()
     if alarm.shelved_until is not None and now >= alarm.shelved_until:
         alarm, ended = end_shelving(alarm, now)

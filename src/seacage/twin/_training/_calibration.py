@@ -51,16 +51,16 @@ def calibrate(model: Correction, training: CageTraining, sensor: str) -> Correct
     return replace(model, spread=own_spread(model, errors, count))
 
 
-def own_spread(
-    model: Correction,  # fitted to the whole window
-    errors: HeldOut,  # of held-out readings
-    independent: int,  # number of independent readings among them
-) -> Spread:
+def own_spread(model: Correction, errors: HeldOut, independent: int) -> Spread:
     """Calibrate by a sensor's own readings, each predicted without its part of the window.
 
     Two variances are fitted to the squared errors, each as large as it has to be: the model's
     own, scaled, and that of the current which the buoy did not measure. Both are then scaled so
     that the intervals have their coverage, and a little more where the readings are few.
+
+    ``model``: fitted to the whole window.
+    ``errors``: of held-out readings.
+    ``independent``: number of independent readings among them.
     """
     terms = np.column_stack([errors.variance, errors.steepness**2])
     # Some are below 0, as the noise is known on average alone.
@@ -74,16 +74,16 @@ def own_spread(
     return replace(fitted, scale=fitted.scale * factor, water_sd=fitted.water_sd * factor)
 
 
-def spread_by_others(
-    model: Correction,  # fitted to the short window
-    others: Sequence[HeldOut],  # held-out readings of each of the others
-    days: float,  # of these readings, all sensors together
-) -> Spread:
+def spread_by_others(model: Correction, others: Sequence[HeldOut], days: float) -> Spread:
     """Calibrate a short training window by the held-out errors of other sensors.
 
     Each of the others is fitted within the short window, and predicts its readings on its other
     days. Its calibration factor is taken to be alike for all sensors of a cage, because it comes
     from what the window lacks: other currents, and a net that gets fouled.
+
+    ``model``: fitted to the short window.
+    ``others``: held-out readings of each of the others.
+    ``days``: of these readings, all sensors together.
     """
     plain = Spread()
     independent = max(days, 2.0)
