@@ -6,7 +6,7 @@ import numpy as np
 from _timing import ONCE, print_times, seconds
 
 from seacage.cage import Cage
-from seacage.conventions import Result
+from seacage.conventions import has_answer
 from seacage.dynamics import rest_shape, settle
 from seacage.dynamics._equilibrium._newton import nearer
 from seacage.dynamics._equilibrium._search import _balance, _first_shapes, _start
@@ -37,7 +37,7 @@ def reliability(cases: int, starts: int) -> None:
     begun, wall = time.process_time(), time.perf_counter()
     response = settle(CAGE, seas, starts=starts, workers=2)
     core, wall = time.process_time() - begun, time.perf_counter() - wall
-    done = np.mean(response.result == Result.CONVERGED)
+    done = np.mean(has_answer(response.result))
     several = np.sum(response.equilibria > 1)
     print(f"settle, {cases} random currents up to 1 m/s, seed {SEED}, from {starts} first shapes")
     print(f"  {100.0 * done:.1f} % settled, residuals up to {response.residual.max():.2g} N")

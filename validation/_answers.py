@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.cage import Cage, Structure
-from seacage.conventions import Result
+from seacage.conventions import has_answer
 from seacage.dynamics import LAWS, History, Mooring, MovingLaw, Response, settle, simulate
 from seacage.ocean import SeaState, Waves, regular_wave, sample_waves
 from validation._present_area import settle_on_present_area
@@ -96,7 +96,7 @@ def answers(
 
 
 def _settled(response: Response, case: int) -> Answer | None:
-    if response.result[case] != Result.CONVERGED:
+    if not has_answer(response.result)[case]:
         return None  # a shape that is not at rest proves nothing
     position, volume = response.node_position[case], float(response.volume[case])
     tension = response.line_tension[case]
@@ -138,7 +138,7 @@ def _simulated(
 
 
 def _mean(history: History, case: int) -> Answer | None:
-    if history.result[case] != Result.CONVERGED or history.result[-1] != Result.CONVERGED:
+    if not has_answer(history.result)[[case, -1]].all():
         return None
     tension = history.lines.tension
     return Answer(

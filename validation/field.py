@@ -8,7 +8,7 @@ from itertools import pairwise, product
 import numpy as np
 
 from seacage.cage import Cage
-from seacage.conventions import Result
+from seacage.conventions import has_answer
 from seacage.dynamics import LAWS, Law, settle
 from seacage.dynamics._parts._assembly import Assembly
 from seacage.dynamics._physics._flow import steady_flow
@@ -67,7 +67,7 @@ def flume_drags() -> dict[tuple[float, float, Law], tuple[np.ndarray, np.ndarray
             flow = steady_flow(assembly, velocity, law=law)
             position = np.concatenate([response.node_position, corners], axis=1)
             pipes = cylinder_force(assembly.cylinders, flow, position).sum(axis=1)[:, 1]
-            settled = np.where(response.result == Result.CONVERGED, 1.0, np.nan)
+            settled = np.where(has_answer(response.result), 1.0, np.nan)
             drags[weight, twine, law] = response.net_force[:, 1] * settled, pipes
     return drags
 

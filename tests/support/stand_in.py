@@ -16,11 +16,12 @@ from seacage.ocean import SeaState
 class StandIn:
     """Answers by a formula: the net leans with the current, the bridles up-stream pull.
 
-    Cases faster than its reach diverge; settled, those a little slower do not converge.
+    Cases faster than its reach diverge; settled, those a little slower do not converge. Cases
+    faster than it is known for are outside its validity.
     """
 
     def __init__(self) -> None:
-        self.reach = math.inf
+        self.reach = self.known = math.inf
         self.refuses = False
         self.settled: list[SeaState] = []
 
@@ -41,7 +42,7 @@ class StandIn:
         position[speed > self.reach] = np.nan
         away = cage.corner_position[cage.bridle_corner, :2] / 60.0
         tension = np.maximum(10e3 - 40e3 * area * speed[:, None] * (velocity @ away.T), 0.0)
-        result = np.full(len(seas), Result.CONVERGED)
+        result = np.where(speed > self.known, Result.OUTSIDE_VALIDITY, Result.CONVERGED)
         result[speed > 0.9 * self.reach] = Result.NOT_CONVERGED
         result[speed > self.reach] = Result.DIVERGED
         return SimpleNamespace(
@@ -97,7 +98,7 @@ class StandIn:
             volume_fraction=np.ones(len(sea)),
             quantile_levels=np.array(quantile_levels),
             second_moment=moment,
-            result=np.where(lost, Result.DIVERGED, Result.CONVERGED),
+            result=np.where(settled.result == Result.NOT_CONVERGED, 0, settled.result),
             hs_left_out=np.zeros(len(sea)),
             warnings=(),
             diverged_at=np.where(lost, 12.5, np.nan),

@@ -11,7 +11,7 @@ from jaxtyping import Float
 
 from seacage.cage import Cage, Structure, cage_or_structure
 from seacage.campaigns._pool import one_thread
-from seacage.conventions import InputError, Result, SeacageError
+from seacage.conventions import InputError, SeacageError, has_answer
 from seacage.dynamics import LAWS, PHYSICS, History, Mooring, MovingLaw, settle, simulate
 from seacage.ocean import SeaState
 
@@ -210,9 +210,9 @@ def _statistics(history: History) -> dict[str, np.ndarray]:
 
 
 def _moment(history: History) -> Float[np.ndarray, "coordinate coordinate"]:
-    """Sum over the converged cases, one after the other: the order is part of the number."""
+    """Sum over the cases to learn from, one after the other: the order is part of the number."""
     total = np.zeros(history.second_moment.shape[-2:])
-    for case in np.flatnonzero(history.result == Result.CONVERGED):
+    for case in np.flatnonzero(has_answer(history.result)):
         total += history.second_moment[case]
     return total.astype(np.float32)
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Int
 
-from seacage.conventions import Result
+from seacage.conventions import Result, has_answer
 from seacage.records import NOT_RUN, campaign_results, campaign_unsummed, campaign_variable
 
 
@@ -26,10 +26,10 @@ class CampaignStatus:
         "simulate" or "settle".
     total
         Cases planned.
-    converged, not_converged, diverged, drowned
+    converged, not_converged, diverged, drowned, outside_validity, slack
         Cases that ended so.
     failures
-        Cases that did not converge, each with the reason.
+        Cases without an answer to learn from, each with the reason.
     simulated_s
         Simulated time of the cases done, spin-up included; 0 for equilibria [s].
     core_seconds
@@ -46,6 +46,8 @@ class CampaignStatus:
     not_converged: int
     diverged: int
     drowned: int
+    outside_validity: int
+    slack: int
     failures: dict[int, str]
     simulated_s: float
     core_seconds: float
@@ -54,7 +56,12 @@ class CampaignStatus:
     @property
     def done(self) -> int:
         """Cases that have been run, however they ended."""
-        return self.converged + self.not_converged + self.diverged + self.drowned
+        return self.answers + self.not_converged + self.diverged + self.drowned
+
+    @property
+    def answers(self) -> int:
+        """Cases with an answer to learn from."""
+        return self.converged + self.outside_validity + self.slack
 
     @property
     def pace(self) -> float:
@@ -94,8 +101,8 @@ def campaign_status(out: str | Path) -> CampaignStatus:
 
 
 def _failures(store: Path, result: Int[np.ndarray, " case"]) -> dict[int, str]:
-    """Each case that did not converge: in which sea, and why."""
-    failed = np.flatnonzero((result != NOT_RUN) & (result != Result.CONVERGED)).tolist()
+    """Each case without an answer: in which sea, and why."""
+    failed = np.flatnonzero((result != NOT_RUN) & ~has_answer(result)).tolist()
     if not failed:
         return {}
     names = ("current_speed", "current_to", "hs", "tp", "wave_from", "residual", "diverged_at")
@@ -120,7 +127,7 @@ def _reason(result: Result, row: Mapping[str, float]) -> str:
         with_left = "" if np.isnan(left) else f" with {left:.3g} N left on a node"
         return f"it did not come to rest; its last shape is kept{with_left}"
     if result is Result.DROWNED:
-        return "its collar or a corner buoy is under water in the mean"
+        return "its collar or a corner buoy is under water"
     when = row["diverged_at"]
     after = "" if np.isnan(when) else f" after {when:.4g} s of simulated time"
     return f"its positions left the finite numbers{after}, so it carries no answer"

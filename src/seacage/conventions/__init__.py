@@ -1,6 +1,6 @@
 """Names, units, axes, errors and codes that every room shares."""
 
-from seacage.conventions._codes import RESULTS, Flag, Result
+from seacage.conventions._codes import RESULTS, Flag, Result, gravest, has_answer
 from seacage.conventions._constants import GRAVITY, WATER_DENSITY, WATER_VISCOSITY
 from seacage.conventions._directions import compass, fold_degrees, towards
 from seacage.conventions._durations import count_times, duration_text
@@ -46,6 +46,8 @@ __all__ = [
     "count_times",
     "duration_text",
     "fold_degrees",
+    "gravest",
+    "has_answer",
     "no_progress",
     "parse_json",
     "parse_toml",

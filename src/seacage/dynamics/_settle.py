@@ -8,14 +8,15 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from seacage.cage import Cage, Structure
-from seacage.conventions import InputError, Result
+from seacage.conventions import InputError, Result, gravest
 from seacage.dynamics._equilibrium import Equilibria, equilibria
-from seacage.dynamics._moored import Mooring, is_drowned, moor, part
+from seacage.dynamics._moored import Mooring, moor, mooring_result, part
 from seacage.dynamics._parts import Assembly
 from seacage.dynamics._physics import (
     Law,
     SteadyFlow,
     Tuning,
+    beyond_law,
     flow_of_laws,
     law_of_each,
     law_warnings,
@@ -53,6 +54,7 @@ class Response:
     result
         Of ``seacage.conventions.Result``: a case that did not converge carries its last
         shape, one that diverged NaN; one that drowned is an equilibrium of a cage under water.
+        ``has_answer`` says which are to learn from.
     equilibria
         Number of different equilibria that were found from the given number of starts.
     equilibrium_spread
@@ -166,8 +168,9 @@ def settle(
     found = equilibria(assembly, flow, starts=starts, workers=workers)
     rest = rest_shape(cage, mooring=mooring, hold_collar=hold_collar)
     response = _response(cage, assembly, flow, found, rest)
-    warnings = law_warnings(laws, np.linalg.norm(velocity, axis=1))
-    response = replace(response, warnings=warnings)
+    speed = np.linalg.norm(velocity, axis=1)
+    result = gravest(response.result, {Result.OUTSIDE_VALIDITY: beyond_law(laws, speed)})
+    response = replace(response, result=result, warnings=law_warnings(laws, speed))
     return _only_case(response) if isinstance(sea, SeaState) else response
 
 
@@ -247,8 +250,8 @@ def _response(
     rest: Float[np.ndarray, "node 3"],
 ) -> Response:
     net = found.position[:, : cage.node_count]
-    volume, drowned = cage.volume(net), is_drowned(cage, assembly, found.position)
-    tension = line_tension(assembly, found.position)
+    volume, tension = cage.volume(net), line_tension(assembly, found.position)
+    collar = found.position[:, assembly.collar, 2].mean(axis=1)
     # the collar may be held, too
     anchors = np.setdiff1d(np.flatnonzero(assembly.fixed), assembly.collar)
     return Response(
@@ -262,9 +265,7 @@ def _response(
         volume=volume,
         volume_fraction=volume / cage.volume(rest),
         residual=found.residual,
-        result=np.where(
-            drowned & (found.result == Result.CONVERGED), Result.DROWNED, found.result
-        ).astype(np.int64),
+        result=mooring_result(cage, assembly, found.result, collar, tension[None]),
         equilibria=found.number,
         equilibrium_spread=found.spread,
         unstable=found.unstable,

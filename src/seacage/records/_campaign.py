@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from seacage.conventions import Origin, RecordError, Result
+from seacage.conventions import Origin, RecordError, has_answer
 from seacage.ocean import SeaState
 from seacage.records._brief import brief
 from seacage.records._campaign_store import MEAN, NOT_RUN, SEA, campaign_unsummed, not_a_campaign
@@ -70,7 +70,7 @@ class CampaignRecord:
     net_force_std, volume_std
         Of the load [N] and of the volume [m3] over time.
     second_moment
-        Mean over time and all converged cases of the products of all coordinates, as
+        Mean over time and all cases to learn from of the products of all coordinates, as
         displacements from the design shape: coordinate 3 n + a is axis a of node n [m2].
     line_names, line_kinds
         All ropes and chains of the mooring, the bridles first; none where they were not kept.
@@ -122,8 +122,8 @@ class CampaignRecord:
 
     @property
     def converged(self) -> Bool[np.ndarray, " case"]:
-        """The cases to learn from."""
-        return self.result == Result.CONVERGED
+        """The cases to learn from: those that ended with an answer."""
+        return has_answer(self.result)
 
     @property
     def sha256(self) -> str:

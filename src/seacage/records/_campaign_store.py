@@ -16,7 +16,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.cage import MooringLines
-from seacage.conventions import RecordError, Result
+from seacage.conventions import RecordError, Result, has_answer
 from seacage.ocean import SeaState
 from seacage.records._keys import KEYS
 from seacage.records._lines import CONSTANT, LINES, line_variable
@@ -168,7 +168,7 @@ def write_cases(
     first: int,
     answers: Mapping[str, np.ndarray],  # by the names of the store's variables
     *,
-    # Sum of the second moments of the block's converged cases [m2]
+    # Sum of the second moments of the block's cases to learn from [m2]
     moment: Float[np.ndarray, "coordinate coordinate"] | None = None,
     core_seconds: float = np.nan,  # what the block took
 ) -> None:
@@ -222,7 +222,7 @@ def finish_campaign(path: Path) -> None:
     if np.any(result == NOT_RUN):
         return
     if campaign_unsummed(path):
-        _sum_up(path, converged=int(np.sum(result == Result.CONVERGED)))
+        _sum_up(path, answers=int(np.sum(has_answer(result))))
     for kind in ("unborn", "spent"):  # what a kill left behind
         for left in path.parent.glob(f".{escape(path.name)}.{'?' * 8}.{kind}"):
             shutil.rmtree(left, ignore_errors=True)
@@ -289,7 +289,7 @@ def _create_block_moments(group: Any, blocks: int, coordinates: int) -> None:
     )
 
 
-def _sum_up(path: Path, *, converged: int) -> None:
+def _sum_up(path: Path, *, answers: int) -> None:
     """Write the second moment of all blocks, in their order, and put them away."""
     try:
         total = _sum(_array(path, f"{_BLOCKS}/moment"))
@@ -297,7 +297,7 @@ def _sum_up(path: Path, *, converged: int) -> None:
         return
     if np.isnan(total).any():  # the same, a little later: missing blocks read as NaN
         return
-    mean = total / converged if converged else np.full_like(total, np.nan)
+    mean = total / answers if answers else np.full_like(total, np.nan)
     _array(path, "second_moment")[:] = mean
     with suppress(FileNotFoundError):
         (path / _BLOCKS).rename(_beside(path, "spent"))  # at once: a half would be in the way

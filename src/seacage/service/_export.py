@@ -16,7 +16,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from seacage.cage import Cage, Structure
-from seacage.conventions import InputError
+from seacage.conventions import InputError, Result
 from seacage.ocean import SeaState
 from seacage.records import KEYS, Record
 from seacage.surrogates import Prediction
@@ -321,7 +321,7 @@ def write_response(
             "volume_fraction": _variable("", share, "1", "of still water"),
             "residual": _variable("", float(response.residual), "N", "largest unbalanced force"),
             "result": _variable(
-                "", int(response.result), "1", "0 converged, 1 not, 2 diverged, 3 drowned"
+                "", int(response.result), "1", ", ".join(f"{c} {c.name.lower()}" for c in Result)
             ),
         },
         coords={

@@ -1,14 +1,17 @@
 """How far a campaign is."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from seacage.cage import Cage
 from seacage.campaigns import Plan, campaign_status, run_campaign
 from seacage.conventions import RecordError
 from seacage.ocean import SeaState
+from seacage.records import read_campaign
 from stand_in import StandIn
 
 SLOW = SeaState(current_speed=0.3, current_to=20.0)
@@ -51,6 +54,23 @@ def test_each_failure_is_reported_with_its_sea_and_its_reason(
         "numbers after 12.5 s of simulated time, so it carries no answer"
     }
     assert status.simulated_s == pytest.approx(2 * 2100.0 + 12.5)
+
+
+def test_a_case_outside_validity_is_counted_apart_and_learned_from(
+    small_cage: Cage, stand_in: StandIn, tmp_path: Path
+) -> None:
+    stand_in.known, stand_in.reach = 1.0, 1.38
+    lost = replace(FAST, current_speed=1.4)
+    run_campaign(small_cage, Plan.listed([SLOW, FAST, lost]), tmp_path / "c", workers=1)
+    status = campaign_status(tmp_path / "c")
+    ends = (status.converged, status.outside_validity, status.diverged, status.slack)
+    assert (ends, status.done, status.answers) == ((1, 1, 1, 0), 3, 2)
+    assert list(status.failures) == [2]
+    record = read_campaign(tmp_path / "c")
+    assert record.converged.tolist() == [True, True, False]
+    away = (record.node_position[:2] - small_cage.design_position).reshape(2, -1)
+    # stored in single precision
+    np.testing.assert_allclose(record.second_moment, away.T @ away / 2, rtol=1e-5, atol=1e-5)
 
 
 def test_an_equilibrium_that_was_not_found_is_reported_with_the_force_left(

@@ -1,5 +1,9 @@
 """Codes keep their numbers, for files and wires outlive versions."""
 
+from itertools import product
+
+import numpy as np
+
 from seacage.conventions import (
     RESULTS,
     Flag,
@@ -9,6 +13,8 @@ from seacage.conventions import (
     RecordError,
     Result,
     SeacageError,
+    gravest,
+    has_answer,
 )
 
 
@@ -23,8 +29,30 @@ def test_the_worse_flag_is_the_larger():
 
 def test_results_keep_their_numbers_and_each_has_a_message():
     expected = {"CONVERGED": 0, "NOT_CONVERGED": 1, "DIVERGED": 2, "DROWNED": 3}
+    expected |= {"OUTSIDE_VALIDITY": 4, "SLACK": 5}
     assert {result.name: result.value for result in Result} == expected
     assert set(RESULTS) == set(Result)
+
+
+def test_the_gravest_finding_names_a_case_however_they_are_put():
+    order = (
+        Result.DIVERGED,
+        Result.DROWNED,
+        Result.NOT_CONVERGED,
+        Result.SLACK,
+        Result.OUTSIDE_VALIDITY,
+        Result.CONVERGED,
+    )
+    for (grave, worse), (light, other) in product(enumerate(order), repeat=2):
+        found = gravest(np.array([worse, other]), {other: np.array([True, False])})
+        assert found.tolist() == [order[min(grave, light)], other]
+
+
+def test_what_was_computed_soundly_afloat_is_an_answer():
+    every = np.array(list(Result))
+    good = {Result.CONVERGED, Result.OUTSIDE_VALIDITY, Result.SLACK}
+    assert set(every[has_answer(every)]) == good
+    assert has_answer(np.array(-1)) == np.False_  # a case that has not been run
 
 
 def test_an_origin_reads_as_people_write_it():

@@ -92,7 +92,7 @@ def test_plain_xarray_reads_it_with_units_names_and_cell_methods(tmp_path, histo
         assert dataset["hs"].attrs["standard_name"] == "sea_surface_wave_significant_height"
         assert float(dataset["time"][1]) == 0.5
         assert dataset["result"].attrs["flag_meanings"] == (
-            "converged not_converged diverged drowned"
+            "converged not_converged diverged drowned outside_validity slack"
         )
 
 

@@ -2,13 +2,14 @@
 
 from seacage.dynamics._moored._choice import SPRINGS, Mooring, moor
 from seacage.dynamics._moored._detailed import Damage, broken, full_assembly
-from seacage.dynamics._moored._drowned import is_drowned
+from seacage.dynamics._moored._ends import SLACK, mooring_result
 from seacage.dynamics._moored._mass_scaling import scale_mass
 from seacage.dynamics._moored._mooring import anchor_assembly
 from seacage.dynamics._moored._parted import part
 from seacage.dynamics._moored._pretension import assemble
 
 __all__ = [
+    "SLACK",
     "SPRINGS",
     "Damage",
     "Mooring",
@@ -16,8 +17,8 @@ __all__ = [
     "assemble",
     "broken",
     "full_assembly",
-    "is_drowned",
     "moor",
+    "mooring_result",
     "part",
     "scale_mass",
 ]

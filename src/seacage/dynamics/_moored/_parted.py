@@ -33,8 +33,5 @@ def part(assembly: Assembly, names: Sequence[str]) -> Assembly:
     stiffness, lift = assembly.bars.stiffness.copy(), assembly.floats.stiffness.copy()
     stiffness[assembly.line_bars[parted[:bars]]] = NOTHING
     lift[assembly.line_floats[parted[bars:]]] = 0.0
-    return replace(
-        assembly,
-        bars=replace(assembly.bars, stiffness=stiffness),
-        floats=replace(assembly.floats, stiffness=lift),
-    )
+    floats = replace(assembly.floats, stiffness=lift)
+    return replace(assembly, bars=replace(assembly.bars, stiffness=stiffness), floats=floats)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Literal, TypeVar
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from seacage.conventions import WATER_VISCOSITY, InputError
 
@@ -187,12 +187,19 @@ def law_of_each(law: LawName | Sequence[LawName], cases: int) -> tuple[LawName, 
     return tuple(law)
 
 
+def beyond_law(
+    laws: Sequence[MovingLaw], current_speed: Float[np.ndarray, " case"]
+) -> Bool[np.ndarray, " case"]:
+    """Which cases meet a current [m/s] that their law is not known for."""
+    return (np.array(laws) == "kristiansen-faltinsen") & (current_speed > FASTEST)
+
+
 def law_warnings(
     laws: Sequence[MovingLaw], current_speed: Float[np.ndarray, " case"]
 ) -> tuple[str, ...]:
     """What to know of the laws at the current's speeds [m/s], in sentences."""
     met = current_speed[[law == "kristiansen-faltinsen" for law in laws]]
-    beyond = met[met > FASTEST]
+    beyond = current_speed[beyond_law(laws, current_speed)]
     if len(beyond) == 0:
         return ()
     most = f"{beyond.max():.3g} m/s"

@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from seacage.conventions import InputError
 from seacage.dynamics._kernel import Ocean
@@ -15,9 +15,11 @@ from seacage.ocean import CurrentProfile, SeaState, Waves, sample_waves
 MOST_COMPONENTS = 1000
 """Components of the waves of a case at most: the kernel keeps their phases on a thread's stack."""
 
-
 LEAST_LENGTH = 8.0
 """Shortest wave over the floating pipe's diameter for which Morison's equation holds [-]."""
+
+MOST_LEFT_OUT = 0.05
+"""Share of Hs in shorter waves, beyond which an answer is outside the loads' validity [-]."""
 
 
 def draw_waves(
@@ -92,6 +94,19 @@ def morison_waves(
         for one, whole in zip(kept, waves, strict=True)
     ]
     return kept, np.array(share)
+
+
+def beyond_morison(
+    left_out: Float[np.ndarray, " case"],
+) -> tuple[Bool[np.ndarray, " case"], tuple[str, ...]]:
+    """Cases of which more than a little of Hs is left out, and a sentence if there are any."""
+    beyond = left_out > MOST_LEFT_OUT
+    which = "" if len(beyond) == 1 else f"In {beyond.sum()} of {len(beyond)} cases up to "
+    warning = (
+        f"{which}{left_out.max():.0%} of Hs is in waves shorter than eight diameters of the "
+        "collar's pipes, for which the loads are not valid; they are left out."
+    )
+    return beyond, (warning,) if beyond.any() else ()
 
 
 def ocean_of(

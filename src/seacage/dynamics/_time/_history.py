@@ -53,11 +53,11 @@ class History:
         Share of Hs in waves that are too short for the loads on the collar's pipes, and are left
         out: those below eight pipe diameters, 1.6 s for 0.5 m [-].
     result
-        Of ``seacage.conventions.Result``; a case that drowned keeps its numbers.
+        Of ``seacage.conventions.Result``; all but those of a case that diverged are kept.
     diverged_at
         Simulated time at which a case was given up, spin-up included; NaN for the others [s].
     warnings
-        Sentences on where a law was used beyond what is known of it.
+        Sentences on where loads were used beyond what is known of them.
     """
 
     time: Float[np.ndarray, " t"]

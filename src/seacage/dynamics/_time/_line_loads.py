@@ -6,12 +6,10 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from seacage.cage import MooringLines
+from seacage.dynamics._moored import SLACK
 from seacage.dynamics._time._extremes import Extremes, extremes
 from seacage.dynamics._time._fatigue import damage_equivalent_load
 from seacage.dynamics._time._statistics import Statistics
-
-SLACK = 0.01
-"""Tension over pretension below which a line is slack [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

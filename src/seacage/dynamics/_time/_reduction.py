@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from seacage.conventions import Result
 from seacage.dynamics._kernel import REFRESH, March
-from seacage.dynamics._moored import is_drowned
+from seacage.dynamics._moored import mooring_result
 from seacage.dynamics._parts import Assembly, Body
 from seacage.dynamics._time._history import History, Statistics
 from seacage.dynamics._time._line_loads import line_loads
@@ -55,14 +55,14 @@ def _history(
     def of(what: str, sample: np.ndarray, count: int, origin: np.ndarray) -> Statistics:
         return Statistics(**moments(what, count, origin), quantile=_quantiles(sample, levels))
 
-    moved = _join(march, "node_sum", lanes).reshape(-1, 3) / counted
-    drowned = is_drowned(cage, assembly, (assembly.position + moved)[None])[0]
     every = max(1, -(-len(net) // VOLUMES))
     volume = cage.volume(net[::every].astype(np.float64))
     node = of("node", net, counted, assembly.position[: cage.node_count])
     tension = sampled["tensions"][:: steps.sample_every]
     lines = of("line", tension, counted * steps.each, np.zeros(len(assembly.anchor_bars)))
     bridles = slice(len(assembly.bridles))
+    collar = node.mean[assembly.collar, 2].mean(keepdims=True)
+    ended, every_tension = np.array([Result.CONVERGED]), sampled["tensions"][:, None]
     kept = slice(None) if simulation.series else slice(0)
     waves = march.has_waves(lanes[0])
     at_anchor = assembly.anchor_bars >= 0
@@ -103,7 +103,7 @@ def _history(
         quantile_levels=levels,
         second_moment=_second_moment(simulation, net),
         hs_left_out=np.asarray(0.0),
-        result=np.asarray(Result.DROWNED if drowned else Result.CONVERGED),
+        result=mooring_result(cage, assembly, ended, collar, every_tension).reshape(()),
         diverged_at=np.asarray(_time_of_loss(march, lanes)),
         warnings=(),
     )

@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.cage import Cage, Structure
-from seacage.conventions import InputError, Progress
+from seacage.conventions import InputError, Progress, Result, gravest
 from seacage.dynamics._kernel import REFRESH, March, Ocean, Steps, has_long_crests, simulation_lanes
 from seacage.dynamics._moored import Mooring
 from seacage.dynamics._parts import Assembly
@@ -19,10 +19,11 @@ from seacage.dynamics._physics import (
     MOVING_LAWS,
     MovingLaw,
     Tuning,
+    beyond_law,
     law_of_each,
     law_warnings,
 )
-from seacage.dynamics._time._forcing import draw_waves, morison_waves, ocean_of
+from seacage.dynamics._time._forcing import beyond_morison, draw_waves, morison_waves, ocean_of
 from seacage.dynamics._time._history import History
 from seacage.dynamics._time._reduction import histories, stack
 from seacage.dynamics._time._simulation import Simulation
@@ -178,15 +179,15 @@ def simulate(
     depth = cage.site.water_depth
     kept, left_out = morison_waves(draw_waves(seas, waves, seed, depth), cage.pipe_diameter)
     ocean = ocean_of(seas, kept, current_profile, depth)
-    cases = [
-        replace(case, hs_left_out=np.asarray(share))
-        for case, share in zip(
-            _simulate(simulation, laws, seas, ocean, workers, progress), left_out, strict=True
-        )
-    ]
     fastest = np.linalg.norm(ocean.current, axis=-1).max(axis=-1)
+    short, warnings = beyond_morison(left_out)
+    outside = beyond_law(laws, fastest) | short
+    cases = _simulate(simulation, laws, seas, ocean, workers, progress)
     history = cases[0] if isinstance(sea, SeaState) else stack(cases)
-    return replace(history, warnings=law_warnings(laws, fastest))
+    outside, left_out = (each.reshape(history.result.shape) for each in (outside, left_out))
+    result = gravest(history.result, {Result.OUTSIDE_VALIDITY: outside})
+    warnings = law_warnings(laws, fastest) + warnings
+    return replace(history, hs_left_out=left_out, result=result, warnings=warnings)
 
 
 def _simulate(

@@ -31,7 +31,6 @@ group = typer.Typer(
 Store = Annotated[Path, typer.Argument(help="The campaign's folder, a Zarr store.")]
 
 _FAILURES_SHOWN = 20
-_ENDS = ("converged", "not_converged", "diverged", "drowned")
 
 _SCRIPT = """\
 #!/bin/bash
@@ -113,7 +112,7 @@ def run(
         )
     reached = campaign_status(store)
     _report_status(store, reached)
-    if reached.finished and not reached.converged:
+    if reached.finished and not reached.answers:
         raise exit_with("campaign run: no case converged. Check the cage's file.", Exit.FAILED)
 
 
@@ -224,7 +223,9 @@ def _parse_options(words: list[str]) -> dict[str, Any]:
 
 
 def _report_status(store: Path, reached: "CampaignStatus") -> None:
-    about = asdict(reached)
+    from seacage.conventions import Result
+
+    about, ends = asdict(reached), [result.name.lower() for result in Result]
     failures = [{"case": case, "reason": reason} for case, reason in reached.failures.items()]
     report(
         {"store": str(store), "origin": "computed", **about, "done": reached.done}
@@ -233,7 +234,7 @@ def _report_status(store: Path, reached: "CampaignStatus") -> None:
         rows=[
             ("Campaign", f"{store}: plan {reached.plan}, {reached.method}, {reached.law}"),
             ("Done", f"{reached.done} of {reached.total}{_pending_checksums(reached)}"),
-            *((name.replace("_", " "), str(about[name])) for name in _ENDS),
+            *((name.replace("_", " "), str(about[name])) for name in ends),
             *_pace(reached),
             *_failure_rows(reached),
         ],

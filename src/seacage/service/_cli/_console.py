@@ -20,6 +20,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, get_args, ge
 import typer
 
 if TYPE_CHECKING:
+    import numpy as np
+
     from seacage.conventions import Progress
 
 R = TypeVar("R")
@@ -175,6 +177,19 @@ def report(answer: Mapping[str, object], *, rows: Sequence[tuple[str, str]] = ()
     width = max((len(name) for name, _ in rows), default=0)
     for name, value in rows:
         typer.echo(f"{name:<{width}}  {value}")
+
+
+def report_case(
+    command: str, answer: Mapping[str, object], result: "np.ndarray", rows: list[tuple[str, str]]
+) -> None:
+    """Print one case's answer and how it ended, and fail where there is none to learn from."""
+    from seacage.conventions import RESULTS, Result, has_answer
+
+    code = Result(int(result))
+    ended = f"{code.name.lower().replace('_', ' ')}: {RESULTS[code]}"
+    report(answer, rows=([("Result", ended)] if code else []) + rows)
+    if not has_answer(result):
+        raise exit_with(f"{command}: {ended}.", Exit.FAILED)
 
 
 def without_nan(value: object) -> object:

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from seacage.service._cli._console import Exit, exit_with, guard, report
+from seacage.service._cli._console import guard, report_case
 from seacage.service._cli._options import (
     CageName,
     LawOptions,
@@ -47,7 +47,6 @@ def settle(
         law: How the water loads the netting.
         out: Write the response as CF-NetCDF.
     """
-    from seacage.conventions import RESULTS, Result
     from seacage.dynamics import LAWS
     from seacage.dynamics import settle as settled
 
@@ -82,10 +81,7 @@ def settle(
 
         write_response(out, subject, state, law, response, net.changes)
         answer["written"] = str(out)
-    report(answer, rows=_rows(subject, response))
-    result = Result(int(response.result))
-    if result is not Result.CONVERGED:
-        raise exit_with(f"settle: {result.name.lower()}: {RESULTS[result]}.", Exit.FAILED)
+    report_case("settle", answer, response.result, _rows(subject, response))
 
 
 def _answer(cage: "Cage | Structure", response: "Response") -> dict[str, object]:

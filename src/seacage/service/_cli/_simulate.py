@@ -4,7 +4,7 @@ from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from seacage.service._cli._console import Exit, exit_with, guard, progress_bar, report
+from seacage.service._cli._console import Exit, exit_with, guard, progress_bar, report_case
 from seacage.service._cli._options import (
     CageName,
     Law,
@@ -28,9 +28,6 @@ if TYPE_CHECKING:
     from seacage.dynamics import History, LineLoads, Statistics, WaterLoad
     from seacage.figures import Motion
     from seacage.ocean import SeaState, Waves
-
-_MOST_LEFT_OUT = 0.05
-"""Share of Hs in waves too short for the model, beyond which the answer says so [-]."""
 
 _SMOOTH = 0.5
 """Between samples that an animation can follow waves by [s]."""
@@ -165,22 +162,15 @@ def simulate(
         with progress_bar() as progress:
             write_animation(animation, subject, motion, progress=progress)
         answer["animation"] = str(animation)
-    report(answer, rows=_rows(subject, history) + _band_rows(bands))
-    _name_drowned(history)
+    rows = _rows(subject, history) + _band_rows(bands)
+    report_case("simulate", answer, history.result, rows)
 
 
 def _remarks(history: "History") -> list[str]:
-    """Sentences on what lies outside the model, and on lines that bear nothing."""
-    remarks, lines = list[str](), history.lines
-    if history.hs_left_out > _MOST_LEFT_OUT:
-        remarks.append(
-            f"{history.hs_left_out:.0%} of Hs is in waves shorter than eight diameters of the "
-            "collar's pipes, for which the loads are not valid; they are left out."
-        )
+    """Sentence on lines that bear nothing, if there are any."""
+    lines = history.lines
     slack = [n for n, share in zip(lines.names, lines.slack_share, strict=True) if share > 0.99]
-    if slack:
-        remarks.append(f"Slack throughout: {', '.join(slack)}.")
-    return remarks
+    return [f"Slack throughout: {', '.join(slack)}."] if slack else []
 
 
 def _check_file(path: Path | None, ending: str) -> None:
@@ -205,13 +195,6 @@ def _refuse_failure(history: "History") -> None:
             f"{RESULTS[result]}. Look at the cage's file and the sea state.",
             Exit.FAILED,
         )
-
-
-def _name_drowned(history: "History") -> None:
-    from seacage.conventions import RESULTS, Result
-
-    if history.result == Result.DROWNED:
-        raise exit_with(f"simulate: drowned: {RESULTS[Result.DROWNED]}.", Exit.FAILED)
 
 
 def _answer(

@@ -100,6 +100,8 @@ def test_the_status_reports_the_first_failures_and_json_all(tmp_path, monkeypatc
         converged=70,
         not_converged=0,
         drowned=0,
+        outside_validity=0,
+        slack=0,
         diverged=30,
         failures=failures,
         simulated_s=2100.0,

@@ -78,6 +78,14 @@ def test_a_laws_changes_reach_the_answer(run):
     assert load("--lift-factor", 1.6)[1][2] > plain[2]
 
 
+def test_an_answer_outside_validity_is_named_and_does_not_fail(run):
+    result = run("settle")
+    assert result.exit_code == 0
+    assert "Result" in result.stdout
+    assert "outside validity: a load law was used beyond where it is known" in result.stdout
+    assert "Result" not in run("settle", "--law", "loland").stdout
+
+
 @pytest.mark.parametrize("command", ["settle", "simulate"])
 def test_a_file_holds_one_law(run, command, tmp_path):
     result = run(command, "--laws", "all", "--out", tmp_path / "sea.nc")
