@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.cage._cage import Cage
+from seacage.cage._structure import Structure
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -17,7 +18,7 @@ class MooringLines:
     ----------
     names, kinds
         Such as "anchor-1" and "bridle", "frame line", "anchor line", "buoy line" or a structure's
-        "line".
+        "line" and "tie".
     capacity
         Breaking load over material factor; NaN where it is not known [N].
     pretension
@@ -64,8 +65,14 @@ class MooringLines:
         )
 
 
-def mooring_lines(cage: Cage, *, anchored: bool) -> MooringLines:
-    """A cage's bridles; with its frame on anchors also frame lines, anchor lines and buoy lines."""
+def mooring_lines(cage: Cage | Structure, *, anchored: bool) -> MooringLines:
+    """A cage's bridles; with its frame on anchors also frame lines, anchor lines and buoy lines.
+
+    A structure's lines, and the ropes of its ties.
+    """
+    if isinstance(cage, Structure):
+        ropes = MooringLines.alike(cage.rope_names, "tie")
+        return MooringLines.alike(cage.bridle_names, "line").joined(ropes)
     parts, anchors = cage.bridles, cage.anchor_lines
     bridles = MooringLines.alike(
         cage.bridle_names,

@@ -51,8 +51,9 @@ class Structure(TomlFile):
         if not self.ring:
             raise InputError(f"Structure {self.name}: it has no ring. Add a [[ring]].")
         places = (*self.ring, *self.point, *self.anchor)
-        for parts in (self.section, self.twine, self.net, self.tie, places, self.line):
+        for parts in (self.section, self.twine, self.net, self.tie, places):
             _check_distinct(self.name, [part.name for part in parts])
+        _check_distinct(self.name, [*self.bridle_names, *self.rope_names])
         self._check_references()
         for place in (*self.point, *self.anchor):
             if place.position[2] < -self.site.water_depth - 1e-6:
@@ -214,6 +215,12 @@ class Structure(TomlFile):
     def bridle_names(self) -> tuple[str, ...]:
         """The lines, in the order in which their tensions are reported."""
         return tuple(line.name for line in self.line)
+
+    @property
+    def rope_names(self) -> tuple[str, ...]:
+        """The ropes of ties, tie by tie, numbered from the east; reported after the lines."""
+        ropes = [tie for tie in self.tie if tie.kind == "ropes"]
+        return tuple(f"{tie.name}-{n + 1}" for tie in ropes for n in range(self._members(tie)))
 
     @property
     def bridle_count(self) -> int:

@@ -11,7 +11,7 @@ from typing import Any, Literal
 import numpy as np
 from jaxtyping import Int
 
-from seacage.cage import Cage, MooringLines, Structure, mooring_lines
+from seacage.cage import Cage, Structure, mooring_lines
 from seacage.campaigns._cases import CaseBlock, Simulator, answer_block, software_version
 from seacage.campaigns._cluster import map_on_cluster
 from seacage.campaigns._pool import map_tasks
@@ -237,7 +237,7 @@ def _create(
         seas=plan.seas,
         nodes=cage.node_count,
         lines=cage.bridle_count,
-        mooring=_lines(cage, by) if by.in_time else None,
+        mooring=mooring_lines(cage, anchored=by.mooring == "catenary") if by.in_time else None,
         block=by.block,
         attributes=attributes,
         wave_seeds=waves if by.in_time else None,
@@ -245,12 +245,6 @@ def _create(
         quantile_levels=by.quantile_levels if by.in_time else (),
         second_moment=by.in_time and by.second_moment,
     )
-
-
-def _lines(cage: Cage | Structure, by: Simulator) -> MooringLines:
-    if isinstance(cage, Structure):
-        return MooringLines.alike(cage.bridle_names, "line")
-    return mooring_lines(cage, anchored=by.mooring == "catenary")
 
 
 def _attributes(cage: Cage | Structure, plan: Plan, by: Simulator) -> dict[str, Any]:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float, Int
 
-from seacage.cage import MooringLines, Section, Structure
+from seacage.cage import Section, Structure, mooring_lines
 from seacage.conventions import GRAVITY, WATER_DENSITY, InputError
 from seacage.dynamics._parts._assembly import (
     Assembly,
@@ -41,8 +41,9 @@ def assemble_structure(structure: Structure) -> Assembly:
     surface; ropes count as always under water, and so do nets but a roof at the water line,
     which counts as always dry. Ties and lines are lumped into their segments' ends, and have
     the same added mass in all directions, which a ring has across itself alone. ``bridles``
-    are the first bars of the lines, in the order of ``structure.bridle_names``. Friction on the
-    sea bed is left out.
+    are the first bars of the lines, in the order of ``structure.bridle_names``; of the ropes of
+    ties, which follow them in ``lines``, it is the uppermost bar that is reported. Friction on
+    the sea bed is left out.
 
     Raises
     ------
@@ -59,8 +60,8 @@ def assemble_structure(structure: Structure) -> Assembly:
     lumps = _lumps(structure, members)
     _check_floats(structure, members)
     _check_masses(structure, lumps)
-    pieces = np.array([line.segments for line in structure.line], dtype=np.int64)
-    lines = len(bars.length) - np.cumsum(pieces[::-1])[::-1]
+    first = len(bars.length) - sum(len(member.ends) for member in members)
+    bridles, ropes = (_first_bars(members, first, is_line=one) for one in (True, False))
     fixed = np.zeros(len(position), dtype=bool)
     fixed[structure.anchor_nodes] = True
     return Assembly(
@@ -79,11 +80,11 @@ def assemble_structure(structure: Structure) -> Assembly:
         fixed=fixed,
         chord=ring_chords(position, [structure.ring_nodes(i) for i in range(len(structure.ring))]),
         bars=bars,
-        bridles=lines,
-        lines=MooringLines.alike(structure.bridle_names, "line"),
-        line_bars=lines,
+        bridles=bridles,
+        lines=mooring_lines(structure, anchored=True),
+        line_bars=np.concatenate([bridles, ropes]),
         line_floats=np.zeros(0, dtype=np.int64),
-        anchor_bars=np.full(len(lines), -1),
+        anchor_bars=np.full(len(bridles) + len(ropes), -1),
         net_bars=np.zeros(0, dtype=np.int64),
         bends=_bends(structure),
         panels=panels,
@@ -106,6 +107,7 @@ class _Member:
     pushed: bool
     weighs: bool = True  # a brace's diagonals stand for stiff joints, and weigh nothing
     is_line: bool = False
+    each: int = 0  # bars of each rope of a tie
 
 
 def _members(structure: Structure) -> list[_Member]:
@@ -133,7 +135,8 @@ def _ties(structure: Structure) -> list[_Member]:
         given = np.full(len(ends), tie.length / tie.segments)
         length = given if tie.length else _span(structure, ends)
         pushed = section.is_pipe or tie.kind != "ropes"
-        members.append(_Member(section=section, ends=ends, length=length, pushed=pushed))
+        each = tie.segments if tie.kind == "ropes" else 0
+        members.append(_Member(section=section, ends=ends, length=length, pushed=pushed, each=each))
         if tie.kind == "braces":
             upper, lower = nodes[:, 0], nodes[:, -1]
             aslant = np.vstack(
@@ -161,6 +164,17 @@ def _lines(structure: Structure) -> list[_Member]:
             _Member(section=section, ends=ends, length=length, pushed=pushed, is_line=True)
         )
     return members
+
+
+def _first_bars(members: list[_Member], first: int, *, is_line: bool) -> Int[np.ndarray, " line"]:
+    """First bar of each line, or of each rope of a tie; the members' bars begin at ``first``."""
+    bars = list[int]()
+    for member in members:
+        each = len(member.ends) if is_line else member.each
+        if each and member.is_line == is_line:
+            bars += range(first, first + len(member.ends), each)
+        first += len(member.ends)
+    return np.array(bars, dtype=np.int64)
 
 
 def _span(structure: Structure, ends: Int[np.ndarray, "bar 2"]) -> Float[np.ndarray, " bar"]:

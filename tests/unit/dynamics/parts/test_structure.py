@@ -53,6 +53,47 @@ AROUND = 16.0 * 5.0 * np.sin(np.pi / 8.0)  # the octagon of a ring [m]
 AREA = AROUND * 6.0
 
 
+HANGERS = Tie(
+    name="hanger", section="rope", upper="collar", lower="tube", every=2, segments=2, kind="ropes"
+)
+HUNG = replace(
+    DRUM,
+    ring=(COLLAR, SINKER, Ring(name="tube", radius=5.0, depth=8.0, section="sinker")),
+    tie=(HANGERS,),
+)
+
+
+def test_ropes_of_ties_are_lines_after_the_lines():
+    parts = assemble_structure(HUNG)
+    assert parts.lines.names == (*DRUM.bridle_names, *(f"hanger-{n}" for n in range(1, 5)))
+    assert parts.lines.kinds == ("line",) * 3 + ("tie",) * 4
+    ends = parts.bars.ends[parts.line_bars]
+    np.testing.assert_array_equal(ends[3:], HUNG.tie_nodes(0)[:, :2])
+    np.testing.assert_array_equal(ends[:3], parts.bars.ends[parts.bridles])
+    struts = replace(HUNG, tie=(replace(HANGERS, kind="struts", segments=1),))
+    assert assemble_structure(struts).lines.names == DRUM.bridle_names
+
+
+def test_ropes_bear_at_rest_what_hangs_on_them():
+    still = SeaState(current_speed=0.0, current_to=0.0)
+    on_each = replace(HUNG, tie=(replace(HANGERS, every=1),))
+    history = simulate(on_each, still, duration=5.0, spin_up=60.0)
+    # in water: the tube, and the lower three quarters of the ropes
+    tube = (25.0 - WATER_DENSITY * np.pi / 4.0 * 0.1**2) * AROUND
+    ropes = (0.9 - WATER_DENSITY * np.pi / 4.0 * 0.03**2) * 8 * 6.0
+    np.testing.assert_allclose(
+        history.lines.tension.mean[3:].sum(), GRAVITY * (tube + ropes), rtol=0.01
+    )
+    gone = simulate(HUNG, still, duration=1.0, spin_up=20.0, ramp=0.0, parted=["hanger-2"])
+    assert gone.lines.tension.maximum[4] < 10.0  # of 637 N
+
+
+def test_a_line_called_as_a_rope_of_a_tie_is_refused():
+    renamed = replace(HUNG.line[0], name="hanger-4")
+    with pytest.raises(InputError, match="two parts of a kind are named 'hanger-4'"):
+        replace(HUNG, line=(renamed, *HUNG.line[1:]))
+
+
 def test_a_line_is_reported_by_its_first_bar_in_the_file_s_order():
     for line, bar in enumerate(PARTS.bridles):
         np.testing.assert_array_equal(PARTS.bars.ends[bar], DRUM.line_nodes(line)[:2])
