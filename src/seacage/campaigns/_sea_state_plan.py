@@ -22,7 +22,10 @@ _RANGES: Mapping[str, Mapping[str, Range]] = {
     "paper": {},
     "default": {"period_ratio": (0.8, 2.2)},
     "current": {"hs": (0.0, 0.0)},
+    "loads": {"hs": (0.05, 3.0), "period_ratio": (0.63, 3.0)},
 }
+_LIMITS: Mapping[str, Mapping[str, Any]] = {"loads": {"longest_tp": 18.0, "corner_every": 16}}
+"""What a plan has beside its ranges."""
 
 _DOOR = {
     "current_speed_m_s": "current_speed",
@@ -81,6 +84,8 @@ class Plan:
         hs: Range = (0.0, 3.0),
         period_ratio: Range = (1.0, 1.0),
         wave_from: Range = (0.0, 360.0),
+        longest_tp: float = math.inf,
+        corner_every: int | None = None,
         name: str = "sample",
     ) -> Self:
         """Draw sea states that fill the ranges evenly: a scrambled Sobol sequence.
@@ -104,6 +109,12 @@ class Plan:
             Least and largest significant wave height [m]; (0, 0) leaves the waves out.
         period_ratio
             Least and largest Tp / (5 sqrt(Hs)), with Tp in s and Hs in m.
+        longest_tp
+            Peak period at which the largest ratio ends [s].
+        corner_every
+            One case in so many lies on a corner of the ranges of current speed, Hs and period,
+            in turn, in directions of a draw of their own; None for no corners. A surrogate is
+            least sure there.
         name
             Of the plan.
 
@@ -122,7 +133,12 @@ class Plan:
             "wave_from": _range("wave_from", wave_from, "deg", 360.0),
         }
         low, high = np.array(list(ranges.values())).T
-        drawn = low + (high - low) * _sobol(seed, cases, len(ranges))
+        share = _sobol(seed, cases, len(ranges))
+        if corner_every is not None:
+            _put_on_corners(share, corner_every, seed)
+        drawn = low + (high - low) * share
+        longest = np.maximum(longest_tp / (5.0 * np.sqrt(np.maximum(drawn[:, 2], 1e-9))), low[3])
+        drawn[:, 3] = low[3] + (np.minimum(high[3], longest) - low[3]) * share[:, 3]
         seas = tuple(_sea(*row) for row in drawn.tolist())
         return cls(name=name, seas=seas, duration=duration, seed=seed)
 
@@ -139,7 +155,9 @@ class Plan:
         """Draw from ranges that have a name.
 
         ``paper``: the paper's, where Tp = 5 sqrt(Hs). ``default``: the same with
-        Tp / (5 sqrt(Hs)) from 0.8 to 2.2, as real seas have it. ``current``: no waves.
+        Tp / (5 sqrt(Hs)) from 0.8 to 2.2, as real seas have it. ``current``: no waves. ``loads``:
+        waves of 0.05 m and more, with Tp from the steepness limit to three times 5 sqrt(Hs), 18 s
+        at most, and one case in 16 on a corner of the ranges.
 
         Parameters
         ----------
@@ -151,7 +169,8 @@ class Plan:
             raise InputError(f"Plan.named: no plan {name!r}; there are: {', '.join(_RANGES)}.")
         own = {**_RANGES[name], **(ranges or {})}
         called = f"{name}, other {' and '.join(ranges)}" if ranges else name
-        return cls.sample(seed, cases, duration=duration, name=called, **own)
+        limits = _LIMITS.get(name, {})
+        return cls.sample(seed, cases, duration=duration, name=called, **own, **limits)
 
     @classmethod
     def grid(
@@ -308,6 +327,15 @@ def _sea(speed: float, to: float, hs: float, ratio: float, wave_from: float) -> 
         tp=5.0 * ratio * math.sqrt(hs),
         wave_from=wave_from,
     )
+
+
+def _put_on_corners(share: np.ndarray, every: int, seed: int) -> None:
+    """Move one case in so many to a corner of speed, Hs and period, in a draw of directions."""
+    moved = np.arange(every - 1, len(share), every)
+    if len(moved):
+        share[moved] = _sobol(seed + 1, len(moved), share.shape[1])
+        corner = np.arange(len(moved))[:, None] >> np.arange(3)
+        share[moved[:, None], (0, 2, 3)] = corner & 1
 
 
 def _sobol(seed: int, cases: int, dimensions: int) -> np.ndarray:

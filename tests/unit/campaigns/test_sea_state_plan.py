@@ -200,3 +200,18 @@ def test_a_table_that_is_no_plan_is_refused_with_its_row(
 def test_a_table_that_is_not_there_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"seas\.csv: .*cannot be read"):
         Plan.table(tmp_path / "seas.csv")
+
+
+def test_the_plan_for_loads_has_steep_and_long_seas_and_its_corners() -> None:
+    speed, _, hs, tp, _ = columns(plan := Plan.named("loads", 3, 480)).T
+    ratio = tp / (5.0 * np.sqrt(hs))
+    assert tp.max() == pytest.approx(18.0)
+    assert ratio.min() == pytest.approx(0.63)
+    assert 2.9 < ratio.max() <= 3.0 + 1e-12
+    corner = columns(plan)[15::16]
+    assert set(corner[:, 0].tolist()) == {0.0, 1.0}
+    assert set(corner[:, 2].tolist()) == {0.05, 3.0}
+    assert len(np.unique(corner[:, [0, 2, 3]], axis=0)) == 8
+    assert np.histogram(corner[:, 1], 4, (0.0, 360.0))[0].min() >= 5
+    assert np.delete(speed, np.s_[15::16]).min() > 0.0
+    assert plan.seas[:100] == Plan.named("loads", 3, 100).seas

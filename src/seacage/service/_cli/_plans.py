@@ -27,8 +27,9 @@ class PlanOptions:
     """Which sea states, as a shell gives them.
 
     Options:
-        plan: paper: its ranges; default: also other periods than 5 √Hs; current: no waves; or the
-            path of a plan that was written, ending in .json.
+        plan: paper: its ranges; default: also other periods than 5 √Hs; current: no waves; loads:
+            periods up to 18 s, for loads in waves; or the path of a plan that was written, ending
+            in .json.
         grid: Instead of a plan every combination, e.g. hs_m=0,1,2 or, 11 values from 0 to 1,
             current_speed_m_s=0:1:11.
         listed: Instead of a plan a CSV file of sea states: current_speed_m_s, current_to_deg and,
