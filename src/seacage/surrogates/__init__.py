@@ -10,9 +10,15 @@ from seacage.surrogates._calibration import (
 )
 from seacage.surrogates._design import spread_design, window_design
 from seacage.surrogates._domain import Domain
-from seacage.surrogates._features import current_features, metocean_features, wave_features
+from seacage.surrogates._features import (
+    current_features,
+    metocean_features,
+    sea_features,
+    wave_features,
+)
 from seacage.surrogates._gcn import GCN, FittedGCN
 from seacage.surrogates._gp import FittedGaussianProcess, GaussianProcess
+from seacage.surrogates._loads import FittedLoadGP, LoadCases, LoadGP, LoadPrediction, Loads
 from seacage.surrogates._multifidelity import AR1, NARGP, BatchedLevels, FittedNARGP
 from seacage.surrogates._prediction import Prediction, Predicts
 from seacage.surrogates._saving import Fitted, decode, encode
@@ -52,11 +58,16 @@ __all__ = [
     "FittedCoordinate",
     "FittedGCN",
     "FittedGaussianProcess",
+    "FittedLoadGP",
     "FittedNARGP",
     "FittedPcaGP",
     "FittedResidual",
     "FittedShapeGP",
     "GaussianProcess",
+    "LoadCases",
+    "LoadGP",
+    "LoadPrediction",
+    "Loads",
     "OverTime",
     "PcaGP",
     "Prediction",
@@ -80,6 +91,7 @@ __all__ = [
     "metocean_features",
     "mnll",
     "rmse",
+    "sea_features",
     "skill",
     "spread_design",
     "variance_components",

@@ -93,6 +93,34 @@ def metocean_features(
     return np.hstack([current, wave_features(hs, wave_direction, tp=tp)])
 
 
+def sea_features(
+    current_velocity: Float[np.ndarray, "row 2"],
+    *,
+    hs: Float[np.ndarray, " row"],
+    tp: Float[np.ndarray, " row"],
+    wave_direction: Float[np.ndarray, "row 2"],
+) -> Float[np.ndarray, "row 7"]:
+    """Features of a sea whose loads vary with its waves.
+
+    Parameters
+    ----------
+    current_velocity
+        Towards (east, north) [m/s].
+    hs, tp
+        Significant wave height [m], peak period [s].
+    wave_direction
+        Unit vector that the waves travel along, (east, north) [-].
+
+    Returns
+    -------
+    features
+        ``current_features``, Hs, east and north component of the direction, log(Tp / 1 s). A
+        symmetry turns both vectors.
+    """
+    current = current_features(current_velocity)
+    return np.column_stack([current, hs, wave_direction, np.log(np.maximum(tp, 1e-3))])
+
+
 def vector_columns(width: int) -> tuple[slice, ...]:
     """Where ``metocean_features`` of this width holds vectors."""
     return (slice(1, 3), slice(4, 6))[: 1 + (width > 3)]

@@ -1,6 +1,7 @@
 """What every surrogate answers, and the checks of what it is asked."""
 
 from dataclasses import dataclass, replace
+from statistics import NormalDist
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -22,6 +23,13 @@ class Prediction(Rows):
 
     mean: Float[np.ndarray, "row *rest"]
     std: Float[np.ndarray, "row *rest"]
+
+    def interval(
+        self, level: float
+    ) -> tuple[Float[np.ndarray, "row *rest"], Float[np.ndarray, "row *rest"]]:
+        """Bounds that hold a share of a normal distribution, the same share beyond either."""
+        half = self.std * NormalDist().inv_cdf(0.5 + level / 2.0)
+        return self.mean - half, self.mean + half
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -8,12 +8,21 @@ from seacage.conventions import ModelError
 from seacage.surrogates._arrays import Arrays, Settings, setting
 from seacage.surrogates._gcn import FittedGCN
 from seacage.surrogates._gp import FittedGaussianProcess
+from seacage.surrogates._loads import FittedLoadGP
 from seacage.surrogates._multifidelity import FittedNARGP
 from seacage.surrogates._prediction import Predicts
 from seacage.surrogates._shape import FittedPcaGP, FittedShapeGP
 from seacage.surrogates._tables import Table
 
-Fitted = FittedGaussianProcess | FittedGCN | FittedNARGP | FittedPcaGP | FittedShapeGP | Table
+Fitted = (
+    FittedGaussianProcess
+    | FittedGCN
+    | FittedLoadGP
+    | FittedNARGP
+    | FittedPcaGP
+    | FittedShapeGP
+    | Table
+)
 
 
 def encode(fitted: Fitted) -> tuple[Settings, Arrays]:
@@ -48,7 +57,7 @@ def decode(
     model = setting(settings, "model", str)
     if model == FittedNARGP.MODEL:
         return FittedNARGP.from_arrays(settings, arrays, lower=lower)
-    for kind in (FittedGaussianProcess, FittedGCN, FittedPcaGP, FittedShapeGP, Table):
+    for kind in (FittedGaussianProcess, FittedGCN, FittedLoadGP, FittedPcaGP, FittedShapeGP, Table):
         if model == kind.MODEL:
             return kind.from_arrays(settings, arrays)
     raise ModelError(f"The saved model is a {model!r}, which this version does not know.")

@@ -1,0 +1,250 @@
+"""Surrogate of all lines' loads in waves: mean, standard deviation, three-hour maximum, wear."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar, Self
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.conventions import InputError
+from seacage.surrogates._arrays import Arrays, Settings, array
+from seacage.surrogates._gp import (
+    FittedGaussianProcess,
+    KernelName,
+    StationaryKernel,
+    check_options,
+    fit_process,
+    processes_from_arrays,
+    processes_to_arrays,
+    select_likelihood_outputs,
+)
+from seacage.surrogates._loads._loads import EULER, LoadCases, LoadPrediction, Loads
+from seacage.surrogates._prediction import Prediction, check_inputs
+from seacage.surrogates._shape import Symmetry
+
+HEIGHT = 3
+"""Feature of ``sea_features`` that holds Hs."""
+
+OFFSET = 0.02
+"""Added before a logarithm is taken, over the statistic's median [-]."""
+
+LEAST_HS = 1e-3
+"""Below it a sea is flat, and has the scatter of this one in proportion [m]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LoadGP:
+    """Gaussian processes of lines' loads in waves, not yet fitted.
+
+    The mean is learned as it is. Standard deviation, largest tension of three hours above the
+    mean, and damage-equivalent load are learned as logarithms of their ratio to Hs, as loads grow
+    with the waves and their scatter with the loads. Half-hours of one sea differ, so each has
+    noise, of a size that may depend on the sea.
+
+    Parameters
+    ----------
+    kernel
+        Of all of them; lines going slack put kinks in their loads.
+    restarts
+        Random starts of each hyperparameter search beside the deterministic one.
+    symmetry
+        Of the lines' places: every case is learned with all its images. Needs ``sea_features``.
+    """
+
+    kernel: KernelName = "matern-5/2"
+    restarts: int = 1
+    symmetry: Symmetry | None = None
+
+    def __post_init__(self) -> None:
+        check_options(kernel=self.kernel, restarts=self.restarts)
+
+    def fit(
+        self,
+        x: Float[np.ndarray, "n feature"],
+        loads: LoadCases,
+        *,
+        duration: float,
+        seed: int = 0,
+    ) -> "FittedLoadGP":
+        """Learn from features and loads.
+
+        Parameters
+        ----------
+        x
+            One row per case, from ``sea_features``; all with waves.
+        loads
+            Of each case.
+        duration
+            That each case's statistics are over [s].
+        seed
+            Of the subset of points and of the random starts.
+        """
+        x = check_inputs(x, what="LoadGP.fit")
+        if len(x) != len(loads.mean):
+            raise InputError(f"LoadGP.fit: {len(x)} rows of x but {len(loads.mean)} of loads.")
+        if np.any(x[:, HEIGHT] < LEAST_HS):
+            row = int(np.argmin(x[:, HEIGHT]))
+            raise InputError(
+                f"LoadGP.fit: row {row} has Hs = {x[row, HEIGHT]:g} m, but the scatter of loads is "
+                "learned from waves. Leave cases without waves out."
+            )
+        above = _above_mean(loads)
+        offset = {name: OFFSET * float(np.median(one)) for name, one in above.items()}
+        outputs = {"mean": loads.mean} | {
+            name: np.log((one + offset[name]) / x[:, [HEIGHT]]) for name, one in above.items()
+        }
+        images, tables = _images(self.symmetry, x, outputs)
+        return FittedLoadGP(
+            processes={
+                name: fit_process(
+                    StationaryKernel(self.kernel),
+                    images,
+                    table,
+                    likelihood_outputs=select_likelihood_outputs(table),
+                    restarts=self.restarts,
+                    seed=seed,
+                )
+                for name, table in tables.items()
+            },
+            offset=offset,
+            scatter=_largest_scatter(self.symmetry, loads),
+            duration=duration,
+        )
+
+
+def _above_mean(loads: LoadCases) -> dict[str, Float[np.ndarray, "case line"]]:
+    """Statistics that grow with the waves, the largest above the mean [N]."""
+    largest = np.where(np.isfinite(loads.expected), loads.expected, loads.largest)
+    found = {"std": loads.std, "maximum": np.maximum(largest - loads.mean, 0.0)}
+    if np.isfinite(loads.damage_equivalent).any():
+        found["damage"] = np.nan_to_num(loads.damage_equivalent)
+    return found
+
+
+def _largest_scatter(symmetry: Symmetry | None, loads: LoadCases) -> Float[np.ndarray, " line"]:
+    """Gumbel scale of the largest value over its mean height above the mean, of each line [-]."""
+    height = loads.expected - loads.mean
+    share = (loads.expected - loads.most_probable) / np.where(height > 0.0, height, np.nan) / EULER
+    if symmetry is not None:
+        share = np.concatenate([share[:, source] for source in symmetry.source])
+    known = np.isfinite(share).any(axis=0)
+    return np.where(known, np.nanmedian(np.where(known, share, 0.0), axis=0), 0.0)
+
+
+def _images(
+    symmetry: Symmetry | None,
+    x: Float[np.ndarray, "n feature"],
+    outputs: Mapping[str, Float[np.ndarray, "n line"]],
+) -> tuple[Float[np.ndarray, "row feature"], dict[str, Float[np.ndarray, "row line"]]]:
+    """All images of each case, image by image."""
+    if symmetry is None:
+        return x, dict(outputs)
+    every = range(len(symmetry))
+    return np.concatenate([symmetry.turned(x, image) for image in every]), {
+        name: np.concatenate([one[:, symmetry.source[image]] for image in every])
+        for name, one in outputs.items()
+    }
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class FittedLoadGP:
+    """Processes of lines' loads in waves.
+
+    Parameters
+    ----------
+    processes
+        By statistic: "mean" [N], and the logarithms of "std", "maximum" (above the mean) and,
+        where any line has a T-N curve, "damage", over Hs.
+    offset
+        Added to a statistic before its logarithm was taken [N].
+    scatter
+        Gumbel scale of the largest value over its mean height above the mean, of each line [-].
+    duration
+        That the statistics of the training are over [s].
+    """
+
+    MODEL: ClassVar[str] = "loads"
+
+    processes: Mapping[str, FittedGaussianProcess]
+    offset: Mapping[str, float]
+    scatter: Float[np.ndarray, " line"]
+    duration: float
+
+    def predict(self, x: Float[np.ndarray, "row feature"], *, duration: float = 1800.0) -> Loads:
+        """Loads at each row of features.
+
+        Parameters
+        ----------
+        x
+            From ``sea_features``.
+        duration
+            Over which mean, standard deviation and wear are asked for: the shorter, the more
+            they scatter from one time to another [s].
+        """
+        height = np.maximum(x[:, [HEIGHT]], LEAST_HS)
+        share = self.duration / duration
+        mean, std = self._answer("mean", x, noise=share)
+        calm = np.zeros_like(mean)
+
+        def above(name: str, base: np.ndarray, gumbel: np.ndarray, noise: float) -> LoadPrediction:
+            if name not in self.processes:
+                return LoadPrediction(
+                    base=base, size=base + np.nan, log_std=calm, gumbel=calm, offset=0.0
+                )
+            log, spread = self._answer(name, x, noise=noise)
+            return LoadPrediction(
+                base=base,
+                size=height * np.exp(log),
+                log_std=spread,
+                gumbel=gumbel,
+                offset=self.offset[name],
+            )
+
+        return Loads(
+            mean=Prediction(mean=mean, std=std),
+            std=above("std", calm, calm, share),
+            maximum_3h=above("maximum", mean, calm + self.scatter, 0.0),
+            damage_equivalent=above("damage", calm, calm, share),
+        )
+
+    def _answer(
+        self, name: str, x: Float[np.ndarray, "row feature"], *, noise: float
+    ) -> tuple[Float[np.ndarray, "row line"], Float[np.ndarray, "row line"]]:
+        """Mean, and standard deviation with so much of the training's noise variance."""
+        process = self.processes[name]
+        found = process.predict(x)
+        return found.mean, np.sqrt(found.std**2 + noise * process.noise_at(x))
+
+    def to_arrays(self) -> tuple[Settings, Arrays]:
+        """Everything that ``from_arrays`` needs."""
+        settings, arrays = processes_to_arrays(list(self.processes.values()))
+        own = {"model": self.MODEL, "statistics": list(self.processes), "processes": settings}
+        offset = np.array(list(self.offset.values()))
+        return own, arrays | {
+            "offset": offset,
+            "scatter": self.scatter,
+            "duration": np.array([self.duration]),
+        }
+
+    @classmethod
+    def from_arrays(cls, settings: Mapping[str, object], arrays: Mapping[str, np.ndarray]) -> Self:
+        """The surrogate that ``to_arrays`` described.
+
+        Raises
+        ------
+        ModelError
+            A setting or an array is missing, of another kind or shape, or not finite.
+        """
+        from seacage.surrogates._arrays import setting_list
+
+        names = setting_list(settings, "statistics", str)
+        processes = processes_from_arrays(settings, "processes", arrays)
+        lines = len(processes[0].centre)
+        offset = array(arrays, "offset", len(names) - 1).tolist()
+        return cls(
+            processes=dict(zip(names, processes, strict=True)),
+            offset=dict(zip(names[1:], offset, strict=True)),
+            scatter=array(arrays, "scatter", lines),
+            duration=float(array(arrays, "duration", 1)[0]),
+        )

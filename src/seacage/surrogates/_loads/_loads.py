@@ -1,0 +1,153 @@
+"""Statistics of lines' loads in waves, and predictions of them on the scale of their logarithm."""
+
+import math
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+from jaxtyping import Float
+
+from seacage.conventions import InputError, Rows
+from seacage.surrogates._prediction import Prediction
+
+EULER = 0.5772156649015329
+"""Mean of a standard Gumbel variable."""
+
+HALVINGS = 40
+"""Of the bracket of a quantile."""
+
+NODES, WEIGHTS = np.polynomial.hermite_e.hermegauss(9)
+"""Of the quadrature over a logarithm's normal distribution."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class LoadCases(Rows):
+    """Loads of a campaign's lines, one row per case.
+
+    Parameters
+    ----------
+    mean, std
+        Of the tension [N].
+    most_probable, expected
+        Most probable and expected largest tension of three hours; NaN where a line had too few
+        peaks, being slack nearly all the time [N].
+    largest
+        Of the case itself, which counts where ``expected`` is NaN [N].
+    damage_equivalent
+        Range of cycles at 1 Hz that wear the line as much; NaN in all cases of a line without a
+        T-N curve [N].
+    """
+
+    mean: Float[np.ndarray, "case line"]
+    std: Float[np.ndarray, "case line"]
+    most_probable: Float[np.ndarray, "case line"]
+    expected: Float[np.ndarray, "case line"]
+    largest: Float[np.ndarray, "case line"]
+    damage_equivalent: Float[np.ndarray, "case line"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class LoadPrediction(Rows):
+    """A load above a base, log-normal as far as it is not known, and Gumbel as far as waves vary.
+
+    The load is base + size · exp(log_std · n) · (1 + gumbel · (g − 0.577)) − offset, with n
+    standard normal and g standard Gumbel.
+
+    Parameters
+    ----------
+    base
+        What the load is above [N].
+    size
+        Median of the rest, the offset included [N].
+    log_std
+        Standard deviation of the rest's logarithm; NaN where no honest interval is known [-].
+    gumbel
+        Scale of the largest value's scatter over the rest; 0 for what is no largest value [-].
+    offset
+        Taken from the sum; no load is below its base [N].
+    """
+
+    base: Float[np.ndarray, "case line"]
+    size: Float[np.ndarray, "case line"]
+    log_std: Float[np.ndarray, "case line"]
+    gumbel: Float[np.ndarray, "case line"]
+    offset: float
+
+    @property
+    def mean(self) -> Float[np.ndarray, "case line"]:
+        """Expected load [N]."""
+        known = np.nan_to_num(self.log_std)
+        return self._load(self.size * np.exp(0.5 * known**2))
+
+    @property
+    def std(self) -> Float[np.ndarray, "case line"]:
+        """Standard deviation of the load [N]."""
+        square = np.expm1(self.log_std**2)
+        scatter = self.gumbel**2 * math.pi**2 / 6.0
+        size = self.size * np.exp(0.5 * self.log_std**2)
+        return size * np.sqrt(square + scatter * (1.0 + square))
+
+    def interval(
+        self, level: float
+    ) -> tuple[Float[np.ndarray, "case line"], Float[np.ndarray, "case line"]]:
+        """Bounds that hold a share of the loads, the same share beyond either [N]."""
+        if not 0.0 < level < 1.0:
+            raise InputError(f"interval: level = {level:g} is no share. Give e.g. 0.95.")
+        lower, upper = (self._quantile(0.5 + side * level / 2.0) for side in (-1.0, 1.0))
+        return lower, upper
+
+    def without_interval(self) -> Self:
+        """The same where no honest interval is known; the mean keeps its size."""
+        known = np.nan_to_num(self.log_std)
+        return replace(
+            self,
+            size=self.size * np.exp(0.5 * known**2),
+            log_std=np.full_like(self.log_std, np.nan),
+        )
+
+    def _load(self, above: Float[np.ndarray, "case line"]) -> Float[np.ndarray, "case line"]:
+        return self.base + np.maximum(above - self.offset, 0.0)
+
+    def _quantile(self, share: float) -> Float[np.ndarray, "case line"]:
+        """By halving a bracket of the factor on ``size``, at all cases and lines at once."""
+        widest = np.abs(NODES).max() * np.nan_to_num(self.log_std)
+        most = np.exp(widest) * (1.0 + 40.0 * self.gumbel) + 1e-9
+        least = np.zeros_like(most)
+        for _ in range(HALVINGS):
+            middle = 0.5 * (least + most)
+            above = self._share_below(middle) > share
+            least, most = np.where(above, least, middle), np.where(above, middle, most)
+        factor = np.where(np.isfinite(self.log_std), 0.5 * (least + most), np.nan)
+        return self._load(self.size * factor)
+
+    def _share_below(self, factor: Float[np.ndarray, "case line"]) -> np.ndarray:
+        from scipy.special import ndtr
+
+        with np.errstate(divide="ignore", over="ignore"):
+            plain = ndtr(np.log(factor) / np.maximum(self.log_std, 1e-12))
+            around = factor[..., None] * np.exp(-self.log_std[..., None] * NODES) - 1.0
+            gumbel = np.maximum(self.gumbel[..., None], 1e-12)
+            extreme = np.exp(-np.exp(-(around / gumbel + EULER))) @ (WEIGHTS / WEIGHTS.sum())
+        return np.where(self.gumbel > 0.0, extreme, plain)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Loads(Rows):
+    """Predicted loads of lines, one row per case.
+
+    Parameters
+    ----------
+    mean, std
+        Of the tension over the time that was asked for [N].
+    maximum_3h
+        Largest tension of three hours: its mean is the expected one, its interval holds the
+        realised one [N].
+    damage_equivalent
+        Range of cycles at 1 Hz that wear the line as much; NaN for a line without a T-N
+        curve [N].
+    """
+
+    mean: Prediction
+    std: LoadPrediction
+    maximum_3h: LoadPrediction
+    damage_equivalent: LoadPrediction
