@@ -21,12 +21,7 @@ def make_windows(*, days: int = 16, each: int = 12, seed: int = 0) -> Windows:
     return Windows(
         sensors=sensors,
         end=START + (np.arange(1, count + 1) * (86400e6 / each)).astype("timedelta64[us]"),
-        water=Metocean(
-            current_velocity=velocity,
-            hs=np.zeros(count),
-            wave_direction=np.tile([0.0, 1.0], (count, 1)),
-        ),
-        period=np.zeros(count),
+        water=Metocean.without_waves(velocity),
         surveyed=np.ones(count, bool),
         truth=1.5 * low + rng.normal(scale=0.1, size=low.shape),
         low=low,

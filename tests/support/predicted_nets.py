@@ -17,13 +17,7 @@ CAGE = Cage.named("ace").altered(mesh={"spokes": 8})
 NOW = datetime(2020, 1, 18, tzinfo=UTC)
 
 
-def water(velocity: np.ndarray) -> Metocean:
-    count = len(velocity)
-    return Metocean(
-        current_velocity=velocity,
-        hs=np.zeros(count),
-        wave_direction=np.tile([0.0, 1.0], (count, 1)),
-    )
+water = Metocean.without_waves
 
 
 def answered(twin: Twin, east: float, north: float, *, age_s: float = 60.0) -> Answered:

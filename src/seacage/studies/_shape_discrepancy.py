@@ -75,7 +75,7 @@ def learned_discrepancy(
     return Discrepancy.fit(
         twin.cage,
         velocity,
-        predicted=twin.predict(_water(velocity)).node_position,
+        predicted=twin.predict(Metocean.without_waves(velocity)).node_position,
         true=shapes.node_position,
         origin=Origin.VIRTUAL_FIELD,
     )
@@ -102,7 +102,7 @@ def score_points(
     random = np.random.default_rng(seed)
     foretold, happened, speed = list[np.ndarray](), list[np.ndarray](), list[float]()
     for velocity, true in zip(shapes.current_velocity, shapes.node_position, strict=True):
-        net = PredictedNet.under(twin, _water(velocity[None]), t=_NOW)
+        net = PredictedNet.under(twin, Metocean.without_waves(velocity[None]), t=_NOW)
         point = _near(net, random, points)
         foretold.append(net.clearance(point, below=below).p_below)
         happened.append(twin.cage.nearest(point, true).distance < below)
@@ -122,20 +122,13 @@ def score_paths(
     random = np.random.default_rng(seed)
     foretold, happened, speed = list[float](), list[bool](), list[float]()
     for velocity, true in zip(shapes.current_velocity, shapes.node_position, strict=True):
-        net = PredictedNet.under(twin, _water(velocity[None]), t=_NOW)
+        net = PredictedNet.under(twin, Metocean.without_waves(velocity[None]), t=_NOW)
         for _ in range(paths):
             along = net.along(_path(net, random), below=below)
             foretold.append(along.p_below)
             happened.append(bool(twin.cage.nearest(along.point, true).distance.min() < below))
             speed.append(float(np.hypot(*velocity)))
     return Reliability(p=np.array(foretold), happened=np.array(happened), speed=np.array(speed))
-
-
-def _water(velocity: Float[np.ndarray, "case 2"]) -> Metocean:
-    still = np.zeros(len(velocity))
-    return Metocean(
-        current_velocity=velocity, hs=still, wave_direction=np.column_stack([still, still + 1.0])
-    )
 
 
 def _near(

@@ -20,6 +20,9 @@ INPUT_KEYS: Mapping[Input, tuple[str, ...]] = {
 }
 """The door keys that each kind of input is made from."""
 
+WATER_KEYS = (*INPUT_KEYS["current"], *INPUT_KEYS["waves"], "tp_s")
+"""All door keys of the water."""
+
 
 def input_keys(inputs: Iterable[Input]) -> list[str]:
     """Return the door keys of some inputs."""
@@ -34,14 +37,16 @@ class Metocean(Rows):
     ----------
     current_velocity
         Towards (east, north) [m/s].
-    hs
-        Significant wave height [m].
+    hs, tp
+        Significant wave height [m] and peak period [s]; where there are no waves the period is of
+        no meaning.
     wave_direction
         Unit vector the waves travel along, (east, north) [-].
     """
 
     current_velocity: Float[np.ndarray, "case 2"]
     hs: Float[np.ndarray, " case"]
+    tp: Float[np.ndarray, " case"]
     wave_direction: Float[np.ndarray, "case 2"]
 
     @classmethod
@@ -51,26 +56,33 @@ class Metocean(Rows):
         return cls(
             current_velocity=np.array([s.current_velocity for s in seas]).reshape(-1, 2),
             hs=np.array([s.hs for s in seas], dtype=float),
+            tp=np.array([s.peak_period for s in seas], dtype=float),
             wave_direction=np.array([s.wave_direction for s in seas]).reshape(-1, 2),
         )
+
+    @classmethod
+    def without_waves(cls, current_velocity: Float[np.ndarray, "case 2"]) -> Self:
+        """Take currents in a flat sea."""
+        flat = np.zeros(len(current_velocity))
+        direction = np.column_stack([flat, flat + 1.0])
+        return cls(current_velocity=current_velocity, hs=flat, tp=flat, wave_direction=direction)
 
     @classmethod
     def from_columns(cls, columns: Mapping[str, Float[np.ndarray, " case"]], count: int) -> Self:
         """Read columns named and united as at the doors; a missing one is all NaN."""
         unknown = np.full(count, np.nan)
-        speed, current_to, hs, wave_from = (
-            columns.get(key, unknown) for key in input_keys(INPUT_KEYS)
-        )
+        speed, current_to, hs, wave_from, tp = (columns.get(key, unknown) for key in WATER_KEYS)
         return cls(
             current_velocity=towards(speed, current_to),
             hs=hs,
+            tp=tp,
             wave_direction=-towards(np.ones(count), wave_from),
         )
 
     @classmethod
     def of_record(cls, record: Record) -> Self:
         """Read every row of a buoy's record; a value that failed its checks is NaN."""
-        keys = [key for key in input_keys(INPUT_KEYS) if key in record.values]
+        keys = [key for key in WATER_KEYS if key in record.values]
         usable = {key: np.where(record.usable(key), record.values[key], np.nan) for key in keys}
         return cls.from_columns(usable, len(record))
 
@@ -78,17 +90,18 @@ class Metocean(Rows):
         return len(self.hs)
 
     @property
-    def table(self) -> Float[np.ndarray, "case 5"]:
+    def table(self) -> Float[np.ndarray, "case 6"]:
         """All its numbers, side by side."""
-        return np.column_stack([self.current_velocity, self.hs, self.wave_direction])
+        return np.column_stack([self.current_velocity, self.hs, self.wave_direction, self.tp])
 
     @classmethod
-    def from_table(cls, table: Float[np.ndarray, "case 5"]) -> Self:
+    def from_table(cls, table: Float[np.ndarray, "case 6"]) -> Self:
         """Read what ``table`` gave."""
         return cls(
             current_velocity=table[:, :2].copy(),
             hs=table[:, 2].copy(),
-            wave_direction=table[:, 3:].copy(),
+            wave_direction=table[:, 3:5].copy(),
+            tp=table[:, 5].copy(),
         )
 
     def same(self, other: Self) -> bool:
@@ -125,8 +138,8 @@ class Metocean(Rows):
         """Features of the surrogates.
 
         The current enters as (speed, east, north), so that neither slack water nor north has
-        a seam; the waves as (hs, hs east, hs north). The peak period is left out: campaigns
-        tie it to hs.
+        a seam; the waves as (hs, hs east, hs north). The peak period is left out: ``Models.loads``
+        has it.
         """
         columns = {
             "current": lambda: current_features(self.current_velocity),

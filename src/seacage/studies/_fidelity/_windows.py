@@ -80,7 +80,6 @@ class Windows(Rows):
     sensors: Sensors  # whose responses these are
     end: Shaped[np.ndarray, " window"]  # of each window, UTC, ascending
     water: Metocean  # means of what the buoy reports to the twin
-    period: Float[np.ndarray, " window"]  # peak period of the waves, 0 without [s]
     # Windows that are spread evenly over the days; the others are those in which a shackle lives
     # besides
     surveyed: Bool[np.ndarray, " window"]
@@ -105,7 +104,8 @@ class Windows(Rows):
     def seas(self) -> list[SeaState]:
         """The water as sea states; a sea too steep to stand gets the shortest period it may."""
         velocity, hs = self.water.current_velocity, self.water.hs
-        period = np.maximum(self.period, 1.001 * np.sqrt(2.0 * np.pi * hs / GRAVITY / _STEEPEST))
+        shortest = 1.001 * np.sqrt(2.0 * np.pi * hs / GRAVITY / _STEEPEST)
+        period = np.maximum(np.nan_to_num(self.water.tp), shortest)
         wave_from = compass(-self.water.wave_direction)
         return [
             SeaState(current_speed=speed, current_to=to, hs=h, tp=tp, wave_from=origin)
@@ -134,12 +134,11 @@ def choose_windows(
     means = [window_means(truth.sensors[name], field) for name in sensors.names]
     end = means[0][0]
     responses = np.column_stack([sensors.response(i, mean) for i, (_, mean) in enumerate(means)])
-    water, period = buoy_water(field.buoy, end)
+    water = buoy_water(field.buoy, end)
     whole = Windows(
         sensors=sensors,
         end=end,
         water=water,
-        period=period,
         surveyed=np.zeros(len(end), bool),
         truth=responses,
         low=np.full(responses.shape, np.nan),
@@ -148,7 +147,7 @@ def choose_windows(
     if whole.waves:
         known += [water.hs, *water.wave_direction.T]
     else:
-        whole = replace(whole, water=_flat(water))
+        whole = replace(whole, water=Metocean.without_waves(water.current_velocity))
     usable = np.logical_and.reduce([np.isfinite(column) for column in known])
     if np.sum(usable) < _LEAST:
         raise InputError(
@@ -177,32 +176,23 @@ def window_means(
     return means.time, next(iter(means.values.values()))
 
 
-def buoy_water(
-    buoy: Record, end: Shaped[np.ndarray, " window"]
-) -> tuple[Metocean, Float[np.ndarray, " window"]]:
+def buoy_water(buoy: Record, end: Shaped[np.ndarray, " window"]) -> Metocean:
     """Mean water over each window as a twin receives it: the buoy's last sample, held.
 
-    Vectors, NaN where the buoy was silent, stale or unsound for too long; and the peak period of
-    the waves, 0 where there is none [s].
+    NaN where the buoy was silent, stale or unsound for too long.
     """
     ago = np.arange(MEAN_S - _EVERY_S, -_EVERY_S / 2.0, -_EVERY_S)
     at = end[:, None] - (ago * 1e6).astype("timedelta64[us]")
     word = np.searchsorted(buoy.time, at, side="right") - 1
     age = (at - buoy.time[word]) / np.timedelta64(1, "s")
     fresh = (word >= 0) & (age <= StreamTimeouts().stale_after_s)
-    water = Metocean.of_record(buoy)
-    period = buoy.values.get("tp_s", np.zeros(len(buoy)))
-    columns = np.column_stack([water.current_velocity, water.hs, water.wave_direction, period])
+    columns = Metocean.of_record(buoy).table
     doubtful = [flags == Flag.SUSPECT for key, flags in buoy.flags.items() if "current" in key]
     columns[np.logical_or.reduce(doubtful), :2] = np.nan
     means = np.column_stack([_mean(column[word], fresh) for column in columns.T])
     length = np.linalg.norm(means[:, 3:5], axis=1, keepdims=True)
-    water = Metocean(
-        current_velocity=means[:, :2],
-        hs=means[:, 2],
-        wave_direction=means[:, 3:5] / np.where(length > 0.0, length, np.nan),
-    )
-    return water, np.nan_to_num(means[:, 5])
+    means[:, 3:5] /= np.where(length > 0.0, length, np.nan)
+    return Metocean.from_table(means)
 
 
 def answer_windows(
@@ -228,15 +218,6 @@ def answer_windows(
 
 def _shortly_after(field: FieldRecord, row: int) -> datetime:
     return moment(field.buoy.time[row]) + timedelta(microseconds=1)
-
-
-def _flat(water: Metocean) -> Metocean:
-    """The same current without waves, which nobody measured."""
-    return Metocean(
-        current_velocity=water.current_velocity,
-        hs=np.zeros(len(water)),
-        wave_direction=np.tile([0.0, 1.0], (len(water), 1)),
-    )
 
 
 def _mean(

@@ -9,7 +9,6 @@ from field_windows import START, make_windows
 from seacage.conventions import Origin
 from seacage.records import FieldRecord, Record
 from seacage.studies._fidelity._null_case import SensorTrial, noise, null_case
-from seacage.twin import Metocean
 
 
 def field_of(windows, *, sensors) -> FieldRecord:
@@ -118,11 +117,7 @@ def test_waves_are_used_where_the_buoy_reports_them():
     windows = make_windows(days=16, each=6)
     wavy = replace(
         windows,
-        water=Metocean(
-            current_velocity=windows.water.current_velocity,
-            hs=np.abs(np.sin(np.arange(len(windows)))),
-            wave_direction=windows.water.wave_direction,
-        ),
+        water=replace(windows.water, hs=np.abs(np.sin(np.arange(len(windows))))),
     )
     wavy = replace(wavy, truth=wavy.low + wavy.water.hs[:, None])
     case = null_case(wavy, field_of(wavy, sensors=[0]), points=48, seed=0, progress=lambda *_: None)

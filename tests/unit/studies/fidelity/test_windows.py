@@ -48,7 +48,7 @@ def truth(field):
 
 
 def test_the_buoys_word_is_held_and_averaged_as_a_vector():
-    water, _ = buoy_water(buoy([1.0, 1.0, 1.0], [350.0, 10.0, 10.0]), ENDS[:2])
+    water = buoy_water(buoy([1.0, 1.0, 1.0], [350.0, 10.0, 10.0]), ENDS[:2])
     assert water.current_velocity[0] == pytest.approx(
         [-np.sin(np.deg2rad(10.0)), np.cos(np.deg2rad(10.0))]
     )
@@ -59,9 +59,9 @@ def test_the_buoys_word_is_held_and_averaged_as_a_vector():
 def test_water_is_unknown_once_the_word_is_stale_or_unsound():
     silent = buoy([0.5, 0.5], [0.0, 0.0])
     late = np.array([START + np.timedelta64(4, "h")])
-    assert np.isnan(buoy_water(silent, late)[0].current_velocity).all()
+    assert np.isnan(buoy_water(silent, late).current_velocity).all()
     flags = {"current_speed_m_s": np.array([Flag.SUSPECT, Flag.GOOD], np.uint8)}
-    water, _ = buoy_water(replace(silent, flags=flags), ENDS[:2])
+    water = buoy_water(replace(silent, flags=flags), ENDS[:2])
     assert np.isnan(water.current_velocity[0]).all()
 
 
