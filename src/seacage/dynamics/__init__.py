@@ -1,7 +1,7 @@
 """Loads on the cage in the sea, and the shapes and tensions that answer them."""
 
 from seacage.dynamics._kernel import simulation_lanes
-from seacage.dynamics._moored import SPRINGS, Damage, Mooring
+from seacage.dynamics._moored import SPRINGS, Damage, Mooring, line_places
 from seacage.dynamics._physics import (
     LAWS,
     MOVING_LAWS,
@@ -55,6 +55,7 @@ __all__ = [
     "extremes",
     "follow",
     "kristiansen_faltinsen",
+    "line_places",
     "loland",
     "net_load",
     "rest_shape",

@@ -4,6 +4,7 @@
 # pyright: reportUnknownMemberType=false
 
 import hashlib
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from pathlib import Path
@@ -72,6 +73,8 @@ class CampaignRecord:
     second_moment
         Mean over time and all cases to learn from of the products of all coordinates, as
         displacements from the design shape: coordinate 3 n + a is axis a of node n [m2].
+    duration
+        Time that each case's statistics are over; NaN for equilibria [s].
     line_names, line_kinds
         All ropes and chains of the mooring, the bridles first; none where they were not kept.
     lines
@@ -104,6 +107,7 @@ class CampaignRecord:
     net_force_std: Float[np.ndarray, "case 3"] | None = None
     volume_std: Float[np.ndarray, " case"] | None = None
     second_moment: Float[np.ndarray, "coordinate coordinate"] | None = None
+    duration: float = math.nan
     line_names: tuple[str, ...] = ()
     line_kinds: tuple[str, ...] = ()
     lines: Mapping[str, Float[np.ndarray, "*case_too mooring_line"]] = field(
@@ -131,11 +135,13 @@ class CampaignRecord:
         digest = hashlib.sha256(self.cage_toml.encode())
         for part in fields(self):
             value = getattr(self, part.name)
-            if value is None or part.name.startswith("line"):  # nothing learns from these
+            if value is None or part.name == "duration" or part.name.startswith("line"):
                 continue
             digest.update(
                 value.tobytes() if isinstance(value, np.ndarray) else repr(value).encode()
             )
+        for name in sorted(self.lines):  # campaigns of 0.1.0 have none
+            digest.update(self.lines[name].tobytes())
         return digest.hexdigest()
 
 
@@ -175,6 +181,7 @@ def read_campaign(path: str | Path) -> CampaignRecord:
         law=attributes["law"],
         seed=int(attributes["seed"]),
         version=attributes["product_version"],
+        duration=float(attributes.get("duration_s", math.nan)),
         line_names=_words(attributes.get("line_names", "")),
         line_kinds=_words(attributes.get("line_kinds", "")),
         lines=lines,

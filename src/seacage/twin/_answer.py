@@ -1,12 +1,12 @@
 """A twin's answer: loads, depths and shape of a cage, with intervals and validity."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Self
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from seacage.surrogates import Prediction
+from seacage.surrogates import Loads, Prediction
 
 Interval = tuple[Float[np.ndarray, "case output"], Float[np.ndarray, "case output"]]
 
@@ -53,6 +53,14 @@ class Answer:
         simulations' discrepancy from the real net is not in it at level 1.
     volume_fraction
         Volume over the same model's volume in still water [-].
+    line_names, line_kinds
+        All lines of the mooring, the bridles first; none where the twin did not learn loads in
+        waves.
+    line
+        Their loads in waves by level 1, whose intervals are NaN; None as above.
+    line_in_domain, line_reason
+        Whether the water is inside what the loads were learned in, and one sentence where there
+        are none or they are extrapolated, else "".
     """
 
     valid: Bool[np.ndarray, " case"]
@@ -73,6 +81,11 @@ class Answer:
     node_sigma: Float[np.ndarray, "case node"]
     shape_level: int
     volume_fraction: Float[np.ndarray, " case"]
+    line_names: tuple[str, ...] = ()
+    line_kinds: tuple[str, ...] = ()
+    line: Loads | None = None
+    line_in_domain: Bool[np.ndarray, " case"] = field(default_factory=lambda: np.zeros(0, bool))
+    line_reason: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         return len(self.valid)

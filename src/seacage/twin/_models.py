@@ -13,6 +13,7 @@ from seacage.cage import Cage
 from seacage.surrogates import Domain, FittedGaussianProcess, FittedShapeGP, Prediction, Predicts
 from seacage.twin._answer import Answer
 from seacage.twin._correction import Correction, Corrections
+from seacage.twin._line_loads import LineLoads
 from seacage.twin._metocean import Input, Metocean, nearest_inside
 
 BLOCK_ROWS = 512  # rows predicted at once: the shapes of more would crowd a small computer's memory
@@ -48,6 +49,7 @@ class Models:
     still_volume: float  # of the shape in still water [m3]
     bridles: FittedGaussianProcess  # level 1 of all bridle tensions [N]
     shape: FittedShapeGP  # level 1 of the node positions [m]
+    loads: LineLoads | None = None  # level 1 of all lines' loads in waves, where it was trained
     # Level 2 by sensor, of its readings [N] or [m]
     upper: Mapping[str, Correction] = field(default_factory=dict[str, Correction])
 
@@ -126,7 +128,23 @@ class Models:
             sensor_level=sensor_level,
             shape_level=1,
             **of_rows,
+            **self._line_loads(water.rows(valid), valid),
         )
+
+    def _line_loads(self, water: Metocean, valid: Bool[np.ndarray, " case"]) -> dict[str, Any]:
+        """Predict the loads of lines: the fields of an answer about them."""
+        if self.loads is None:
+            return {}
+        whole = np.full((len(valid), water.table.shape[1]), np.nan)
+        whole[valid] = water.table
+        loads, inside, reason = self.loads.predict(Metocean.from_table(whole))
+        return {
+            "line_names": self.loads.names,
+            "line_kinds": self.loads.kinds,
+            "line": loads.without_interval(),
+            "line_in_domain": inside,
+            "line_reason": reason,
+        }
 
     def _block(self, water: Metocean) -> dict[str, Any]:
         """Predict in known water: the fields of an answer that have rows."""

@@ -25,7 +25,8 @@ from seacage.twin._interval_factors import (
     factors_from_json,
     with_predictions,
 )
-from seacage.twin._metocean import Metocean, input_keys
+from seacage.twin._line_loads import LineLoads
+from seacage.twin._metocean import WATER_KEYS, Metocean, input_keys
 from seacage.twin._models import Models
 from seacage.twin._provenance import Provenance
 from seacage.twin._saving import from_parts, read_folder, to_parts, write_folder
@@ -149,6 +150,14 @@ class Twin:
             for row in np.flatnonzero(~buoy.usable(key)):
                 trouble[row] = trouble[row] or _fault(buoy.stream, key, int(buoy.flags[key][row]))
         return self.models.answer(Metocean.of_record(buoy), trouble)
+
+    @property
+    def emulator(self) -> LineLoads | None:
+        """Loads of lines in waves with intervals about the simulator, not about the sea.
+
+        None where the campaign had none to learn from.
+        """
+        return self.models.loads
 
     def start(self, adapted: str | None = None, *, until: datetime | None = None) -> TwinState:
         """Return the state before the first step.
@@ -307,8 +316,9 @@ class Twin:
             trouble = f"{self.buoy} has not sent {missing[0]} yet."
             return Reading(metocean=None, age_s=None, trouble=trouble)
         columns = {
-            key: np.array([sample.values[key] if _is_usable(sample, key) else np.nan])
+            key: np.array([sample.values[key] if self._is_known(sample, key, t) else np.nan])
             for key, sample in newest.items()
+            if key in keys or key in WATER_KEYS
         }
         age_s = max((t - newest[key].t).total_seconds() for key in keys)
         bad = [key for key in keys if not _is_usable(newest[key], key)]
@@ -322,6 +332,12 @@ class Twin:
                 f"{duration_text(limit_s)} is the limit."
             )
         return Reading(metocean=Metocean.from_columns(columns, 1), age_s=age_s, trouble=trouble)
+
+    def _is_known(self, sample: Sample, key: str, t: datetime) -> bool:
+        """Whether a value passed its checks and, unless every answer needs it, is fresh."""
+        needed = key in input_keys(self.models.inputs)
+        fresh = (t - sample.t).total_seconds() <= self.timeouts.stale_after_s
+        return _is_usable(sample, key) and (needed or fresh)
 
 
 def replay(twin: Twin, samples: Iterable[Sample]) -> Iterator[Event]:

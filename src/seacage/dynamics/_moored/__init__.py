@@ -3,6 +3,7 @@
 from seacage.dynamics._moored._choice import SPRINGS, Mooring, moor
 from seacage.dynamics._moored._detailed import Damage, broken, full_assembly
 from seacage.dynamics._moored._ends import SLACK, mooring_result
+from seacage.dynamics._moored._line_places import line_places
 from seacage.dynamics._moored._mass_scaling import scale_mass
 from seacage.dynamics._moored._mooring import anchor_assembly
 from seacage.dynamics._moored._parted import part
@@ -17,6 +18,7 @@ __all__ = [
     "assemble",
     "broken",
     "full_assembly",
+    "line_places",
     "moor",
     "mooring_result",
     "part",

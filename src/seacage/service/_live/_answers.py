@@ -9,7 +9,7 @@ from datetime import UTC, datetime
 import numpy as np
 from jaxtyping import Float
 
-from seacage.cage import Cage
+from seacage.cage import Cage, mooring_lines
 from seacage.conventions import Flag, compass
 from seacage.ocean import SeaState
 from seacage.records import Record, Sample
@@ -21,6 +21,7 @@ from seacage.service._schemas._state import (
     Amended,
     BridleState,
     Interval,
+    LineState,
     SensorState,
     Shape,
     ShapeState,
@@ -51,6 +52,8 @@ def state_of(name: str, twin: Twin, answered: Answered, memory: TwinState) -> St
         origin=str(twin.origin),
         water=_water(answered.metocean, _period(memory, twin.buoy, answered.t)),
         bridles=_bridles(twin.cage, answer, shackle_loads(twin, memory, answered.t)),
+        lines=_lines(twin.cage, answer),
+        lines_reason=answer.line_reason[0] if answer.line_reason else "",
         sensors=_sensors(answer, memory, answered.t, twin.timeouts.sensor_silent_after_s),
         shape_level=answer.shape_level,
         shape=_shape_state(answer),
@@ -111,6 +114,29 @@ def _bridles(cage: Cage, answer: Answer, measured: Mapping[int, float]) -> list[
             measured_by=shackles.get(k),
         )
         for k, bridle in enumerate(answer.bridle_names)
+    ]
+
+
+def _lines(cage: Cage, answer: Answer) -> list[LineState]:
+    """Say how all lines are loaded in waves; nothing where the sea was never learned."""
+    if answer.line is None:
+        return []
+    mean, std, largest = (
+        np.where(answer.line_in_domain[0], one.mean[0], np.nan) / 1e3
+        for one in (answer.line.mean, answer.line.std, answer.line.maximum_3h)
+    )
+    capacity = mooring_lines(cage, anchored=True).capacity / 1e3
+    return [
+        LineState(
+            name=name,
+            kind=answer.line_kinds[k],
+            level=1,
+            mean_kn=_number(mean[k]),
+            std_kn=_number(std[k]),
+            maximum_3h_kn=Interval(mean=_number(largest[k]), lower=None, upper=None),
+            utilisation=_number(largest[k] / capacity[k], 4),
+        )
+        for k, name in enumerate(answer.line_names)
     ]
 
 

@@ -39,6 +39,24 @@ class BridleState(AbstractAnswer):
     measured_by: str | None = None
 
 
+class LineState(AbstractAnswer):
+    """A line's load over half an hour of this sea, and its largest in three hours of it.
+
+    ``mean`` of ``maximum_3h_kn`` is the expected one; ``utilisation`` is its share of the line's
+    capacity, null where the cage's file gives none. All numbers are null where a wave's height,
+    direction or period is not known, or where the sea is outside what the loads were learned in;
+    ``lines_reason`` says which.
+    """
+
+    name: str
+    kind: str
+    level: int
+    mean_kn: float | None
+    std_kn: float | None
+    maximum_3h_kn: Interval
+    utilisation: float | None
+
+
 class SensorState(AbstractAnswer):
     """What a sensor should read now, by simulation alone and as trained, and what it does read.
 
@@ -156,6 +174,18 @@ class State(AbstractAnswer):
                     "utilisation": 0.2575,
                 }
             ],
+            "lines": [
+                {
+                    "name": "anchor-3",
+                    "kind": "anchor line",
+                    "level": 1,
+                    "mean_kn": 61.3,
+                    "std_kn": 4.8,
+                    "maximum_3h_kn": {"mean": 84.2, "lower": None, "upper": None},
+                    "utilisation": None,
+                }
+            ],
+            "lines_reason": "",
             "sensors": [
                 {
                     "name": "depth-1",
@@ -190,6 +220,8 @@ class State(AbstractAnswer):
     origin: str
     water: Water | None
     bridles: list[BridleState]
+    lines: list[LineState] = Field(default=[])
+    lines_reason: str = ""
     sensors: list[SensorState]
     shape_level: int
     shape: ShapeState

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.conventions import InputError
-from seacage.surrogates._arrays import Arrays, Settings, array
+from seacage.surrogates._arrays import Arrays, Settings, array, setting_list
 from seacage.surrogates._gp import (
     FittedGaussianProcess,
     KernelName,
@@ -30,7 +30,7 @@ OFFSET = 0.02
 """Added before a logarithm is taken, over the statistic's median [-]."""
 
 LEAST_HS = 1e-3
-"""Below it a sea is flat, and has the scatter of this one in proportion [m]."""
+"""Of the training [m]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -171,18 +171,27 @@ class FittedLoadGP:
     scatter: Float[np.ndarray, " line"]
     duration: float
 
-    def predict(self, x: Float[np.ndarray, "row feature"], *, duration: float = 1800.0) -> Loads:
+    def predict(
+        self,
+        x: Float[np.ndarray, "row feature"],
+        *,
+        hs: Float[np.ndarray, " row"] | None = None,
+        duration: float = 1800.0,
+    ) -> Loads:
         """Loads at each row of features.
 
         Parameters
         ----------
         x
             From ``sea_features``.
+        hs
+            Where the waves are lower than in ``x``, which scales their effect; None where they
+            are not [m].
         duration
             Over which mean, standard deviation and wear are asked for: the shorter, the more
             they scatter from one time to another [s].
         """
-        height = np.maximum(x[:, [HEIGHT]], LEAST_HS)
+        height = x[:, [HEIGHT]] if hs is None else hs[:, None]
         share = self.duration / duration
         mean, std = self._answer("mean", x, noise=share)
         calm = np.zeros_like(mean)
@@ -236,8 +245,6 @@ class FittedLoadGP:
         ModelError
             A setting or an array is missing, of another kind or shape, or not finite.
         """
-        from seacage.surrogates._arrays import setting_list
-
         names = setting_list(settings, "statistics", str)
         processes = processes_from_arrays(settings, "processes", arrays)
         lines = len(processes[0].centre)

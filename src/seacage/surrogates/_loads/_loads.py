@@ -1,11 +1,11 @@
 """Statistics of lines' loads in waves, and predictions of them on the scale of their logarithm."""
 
 import math
-from dataclasses import dataclass, replace
-from typing import Self
+from dataclasses import dataclass, fields, replace
+from typing import Any, Self
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from seacage.conventions import InputError, Rows
 from seacage.surrogates._prediction import Prediction
@@ -151,3 +151,30 @@ class Loads(Rows):
     std: LoadPrediction
     maximum_3h: LoadPrediction
     damage_equivalent: LoadPrediction
+
+    def known(self, rows: Bool[np.ndarray, " case"]) -> Self:
+        """The same with NaN in all other rows."""
+        parts = {one.name: getattr(self, one.name) for one in fields(self)}
+        return replace(self, **{name: _where(rows, part) for name, part in parts.items()})
+
+    def without_interval(self) -> Self:
+        """The same where no honest interval is known: every standard deviation is NaN."""
+        return replace(
+            self,
+            mean=replace(self.mean, std=np.full_like(self.mean.std, np.nan)),
+            std=self.std.without_interval(),
+            maximum_3h=self.maximum_3h.without_interval(),
+            damage_equivalent=self.damage_equivalent.without_interval(),
+        )
+
+
+def _where(rows: Bool[np.ndarray, " case"], part: Prediction | LoadPrediction) -> Any:
+    arrays = {one.name: getattr(part, one.name) for one in fields(part)}
+    return replace(
+        part,
+        **{
+            name: np.where(rows[:, None], values, np.nan)
+            for name, values in arrays.items()
+            if isinstance(values, np.ndarray)
+        },
+    )

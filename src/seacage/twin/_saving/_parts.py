@@ -14,6 +14,7 @@ from seacage.surrogates import (
     Domain,
     Fitted,
     FittedGaussianProcess,
+    FittedLoadGP,
     FittedNARGP,
     FittedShapeGP,
     Predicts,
@@ -23,6 +24,7 @@ from seacage.surrogates import (
 from seacage.twin._correction import Correction, Spread
 from seacage.twin._discrepancy import Discrepancy
 from seacage.twin._json_keys import json_keys
+from seacage.twin._line_loads import LineLoads
 from seacage.twin._metocean import Input
 from seacage.twin._models import Models
 from seacage.twin._provenance import Provenance
@@ -41,7 +43,7 @@ _ERRORS = ("current_velocity", "ring", "rest")
 _OF_TWIN = ("provenance", "buoy", "timeouts", "fault_detector")
 _OF_MODELS = ("inputs", "edge", "still_volume")
 
-Kind = TypeVar("Kind", FittedGaussianProcess, FittedNARGP, FittedShapeGP)
+Kind = TypeVar("Kind", FittedGaussianProcess, FittedLoadGP, FittedNARGP, FittedShapeGP)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -60,8 +62,10 @@ class Header:
     buoy: str
     timeouts: StreamTimeouts
     provenance: Provenance
-    # Twins of 0.1.0 have none.
+    # Twins of 0.1.0 have none of these.
     fault_detector: FaultDetectorSettings = field(default_factory=FaultDetectorSettings)
+    lines: tuple[tuple[str, str], ...] = ()
+    line_domain: tuple[tuple[float, ...], tuple[float, ...]] = ((), ())
 
     __pydantic_config__ = json_keys(timeouts="watch")
 
@@ -77,6 +81,7 @@ def to_parts(
         version=VERSION if others["fault_detector"] == FaultDetectorSettings() else TUNED_VERSION,
         cage_toml=models.cage.to_toml(),
         domain=(tuple(models.domain.lower.tolist()), tuple(models.domain.upper.tolist())),
+        **_of_loads(models.loads),
         gains={name: model.gain for name, model in models.upper.items()},
         spreads={name: model.spread for name, model in models.upper.items()},
         **{name: getattr(models, name) for name in _OF_MODELS},
@@ -84,6 +89,8 @@ def to_parts(
     )
     settings = TypeAdapter(Header).dump_python(header, mode="json", by_alias=True)
     parts: dict[str, Fitted] = {"bridles": models.bridles, "shape": models.shape}
+    if models.loads is not None:
+        parts["loads"] = models.loads.surrogate
     parts |= {f"{UPPER}{name}": model.rest for name, model in models.upper.items()}
     encoded = {name: encode(part) for name, part in parts.items()}
     settings["models"] = {name: part for name, (part, _) in encoded.items()}
@@ -96,6 +103,13 @@ def to_parts(
         settings["discrepancy"] = {"origin": str(discrepancy.origin)}
         arrays |= {f"{DISCREPANCY}{key}": getattr(discrepancy, key) for key in _ERRORS}
     return settings, arrays
+
+
+def _of_loads(loads: LineLoads | None) -> dict[str, Any]:
+    if loads is None:
+        return {}
+    ends = tuple(tuple(one.tolist()) for one in (loads.domain.lower, loads.domain.upper))
+    return {"lines": tuple(zip(loads.names, loads.kinds, strict=True)), "line_domain": ends}
 
 
 def from_parts(
@@ -161,6 +175,16 @@ def _models(
         domain=Domain(lower=np.array(header.domain[0]), upper=np.array(header.domain[1])),
         bridles=part("bridles", FittedGaussianProcess),
         shape=part("shape", FittedShapeGP),
+        loads=LineLoads(
+            names=tuple(name for name, _ in header.lines),
+            kinds=tuple(kind for _, kind in header.lines),
+            surrogate=part("loads", FittedLoadGP),
+            domain=Domain(
+                lower=np.array(header.line_domain[0]), upper=np.array(header.line_domain[1])
+            ),
+        )
+        if header.lines
+        else None,
         **{name: getattr(header, name) for name in _OF_MODELS},
     )
     for sensor, gain in header.gains.items():

@@ -27,6 +27,7 @@ from seacage.twin._pairs import Pairs, align, spread_out, training_window
 from seacage.twin._provenance import Provenance, TrainingWindow
 from seacage.twin._training._calibration import calibrate
 from seacage.twin._training._data import CageTraining, SensorTraining, Training
+from seacage.twin._training._loads import train_line_loads
 from seacage.twin._twin import Twin
 
 KERNELS = ("matern-5/2", "squared-exponential")
@@ -233,6 +234,9 @@ def _level_one(
         still_volume=float(cage.volume(still.mean)[0]),
         bridles=bridles,
         shape=shape,
+        loads=train_line_loads(
+            cage, campaign, restarts=min(training.restarts, 1), seed=training.seed
+        ),
     )
     provenance = Provenance(
         version=version("seacage"),

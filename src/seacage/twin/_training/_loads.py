@@ -1,0 +1,93 @@
+"""Training of level 1 of lines' loads in waves, folded by the cage's symmetry."""
+
+import numpy as np
+
+from seacage.cage import Cage
+from seacage.conventions import InputError, compass
+from seacage.dynamics import line_places, settle
+from seacage.ocean import SeaState
+from seacage.records import CampaignRecord
+from seacage.surrogates import LoadCases, LoadGP, Symmetry, sea_features
+from seacage.twin._line_loads import LineLoads, period_span, sea_domain
+from seacage.twin._metocean import Metocean
+
+LEAST_CASES = 20
+"""With waves, that converged."""
+
+LEAST_SPAN = 1.5
+"""Of Tp / (5 sqrt(Hs)), largest over least: below, a campaign cannot tell height from period."""
+
+ASYMMETRY = 0.01
+"""Largest difference of a line's tension from its image's, over the largest of all lines [-]."""
+
+TRIAL = 0.4, 25.0
+"""Speed [m/s] and angle from the cage's axis [deg] of the current that a symmetry is tried in."""
+
+
+def train_line_loads(
+    cage: Cage, campaign: CampaignRecord, *, restarts: int, seed: int
+) -> LineLoads | None:
+    """Train level 1 of lines' loads; None where the campaign has none to learn from.
+
+    It has where it was simulated in time, in waves whose period varies beside their height.
+    """
+    wavy = campaign.converged & np.array([sea.hs > 0.0 for sea in campaign.seas])
+    if not campaign.line_names or wavy.sum() < LEAST_CASES:
+        return None
+    water = Metocean.of(campaign.seas).rows(wavy)
+    if period_span(water) < LEAST_SPAN:
+        return None
+    loads = {name: np.asarray(values, dtype=np.float64) for name, values in campaign.lines.items()}
+    cases = LoadCases(
+        mean=loads["mean"],
+        std=loads["std"],
+        most_probable=loads["mpm_3h"],
+        expected=loads["expected_3h"],
+        largest=loads["maximum"],
+        damage_equivalent=loads["damage_equivalent"],
+    )
+    x = sea_features(
+        water.current_velocity, hs=water.hs, tp=water.tp, wave_direction=water.wave_direction
+    )
+    surrogate = LoadGP(symmetry=line_symmetry(cage), restarts=restarts).fit(
+        x, cases.rows(wavy), duration=campaign.duration, seed=seed
+    )
+    return LineLoads(
+        names=campaign.line_names,
+        kinds=campaign.line_kinds,
+        surrogate=surrogate,
+        domain=sea_domain(water),
+    )
+
+
+def line_symmetry(cage: Cage) -> Symmetry | None:
+    """The largest symmetry that a cage's lines have, in the drawing and in their loads.
+
+    Every fold that divides the number of its bridles is tried, with mirrors through a frame
+    corner or a side's middle and without; what coincides is asked of the equilibria in one
+    current and its images.
+    """
+    places, corners = line_places(cage), cage.corner_position[:, :2]
+    middle = (corners[0] + corners[1]) / 2.0
+    mirrors = [float(np.rad2deg(np.arctan2(*one[::-1]))) for one in (corners[0], middle)]
+    for fold in range(cage.bridle_count, 0, -1):
+        for mirror in (*mirrors, None):
+            if cage.bridle_count % fold or (fold == 1 and mirror is None):
+                continue
+            try:
+                symmetry = Symmetry.of(places, fold=fold, mirror=mirror)
+            except InputError:
+                continue
+            if _loads_fall_on_images(cage, symmetry):
+                return symmetry
+    return None
+
+
+def _loads_fall_on_images(cage: Cage, symmetry: Symmetry) -> bool:
+    speed, angle = TRIAL
+    along = np.deg2rad(90.0 - cage.heading + angle)
+    velocity = speed * symmetry.turn @ np.array([np.cos(along), np.sin(along)])
+    seas = [SeaState(current_speed=speed, current_to=to) for to in compass(velocity).tolist()]
+    tension = settle(cage, seas).line_tension
+    images = tension[0][symmetry.source]
+    return bool(np.abs(tension - images).max() <= ASYMMETRY * tension.max())
