@@ -423,9 +423,10 @@ def fit_process(
     # What each output is expected to rise by per unit of each feature; None for nothing. The
     # outputs of the likelihood are without it.
     slope: Float[np.ndarray, " feature"] | None = None,
-    # Of the search
+    # Of the search, as ``most_probable`` takes them
     restarts: int,
     seed: int,
+    most: int | None = None,
 ) -> FittedGaussianProcess:
     """Fit the hyperparameters, then condition on the outputs."""
     inputs, outputs = Scaling.of(x), Scaling.of(y)
@@ -436,14 +437,14 @@ def fit_process(
     rest = y - outputs.centre - standardised @ line
     scatter = noise_named(noise, standardised, outputs=likelihood_outputs.shape[1])
     evidence = Evidence.of(kernel, scatter, standardised, likelihood_outputs)
-    mode = most_probable(evidence, restarts=restarts, seed=seed)
+    mode = most_probable(evidence, restarts=restarts, seed=seed, most=most)
     hyperparameters, wider = mode.log_parameters[None], 1.0
     if is_drawn(ensemble, observations=likelihood_outputs.size):
         hyperparameters, wider = draw_members(mode, seed=seed), widening(len(y))
+    # noise factors are of all points, or there are none
+    noise_factor = evidence.noise_factor if most else mode.evidence.noise_factor
     members = [
-        evidence.process(log_parameters).condition(
-            standardised, rest, noise_factor=mode.evidence.noise_factor
-        )
+        evidence.process(log_parameters).condition(standardised, rest, noise_factor=noise_factor)
         for log_parameters in hyperparameters
     ]
     share = np.full(len(members), 1.0 / len(members))

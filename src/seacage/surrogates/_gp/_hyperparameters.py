@@ -162,7 +162,14 @@ class Mode:
     evidence: Evidence  # all points, with the noise factors that were found
 
 
-def most_probable(evidence: Evidence, *, restarts: int, seed: int) -> Mode:
+def most_probable(
+    evidence: Evidence,  # all points
+    *,
+    # Starts beside the one at the prior's mean; few points get several times as many
+    restarts: int,
+    seed: int,  # of the subset and of the starts
+    most: int | None = None,  # points that count as all of them, drawn at random
+) -> Mode:
     """Most probable log hyperparameters.
 
     Each start is improved on a random subset, the best one then on all points.
@@ -174,9 +181,12 @@ def most_probable(evidence: Evidence, *, restarts: int, seed: int) -> Mode:
     random = np.random.default_rng(seed)
     if len(evidence.x) <= SMALL:
         restarts *= MORE
-    rows = np.sort(random.permutation(len(evidence.x))[:SUBSET])
-    few = len(rows) == len(evidence.x)
-    some = evidence if few else evidence.rows(rows)
+    drawn = random.permutation(len(evidence.x))[:most]
+    few = len(drawn) <= SUBSET
+    if len(drawn) < len(evidence.x):
+        evidence = evidence.rows(np.sort(drawn))
+        drawn = random.permutation(len(drawn))
+    some = evidence if few else evidence.rows(np.sort(drawn[:SUBSET]))
     ends = [improve(some, start, steps=200) for start in _starts(evidence, restarts, random)]
     best = min(ends, key=lambda end: end.loss)
     if isinstance(evidence.noise, StudentNoise):

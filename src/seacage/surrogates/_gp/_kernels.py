@@ -26,6 +26,10 @@ prior over many inputs would make every case independent of the next.
 """
 
 
+CASE_PRIOR: Normal = (math.log(1e-3), 2.5)
+"""Of the variance that rows of a case have in common, as of noise."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Prior:
     """Independent log-normal priors, so normal in the logarithms."""
@@ -174,6 +178,9 @@ class StationaryKernel(AbstractKernel):
     length: Normal = LENGTH_PRIOR
     # Prior of each feature's length, where the general one is not meant
     lengths: tuple[Normal, ...] = ()
+    # Which of the lengths each feature has, from 0; each its own where this is empty. The
+    # components of a vector have one, so that a turn changes no distance
+    alike: tuple[int, ...] = ()
 
     @property
     def name(self) -> str:
@@ -182,16 +189,19 @@ class StationaryKernel(AbstractKernel):
     def prior(self, width: int) -> Prior:
         variance = [self.variance] if self.variance else []
         mean, sd = self.length
-        lengths = self.lengths or [(mean + 0.5 * math.log(width), sd)] * width
+        general = (mean + 0.5 * math.log(width), sd)
+        lengths = self.lengths or [general] * (self.size(width) - len(variance))
         return Prior.of(*variance, *lengths)
 
     def size(self, width: int) -> int:
-        return width + (self.variance is not None)
+        return (max(self.alike) + 1 if self.alike else width) + (self.variance is not None)
 
     def at(self, log_parameters: np.ndarray, z: np.ndarray) -> Covariances:
         sized = self.variance is not None
         variance = np.exp(log_parameters[..., :1, None]) if sized else None
         length = np.exp(log_parameters[..., None, sized:])
+        if self.alike:
+            length = length[..., list(self.alike)]
         scaled_z = z / length
         distance_squared = _distance_squared(scaled_z)
 
@@ -208,6 +218,8 @@ class StationaryKernel(AbstractKernel):
                 weight = adjoint * fall
                 crossed = np.sum(scaled_z * (weight @ scaled_z), axis=0)
                 by_length = 2.0 * (weight.sum(axis=1) @ scaled_z**2 - crossed)
+                if self.alike:
+                    by_length = np.bincount(self.alike, by_length)
                 return np.append(np.sum(adjoint * value), by_length) if sized else by_length
 
             return Evaluation(value, slope, pull)
@@ -218,6 +230,32 @@ class StationaryKernel(AbstractKernel):
         value = np.ones(x.shape[:-1])
         if self.variance is not None:
             value *= np.exp(log_parameters[..., :1])
+        return Evaluation(value, lambda _: np.zeros_like(x))
+
+
+@dataclass(frozen=True, slots=True)
+class SameCase(AbstractKernel):
+    """Variance that rows of one number have in common, and no others: what is a case's own."""
+
+    def prior(self, width: int) -> Prior:  # noqa: ARG002
+        return Prior.of(CASE_PRIOR)
+
+    def size(self, width: int) -> int:  # noqa: ARG002
+        return 1
+
+    def at(self, log_parameters: np.ndarray, z: np.ndarray) -> Covariances:
+        variance = np.exp(log_parameters[..., :1, None])
+        number = np.swapaxes(z, -1, -2)
+
+        def evaluate(x: np.ndarray) -> Evaluation:
+            value = variance * (x == number)
+            slope = np.zeros_like(x)
+            return Evaluation(value, lambda _: slope, lambda adjoint: np.sum(adjoint * value))
+
+        return evaluate
+
+    def diagonal(self, log_parameters: np.ndarray, x: np.ndarray) -> Evaluation:
+        value = np.exp(log_parameters[..., :1]) * np.ones(x.shape[:-1])
         return Evaluation(value, lambda _: np.zeros_like(x))
 
 

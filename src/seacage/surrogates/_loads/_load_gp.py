@@ -11,14 +11,13 @@ from seacage.conventions import InputError
 from seacage.surrogates._arrays import Arrays, Settings, array, setting_list
 from seacage.surrogates._gp import (
     FittedGaussianProcess,
-    KernelName,
-    StationaryKernel,
     check_options,
     fit_process,
     processes_from_arrays,
     processes_to_arrays,
     select_likelihood_outputs,
 )
+from seacage.surrogates._loads._case_kernel import KERNEL, shared_variance, with_number
 from seacage.surrogates._loads._loads import EULER, LoadCases, LoadPrediction, Loads
 from seacage.surrogates._prediction import Prediction, check_inputs
 from seacage.surrogates._shape import Symmetry
@@ -28,6 +27,9 @@ HEIGHT = 3
 
 OFFSET = 0.02
 """Added before a logarithm is taken, over the statistic's median [-]."""
+
+MOST_POINTS = 1500
+"""Images that hyperparameters are learned from; all others count in the answer alone."""
 
 LEAST_HS = 1e-3
 """Of the training [m]."""
@@ -39,25 +41,22 @@ class LoadGP:
 
     The mean is learned as it is. Standard deviation, largest tension of three hours above the
     mean, and damage-equivalent load are learned as logarithms of their ratio to Hs, as loads grow
-    with the waves and their scatter with the loads. Half-hours of one sea differ, so each has
-    noise, of a size that may depend on the sea.
+    with the waves and their scatter with the loads. Two times of one sea differ: a case has a
+    deviation that its images have in common, and noise of each image besides.
 
     Parameters
     ----------
-    kernel
-        Of all of them; lines going slack put kinks in their loads.
     restarts
         Random starts of each hyperparameter search beside the deterministic one.
     symmetry
         Of the lines' places: every case is learned with all its images. Needs ``sea_features``.
     """
 
-    kernel: KernelName = "matern-5/2"
     restarts: int = 1
     symmetry: Symmetry | None = None
 
     def __post_init__(self) -> None:
-        check_options(kernel=self.kernel, restarts=self.restarts)
+        check_options(restarts=self.restarts)
 
     def fit(
         self,
@@ -94,16 +93,18 @@ class LoadGP:
         outputs = {"mean": loads.mean} | {
             name: np.log((one + offset[name]) / x[:, [HEIGHT]]) for name, one in above.items()
         }
-        images, tables = _images(self.symmetry, x, outputs)
+        numbered = with_number(x, np.arange(len(x), dtype=float))
+        images, tables = _images(self.symmetry, numbered, outputs)
         return FittedLoadGP(
             processes={
                 name: fit_process(
-                    StationaryKernel(self.kernel),
+                    KERNEL,
                     images,
                     table,
                     likelihood_outputs=select_likelihood_outputs(table),
                     restarts=self.restarts,
                     seed=seed,
+                    most=MOST_POINTS,
                 )
                 for name, table in tables.items()
             },
@@ -141,7 +142,8 @@ def _images(
     if symmetry is None:
         return x, dict(outputs)
     every = range(len(symmetry))
-    return np.concatenate([symmetry.turned(x, image) for image in every]), {
+    turned = [with_number(symmetry.turned(x[:, :-1], image), x[:, -1]) for image in every]
+    return np.concatenate(turned), {
         name: np.concatenate([one[:, symmetry.source[image]] for image in every])
         for name, one in outputs.items()
     }
@@ -221,9 +223,11 @@ class FittedLoadGP:
         self, name: str, x: Float[np.ndarray, "row feature"], *, noise: float
     ) -> tuple[Float[np.ndarray, "row line"], Float[np.ndarray, "row line"]]:
         """Mean, and standard deviation with so much of the training's noise variance."""
-        process = self.processes[name]
+        process, x = self.processes[name], with_number(x)
         found = process.predict(x)
-        return found.mean, np.sqrt(found.std**2 + noise * process.noise_at(x))
+        of_case = shared_variance(process.posterior.log_parameters) * process.amplitude**2
+        behind = np.maximum(found.std**2 - of_case, 0.0)
+        return found.mean, np.sqrt(behind + noise * (of_case + process.noise_at(x)))
 
     def to_arrays(self) -> tuple[Settings, Arrays]:
         """Everything that ``from_arrays`` needs."""
