@@ -42,10 +42,24 @@ export function stateOf(one, t, sea, alarms) {
     reason: valid ? "" : "buoy-1 has been silent for 2.0 h, longer than 0.5 h.",
     origin: "virtual field", water: valid ? sea : null, bridles, sensors, shape_level: 1,
     volume_fraction: !valid ? null : has("volume") ? 0.71 : 1 - 0.22 * sea.current_speed_m_s ** 2,
+    lines: linesIn(bridles, sea), lines_reason: "",
     silent: valid ? [] : ["buoy-1"], amended: [], alarms, concerns: one.concerns ?? [],
     shape: { level: 1, in_domain: valid, interval_reason: one.spread ? ""
       : "No sensor has trained level 2 of the shape, so its error is not known." },
   };
+}
+
+/** Made-up loads in waves: bridles, then a few lines more. */
+function linesIn(bridles, sea) {
+  const more = ["frame-1", "frame-2", "anchor-1", "anchor-2", "buoy-1"].map((name, k) =>
+    ({ name, tension_kn: { mean: 22 + 12 * k } }));
+  return [...bridles, ...more].map(({ name, tension_kn: { mean } }) => {
+    const std = mean === null ? null : 0.06 * mean * (sea?.hs_m ?? 0) + 0.2;
+    const maximum = mean === null ? null : mean + 4.1 * std;
+    return { name, kind: `${name.split("-")[0]} line`, level: 1, mean_kn: mean, std_kn: std,
+      maximum_3h_kn: { mean: maximum, lower: null, upper: null },
+      utilisation: name.startsWith("bridle") && mean !== null ? maximum / 160 : null };
+  });
 }
 
 /** A cage's frame; flags are added to those that follow from the state. */

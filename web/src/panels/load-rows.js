@@ -10,6 +10,7 @@ import { rank, waits } from "./ranks.js";
 export function loadRows(topology, state, colours = []) {
   const shackles = new Map(topology.shackles.map(({ name, bridle }) => [bridle, name]));
   const ranks = alarmed(state.alarms ?? []);
+  const inWaves = new Map((state.lines ?? []).map(({ name, utilisation }) => [name, utilisation]));
   return state.bridles.map((bridle, k) => {
     const capacity = topology.bridle_capacity_kn[k];
     const share = (kn) => (Number.isFinite(kn) ? kn / capacity : null);
@@ -21,6 +22,7 @@ export function loadRows(topology, state, colours = []) {
       kn: bridle.tension_kn.mean, interval, lowKn: bridle.low_fidelity_kn, measuredKn: measured,
       mean: bridle.utilisation, lower: share(interval?.lower), upper: share(interval?.upper),
       low: share(bridle.low_fidelity_kn), measured: share(measured),
+      maximum: inWaves.get(bridle.name) ?? null, // expected in three hours of this sea
       topKn: top?.kn ?? null, top: top?.share ?? null,
       within: bridle.in_domain ?? true, reason: bridle.interval_reason ?? "", colour: colours[k],
       // An alarm of the shackle, such as its silence, is none of the bridle.
@@ -38,7 +40,8 @@ export const intervalOf = (bridle) =>
 
 /** The largest share that is to be seen. */
 export function largest(rows) {
-  return Math.max(0, ...rows.flatMap(({ mean, upper, measured }) => [mean ?? 0, upper ?? 0, measured ?? 0]));
+  return Math.max(0, ...rows.flatMap(({ mean, upper, measured, maximum }) =>
+    [mean, upper, measured, maximum].map((share) => share ?? 0)));
 }
 
 /** By what an alarm is about, the rank of the worst that waits there. */

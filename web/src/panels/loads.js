@@ -7,6 +7,7 @@ import { text } from "../texts/index.js";
 import { onTheme } from "../theme.js";
 import { explain, tableHead, write } from "./dom.js";
 import { fixed, half, known, percent, plain, spoken, titled, withUnit } from "./format.js";
+import { LineTable } from "./line-table.js";
 import { largest, loadRows } from "./load-rows.js";
 import { Rose } from "./rose.js";
 import { scaleFor } from "./scale.js";
@@ -17,14 +18,15 @@ export class Loads {
     this.rose = new Rose({ pick: (name) => model.select({ bridle: name }) });
     this.body = make("tbody");
     this.caption = make("p", { className: "aside" });
+    this.lines = new LineTable();
     this.table = make("table", { className: "loads" },
       make("caption", { className: "unseen" }, text("loads.caption")),
       tableHead(["bridle", "twin", "simulated", "measured", "share"].map((head) => text(`loads.heads.${head}`))),
       this.body);
     holder.append(
       make("div", { className: "rose-holder" }, this.rose.drawing),
-      explain({ bar: "twin", whisker: "interval", tick: "simulated", dot: "measured" }),
-      make("div", { className: "table-holder" }, this.table), this.caption);
+      explain({ bar: "twin", whisker: "interval", ghost: "maximum", tick: "simulated", dot: "measured" }),
+      make("div", { className: "table-holder" }, this.table), this.caption, this.lines.drawing);
     model.on("topology", () => this.topology());
     model.on("view", () => this.show());
     model.on("selection", () => this.select());
@@ -65,6 +67,7 @@ export class Loads {
     if (!topology || !view?.state || !this.rows) return;
     const loads = loadRows(topology, view.state, bridleColours(topology, view, this.model.options));
     this.end = scaleFor(largest(loads), this.end);
+    this.lines.show(view.state);
     const water = view.state.valid ? view.state.water : null;
     this.rose.show({
       loads, end: this.end, current: water?.current_to_deg, wave: water?.wave_from_deg,

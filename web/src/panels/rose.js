@@ -28,15 +28,15 @@ export class Rose {
   bar(name, k) {
     const direction = this.directions[k];
     const part = (shape) => draw("path", { class: shape });
-    const [space, fill, low, interval] = ["space", "fill", "low", "interval"].map(part);
+    const [space, maximum, fill, low, interval] = ["space", "maximum", "fill", "low", "interval"].map(part);
     space.setAttribute("d", wedge(direction, OUTER));
     const measured = draw("circle", { class: "measured", r: 3 });
     const [x, y] = polar(direction, OUTER + 11);
     const label = draw("text", { x, y, class: "which" }, name.replace(/^\D+/, "") || name);
     const title = draw("title");
-    const group = draw("g", { class: "bar" }, title, space, fill, low, interval, measured, label);
+    const group = draw("g", { class: "bar" }, title, space, maximum, fill, low, interval, measured, label);
     group.addEventListener("click", () => this.pick(name));
-    return { name, group, title, fill, low, interval, measured };
+    return { name, group, title, maximum, fill, low, interval, measured };
   }
 
   /** `loads` are rows as of load-rows.js. */
@@ -48,11 +48,13 @@ export class Rose {
     this.drawing.setAttribute("aria-label", words);
   }
 
-  fill({ group, title, fill, low, interval, measured }, load, k, end) {
+  fill({ group, title, maximum, fill, low, interval, measured }, load, k, end) {
     const at = this.directions[k];
     const there = known(load.mean);
     outline(fill, there && wedge(at, radius(load.mean, end)));
     fill.style.fill = there ? load.colour : "";
+    outline(maximum, known(load.maximum) && wedge(at, radius(load.maximum, end)));
+    maximum.style.stroke = load.colour ?? "";
     outline(interval, there && known(load.lower) &&
       whisker(at, radius(load.lower, end), radius(load.upper, end)));
     outline(low, known(load.low) && load.level > 1 && across(at, radius(load.low, end)));

@@ -32,6 +32,7 @@ export default {
     measured: "measured",
     simulated: "simulation alone",
     interval: "95 % interval",
+    maximum: "largest in 3 h",
     twin: "twin",
   },
   beyond: "The sea is beyond what the twin has learned.",
@@ -183,6 +184,13 @@ export default {
     flow: " The current goes {direction}.",
     noRose: "Rose of bridle loads: no valid input, no loads.",
     bar: "{name}: {load}, {share} of capacity",
+  },
+  lines: {
+    caption: "All lines in waves: mean, standard deviation, and the largest tension expected in three hours",
+    heads: { line: "Line", mean: "Mean", std: "Std", maximum: "Largest in 3 h" },
+    about: "In kN, at level 1: simulation alone, of half an hour of this sea. The largest is the one expected in three hours; no interval of it is known at sea.",
+    most: "In waves: {name}, {load} expected in 3 hours",
+    none: "In waves: no loads. {reason}",
   },
   charts: {
     choose: "Choose what is shown",

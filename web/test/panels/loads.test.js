@@ -2,6 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { byNeed, summed, tileVerdict } from "../../src/panels/farm-tile.js";
+import { heaviest } from "../../src/panels/line-table.js";
 import { largest, loadRows } from "../../src/panels/load-rows.js";
 import { INNER, OUTER, azimuths, polar, radius } from "../../src/panels/rose-shape.js";
 import { ringsOf, scaleFor } from "../../src/panels/scale.js";
@@ -58,6 +59,19 @@ test("a row says what twin, simulation and shackle say of a bridle", () => {
   assert.deepEqual([one.mean, one.measured, one.rank], [0.5, null, "critical"]);
   assert.deepEqual([two.lower, two.upper, two.measured, two.measuredKn], [0.225, 0.275, 0.3, 60]);
   assert.equal(largest([one, two]), 0.5);
+});
+
+test("the largest load expected in waves is on the rose and in its scale", () => {
+  const lines = [{ name: "bridle-2", utilisation: 0.7 }];
+  const [one, two] = loadRows(topology, { ...state, lines });
+  assert.deepEqual([one.maximum, two.maximum], [null, 0.7]);
+  assert.equal(largest([one, two]), 0.7);
+});
+
+test("the summary of all lines names the one that bears most, or why none is known", () => {
+  const line = (name, mean) => ({ name, maximum_3h_kn: { mean } });
+  assert.match(heaviest([line("bridle-1", 40), line("anchor-3", 90)], {}), /anchor 3, 90\.0 kN/);
+  assert.match(heaviest([line("bridle-1", null)], { lines_reason: "Hs is not known." }), /Hs is not known/);
 });
 
 test("a bridle that no shackle has trained has no interval, for its error is not known", () => {

@@ -1,0 +1,47 @@
+// All lines in waves: their mean and the largest tension expected in three hours.
+
+import { make } from "../dom.js";
+import { text } from "../texts/index.js";
+import { tableHead, write } from "./dom.js";
+import { fixed, known, plain, titled, withUnit } from "./format.js";
+
+/** A table that opens at its summary, which names the line that bears most. */
+export class LineTable {
+  constructor() {
+    this.summary = make("summary");
+    this.body = make("tbody");
+    this.drawing = make("details", { className: "lines", hidden: true }, this.summary,
+      make("table", { className: "loads" },
+        make("caption", { className: "unseen" }, text("lines.caption")),
+        tableHead(["line", "mean", "std", "maximum"].map((head) => text(`lines.heads.${head}`))),
+        this.body),
+      make("p", { className: "aside" }, text("lines.about")));
+  }
+
+  show(state) {
+    const lines = state.lines ?? [];
+    this.drawing.hidden = !lines.length;
+    write(this.summary, heaviest(lines, state));
+    const names = lines.map(({ name }) => name).join();
+    if (names !== this.names) this.build(lines, names);
+    lines.forEach(({ mean_kn: mean, std_kn: std, maximum_3h_kn: largest }, k) => {
+      [mean, std, largest.mean].forEach((kn, column) => write(this.cells[k][column], fixed(kn)));
+    });
+  }
+
+  build(lines, names) {
+    this.names = names;
+    this.cells = lines.map(() => ["mean", "std", "maximum"].map(() => make("td", { className: "number" })));
+    this.body.replaceChildren(...lines.map(({ name, kind }, k) => make("tr",
+      { className: k && kind !== lines[k - 1].kind ? "next-corner" : "" },
+      make("th", { scope: "row" }, titled(name)), ...this.cells[k])));
+  }
+}
+
+/** The line that bears most in three hours of this sea, or why none is known. */
+export function heaviest(lines, state) {
+  const loaded = lines.filter(({ maximum_3h_kn: largest }) => known(largest.mean));
+  if (!loaded.length) return text("lines.none", { reason: state.lines_reason || state.reason || "" });
+  const most = loaded.reduce((a, b) => (b.maximum_3h_kn.mean > a.maximum_3h_kn.mean ? b : a));
+  return text("lines.most", { name: plain(most.name), load: withUnit(most.maximum_3h_kn.mean, "kN") });
+}
