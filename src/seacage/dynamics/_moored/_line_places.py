@@ -13,13 +13,15 @@ APART = 1000.0
 def line_places(
     cage: Cage | Structure, *, mooring: Mooring = "catenary"
 ) -> Float[np.ndarray, "line 3"]:
-    """Middle of each line's upper end at rest, kinds apart in height [m].
+    """Middle of each line's upper end, a buoy line's buoy, at rest; kinds apart in height [m].
 
     Lines that fall on one another when all places are turned or mirrored about the cage's axis
     are images of one another in the drawing; ``settle`` tells whether their loads are, too.
     """
     assembly = moor(cage, mooring)
     kinds = list(dict.fromkeys(assembly.lines.kinds))
-    places = assembly.position[assembly.bars.ends[assembly.line_bars]].mean(axis=1)
+    position, buoys = assembly.position, assembly.floats.nodes[assembly.line_floats]
+    ends = position[assembly.bars.ends[assembly.line_bars]]
+    places = np.vstack([ends.mean(axis=1), position[buoys]])
     places[:, 2] += APART * np.array([kinds.index(kind) for kind in assembly.lines.kinds])
     return places

@@ -147,7 +147,8 @@ def _tail_maxima(
     weight, share, count = weight[known], share[known], count[known]
     x = np.log(-np.log1p(-np.clip(share, 0.0, 1.0 - 1e-9)))
     y = np.log(height[order][top:])
-    total = weight.sum(axis=1, keepdims=True)
+    # a draw of calm blocks alone may have no peak in the tail
+    total = np.where((total := weight.sum(axis=1, keepdims=True)) > 0.0, total, np.nan)
     x_mean, y_mean = (np.sum(weight * v, axis=1, keepdims=True) / total for v in (x, y))
     slope = np.sum(weight * (x - x_mean) * (y - y_mean), axis=1) / np.sum(
         weight * (x - x_mean) ** 2, axis=1
