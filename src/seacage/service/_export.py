@@ -16,10 +16,9 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from seacage.cage import Cage, Structure
-from seacage.conventions import InputError, Result
+from seacage.conventions import InputError, Result, Rows
 from seacage.ocean import SeaState
 from seacage.records import KEYS, Record
-from seacage.surrogates import Prediction
 from seacage.twin import Answer, Twin, interval_reason
 
 if TYPE_CHECKING:
@@ -36,6 +35,8 @@ _SAME_IN_ALL_ROWS = {
     "sensor_units",
     "sensor_level",
     "shape_level",
+    "line_names",
+    "line_kinds",
 }
 _DOOR_UNITS = {"N": ("kN", 1e-3), "m": ("m", 1.0)}
 _ENDS = {"": "mean", "_lower": "95 %, lower", "_upper": "95 %, upper"}
@@ -94,8 +95,10 @@ def join_answers(answers: list[Answer]) -> Answer:
 
 
 def _join(parts: list[Any]) -> Any:
-    if isinstance(parts[0], Prediction):
-        return Prediction.joined(*parts)
+    if parts[0] is None:
+        return None
+    if isinstance(parts[0], Rows):
+        return parts[0].joined(*parts)
     if isinstance(parts[0], np.ndarray):
         return np.concatenate(parts)
     return tuple(chain.from_iterable(parts))

@@ -1,6 +1,6 @@
 """A twin's answer: loads, depths and shape of a cage, with intervals and validity."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
@@ -81,11 +81,11 @@ class Answer:
     node_sigma: Float[np.ndarray, "case node"]
     shape_level: int
     volume_fraction: Float[np.ndarray, " case"]
-    line_names: tuple[str, ...] = ()
-    line_kinds: tuple[str, ...] = ()
-    line: Loads | None = None
-    line_in_domain: Bool[np.ndarray, " case"] = field(default_factory=lambda: np.zeros(0, bool))
-    line_reason: tuple[str, ...] = ()
+    line_names: tuple[str, ...]
+    line_kinds: tuple[str, ...]
+    line: Loads | None
+    line_in_domain: Bool[np.ndarray, " case"]
+    line_reason: tuple[str, ...]
 
     def __len__(self) -> int:
         return len(self.valid)

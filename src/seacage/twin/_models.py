@@ -133,18 +133,15 @@ class Models:
 
     def _line_loads(self, water: Metocean, valid: Bool[np.ndarray, " case"]) -> dict[str, Any]:
         """Predict the loads of lines: the fields of an answer about them."""
+        names = ("line_names", "line_kinds", "line", "line_in_domain", "line_reason")
         if self.loads is None:
-            return {}
+            nothing = np.zeros_like(valid), ("",) * len(valid)
+            return dict(zip(names, ((), (), None, *nothing), strict=True))
         whole = np.full((len(valid), water.table.shape[1]), np.nan)
         whole[valid] = water.table
         loads, inside, reason = self.loads.predict(Metocean.from_table(whole))
-        return {
-            "line_names": self.loads.names,
-            "line_kinds": self.loads.kinds,
-            "line": loads.without_interval(),
-            "line_in_domain": inside,
-            "line_reason": reason,
-        }
+        found = self.loads.names, self.loads.kinds, loads.without_interval(), inside, reason
+        return dict(zip(names, found, strict=True))
 
     def _block(self, water: Metocean) -> dict[str, Any]:
         """Predict in known water: the fields of an answer that have rows."""

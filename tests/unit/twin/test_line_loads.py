@@ -11,6 +11,7 @@ import pytest
 from seacage.cage import Cage, mooring_lines
 from seacage.ocean import SeaState
 from seacage.records import Sample
+from seacage.service._export import join_answers
 from seacage.service._live._answers import state_of
 from seacage.twin import Answered, Metocean, Training, Twin, train
 from seacage.twin._training._loads import line_symmetry
@@ -139,3 +140,14 @@ def test_a_cage_with_one_long_bridle_has_no_images():
     offset = (0.5, *(0.0,) * 11)
     uneven = replace(SQUARE, bridles=replace(SQUARE.bridles, length_offset=offset))
     assert line_symmetry(uneven) is None
+
+
+def test_answers_of_several_blocks_join_with_their_lines():
+    seas = [replace(SEA, current_speed=speed) for speed in (0.1, 0.3, 0.5)]
+    whole = twin().predict(seas)
+    joined = join_answers([twin().predict(seas[:2]), twin().predict(seas[2:])])
+    assert whole.line is not None
+    assert joined.line is not None
+    assert (joined.line_names, joined.line_reason) == (whole.line_names, whole.line_reason)
+    one, other = joined.line.maximum_3h.mean, whole.line.maximum_3h.mean
+    np.testing.assert_allclose(one, other, rtol=1e-9)

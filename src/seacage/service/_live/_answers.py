@@ -53,7 +53,7 @@ def state_of(name: str, twin: Twin, answered: Answered, memory: TwinState) -> St
         water=_water(answered.metocean, _period(memory, twin.buoy, answered.t)),
         bridles=_bridles(twin.cage, answer, shackle_loads(twin, memory, answered.t)),
         lines=_lines(twin.cage, answer),
-        lines_reason=answer.line_reason[0] if answer.line_reason else "",
+        lines_reason=answer.line_reason[0],
         sensors=_sensors(answer, memory, answered.t, twin.timeouts.sensor_silent_after_s),
         shape_level=answer.shape_level,
         shape=_shape_state(answer),
