@@ -73,7 +73,8 @@ def _left_over(speed: float) -> tuple[float, float, float]:
     water += net_force(assembly.panels, flow, position)[0, :, :2]
     ends = assembly.bars.ends[assembly.line_bars]
     along = position[0, ends[:, 1]] - position[0, ends[:, 0]]
-    pull = (response.line_tension / np.linalg.norm(along, axis=1))[:, None] * along
+    tension = response.line_tension[: len(ends)]  # buoy lines come last, and pull plumb up
+    pull = (tension / np.linalg.norm(along, axis=1))[:, None] * along
     nodes, bridles = ACE.node_count, slice(ACE.bridle_count)
     cage = water[:nodes].sum(axis=0)
     corners = water[nodes : nodes + 4] + _at_corners(ends - nodes, pull[:, :2])
@@ -170,7 +171,8 @@ class Moving:
         ends = self.assembly.bars.ends[self.assembly.line_bars]
         along = self.position[sea][:, ends[:, 1]] - self.position[sea][:, ends[:, 0]]
         unit = along / np.linalg.norm(along, axis=-1, keepdims=True)
-        return (self.tension[sea][..., None] * unit).mean(axis=0)[:, :2]
+        tension = self.tension[sea][:, : len(ends), None]  # buoy lines come last
+        return (tension * unit).mean(axis=0)[:, :2]
 
     def momentum(self, sea: int, nodes: Int[np.ndarray, " n"]) -> Float[np.ndarray, "2"]:
         """Mean level force that some nodes' mass takes up [N]."""
