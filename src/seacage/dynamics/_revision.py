@@ -1,4 +1,4 @@
 """Revision of the physics; a campaign is not continued under another revision."""
 
-PHYSICS = 16
+PHYSICS = 17
 """Revision of the physics: raised by every change to a number (``changes/*.physics.md``)."""

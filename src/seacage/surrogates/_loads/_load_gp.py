@@ -233,9 +233,8 @@ class FittedLoadGP:
         """Everything that ``from_arrays`` needs."""
         settings, arrays = processes_to_arrays(list(self.processes.values()))
         own = {"model": self.MODEL, "statistics": list(self.processes), "processes": settings}
-        offset = np.array(list(self.offset.values()))
         return own, arrays | {
-            "offset": offset,
+            "offset": np.array(list(self.offset.values())),
             "scatter": self.scatter,
             "duration": np.array([self.duration]),
         }
