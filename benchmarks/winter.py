@@ -21,10 +21,7 @@ def day(index: int) -> Metocean:
     phase = 2.0 * np.pi * np.arange(ROWS) * 86400.0 / ROWS / 44700.0 + index
     speed = 0.3 + 0.15 * np.sin(0.4 * index)
     velocity = speed * np.column_stack([np.cos(phase), 0.6 * np.sin(phase)])
-    unknown = np.full(ROWS, np.nan)
-    return Metocean(
-        current_velocity=velocity, hs=unknown, wave_direction=np.full((ROWS, 2), np.nan)
-    )
+    return Metocean.from_table(np.column_stack([velocity, np.full((ROWS, 4), np.nan)]))
 
 
 twin = stand_in_twin()
