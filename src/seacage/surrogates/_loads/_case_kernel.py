@@ -43,6 +43,6 @@ def with_number(
     return np.column_stack([x, np.broadcast_to(number, len(x))])
 
 
-def shared_variance(log_parameters: Float[np.ndarray, " parameter"]) -> float:
+def case_variance(log_parameters: Float[np.ndarray, " parameter"]) -> float:
     """Variance that the images of a case have in common, of the outputs' unit variance."""
     return math.exp(log_parameters[-1])

@@ -17,7 +17,7 @@ from seacage.surrogates._gp import (
     processes_to_arrays,
     select_likelihood_outputs,
 )
-from seacage.surrogates._loads._case_kernel import KERNEL, shared_variance, with_number
+from seacage.surrogates._loads._case_kernel import KERNEL, case_variance, with_number
 from seacage.surrogates._loads._loads import EULER, LoadCases, LoadPrediction, Loads
 from seacage.surrogates._prediction import Prediction, check_inputs
 from seacage.surrogates._shape import Symmetry
@@ -225,7 +225,7 @@ class FittedLoadGP:
         """Mean, and standard deviation with so much of the training's noise variance."""
         process, x = self.processes[name], with_number(x)
         found = process.predict(x)
-        of_case = shared_variance(process.posterior.log_parameters) * process.amplitude**2
+        of_case = case_variance(process.posterior.log_parameters) * process.amplitude**2
         behind = np.maximum(found.std**2 - of_case, 0.0)
         return found.mean, np.sqrt(behind + noise * (of_case + process.noise_at(x)))
 
