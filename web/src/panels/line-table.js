@@ -3,7 +3,7 @@
 import { make } from "../dom.js";
 import { text } from "../texts/index.js";
 import { tableHead, write } from "./dom.js";
-import { fixed, known, plain, titled, withUnit } from "./format.js";
+import { fixed, known, percent, plain, titled, withUnit } from "./format.js";
 
 /** A table that opens at its summary, which names the line that bears most. */
 export class LineTable {
@@ -38,10 +38,17 @@ export class LineTable {
   }
 }
 
-/** The line that bears most in three hours of this sea, or why none is known. */
+/**
+ * The line that comes nearest its capacity in three hours of this sea, where any capacity is
+ * known, else the one that bears most; or why none is known.
+ */
 export function heaviest(lines, state) {
   const loaded = lines.filter(({ maximum_3h_kn: largest }) => known(largest.mean));
   if (!loaded.length) return text("lines.none", { reason: state.lines_reason || state.reason || "" });
-  const most = loaded.reduce((a, b) => (b.maximum_3h_kn.mean > a.maximum_3h_kn.mean ? b : a));
-  return text("lines.most", { name: plain(most.name), load: withUnit(most.maximum_3h_kn.mean, "kN") });
+  const shared = loaded.filter(({ utilisation }) => known(utilisation));
+  const size = ({ maximum_3h_kn: largest, utilisation }) => (shared.length ? utilisation : largest.mean);
+  const most = (shared.length ? shared : loaded).reduce((a, b) => (size(b) > size(a) ? b : a));
+  const about = { name: plain(most.name), load: withUnit(most.maximum_3h_kn.mean, "kN") };
+  return shared.length
+    ? text("lines.share", { ...about, share: percent(most.utilisation) }) : text("lines.most", about);
 }

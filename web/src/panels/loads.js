@@ -23,9 +23,10 @@ export class Loads {
       make("caption", { className: "unseen" }, text("loads.caption")),
       tableHead(["bridle", "twin", "simulated", "measured", "share"].map((head) => text(`loads.heads.${head}`))),
       this.body);
+    this.legend = explain(
+      { bar: "twin", whisker: "interval", ghost: "maximum", tick: "simulated", dot: "measured" });
     holder.append(
-      make("div", { className: "rose-holder" }, this.rose.drawing),
-      explain({ bar: "twin", whisker: "interval", ghost: "maximum", tick: "simulated", dot: "measured" }),
+      make("div", { className: "rose-holder" }, this.rose.drawing), this.legend,
       make("div", { className: "table-holder" }, this.table), this.caption, this.lines.drawing);
     model.on("topology", () => this.topology());
     model.on("view", () => this.show());
@@ -68,6 +69,7 @@ export class Loads {
     const loads = loadRows(topology, view.state, bridleColours(topology, view, this.model.options));
     this.end = scaleFor(largest(loads), this.end);
     this.lines.show(view.state);
+    this.legend.querySelector(".ghost").parentElement.hidden = !view.state.lines?.length;
     const water = view.state.valid ? view.state.water : null;
     this.rose.show({
       loads, end: this.end, current: water?.current_to_deg, wave: water?.wave_from_deg,

@@ -190,6 +190,7 @@ export default {
     heads: { line: "Line", mean: "Mean", std: "Std", maximum: "Largest in 3 h" },
     about: "In kN, at level 1: simulation alone, of half an hour of this sea. The largest is the one expected in three hours; no interval of it is known at sea.",
     most: "In waves: {name}, {load} expected in 3 hours",
+    share: "In waves: {name}, {load} expected in 3 hours, {share} of capacity",
     none: "In waves: no loads. {reason}",
   },
   charts: {

@@ -71,6 +71,8 @@ test("the largest load expected in waves is on the rose and in its scale", () =>
 test("the summary of all lines names the one that bears most, or why none is known", () => {
   const line = (name, mean) => ({ name, maximum_3h_kn: { mean } });
   assert.match(heaviest([line("bridle-1", 40), line("anchor-3", 90)], {}), /anchor 3, 90\.0 kN/);
+  const bridle = { ...line("bridle-1", 40), utilisation: 0.25 };
+  assert.match(heaviest([bridle, line("anchor-3", 90)], {}), /bridle 1, 40\.0 kN .* 25 % of capacity/);
   assert.match(heaviest([line("bridle-1", null)], { lines_reason: "Hs is not known." }), /Hs is not known/);
 });
 
