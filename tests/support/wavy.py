@@ -1,6 +1,7 @@
 """A campaign in waves by formula: loads of all lines that have the symmetry of their cage."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from seacage.dynamics import line_places
 from seacage.ocean import SeaState
 from seacage.records import CampaignRecord
 from seacage.testing import stand_in_campaign
+from seacage.twin import Training, Twin, train
 
 CAGE = Cage.named("ace").altered(mesh={"spokes": 8})
 
@@ -34,6 +36,12 @@ def wavy_campaign(cases: int = 40, *, plan: str = "loads", cage: Cage = CAGE) ->
             "damage_equivalent": np.full_like(mean, np.nan),
         },
     )
+
+
+@cache
+def wavy_twin() -> Twin:
+    """A twin that learned it, the same one for all tests of a run."""
+    return train(CAGE, wavy_campaign(), training=Training(restarts=0))
 
 
 def true_loads(cage: Cage, seas: tuple[SeaState, ...]) -> tuple[np.ndarray, np.ndarray]:

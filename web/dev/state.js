@@ -56,7 +56,7 @@ function linesIn(bridles, sea) {
   return [...bridles, ...more].map(({ name, tension_kn: { mean } }) => {
     const std = mean === null ? null : 0.06 * mean * (sea?.hs_m ?? 0) + 0.2;
     const maximum = mean === null ? null : mean + 4.1 * std;
-    return { name, kind: `${name.split("-")[0]} line`, level: 1, mean_kn: mean, std_kn: std,
+    return { name, kind: name.startsWith("bridle") ? "bridle" : `${name.split("-")[0]} line`, level: 1, mean_kn: mean, std_kn: std,
       maximum_3h_kn: { mean: maximum, lower: null, upper: null },
       utilisation: name.startsWith("bridle") && mean !== null ? maximum / 160 : null };
   });

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
-from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -15,15 +14,13 @@ from seacage.service._export import join_answers
 from seacage.service._live._answers import state_of
 from seacage.twin import Answered, Metocean, Training, Twin, train
 from seacage.twin._training._loads import line_symmetry
-from tests.support.wavy import CAGE, true_loads, wavy_campaign
+from wavy import CAGE, true_loads, wavy_campaign, wavy_twin
 
 NOW = datetime(2020, 1, 18, tzinfo=UTC)
 SEA = SeaState(current_speed=0.4, current_to=40.0, hs=1.5, tp=7.0, wave_from=200.0)
 
 
-@cache
-def twin() -> Twin:
-    return train(CAGE, wavy_campaign(), training=Training(restarts=0))
+twin = wavy_twin
 
 
 def test_every_line_has_its_mean_its_scatter_and_its_expected_maximum():

@@ -30,8 +30,13 @@ export function introduced({ inputs }) {
   const waves = inputs.some(({ key }) => key === "hs_m");
   return text("whatif.move", {
     kinds: choices({ inputs }).map(({ called }) => called).join(text("whatif.and")),
-    period: waves ? text("whatif.period") : text("whatif.noWaves"),
+    period: period(inputs.some(({ key }) => key === "tp_s"), waves),
   });
+}
+
+function period(known, waves) {
+  if (known) return text("whatif.steepest");
+  return waves ? text("whatif.period") : text("whatif.noWaves");
 }
 
 /** Up to where the twin has learned. */

@@ -143,9 +143,18 @@ function compared(now, then) {
     row(text("whatif.load"), load.map((one) => one?.kn), "kN", 1),
     row(text("whatif.share"), load.map((one) => 100 * (one?.share ?? NaN)), "%", 0,
       load.map((one) => (one ? titled(one.name) : ""))),
+    ...([now, then].some((state) => state?.lines?.length)
+      ? [row(text("whatif.maximum"), [now, then].map(largestInWaves), "kN", 1)] : []),
     row(text("whatif.volume"), [share(now), share(then)], "%", 1),
     row(text("whatif.shallowest"), [least(now), least(then)], "m", 1),
   ];
+}
+
+/** The largest tension that any bridle is expected to bear in three hours of a sea. */
+function largestInWaves(state) {
+  const bridles = (state?.lines ?? []).filter(({ kind }) => kind === "bridle");
+  const found = bridles.map(({ maximum_3h_kn: largest }) => largest.mean).filter(known);
+  return found.length ? Math.max(...found) : NaN;
 }
 
 const depths = ({ sensors }) => sensors.filter(({ unit }) => unit === "m").map(({ mean }) => mean);

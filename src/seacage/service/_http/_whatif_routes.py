@@ -1,5 +1,7 @@
 """What a cage would do in other water: the twin asked beside the live loop."""
 
+import math
+
 from fastapi import APIRouter, Response
 
 from seacage.ocean import SeaState
@@ -13,6 +15,8 @@ from seacage.twin import Answered, Metocean, Twin
 
 _KEYS = {"current": ("current_speed_m_s", "current_to_deg"), "waves": ("hs_m", "wave_from_deg")}
 """Strength and direction of each kind of input, in the order of the twin's edges."""
+
+_WAVES = ("hs_m", "tp_s", "wave_from_deg")
 
 what_if = APIRouter(prefix="/api/v1/cages", tags=["cages"])
 
@@ -29,8 +33,9 @@ async def get_training_domain(live: Live) -> Learned:
 def ask_what_if(live: Live, body: WhatIf) -> Response:
     """Answer to water that is only imagined, as a frame with the flag 8; nothing is kept.
 
-    The period only has to suit the height: a twin learns from seas whose period follows it. The
-    answer's ``water`` says what of the question counted: null is what the twin knows nothing of.
+    Of the period only the loads of lines know; the bridles, the sensors and the shape are learned
+    from seas whose period follows their height. The answer's ``water`` says what of the question
+    counted: null is what the twin knows nothing of.
     """
     sea = SeaState(
         current_speed=body.current_speed_m_s,
@@ -60,14 +65,19 @@ def training_domain_of(twin: Twin) -> Learned:
             LearnedInput(key=strength, most=edges[name]),
             LearnedInput(key=direction, most=None),
         ]
+    if twin.emulator is not None:
+        inputs = [one for one in inputs if one.key not in _WAVES]
+        hs, log_tp = twin.emulator.domain.upper[1:3].tolist()
+        mosts = (round(hs, 2), round(math.exp(log_tp), 1), None)
+        inputs += [LearnedInput(key=k, most=most) for k, most in zip(_WAVES, mosts, strict=True)]
     known = {one.key for one in inputs}
     return Learned(inputs=inputs, unknown=sorted(WhatIf.model_fields.keys() - known))
 
 
 def effective_water(water: Water, sea: SeaState, twin: Twin) -> Water:
     """Leave of imagined water what the answer rests on; the period is that of the height."""
-    if "waves" not in twin.models.inputs:
-        return water.model_copy(update={"hs_m": None, "tp_s": None, "wave_from_deg": None})
+    if "waves" not in twin.models.inputs and twin.emulator is None:
+        return water.model_copy(update=dict.fromkeys(_WAVES))
     if sea.hs > 0.0:
         return water.model_copy(update={"tp_s": round(sea.peak_period, 2)})
     return water

@@ -8,6 +8,7 @@ from seacage.ocean import SeaState
 from seacage.service._http._whatif_routes import effective_water, training_domain_of
 from seacage.service._schemas._state import Water
 from seacage.testing import stand_in_twin
+from wavy import wavy_twin
 
 WAVES = {"hs_m": 1.0, "wave_from_deg": 270.0}
 
@@ -68,3 +69,16 @@ def test_the_period_that_goes_with_the_height_is_reported(of_waves):
     assert effective_water(water, sea, of_waves).tp_s == 5.0
     calm = water.model_copy(update={"hs_m": 0.0})
     assert effective_water(calm, replace(sea, hs=0.0), of_waves) == calm
+
+
+def test_a_twin_that_learned_loads_in_waves_names_their_height_and_period():
+    twin = wavy_twin()
+    learned = training_domain_of(twin)
+    assert [one.key for one in learned.inputs[2:]] == ["hs_m", "tp_s", "wave_from_deg"]
+    assert [one.most for one in learned.inputs[2:]] == [2.98, 17.7, None]  # of 40 cases
+    assert learned.unknown == []
+    water = Water(
+        current_speed_m_s=0.5, current_to_deg=90.0, hs_m=1.0, tp_s=None, wave_from_deg=270.0
+    )
+    sea = SeaState(current_speed=0.5, current_to=90.0, hs=1.0, wave_from=270.0)
+    assert effective_water(water, sea, twin) == water.model_copy(update={"tp_s": 5.0})
