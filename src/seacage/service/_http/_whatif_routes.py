@@ -57,21 +57,15 @@ def ask_what_if(live: Live, body: WhatIf) -> Response:
 
 def training_domain_of(twin: Twin) -> Learned:
     """Return which inputs a twin was trained with, and up to where."""
-    edges = dict(zip(_KEYS, twin.models.edge, strict=True))
-    inputs = list[LearnedInput]()
-    for name in twin.models.inputs:
-        strength, direction = _KEYS[name]
-        inputs += [
-            LearnedInput(key=strength, most=edges[name]),
-            LearnedInput(key=direction, most=None),
-        ]
+    keys = [key for name in twin.models.inputs for key in _KEYS[name]]
+    strengths = (strength for strength, _ in _KEYS.values())
+    most = dict(zip(strengths, twin.models.edge, strict=True))
     if twin.emulator is not None:
-        inputs = [one for one in inputs if one.key not in _WAVES]
         hs, log_tp = twin.emulator.domain.upper[1:3].tolist()
-        mosts = (round(hs, 2), round(math.exp(log_tp), 1), None)
-        inputs += [LearnedInput(key=k, most=most) for k, most in zip(_WAVES, mosts, strict=True)]
-    known = {one.key for one in inputs}
-    return Learned(inputs=inputs, unknown=sorted(WhatIf.model_fields.keys() - known))
+        keys = [*_KEYS["current"], *_WAVES]
+        most |= {"hs_m": round(hs, 2), "tp_s": round(math.exp(log_tp), 1)}
+    inputs = [LearnedInput(key=key, most=most.get(key)) for key in keys]
+    return Learned(inputs=inputs, unknown=sorted(WhatIf.model_fields.keys() - set(keys)))
 
 
 def effective_water(water: Water, sea: SeaState, twin: Twin) -> Water:
