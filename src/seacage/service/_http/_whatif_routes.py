@@ -58,8 +58,7 @@ def ask_what_if(live: Live, body: WhatIf) -> Response:
 def training_domain_of(twin: Twin) -> Learned:
     """Return which inputs a twin was trained with, and up to where."""
     keys = [key for name in twin.models.inputs for key in _KEYS[name]]
-    strengths = (strength for strength, _ in _KEYS.values())
-    most = dict(zip(strengths, twin.models.edge, strict=True))
+    most = dict(zip((strength for strength, _ in _KEYS.values()), twin.models.edge, strict=True))
     if twin.emulator is not None:
         hs, log_tp = twin.emulator.domain.upper[1:3].tolist()
         keys = [*_KEYS["current"], *_WAVES]
