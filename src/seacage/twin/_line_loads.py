@@ -33,12 +33,13 @@ class LineLoads:
     domain: Domain
 
     def predict(
-        self, water: Metocean, *, duration: float = 1800.0
+        self, water: Metocean, *, duration: float = 1800.0, spread: bool = True
     ) -> tuple[Loads, Bool[np.ndarray, " case"], tuple[str, ...]]:
         """Loads in each row of water, whether it is in the domain, and why not or why none.
 
         A sea lower than any of the training has the loads of the lowest, their scatter in
-        proportion to its height. Where a number of the water is not known there is none.
+        proportion to its height. Where a number of the water is not known there is none. Without
+        ``spread`` standard deviations and intervals are NaN, and the answer costs a small part.
         """
         table = water.table
         known = np.asarray(np.isfinite(table).all(axis=1))
@@ -51,7 +52,7 @@ class LineLoads:
         place = _places(some.current_velocity, held, tp)
         inside = known & self.domain.contains(place)
         x = sea_features(some.current_velocity, hs=held, tp=tp, wave_direction=some.wave_direction)
-        loads = self.surrogate.predict(x, hs=some.hs, duration=duration)
+        loads = self.surrogate.predict(x, hs=some.hs, duration=duration, spread=spread)
         reason = np.where(known, np.where(inside, "", NOT_TRAINED), NO_WAVES)
         return loads.known(known), inside, tuple(reason.tolist())
 

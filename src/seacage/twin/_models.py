@@ -139,8 +139,8 @@ class Models:
             return dict(zip(names, ((), (), None, *nothing), strict=True))
         whole = np.full((len(valid), water.table.shape[1]), np.nan)
         whole[valid] = water.table
-        loads, inside, reason = self.loads.predict(Metocean.from_table(whole))
-        found = self.loads.names, self.loads.kinds, loads.without_interval(), inside, reason
+        loads, inside, reason = self.loads.predict(Metocean.from_table(whole), spread=False)
+        found = self.loads.names, self.loads.kinds, loads, inside, reason
         return dict(zip(names, found, strict=True))
 
     def _block(self, water: Metocean) -> dict[str, Any]:

@@ -2,8 +2,8 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cache
-from typing import Self
+from functools import cache, cached_property
+from typing import Any, Self
 
 import numpy as np
 from jaxtyping import Float
@@ -79,6 +79,20 @@ class Cholesky:
         return replace(self, lower=lower)
 
 
+class Later:
+    """A factor of noise alike for all outputs, made when anything is first asked of it."""
+
+    def __init__(self, make: Callable[[], Any]) -> None:
+        self._make = make
+
+    @cached_property
+    def _factor(self) -> Any:
+        return self._make()
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._factor, name)
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Spectrum:
     """Of a covariance under noise of another size for each output: one basis serves all."""
@@ -142,7 +156,7 @@ class Spectrum:
             )
 
 
-Factor = Cholesky | Spectrum
+Factor = Cholesky | Spectrum | Later
 
 
 def _lower(

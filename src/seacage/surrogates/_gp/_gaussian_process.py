@@ -303,7 +303,13 @@ class FittedGaussianProcess:
         return settings, arrays | ({"anchor": anchor} if anchor.size else {})
 
     @classmethod
-    def from_arrays(cls, settings: Mapping[str, object], arrays: Mapping[str, np.ndarray]) -> Self:
+    def from_arrays(
+        cls,
+        settings: Mapping[str, object],
+        arrays: Mapping[str, np.ndarray],
+        *,
+        later: bool = False,  # factorise when a variance is first asked for
+    ) -> Self:
         """The model that ``to_arrays`` described; ``ModelError`` where it is damaged."""
         kernel = restore_kernel(setting(settings, "kernel", str))
         single = setting(settings, "single", bool)
@@ -322,7 +328,7 @@ class FittedGaussianProcess:
         noise_factor = array(arrays, "doubt", rows)
         members = [
             Process(kernel=kernel, log_parameters=own, noise=noise, log_noise=own_noise).restore(
-                x, weight, noise_factor=noise_factor
+                x, weight, noise_factor=noise_factor, later=later
             )
             for own, own_noise, weight in zip(parameters, log_noise, weights, strict=True)
         ]
@@ -397,12 +403,18 @@ def processes_to_arrays(
 
 
 def processes_from_arrays(
-    settings: Mapping[str, object], name: str, arrays: Mapping[str, np.ndarray]
+    settings: Mapping[str, object],
+    name: str,
+    arrays: Mapping[str, np.ndarray],
+    *,
+    later: bool = False,
 ) -> tuple[FittedGaussianProcess, ...]:
     """The processes whose settings are listed under a name."""
     return tuple(
         FittedGaussianProcess.from_arrays(
-            part, {key[len(start) :]: one for key, one in arrays.items() if key.startswith(start)}
+            part,
+            {key[len(start) :]: one for key, one in arrays.items() if key.startswith(start)},
+            later=later,
         )
         for place, part in enumerate(setting_list(settings, name, dict))
         for start in [f"{place}."]

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.conventions import InputError, ModelError
-from seacage.surrogates._gp._factor import Cholesky, Factor, Spectrum
+from seacage.surrogates._gp._factor import Cholesky, Factor, Later, Spectrum
 from seacage.surrogates._gp._kernels import AbstractKernel
 from seacage.surrogates._gp._noise import (
     AbstractNoise,
@@ -59,12 +59,19 @@ class Process:
         weights: Float[np.ndarray, "n output"],
         *,
         noise_factor: Float[np.ndarray, " n"],
+        later: bool = False,
     ) -> "Posterior":
         """The posterior that was saved; the factor is cheaper to make than to store.
+
+        ``later``: make it when a variance is first asked for; means need none.
 
         Raises ModelError: the covariance has no factor, so this was never a fitted model.
         """
         from scipy.linalg import LinAlgError
+
+        if later:
+            made = Later(lambda: self._factorise(x, noise_factor))
+            return self._posterior(x, noise_factor, weights, made)
 
         broken = "The saved model's covariance is not positive definite. Train the model again."
         try:

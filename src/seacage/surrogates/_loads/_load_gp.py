@@ -1,7 +1,7 @@
 """Surrogate of all lines' loads in waves: mean, standard deviation, three-hour maximum, wear."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
 import numpy as np
@@ -27,6 +27,9 @@ HEIGHT = 3
 
 OFFSET = 0.02
 """Added before a logarithm is taken, over the statistic's median [-]."""
+
+MOST_IMAGES = 4000
+"""Of all cases together, as memory grows with their square; each case has as many."""
 
 MOST_POINTS = 1500
 """Images that hyperparameters are learned from; all others count in the answer alone."""
@@ -89,12 +92,12 @@ class LoadGP:
                 "learned from waves. Leave cases without waves out."
             )
         above = _above_mean(loads)
-        offset = {name: OFFSET * float(np.median(one)) for name, one in above.items()}
+        offset = {name: _offset(one) for name, one in above.items()}
         outputs = {"mean": loads.mean} | {
             name: np.log((one + offset[name]) / x[:, [HEIGHT]]) for name, one in above.items()
         }
         numbered = with_number(x, np.arange(len(x), dtype=float))
-        images, tables = _images(self.symmetry, numbered, outputs)
+        images, tables = _images(self.symmetry, numbered, outputs, seed=seed)
         return FittedLoadGP(
             processes={
                 name: fit_process(
@@ -110,8 +113,14 @@ class LoadGP:
             },
             offset=offset,
             scatter=_largest_scatter(self.symmetry, loads),
+            wears=np.array(np.isfinite(loads.damage_equivalent).any(axis=0), dtype=np.float64),
             duration=duration,
         )
+
+
+def _offset(values: Float[np.ndarray, "case line"]) -> float:
+    loaded = values[values > 0.0]
+    return OFFSET * float(np.median(loaded)) if loaded.size else 1.0
 
 
 def _above_mean(loads: LoadCases) -> dict[str, Float[np.ndarray, "case line"]]:
@@ -137,14 +146,23 @@ def _images(
     symmetry: Symmetry | None,
     x: Float[np.ndarray, "n feature"],
     outputs: Mapping[str, Float[np.ndarray, "n line"]],
+    *,
+    seed: int,
 ) -> tuple[Float[np.ndarray, "row feature"], dict[str, Float[np.ndarray, "row line"]]]:
-    """All images of each case, image by image."""
+    """All images of each case, image by image, or as many as there may be, drawn at random."""
     if symmetry is None:
         return x, dict(outputs)
-    every = range(len(symmetry))
-    turned = [with_number(symmetry.turned(x[:, :-1], image), x[:, -1]) for image in every]
+    each = min(len(symmetry), max(1, MOST_IMAGES // len(x)))
+    order = np.random.default_rng(seed).random((len(x), len(symmetry))).argsort(axis=1)
+    cases = [np.flatnonzero(np.any(order[:, :each] == n, axis=1)) for n in range(len(symmetry))]
+    turned = [
+        with_number(symmetry.turned(x[some, :-1], image), x[some, -1])
+        for image, some in enumerate(cases)
+    ]
     return np.concatenate(turned), {
-        name: np.concatenate([one[:, symmetry.source[image]] for image in every])
+        name: np.concatenate(
+            [one[some][:, symmetry.source[image]] for image, some in enumerate(cases)]
+        )
         for name, one in outputs.items()
     }
 
@@ -162,6 +180,8 @@ class FittedLoadGP:
         Added to a statistic before its logarithm was taken [N].
     scatter
         Gumbel scale of the largest value over its mean height above the mean, of each line [-].
+    wears
+        1 for a line with a T-N curve, 0 for one without [-].
     duration
         That the statistics of the training are over [s].
     """
@@ -171,6 +191,7 @@ class FittedLoadGP:
     processes: Mapping[str, FittedGaussianProcess]
     offset: Mapping[str, float]
     scatter: Float[np.ndarray, " line"]
+    wears: Float[np.ndarray, " line"]
     duration: float
 
     def predict(
@@ -179,6 +200,7 @@ class FittedLoadGP:
         *,
         hs: Float[np.ndarray, " row"] | None = None,
         duration: float = 1800.0,
+        spread: bool = True,
     ) -> Loads:
         """Loads at each row of features.
 
@@ -192,17 +214,19 @@ class FittedLoadGP:
         duration
             Over which mean, standard deviation and wear are asked for: the shorter, the more
             they scatter from one time to another [s].
+        spread
+            Whether standard deviations are wanted: without them they are NaN, and the answer
+            costs a small part.
         """
         height = x[:, [HEIGHT]] if hs is None else hs[:, None]
-        share = self.duration / duration
+        share, lone = (self.duration / duration, 0.0) if spread else (None, None)
         mean, std = self._answer("mean", x, noise=share)
+        mean = np.maximum(mean, 0.0)  # a line never pushes
         calm = np.zeros_like(mean)
 
-        def above(name: str, base: np.ndarray, gumbel: np.ndarray, noise: float) -> LoadPrediction:
-            if name not in self.processes:
-                return LoadPrediction(
-                    base=base, size=base + np.nan, log_std=calm, gumbel=calm, offset=0.0
-                )
+        def above(
+            name: str, base: np.ndarray, gumbel: np.ndarray, noise: float | None
+        ) -> LoadPrediction:
             log, spread = self._answer(name, x, noise=noise)
             return LoadPrediction(
                 base=base,
@@ -212,18 +236,27 @@ class FittedLoadGP:
                 offset=self.offset[name],
             )
 
+        wear = std_load = above("std", calm, calm, share)
+        if self.wears.any():
+            wear = above("damage", calm, calm, share)
         return Loads(
             mean=Prediction(mean=mean, std=std),
-            std=above("std", calm, calm, share),
-            maximum_3h=above("maximum", mean, calm + self.scatter, 0.0),
-            damage_equivalent=above("damage", calm, calm, share),
+            std=std_load,
+            maximum_3h=above("maximum", mean, calm + self.scatter, lone),
+            damage_equivalent=replace(wear, size=np.where(self.wears, wear.size, np.nan)),
         )
 
     def _answer(
-        self, name: str, x: Float[np.ndarray, "row feature"], *, noise: float
+        self, name: str, x: Float[np.ndarray, "row feature"], *, noise: float | None
     ) -> tuple[Float[np.ndarray, "row line"], Float[np.ndarray, "row line"]]:
-        """Mean, and standard deviation with so much of the training's noise variance."""
+        """Mean, and standard deviation with so much of the training's noise variance.
+
+        ``noise``: None for means alone.
+        """
         process, x = self.processes[name], with_number(x)
+        if noise is None:
+            mean = process.mean(x)
+            return mean, np.full_like(mean, np.nan)
         found = process.predict(x)
         of_case = case_variance(process.posterior.log_parameters) * process.amplitude**2
         behind = np.maximum(found.std**2 - of_case, 0.0)
@@ -236,6 +269,7 @@ class FittedLoadGP:
         return own, arrays | {
             "offset": np.array(list(self.offset.values())),
             "scatter": self.scatter,
+            "wears": self.wears,
             "duration": np.array([self.duration]),
         }
 
@@ -249,12 +283,13 @@ class FittedLoadGP:
             A setting or an array is missing, of another kind or shape, or not finite.
         """
         names = setting_list(settings, "statistics", str)
-        processes = processes_from_arrays(settings, "processes", arrays)
+        processes = processes_from_arrays(settings, "processes", arrays, later=True)
         lines = len(processes[0].centre)
         offset = array(arrays, "offset", len(names) - 1).tolist()
         return cls(
             processes=dict(zip(names, processes, strict=True)),
             offset=dict(zip(names[1:], offset, strict=True)),
             scatter=array(arrays, "scatter", lines),
+            wears=array(arrays, "wears", lines),
             duration=float(array(arrays, "duration", 1)[0]),
         )

@@ -96,15 +96,6 @@ class LoadPrediction(Rows):
         lower, upper = (self._quantile(0.5 + side * level / 2.0) for side in (-1.0, 1.0))
         return lower, upper
 
-    def without_interval(self) -> Self:
-        """The same where no honest interval is known; the mean keeps its size."""
-        known = np.nan_to_num(self.log_std)
-        return replace(
-            self,
-            size=self.size * np.exp(0.5 * known**2),
-            log_std=np.full_like(self.log_std, np.nan),
-        )
-
     def _load(self, above: Float[np.ndarray, "case line"]) -> Float[np.ndarray, "case line"]:
         return self.base + np.maximum(above - self.offset, 0.0)
 
@@ -156,16 +147,6 @@ class Loads(Rows):
         """The same with NaN in all other rows."""
         parts = {one.name: getattr(self, one.name) for one in fields(self)}
         return replace(self, **{name: _where(rows, part) for name, part in parts.items()})
-
-    def without_interval(self) -> Self:
-        """The same where no honest interval is known: every standard deviation is NaN."""
-        return replace(
-            self,
-            mean=replace(self.mean, std=np.full_like(self.mean.std, np.nan)),
-            std=self.std.without_interval(),
-            maximum_3h=self.maximum_3h.without_interval(),
-            damage_equivalent=self.damage_equivalent.without_interval(),
-        )
 
 
 def _where(rows: Bool[np.ndarray, " case"], part: Prediction | LoadPrediction) -> Any:

@@ -1,10 +1,12 @@
 """Training of level 1 of lines' loads in waves, folded by the cage's symmetry."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
-from seacage.cage import Cage
+from seacage.cage import Cage, mooring_lines
 from seacage.conventions import InputError, compass
-from seacage.dynamics import line_places, settle
+from seacage.dynamics import Mooring, line_places, settle
 from seacage.ocean import SeaState
 from seacage.records import CampaignRecord
 from seacage.surrogates import LoadCases, LoadGP, Symmetry, sea_features
@@ -49,7 +51,8 @@ def train_line_loads(
     x = sea_features(
         water.current_velocity, hs=water.hs, tp=water.tp, wave_direction=water.wave_direction
     )
-    surrogate = LoadGP(symmetry=line_symmetry(cage), restarts=restarts).fit(
+    symmetry = line_symmetry(cage, campaign.line_names)
+    surrogate = LoadGP(symmetry=symmetry, restarts=restarts).fit(
         x, cases.rows(wavy), duration=campaign.duration, seed=seed
     )
     return LineLoads(
@@ -60,14 +63,22 @@ def train_line_loads(
     )
 
 
-def line_symmetry(cage: Cage) -> Symmetry | None:
-    """The largest symmetry that a cage's lines have, in the drawing and in their loads.
+def line_symmetry(cage: Cage, names: Sequence[str]) -> Symmetry | None:
+    """The largest symmetry that some of a cage's lines have, in the drawing and in their loads.
+
+    Bridles alone are those of a cage on corner springs. A campaign that has lines of another
+    mooring has no symmetry that is known here.
 
     Every fold that divides the number of its bridles is tried, with mirrors through a frame
     corner or a side's middle and without; what coincides is asked of the equilibria in one
     current and its images.
     """
-    places, corners = line_places(cage), cage.corner_position[:, :2]
+    mooring: Mooring = "springs" if tuple(names) == cage.bridle_names else "catenary"
+    known = mooring_lines(cage, anchored=mooring == "catenary").names
+    if not set(names) <= set(known):
+        return None
+    rows = [known.index(name) for name in names]
+    places, corners = line_places(cage, mooring=mooring)[rows], cage.corner_position[:, :2]
     middle = (corners[0] + corners[1]) / 2.0
     mirrors = [float(np.rad2deg(np.arctan2(*one[::-1]))) for one in (corners[0], middle)]
     for fold in range(cage.bridle_count, 0, -1):
@@ -78,16 +89,18 @@ def line_symmetry(cage: Cage) -> Symmetry | None:
                 symmetry = Symmetry.of(places, fold=fold, mirror=mirror)
             except InputError:
                 continue
-            if _loads_fall_on_images(cage, symmetry):
+            if _loads_fall_on_images(cage, mooring, symmetry, rows):
                 return symmetry
     return None
 
 
-def _loads_fall_on_images(cage: Cage, symmetry: Symmetry) -> bool:
+def _loads_fall_on_images(
+    cage: Cage, mooring: Mooring, symmetry: Symmetry, rows: list[int]
+) -> bool:
     speed, angle = TRIAL
     along = np.deg2rad(90.0 - cage.heading + angle)
     velocity = speed * symmetry.turn @ np.array([np.cos(along), np.sin(along)])
     seas = [SeaState(current_speed=speed, current_to=to) for to in compass(velocity).tolist()]
-    tension = settle(cage, seas).line_tension
+    tension = settle(cage, seas, mooring=mooring).line_tension[:, rows]
     images = tension[0][symmetry.source]
     return bool(np.abs(tension - images).max() <= ASYMMETRY * tension.max())

@@ -183,10 +183,33 @@ def test_mean_and_scatter_are_those_of_draws():
     )
 
 
-def test_without_an_honest_interval_the_mean_stays():
-    load = one_load(0.15, 0.12)
-    bare = load.without_interval()
-    np.testing.assert_allclose(bare.mean, load.mean)
-    assert np.isnan(bare.interval(0.95)).all()
+def test_without_spread_means_stay_and_there_is_no_interval(fitted: FittedLoadGP):
+    x = draw_seas(6, 18)
+    whole, bare = fitted.predict(x), fitted.predict(x, spread=False)
+    for name in ("mean", "std", "maximum_3h", "damage_equivalent"):
+        # the median of what is log-normal, a little below its mean
+        np.testing.assert_allclose(getattr(bare, name).mean, getattr(whole, name).mean, rtol=0.01)
+        assert np.isnan(getattr(bare, name).interval(0.95)).all()
+
+
+def test_a_share_is_no_percentage():
     with pytest.raises(InputError, match=r"level = 95 is no share"):
-        load.interval(95.0)
+        one_load(0.1, 0.0).interval(95.0)
+
+
+def test_a_line_without_a_curve_of_wear_has_none_beside_lines_that_have():
+    x = draw_seas(40, 19)
+    cases = observe(x, 20)
+    cases.damage_equivalent[:, 2] = np.nan
+    wear = LoadGP(restarts=0).fit(x, cases, duration=900.0).predict(x).damage_equivalent.mean
+    assert np.isnan(wear[:, 2]).all()
+    assert (wear[:, [0, 1, 3]] > 0.0).all()
+
+
+def test_many_cases_keep_some_of_their_images(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("seacage.surrogates._loads._load_gp.MOST_IMAGES", 100)
+    x = draw_seas(40, 21)
+    fitted = LoadGP(symmetry=SQUARE, restarts=0).fit(x, observe(x, 22), duration=900.0)
+    cases = fitted.processes["std"].cases()
+    assert len(cases) == 80
+    assert np.unique(cases[:, -1].round(6), return_counts=True)[1].tolist() == [2] * 40
