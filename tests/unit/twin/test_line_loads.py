@@ -81,6 +81,15 @@ def test_a_campaign_whose_periods_follow_their_heights_teaches_no_loads():
     assert train(CAGE, campaign, training=Training(restarts=0)).emulator is None
 
 
+def test_waves_that_move_nothing_teach_nothing():
+    campaign = wavy_campaign()
+    low = replace(campaign.seas[0], hs=1e-4, tp=0.5)
+    flat = replace(campaign, seas=(low, *campaign.seas[1:]))
+    emulator = train(CAGE, flat, training=Training(restarts=0)).emulator
+    assert emulator is not None
+    assert emulator.domain.lower[1] >= 0.05
+
+
 def test_loads_are_saved_with_their_twin(tmp_path: Path):
     twin().write(tmp_path / "twin")
     one, other = twin().predict(SEA).line, Twin.read(tmp_path / "twin").predict(SEA).line

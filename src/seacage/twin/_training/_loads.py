@@ -16,6 +16,9 @@ from seacage.twin._metocean import Metocean
 LEAST_CASES = 20
 """With waves, that converged."""
 
+LEAST_HS = 0.05
+"""Lower waves move no line by more than rounding, and would weigh as much as any [m]."""
+
 LEAST_SPAN = 1.5
 """Of Tp / (5 sqrt(Hs)), largest over least: below, a campaign cannot tell height from period."""
 
@@ -33,7 +36,7 @@ def train_line_loads(
 
     It has where it was simulated in time, in waves whose period varies beside their height.
     """
-    wavy = campaign.converged & np.array([sea.hs > 0.0 for sea in campaign.seas])
+    wavy = campaign.converged & np.array([sea.hs >= LEAST_HS for sea in campaign.seas])
     if not campaign.line_names or wavy.sum() < LEAST_CASES:
         return None
     water = Metocean.of(campaign.seas).rows(wavy)
