@@ -142,6 +142,7 @@ def test_predicting_in_pieces_changes_nothing(monkeypatch: pytest.MonkeyPatch) -
     # Matrix products of other sizes round otherwise.
     for piece, together in zip(posterior.predict(new), whole, strict=True):
         np.testing.assert_allclose(piece, together, rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(posterior.mean(new), whole[0], rtol=1e-9, atol=1e-12)
 
 
 def test_no_covariance_is_ever_larger_than_a_piece(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -155,6 +156,8 @@ def test_no_covariance_is_ever_larger_than_a_piece(monkeypatch: pytest.MonkeyPat
         return np.zeros((len(a), len(b)))
 
     monkeypatch.setattr(StationaryKernel, "covariance", watched)
-    posterior.predict(np.zeros((95, 2)))
-    assert max(sizes) == 10 * len(x)
-    assert sum(sizes) == 95 * len(x)
+    for answer in (posterior.predict, posterior.mean):
+        sizes.clear()
+        answer(np.zeros((95, 2)))
+        assert max(sizes) == 10 * len(x)
+        assert sum(sizes) == 95 * len(x)
