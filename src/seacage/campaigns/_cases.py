@@ -12,7 +12,16 @@ from jaxtyping import Float
 from seacage.cage import Cage, Structure, cage_or_structure
 from seacage.campaigns._pool import one_thread
 from seacage.conventions import InputError, SeacageError, has_answer
-from seacage.dynamics import LAWS, PHYSICS, History, Mooring, MovingLaw, settle, simulate
+from seacage.dynamics import (
+    LAWS,
+    PHYSICS,
+    History,
+    Mooring,
+    MovingLaw,
+    settle,
+    simulate,
+    simulation_lanes,
+)
 from seacage.ocean import SeaState
 
 _BLOCK = {"simulate": 16, "settle": 32}
@@ -188,10 +197,14 @@ def _simulate_block(
         duration=block.duration,
         seed=block.wave_seeds,
         sample_every=None,
-        pieces=max(1, min(16, int(block.duration // _PIECE))) if by.draw_mooring else 1,
+        pieces=_pieces(block.duration) if by.draw_mooring else 1,
         **settings,
     )
     return _statistics(history), _moment(history) if by.second_moment else None
+
+
+def _pieces(duration: float) -> int:
+    return max(1, min(simulation_lanes(), int(duration // _PIECE)))
 
 
 def _statistics(history: History) -> dict[str, np.ndarray]:

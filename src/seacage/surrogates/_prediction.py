@@ -28,8 +28,15 @@ class Prediction(Rows):
         self, level: float
     ) -> tuple[Float[np.ndarray, "row *rest"], Float[np.ndarray, "row *rest"]]:
         """Bounds that hold a share of a normal distribution, the same share beyond either."""
-        half = self.std * NormalDist().inv_cdf(0.5 + level / 2.0)
+        half = self.std * NormalDist().inv_cdf(interval_ends(level)[1])
         return self.mean - half, self.mean + half
+
+
+def interval_ends(level: float) -> tuple[float, float]:
+    """Probabilities of the bounds that hold a share between them, refused where it is none."""
+    if not 0.0 < level < 1.0:
+        raise InputError(f"interval: level = {level:g} is no share. Give e.g. 0.95.")
+    return 0.5 - level / 2.0, 0.5 + level / 2.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

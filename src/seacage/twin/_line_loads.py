@@ -1,6 +1,6 @@
 """Level 1 of all lines' loads in waves: the surrogate, and the seas that it learned."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -49,9 +49,9 @@ class LineLoads:
         held = np.where(low, lowest, some.hs)
         ratio = np.clip(_ratio(some.tp, held), least_ratio, most_ratio)
         tp = np.where(low, 5.0 * np.sqrt(held) * ratio, np.maximum(some.tp, 1e-3))
-        place = _places(some.current_velocity, held, tp)
-        inside = known & self.domain.contains(place)
-        x = sea_features(some.current_velocity, hs=held, tp=tp, wave_direction=some.wave_direction)
+        near = replace(some, hs=held, tp=tp)
+        inside = known & self.domain.contains(_places(near))
+        x = load_features(near)
         loads = self.surrogate.predict(x, hs=some.hs, duration=duration, spread=spread)
         reason = np.where(known, np.where(inside, "", NOT_TRAINED), NO_WAVES)
         return loads.known(known), inside, tuple(reason.tolist())
@@ -64,7 +64,14 @@ class LineLoads:
 
 def sea_domain(water: Metocean) -> Domain:
     """Domain of the currents and waves of a training."""
-    return Domain.of(_places(water.current_velocity, water.hs, water.tp))
+    return Domain.of(_places(water))
+
+
+def load_features(water: Metocean) -> Float[np.ndarray, "case 7"]:
+    """Features of the loads of lines."""
+    return sea_features(
+        water.current_velocity, hs=water.hs, tp=water.tp, wave_direction=water.wave_direction
+    )
 
 
 def period_span(water: Metocean) -> float:
@@ -73,13 +80,9 @@ def period_span(water: Metocean) -> float:
     return float(ratio.max() / ratio.min())
 
 
-def _places(
-    velocity: Float[np.ndarray, "case 2"],
-    hs: Float[np.ndarray, " case"],
-    tp: Float[np.ndarray, " case"],
-) -> Float[np.ndarray, "case 4"]:
-    speed = np.linalg.norm(velocity, axis=1)
-    return np.column_stack([speed, hs, np.log(tp), np.log(_ratio(tp, hs))])
+def _places(water: Metocean) -> Float[np.ndarray, "case 4"]:
+    speed, ratio = np.linalg.norm(water.current_velocity, axis=1), _ratio(water.tp, water.hs)
+    return np.column_stack([speed, water.hs, np.log(water.tp), np.log(ratio)])
 
 
 def _ratio(tp: Float[np.ndarray, " case"], hs: Float[np.ndarray, " case"]) -> np.ndarray:

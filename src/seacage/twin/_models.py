@@ -128,7 +128,7 @@ class Models:
             sensor_level=sensor_level,
             shape_level=1,
             **of_rows,
-            **self._line_loads(water.rows(valid), valid),
+            **self._line_loads(water, valid),
         )
 
     def _line_loads(self, water: Metocean, valid: Bool[np.ndarray, " case"]) -> dict[str, Any]:
@@ -137,9 +137,8 @@ class Models:
         if self.loads is None:
             nothing = np.zeros_like(valid), ("",) * len(valid)
             return dict(zip(names, ((), (), None, *nothing), strict=True))
-        whole = np.full((len(valid), water.table.shape[1]), np.nan)
-        whole[valid] = water.table
-        loads, inside, reason = self.loads.predict(Metocean.from_table(whole), spread=False)
+        known = Metocean.from_table(np.where(valid[:, None], water.table, np.nan))
+        loads, inside, reason = self.loads.predict(known, spread=False)
         found = self.loads.names, self.loads.kinds, loads, inside, reason
         return dict(zip(names, found, strict=True))
 

@@ -26,7 +26,7 @@ from seacage.twin._interval_factors import (
     with_predictions,
 )
 from seacage.twin._line_loads import LineLoads
-from seacage.twin._metocean import WATER_KEYS, Metocean, input_keys
+from seacage.twin._metocean import Metocean, input_keys
 from seacage.twin._models import Models
 from seacage.twin._provenance import Provenance
 from seacage.twin._saving import from_parts, read_folder, to_parts, write_folder
@@ -318,7 +318,6 @@ class Twin:
         columns = {
             key: np.array([sample.values[key] if self._is_known(sample, key, t) else np.nan])
             for key, sample in newest.items()
-            if key in keys or key in WATER_KEYS
         }
         age_s = max((t - newest[key].t).total_seconds() for key in keys)
         bad = [key for key in keys if not _is_usable(newest[key], key)]

@@ -262,7 +262,7 @@ def sample_of(sample: Sample) -> SampleOut:
 
 
 def _period(memory: TwinState, buoy: str, now: datetime) -> float | None:
-    """The buoy's newest period, which is no input of any twin; None where it failed."""
+    """The buoy's newest period, however old; None where it failed."""
     sample = memory.newest(buoy, now).get(_PERIOD)
     if sample is None or sample.flags[_PERIOD] in _UNUSABLE:
         return None

@@ -7,8 +7,8 @@ from typing import Any, Self
 import numpy as np
 from jaxtyping import Bool, Float
 
-from seacage.conventions import InputError, Rows
-from seacage.surrogates._prediction import Prediction
+from seacage.conventions import Rows
+from seacage.surrogates._prediction import Prediction, interval_ends
 
 EULER = 0.5772156649015329
 """Mean of a standard Gumbel variable."""
@@ -91,9 +91,7 @@ class LoadPrediction(Rows):
         self, level: float
     ) -> tuple[Float[np.ndarray, "case line"], Float[np.ndarray, "case line"]]:
         """Bounds that hold a share of the loads, the same share beyond either [N]."""
-        if not 0.0 < level < 1.0:
-            raise InputError(f"interval: level = {level:g} is no share. Give e.g. 0.95.")
-        lower, upper = (self._quantile(0.5 + side * level / 2.0) for side in (-1.0, 1.0))
+        lower, upper = (self._quantile(end) for end in interval_ends(level))
         return lower, upper
 
     def _load(self, above: Float[np.ndarray, "case line"]) -> Float[np.ndarray, "case line"]:

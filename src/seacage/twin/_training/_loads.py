@@ -9,8 +9,8 @@ from seacage.conventions import InputError, compass
 from seacage.dynamics import Mooring, line_places, settle
 from seacage.ocean import SeaState
 from seacage.records import CampaignRecord
-from seacage.surrogates import LoadCases, LoadGP, Symmetry, sea_features
-from seacage.twin._line_loads import LineLoads, period_span, sea_domain
+from seacage.surrogates import LoadCases, LoadGP, Symmetry
+from seacage.twin._line_loads import LineLoads, load_features, period_span, sea_domain
 from seacage.twin._metocean import Metocean
 
 LEAST_CASES = 20
@@ -51,12 +51,9 @@ def train_line_loads(
         largest=loads["maximum"],
         damage_equivalent=loads["damage_equivalent"],
     )
-    x = sea_features(
-        water.current_velocity, hs=water.hs, tp=water.tp, wave_direction=water.wave_direction
-    )
     symmetry = line_symmetry(cage, campaign.line_names)
     surrogate = LoadGP(symmetry=symmetry, restarts=restarts).fit(
-        x, cases.rows(wavy), duration=campaign.duration, seed=seed
+        load_features(water), cases.rows(wavy), duration=campaign.duration, seed=seed
     )
     return LineLoads(
         names=campaign.line_names,
