@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from seacage.dynamics._kernel import _structs as c
-from seacage.dynamics._kernel import kernel
+from seacage.dynamics._kernel._library import kernel
 from seacage.dynamics._kernel._march_inputs import WAVE_KINDS
 from seacage.dynamics._kernel._sparsity import Pattern, _pattern
 from seacage.dynamics._kernel._structs import by_name, pointer

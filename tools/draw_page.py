@@ -1,7 +1,7 @@
 """Draw the live page in its main states: docs/pictures/page-*.png.
 
-A day of the demonstration is lived through in a minute, and Chromium looks at its end. The other
-cages of the farm are the same twin in other days' water. Needs `make page` and Chromium.
+A day of the demonstration's field is lived through in a minute, and Chromium looks at its end.
+The other cages of the farm are the same twin in other hours' water. Needs `make page` and Chromium.
 
     .venv/bin/python tools/draw_page.py [--data var] [--only NAME]
 """
@@ -33,11 +33,12 @@ from seacage.service._live._metrics import Metrics
 from seacage.service._live._replay import Replay, replay_of
 from seacage.service._store._store import open_store
 from seacage.studies import Demonstration, prepare_demonstration
+from seacage.studies._demonstration_field import read_demonstration_field
 from seacage.twin import AlarmPolicy, Twin
 
 PICTURES = Path(__file__).parents[1] / "docs" / "pictures"
-CALM = datetime(2020, 2, 24, 5, 50, tzinfo=UTC)
-PEAK = datetime(2020, 2, 24, 10, 50, tzinfo=UTC)
+CALM = datetime(2020, 1, 20, 3, 50, tzinfo=UTC)
+PEAK = datetime(2020, 1, 21, 6, 20, tzinfo=UTC)
 # Below the usual 0.8, so that the hours shown here reach it.
 LIMITS = {"load": {"raise_at": 0.45, "clear_at": 0.4}}
 DAY, STEP = timedelta(hours=24), timedelta(minutes=10)
@@ -74,25 +75,25 @@ class Shown:
 
 @dataclass(frozen=True, kw_only=True)
 class Others:
-    """A cage in other water: another day's, and silent for the last hours where it says so."""
+    """A cage in earlier water, and silent for the last hours where it says so."""
 
-    days: float
+    hours: float
     silent: timedelta = timedelta(0)
 
 
 FARM = {
-    "ace": Others(days=0.0),
-    "bay": Others(days=3.0),
-    "cove": Others(days=9.5, silent=timedelta(hours=4)),
-    "fjord": Others(days=5.3),
-    "holm": Others(days=16.2),
-    "skerry": Others(days=12.9),
+    "ace": Others(hours=0.0),
+    "bay": Others(hours=9.0),
+    "cove": Others(hours=27.5, silent=timedelta(hours=4)),
+    "fjord": Others(hours=21.3),
+    "holm": Others(hours=47.2),
+    "skerry": Others(hours=35.9),
 }
 
 
 def samples_of(replay: Replay, other: Others, start: datetime, end: datetime) -> list[Sample]:
     """What a cage hears in a span, taken from another one."""
-    shift = timedelta(days=other.days)
+    shift = timedelta(hours=other.hours)
     spans = (record.between(start - shift, end - shift).samples() for record in replay.records)
     moved = (replace(one, t=one.t + shift) for span in spans for one in span)
     return sorted(moved, key=lambda one: one.t)
@@ -101,7 +102,8 @@ def samples_of(replay: Replay, other: Others, start: datetime, end: datetime) ->
 @contextmanager
 def lived(made: Demonstration, end: datetime, names: tuple[str, ...]) -> Iterator[Shown]:
     """Serve cages that have heard all until a time, and have judged it step by step."""
-    twin, replay = Twin.read(made.twin_folder), replay_of(made.buoy, made.field)
+    field = read_demonstration_field()
+    twin, replay = Twin.read(made.twin_folder), replay_of(field.buoy, field)
     policy = AlarmPolicy.from_dict(LIMITS, twin.cage, buoy=twin.buoy, timeouts=twin.timeouts)
     clock, metrics = StandingClock(end - DAY), Metrics()
     with tempfile.TemporaryDirectory() as folder:
@@ -206,6 +208,9 @@ def draw_peak(shown: Shown) -> None:
         page.keyboard.press("3")
         kept(page, "alarm")
         page.keyboard.press("1")
+        page.locator(".rose .bar").nth(8).click()
+        kept(page, "line")
+        page.keyboard.press("Escape")
         page.get_by_label("Time that is shown").focus()
         for _ in range(2):
             page.keyboard.press("PageDown")

@@ -9,8 +9,8 @@ from jaxtyping import Float
 from seacage.cage import Cage
 from seacage.dynamics._moored._anchor_line import segments
 from seacage.dynamics._moored._mooring import anchor_assembly
-from seacage.dynamics._parts import Assembly, Ground, Springs
-from seacage.dynamics._physics import damped_tension
+from seacage.dynamics._parts._assembly import Assembly, Ground, Springs
+from seacage.dynamics._physics._motion import damped_tension
 from validation._bare import chain, marched
 
 HEAVY = 1e9

@@ -7,9 +7,9 @@ import numpy as np
 
 from seacage.cage import Cage
 from seacage.dynamics import Law, Mooring, Response, rest_shape
-from seacage.dynamics._equilibrium import equilibria
-from seacage.dynamics._moored import moor
-from seacage.dynamics._physics import steady_flow
+from seacage.dynamics._equilibrium._search import equilibria
+from seacage.dynamics._moored._choice import moor
+from seacage.dynamics._physics._flow import steady_flow
 from seacage.dynamics._settle import _response
 from seacage.ocean import SeaState
 

@@ -8,14 +8,15 @@ from jaxtyping import Float, Int
 
 from seacage.cage import Cage
 from seacage.dynamics import settle
-from seacage.dynamics._equilibrium import equilibria
-from seacage.dynamics._kernel import REFRESH, March, Ocean, Steps
-from seacage.dynamics._moored import scale_mass
+from seacage.dynamics._equilibrium._search import equilibria
+from seacage.dynamics._kernel._march import REFRESH, March, Steps
+from seacage.dynamics._kernel._march_inputs import Ocean
+from seacage.dynamics._moored._mass_scaling import scale_mass
 from seacage.dynamics._moored._mooring import anchor_assembly
-from seacage.dynamics._parts import Assembly, Body
-from seacage.dynamics._physics import NetLaw, steady_flow
+from seacage.dynamics._parts._assembly import Assembly, Body
+from seacage.dynamics._physics._flow import steady_flow
 from seacage.dynamics._physics._loads import cylinder_force, net_force
-from seacage.dynamics._physics._motion import Water, moving_cylinder_force
+from seacage.dynamics._physics._motion import NetLaw, Water, moving_cylinder_force
 from seacage.dynamics._time._forcing import wakes
 from seacage.dynamics._time._simulate import HOLD
 from seacage.ocean import SeaState, Waves, sample_waves, water_motion

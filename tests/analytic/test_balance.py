@@ -4,11 +4,12 @@ import numpy as np
 import pytest
 
 from seacage.cage import Cage
-from seacage.dynamics._kernel import March, Ocean, Steps
+from seacage.dynamics._kernel._march import March, Steps
+from seacage.dynamics._kernel._march_inputs import Ocean
 from seacage.dynamics._moored._mass_scaling import scale_mass
 from seacage.dynamics._moored._mooring import anchor_assembly
-from seacage.dynamics._parts import Body
-from seacage.dynamics._physics import NetLaw
+from seacage.dynamics._parts._assembly import Body
+from seacage.dynamics._physics._motion import NetLaw
 from seacage.ocean import SeaState, sample_waves
 
 CAGE = Cage.named("ace").altered(

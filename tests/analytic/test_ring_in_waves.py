@@ -10,7 +10,7 @@ from seacage.cage import Cage, MooringLines
 from seacage.conventions import GRAVITY
 from seacage.dynamics._kernel._march import March, Steps
 from seacage.dynamics._kernel._march_inputs import Ocean
-from seacage.dynamics._parts import (
+from seacage.dynamics._parts._assembly import (
     Assembly,
     Bars,
     Bends,
@@ -20,8 +20,7 @@ from seacage.dynamics._parts import (
     Panels,
     Springs,
 )
-from seacage.dynamics._physics import NetLaw
-from seacage.dynamics._physics._motion import along_pipes, water_push
+from seacage.dynamics._physics._motion import NetLaw, along_pipes, water_push
 from seacage.ocean import Waves
 
 ACE = Assembly.of(Cage.named("ace"))

@@ -4,6 +4,7 @@ The calls are taken from the application's own description, so that a new one ca
 """
 
 import json
+import re
 
 import httpx
 import pytest
@@ -31,7 +32,7 @@ CALLS = {
     for method, call in calls.items()
 } | {"get /openapi.json": {}}
 ACTIONS = {"post /api/v1/cages/{cage}/samples": "ingest"} | {
-    call: "ack" for call in CALLS if call.startswith("post") and "/alarms/" in call
+    call: "ack" for call in CALLS if re.match("post .*/(alarms|damage)/", call)
 }
 """What a call takes that does not only read."""
 IDS = {

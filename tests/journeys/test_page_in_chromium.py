@@ -86,11 +86,11 @@ def test_the_keyboard_turns_the_net_and_steps_through_its_lines(
         watched.page.keyboard.press("ArrowLeft")
         watched.until(f"{needle} != {before!r}")
         watched.page.keyboard.press("PageDown")
-        tip = watched.page.locator(".scene-tip")
-        tip.wait_for(state="visible")
-        assert "Of its capacity" in tip.inner_text()
+        panel = watched.page.get_by_role("region", name="Bridle 1")
+        panel.wait_for(state="visible")
+        assert "Tension now" in panel.inner_text()
         watched.page.keyboard.press("Escape")
-        tip.wait_for(state="hidden")
+        panel.wait_for(state="hidden")
 
 
 def test_without_webgl_the_net_is_drawn_flat_with_a_table(chromium: Path, live: Running) -> None:

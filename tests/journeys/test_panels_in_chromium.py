@@ -7,6 +7,7 @@ import pytest
 
 from browser import opened_browser
 from running_service import Running, at, buoy, depth, eventually, running
+from wavy import twin_of_damage
 
 pytestmark = pytest.mark.usefixtures("built_page")
 
@@ -39,7 +40,7 @@ def beyond_what_was_learned(live: Running) -> None:
 
 def opened(watched, where: str) -> None:
     watched.page.goto(where)
-    watched.until("document.querySelectorAll('.loads tbody tr').length == 12")
+    watched.until("document.querySelectorAll('#panel-loads > .table-holder tbody tr').length == 12")
     watched.until("document.querySelector('.figure .value').textContent != ''")
 
 
@@ -61,6 +62,59 @@ def test_a_bridle_chosen_in_the_table_is_marked_in_the_rose(chromium: Path, live
         assert chosen.locator(".which").text_content() == "3"
 
 
+@pytest.fixture
+def wavy(tmp_path: Path):
+    """A service whose twin knows the loads of all lines in waves, and has heard of some."""
+    with running(tmp_path, twin=twin_of_damage()) as one:
+        sea = buoy(speed=0.4)
+        waves = {"hs_m": 1.5, "tp_s": 7.0, "wave_from_deg": 200.0}
+        one.post({**sea, "values": {**sea["values"], **waves}})
+        yield one
+
+
+def test_a_line_is_chosen_on_the_rose_by_keys_and_its_panel_says_what_the_service_says(
+    chromium: Path, wavy: Running
+) -> None:
+    with opened_browser(chromium, webgl=False) as watched:
+        opened(watched, address(wavy, "read"))
+        page = watched.page
+        page.get_by_role("button", name="Anchor lines").click()
+        page.locator(".rose .bar").first.focus()
+        page.keyboard.press("ArrowRight")  # clockwise from anchor 1, which lies in the north-east
+        page.keyboard.press("Enter")
+        panel = page.get_by_role("region", name="Anchor 8")
+        panel.wait_for(state="visible")
+        line = next(one for one in wavy.state()["lines"] if one["name"] == "anchor-8")
+        for kn in (line["mean_kn"], line["std_kn"], line["maximum_3h_kn"]["mean"]):
+            assert f"{kn:.1f} kN" in panel.inner_text()
+        assert page.get_by_role("button", name="Anchor 8:").get_attribute("aria-pressed") == "true"
+        panel.get_by_role("button", name="Close").click()
+        panel.wait_for(state="hidden")
+        assert "anchor-8" in page.evaluate("document.activeElement.dataset.line ?? ''")
+
+
+def test_the_ranking_of_parted_lines_is_asked_for_when_opened_and_leads_to_the_worst(
+    chromium: Path, wavy: Running
+) -> None:
+    worst = wavy.reader.get("/api/v1/cages/ace/what-if-parted").json()["lines"][0]
+    with opened_browser(chromium, webgl=False) as watched:
+        opened(watched, address(wavy, "read"))
+        page = watched.page
+        assert not [one for one in watched.requests if "what-if-parted" in one]
+        page.locator("summary", has_text="If this line parted now").click()
+        first = page.locator(".parted tbody tr").first
+        first.wait_for(state="visible")
+        load = worst["largest_maximum_3h"]
+        assert f"{load['kn']:.1f} kN" in first.inner_text()
+        first.get_by_role("button").click()
+        name = worst["parted"].replace("-", " ").capitalize()
+        panel = page.get_by_role("region", name=name)
+        panel.wait_for(state="visible")
+        assert f"{load['kn']:.1f} kN, {load['line'].replace('-', ' ')}" in panel.inner_text()
+        assert len([one for one in watched.requests if "what-if-parted" in one]) == 1
+        assert not watched.complaints
+
+
 def test_charts_are_drawn_and_lead_to_the_past(chromium: Path, live: Running) -> None:
     with opened_browser(chromium, webgl=False) as watched:
         opened(watched, address(live, "read"))
@@ -75,6 +129,38 @@ def test_charts_are_drawn_and_lead_to_the_past(chromium: Path, live: Running) ->
         assert "The past" in watched.page.locator(".banner").inner_text()
         watched.page.get_by_role("button", name="Back to live").click()
         watched.until("document.body.dataset.mode == 'live'")
+        assert not watched.complaints
+
+
+def test_a_chart_is_enlarged_and_saved_in_the_units_that_are_chosen(
+    chromium: Path, live: Running
+) -> None:
+    with opened_browser(chromium, webgl=False) as watched:
+        opened(watched, address(live, "read"))
+        page = watched.page
+        page.keyboard.press("u")
+        page.get_by_role("radio", name="ft", exact=True).check()
+        page.keyboard.press("Escape")
+        watched.until("!document.querySelector('dialog[open]')")
+        page.keyboard.press("2")
+        chart = page.locator(".chart", has_text="Depth 2")
+        chart.get_by_role("button", name="over the whole width").click()
+        watched.until("document.querySelector('dialog .chart canvas').clientWidth > 1200")
+        with page.expect_download() as table:
+            chart.get_by_role("button", name="as a table").click()
+        head, first = Path(table.value.path()).read_text().splitlines()[:2]
+        assert table.value.suggested_filename.startswith("ace_depth-2_2")
+        assert head.startswith("time [UTC],twin [ft],")
+        assert first.endswith(",virtual field")
+        metres = live.state()["sensors"]
+        depth_m = next(one["mean"] for one in metres if one["name"] == "depth-2")
+        last = Path(table.value.path()).read_text().splitlines()[-1]
+        assert float(last.split(",")[1]) == pytest.approx(depth_m / 0.3048, abs=0.01)
+        with page.expect_download() as picture:
+            chart.get_by_role("button", name="as a picture").click()
+        assert Path(picture.value.path()).read_bytes().startswith(b"\x89PNG")
+        page.keyboard.press("Escape")
+        watched.until("document.querySelector('.chart-grid .chart canvas').clientWidth < 700")
         assert not watched.complaints
 
 

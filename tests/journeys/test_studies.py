@@ -12,9 +12,7 @@ from seacage.conventions import InputError, Origin
 from seacage.records import FieldRecord, check_record
 from seacage.studies import (
     PaperStudy,
-    _demonstration,
     paper_study,
-    prepare_demonstration,
     score_record,
 )
 from seacage.studies._chain import Chain, Recipe
@@ -47,13 +45,9 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope="module", autouse=True)
 def stand_in():
-    """Settle by a formula, and make the demonstration of what the study is made of.
-
-    The true simulator's journey is that of the campaign.
-    """
+    """Settle by a formula: the true simulator's journey is that of the campaign."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("seacage.campaigns._cases.settle", StandIn().settle)
-        patch.setattr(_demonstration, "Recipe", lambda: RECIPE)
         patch.setattr(Cage, "named", lambda _: SMALL)
         yield
 
@@ -207,23 +201,3 @@ def test_a_twin_is_scored_alone_on_the_days_after_its_training_windows(study, fo
     assert [score.means for score in scores] == [score.means for score in study.sensors]
     assert len(list(tmp_path.glob("*.svg"))) == 2 * len(scores)
     assert len(json.loads((tmp_path / "scores.json").read_text())["sensors"]) == len(scores)
-
-
-def test_a_demonstration_is_a_twin_a_buoy_and_virtual_sensors(study, folder):
-    made = prepare_demonstration(folder / "stages", workers=1, progress=refuse_again)
-    twin = Twin.read(made.twin_folder)
-    assert twin.sensor_names == made.cage.sensor_names == tuple(made.field.sensors)
-    assert twin.discrepancy is not None
-    assert twin.discrepancy.origin == "virtual field"
-    assert made.buoy is made.field.buoy
-    assert {made.buoy.origin, made.field.origin, twin.origin} == {"virtual field"}
-
-
-def test_another_buoys_record_drives_the_show_and_teaches_nobody(study, folder):
-    made = prepare_demonstration(folder / "stages", workers=1)
-    part = made.buoy.between(RECIPE.start, RECIPE.start.replace(day=20))
-    shown = prepare_demonstration(folder / "stages", record=part, workers=1)
-    assert shown.twin_folder == made.twin_folder
-    assert len(shown.buoy) == len(part)
-    assert shown.field.hidden_sha256 == made.field.hidden_sha256
-    prepare_demonstration(folder / "stages", record=part, workers=1, progress=refuse_again)

@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from compiled import kernel_force, kernel_water
+from node_waves import node_waves
 from seacage.cage import Cage
 from seacage.dynamics import LAWS, MOVING_LAWS, simulation_lanes
 from seacage.dynamics._kernel._march import March, Steps
@@ -36,7 +37,6 @@ from seacage.dynamics._physics._motion import (
     past_panels,
     water_push,
 )
-from seacage.dynamics._physics._node_waves import node_waves
 from seacage.dynamics._physics._screens import AS_PUBLISHED, Screen, Tuning
 from seacage.ocean import SeaState, Waves, sample_waves, surface_elevation, water_motion, wavenumber
 

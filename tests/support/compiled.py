@@ -6,20 +6,21 @@ from collections.abc import Sequence
 import numpy as np
 from jaxtyping import Float
 
-from seacage.dynamics._kernel import Ocean, kernel, simulation_lanes
-from seacage.dynamics._kernel._library import bar_rate
+from seacage.dynamics._kernel._library import bar_rate, kernel
 from seacage.dynamics._kernel._march import motion_of
 from seacage.dynamics._kernel._march_inputs import (
+    Ocean,
     body_of,
     from_lanes,
     netting_of,
     sea_tables,
+    simulation_lanes,
     to_lanes,
 )
 from seacage.dynamics._kernel._structs import pointer
-from seacage.dynamics._parts import Assembly, Body
-from seacage.dynamics._physics import NetLaw, SteadyFlow, Water
-from seacage.dynamics._physics._motion import water_push
+from seacage.dynamics._parts._assembly import Assembly, Body
+from seacage.dynamics._physics._loads import SteadyFlow
+from seacage.dynamics._physics._motion import NetLaw, Water, water_push
 from seacage.ocean import Waves
 
 

@@ -20,7 +20,7 @@ from seacage.campaigns._virtual_field._responses import _DIRECTIONS, _GROWTHS, _
 from seacage.campaigns._virtual_field._timetable import reading_times
 from seacage.dynamics import Damage
 from seacage.dynamics._equilibrium._search import equilibria
-from seacage.dynamics._moored import moor
+from seacage.dynamics._moored._choice import moor
 from seacage.dynamics._moored._detailed import _tear
 from seacage.dynamics._physics._flow import steady_flow
 from seacage.dynamics._physics._loads import bar_tension

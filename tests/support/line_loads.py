@@ -22,6 +22,7 @@ def bare_line_loads(tension: Statistics) -> LineLoads:
         anchor_pull=np.repeat(unknown[..., None], 3, axis=-1),
         uplift_maximum=unknown,
         damage_equivalent=unknown,
+        damage_per_year=unknown,
     )
 
 

@@ -43,6 +43,18 @@ const bridleCorners = bridleNodes.map((node) => {
 const sensorNodes = SENSOR_DEPTHS.map((depth) =>
   depth === 31 ? rest.length - 1 : nodeAt(DEPTHS.indexOf(depth), 180));
 
+/** Frame, anchor and buoy lines. */
+function moored() {
+  const corners = CORNERS.map(([x, y]) => [x, y, -8]);
+  const out = ([x, y]) => [[Math.sign(x) * 60, 0], [0, Math.sign(y) * 60]];
+  return [
+    ...corners.map((one, k) => ({ kind: "frame line", name: `frame-${k + 1}`, ends_m: [one, corners[(k + 1) % 4]] })),
+    ...corners.flatMap((one, k) => out(one).map(([x, y], side) => ({ kind: "anchor line",
+      name: `anchor-${2 * k + side + 1}`, ends_m: [one, [one[0] + x, one[1] + y, -28]] }))),
+    ...corners.map((one, k) => ({ kind: "buoy line", name: `buoy-${k + 1}`, ends_m: [one, [one[0], one[1], 0]] })),
+  ];
+}
+
 export const topologyOf = (name, speed) => ({
   kind: "topology", topology_id: `made-up-${name}`, cage: name, origin: "virtual field",
   spokes: SPOKES, rings: DEPTHS.length, edges: edges(), rest_position_m: rest,
@@ -51,7 +63,7 @@ export const topologyOf = (name, speed) => ({
   bridle_corners: bridleCorners, bridle_capacity_kn: BEARINGS.map(() => CAPACITY_KN),
   depth_sensors: sensorNodes.map((node, k) => ({ name: `depth-${k + 1}`, node })),
   shackles: SHACKLES.map((bridle, k) => ({ name: `shackle-${k + 1}`, bridle })),
-  stale_after_s: 1800, speed,
+  lines: moored(), water_depth_m: 191, stale_after_s: 1800, speed,
 });
 
 export const learned = {

@@ -7,7 +7,7 @@ import { WebSocketServer } from "ws";
 import { alarmsFor, kpi } from "./alarms.js";
 import { largestKnown } from "../src/known-load.js";
 import { learned, seaAt, topologyOf } from "./cage.js";
-import { CONCERNS, frameOf, historyOf, stateOf } from "./state.js";
+import { CONCERNS, frameOf, historyOf, partedOf, stateOf } from "./state.js";
 
 const SPEED = 60;
 const EVERY_MS = 1000;
@@ -51,6 +51,7 @@ const GET = {
   journal: (one) => ({ lines: one.book.lines }),
   kpi: () => kpi,
   whatif: () => learned,
+  "what-if-parted": (one, { at }) => partedOf(one, at, seaAt(at, one.strength)),
 };
 
 function answer(method, path, query, body) {
@@ -59,6 +60,7 @@ function answer(method, path, query, body) {
   const one = cages.get(name);
   if (!one) return null;
   if (method === "POST" && what === "whatif") return frameOf(one, now(), body, [], 8);
+  if (method === "POST" && what === "lines") return {};
   if (method === "POST" && what === "alarms") return one.book.act(id, action, body, now());
   const span = {
     from: Date.parse(query.get("from") ?? "") || now() - 864e5,

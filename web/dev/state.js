@@ -1,6 +1,6 @@
 // The stand-in service's states: what is so at a time, and what would be in a sea.
 
-import { answersIn, seaAt, shapeIn } from "./cage.js";
+import { answersIn, seaAt, shapeIn, topologyOf } from "./cage.js";
 import { encodeFrame } from "./encode.js";
 
 const BEYOND_M_S = 0.9; // what the made-up twin has learned
@@ -51,15 +51,38 @@ export function stateOf(one, t, sea, alarms) {
 
 /** Made-up loads in waves: bridles, then a few lines more. */
 function linesIn(bridles, sea) {
-  const more = ["frame-1", "frame-2", "anchor-1", "anchor-2", "buoy-1"].map((name, k) =>
-    ({ name, tension_kn: { mean: 22 + 12 * k } }));
-  return [...bridles, ...more].map(({ name, tension_kn: { mean } }) => {
+  const dead = bridles[0].tension_kn.mean === null;
+  const more = topologyOf("any", 1).lines.map(({ name }, k) => ({ name, level: 1,
+    tension_kn: { mean: dead ? null : { frame: 46, anchor: 62, buoy: 9 }[name.split("-")[0]] * (1 + 0.35 * Math.sin(2 * k)) } }));
+  return [...bridles, ...more].map(({ name, level, tension_kn: { mean } }, k) => {
     const std = mean === null ? null : 0.06 * mean * (sea?.hs_m ?? 0) + 0.2;
     const maximum = mean === null ? null : mean + 4.1 * std;
-    return { name, kind: name.startsWith("bridle") ? "bridle" : `${name.split("-")[0]} line`, level: 1, mean_kn: mean, std_kn: std,
-      maximum_3h_kn: { mean: maximum, lower: null, upper: null },
-      utilisation: name.startsWith("bridle") && mean !== null ? maximum / 160 : null };
+    const half = level > 1 && mean !== null ? 0.9 * std : null;
+    const bridle = name.startsWith("bridle");
+    return rounded({ name, kind: bridle ? "bridle" : `${name.split("-")[0]} line`, level, mean_kn: mean, std_kn: std,
+      maximum_3h_kn: { mean: maximum, lower: half && maximum - half, upper: half && maximum + 1.3 * half },
+      utilisation: bridle && mean !== null ? maximum / 160 : null,
+      damage_per_year: bridle && mean !== null ? 0.021 * (maximum / 80) ** 3 : null,
+      damage: bridle ? 0.0034 + 0.0004 * k : null, damage_since: "2026-01-18T00:00:00Z", damage_valid_h: 7420.5, damage_missing_h: 38.2 });
   });
+}
+
+/** As the service rounds: forces to a newton, damage finer. */
+function rounded(line) {
+  return JSON.parse(JSON.stringify(line, (key, value) =>
+    (typeof value === "number" ? Number(value.toFixed(/damage/.test(key) ? 6 : 3)) : value)));
+}
+
+/** Made up: what would be without each line, the worst first. */
+export function partedOf(one, t, sea) {
+  const { lines } = stateOf(one, t, sea, []);
+  const valid = one.trouble !== "silent";
+  const found = !valid ? [] : lines.filter(({ kind }) => kind !== "buoy line").map(({ name, kind, mean_kn: mean, maximum_3h_kn: { mean: most } }, k) => ({
+    parted: name, kind, in_domain: k % 7 !== 3, largest_mean: { line: lines[(k + 1) % 12].name, kn: 1.5 * mean + 20 },
+    largest_maximum_3h: { line: lines[(k + 1) % 12].name, kn: 1.6 * most + 25 }, utilisation: (1.6 * most + 25) / 160,
+    second_would_part: 1.6 * most + 25 > 160, volume_share: 0.9 - 0.001 * mean, clearance_m: 150 - 0.03 * mean, drift_m: 0.1 * mean,
+  })).sort((a, b) => b.utilisation - a.utilisation);
+  return { cage: one.name, time: iso(t), reason: valid ? null : "buoy-1 has been silent for 2.0 h.", lines: found };
 }
 
 /** A cage's frame; flags are added to those that follow from the state. */

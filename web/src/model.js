@@ -31,7 +31,7 @@ export class Model {
   live = null;
   cages = [];
   cageName = null;
-  /** {bridle: name} | {node: index} | {sensor: name} | null */
+  /** {bridle: name} | {line: name} of any other | {node: index} | {sensor: name} | null */
   selection = null;
 
   #listeners = new Map();
@@ -166,6 +166,13 @@ export class Model {
     this.#notify("view", view);
   }
 
+  /** Let everybody show anew what is known, as in other units. */
+  refresh() {
+    if (this.view) this.#notify("view", this.view);
+    if (this.live) this.#notify("live", this.live);
+    if (this.cages.length) this.#notify("cages", this.cages);
+  }
+
   /** Show the cage at a time past; null goes back to now. Rejects with a Refusal. */
   travel(date) {
     return this.#go(date, "past", this.#frameOfPast);
@@ -188,7 +195,7 @@ export class Model {
     this.#show(this.#viewOf(buffer, mode));
   }
 
-  /** Point at a bridle, node or sensor, in every part of the page; null at none. */
+  /** Point at a line, node or sensor, in every part of the page; null at none. */
   select(selection) {
     if (JSON.stringify(selection) === JSON.stringify(this.selection)) return;
     this.selection = selection;

@@ -87,16 +87,16 @@ test("the net glides to where it is, and stands there", () => {
 });
 
 test("a sensor under the pointer goes before the bridle behind it", () => {
-  const bridles = [{ name: "b", from: [0, 0, 0], to: [100, 0, 0] }];
+  const lines = [{ selection: { bridle: "b" }, from: [0, 0, 0], to: [100, 0, 0] }];
   const sensors = [{ name: "s", at: [50, 4, 0] }];
-  assert.deepEqual(pick([50, 0], { sensors, bridles, nodes: [] }, false), { sensor: "s" });
-  assert.deepEqual(pick([20, 2], { sensors, bridles, nodes: [] }, false), { bridle: "b" });
-  assert.equal(pick([20, 60], { sensors, bridles, nodes: [] }, false), null);
+  assert.deepEqual(pick([50, 0], { sensors, lines, nodes: [] }, false), { sensor: "s" });
+  assert.deepEqual(pick([20, 2], { sensors, lines, nodes: [] }, false), { bridle: "b" });
+  assert.equal(pick([20, 60], { sensors, lines, nodes: [] }, false), null);
 });
 
 test("of two nodes under the pointer the nearer one is meant", () => {
   const nodes = [[10, 10, 0.9], [12, 10, 0.2], null];
-  assert.deepEqual(pick([10, 10], { sensors: [], bridles: [], nodes }, false), { node: 1 });
+  assert.deepEqual(pick([10, 10], { sensors: [], lines: [], nodes }, false), { node: 1 });
 });
 
 test("the distance to a segment ends with the segment", () => {

@@ -10,24 +10,8 @@ from typing import Any, Self
 import numpy as np
 from jaxtyping import Float, Int
 
-from seacage.cage import _graph
+from seacage.cage import _graph, _parts
 from seacage.cage._nearest import Nearest, nearest_on_net
-from seacage.cage._parts import (
-    AnchorLines,
-    Bridles,
-    Collar,
-    DepthSensorEntry,
-    Frame,
-    Mesh,
-    Netting,
-    Ropes,
-    ShackleEntry,
-    SinkerTube,
-    Site,
-    Tip,
-    check_bounds,
-    quantity,
-)
 from seacage.cage._tangent_plane import TangentPlane
 from seacage.cage._toml import TomlFile, alter
 from seacage.cage._volume import enclosed_volume
@@ -61,22 +45,24 @@ class Cage(TomlFile):
     """
 
     name: str = field(metadata={"unit": "", "meaning": "the name of the cage"})
-    heading: float = quantity("deg", "how far the whole cage is turned clockwise", low=-360.0)
-    site: Site
-    mesh: Mesh
-    collar: Collar
-    netting: Netting
-    ropes: Ropes
-    sinker_tube: SinkerTube
-    tip: Tip
-    frame: Frame
-    anchor_lines: AnchorLines
-    bridles: Bridles
-    shackle: tuple[ShackleEntry, ...]
-    depth_sensor: tuple[DepthSensorEntry, ...]
+    heading: float = _parts.quantity(
+        "deg", "how far the whole cage is turned clockwise", low=-360.0
+    )
+    site: _parts.Site
+    mesh: _parts.Mesh
+    collar: _parts.Collar
+    netting: _parts.Netting
+    ropes: _parts.Ropes
+    sinker_tube: _parts.SinkerTube
+    tip: _parts.Tip
+    frame: _parts.Frame
+    anchor_lines: _parts.AnchorLines
+    bridles: _parts.Bridles
+    shackle: tuple[_parts.ShackleEntry, ...]
+    depth_sensor: tuple[_parts.DepthSensorEntry, ...]
 
     def __post_init__(self) -> None:
-        check_bounds(self, f"Cage {self.name}")
+        _parts.check_bounds(self, f"Cage {self.name}")
         names = self.sensor_names
         if len(set(names)) != len(names):
             raise InputError(f"Cage {self.name}: two sensors share a name in {list(names)}.")
@@ -383,7 +369,7 @@ class Cage(TomlFile):
         # halfway between two spokes rounding must not decide
         return round(round(float(np.interp(at, angles, np.arange(len(angles)))), 6)) % self.spokes
 
-    def _nearest_node(self, entry: DepthSensorEntry) -> int:
+    def _nearest_node(self, entry: _parts.DepthSensorEntry) -> int:
         depths = np.array([*self.mesh.ring_depths, self.mesh.tip_depth])
         ring = int(np.argmin(np.abs(depths - entry.depth)))
         if ring == self.rings:

@@ -5,12 +5,12 @@ from jaxtyping import Float, Int
 
 from seacage.cage._parts import Mesh
 
+# A bridle that a node moves by more is warned of [deg]; bearings are seldom written finer
 SNAPPED = 0.01
-"""A bridle that a node moves by more is warned of [deg]; bearings are seldom written finer."""
 
 
+# Of the even one: the narrowest sector that spokes are moved to for the sake of bridles [-]
 LEAST_SECTOR = 0.4
-"""Of the even one: the narrowest sector that spokes are moved to for the sake of bridles [-]."""
 
 
 def spoke_angles(mesh: Mesh, bearings: Float[np.ndarray, " bridle"]) -> Float[np.ndarray, " spoke"]:

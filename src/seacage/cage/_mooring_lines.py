@@ -2,11 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float
 
 from seacage.cage._cage import Cage
+from seacage.cage._parts import AnchorLines, Frame
 from seacage.cage._structure import Structure
 
 
@@ -19,19 +21,31 @@ class MooringLines:
     names, kinds
         Such as "anchor-1" and "bridle", "frame line", "anchor line", "buoy line" or a structure's
         "line" and "tie".
+    breaking_load
+        NaN where it is not known [N].
     capacity
         Breaking load over material factor; NaN where it is not known [N].
     pretension
         In still water; NaN where it is not known [N].
     tn_slope
-        m of the T–N curve; NaN where it is not known [-].
+        m of the T–N curve N · R^m = K, R the range of tension over breaking load; NaN where it is
+        not known [-].
+    tn_load
+        Range of which a single cycle would use up the life, breaking load · K^(1/m); NaN where it
+        is not known [N].
+
+    References
+    ----------
+    API RP 2SK (2005), fatigue analysis: T–N curves.
     """
 
     names: tuple[str, ...]
     kinds: tuple[str, ...]
+    breaking_load: Float[np.ndarray, " line"]
     capacity: Float[np.ndarray, " line"]
     pretension: Float[np.ndarray, " line"]
     tn_slope: Float[np.ndarray, " line"]
+    tn_load: Float[np.ndarray, " line"]
 
     @classmethod
     def alike(
@@ -39,18 +53,43 @@ class MooringLines:
         names: Sequence[str],
         kind: str,
         *,
-        capacity: Float[np.ndarray, " line"] | float = np.nan,
+        breaking_load: float | None = None,
+        material_factor: float | None = None,
         pretension: float = np.nan,
         tn_slope: float | None = None,
+        tn_intercept: float | None = None,
     ) -> "MooringLines":
         """Lines of one kind."""
-        count = len(names)
+        count, one_cycle = len(names), np.nan
+        if breaking_load and tn_slope and tn_intercept:
+            one_cycle = breaking_load * tn_intercept ** (1.0 / tn_slope)
+        capacity = breaking_load / material_factor if breaking_load and material_factor else np.nan
         return cls(
             names=tuple(names),
             kinds=(kind,) * count,
+            breaking_load=np.full(count, breaking_load or np.nan),
             capacity=np.full(count, capacity),
             pretension=np.full(count, pretension),
             tn_slope=np.full(count, np.nan if tn_slope is None else tn_slope),
+            tn_load=np.full(count, one_cycle),
+        )
+
+    def damage_rate(
+        self, equivalent: Float[np.ndarray, "*case line"]
+    ) -> Float[np.ndarray, "*case line"]:
+        """Share of the life that damage-equivalent loads at 1 Hz [N] use up in a second [1/s]."""
+        return (equivalent / self.tn_load) ** self.tn_slope
+
+    def named(self, names: Sequence[str]) -> "MooringLines":
+        """Lines of some names, in their order; nothing is known of one that is not here."""
+        other = [name for name in names if name not in self.names]
+        every = self.joined(MooringLines.alike(other, "line"))
+        rows = [every.names.index(name) for name in names]
+        keys = ("breaking_load", "capacity", "pretension", "tn_slope", "tn_load")
+        return MooringLines(
+            names=tuple(names),
+            kinds=tuple(every.kinds[row] for row in rows),
+            **{key: getattr(every, key)[rows] for key in keys},
         )
 
     def joined(self, *others: "MooringLines") -> "MooringLines":
@@ -59,9 +98,11 @@ class MooringLines:
         return MooringLines(
             names=sum((one.names for one in every), ()),
             kinds=sum((one.kinds for one in every), ()),
+            breaking_load=np.concatenate([one.breaking_load for one in every]),
             capacity=np.concatenate([one.capacity for one in every]),
             pretension=np.concatenate([one.pretension for one in every]),
             tn_slope=np.concatenate([one.tn_slope for one in every]),
+            tn_load=np.concatenate([one.tn_load for one in every]),
         )
 
 
@@ -77,9 +118,11 @@ def mooring_lines(cage: Cage | Structure, *, anchored: bool) -> MooringLines:
     bridles = MooringLines.alike(
         cage.bridle_names,
         "bridle",
-        capacity=cage.bridle_capacity,
+        breaking_load=parts.breaking_load,
+        material_factor=parts.material_factor,
         pretension=parts.pretension,
         tn_slope=parts.tn_slope,
+        tn_intercept=parts.tn_intercept,
     )
     if not anchored:
         return bridles
@@ -87,9 +130,12 @@ def mooring_lines(cage: Cage | Structure, *, anchored: bool) -> MooringLines:
     frame = [f"frame-{number}" for number in sides]
     moored = [f"anchor-{number + 1}" for number in range(len(sides) * anchors.per_corner)]
     return bridles.joined(
-        MooringLines.alike(frame, "frame line", tn_slope=cage.frame.rope_tn_slope),
-        MooringLines.alike(
-            moored, "anchor line", pretension=anchors.pretension, tn_slope=anchors.rope_tn_slope
-        ),
+        MooringLines.alike(frame, "frame line", **_rope(cage.frame)),
+        MooringLines.alike(moored, "anchor line", pretension=anchors.pretension, **_rope(anchors)),
         MooringLines.alike([f"buoy-{number}" for number in sides], "buoy line"),
     )
+
+
+def _rope(part: Frame | AnchorLines) -> dict[str, Any]:
+    keys = ("breaking_load", "material_factor", "tn_slope", "tn_intercept")
+    return {key: getattr(part, f"rope_{key}") for key in keys}

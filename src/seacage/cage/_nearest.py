@@ -8,69 +8,52 @@ from jaxtyping import Bool, Float, Int
 
 from seacage.conventions import Rows
 
-CHUNK = 1000
-"""Points answered at once: their distances to all triangles stay in the cache."""
-
-ROUNDING = 1e-6
-"""Of a distance that is the root of a difference of squares [m]."""
+IntPerPair = Int[np.ndarray, " pair"]
+IntTriangle3 = Int[np.ndarray, "triangle 3"]
+Node3 = Float[np.ndarray, "node 3"]
+Pair33 = Float[np.ndarray, "pair 3 3"]
+Point3 = Float[np.ndarray, "point 3"]
+Triangle3 = Float[np.ndarray, "triangle 3"]
+Triangle33 = Float[np.ndarray, "triangle 3 3"]
+CHUNK = 1000  # points answered at once: their distances to all triangles stay in the cache
+ROUNDING = 1e-6  # of a distance that is the root of a difference of squares [m]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Nearest(Rows):
-    """Where a net is nearest to each of some points.
+    """Where a net is nearest to each of some points."""
 
-    Parameters
-    ----------
-    distance
-        To the net [m].
-    position
-        The nearest point of the net [m].
-    normal
-        Of the net there, a unit vector out of the cage; across an edge of two panels it is
-        their mean, at a node that of all around it, weighed by their angles.
-    inside
-        Whether the point lies behind that normal: within the cage, near its net.
-    node, weight
-        The three nodes around the nearest point, and the shares of it that sum to 1.
-    """
-
-    distance: Float[np.ndarray, " point"]
-    position: Float[np.ndarray, "point 3"]
-    normal: Float[np.ndarray, "point 3"]
+    distance: Float[np.ndarray, " point"]  # to the net [m]
+    position: Point3  # the nearest point of the net [m]
+    # Of the net there, a unit vector out of the cage; across an edge of two panels it is their
+    # mean, at a node that of all around it, weighed by their angles
+    normal: Point3
+    # Whether the point lies behind that normal: within the cage, near its net
     inside: Bool[np.ndarray, " point"]
+    # The three nodes around the nearest point, and the shares of it that sum to 1
     node: Int[np.ndarray, "point 3"]
-    weight: Float[np.ndarray, "point 3"]
+    weight: Point3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _Surface:
-    """Triangles, and what every question about them needs.
+    """Triangles, and what every question about them needs."""
 
-    Parameters
-    ----------
-    corner
-        Nodes of each triangle, counter-clockwise seen from outside.
-    start, along
-        Of the three edges of each triangle: edge i leads from corner i to the next [m].
-    centre, radius
-        Of a ball around each triangle [m].
-    face, edge, vertex
-        Unit normals of the triangles, of their three edges, and of their three corners.
-    """
-
-    corner: Int[np.ndarray, "triangle 3"]
-    start: Float[np.ndarray, "triangle 3 3"]
-    along: Float[np.ndarray, "triangle 3 3"]
-    centre: Float[np.ndarray, "triangle 3"]
+    # Nodes of each triangle, counter-clockwise seen from outside
+    corner: IntTriangle3
+    # Of the three edges of each triangle: edge i leads from corner i to the next [m]
+    start: Triangle33
+    along: Triangle33
+    # Of a ball around each triangle [m]
+    centre: Triangle3
     radius: Float[np.ndarray, " triangle"]
-    face: Float[np.ndarray, "triangle 3"]
-    edge: Float[np.ndarray, "triangle 3 3"]
-    vertex: Float[np.ndarray, "triangle 3 3"]
+    # Unit normals of the triangles, of their three edges, and of their three corners
+    face: Triangle3
+    edge: Triangle33
+    vertex: Triangle33
 
     @classmethod
-    def of(
-        cls, node_position: Float[np.ndarray, "node 3"], corner: Int[np.ndarray, "triangle 3"]
-    ) -> Self:
+    def of(cls, node_position: Node3, corner: IntTriangle3) -> Self:
         start = node_position[corner]
         along = np.roll(start, -1, axis=1) - start
         centre = start.mean(axis=1)
@@ -88,9 +71,7 @@ class _Surface:
 
 
 def nearest_on_net(
-    point: Float[np.ndarray, "point 3"],
-    node_position: Float[np.ndarray, "node 3"],
-    panels: Int[np.ndarray, "panel 4"],
+    point: Point3, node_position: Node3, panels: Int[np.ndarray, "panel 4"]
 ) -> Nearest:
     """Where a net is nearest to each point.
 
@@ -98,18 +79,10 @@ def nearest_on_net(
     its third; where a panel is warped the other cut lies up to half its warp beside. Twines
     have no thickness, and a net has no top: whoever is above the collar is near its edge.
 
-    Parameters
-    ----------
-    point
-        [m]
-    node_position
-        One shape of the net [m].
-    panels
-        Corners counter-clockwise seen from outside; a triangle repeats its last.
+    ``point``: [m]. ``node_position``: one shape of the net [m]. ``panels``: corners
+    counter-clockwise seen from outside; a triangle repeats its last.
 
-    References
-    ----------
-    Baerentzen & Aanaes (2005), "Signed distance computation using the angle weighted
+    Source: Baerentzen & Aanaes (2005), "Signed distance computation using the angle weighted
     pseudonormal", for what is inside.
     """
     surface = _Surface.of(node_position, _triangles(panels))
@@ -117,7 +90,7 @@ def nearest_on_net(
     return Nearest.joined(*(_nearest(point[at : at + CHUNK], surface) for at in starts))
 
 
-def _nearest(point: Float[np.ndarray, "point 3"], surface: _Surface) -> Nearest:
+def _nearest(point: Point3, surface: _Surface) -> Nearest:
     which, triangle = _candidates(point, surface)
     touch = _Touch.of(point[which], triangle, surface)
     begin = np.searchsorted(which, np.arange(len(point)))
@@ -127,9 +100,7 @@ def _nearest(point: Float[np.ndarray, "point 3"], surface: _Surface) -> Nearest:
     return touch.rows(first).answer(point, surface)
 
 
-def _candidates(
-    point: Float[np.ndarray, "point 3"], surface: _Surface
-) -> tuple[Int[np.ndarray, " pair"], Int[np.ndarray, " pair"]]:
+def _candidates(point: Point3, surface: _Surface) -> tuple[IntPerPair, IntPerPair]:
     """Pairs of a point and a triangle that may be the nearest to it, sorted by point.
 
     Left out is a triangle whose ball, or whose disc around its centre, lies farther off than
@@ -156,18 +127,15 @@ def _candidates(
 class _Touch(Rows):
     """Where one triangle is nearest to one point: ``spot`` 0-2 an edge, 3-5 a corner, 6 within."""
 
-    triangle: Int[np.ndarray, " pair"]
+    triangle: IntPerPair
     position: Float[np.ndarray, "pair 3"]
     distance: Float[np.ndarray, " pair"]
     weight: Float[np.ndarray, "pair 3"]
-    spot: Int[np.ndarray, " pair"]
+    spot: IntPerPair
 
     @classmethod
     def of(
-        cls,
-        point: Float[np.ndarray, "pair 3"],
-        triangle: Int[np.ndarray, " pair"],
-        surface: _Surface,
+        cls, point: Float[np.ndarray, "pair 3"], triangle: IntPerPair, surface: _Surface
     ) -> Self:
         start, along = surface.start[triangle], surface.along[triangle]
         away = point[:, None] - start
@@ -192,12 +160,7 @@ class _Touch(Rows):
         )
         return edge._or_within(away, along, surface)
 
-    def _or_within(
-        self,
-        away: Float[np.ndarray, "pair 3 3"],
-        along: Float[np.ndarray, "pair 3 3"],
-        surface: _Surface,
-    ) -> Self:
+    def _or_within(self, away: Pair33, along: Pair33, surface: _Surface) -> Self:
         """The foot of the perpendicular instead, where it falls within the triangle."""
         face = surface.face[self.triangle]
         height = np.einsum("pj,pj->p", away[:, 0], face)
@@ -212,7 +175,7 @@ class _Touch(Rows):
         self.spot[within] = 6
         return self
 
-    def answer(self, point: Float[np.ndarray, "point 3"], surface: _Surface) -> Nearest:
+    def answer(self, point: Point3, surface: _Surface) -> Nearest:
         """One nearest triangle to each point, in full."""
         normals = np.concatenate([surface.edge, surface.vertex, surface.face[:, None]], axis=1)
         normal = normals[self.triangle, self.spot]
@@ -226,15 +189,13 @@ class _Touch(Rows):
         )
 
 
-def _triangles(panels: Int[np.ndarray, "panel 4"]) -> Int[np.ndarray, "triangle 3"]:
+def _triangles(panels: Int[np.ndarray, "panel 4"]) -> IntTriangle3:
     both = np.concatenate([panels[:, [0, 1, 2]], panels[:, [0, 2, 3]]])
     ordered = np.sort(both, axis=1)
     return both[(ordered[:, 1:] > ordered[:, :-1]).all(axis=1)]
 
 
-def _edge_normals(
-    corner: Int[np.ndarray, "triangle 3"], face: Float[np.ndarray, "triangle 3"]
-) -> Float[np.ndarray, "triangle 3 3"]:
+def _edge_normals(corner: IntTriangle3, face: Triangle3) -> Triangle33:
     ends = np.sort(np.stack([corner, np.roll(corner, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
     _, edge = np.unique(ends, axis=0, return_inverse=True)
     edge = np.ravel(edge)
@@ -244,12 +205,8 @@ def _edge_normals(
 
 
 def _vertex_normals(
-    corner: Int[np.ndarray, "triangle 3"],
-    along: Float[np.ndarray, "triangle 3 3"],
-    face: Float[np.ndarray, "triangle 3"],
-    *,
-    nodes: int,
-) -> Float[np.ndarray, "triangle 3 3"]:
+    corner: IntTriangle3, along: Triangle33, face: Triangle3, *, nodes: int
+) -> Triangle33:
     out, back = _unit(along), -_unit(np.roll(along, 1, axis=1))
     angle = np.arccos(np.clip(np.einsum("tij,tij->ti", out, back), -1.0, 1.0))
     total = np.zeros((nodes, 3))

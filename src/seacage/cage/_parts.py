@@ -10,8 +10,7 @@ from jaxtyping import Float
 
 from seacage.conventions import InputError
 
-MOST_CORNERS = 12
-"""Of a frame."""
+MOST_CORNERS = 12  # of a frame
 
 
 def quantity(
@@ -47,6 +46,36 @@ def _check_bound(parameter: Field[Any], number: float, where: str) -> None:
             f"{where}: {key_of(parameter)} = {number:g} must be a finite number {bound}. "
             f"It is: {parameter.metadata['meaning']}."
         )
+
+
+def _intercept() -> Any:
+    return quantity(
+        "", "K of N R^m = K, R the range of tension over breaking load", above=True, default=None
+    )
+
+
+def _rope_breaking_load() -> Any:
+    return quantity("n", "least of the rope and what it is joined by", above=True, default=None)
+
+
+def _rope_factor() -> Any:
+    return quantity("", "divides the breaking load", low=1.0, default=None)
+
+
+def _check_curve(where: str, part: Any, prefix: str) -> None:
+    """Refuse half of a T-N curve, or half of a capacity."""
+    for key, needed in (
+        ("tn_intercept", "tn_slope"),
+        ("tn_intercept", "breaking_load_n"),
+        ("breaking_load_n", "material_factor"),
+        ("material_factor", "breaking_load_n"),
+    ):
+        own, other = (getattr(part, prefix + one.removesuffix("_n")) for one in (key, needed))
+        if own is not None and other is None:
+            raise InputError(
+                f"Cage, {where}: {prefix}{key} = {own:g} says nothing without {prefix}{needed}. "
+                "Give both, or neither."
+            )
 
 
 class _Part:
@@ -249,6 +278,9 @@ class Frame(_Part):
     rope_tn_slope: float | None = quantity(
         "", "m of the frame rope's T–N curve", low=1.0, default=None
     )
+    rope_tn_intercept: float | None = _intercept()
+    rope_breaking_load: float | None = _rope_breaking_load()
+    rope_material_factor: float | None = _rope_factor()
     buoy_buoyancy: float = quantity("n", "net buoyancy of a corner buoy")
     corner_mass: float = quantity(
         "kg",
@@ -262,6 +294,7 @@ class Frame(_Part):
 
     def __post_init__(self) -> None:
         super(Frame, self).__post_init__()
+        _check_curve("Frame", self, "rope_")
         east, north = self.corners_east, self.corners_north
         if (self.side is None) == (east is None) or (east is None) != (north is None):
             raise InputError(
@@ -317,6 +350,13 @@ class AnchorLines(_Part):
     chain_axial_stiffness: float = quantity("n", "EA of the chain")
     pretension: float = quantity("n", "in still water")
     rope_tn_slope: float | None = quantity("", "m of the rope's T–N curve", low=1.0, default=None)
+    rope_tn_intercept: float | None = _intercept()
+    rope_breaking_load: float | None = _rope_breaking_load()
+    rope_material_factor: float | None = _rope_factor()
+
+    def __post_init__(self) -> None:
+        super(AnchorLines, self).__post_init__()
+        _check_curve("AnchorLines", self, "rope_")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -346,9 +386,11 @@ class Bridles(_Part):
         low=1.0,
         default=None,
     )
+    tn_intercept: float | None = _intercept()
 
     def __post_init__(self) -> None:
         super(Bridles, self).__post_init__()
+        _check_curve("Bridles", self, "")
         if not self.bearings:
             raise InputError("Cage, Bridles: bearings_deg is empty. Give at least one bridle.")
         if len(self.length_offset) != len(self.bearings):

@@ -8,15 +8,11 @@ from jaxtyping import Float
 
 from seacage.conventions import InputError
 
-EQUATOR_RADIUS = 6378137.0
-"""Of the WGS84 ellipsoid [m]."""
-
-FLATTENING = 1.0 / 298.257223563
-"""Of the WGS84 ellipsoid [-]."""
-
-REACH = 5000.0
-"""Farthest from the cage that positions are turned into metres [m]."""
-
+PerPoint = Float[np.ndarray, " point"]
+Point3 = Float[np.ndarray, "point 3"]
+EQUATOR_RADIUS = 6378137.0  # of the WGS84 ellipsoid [m]
+FLATTENING = 1.0 / 298.257223563  # of the WGS84 ellipsoid [-]
+REACH = 5000.0  # farthest from the cage that positions are turned into metres [m]
 _ECCENTRICITY2 = FLATTENING * (2.0 - FLATTENING)
 _ROUNDS = 4  # of Newton's way back; each squares an error of metres in thousands of kilometres
 
@@ -40,22 +36,13 @@ class TangentPlane:
     latitude: float
     longitude: float
 
-    def local(
-        self,
-        latitude: Float[np.ndarray, " point"],
-        longitude: Float[np.ndarray, " point"],
-        depth: Float[np.ndarray, " point"],
-    ) -> Float[np.ndarray, "point 3"]:
+    def local(self, latitude: PerPoint, longitude: PerPoint, depth: PerPoint) -> Point3:
         """East, north and up of places at a latitude, a longitude [deg] and a depth [m]."""
         away = _on_ellipsoid(latitude, longitude) - self._centre
         east, north, _ = (away @ self._axes.T).T
         return self._near(np.column_stack([east, north, -depth]))
 
-    def geographic(
-        self, position: Float[np.ndarray, "point 3"]
-    ) -> tuple[
-        Float[np.ndarray, " point"], Float[np.ndarray, " point"], Float[np.ndarray, " point"]
-    ]:
+    def geographic(self, position: Point3) -> tuple[PerPoint, PerPoint, PerPoint]:
         """Latitude, longitude [deg] and depth [m] of places east, north and up of the centre."""
         position = self._near(position)
         latitude = np.full(len(position), self.latitude)
@@ -83,7 +70,7 @@ class TangentPlane:
             ]
         )
 
-    def _near(self, position: Float[np.ndarray, "point 3"]) -> Float[np.ndarray, "point 3"]:
+    def _near(self, position: Point3) -> Point3:
         far = np.hypot(position[:, 0], position[:, 1])
         if (far > REACH).any():
             raise InputError(
@@ -94,9 +81,7 @@ class TangentPlane:
         return position
 
 
-def _on_ellipsoid(
-    latitude: Float[np.ndarray, " point"], longitude: Float[np.ndarray, " point"]
-) -> Float[np.ndarray, "point 3"]:
+def _on_ellipsoid(latitude: PerPoint, longitude: PerPoint) -> Point3:
     phi, lam = np.deg2rad(latitude), np.deg2rad(longitude)
     across = EQUATOR_RADIUS / np.sqrt(1.0 - _ECCENTRICITY2 * np.sin(phi) ** 2)
     return np.column_stack(

@@ -25,12 +25,8 @@ class TomlFile:
     def from_toml(cls, text: str, *, source: str = "") -> Self:
         """Read TOML text; ``source`` names it in errors.
 
-        Raises
-        ------
-        InputError
-            Text that is no TOML, and any key that is unknown, missing or of the wrong type.
-        NonsenseError
-            Values that each may be, and not together.
+        Raises InputError: text that is no TOML, and any key that is unknown, missing or of the
+        wrong type; NonsenseError: values that each may be, and not together.
         """
         source = source or cls.__name__.lower()
         table = parse_toml(text, source)

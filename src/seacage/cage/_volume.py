@@ -14,14 +14,8 @@ def enclosed_volume(
     By the divergence theorem over triangles; each quadrilateral is the mean of its two
     splits, so that the answer does not depend on how it is cut.
 
-    Parameters
-    ----------
-    node_position
-        [m].
-    panels
-        Corners counter-clockwise seen from outside.
-    collar
-        Nodes of the uppermost ring, counter-clockwise seen from above.
+    ``node_position``: [m]. ``panels``: corners counter-clockwise seen from outside. ``collar``:
+    nodes of the uppermost ring, counter-clockwise seen from above.
     """
     # Measured from the collar's centre, the fan that closes the top spans no volume. In C order,
     # so that a case is summed in the same order alone as in company.

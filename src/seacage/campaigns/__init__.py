@@ -5,17 +5,11 @@ from seacage.campaigns._current import generated_current
 from seacage.campaigns._run import run_campaign, run_share
 from seacage.campaigns._sea_state_plan import Plan
 from seacage.campaigns._status import CampaignStatus, campaign_status
-from seacage.campaigns._virtual_field import (
-    Event,
-    Timetable,
-    TrueShapes,
-    TruthParameters,
-    VirtualField,
-    read_events,
-    true_shapes,
-    virtual_field,
-    virtual_field_share,
-)
+from seacage.campaigns._virtual_field._events import Event, read_events
+from seacage.campaigns._virtual_field._field import VirtualField, virtual_field, virtual_field_share
+from seacage.campaigns._virtual_field._timetable import Timetable
+from seacage.campaigns._virtual_field._true_shapes import TrueShapes, true_shapes
+from seacage.campaigns._virtual_field._truth_parameters import TruthParameters
 from seacage.campaigns._waves import generated_waves, waves_at_site
 
 __all__ = [

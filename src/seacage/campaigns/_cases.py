@@ -24,11 +24,10 @@ from seacage.dynamics import (
 )
 from seacage.ocean import SeaState
 
+# Cases computed and written at a time: enough to fill the kernel's lanes, few enough to lose
 _BLOCK = {"simulate": 16, "settle": 32}
-"""Cases computed and written at a time: enough to fill the kernel's lanes, few enough to lose."""
 
-_PIECE = 60.0
-"""Least length of the pieces that a case on a mooring of its own is simulated in [s]."""
+_PIECE = 60.0  # least length of the pieces that a case on a mooring of its own is simulated in [s]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,6 +55,8 @@ class Simulator:
     draw_mooring
         Whether each case has a mooring of its own, ``Cage.drawn`` by a seed of the case. It is
         simulated alone, in pieces of a minute and more.
+    parted
+        Names of lines that bear nothing; cases start from the equilibria without them.
     """
 
     method: Literal["simulate", "settle"] = "simulate"
@@ -67,6 +68,7 @@ class Simulator:
     quantile_levels: tuple[float, ...] = (0.05, 0.5, 0.95)
     second_moment: bool = True
     draw_mooring: bool = False
+    parted: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if self.method not in _BLOCK:
@@ -91,7 +93,8 @@ class Simulator:
     def attributes(self) -> dict[str, Any]:
         """What to write into a store, with units, beside ``law`` and ``method``."""
         drawn = {"mooring_drawn": 1} if self.draw_mooring else {}
-        moored: dict[str, Any] = {"mooring": self.mooring, **drawn}
+        without = {"parted": ", ".join(self.parted)} if self.parted else {}
+        moored: dict[str, Any] = {"mooring": self.mooring, **drawn, **without}
         if not self.in_time:
             return moored
         return moored | {
@@ -119,21 +122,12 @@ class CaseBlock:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Answers:
-    """Results of a block: variables of the store, and their cost.
+    """Results of a block: variables of the store, and their cost."""
 
-    Attributes
-    ----------
-    values
-        By the names of the store.
-    moment
-        Sum of the converged cases' second moments [m2].
-    core_seconds
-        Processor time [s].
-    """
-
-    values: dict[str, np.ndarray]
+    values: dict[str, np.ndarray]  # by the names of the store
+    # Sum of the converged cases' second moments [m2]
     moment: Float[np.ndarray, "coordinate coordinate"] | None
-    core_seconds: float
+    core_seconds: float  # processor time [s]
 
 
 def software_version() -> str:
@@ -144,10 +138,7 @@ def software_version() -> str:
 def answer_block(block: CaseBlock) -> Answers:
     """Compute one block.
 
-    Raises
-    ------
-    SeacageError
-        The worker runs another version of seacage than who asks.
+    Raises SeacageError: the worker runs another version of seacage than who asks.
     """
     if (here := software_version()) != block.made_by:
         raise SeacageError(
@@ -177,10 +168,11 @@ def _alike(block: CaseBlock) -> list[CaseBlock]:
 
 
 def _settle_block(block: CaseBlock) -> tuple[dict[str, np.ndarray], None]:
-    law, mooring = block.simulator.law, block.simulator.mooring
-    assert law != "morison"  # the simulator refused it
-    cage = _cage(block.cage_toml)
-    response = settle(cage, block.seas, law=law, mooring=mooring, mean_waves=True)
+    by, cage = block.simulator, _cage(block.cage_toml)
+    assert by.law != "morison"  # the simulator refused it
+    response = settle(
+        cage, block.seas, law=by.law, mooring=by.mooring, parted=by.parted, mean_waves=True
+    )
     names = ("node_position", "bridle_tension", "net_force", "volume", "residual", "result")
     return {name: getattr(response, name) for name in names}, None
 

@@ -13,8 +13,8 @@ from seacage.conventions import SeacageError
 if TYPE_CHECKING:
     from distributed import Client
 
+# How long a scheduler may take to answer, and how long it may be without a worker [s]
 _CONNECT_S, _WORKER_S = 10.0, 60.0
-"""How long a scheduler may take to answer, and how long it may be without a worker [s]."""
 
 Task = TypeVar("Task")
 Answer = TypeVar("Answer")
@@ -27,20 +27,11 @@ def map_on_cluster(
 
     A task whose worker is lost goes to another. Closing the iterator drops what has not ended.
 
-    Parameters
-    ----------
-    work
-        A function of a module that the workers have installed, too.
-    tasks
-        What to do.
-    address
-        Of the scheduler, ``tcp://host:8786``. Tasks and answers travel as pickles: name only a
-        cluster that you trust.
+    ``work``: a function of a module that the workers have installed, too. ``tasks``: what to do.
+    ``address``: of the scheduler, ``tcp://host:8786``. Tasks and answers travel as pickles: name
+    only a cluster that you trust.
 
-    Raises
-    ------
-    SeacageError
-        No scheduler answers, it has no worker, or it was lost on the way.
+    Raises SeacageError: no scheduler answers, it has no worker, or it was lost on the way.
     """
     from distributed import as_completed
     from distributed.scheduler import KilledWorker

@@ -9,20 +9,11 @@ def wandering(
 ) -> Float[np.ndarray, "step 2"]:
     """A stationary Ornstein–Uhlenbeck vector, sampled exactly.
 
-    Parameters
-    ----------
-    rng
-        Source of chance.
-    steps
-        How many samples.
-    sd
-        Of each component [any unit, kept].
-    step_s, memory_s
-        Time between samples, and in which the correlation falls to 1/e [s].
+    ``rng``: source of chance. ``steps``: how many samples. ``sd``: of each component [any unit,
+    kept]. ``step_s``, ``memory_s``: time between samples, and in which the correlation falls to 1/e
+    [s].
 
-    References
-    ----------
-    Uhlenbeck and Ornstein (1930); its samples are an AR(1) series.
+    Source: Uhlenbeck and Ornstein (1930); its samples are an AR(1) series.
     """
     from scipy.signal import lfilter
 

@@ -14,10 +14,7 @@ from typing import Any, TypeVar
 from seacage.conventions import SeacageError
 
 _ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
-
-_LOOK_EVERY = 0.5
-"""Between two looks at how far the workers are [s]."""
-
+_LOOK_EVERY = 0.5  # between two looks at how far the workers are [s]
 Task = TypeVar("Task")
 Answer = TypeVar("Answer")
 
@@ -41,17 +38,9 @@ def map_tasks(
     One worker, or one task, means no other process. Closing the iterator drops what has
     not begun.
 
-    Parameters
-    ----------
-    work
-        A function of a module: it travels to the workers by its name.
-    tasks
-        What to do.
-    workers
-        Processes at most; None for one per available core.
-    progress
-        Called now and then, while an answer is waited for, with the sum that the tasks report
-        by ``report_progress``.
+    ``work``: a function of a module: it travels to the workers by its name. ``tasks``: what to do.
+    ``workers``: processes at most; None for one per available core. ``progress``: called now and
+    then, while an answer is waited for, with the sum that the tasks report by ``report_progress``.
     """
     workers = min(workers or _available_cores(), len(tasks))
     spawn = multiprocessing.get_context("spawn")
@@ -90,8 +79,8 @@ def map_tasks(
         pool.shutdown(cancel_futures=True)
 
 
+# Where the task of this process writes how far it is: each at its own number, unlocked
 _PLACE = types.SimpleNamespace(number=0, board=[0.0], listener=None)
-"""Where the task of this process writes how far it is: each at its own number, unlocked."""
 
 
 def report_progress(amount: float) -> None:
@@ -128,8 +117,8 @@ def one_thread() -> Iterator[None]:
                 _LIMITED.limits.restore_original_limits()
 
 
+# How many threads of this process are within ``one_thread``, and what it was before
 _LIMITED = types.SimpleNamespace(lock=threading.Lock(), inside=0, limits=None)
-"""How many threads of this process are within ``one_thread``, and what it was before."""
 
 
 @contextmanager

@@ -28,6 +28,7 @@ from seacage.records import (
     write_cases,
 )
 
+# Attributes that make two campaigns the same, and how people call them
 _IDENTITY = {
     "cage": "cage",
     "plan_sha256": "plan",
@@ -37,13 +38,13 @@ _IDENTITY = {
     "physics": "revision of the physics",
     "mooring": "mooring",
     "mooring_drawn": "choice of one mooring for all cases or one for each",
+    "parted": "choice of lines that have parted",
     "ramp_s": "ramp",
     "spin_up_s": "spin-up",
     "time_step_s": "time step",
     "quantile_levels": "choice of quantiles",
     "second_moment_kept": "choice about the second moment",
 }
-"""Attributes that make two campaigns the same, and how people call them."""
 
 
 def run_campaign(
@@ -61,6 +62,7 @@ def run_campaign(
     quantile_levels: Sequence[float] = (0.05, 0.5, 0.95),
     second_moment: bool = True,
     draw_mooring: bool = False,
+    parted: Sequence[str] = (),
     cluster: str | None = None,
     progress: Progress | None = None,
 ) -> CampaignRecord:
@@ -83,6 +85,9 @@ def run_campaign(
         do not depend on it.
     law, method, mooring, ramp, spin_up, time_step, quantile_levels, second_moment, draw_mooring
         As in ``Simulator``; "settle" takes the equilibrium in each current instead.
+    parted
+        Names of lines that bear nothing. Each case starts from the equilibrium without them, where
+        one is found: what happens while they part is not in it.
     cluster
         Address of a Dask scheduler, ``tcp://host:8786``, whose workers take the place of the
         processes. On processors of one kind the answers do not depend on it.
@@ -92,7 +97,8 @@ def run_campaign(
     Raises
     ------
     InputError
-        ``out`` holds another campaign, or moorings are to be drawn of what states no uncertainty.
+        ``out`` holds another campaign, moorings are to be drawn of what states no uncertainty, or
+        a line has parted that the mooring has not.
     """
     simulator = Simulator(
         method=method,
@@ -104,6 +110,7 @@ def run_campaign(
         quantile_levels=tuple(quantile_levels),
         second_moment=second_moment,
         draw_mooring=draw_mooring,
+        parted=tuple(parted),
     )
     run_share(cage, plan, out, by=simulator, workers=workers, cluster=cluster, progress=progress)
     return read_campaign(out)
@@ -252,6 +259,7 @@ def _attributes(cage: Cage | Structure, plan: Plan, by: Simulator) -> dict[str, 
     number = version("seacage")
     what = "Simulations in time" if by.in_time else "Equilibria"
     drawn = ", each on a mooring drawn for it" if by.draw_mooring else ""
+    drawn += f", without {', '.join(by.parted)}" if by.parted else ""
     return {
         "title": f"Campaign {plan.name!r} of cage {cage.name!r}",
         "summary": f"{what} of a moored net cage in {len(plan)} sea states{drawn}.",

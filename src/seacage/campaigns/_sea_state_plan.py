@@ -24,8 +24,8 @@ _RANGES: Mapping[str, Mapping[str, Range]] = {
     "current": {"hs": (0.0, 0.0)},
     "loads": {"hs": (0.05, 3.0), "period_ratio": (0.63, 3.0)},
 }
+# What a plan has beside its ranges
 _LIMITS: Mapping[str, Mapping[str, Any]] = {"loads": {"longest_tp": 18.0, "corner_every": 16}}
-"""What a plan has beside its ranges."""
 
 _DOOR = {
     "current_speed_m_s": "current_speed",

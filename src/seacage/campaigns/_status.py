@@ -14,44 +14,23 @@ from seacage.records import NOT_RUN, campaign_results, campaign_unsummed, campai
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CampaignStatus:
-    """Progress of a campaign.
+    """Progress of a campaign."""
 
-    Parameters
-    ----------
-    plan
-        The plan's name.
-    law
-        Load law of the netting.
-    method
-        "simulate" or "settle".
-    total
-        Cases planned.
-    converged, not_converged, diverged, drowned, outside_validity, slack
-        Cases that ended so.
-    failures
-        Cases without an answer to learn from, each with the reason.
-    simulated_s
-        Simulated time of the cases done, spin-up included; 0 for equilibria [s].
-    core_seconds
-        Processor time of the blocks done; NaN where it was not kept [s].
-    finished
-        Whether nothing is left to run or to sum.
-    """
-
-    plan: str
-    law: str
-    method: str
-    total: int
+    plan: str  # the plan's name
+    law: str  # load law of the netting
+    method: str  # "simulate" or "settle"
+    total: int  # cases planned
+    # Cases that ended so
     converged: int
     not_converged: int
     diverged: int
     drowned: int
     outside_validity: int
     slack: int
-    failures: dict[int, str]
-    simulated_s: float
-    core_seconds: float
-    finished: bool
+    failures: dict[int, str]  # cases without an answer to learn from, each with the reason
+    simulated_s: float  # simulated time of the cases done, spin-up included; 0 for equilibria [s]
+    core_seconds: float  # processor time of the blocks done; NaN where it was not kept [s]
+    finished: bool  # whether nothing is left to run or to sum
 
     @property
     def done(self) -> int:

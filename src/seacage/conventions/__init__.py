@@ -1,7 +1,7 @@
 """Names, units, axes, errors and codes that every room shares."""
 
 from seacage.conventions._codes import RESULTS, Flag, Result, gravest, has_answer
-from seacage.conventions._constants import GRAVITY, WATER_DENSITY, WATER_VISCOSITY
+from seacage.conventions._constants import GRAVITY, WATER_DENSITY, WATER_VISCOSITY, YEAR
 from seacage.conventions._directions import compass, fold_degrees, towards
 from seacage.conventions._durations import count_times, duration_text
 from seacage.conventions._errors import (
@@ -31,6 +31,7 @@ __all__ = [
     "TEXT_BYTES",
     "WATER_DENSITY",
     "WATER_VISCOSITY",
+    "YEAR",
     "Flag",
     "InputError",
     "ModelError",

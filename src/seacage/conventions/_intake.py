@@ -17,7 +17,6 @@ TABLE_BYTES = 128 << 20
 """Most of a table of readings or of cases; in memory it takes up to 20 times as much [bytes]."""
 
 MOST_NESTED = 32  # most tables and lists inside one another; what seacage writes has fewer than ten
-
 Refusal = type[SeacageError]
 
 

@@ -9,22 +9,14 @@ from jaxtyping import Bool, Float, Int
 
 from seacage.cage import Cage, Structure
 from seacage.conventions import InputError, Result, gravest
-from seacage.dynamics._equilibrium import Equilibria, equilibria
-from seacage.dynamics._moored import Mooring, moor, mooring_result, part
-from seacage.dynamics._parts import Assembly
-from seacage.dynamics._physics import (
-    Law,
-    SteadyFlow,
-    Tuning,
-    beyond_law,
-    flow_of_laws,
-    law_of_each,
-    law_warnings,
-    line_tension,
-    nodal_force,
-    steady_flow,
-    total_net_force,
-)
+from seacage.dynamics._equilibrium._search import Equilibria, equilibria
+from seacage.dynamics._moored._choice import Mooring, moor
+from seacage.dynamics._moored._ends import mooring_result
+from seacage.dynamics._moored._parted import part
+from seacage.dynamics._parts._assembly import Assembly
+from seacage.dynamics._physics._flow import flow_of_laws, steady_flow
+from seacage.dynamics._physics._loads import SteadyFlow, line_tension, nodal_force, total_net_force
+from seacage.dynamics._physics._screens import Law, Tuning, beyond_law, law_of_each, law_warnings
 from seacage.ocean import SeaState, wave_velocity_variance
 
 

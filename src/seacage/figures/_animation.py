@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
 _SIZE = (7.2, 4.25)  # of the picture [inch]; its width in pixels is the caller's
 _TILT = np.deg2rad(8.0)  # how far the eye looks down, so that the collar is seen as a ring
-
 _WATER, _SURFACE, _CREST = "#f0f6fb", "#e0edf7", "#8fbce0"
 _NET = ("#2a5590", "#2f7fc1", "#37a0a6", "#9ccf5e", "#f7dd4a")
 _TWINE = "#1c3a5e"

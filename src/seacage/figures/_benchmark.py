@@ -7,17 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from jaxtyping import Float
 
-from seacage.figures._style import (
-    FAINT,
-    LOW,
-    MULTI,
-    MUTED,
-    SENSOR,
-    blank_figure,
-    note,
-    panel_grid,
-    style,
-)
+from seacage.figures import _style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -26,21 +16,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Contest:
-    """One problem's part of a figure; every number is computed elsewhere.
+    """One problem's part of a figure; every number is computed elsewhere."""
 
-    Parameters
-    ----------
-    title
-        Of the problem.
-    error
-        By method and seed; NaN where a method failed or was not run.
-    coverage
-        By method, over seeds [-].
-    """
-
-    title: str
+    title: str  # of the problem
+    # By method and seed; NaN where a method failed or was not run
     error: Float[np.ndarray, "method seed"]
-    coverage: Float[np.ndarray, " method"]
+    coverage: Float[np.ndarray, " method"]  # by method, over seeds [-]
 
 
 def error_figure(
@@ -50,7 +31,7 @@ def error_figure(
     ours: Sequence[int],  # which of the methods are ours, the first of them the one to look at
 ) -> "Figure":
     """Error of each method on each problem: a dot per seed, and a mark at the mean."""
-    with style():
+    with _style.style():
         figure, panels = _grid(methods, contests, "Root mean square error")
         for axes, contest in zip(panels, contests, strict=True):
             for place, error in enumerate(contest.error):
@@ -74,11 +55,11 @@ def coverage_figure(
     ``methods``, ``contests``, ``ours``: as for the errors. ``wanted``: the band that is promised,
     which is shaded [-].
     """
-    with style():
+    with _style.style():
         figure, panels = _grid(methods, contests, "Inside 95 % intervals")
         for axes, contest in zip(panels, contests, strict=True):
-            axes.axvspan(*wanted, color=FAINT, lw=0, zorder=0)
-            axes.axvline(0.95, color=MUTED, lw=0.9)
+            axes.axvspan(*wanted, color=_style.FAINT, lw=0, zorder=0)
+            axes.axvline(0.95, color=_style.MUTED, lw=0.9)
             for place, share in enumerate(contest.coverage.tolist()):
                 colour = _colour(place, ours)
                 axes.hlines(place, 0.0, share, color=colour, lw=1.2, alpha=0.5)
@@ -100,8 +81,8 @@ def cost_figure(
     NaN where a method did not do it.
     """
     place = np.arange(len(methods))
-    with style():
-        figure = blank_figure(10.0, 0.9 + 0.27 * len(methods))
+    with _style.style():
+        figure = _style.blank_figure(10.0, 0.9 + 0.27 * len(methods))
         panels = figure.subplots(1, len(costs), sharey=True, squeeze=False)[0]
         for axes, (title, cost) in zip(panels, costs.items(), strict=True):
             done = np.isfinite(cost)
@@ -110,7 +91,7 @@ def cost_figure(
             axes.set_xscale("log")
             for at, taken in zip(place[done].tolist(), cost[done].tolist(), strict=True):
                 times = f"{taken / cost[ours[0]]:.2g} ×"
-                note(axes, times, (1e3 * taken, at), (4, 0), va="center")
+                _style.note(axes, times, (1e3 * taken, at), (4, 0), va="center")
             least, most = axes.get_xlim()
             axes.set_xlim(least, most * (most / least) ** 0.18)
             _few_ticks(axes, cost[done])
@@ -125,7 +106,7 @@ def _grid(
     methods: Sequence[str], contests: Sequence[Contest], label: str
 ) -> "tuple[Figure, list[Axes]]":
     """One panel for each contest, with what lies along x."""
-    figure, panels = panel_grid(len(contests), 0.8 + 0.2 * len(methods), sharey=True)
+    figure, panels = _style.panel_grid(len(contests), 0.8 + 0.2 * len(methods), sharey=True)
     for axes, contest in zip(panels, contests, strict=True):
         axes.set_title(contest.title)
         axes.set_xlabel(label)
@@ -152,5 +133,5 @@ def _few_ticks(axes: "Axes", shown: Float[np.ndarray, "*n"]) -> None:
 
 def _colour(place: int, ours: Sequence[int]) -> str:
     if place == ours[0]:
-        return MULTI
-    return LOW if place in ours else SENSOR
+        return _style.MULTI
+    return _style.LOW if place in ours else _style.SENSOR

@@ -17,48 +17,34 @@ if TYPE_CHECKING:
 
 _BAND = 1.96
 _HEXAGONS = 42
+# Points that a line is drawn through, and strokes that stand for more of them
 _MOST_POINTS, _STROKES = 12000, 2400
-"""Points that a line is drawn through, and strokes that stand for more of them."""
 
 _SILENCE = np.timedelta64(20, "m")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Comparison:
-    """What the figures of one sensor show; every number is computed elsewhere.
+    """What the figures of one sensor show; every number is computed elsewhere."""
 
-    Parameters
-    ----------
-    sensor
-        Its name, such as ``depth-1``.
-    quantity, unit
-        What it measures and the unit of all values, such as ``Depth``, ``m``.
-    time
-        Of each reading [UTC].
-    reading, low, multi, multi_std
-        The sensor, the low-fidelity mean, the multifidelity mean and its standard deviation
-        for one reading [unit], NaN where there is no interval.
-    low_mae, multi_mae
-        Mean absolute errors [unit].
-    low_line, multi_line
-        Slope [-] and intercept [unit] of the best fit of prediction on reading.
-    origin
-        Of the readings.
-    """
-
-    sensor: str
+    sensor: str  # its name, such as ``depth-1``
+    # What it measures and the unit of all values, such as ``Depth``, ``m``
     quantity: str
     unit: str
-    time: Shaped[np.ndarray, " t"]
+    time: Shaped[np.ndarray, " t"]  # of each reading [UTC]
+    # The sensor, the low-fidelity mean, the multifidelity mean and its standard deviation for one
+    # reading [unit], NaN where there is no interval
     reading: Float[np.ndarray, " t"]
     low: Float[np.ndarray, " t"]
     multi: Float[np.ndarray, " t"]
     multi_std: Float[np.ndarray, " t"]
+    # Mean absolute errors [unit]
     low_mae: float
     multi_mae: float
+    # Slope [-] and intercept [unit] of the best fit of prediction on reading
     low_line: tuple[float, float]
     multi_line: tuple[float, float]
-    origin: Origin
+    origin: Origin  # of the readings
 
     def __post_init__(self) -> None:
         if not len(self.time):

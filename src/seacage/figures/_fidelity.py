@@ -8,20 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.conventions import Origin
-from seacage.figures._style import (
-    AMOUNT,
-    FIT,
-    INK,
-    LOW,
-    MULTI,
-    MUTED,
-    SENSOR,
-    blank_figure,
-    head,
-    note,
-    panel_grid,
-    style,
-)
+from seacage.figures import _style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -32,14 +19,9 @@ _WIDTH = 10.0  # of a whole page [inch]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Panel:
-    """One sensor's part of a figure; every number is computed elsewhere.
+    """One sensor's part of a figure; every number is computed elsewhere."""
 
-    Parameters
-    ----------
-    sensor, quantity, unit
-        Its name, what is drawn and its unit, such as ``depth-1``, ``Rise``, ``m``.
-    """
-
+    # Its name, what is drawn and its unit, such as ``depth-1``, ``Rise``, ``m``
     sensor: str
     quantity: str
     unit: str
@@ -56,11 +38,11 @@ def sector_figure(
 ) -> "Figure":
     """Mean response of the truth and of the low fidelity by direction of the current."""
     place = np.arange(len(sectors))
-    with style():
-        figure, axes = panel_grid(len(panels), 2.05, room=0.45, sharex=True)
+    with _style.style():
+        figure, axes = _style.panel_grid(len(panels), 2.05, room=0.45, sharex=True)
         for number, (one, panel) in enumerate(zip(axes, panels, strict=True)):
-            one.bar(place - 0.21, truth[number], 0.4, color=SENSOR, label="Truth")
-            one.bar(place + 0.21, low[number], 0.4, color=LOW, label="Low fidelity")
+            one.bar(place - 0.21, truth[number], 0.4, color=_style.SENSOR, label="Truth")
+            one.bar(place + 0.21, low[number], 0.4, color=_style.LOW, label="Low fidelity")
             one.set_xticks(place, sectors)
             one.grid(visible=False, axis="x")
             _name_panel(one, panel)
@@ -79,23 +61,23 @@ def left_figure(
     ``origin``: of the truth.
     """
     place = np.arange(len(sensors))[::-1]
-    with style():
-        figure = blank_figure(6.6, 0.6 + 0.29 * len(sensors))
+    with _style.style():
+        figure = _style.blank_figure(6.6, 0.6 + 0.29 * len(sensors))
         axes = figure.subplots()
-        axes.barh(place, np.ones(len(left)), 0.62, color=LOW, alpha=0.18, lw=0)
-        axes.barh(place, left, 0.62, color=LOW, lw=0)
+        axes.barh(place, np.ones(len(left)), 0.62, color=_style.LOW, alpha=0.18, lw=0)
+        axes.barh(place, left, 0.62, color=_style.LOW, lw=0)
         for at, share in zip(place.tolist(), left.tolist(), strict=True):
-            note(axes, f"{share:.0%}", (share, at), (4, 0), va="center", fontsize=8.5)
-        axes.axvline(least, color=FIT, lw=1.2)
+            _style.note(axes, f"{share:.0%}", (share, at), (4, 0), va="center", fontsize=8.5)
+        axes.axvline(least, color=_style.FIT, lw=1.2)
         left_over, below = f"{least:.0%} must be left", ("data", "axes fraction")
-        note(axes, left_over, (least, 0.0), (4, 3), xycoords=below, color=FIT)
+        _style.note(axes, left_over, (least, 0.0), (4, 3), xycoords=below, color=_style.FIT)
         axes.set_yticks(place, sensors)
         axes.set_ylim(-1.1, len(sensors) - 0.5)
         axes.set_xlim(0.0, max(1.0, 1.12 * float(np.max(left))))
         axes.xaxis.set_major_formatter(lambda share, _: f"{share:.0%}")
         axes.grid(visible=False, axis="y")
         axes.set_xlabel("Share of the low fidelity's mean absolute error")
-        head(axes, "Left after the best rescaling and rotation", origin=origin)
+        _style.head(axes, "Left after the best rescaling and rotation", origin=origin)
     return figure
 
 
@@ -109,11 +91,11 @@ def gain_figure(
 ) -> "Figure":
     """Gains with their intervals, where there is nothing to gain and where there is."""
     place = np.arange(len(names))[::-1]
-    with style():
-        figure = blank_figure(_WIDTH, 0.75 + 0.29 * len(names))
+    with _style.style():
+        figure = _style.blank_figure(_WIDTH, 0.75 + 0.29 * len(names))
         left, right = figure.subplots(1, 2, sharey=True)
-        for axes, gain, colour in ((left, null, MUTED), (right, real, MULTI)):
-            axes.axvline(0.0, color=INK, lw=0.9)
+        for axes, gain, colour in ((left, null, _style.MUTED), (right, real, _style.MULTI)):
+            axes.axvline(0.0, color=_style.INK, lw=0.9)
             axes.hlines(place, gain[:, 1], gain[:, 2], color=colour, lw=2.2)
             axes.plot(gain[:, 0], place, "o", color=colour, mec="white", mew=0.8, ms=6.0)
             axes.xaxis.set_major_formatter(lambda share, _: f"{share:.0%}")
@@ -123,8 +105,8 @@ def gain_figure(
         left.set_ylim(-0.6, len(names) - 0.4)
         most = max(1.15 * float(np.max(np.abs(null))), 0.01)
         left.set_xlim(-most, most)
-        head(left, "Null case: the truth is the low fidelity")
-        head(right, "Real case", origin=origin)
+        _style.head(left, "Null case: the truth is the low fidelity")
+        _style.head(right, "Real case", origin=origin)
     return figure
 
 
@@ -143,15 +125,20 @@ def fouling_figure(
     """Truth less low fidelity while the net grows."""
     from matplotlib import colormaps
 
-    shades = colormaps[AMOUNT](np.linspace(0.15, 0.8, len(speed)))
-    with style():
-        figure, axes = panel_grid(len(panels), 2.0, room=0.45, sharex=True)
+    shades = colormaps[_style.AMOUNT](np.linspace(0.15, 0.8, len(speed)))
+    with _style.style():
+        figure, axes = _style.panel_grid(len(panels), 2.0, room=0.45, sharex=True)
         for number, (one, panel) in enumerate(zip(axes, panels, strict=True)):
-            one.axhline(0.0, color=MUTED, lw=0.8)
+            one.axhline(0.0, color=_style.MUTED, lw=0.8)
             for shade, own, at in zip(shades, gap[..., number].T, speed.tolist(), strict=True):
                 one.plot(growth, own, "-", color=shade, lw=1.6, label=f"{at:g} m/s, settled")
             one.plot(
-                met_growth, met_gap[:, number], "o", color=FIT, ms=4.0, label="The record's mean"
+                met_growth,
+                met_gap[:, number],
+                "o",
+                color=_style.FIT,
+                ms=4.0,
+                label="The record's mean",
             )
             _name_panel(one, panel)
         for one in axes[-4:]:

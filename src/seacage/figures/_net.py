@@ -15,15 +15,17 @@ if TYPE_CHECKING:
     from matplotlib.cm import ScalarMappable
     from matplotlib.figure import Figure
 
+Node3 = Float[np.ndarray, "node 3"]
+PerBridle = Float[np.ndarray, " bridle"]
 View = Float[np.ndarray, "2 3"]
 
 
 def net_figure(
     cage: Cage,
-    node_position: Float[np.ndarray, "node 3"],
+    node_position: Node3,
     *,
-    rest_position: Float[np.ndarray, "node 3"] | None = None,
-    bridle_tension: Float[np.ndarray, " bridle"] | None = None,
+    rest_position: Node3 | None = None,
+    bridle_tension: PerBridle | None = None,
     sea: SeaState | None = None,
     origin: Origin = Origin.COMPUTED,
 ) -> "Figure":
@@ -72,7 +74,7 @@ def net_figure(
     return figure
 
 
-def draw_ghost(axes: "Axes", cage: Cage, rest: Float[np.ndarray, "node 3"], view: View) -> None:
+def draw_ghost(axes: "Axes", cage: Cage, rest: Node3, view: View) -> None:
     """The rest shape as a faint net, so that the eye sees how far the net has gone."""
     from matplotlib.collections import LineCollection
 
@@ -83,7 +85,7 @@ def draw_ghost(axes: "Axes", cage: Cage, rest: Float[np.ndarray, "node 3"], view
 def draw_net(
     axes: "Axes",
     cage: Cage,
-    position: Float[np.ndarray, "node 3"],
+    position: Node3,
     moved: Float[np.ndarray, " node"],
     *,
     view: View,
@@ -114,9 +116,7 @@ def draw_net(
     return patches
 
 
-def draw_bridles(
-    axes: "Axes", cage: Cage, position: Float[np.ndarray, "node 3"], view: View
-) -> None:
+def draw_bridles(axes: "Axes", cage: Cage, position: Node3, view: View) -> None:
     """From the frame's corners, where they are in still water, to the collar."""
     from matplotlib.collections import LineCollection
 
@@ -131,9 +131,7 @@ def _draw_frame(axes: "Axes", cage: Cage, view: View) -> None:
     axes.plot(corner[:, 0], corner[:, 1], "s", color=MUTED, ms=4, zorder=4)
 
 
-def _draw_sensors(
-    axes: "Axes", cage: Cage, position: Float[np.ndarray, "node 3"], view: View
-) -> None:
+def _draw_sensors(axes: "Axes", cage: Cage, position: Node3, view: View) -> None:
     """Depth sensors as discs on the net, shackles as diamonds where a bridle meets the collar."""
     depth = position[[sensor.node for sensor in cage.depth_sensors]] @ view.T
     shackle = position[cage.bridle_nodes[[entry.bridle for entry in cage.shackles]]] @ view.T
@@ -159,11 +157,7 @@ def _finish_side(axes: "Axes", sea: SeaState | None) -> None:
 
 
 def _finish_top(
-    axes: "Axes",
-    cage: Cage,
-    position: Float[np.ndarray, "node 3"],
-    tension: Float[np.ndarray, " bridle"] | None,
-    sea: SeaState | None,
+    axes: "Axes", cage: Cage, position: Node3, tension: PerBridle | None, sea: SeaState | None
 ) -> None:
     axes.set_xlabel("x, east [m]")
     axes.set_ylabel("y, north [m]")

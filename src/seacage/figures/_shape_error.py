@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _COLOURS = (MULTI, LOW, "#4f8a4c", "#7d5ba6", "#b08a1e", "#3a9aa3", "#8a5a44")
-
 ABREAST = 3  # names that fit between title and axes
 
 

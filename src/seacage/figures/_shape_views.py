@@ -13,26 +13,17 @@ from seacage.figures._style import FIT, LOW, MUTED, blank_figure, style
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+Node3 = Float[np.ndarray, "node 3"]
 _SIMULATED, _PREDICTED = LOW, FIT
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ShapeView:
-    """One sea, the net that was computed there, and what models say it is.
+    """One sea, the net that was computed there, and what models say it is."""
 
-    Parameters
-    ----------
-    title
-        Of the sea.
-    computed
-        [m].
-    predicted
-        By name of the model [m].
-    """
-
-    title: str
-    computed: Float[np.ndarray, "node 3"]
-    predicted: Mapping[str, Float[np.ndarray, "node 3"]]
+    title: str  # of the sea
+    computed: Node3  # [m]
+    predicted: Mapping[str, Node3]  # by name of the model [m]
 
 
 def shape_views_figure(
@@ -61,12 +52,7 @@ def shape_views_figure(
     return figure
 
 
-def _draw(
-    axes: Any,
-    computed: Float[np.ndarray, "node 3"],
-    predicted: Float[np.ndarray, "node 3"],
-    edges: Int[np.ndarray, "edge 2"],
-) -> None:
+def _draw(axes: Any, computed: Node3, predicted: Node3, edges: Int[np.ndarray, "edge 2"]) -> None:
     from mpl_toolkits.mplot3d.art3d import Line3DCollection
 
     axes.computed_zorder = False
@@ -89,7 +75,7 @@ def _draw(
     _frame(axes, np.concatenate([computed, predicted]))
 
 
-def _frame(axes: Any, every: Float[np.ndarray, "node 3"]) -> None:
+def _frame(axes: Any, every: Node3) -> None:
     """One scale for all axes, and walls that do not compete with the net."""
     low, high = every.min(axis=0), every.max(axis=0)
     middle, half = (low + high) / 2.0, np.maximum(0.52 * (high - low), 1.0)

@@ -15,9 +15,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _ROOM = 3.0  # shown round the outermost net [m]
-
+# Width of a column, and what titles and axis labels take of the height [inch]
 _COLUMN, _LABELS = 1.95, 0.95
-"""Width of a column, and what titles and axis labels take of the height [inch]."""
 
 _Extent = tuple[tuple[float, float], tuple[float, float]]
 

@@ -3,6 +3,7 @@
 import io
 from collections.abc import Iterator
 from contextlib import contextmanager
+from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,47 +23,13 @@ FIT = "#d3222a"
 COUNTS = "viridis"
 AMOUNT = "viridis"
 
-_SETTINGS: dict[str, object] = {
-    "font.family": "sans-serif",
-    "font.sans-serif": ["DejaVu Sans"],  # ships with Matplotlib: the same everywhere
-    "font.size": 8.5,
-    "axes.titlesize": 9.5,
-    "axes.titleweight": "bold",
-    "axes.titlelocation": "left",
-    "axes.labelsize": 8.5,
-    "axes.labelcolor": INK,
-    "axes.edgecolor": MUTED,
-    "axes.linewidth": 0.7,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "axes.axisbelow": True,
-    "grid.color": FAINT,
-    "grid.linewidth": 0.6,
-    "text.color": INK,
-    "xtick.color": MUTED,
-    "ytick.color": MUTED,
-    "xtick.labelcolor": INK,
-    "ytick.labelcolor": INK,
-    "xtick.labelsize": 8.0,
-    "ytick.labelsize": 8.0,
-    "legend.frameon": False,
-    "legend.fontsize": 8.0,
-    "figure.facecolor": "white",
-    "savefig.facecolor": "white",
-    "savefig.dpi": 200,
-    "svg.fonttype": "path",
-    "svg.hashsalt": "seacage",
-    "path.simplify_threshold": 0.25,
-}
-
 
 @contextmanager
 def style() -> Iterator[None]:
     """Draw and save inside this; the caller's own Matplotlib settings stay as they are."""
-    import matplotlib as mpl
+    import matplotlib.style as mpl_style
 
-    with mpl.rc_context(_SETTINGS):  # pyright: ignore[reportArgumentType]
+    with mpl_style.context(str(files("seacage.figures") / "seacage.mplstyle")):
         yield
 
 

@@ -21,20 +21,13 @@ _MOST = 2.0  # times the low fidelity's error that are drawn; what is more stand
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class TrainingScores:
-    """Scores of one way of training at each sensor; NaN where it was not trained.
+    """Scores of one way of training at each sensor; NaN where it was not trained."""
 
-    Parameters
-    ----------
-    error, crps
-        Mean absolute error and continuous ranked probability score over the first way's low
-        fidelity's mean absolute error [-].
-    coverage
-        Share of readings inside the 95 % interval [-].
-    """
-
+    # Mean absolute error and continuous ranked probability score over the first way's low
+    # fidelity's mean absolute error [-]
     error: Float[np.ndarray, " sensor"]
     crps: Float[np.ndarray, " sensor"]
-    coverage: Float[np.ndarray, " sensor"]
+    coverage: Float[np.ndarray, " sensor"]  # share of readings inside the 95 % interval [-]
 
 
 def training_scores_figure(

@@ -19,27 +19,13 @@ _LOOKS = ((MULTI, "-"), (LOW, "--"), ("#4f8a4c", "-."), ("#7d5ba6", ":"))
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class VolumeMark:
-    """A published volume of another cage.
+    """A published volume of another cage."""
 
-    Parameters
-    ----------
-    name
-        Where it was measured.
-    current_speed
-        [m/s].
-    fraction
-        Of the volume in still water [-].
-    at_least
-        The speed is known to be above ``current_speed`` alone.
-    source
-        Where it was published.
-    """
-
-    name: str
-    current_speed: float
-    fraction: float
-    at_least: bool = False
-    source: str
+    name: str  # where it was measured
+    current_speed: float  # [m/s]
+    fraction: float  # of the volume in still water [-]
+    at_least: bool = False  # the speed is known to be above ``current_speed`` alone
+    source: str  # where it was published
 
 
 MEASURED_VOLUMES = (

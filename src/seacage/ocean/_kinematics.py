@@ -10,14 +10,16 @@ from seacage.conventions import GRAVITY, InputError, fold_degrees, towards
 from seacage.ocean._sea_state import SeaState
 from seacage.ocean._spectrum import spectrum
 
+N2 = Float[np.ndarray, "*#n 2"]
+N3 = Float[np.ndarray, "*#n 3"]
+NWave = Float[np.ndarray, "*n wave"]
+PerN = Float[np.ndarray, "*n"]
+# The components' frequencies, over the peak's: all but 0.5 % of the energy, and nearly all of the
+# motion below the first metre
 BAND = (0.5, 4.0)
-"""The components' frequencies, over the peak's: all but 0.5 % of the energy, and nearly all of
-the motion below the first metre."""
 
 
-def wavenumber(
-    angular_frequency: Float[np.ndarray, "*n"], *, depth: float
-) -> Float[np.ndarray, "*n"]:
+def wavenumber(angular_frequency: PerN, *, depth: float) -> PerN:
     """Wave number of a linear wave: the root k of omega^2 = g k tanh(k depth) [1/m].
 
     Parameters
@@ -199,9 +201,7 @@ def bin_energy(sea: SeaState, edges: Float[np.ndarray, " edge"]) -> Float[np.nda
     return energy * (sea.hs**2 / 16.0 / total) if total > 0.0 else energy
 
 
-def surface_elevation(
-    waves: Waves, position: Float[np.ndarray, "*#n 2"], time: Float[np.ndarray, "*#n"]
-) -> Float[np.ndarray, "*n"]:
+def surface_elevation(waves: Waves, position: N2, time: Float[np.ndarray, "*#n"]) -> PerN:
     """Height of the water's surface above still water [m].
 
     ``waves``: the sea.
@@ -212,7 +212,7 @@ def surface_elevation(
 
 
 def water_motion(
-    waves: Waves, position: Float[np.ndarray, "*#n 3"], time: Float[np.ndarray, "*#n"]
+    waves: Waves, position: N3, time: Float[np.ndarray, "*#n"]
 ) -> tuple[Float[np.ndarray, "*n 3"], Float[np.ndarray, "*n 3"]]:
     """Velocity and local acceleration of the water, from the waves alone.
 
@@ -253,16 +253,12 @@ def water_motion(
     return velocity * wet[..., None], acceleration * wet[..., None]
 
 
-def _angle(
-    waves: Waves, position: Float[np.ndarray, "*#n 2"], time: Float[np.ndarray, "*#n"]
-) -> Float[np.ndarray, "*n wave"]:
+def _angle(waves: Waves, position: N2, time: Float[np.ndarray, "*#n"]) -> NWave:
     vector = waves.wavenumber[:, None] * waves.direction
     return position @ vector.T - time[..., None] * waves.angular_frequency + waves.phase
 
 
-def pressure_head(
-    waves: Waves, position: Float[np.ndarray, "*#n 3"], time: Float[np.ndarray, "*#n"]
-) -> Float[np.ndarray, "*n"]:
+def pressure_head(waves: Waves, position: N3, time: Float[np.ndarray, "*#n"]) -> PerN:
     """Wave pressure in the water, as metres of water [m].
 
     Below still water as in linear theory, above it as at still water.
@@ -289,16 +285,12 @@ def pressure_head(
     return np.asarray((share * cosine) @ waves.amplitude)
 
 
-def _stretch(
-    z: Float[np.ndarray, "*#n"], elevation: Float[np.ndarray, "*n"], depth: float
-) -> Float[np.ndarray, "*n"]:
+def _stretch(z: Float[np.ndarray, "*#n"], elevation: PerN, depth: float) -> PerN:
     # Points above the surface are zeroed later; the clip keeps their exponentials finite.
     return np.asarray(np.clip((z - elevation) * depth / (depth + elevation), -depth, 0.0))
 
 
-def _decay(
-    k: Float[np.ndarray, " wave"], z: Float[np.ndarray, "*n"], depth: float
-) -> tuple[Float[np.ndarray, "*n wave"], Float[np.ndarray, "*n wave"]]:
+def _decay(k: Float[np.ndarray, " wave"], z: PerN, depth: float) -> tuple[NWave, NWave]:
     """Decay of velocities: cosh k(z+h) / sinh kh and sinh k(z+h) / sinh kh, z in [-h, 0] [-].
 
     Written with decaying exponentials: cosh itself overflows in deep water.
@@ -309,9 +301,7 @@ def _decay(
     return fall * (1.0 + bounce) / floor, fall * (1.0 - bounce) / floor
 
 
-def _orient(
-    waves: Waves, along: Float[np.ndarray, "*n wave"], up: Float[np.ndarray, "*n wave"]
-) -> Float[np.ndarray, "*n 3"]:
+def _orient(waves: Waves, along: NWave, up: NWave) -> Float[np.ndarray, "*n 3"]:
     return np.concatenate([along @ waves.direction, up.sum(-1, keepdims=True)], axis=-1)
 
 

@@ -19,18 +19,12 @@ from seacage.records._history_file import (
     read_history,
     write_history,
 )
-from seacage.records._keys import KEYS, Key
+from seacage.records._keys import KEYS, NO_MEAN_PERIOD, Key, is_mean_period
 from seacage.records._lines import LINES
-from seacage.records._quality import (
+from seacage.records._quality._check import (
     AHEAD,
-    DEFAULT_LIMITS,
-    GROUPS,
     Amendment,
-    Limits,
     QualityState,
-    Range,
-    Season,
-    Steadiness,
     Verdict,
     alike,
     amended,
@@ -38,24 +32,25 @@ from seacage.records._quality import (
     check_sample,
     is_evaluated,
     is_withdrawn,
-    read_limits,
     verdicts_on,
     withdrawn,
 )
-from seacage.records._readers import (
-    Column,
-    ColumnMap,
-    Inspection,
-    NetcdfMap,
-    check_rows,
-    inspect_file,
-    known_map,
-    read_map,
-    read_record,
-    read_rows,
-    shipped_maps,
-    write_record,
+from seacage.records._quality._limits import (
+    DEFAULT_LIMITS,
+    GROUPS,
+    Limits,
+    Range,
+    Season,
+    Steadiness,
 )
+from seacage.records._quality._limits_file import read_limits
+from seacage.records._readers._cf import NetcdfMap
+from seacage.records._readers._column_map import Column, ColumnMap
+from seacage.records._readers._csv import check_rows, read_rows
+from seacage.records._readers._inspect import Inspection, inspect_file
+from seacage.records._readers._netcdf import write_record
+from seacage.records._readers._reader import known_map, read_map, read_record
+from seacage.records._readers._shipped import shipped_maps
 from seacage.records._record import Record
 from seacage.records._sample import Sample, check_stream
 from seacage.records._times import instant, moment
@@ -68,6 +63,7 @@ __all__ = [
     "KEYS",
     "LINES",
     "NOT_RUN",
+    "NO_MEAN_PERIOD",
     "STATISTICS",
     "TWINES",
     "Amendment",
@@ -105,6 +101,7 @@ __all__ = [
     "inspect_file",
     "instant",
     "is_evaluated",
+    "is_mean_period",
     "is_withdrawn",
     "known_map",
     "moment",

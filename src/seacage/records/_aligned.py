@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int, Shaped
 
 from seacage.conventions import Flag, InputError
-from seacage.records._quality import GROUPS
+from seacage.records._quality._limits import GROUPS
 from seacage.records._record import Record
 from seacage.records._times import instant
 

@@ -30,89 +30,51 @@ class CampaignRecord:
 
     What a campaign does not have is None: one of equilibria has no statistics over time, one
     in time no residual.
-
-    Parameters
-    ----------
-    cage_toml
-        The cage, as its file.
-    seas
-        The sea state of each case.
-    node_position
-        Mean positions; x east, y north, z up [m].
-    bridle_tension
-        Mean tensions [N].
-    net_force
-        Load of the water on the netting [N].
-    volume
-        Inside the net [m3].
-    residual
-        Largest unbalanced force at a node [N].
-    result
-        How each case ended, a ``Result``. Diverged cases hold NaN.
-    law
-        The load law of the netting.
-    seed
-        Of the plan that drew the sea states.
-    version
-        Of the seacage that computed the answers.
-    wave_seed
-        Of each case's waves.
-    mooring_seed
-        Of each case's mooring: ``Cage.drawn`` by it is the case's cage. None where all cases have
-        the cage's own mooring.
-    diverged_at
-        Simulated time at which a case was given up, spin-up included; NaN for the others [s].
-    quantile
-        Probabilities of the quantiles [-].
-    node_position_std, node_position_minimum, node_position_maximum, node_position_quantile
-        Of the positions over time [m].
-    bridle_tension_std, bridle_tension_minimum, bridle_tension_maximum, bridle_tension_quantile
-        Of the tensions over time [N].
-    net_force_std, volume_std
-        Of the load [N] and of the volume [m3] over time.
-    second_moment
-        Mean over time and all cases to learn from of the products of all coordinates, as
-        displacements from the design shape: coordinate 3 n + a is axis a of node n [m2].
-    duration
-        Time that each case's statistics are over; NaN for equilibria [s].
-    line_names, line_kinds
-        All ropes and chains of the mooring, the bridles first; none where they were not kept.
-    lines
-        Their loads by the names of ``LINES``: case × line, ``capacity`` and ``tn_slope`` by line.
     """
 
-    cage_toml: str
-    seas: tuple[SeaState, ...]
-    node_position: Float[np.ndarray, "case node 3"]
-    bridle_tension: Float[np.ndarray, "case line"]
-    net_force: Float[np.ndarray, "case 3"]
-    volume: Float[np.ndarray, " case"]
-    residual: Float[np.ndarray, " case"] | None = None
-    result: Int[np.ndarray, " case"]
-    law: str
-    seed: int
-    version: str
-    wave_seed: Int[np.ndarray, " case"] | None = None
+    cage_toml: str  # the cage, as its file
+    seas: tuple[SeaState, ...]  # the sea state of each case
+    node_position: Float[np.ndarray, "case node 3"]  # mean positions; x east, y north, z up [m]
+    bridle_tension: Float[np.ndarray, "case line"]  # mean tensions [N]
+    net_force: Float[np.ndarray, "case 3"]  # load of the water on the netting [N]
+    volume: Float[np.ndarray, " case"]  # inside the net [m3]
+    residual: Float[np.ndarray, " case"] | None = None  # largest unbalanced force at a node [N]
+    result: Int[np.ndarray, " case"]  # how each case ended, a ``Result``; diverged ones hold NaN
+    law: str  # the load law of the netting
+    seed: int  # of the plan that drew the sea states
+    version: str  # of the seacage that computed the answers
+    wave_seed: Int[np.ndarray, " case"] | None = None  # of each case's waves
+    # Of each case's mooring: ``Cage.drawn`` by it is the case's cage. None where all cases have the
+    # cage's own mooring.
     mooring_seed: Int[np.ndarray, " case"] | None = None
+    # Simulated time at which a case was given up, spin-up included; NaN for the others [s]
     diverged_at: Float[np.ndarray, " case"] | None = None
-    quantile: Float[np.ndarray, " quantile"] | None = None
+    quantile: Float[np.ndarray, " quantile"] | None = None  # probabilities of the quantiles [-]
+    # Of the positions over time [m]
     node_position_std: Float[np.ndarray, "case node 3"] | None = None
     node_position_minimum: Float[np.ndarray, "case node 3"] | None = None
     node_position_maximum: Float[np.ndarray, "case node 3"] | None = None
     node_position_quantile: Float[np.ndarray, "case quantile node 3"] | None = None
+    # Of the tensions over time [N]
     bridle_tension_std: Float[np.ndarray, "case line"] | None = None
     bridle_tension_minimum: Float[np.ndarray, "case line"] | None = None
     bridle_tension_maximum: Float[np.ndarray, "case line"] | None = None
     bridle_tension_quantile: Float[np.ndarray, "case quantile line"] | None = None
+    # Of the load [N] and of the volume [m3] over time
     net_force_std: Float[np.ndarray, "case 3"] | None = None
     volume_std: Float[np.ndarray, " case"] | None = None
+    # Mean over time and all cases to learn from of the products of all coordinates, as
+    # displacements from the design shape: coordinate 3 n + a is axis a of node n [m2]
     second_moment: Float[np.ndarray, "coordinate coordinate"] | None = None
-    duration: float = math.nan
+    duration: float = math.nan  # time that each case's statistics are over; NaN for equilibria [s]
+    # All ropes and chains of the mooring, the bridles first; none where they were not kept
     line_names: tuple[str, ...] = ()
     line_kinds: tuple[str, ...] = ()
+    # Their loads by the names of ``LINES``: case × line, ``capacity`` and ``tn_slope`` by line
     lines: Mapping[str, Float[np.ndarray, "*case_too mooring_line"]] = field(
         default_factory=dict[str, np.ndarray]
     )
+    parted: tuple[str, ...] = ()  # those that bore nothing, as they had parted
 
     __repr__ = brief
 
@@ -135,13 +97,14 @@ class CampaignRecord:
         digest = hashlib.sha256(self.cage_toml.encode())
         for part in fields(self):
             value = getattr(self, part.name)
-            if value is None or part.name == "duration" or part.name.startswith("line"):
+            if value is None or part.name in ("duration", "parted") or part.name.startswith("line"):
                 continue
             digest.update(
                 value.tobytes() if isinstance(value, np.ndarray) else repr(value).encode()
             )
         for name in sorted(self.lines):  # campaigns of 0.1.0 have none
             digest.update(self.lines[name].tobytes())
+        digest.update(", ".join(self.parted).encode())
         return digest.hexdigest()
 
 
@@ -185,6 +148,7 @@ def read_campaign(path: str | Path) -> CampaignRecord:
         line_names=_words(attributes.get("line_names", "")),
         line_kinds=_words(attributes.get("line_kinds", "")),
         lines=lines,
+        parted=_words(attributes.get("parted", "")),
         **variables,
     )
 

@@ -25,12 +25,13 @@ from seacage.records._netcdf_file import CELL_METHODS, Variable
 NOT_RUN = -1
 """Stands in ``result`` for a case that has not been run yet."""
 
+# Group of the second moments of single blocks, there until the campaign is finished
 _BLOCKS = "blocks"
-"""Group of the second moments of single blocks, there until the campaign is finished."""
 
 
 _CASE = ("case",)
 
+# The sea state of each case, with the names of ``SeaState``
 SEA = {
     name: Variable(_CASE, KEYS[key].cf_unit, meaning, KEYS[key].standard_name or "")
     for name, key, meaning in (
@@ -41,15 +42,14 @@ SEA = {
         ("wave_from", "wave_from_deg", "where the waves come from, clockwise from true north"),
     )
 }
-"""The sea state of each case, with the names of ``SeaState``."""
 
+# What every campaign answers
 MEAN = {
     "node_position": Variable(("case", "node", "axis"), "m", "mean position of the net's nodes"),
     "bridle_tension": Variable(("case", "line"), "N", "mean tension of the bridles"),
     "net_force": Variable(("case", "axis"), "N", "load of the water on the netting"),
     "volume": Variable(_CASE, "m3", "volume inside the net"),
 }
-"""What every campaign answers."""
 
 _RESULT = Variable(_CASE, "1", "how the case ended", dtype="int8")
 _RESIDUAL = Variable(_CASE, "N", "largest unbalanced force at a node")
@@ -81,6 +81,7 @@ def _spread(name: str, statistic: str) -> Variable:
     )
 
 
+# What a campaign in time answers beside the means
 SPREAD = {
     **{
         f"{name}_{statistic}": _spread(name, statistic)
@@ -92,7 +93,6 @@ SPREAD = {
         _CASE, "s", "simulated time at which the case was given up, spin-up included"
     ),
 }
-"""What a campaign in time answers beside the means."""
 
 _LOADS = {
     f"line_{name}": line_variable(name, *_CASE, dtype="float32")

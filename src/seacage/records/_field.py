@@ -8,7 +8,7 @@ from typing import Any, Self, cast
 
 from seacage.conventions import InputError, Origin, RecordError, parse_json, read_text
 from seacage.records._brief import brief
-from seacage.records._readers import read_netcdf, write_record
+from seacage.records._readers._netcdf import read_netcdf, write_record
 from seacage.records._record import Record
 from seacage.records._sample import check_stream
 

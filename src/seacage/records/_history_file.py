@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     import xarray
 
 _SCHEMA = "seacage history 1"
-
 STATISTICS = ("mean", "std", "minimum", "maximum", "quantile")
 """Of each quantity, as ``HistoryRecord`` and its file name them."""
 
@@ -263,7 +262,12 @@ def _record(dataset: "xarray.Dataset") -> HistoryRecord:
         sea=SeaState(**{name: float(values[name]) for name in SEA}),
         line_names=tuple(map(str, values.get("mooring_line", ()))),
         line_kinds=tuple(map(str, values.get("line_kind", ()))),
-        lines={name: values[f"line_{name}"] for name in LINES if "mooring_line" in values},
+        lines={
+            # files of 0.2 and before have no damage
+            name: values.get(f"line_{name}", np.full(len(values["mooring_line"]), np.nan))
+            for name in LINES
+            if "mooring_line" in values
+        },
         water_load=_under(values, "water_load_", STATISTICS),
         twines=_under(values, "twine_", TWINES),
         time=values["time"].astype(np.float64),

@@ -1,5 +1,6 @@
 """The quantities that streams carry: their door keys, units and CF names."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -50,18 +51,32 @@ KEYS: Mapping[str, Key] = {
 }
 """Every quantity that a sample or a record may carry, by its door key."""
 
+# The keys whose 360 degrees is 0
 DIRECTIONS = frozenset(name for name, key in KEYS.items() if key.unit == "deg")
-"""The keys whose 360 degrees is 0."""
+
+
+NO_MEAN_PERIOD = (
+    "This is a mean period, and tp_s is the peak period, some 1.2 to 1.4 times as long. Give the "
+    "peak period, or leave the period out: a twin takes Tp as it is distributed at the same Hs."
+)
+_MEAN_PERIOD = re.compile(
+    r"(apd|mwp|t_?[zae]|t_?av|v?t_?m_?-?[012]{0,3}|t0?[12]|vtza)(_s)?"
+    r"|.*(mean|average|zero|energy|upcross).*period.*|.*period.*(mean|average|zero|first|second).*",
+    re.IGNORECASE,
+)
+
+
+def is_mean_period(name: str) -> bool:
+    """Whether a column or a variable has the name of a mean wave period, such as Tz or tm02."""
+    return _MEAN_PERIOD.fullmatch(name.strip()) is not None
 
 
 def check_keys(names: Mapping[str, object], *, where: str) -> None:
-    """Refuse a key that no quantity has.
-
-    Raises InputError: at the first unknown key.
-    """
+    """Refuse a key that no quantity has. Raises InputError: at the first unknown key."""
     if not KEYS.keys() >= names.keys():
         unknown = next(name for name in names if name not in KEYS)
         raise InputError(
             f"{where}: no quantity has the key {unknown!r}. "
             f"The keys, with their units, are {', '.join(KEYS)}."
+            f"{' ' + NO_MEAN_PERIOD if is_mean_period(unknown) else ''}"
         )

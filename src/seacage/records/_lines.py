@@ -17,6 +17,7 @@ LINES = {
     "uplift_mean": ("N", "mean pull up on the line's anchor"),
     "uplift_maximum": ("N", "largest pull up on the line's anchor"),
     "damage_equivalent": ("N", "range of cycles at 1 Hz that wear the line as much"),
+    "damage_per_year": ("year-1", "share of the T-N life that a year of such a sea uses up"),
     "tn_slope": ("1", "slope m of the T-N curve, of line_damage_equivalent"),
 }
 """Unit and meaning of each, by the names of ``HistoryRecord.lines``; in files after ``line_``."""

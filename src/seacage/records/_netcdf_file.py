@@ -18,6 +18,7 @@ from seacage.conventions import check_file
 if TYPE_CHECKING:
     import xarray
 
+# Errors that the libraries raise at a damaged file
 NETCDF_TROUBLE = (
     OSError,
     KeyError,
@@ -30,23 +31,22 @@ NETCDF_TROUBLE = (
     MemoryError,
     NotImplementedError,
 )
-"""Errors that the libraries raise at a damaged file."""
 
 _FILE_BYTES = 4 << 30
 _DECLARED_BYTES = 2 << 30
 _INFLATION = 1100  # deflate makes at most 1032 bytes of one; more was never written [-]
 _SMALL_BYTES = 16 << 20  # what any file may ask for, however small
+# Texts of any length that one variable may hold: each of them can be the same long one
 _MOST_TEXTS = 4096
-"""Texts of any length that one variable may hold: each of them can be the same long one."""
 
 
+# Of statistics over time, by CF's words; it has none for quantiles but the median
 CELL_METHODS = {
     "mean": "time: mean",
     "std": "time: standard_deviation",
     "minimum": "time: minimum",
     "maximum": "time: maximum",
 }
-"""Of statistics over time, by CF's words; it has none for quantiles but the median."""
 
 _PACKED = {"zlib": True, "complevel": 4, "shuffle": True, "dtype": "float32"}
 

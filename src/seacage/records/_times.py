@@ -11,10 +11,7 @@ _MICROSECOND = timedelta(microseconds=1)
 
 
 def microseconds(time: datetime) -> int:
-    """Since 1970-01-01 UTC, exactly.
-
-    Raises InputError: where the time does not say its zone.
-    """
+    """Since 1970-01-01 UTC, exactly. Raises InputError: where the time does not say its zone."""
     if time.tzinfo is None:
         raise InputError(
             f"The time {time.isoformat()} does not say its zone. Give it with an offset, in UTC: "

@@ -37,10 +37,10 @@ _SAME_IN_ALL_ROWS = {
     "shape_level",
     "line_names",
     "line_kinds",
+    "line_level",
 }
 _DOOR_UNITS = {"N": ("kN", 1e-3), "m": ("m", 1.0)}
 _ENDS = {"": "mean", "_lower": "95 %, lower", "_upper": "95 %, upper"}
-
 Column = list[Any]
 Table = Float[np.ndarray, "t output"]
 

@@ -19,9 +19,8 @@ from seacage.service._mqtt._topics import Name
 from seacage.service._publish._post import Webhook
 
 _LOOPBACK = ("127.0.0.1", "::1", "localhost")
-
+# An address, or a network as ``10.0.0.0/8``
 Network = Annotated[str, AfterValidator(lambda text: str(ip_network(text)))]
-"""An address, or a network as ``10.0.0.0/8``."""
 
 
 class _Section(BaseModel):

@@ -18,9 +18,8 @@ from seacage.records import ColumnMap, Sample, check_rows, read_rows
 _HEAD = 1024  # bytes at the beginning that tell one file from another
 _MOST = 1 << 20  # bytes that are read at a time
 _log = structlog.get_logger(__name__)
-
+# Is told where a row stands, the row, and why it cannot be read
 Refuse = Callable[[str, bytes, str], None]
-"""Is told where a row stands, the row, and why it cannot be read."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -25,7 +25,6 @@ from seacage.studies._stages import SIMULATION, Stages, code_sha256
 from seacage.twin import Training, train
 
 _OF_ALL = ("quantile", "second_moment")  # arrays that have no axis of cases
-
 _FIELD = (*SIMULATION, "records")
 TRAINING = (*_FIELD, "surrogates", "twin")  # rooms whose code makes a twin
 

@@ -12,17 +12,15 @@ from seacage.surrogates import block_bootstrap, block_means, coverage, crps, mae
 from seacage.twin import Answer, align
 
 MEAN_S = 600.0  # scores are given raw and on means of this length [s]
-
+# Readings teach as means of this length, and the twin's intervals are of such means [s]
 MINUTE_S = 60.0
-"""Readings teach as means of this length, and the twin's intervals are of such means [s]."""
 
 _DRAWS = 1000
 _LEAST_READINGS = 100
 _LEAST_BLOCKS = 8
 _HOUR = np.timedelta64(1, "h")
-
+# A sensor's unit inside, and the one that people read with what it is multiplied by
 _PEOPLE = {"m": ("m", 1.0), "N": ("kN", 1e-3)}
-"""A sensor's unit inside, and the one that people read with what it is multiplied by."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

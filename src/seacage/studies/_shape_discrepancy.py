@@ -12,11 +12,11 @@ from seacage.conventions import Origin, Progress
 from seacage.twin import Discrepancy, Metocean, PredictedNet, Twin
 
 SEEDS = tuple(range(6))
+# Of the virtual field, and times of each, that a demonstration's twin learns its error from
 CASES = 120
-"""Of the virtual field, and times of each, that a demonstration's twin learns its error from."""
 
+# Standard deviation of the test points about the predicted net [m]: an ROV's distances
 SCATTERED = 4.0
-"""Standard deviation of the test points about the predicted net [m]: an ROV's distances."""
 
 
 _NOW = datetime(2020, 1, 18, tzinfo=UTC)  # any time will do

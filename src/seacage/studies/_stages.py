@@ -17,9 +17,8 @@ from seacage.dynamics import PHYSICS, Law
 from seacage.records import CampaignRecord, read_campaign
 
 MANIFEST = "stage.json"
-
+# Rooms whose code makes a campaign
 SIMULATION = ("conventions", "ocean", "cage", "dynamics", "campaigns")
-"""Rooms whose code makes a campaign."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,13 +70,15 @@ class Stages:
         method: Literal["simulate", "settle"] = "settle",
         law: Law = "kristiansen-faltinsen",
         second_moment: bool = False,
+        spin_up: float = 300.0,
         workers: int | None,
         progress: Progress,
     ) -> CampaignRecord:
         """A cage in the seas of a plan, kept on disk case by case.
 
         ``stage``: its name, which the progress is called with. ``cage``, ``plan``, ``method``,
-        ``law``, ``second_moment``, ``workers``, ``progress``: as for ``run_campaign``.
+        ``law``, ``second_moment``, ``spin_up``, ``workers``, ``progress``: as for
+        ``run_campaign``.
         """
 
         def make(begun: Path) -> None:
@@ -89,6 +90,7 @@ class Stages:
                 law=law,
                 second_moment=second_moment,
                 workers=workers,
+                spin_up=spin_up,
                 progress=lambda _, done, total: progress(stage, done, total),
             )
 
@@ -97,6 +99,7 @@ class Stages:
             "plan_sha256": plan.sha256,
             "method": method,
             "law": law,
+            "spin_up_s": spin_up,
         }
         return read_campaign(self.ensure(stage, settings, make, rooms=SIMULATION) / "campaign.zarr")
 

@@ -1,13 +1,12 @@
 """Models that learn a simulator, and what a sensor adds to it."""
 
 from seacage.surrogates._arrays import Arrays, Settings
-from seacage.surrogates._calibration import (
+from seacage.surrogates._calibration._conformal import (
     AdaptiveConformal,
-    FittedResidual,
-    ResidualModel,
     conformal_factor,
     variance_components,
 )
+from seacage.surrogates._calibration._residual import FittedResidual, ResidualModel
 from seacage.surrogates._design import spread_design, window_design
 from seacage.surrogates._domain import Domain
 from seacage.surrogates._features import (
@@ -16,10 +15,14 @@ from seacage.surrogates._features import (
     sea_features,
     wave_features,
 )
-from seacage.surrogates._gcn import GCN, FittedGCN
+from seacage.surrogates._gcn._gcn import GCN, FittedGCN
 from seacage.surrogates._gp import FittedGaussianProcess, GaussianProcess
-from seacage.surrogates._loads import FittedLoadGP, LoadCases, LoadGP, LoadPrediction, Loads
-from seacage.surrogates._multifidelity import AR1, NARGP, BatchedLevels, FittedNARGP
+from seacage.surrogates._loads._load_change import LoadChange
+from seacage.surrogates._loads._load_gp import FittedLoadGP, LoadGP
+from seacage.surrogates._loads._load_ratio import LoadRatio, is_gain
+from seacage.surrogates._loads._loads import LoadCases, LoadPrediction, Loads
+from seacage.surrogates._multifidelity._batch import BatchedLevels
+from seacage.surrogates._multifidelity._nargp import AR1, NARGP, FittedNARGP
 from seacage.surrogates._prediction import Prediction, Predicts
 from seacage.surrogates._saving import Fitted, decode, encode
 from seacage.surrogates._scores import (
@@ -32,17 +35,12 @@ from seacage.surrogates._scores import (
     rmse,
     skill,
 )
-from seacage.surrogates._shape import (
-    FittedCoordinate,
-    FittedPcaGP,
-    FittedShapeGP,
-    OverTime,
-    PcaGP,
-    ShapeGP,
-    Symmetry,
-    check_symmetry,
-)
-from seacage.surrogates._tables import Box, Disc, Table, Tabulable
+from seacage.surrogates._shape._pca import FittedPcaGP, OverTime, PcaGP
+from seacage.surrogates._shape._shape_gp import FittedCoordinate, FittedShapeGP, ShapeGP
+from seacage.surrogates._shape._symmetry import Symmetry
+from seacage.surrogates._shape._symmetry_check import check_symmetry
+from seacage.surrogates._tables._region import Box, Disc
+from seacage.surrogates._tables._table import Table, Tabulable
 
 __all__ = [
     "AR1",
@@ -65,8 +63,10 @@ __all__ = [
     "FittedShapeGP",
     "GaussianProcess",
     "LoadCases",
+    "LoadChange",
     "LoadGP",
     "LoadPrediction",
+    "LoadRatio",
     "Loads",
     "OverTime",
     "PcaGP",
@@ -87,6 +87,7 @@ __all__ = [
     "current_features",
     "decode",
     "encode",
+    "is_gain",
     "mae",
     "metocean_features",
     "mnll",

@@ -5,11 +5,14 @@ from jaxtyping import Float
 
 from seacage.conventions import InputError
 
+PerRow = Float[np.ndarray, " row"]
+Row2 = Float[np.ndarray, "row 2"]
+RowFeature = Float[np.ndarray, "row feature"]
+# Share by which a length may differ from that of its vector: features may come rounded
 ROUNDED = 1e-3
-"""Share by which a length may differ from that of its vector: features may come rounded."""
 
 
-def current_features(current_velocity: Float[np.ndarray, "row 2"]) -> Float[np.ndarray, "row 3"]:
+def current_features(current_velocity: Row2) -> Float[np.ndarray, "row 3"]:
     """Features (U, U cos phi, U sin phi) of currents, phi from east.
 
     The vector alone would do, but loads grow with the speed, and the speed has a kink at slack
@@ -29,12 +32,7 @@ def current_features(current_velocity: Float[np.ndarray, "row 2"]) -> Float[np.n
     return np.column_stack([speed, current_velocity])
 
 
-def wave_features(
-    hs: Float[np.ndarray, " row"],
-    wave_direction: Float[np.ndarray, "row 2"],
-    *,
-    tp: Float[np.ndarray, " row"] | None = None,
-) -> Float[np.ndarray, "row feature"]:
+def wave_features(hs: PerRow, wave_direction: Row2, *, tp: PerRow | None = None) -> RowFeature:
     """Features (Hs, Hs cos beta, Hs sin beta) of waves, beta from east.
 
     Where the peak period is known too they are (W, W cos beta, W sin beta, Hs), W = pi Hs / Tp
@@ -63,12 +61,12 @@ def wave_features(
 
 
 def metocean_features(
-    current_velocity: Float[np.ndarray, "row 2"],
+    current_velocity: Row2,
     *,
-    hs: Float[np.ndarray, " row"] | None = None,
-    wave_direction: Float[np.ndarray, "row 2"] | None = None,
-    tp: Float[np.ndarray, " row"] | None = None,
-) -> Float[np.ndarray, "row feature"]:
+    hs: PerRow | None = None,
+    wave_direction: Row2 | None = None,
+    tp: PerRow | None = None,
+) -> RowFeature:
     """All that a buoy measures as features: ``current_features``, then ``wave_features``.
 
     ``ShapeGP`` can turn these, so it may fold by a symmetry.
@@ -94,11 +92,7 @@ def metocean_features(
 
 
 def sea_features(
-    current_velocity: Float[np.ndarray, "row 2"],
-    *,
-    hs: Float[np.ndarray, " row"],
-    tp: Float[np.ndarray, " row"],
-    wave_direction: Float[np.ndarray, "row 2"],
+    current_velocity: Row2, *, hs: PerRow, tp: PerRow, wave_direction: Row2
 ) -> Float[np.ndarray, "row 7"]:
     """Features of a sea whose loads vary with its waves.
 
@@ -126,7 +120,7 @@ def vector_columns(width: int) -> tuple[slice, ...]:
     return (slice(1, 3), slice(4, 6))[: 1 + (width > 3)]
 
 
-def check_turnable(x: Float[np.ndarray, "row feature"], *, what: str) -> None:
+def check_turnable(x: RowFeature, *, what: str) -> None:
     """Refuse features that cannot be turned, for their vectors are not where they should be."""
     if x.shape[1] not in (3, 6, 7):
         raise InputError(

@@ -1,18 +1,20 @@
 """Fitted models to plain settings and arrays, and back; nothing executable is stored."""
 
 from collections.abc import Mapping
+from typing import get_args
 
 import numpy as np
 
 from seacage.conventions import ModelError
 from seacage.surrogates._arrays import Arrays, Settings, setting
-from seacage.surrogates._gcn import FittedGCN
+from seacage.surrogates._gcn._gcn import FittedGCN
 from seacage.surrogates._gp import FittedGaussianProcess
-from seacage.surrogates._loads import FittedLoadGP
-from seacage.surrogates._multifidelity import FittedNARGP
+from seacage.surrogates._loads._load_gp import FittedLoadGP
+from seacage.surrogates._multifidelity._nargp import FittedNARGP
 from seacage.surrogates._prediction import Predicts
-from seacage.surrogates._shape import FittedPcaGP, FittedShapeGP
-from seacage.surrogates._tables import Table
+from seacage.surrogates._shape._pca import FittedPcaGP
+from seacage.surrogates._shape._shape_gp import FittedShapeGP
+from seacage.surrogates._tables._table import Table
 
 Fitted = (
     FittedGaussianProcess
@@ -57,7 +59,7 @@ def decode(
     model = setting(settings, "model", str)
     if model == FittedNARGP.MODEL:
         return FittedNARGP.from_arrays(settings, arrays, lower=lower)
-    for kind in (FittedGaussianProcess, FittedGCN, FittedLoadGP, FittedPcaGP, FittedShapeGP, Table):
+    for kind in get_args(Fitted):
         if model == kind.MODEL:
             return kind.from_arrays(settings, arrays)
     raise ModelError(f"The saved model is a {model!r}, which this version does not know.")

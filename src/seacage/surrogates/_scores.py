@@ -7,8 +7,10 @@ from jaxtyping import Float, Shaped
 
 from seacage.conventions import InputError
 
+PerN = Float[np.ndarray, "*n"]
 
-def mae(truth: Float[np.ndarray, "*n"], mean: Float[np.ndarray, "*n"]) -> float:
+
+def mae(truth: PerN, mean: PerN) -> float:
     """Mean absolute error, in the unit of the truth.
 
     Parameters
@@ -19,7 +21,7 @@ def mae(truth: Float[np.ndarray, "*n"], mean: Float[np.ndarray, "*n"]) -> float:
     return float(np.mean(np.abs(_error(truth, mean))))
 
 
-def rmse(truth: Float[np.ndarray, "*n"], mean: Float[np.ndarray, "*n"]) -> float:
+def rmse(truth: PerN, mean: PerN) -> float:
     """Root mean square error, in the unit of the truth.
 
     Parameters
@@ -30,9 +32,7 @@ def rmse(truth: Float[np.ndarray, "*n"], mean: Float[np.ndarray, "*n"]) -> float
     return float(np.sqrt(np.mean(_error(truth, mean) ** 2)))
 
 
-def crps(
-    truth: Float[np.ndarray, "*n"], mean: Float[np.ndarray, "*n"], std: Float[np.ndarray, "*n"]
-) -> float:
+def crps(truth: PerN, mean: PerN, std: PerN) -> float:
     """Mean continuous ranked probability score of Gaussian predictions, in the truth's unit.
 
     Smaller is better; where the standard deviation is 0 it is the absolute error.
@@ -57,13 +57,7 @@ def crps(
     return float(np.mean(np.where(std > 0.0, score, np.abs(error))))
 
 
-def coverage(
-    truth: Float[np.ndarray, "*n"],
-    mean: Float[np.ndarray, "*n"],
-    std: Float[np.ndarray, "*n"],
-    *,
-    level: float = 0.95,
-) -> float:
+def coverage(truth: PerN, mean: PerN, std: PerN, *, level: float = 0.95) -> float:
     """Share of the truth inside the central Gaussian interval of a level.
 
     Parameters
@@ -81,9 +75,7 @@ def coverage(
     return float(np.mean(np.abs(error) <= ndtri(0.5 + 0.5 * level) * std))
 
 
-def mnll(
-    truth: Float[np.ndarray, "*n"], mean: Float[np.ndarray, "*n"], std: Float[np.ndarray, "*n"]
-) -> float:
+def mnll(truth: PerN, mean: PerN, std: PerN) -> float:
     """Mean negative log likelihood of Gaussian predictions [nat]; smaller is better.
 
     Parameters
@@ -200,9 +192,7 @@ def block_bootstrap(
     return float(np.mean(difference)), float(lower), float(upper)
 
 
-def _error(
-    truth: Float[np.ndarray, "*n"], mean: Float[np.ndarray, "*n"]
-) -> Float[np.ndarray, "*n"]:
+def _error(truth: PerN, mean: PerN) -> PerN:
     if np.shape(truth) != np.shape(mean) or np.size(truth) == 0:
         raise InputError(
             f"score: the truth has shape {np.shape(truth)} and the prediction {np.shape(mean)}. "
@@ -218,9 +208,7 @@ def _error(
     return error
 
 
-def _check_std(
-    error: Float[np.ndarray, "*n"], std: Float[np.ndarray, "*n"], *, smallest: float
-) -> None:
+def _check_std(error: PerN, std: PerN, *, smallest: float) -> None:
     if np.shape(std) != error.shape or not np.all(np.isfinite(std) & (std >= smallest)):
         bound = "at least 0" if smallest == 0.0 else "above 0"
         raise InputError(

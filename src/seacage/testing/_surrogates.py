@@ -11,7 +11,6 @@ from seacage.conventions import InputError, ModelError
 from seacage.surrogates import Arrays, Prediction, Settings
 
 CASES, UNSEEN = 50, 20
-
 Inputs = Float[np.ndarray, "_ feature"]
 Outputs = Float[np.ndarray, "_ *output"]
 
@@ -34,8 +33,8 @@ class FittedSurrogate(Protocol):
         ...
 
 
+# Fits a surrogate to inputs (row, 2) and outputs (row, *output), from a seed
 MakeFitted = Callable[[Inputs, Outputs, int], FittedSurrogate]
-"""Fits a surrogate to inputs (row, 2) and outputs (row, *output), from a seed."""
 
 
 def check_surrogate(

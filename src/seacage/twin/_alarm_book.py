@@ -7,7 +7,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Self
 
 from seacage.conventions import InputError
-from seacage.twin._alarms import Alarm
+from seacage.twin._alarms._alarm import Alarm
 from seacage.twin._faults import FaultDetector
 from seacage.twin._json_keys import json_keys
 

@@ -9,11 +9,10 @@ from jaxtyping import Bool, Float, Int
 from seacage.surrogates import Loads, Prediction
 
 Interval = tuple[Float[np.ndarray, "case output"], Float[np.ndarray, "case output"]]
-
 INTERVAL_SD = 1.96  # half the width of an interval, in standard deviations; it holds 95 %
 
+# Why an answer of level 1 has no interval
 NO_INTERVAL = "No sensor has trained level 2: how far the simulation is from the sea is not known."
-"""Why an answer of level 1 has no interval."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -57,10 +56,17 @@ class Answer:
         All lines of the mooring, the bridles first; none where the twin did not learn loads in
         waves.
     line
-        Their loads in waves by level 1, whose intervals are NaN; None as above.
+        Their loads in waves; None as above. At level 1 the intervals are NaN. At level 2 those
+        of mean and standard deviation hold the ones of ten minutes, of lines whose held-out
+        windows were enough to calibrate them. Where the waves are not known the standard
+        deviation of the mean is its spread over the site's waves, at level 1.
+    line_level
+        Level of each line's loads: 2 where its shackle corrects any of them, else 1.
     line_in_domain, line_reason
         Whether the water is inside what the loads were learned in, and one sentence where there
         are none or they are extrapolated, else "".
+    line_tp_assumed
+        Whether Tp was not known, and the loads are over its distribution at the same Hs.
     """
 
     valid: Bool[np.ndarray, " case"]
@@ -84,8 +90,10 @@ class Answer:
     line_names: tuple[str, ...]
     line_kinds: tuple[str, ...]
     line: Loads | None
+    line_level: Int[np.ndarray, " mooring_line"]
     line_in_domain: Bool[np.ndarray, " case"]
     line_reason: tuple[str, ...]
+    line_tp_assumed: Bool[np.ndarray, " case"]
 
     def __len__(self) -> int:
         return len(self.valid)
@@ -94,11 +102,28 @@ class Answer:
         self, *, bridle: Float[np.ndarray, " line"], sensor: Float[np.ndarray, " sensor"]
     ) -> Self:
         """Return the same with standard deviations times factors [-]; means and shape stay."""
+        line = self.line
+        if line is not None:
+            factor = np.ones(len(self.line_names))
+            factor[: len(bridle)] = bridle
+            line = replace(line, mean=replace(line.mean, std=line.mean.std * factor))
         return replace(
             self,
+            line=line,
             bridle_tension=replace(self.bridle_tension, std=self.bridle_tension.std * bridle),
             sensor=replace(self.sensor, std=self.sensor.std * sensor),
         )
+
+    def maximum_interval(self) -> Interval:
+        """Interval of the lines' largest loads of three hours that holds 95 % [N]; NaN at level 1.
+
+        Computed for the lines of level 2 alone, as it takes longer than all the means.
+        """
+        ends = np.full((2, len(self), len(self.line_names)), np.nan)
+        upper = np.flatnonzero(self.line_level > 1)
+        if self.line is not None and len(upper):
+            ends[:, :, upper] = self.line.maximum_3h.lines(upper).interval(0.95)
+        return ends[0], ends[1]
 
     def bridle_interval(self) -> Interval:
         """Interval of the tensions that holds 95 % [N]; NaN at level 1."""

@@ -5,15 +5,10 @@ from dataclasses import replace
 from types import MappingProxyType
 
 from seacage.twin._alarm_book import AlarmBook
-from seacage.twin._alarms import (
-    DEFAULT_LIMITS,
-    Alarm,
-    AlarmEvent,
-    AlarmInput,
-    AlarmPolicy,
-    alarm_inputs,
-    evaluate,
-)
+from seacage.twin._alarms._alarm import Alarm, AlarmEvent, AlarmInput
+from seacage.twin._alarms._conditions import alarm_inputs
+from seacage.twin._alarms._lifecycle import evaluate
+from seacage.twin._alarms._policy import AlarmPolicy, default_limits
 from seacage.twin._events import Answered
 from seacage.twin._state import TwinState
 from seacage.twin._twin import Twin
@@ -78,6 +73,9 @@ def assess(
         if alarm.active and not before.active:
             alarm = replace(alarm, detail=one.detail)
         alarms[alarm.name] = alarm
+        # The journal says by which load a line's alarm was raised.
+        if one.alarm.startswith("load."):
+            changed = (replace(line, why=line.why or one.detail) for line in changed)
         lines += changed
     return replace(book, alarms=alarms, detector=detector), tuple(lines)
 
@@ -85,7 +83,7 @@ def assess(
 def _faults(book: AlarmBook, trouble: Mapping[str, str]) -> Iterator[AlarmInput]:
     for name, sentence in trouble.items():
         yield AlarmInput(alarm=name, value=1.0, detail=sentence)
-    ours = DEFAULT_LIMITS.keys() - {"history", "clock"}  # the service has all other alarms
+    ours = default_limits().keys() - {"history", "clock"}  # the service has all other alarms
     for name, alarm in book.alarms.items():
         if name not in trouble and alarm.kind not in ours:
             yield AlarmInput(alarm=name, value=0.0)

@@ -10,11 +10,11 @@ from jaxtyping import Float, Int
 from seacage.cage import Cage, Nearest
 from seacage.conventions import InputError, Origin
 
+# Difference of speeds at which currents are similar [m/s]: sd of a Gaussian weight
 SIMILAR_SPEED = 0.15
-"""Difference of speeds at which currents are similar [m/s]: sd of a Gaussian weight."""
 
+# The same difference of directions [rad]; slack water has none
 SIMILAR_DIRECTION = math.radians(35.0)
-"""The same difference of directions [rad]; slack water has none."""
 
 NEGLIGIBLE = 0.02  # least weight of a case, over the largest; cases with less are left out
 

@@ -16,14 +16,14 @@ from seacage.surrogates import AdaptiveConformal
 from seacage.twin._answer import INTERVAL_SD
 from seacage.twin._pairs import reading_of
 
+# Length of a block of readings that the intervals are adapted to at once [us]
 BLOCK_US = 600_000_000
-"""Length of a block of readings that the intervals are adapted to at once [us]."""
 
 ADAPTATION_BLOCK = timedelta(microseconds=BLOCK_US)
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 
+# Mean and standard deviation of a sensor's reading, as trained [N] or [m]
 MeanStd = tuple[float, float]
-"""Mean and standard deviation of a sensor's reading, as trained [N] or [m]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

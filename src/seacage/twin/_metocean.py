@@ -14,14 +14,13 @@ from seacage.surrogates import Domain, current_features, wave_features
 
 Input = Literal["current", "waves"]
 
+# The door keys that each kind of input is made from
 INPUT_KEYS: Mapping[Input, tuple[str, ...]] = {
     "current": ("current_speed_m_s", "current_to_deg"),
     "waves": ("hs_m", "wave_from_deg"),
 }
-"""The door keys that each kind of input is made from."""
 
-WATER_KEYS = (*INPUT_KEYS["current"], *INPUT_KEYS["waves"], "tp_s")
-"""All door keys of the water."""
+WATER_KEYS = (*INPUT_KEYS["current"], *INPUT_KEYS["waves"], "tp_s")  # all door keys of the water
 
 
 def input_keys(inputs: Iterable[Input]) -> list[str]:

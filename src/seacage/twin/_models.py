@@ -9,18 +9,21 @@ from typing import Any, Self
 import numpy as np
 from jaxtyping import Bool, Float
 
-from seacage.cage import Cage
+from seacage.cage import Cage, MooringLines, mooring_lines
+from seacage.conventions import YEAR
 from seacage.surrogates import Domain, FittedGaussianProcess, FittedShapeGP, Prediction, Predicts
 from seacage.twin._answer import Answer
 from seacage.twin._correction import Correction, Corrections
-from seacage.twin._line_loads import LineLoads
+from seacage.twin._lines._line_correction import LineCorrection, correct_lines
+from seacage.twin._lines._line_loads import LineLoads
 from seacage.twin._metocean import Input, Metocean, nearest_inside
+from seacage.twin._parted import PartedLines
 
 BLOCK_ROWS = 512  # rows predicted at once: the shapes of more would crowd a small computer's memory
 ROUNDING = 1e-9  # what sines and cosines may add to a speed [m/s]
 
+# Either way, of the central difference over the current [m/s]: well below what bends a load
 STRIDE = 0.02
-"""Either way, of the central difference over the current [m/s]: well below what bends a load."""
 
 Features = Float[np.ndarray, "case feature"]
 
@@ -50,8 +53,11 @@ class Models:
     bridles: FittedGaussianProcess  # level 1 of all bridle tensions [N]
     shape: FittedShapeGP  # level 1 of the node positions [m]
     loads: LineLoads | None = None  # level 1 of all lines' loads in waves, where it was trained
+    parted: PartedLines | None = None  # and of what is left of them where one has parted
     # Level 2 by sensor, of its readings [N] or [m]
     upper: Mapping[str, Correction] = field(default_factory=dict[str, Correction])
+    # Level 2 of lines' loads in waves, by the name of the shackle
+    line_upper: Mapping[str, LineCorrection] = field(default_factory=dict[str, LineCorrection])
 
     @cached_property
     def corrections(self) -> Mapping[int, Correction]:
@@ -128,19 +134,48 @@ class Models:
             sensor_level=sensor_level,
             shape_level=1,
             **of_rows,
-            **self._line_loads(water, valid),
+            **self._line_loads(water, valid, of_rows["bridle_tension"]),
         )
 
-    def _line_loads(self, water: Metocean, valid: Bool[np.ndarray, " case"]) -> dict[str, Any]:
+    def _line_loads(
+        self, water: Metocean, valid: Bool[np.ndarray, " case"], bridle: Prediction
+    ) -> dict[str, Any]:
         """Predict the loads of lines: the fields of an answer about them."""
-        names = ("line_names", "line_kinds", "line", "line_in_domain", "line_reason")
         if self.loads is None:
-            nothing = np.zeros_like(valid), ("",) * len(valid)
-            return dict(zip(names, ((), (), None, *nothing), strict=True))
+            return {
+                "line_names": (),
+                "line_kinds": (),
+                "line": None,
+                "line_level": np.zeros(0, dtype=int),
+                "line_in_domain": np.zeros_like(valid),
+                "line_reason": ("",) * len(valid),
+                "line_tp_assumed": np.zeros_like(valid),
+            }
         known = Metocean.from_table(np.where(valid[:, None], water.table, np.nan))
         loads, inside, reason = self.loads.predict(known, spread=False)
-        found = self.loads.names, self.loads.kinds, loads, inside, reason
-        return dict(zip(names, found, strict=True))
+        shackles = {one.name: one.bridle for one in self.cage.shackles}
+        upper = {shackles[name]: one for name, one in self.line_upper.items()}
+        level = np.ones(len(self.loads.names), dtype=int)
+        level[list(upper)] = 2
+        loads = correct_lines(loads, upper, known, bridle)
+        rate = self.lines.damage_rate(loads.damage_equivalent.mean)
+        assumed = self.loads.assumes_tp(known)
+        counts = (inside & ~assumed)[:, None]
+        return {
+            "line_names": self.loads.names,
+            "line_kinds": self.loads.kinds,
+            "line": replace(loads, damage_per_year=np.where(counts, YEAR * rate, np.nan)),
+            "line_level": level,
+            "line_in_domain": inside,
+            "line_reason": reason,
+            "line_tp_assumed": assumed,
+        }
+
+    @cached_property
+    def lines(self) -> MooringLines:
+        """Lines whose loads were learned, with their strength."""
+        names = self.loads.names if self.loads else ()
+        return mooring_lines(self.cage, anchored=True).named(names)
 
     def _block(self, water: Metocean) -> dict[str, Any]:
         """Predict in known water: the fields of an answer that have rows."""

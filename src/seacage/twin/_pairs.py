@@ -14,8 +14,8 @@ from seacage.twin._metocean import Metocean, input_keys
 
 HOLD_S = 10800.0  # longest time for which a buoy's value is held [s]; the live twin's default
 
+# Factors on values by the door keys of cage sensors, to N and m
 SI = {"tension_kn": 1000.0, "depth_m": 1.0}
-"""Factors on values by the door keys of cage sensors, to N and m."""
 
 
 def reading_of(sample: Sample) -> tuple[float, Flag]:

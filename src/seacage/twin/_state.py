@@ -30,8 +30,8 @@ class Taken:
     quality: QualityState | None = None
 
 
+# The last minutes of a stream in time order, so that a late sample finds its place
 Stream = tuple[Taken, ...]
-"""The last minutes of a stream in time order, so that a late sample finds its place."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -12,11 +12,11 @@ from seacage.twin._metocean import Metocean
 from seacage.twin._twin import Twin
 
 LEAST_TENSION_STD = 50.0
+# Standard deviations that no instrument here resolves [N], [m]: smaller ones count as these
 LEAST_DEPTH_STD = 0.01
-"""Standard deviations that no instrument here resolves [N], [m]: smaller ones count as these."""
 
+# Rows that the twin predicts at once: it makes every node of the net for each of them
 ROWS_AT_ONCE = 4096
-"""Rows that the twin predicts at once: it makes every node of the net for each of them."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

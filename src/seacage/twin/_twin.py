@@ -25,9 +25,10 @@ from seacage.twin._interval_factors import (
     factors_from_json,
     with_predictions,
 )
-from seacage.twin._line_loads import LineLoads
+from seacage.twin._lines._line_loads import LineLoads
 from seacage.twin._metocean import Metocean, input_keys
 from seacage.twin._models import Models
+from seacage.twin._parted import NO_PARTED_LINES, IfParted
 from seacage.twin._provenance import Provenance
 from seacage.twin._saving import from_parts, read_folder, to_parts, write_folder
 from seacage.twin._settings import FaultDetectorSettings, StreamTimeouts
@@ -150,6 +151,29 @@ class Twin:
             for row in np.flatnonzero(~buoy.usable(key)):
                 trouble[row] = trouble[row] or _fault(buoy.stream, key, int(buoy.flags[key][row]))
         return self.models.answer(Metocean.of_record(buoy), trouble)
+
+    def if_parted(
+        self, metocean: SeaState | Sequence[SeaState] | Metocean, line: str | None = None
+    ) -> IfParted:
+        """What the cage would bear if a line had parted, once the transient has died.
+
+        Parameters
+        ----------
+        metocean
+            As for ``predict``.
+        line
+            Such as "bridle-8"; None for every line that was learned, one at a time.
+
+        Raises
+        ------
+        InputError
+            The twin has not learned it.
+        """
+        if self.models.parted is None or self.models.loads is None:
+            raise InputError(NO_PARTED_LINES)
+        water = metocean if isinstance(metocean, Metocean) else Metocean.of(metocean)
+        lines = None if line is None else [line]
+        return self.models.parted.predict(self.cage, self.models.loads, water, lines)
 
     @property
     def emulator(self) -> LineLoads | None:
@@ -320,7 +344,7 @@ class Twin:
             for key, sample in newest.items()
         }
         age_s = max((t - newest[key].t).total_seconds() for key in keys)
-        bad = [key for key in keys if not _is_usable(newest[key], key)]
+        bad = [key for key in keys if not is_usable(newest[key], key)]
         limit_s = self.timeouts.stale_after_s
         trouble = ""
         if bad:
@@ -336,7 +360,7 @@ class Twin:
         """Whether a value passed its checks and, unless every answer needs it, is fresh."""
         needed = key in input_keys(self.models.inputs)
         fresh = (t - sample.t).total_seconds() <= self.timeouts.stale_after_s
-        return _is_usable(sample, key) and (needed or fresh)
+        return is_usable(sample, key) and (needed or fresh)
 
 
 def replay(twin: Twin, samples: Iterable[Sample]) -> Iterator[Event]:
@@ -352,7 +376,7 @@ def replay(twin: Twin, samples: Iterable[Sample]) -> Iterator[Event]:
         yield from events
 
 
-def _is_usable(sample: Sample, key: str) -> bool:
+def is_usable(sample: Sample, key: str) -> bool:
     """Whether a value may reach a model."""
     return sample.flags[key] not in {Flag.FAIL, Flag.MISSING}
 

@@ -2,6 +2,7 @@
 
 import re
 import tomllib
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -75,6 +76,8 @@ def test_every_parameter_has_its_unit_and_meaning():
         "per_corner",
         "material_factor",
         "brackets",
+        *(f"{part}tn_{what}" for part in ("", "rope_") for what in ("slope", "intercept")),
+        "rope_material_factor",
     }
     for section in tomllib.loads(TEXT).values():
         for key in section if isinstance(section, dict) else ():
@@ -208,6 +211,7 @@ def test_an_unknown_name_is_refused_with_the_known_ones():
         ("side_m = 85.0", "side_m = 50.0", "a side is 25 m from the centre"),
         ("bearings_deg = [67.5, ", "bearings_deg = [", "11 bearings_deg but 12 length_offset_m"),
         ("radius_m = 25.0", "radius_m = nan", "radius_m = nan must be a finite number"),
+        ("\ntn_slope = 3.0", "", "tn_intercept = 178 says nothing without tn_slope"),
     ],
 )
 def test_a_file_that_makes_no_sense_is_refused_with_its_name(tmp_path, old, new, message):
@@ -215,6 +219,14 @@ def test_a_file_that_makes_no_sense_is_refused_with_its_name(tmp_path, old, new,
     path.write_text(edited(old, new))
     with pytest.raises(NonsenseError, match=f"^{path}: .*{message}"):
         Cage.read(path)
+
+
+def test_half_of_a_rope_s_strength_is_refused():
+    frame = Cage.named("ace").frame
+    with pytest.raises(InputError, match="rope_breaking_load_n = 627000 says nothing without"):
+        replace(frame, rope_material_factor=None)
+    with pytest.raises(InputError, match="rope_tn_intercept = 178 says nothing without rope_break"):
+        replace(frame, rope_material_factor=None, rope_breaking_load=None)
 
 
 def test_a_file_that_goes_deep_is_refused(tmp_path):
@@ -229,6 +241,6 @@ def test_a_cage_is_the_same_cage_as_in_version_0_1():
     known = "df814a7d1366bea6c5fe9087ec906517ea8b63224150e49c513310dd4fd8ecdd"
     # of `ace` since; a file need not have them
     newer = ("pipe_distance_m = ", "brackets = ", "pretension_sd_n = ", "length_sd_m = ")
-    newer += ("rope_slack_sd_m = ",)
+    newer += ("rope_slack_sd_m = ", "rope_tn_", "rope_breaking_", "rope_material_", "tn_")
     lines = [line for line in TEXT.splitlines(keepends=True) if not line.startswith(newer)]
     assert Cage.from_toml("".join(lines)).sha256 == known

@@ -11,7 +11,8 @@ from seacage.cage import Cage, Structure
 from seacage.campaigns import Plan, Simulator, run_campaign, run_share
 from seacage.conventions import InputError
 from seacage.dynamics import settle, simulate
-from seacage.records import read_campaign
+from seacage.ocean import SeaState
+from seacage.records import export_campaign, read_campaign
 from stand_in import StandIn
 
 FEW = replace(Plan.sample(1, 2), duration=8.0)
@@ -66,6 +67,45 @@ def test_a_stopped_campaign_of_drawn_moorings_goes_on_with_the_same_and_no_other
     assert read_campaign(tmp_path / "c").sha256 == whole.sha256
     with pytest.raises(InputError, match="another choice of one mooring for all cases"):
         run_campaign(small_cage, plan, tmp_path / "c", workers=1)
+
+
+def test_a_campaign_without_a_line_starts_from_the_equilibria_without_it(
+    small_cage: Cage, tmp_path: Path
+) -> None:
+    line, sea = "bridle-8", SeaState(current_speed=0.5, current_to=40.0)
+    calm = Plan.listed([sea], duration=2.0)
+    settings: dict[str, Any] = {"workers": 1, "parted": [line]}
+    settled = run_campaign(small_cage, calm, tmp_path / "s", method="settle", **settings)
+    without = settle(small_cage, calm.seas, parted=[line], mean_waves=True)
+    np.testing.assert_array_equal(settled.bridle_tension, without.bridle_tension)
+    moved = run_campaign(small_cage, calm, tmp_path / "c", ramp=0.0, spin_up=0.0, **settings)
+    whole = settle(small_cage, calm.seas, mean_waves=True)
+    column = small_cage.bridle_names.index(line)
+    assert moved.parted == settled.parted == (line,)
+    assert (moved.lines["maximum"][:, column] < 1.0).all()
+    # from the first moment on its neighbours bear what they do without it
+    beside = [column - 1, column + 1]
+    change = without.bridle_tension[:, beside] - whole.bridle_tension[:, beside]
+    found = moved.bridle_tension[:, beside] - whole.bridle_tension[:, beside]
+    assert np.abs(change).max() > 1e3
+    np.testing.assert_allclose(found, change, atol=0.2 * np.abs(change).max())
+    with pytest.raises(InputError, match="there is no such line"):
+        run_campaign(small_cage, calm, tmp_path / "none", workers=1, parted=["rope-1"])
+    assert not (tmp_path / "none").exists()
+
+
+def test_a_campaign_without_a_line_goes_on_with_the_same_line_alone(
+    small_cage: Cage, stand_in: StandIn, tmp_path: Path
+) -> None:
+    plan = Plan.sample(1, 40)
+    without = run_campaign(small_cage, plan, tmp_path / "c", workers=1, parted=["bridle-8"])
+    whole = run_campaign(small_cage, plan, tmp_path / "whole", workers=1)
+    assert whole.parted == ()
+    assert without.sha256 != whole.sha256
+    with pytest.raises(InputError, match="another choice of lines that have parted"):
+        run_campaign(small_cage, plan, tmp_path / "c", workers=1, parted=["bridle-7"])
+    export_campaign(tmp_path / "c", tmp_path / "c.nc")
+    assert read_campaign(tmp_path / "c.nc").parted == ("bridle-8",)
 
 
 def test_moorings_of_unknown_uncertainty_are_not_drawn(

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from seacage.conventions import Rows
-from seacage.dynamics._parts import Bends, Floats
+from seacage.dynamics._parts._assembly import Bends, Floats
 
 
 def bends(nodes, stiffness):

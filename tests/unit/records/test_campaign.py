@@ -197,9 +197,11 @@ def test_the_loads_of_all_lines_are_read_from_the_store_and_from_its_export(
     mooring = MooringLines(
         names=("bridle-1", "anchor-1"),
         kinds=("bridle", "anchor line"),
+        breaking_load=np.array([480e3, np.nan]),
         capacity=np.array([160e3, np.nan]),
         pretension=np.array([10e3, 50e3]),
         tn_slope=np.array([np.nan, 13.46]),
+        tn_load=np.array([np.nan, 2e6]),
     )
     path, random = tmp_path / "campaign", np.random.default_rng(0)
     created_in_time(path, mooring=mooring)

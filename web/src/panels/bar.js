@@ -3,7 +3,7 @@
 import { make } from "../dom.js";
 import { text } from "../texts/index.js";
 import { write } from "./dom.js";
-import { day, inputAge, span, time } from "./format.js";
+import { day, inputAge, span, time, zoneName } from "./format.js";
 import { icon } from "./icons.js";
 import { rank, waits } from "./ranks.js";
 import { themeSwitch } from "./theme-switch.js";
@@ -11,7 +11,7 @@ import { verdict } from "./verdict.js";
 import { Who } from "./who.js";
 
 export class Bar {
-  constructor(holder, model, { openFarm, openHelp }) {
+  constructor(holder, model, { openFarm, openHelp, openUnits }) {
     this.model = model;
     this.cage = make("span", { className: "cage-name" }, "seacage");
     this.cages = make("button", { className: "cage-button", type: "button", onclick: openFarm },
@@ -30,10 +30,12 @@ export class Bar {
       className: "round", type: "button", title: `${text("bar.help")} (?)`, ariaLabel: text("bar.help"),
       onclick: openHelp,
     }, icon("help"));
+    const units = make("button", { className: "round", type: "button", title: `${text("units.title")} (U)`,
+      ariaLabel: text("units.title"), onclick: openUnits }, icon("units"));
     const time = make("div", { className: "bar-time" }, this.clock, this.speed, this.age);
     holder.append(
       make("div", { className: "bar-who" }, make("h1", {}, this.cages), this.origin), this.verdict,
-      time, make("div", { className: "bar-tools" }, this.link, themeSwitch(), help, new Who(model).button));
+      time, make("div", { className: "bar-tools" }, this.link, themeSwitch(), units, help, new Who(model).button));
     model.on("topology", () => this.topology());
     for (const name of ["live", "view", "connection", "age"]) model.on(name, () => this.show());
     // On a phone the tabs stop beneath the bar, however high that is.
@@ -61,7 +63,7 @@ export class Bar {
     this.link.dataset.connection = connection;
     write(this.link, text(`connection.state.${connection}`));
     if (!live) return;
-    write(this.clock, `${day(live.t)} ${time(live.t, true)} UTC`);
+    write(this.clock, `${day(live.t)} ${time(live.t, true)} ${zoneName(live.t)}`);
     this.clock.dateTime = new Date(live.t).toISOString();
     this.old(live.ageS);
     this.entitle(live.state);

@@ -5,17 +5,23 @@ import uPlot from "uplot";
 import { make } from "../dom.js";
 import { text } from "../texts/index.js";
 import { styled } from "../theme.js";
+import { decimalsIn, shown, unitName, zone } from "../units.js";
+import { csvOf, pictureOf, save } from "./chart-file.js";
 import { write } from "./dom.js";
 import { day, fixed, half, known, moment, time } from "./format.js";
+import { icon } from "./icons.js";
 import { joined, nearest, widened } from "./plotted.js";
 
 const HEIGHT = 138;
 const [LOWER, UPPER, MEASURED, LOW, MEAN] = [1, 2, 3, 4, 5];
 
 export class Chart {
-  /** `travel` is called with the time [s] that the reader chose. */
-  constructor(quantity, { sync, travel }) {
-    this.quantity = quantity;
+  /**
+   * `travel` is called with the time [s] that the reader chose, `enlarge` with the chart that is to
+   * be large or small again; `about` says of what cage it is: {cage, origin}.
+   */
+  constructor(quantity, { sync, travel, enlarge, about }) {
+    Object.assign(this, { quantity, about, height: HEIGHT });
     this.now = make("p", { className: "chart-now" });
     this.area = make("div", {
       className: "chart-area", tabIndex: 0, role: "group",
@@ -23,7 +29,7 @@ export class Chart {
     });
     this.read = make("p", { className: "unseen", ariaLive: "polite" });
     const head = make("header", {}, make("h3", {}, quantity.title,
-      make("small", {}, quantity.place)), this.now);
+      make("small", {}, quantity.place)), this.now, this.tools(enlarge));
     this.card = make("article", { className: "chart" }, head, this.area, this.read);
     this.card.dataset.key = quantity.key;
     this.travel = travel;
@@ -35,6 +41,32 @@ export class Chart {
     this.plot.over.addEventListener("click", () => this.chosen());
   }
 
+  tools(enlarge) {
+    const { title } = this.quantity;
+    const button = (name, onclick) => make("button", { type: "button", className: "round small", onclick,
+      title: text(`charts.${name}`), ariaLabel: text(`charts.${name}Of`, { name: title }) }, icon(name));
+    this.larger = button("enlarge", () => enlarge(this));
+    this.larger.ariaPressed = "false";
+    return make("div", { className: "chart-tools" }, button("picture", () => this.save("png")),
+      button("table", () => this.save("csv")), this.larger);
+  }
+
+  /** Be as high as this [px]; null as in the grid. */
+  grow(height) {
+    this.height = height ?? HEIGHT;
+    this.larger.ariaPressed = String(height !== null);
+    this.fit();
+  }
+
+  /** Hand what is shown to the reader as a file. */
+  async save(kind) {
+    if (!this.rows) return;
+    const { quantity: { name, title, unit }, about, window: [start, end] } = this;
+    const blob = kind === "csv" ? new Blob([csvOf(this.rows, { unit, origin: about.origin })], { type: "text/csv" })
+      : await pictureOf(this.plot, { title, unit, ...about, start: 1000 * start, end: 1000 * end });
+    save(`${about.cage}_${name}_${new Date(1000 * end).toISOString().slice(0, 10)}.${kind}`, blob);
+  }
+
   options(sync) {
     const { unit, downwards } = this.quantity;
     const axis = {
@@ -43,7 +75,7 @@ export class Chart {
     };
     return {
       width: 320, height: HEIGHT, padding: [8, 24, 0, 0],
-      tzDate: (t) => uPlot.tzDate(new Date(t * 1000), "Etc/UTC"),
+      tzDate: (t) => uPlot.tzDate(new Date(t * 1000), zone()),
       legend: { show: false },
       cursor: { y: false, drag: { x: false, y: false }, sync: { key: sync }, points: { size: 7 } },
       scales: {
@@ -58,7 +90,7 @@ export class Chart {
         { label: text("mark.measured"), stroke: () => styled("--measured"), paths: () => null,
           points: { show: true, size: 3.5, width: 0, fill: () => styled("--measured") } },
         { ...line(text("mark.simulated"), "--low", 1.3), dash: [5, 4] },
-        line(`${text("mark.twin")} [${unit}]`, "--mean", 1.8)],
+        line(`${text("mark.twin")} [${unitName(unit)}]`, "--mean", 1.8)],
       bands: [{ series: [UPPER, LOWER], fill: () => styled("--band") }],
       hooks: { setCursor: [() => this.report()], draw: [(plot) => this.mark(plot)] },
     };
@@ -68,7 +100,8 @@ export class Chart {
   show(rows, { start, end, gap, at }) {
     this.window = [start, end];
     this.at = at;
-    this.rows = joined(rows, gap);
+    const { unit } = this.quantity;
+    this.rows = joined(rows, gap).map((column, k) => (k ? column.map((value) => shown(value, unit)) : column));
     this.plot.setData(this.rows);
     this.report();
   }
@@ -80,7 +113,8 @@ export class Chart {
 
   fit() {
     const width = Math.floor(this.area.clientWidth);
-    if (width > 0 && width !== this.plot.width) this.plot.setSize({ width, height: HEIGHT });
+    const { height } = this;
+    if (width > 0 && (width !== this.plot.width || height !== this.plot.height)) this.plot.setSize({ width, height });
   }
 
   key(event) {
@@ -106,7 +140,7 @@ export class Chart {
     const pointed = this.plot.cursor.left >= 0;
     const at = pointed ? this.plot.posToVal(this.plot.cursor.left, "x") : this.at ?? this.window[1];
     const { unit } = this.quantity;
-    const decimals = { m: 2, "m/s": 2, kN: 1, "%": 1 }[unit];
+    const decimals = decimalsIn(unit, { m: 2, "m/s": 2, kN: 1, "%": 1 }[unit]);
     const k = this.lastBefore(MEAN, at);
     const mean = k < 0 ? null : this.rows[MEAN][k];
     const read = this.lastBefore(MEASURED, at);
@@ -114,7 +148,7 @@ export class Chart {
     const interval = { mean, lower: this.rows[LOWER][k], upper: this.rows[UPPER][k] };
     const when = pointed && k >= 0 ? `${time(1000 * this.rows[0][k])}  ` : "";
     this.now.replaceChildren(when, make("b", {}, fixed(mean, decimals)),
-      make("span", { className: "pm" }, ` ${half(interval, decimals)} ${known(mean) ? unit : ""}`),
+      make("span", { className: "pm" }, ` ${half(interval, "", decimals)} ${known(mean) ? unitName(unit) : ""}`),
       known(measured) ? make("span", { className: "read" },
         `  ${text("charts.measured", { value: fixed(measured, decimals) })}`) : "");
     this.now.title = k < 0 ? "" : moment(1000 * this.rows[0][k]);

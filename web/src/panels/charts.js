@@ -3,6 +3,8 @@
 import { make } from "../dom.js";
 import { text } from "../texts/index.js";
 import { onTheme } from "../theme.js";
+import { onUnits } from "../units.js";
+import { ChartDialog } from "./chart-dialog.js";
 import { Chart } from "./chart.js";
 import { empty, explain, painted } from "./dom.js";
 import { quantities, rowsOf } from "./plotted.js";
@@ -22,11 +24,13 @@ export class Charts {
         this.choice),
       explain({ curve: "twin", band: "interval", dash: "simulated", dot: "measured" }),
       this.none, this.grid);
+    this.large = new ChartDialog({ closed: () => this.arrange() });
     this.paint = painted(() => this.show());
     model.on("topology", () => this.topology());
     for (const name of ["view", "connection"]) model.on(name, () => this.paint());
     past.on(() => this.paint());
     model.on("selection", () => this.mark());
+    onUnits(() => this.topology()); // whose texts and scales are made with a chart
     onTheme(() => this.charts.forEach((chart) => chart.repaint()));
     this.topology();
   }
@@ -45,6 +49,7 @@ export class Charts {
     const known = kept.filter((key) => this.all.some((one) => one.key === key));
     this.chosen = new Set(known.length ? known
       : this.all.filter(({ kind }) => DEFAULT_KINDS.has(kind)).map(({ key }) => key));
+    this.large.close();
     this.charts.forEach((chart) => chart.remove());
     this.charts.clear();
     this.offer();
@@ -77,8 +82,11 @@ export class Charts {
       this.charts.delete(key);
     }
     const travel = (t) => this.model.travel(new Date(1000 * t)).catch((error) => this.model.complain(error));
+    const { cage, origin } = this.model.topology;
     const cards = this.all.filter(({ key }) => this.chosen.has(key)).map((quantity) => {
-      const chart = this.charts.get(quantity.key) ?? new Chart(quantity, { sync: "past", travel });
+      const chart = this.charts.get(quantity.key) ?? new Chart(quantity, {
+        sync: "past", travel, about: { cage, origin }, enlarge: (one) => this.large.turn(one),
+      });
       this.charts.set(quantity.key, chart);
       return chart.card;
     });

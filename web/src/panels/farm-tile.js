@@ -2,7 +2,7 @@
 
 import { make } from "../dom.js";
 import { text } from "../texts/index.js";
-import { bearing, fixed, inputAge, known, percent } from "./format.js";
+import { bearing, inputAge, known, percent, withUnit } from "./format.js";
 import { icon } from "./icons.js";
 import { rank } from "./ranks.js";
 import { concerned } from "./verdict.js";
@@ -46,7 +46,7 @@ export function tile(cage, { present, enter }) {
   const fill = make("span", { className: "share-fill" });
   fill.style.width = `${Math.min(100, 100 * (cage.max_utilisation ?? 0))}%`;
   const current = cage.valid && known(cage.current_speed_m_s)
-    ? text("farm.current", { speed: fixed(cage.current_speed_m_s, 2), direction: bearing(cage.current_to_deg) })
+    ? text("farm.current", { speed: withUnit(cage.current_speed_m_s, "m/s", 2), direction: bearing(cage.current_to_deg) })
     : text("farm.noCurrent");
   const button = make("button", { type: "button", className: "tile", onclick: () => enter(cage.name) },
     make("span", { className: "tile-name" }, cage.name,

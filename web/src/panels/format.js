@@ -2,6 +2,7 @@
 // without its unit.
 
 import { text } from "../texts/index.js";
+import { decimalsIn, shown, unitName, zone } from "../units.js";
 
 export const DASH = "–";
 const [POINTS, NAMES] = [text("compass.points").split(" "), text("compass.names").split(" ")];
@@ -16,23 +17,27 @@ export function fixed(value, decimals = 1) {
   return digits.replace("-", Number(digits) === 0 ? "" : "−");
 }
 
-/** A number with its unit. */
+/** A number that the service has in a unit, in the one that is shown, without its name. */
+export const amount = (value, unit, decimals = 1) => fixed(shown(value, unit), decimalsIn(unit, decimals));
+
+/** The same with the name of the unit that is shown. */
 export const withUnit = (value, unit, decimals = 1) =>
-  known(value) ? `${fixed(value, decimals)} ${unit}` : DASH;
+  known(value) ? `${amount(value, unit, decimals)} ${unitName(unit)}` : DASH;
 
 /** A share as a percentage. */
 export const percent = (share) => (known(share) ? `${Math.round(100 * share)} %` : DASH);
 
 /** Words in which no line ends between a number and its unit. */
 export const unbroken = (words) =>
-  words.replace(/(\d) (?=%|(?:kN|m\/s|m|s|min|h|deg)\b)/g, "$1\u00a0");
+  words.replace(/(\d) (?=%|(?:kN|tf|m\/s|kn|m|ft|s|min|h|deg)\b)/g, "$1\u00a0");
 
 /**
  * An interval, as what follows the mean: half its width, never given as zero; its ends where
  * it reaches less far to one side, as where nothing can be below zero.
  */
-export function half(interval, decimals = 1) {
-  const { mean, lower, upper } = interval ?? {};
+export function half(interval, unit, places = 1) {
+  const decimals = decimalsIn(unit, places);
+  const [mean, lower, upper] = ["mean", "lower", "upper"].map((end) => shown(interval?.[end], unit));
   if (!known(lower) || !known(upper)) return "";
   const middle = (lower + upper) / 2;
   if (known(mean) && Math.abs(middle - mean) > 0.6 * 10 ** -decimals) {
@@ -75,23 +80,30 @@ export function span(seconds) {
 /** The age of the newest input [s], in words. */
 export const inputAge = (age) => (known(age) ? text("bar.age", { age: span(age) }) : text("bar.noInput"));
 
-const two = (number) => String(number).padStart(2, "0");
+const clocks = new Map();
 
-/** The day, UTC, as in ISO 8601. */
-export function day(t) {
-  const when = new Date(t);
-  return `${when.getUTCFullYear()}-${two(when.getUTCMonth() + 1)}-${two(when.getUTCDate())}`;
+/** A formatter of a time zone, made once: that takes long. */
+function clock(options) {
+  const key = JSON.stringify([zone(), options]);
+  if (!clocks.has(key)) clocks.set(key, new Intl.DateTimeFormat("sv", { timeZone: zone(), ...options }));
+  return clocks.get(key);
 }
 
-/** The time of day, UTC. */
-export function time(t, seconds = false) {
-  const when = new Date(t);
-  const minutes = `${two(when.getUTCHours())}:${two(when.getUTCMinutes())}`;
-  return seconds ? `${minutes}:${two(when.getUTCSeconds())}` : minutes;
-}
+// The Swedish way to write a time is that of ISO 8601.
+const stamp = (t) => clock({ dateStyle: "short", timeStyle: "medium" }).format(t);
 
-/** Day and time, UTC. */
-export const moment = (t) => `${day(t)} ${time(t)} UTC`;
+/** The day by the clock that is shown, as in ISO 8601. */
+export const day = (t) => stamp(t).slice(0, 10);
+
+/** The time of day by the clock that is shown. */
+export const time = (t, seconds = false) => stamp(t).slice(11, seconds ? 19 : 16);
+
+/** What the clock that is shown is called at a time, such as UTC or GMT+1. */
+export const zoneName = (t) => (zone() === "UTC" ? "UTC"
+  : clock({ timeZoneName: "shortOffset" }).formatToParts(t).find(({ type }) => type === "timeZoneName").value);
+
+/** Day and time, with what the clock is called. */
+export const moment = (t) => `${day(t)} ${time(t)} ${zoneName(t)}`;
 
 /** A name as people write it: bridle-3 is "bridle 3". */
 export const plain = (name) => name.replaceAll("-", " ");

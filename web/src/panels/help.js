@@ -4,7 +4,7 @@ import { make } from "../dom.js";
 import { text } from "../texts/index.js";
 import { closeButton } from "./dom.js";
 
-const KEYS = ["tabs", "live", "play", "step", "farm", "theme", "view", "close", "help"];
+const KEYS = ["tabs", "live", "play", "step", "farm", "theme", "units", "view", "close", "help"];
 const WORDS = ["twin", "load", "level", "envelope", "beyond", "invalid", "directions"];
 
 export class Help {

@@ -3,7 +3,7 @@
 import { make } from "../dom.js";
 import { text } from "../texts/index.js";
 import { empty, tableHead } from "./dom.js";
-import { DASH, day, time } from "./format.js";
+import { DASH, day, time, zoneName } from "./format.js";
 import { worth } from "./worth.js";
 
 const MOST_LINES = 5000;
@@ -25,7 +25,7 @@ export class Journal {
     }
     this.holder.replaceChildren(make("table", { className: "journal" },
       make("caption", { className: "unseen" }, text("journal.caption")),
-      tableHead(["when", "alarm", "what", "who"].map((head) => text(`journal.heads.${head}`))),
+      tableHead(["when", "alarm", "what", "who"].map((head) => text(`journal.heads.${head}`, { zone: zoneName(Date.now()) }))),
       make("tbody", {}, ...words.reverse().slice(0, SHOWN).map(row))));
   }
 }

@@ -1,6 +1,7 @@
 // Rows of the bridles: as the twin answers, as simulated, as measured.
 
 import { knownLoad } from "../known-load.js";
+import { lineIn } from "../lines.js";
 import { rank, waits } from "./ranks.js";
 
 /**
@@ -10,7 +11,7 @@ import { rank, waits } from "./ranks.js";
 export function loadRows(topology, state, colours = []) {
   const shackles = new Map(topology.shackles.map(({ name, bridle }) => [bridle, name]));
   const ranks = alarmed(state.alarms ?? []);
-  const inWaves = new Map((state.lines ?? []).map(({ name, utilisation }) => [name, utilisation]));
+  const inWaves = new Map((state.lines ?? []).map((line) => [line.name, line]));
   return state.bridles.map((bridle, k) => {
     const capacity = topology.bridle_capacity_kn[k];
     const share = (kn) => (Number.isFinite(kn) ? kn / capacity : null);
@@ -22,12 +23,31 @@ export function loadRows(topology, state, colours = []) {
       kn: bridle.tension_kn.mean, interval, lowKn: bridle.low_fidelity_kn, measuredKn: measured,
       mean: bridle.utilisation, lower: share(interval?.lower), upper: share(interval?.upper),
       low: share(bridle.low_fidelity_kn), measured: share(measured),
-      maximum: inWaves.get(bridle.name) ?? null, // expected in three hours of this sea
+      ...extreme(inWaves.get(bridle.name), share), // expected in three hours of this sea
       topKn: top?.kn ?? null, top: top?.share ?? null,
       within: bridle.in_domain ?? true, reason: bridle.interval_reason ?? "", colour: colours[k],
       // An alarm of the shackle, such as its silence, is none of the bridle.
       rank: ranks.get(bridle.name) ?? null,
     };
+  });
+}
+
+/** The largest tension expected of a line, and its interval where one is known, on a scale. */
+const extreme = (line, scale) => {
+  const { mean = null, lower = null, upper = null } = line?.maximum_3h_kn ?? {};
+  return { maximumKn: mean, maximum: scale(mean), maximumLower: scale(lower), maximumUpper: scale(upper) };
+};
+
+/**
+ * Rows of the other lines of a kind, for the rose: without a capacity of each their lengths are
+ * hundredths of the unit that forces are shown in, `scale` of a force in kN.
+ */
+export function otherRows(names, state, scale, colour) {
+  const ranks = alarmed(state.alarms ?? []);
+  return names.map((name) => {
+    const line = lineIn(state, name);
+    return { name, kn: line?.mean_kn ?? null, mean: scale(line?.mean_kn), share: false, colour,
+      level: line?.level, rank: ranks.get(name) ?? null, ...extreme(line, scale) };
   });
 }
 
@@ -40,8 +60,8 @@ export const intervalOf = (bridle) =>
 
 /** The largest share that is to be seen. */
 export function largest(rows) {
-  return Math.max(0, ...rows.flatMap(({ mean, upper, measured, maximum }) =>
-    [mean, upper, measured, maximum].map((share) => share ?? 0)));
+  return Math.max(0, ...rows.flatMap(({ mean, upper, measured, maximum, maximumUpper }) =>
+    [mean, upper, measured, maximum, maximumUpper].map((share) => share ?? 0)));
 }
 
 /** By what an alarm is about, the rank of the worst that waits there. */

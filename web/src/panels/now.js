@@ -3,8 +3,9 @@
 import { make } from "../dom.js";
 import { largestKnown } from "../known-load.js";
 import { text } from "../texts/index.js";
+import { unitName } from "../units.js";
 import { write } from "./dom.js";
-import { DASH, bearing, compass, fixed, half, known, percent, plain, withUnit } from "./format.js";
+import { DASH, amount, bearing, compass, half, known, percent, plain, withUnit } from "./format.js";
 import { intervalOf } from "./load-rows.js";
 import { waterArrow } from "./water-arrow.js";
 
@@ -28,13 +29,13 @@ export class Now {
   show() {
     const state = this.model.view?.state;
     const water = state?.valid ? state.water : null;
-    this.current.say(fixed(water?.current_speed_m_s, 2), "m/s",
+    this.current.say(amount(water?.current_speed_m_s, "m/s", 2), unitName("m/s"),
       known(water?.current_to_deg) ? text("now.towards", { direction: way(water.current_to_deg) }) : "");
     this.current.turn(water?.current_to_deg);
     this.sayWaves(water);
     const top = largestKnown(state);
     const interval = top && !top.by ? intervalOf(top.bridle) : null;
-    this.load.say(fixed(top?.kn), `${half(interval)} kN`, top ? loadWords(top) : "");
+    this.load.say(amount(top?.kn, "kN"), `${half(interval, "kN")} ${unitName("kN")}`, top ? loadWords(top) : "");
     this.load.mark(concernOf(state, "load"));
     const share = state?.valid ? state.volume_fraction : null;
     this.volume.say(known(share) ? String(Math.round(100 * share)) : DASH, "%",
@@ -48,7 +49,7 @@ export class Now {
       known(water?.tp_s) && withUnit(water.tp_s, "s"),
       known(water?.wave_from_deg) && text("now.from", { direction: way(water.wave_from_deg) }),
     ].filter(Boolean).join(", ");
-    this.waves.say(fixed(water?.hs_m), "m", known(water?.hs_m) ? words : water ? text("number.notKnown") : "");
+    this.waves.say(amount(water?.hs_m, "m"), unitName("m"), known(water?.hs_m) ? words : water ? text("number.notKnown") : "");
     this.waves.turn(known(water?.wave_from_deg) ? water.wave_from_deg + 180 : null);
   }
 

@@ -1,7 +1,7 @@
 // What a chart draws of one quantity: rows over one set of times, with gaps where nothing is known.
 
 import { text } from "../texts/index.js";
-import { plain, titled } from "./format.js";
+import { plain, titled, withUnit } from "./format.js";
 
 /** The quantities that can be charted: {key, name, title, kind, unit, place, sensor}. */
 export function quantities(topology) {
@@ -10,7 +10,7 @@ export function quantities(topology) {
   return [
     ...topology.depth_sensors.map(({ name, node }) => ({
       key: `sensor:${name}`, name, kind: "depths", unit: "m", downwards: true, sensor: name,
-      place: text("charts.rests", { depth: rest(node).toFixed(1) }),
+      place: text("charts.rests", { depth: withUnit(rest(node), "m") }),
     })),
     ...topology.shackles.map(({ name, bridle }) => ({
       key: `sensor:${name}`, name, kind: "shackles", unit: "kN", downwards: false, sensor: name,
@@ -19,7 +19,7 @@ export function quantities(topology) {
     ...topology.bridle_names.map((name, k) => ({
       key: `bridle:${name}`, name, kind: "bridles", unit: "kN", downwards: false,
       sensor: shackles.get(k) ?? null,
-      place: text("charts.capacity", { capacity: Math.round(topology.bridle_capacity_kn[k]) }),
+      place: text("charts.capacity", { capacity: withUnit(topology.bridle_capacity_kn[k], "kN", 0) }),
     })),
     { key: "water:speed", name: text("charts.current"), kind: "water", unit: "m/s", downwards: false,
       sensor: null, place: text("charts.answer") },

@@ -12,6 +12,9 @@ export function polar(degrees, radius) {
   return [radius * Math.sin(angle), -radius * Math.cos(angle)];
 }
 
+/** How far two compass directions are apart [degrees]. */
+export const apart = (a, b) => Math.abs(((((a - b) % 360) + 540) % 360) - 180);
+
 /** The radius of a share on a scale; what is beyond its end stays just outside. */
 export function radius(share, end) {
   return INNER + (OUTER - INNER) * Math.min(1.04, Math.max(0, share / end));
@@ -36,8 +39,19 @@ export function whisker(degrees, from, to) {
 }
 
 /** Where each bridle leaves the collar, as seen from above [compass degrees]. */
-export function azimuths({ bridle_nodes: nodes, rest_position_m: rest }) {
-  return nodes.map((node) => turned((Math.atan2(rest[node][0], rest[node][1]) * 180) / Math.PI));
+export const azimuths = ({ bridle_nodes: nodes, rest_position_m: rest }) =>
+  nodes.map((node) => bearing(rest[node]));
+
+/** The lines of a kind and where each is as seen from above: a bridle's collar end, else the middle. */
+export function around(topology, kind) {
+  if (kind === "bridle") {
+    const directions = azimuths(topology);
+    return topology.bridle_names.map((name, k) => ({ name, direction: directions[k] }));
+  }
+  return topology.lines.filter((one) => one.kind === kind).map(({ name, ends_m: [a, b] }) =>
+    ({ name, direction: bearing([a[0] + b[0], a[1] + b[1]]) }));
 }
+
+const bearing = ([x, y]) => turned((Math.atan2(x, y) * 180) / Math.PI);
 
 const point = (degrees, r) => polar(degrees, r).map((value) => value.toFixed(2)).join(" ");

@@ -1,6 +1,8 @@
 // The sea of a what-if: what can be chosen of it, and where it begins.
 
 import { text } from "../texts/index.js";
+import { decimalsIn, shown } from "../units.js";
+import { withUnit } from "./format.js";
 
 const ROOM = 1.25; // beyond what was learned, to see what extrapolating says
 const KINDS = [
@@ -41,7 +43,7 @@ function period(known, waves) {
 
 /** Up to where the twin has learned. */
 export const learnedWords = ({ learned, unit, decimals }) =>
-  text("whatif.learned", { most: `${learned.most.toFixed(decimals)} ${unit}` });
+  text("whatif.learned", { most: withUnit(learned.most, unit, decimals) });
 
 /** A sea to begin with: the one of now, and where it is not known, a calm one. */
 export function seaNow(kinds, water) {
@@ -55,10 +57,10 @@ export function seaNow(kinds, water) {
 }
 
 /** The change from now to then, with its sign. */
-export function change(now, then, decimals) {
+export function change(now, then, unit, decimals) {
   if (!Number.isFinite(now) || !Number.isFinite(then)) return "";
-  const difference = then - now;
-  const digits = Math.abs(difference).toFixed(decimals);
+  const difference = shown(then - now, unit);
+  const digits = Math.abs(difference).toFixed(decimalsIn(unit, decimals));
   if (Number(digits) === 0) return text("whatif.unchanged");
   return `${difference > 0 ? "+" : "−"}${digits}`;
 }

@@ -4,6 +4,7 @@ import { make } from "../dom.js";
 import { largestPredicted } from "../known-load.js";
 import { cagePath } from "../request.js";
 import { text } from "../texts/index.js";
+import { onUnits } from "../units.js";
 import { dial } from "./dial.js";
 import { tableHead, write } from "./dom.js";
 import { bearing, beyond, compass, known, titled, withUnit } from "./format.js";
@@ -29,6 +30,7 @@ export class WhatIf {
       make("div", { className: "whatif-buttons" }, this.back, this.anew));
     for (const name of ["view", "live"]) model.on(name, () => this.show());
     model.on("topology", () => this.learn());
+    onUnits(() => this.fill());
     this.forget();
   }
 
@@ -76,14 +78,16 @@ export class WhatIf {
     const input = make("input", { type: "range", min: least, max: most, step, id: `whatif-${key}` });
     const words = make("output", { className: "slider-words", htmlFor: input.id });
     input.addEventListener("input", () => this.take({ [key]: Number(input.value) }));
+    const learnedNote = make("small");
     this.shows.push(() => {
+      write(learnedNote, learnedWords({ learned, unit, decimals }));
       input.value = this.sea[key];
       const shown = withUnit(this.sea[key], unit, decimals);
       input.setAttribute("aria-valuetext", shown);
       write(words, shown);
     });
     return make("div", { className: "slider" }, make("label", { htmlFor: input.id }, name), words, input,
-      make("small", {}, learnedWords({ learned, unit, decimals })));
+      learnedNote);
   }
 
   /** Change the sea and ask what it does; the model keeps only the newest question. */
@@ -164,5 +168,5 @@ function row(name, [now, then], unit, decimals, notes = []) {
     withUnit(value, unit, decimals),
     note ? make("small", {}, ` ${note}`) : "");
   return make("tr", {}, make("th", { scope: "row" }, name), cell(now, notes[0]), cell(then, notes[1]),
-    make("td", { className: "number change" }, change(now, then, decimals)));
+    make("td", { className: "number change" }, change(now, then, unit, decimals)));
 }

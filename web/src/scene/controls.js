@@ -1,6 +1,7 @@
 // The buttons over the scene: from where, what and in which colours.
 
 import { draw, make } from "../dom.js";
+import { withUnit } from "../panels/format.js";
 import { text } from "../texts/index.js";
 import { onTheme, theme } from "../theme.js";
 import { gradient } from "./colours.js";
@@ -84,7 +85,7 @@ function legend(model, options) {
     envelope.hidden = !options.shell || !model.view?.position;
     envelope.dataset.known = Boolean(model.view?.sigma);
     envelope.lastChild.textContent = model.view?.sigma ? text("scene.envelope") : text("scene.noEnvelope");
-    if (tint) net.show(how, "0", `${tint.end} ${tint.unit}`, tint.name);
+    if (tint) net.show(how, "0", withUnit(tint.end, tint.unit, tint.end < 1 ? 2 : 0), tint.name);
   };
   for (const name of ["view", "topology"]) model.on(name, show);
   options.on(show);

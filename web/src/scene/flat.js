@@ -3,14 +3,16 @@
 
 import { draw, make } from "../dom.js";
 import { tableHead } from "../panels/dom.js";
-import { bearing, compass, fixed, withUnit } from "../panels/format.js";
+import { amount, bearing, compass, withUnit } from "../panels/format.js";
 import { text } from "../texts/index.js";
 import { onTheme } from "../theme.js";
+import { unitName } from "../units.js";
 import { SLACK_M_S, extent, ringNodes, towards, tubeRing } from "./geometry.js";
 import { sensorPlaces } from "./places.js";
 import { bridleColours, sensorColour } from "./paint.js";
 import { band, outline } from "./silhouette.js";
 import { Tip } from "./tip.js";
+import { wavesOf } from "./waves.js";
 import { wordsFor } from "./words.js";
 
 const PAD = 5; // metres around the drawing
@@ -103,12 +105,12 @@ export class FlatView {
       const sigma = position && view.sigma
         && nodes.reduce((most, node) => Math.max(most, view.sigma[node]), 0);
       const aside = moved && Math.hypot(moved[0], moved[1]);
-      return [text(`flat.ring.${name}`), fixed(position && -mean(position, 2), 1), fixed(aside, 1),
-        fixed(moved && moved[2], 1), fixed(sigma, 2)];
+      return [text(`flat.ring.${name}`), amount(position && -mean(position, 2), "m"), amount(aside, "m"),
+        amount(moved && moved[2], "m"), amount(sigma, "m", 2)];
     });
     this.table.replaceChildren(
       make("caption", { className: "unseen" }, text("flat.caption")),
-      tableHead(["where", "depth", "aside", "raised", "sigma"].map((head) => text(`flat.heads.${head}`))),
+      tableHead(["where", "depth", "aside", "raised", "sigma"].map((head) => text(`flat.heads.${head}`, { unit: unitName("m") }))),
       make("tbody", {}, ...rows.map(([name, ...cells]) => make("tr", {},
         make("th", { scope: "row" }, name), ...cells.map((cell) => make("td", {}, cell))))));
   }
@@ -137,7 +139,7 @@ function sketch({ topology, view, position, options, chosen }, project, kind) {
   const parts = [];
   if (kind === "side") {
     const { frame } = extent(topology);
-    parts.push(draw("line", { x1: -2 * frame, x2: 2 * frame, y1: 0, y2: 0, class: "flat-sea" }));
+    parts.push(draw("path", { d: surface(topology, view, project, 2 * frame), class: "flat-sea" }));
   } else parts.push(...north(topology));
   parts.push(mooring(topology, project));
   if (options.ghost && view?.position) {
@@ -153,6 +155,11 @@ function sketch({ topology, view, position, options, chosen }, project, kind) {
   parts.push(draw("path", { d: path(position, topology.edges), class: "flat-net" }),
     draw("path", { d: loop(tubeRing(topology)), class: "flat-tube" }));
   parts.push(draw("path", { d: loop(0), class: "flat-collar" }));
+  for (const { name, ends_m: ends } of topology.lines ?? []) {
+    const [[x1, y1], [x2, y2]] = ends.map(project);
+    parts.push(draw("line", { x1, y1, x2, y2, class: `flat-line ${chosen?.line === name ? "chosen" : ""}`,
+      "data-kind": "line", "data-name": name }));
+  }
   const colours = bridleColours(topology, view, options);
   topology.bridle_names.forEach((name, k) => {
     const from = project(topology.corner_position_m[topology.bridle_corners[k]]);
@@ -170,6 +177,17 @@ function sketch({ topology, view, position, options, chosen }, project, kind) {
   const water = view?.state.valid ? view.state.water : null;
   if (water?.current_speed_m_s > SLACK_M_S) parts.push(arrow(topology, water, project));
   return parts;
+}
+
+/** The sea's surface across a side view, in the phase with a crest in the middle. */
+function surface(topology, view, project, reach) {
+  const waves = wavesOf(view?.state.valid ? view.state.water : null, topology.water_depth_m);
+  if (!waves) return `M${-reach} 0H${reach}`;
+  // Cut obliquely, waves are longer; along their crests they are level.
+  const [along] = project([...towards(waves.from), 0]);
+  const rise = (x) => -0.5 * waves.height * Math.cos(waves.number * along * x);
+  const points = Array.from({ length: 2 * reach + 1 }, (_, k) => k - reach);
+  return `M${points.map((x) => `${short(x)} ${short(rise(x))}`).join("L")}`;
 }
 
 /** The edge of the plan to which north is. */

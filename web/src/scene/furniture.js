@@ -3,6 +3,7 @@
 import { draw, make } from "../dom.js";
 import { compass as compassPoint } from "../panels/format.js";
 import { text } from "../texts/index.js";
+import { shown, unitName } from "../units.js";
 
 const BAR_PX = [60, 150];
 
@@ -59,17 +60,18 @@ export function scaleBar() {
   return {
     element,
     show(pxPerMetre) {
-      const metres = roundLength(pxPerMetre);
-      element.hidden = !Number.isFinite(metres);
-      bar.style.width = `${Math.round(metres * pxPerMetre)}px`;
-      words.textContent = `${metres} m`;
+      const perUnit = pxPerMetre / shown(1, "m");
+      const length = roundLength(perUnit);
+      element.hidden = !Number.isFinite(length);
+      bar.style.width = `${Math.round(length * perUnit)}px`;
+      words.textContent = `${length} ${unitName("m")}`;
     },
   };
 }
 
-/** The longest round length that fits the bar [m]. */
-export function roundLength(pxPerMetre) {
-  const most = BAR_PX[1] / pxPerMetre;
+/** The longest round length that fits the bar, in the unit that has so many pixels. */
+export function roundLength(pxPerUnit) {
+  const most = BAR_PX[1] / pxPerUnit;
   const power = 10 ** Math.floor(Math.log10(most));
   return [5, 2, 1].map((one) => one * power).find((one) => one <= most);
 }

@@ -2,7 +2,7 @@
 
 import {
   BufferAttribute, BufferGeometry, Color, CylinderGeometry, Group, InstancedMesh,
-  LineBasicMaterial, LineSegments, Matrix4, MeshBasicMaterial, MeshStandardMaterial, Quaternion,
+  LineBasicMaterial, LineSegments, Matrix4, Mesh, MeshBasicMaterial, MeshStandardMaterial, Quaternion,
   SphereGeometry, Vector3,
 } from "three";
 
@@ -28,6 +28,7 @@ export class Mooring extends Group {
     this.posts = lines(2 * topology.spokes, 0.8);
     this.#addBridles();
     this.#addFrame();
+    this.#addAnchorLines();
     this.add(...this.collar, this.rail, this.posts, this.tube);
     this.follow(topology.rest);
   }
@@ -61,6 +62,26 @@ export class Mooring extends Group {
     this.add(frame, this.buoys, this.plates);
   }
 
+  /** Their upper parts: the rest lies far out and deep. */
+  #addAnchorLines() {
+    const { lines: known = [] } = this.topology;
+    const ends = known.filter(({ kind }) => kind.startsWith("anchor")).flatMap(({ ends_m: its }) => its);
+    this.anchors = lines(ends.length, 0.55);
+    this.anchors.geometry.attributes.position.array.set(ends.flat());
+    // The one that is chosen, of whatever kind but a bridle.
+    this.mark = new Mesh(new CylinderGeometry(BRIDLE_RADIUS, BRIDLE_RADIUS, 1, 10, 1), new MeshBasicMaterial());
+    this.mark.visible = false;
+    this.add(this.anchors, this.mark);
+  }
+
+  /** Mark a line of the frame, an anchor or a buoy; none where it has no such name. */
+  point(name) {
+    const found = this.topology.lines?.find((one) => one.name === name);
+    this.mark.visible = Boolean(found);
+    if (found) this.mark.matrix.copy(between(...found.ends_m.map((end) => new Vector3(...end)), 1.4));
+    this.mark.matrixAutoUpdate = false;
+  }
+
   /** Follow the net's nodes. */
   follow(position) {
     const { topology } = this;
@@ -87,12 +108,7 @@ export class Mooring extends Group {
 
   #stretch(k, end) {
     const from = new Vector3(...this.topology.corner_position_m[this.topology.bridle_corners[k]]);
-    const along = new Vector3(...end).sub(from);
-    const wide = this.chosen === k ? 1.9 : 1;
-    this.bridles.setMatrixAt(k, new Matrix4().compose(
-      from.clone().addScaledVector(along, 0.5),
-      new Quaternion().setFromUnitVectors(UP, along.clone().normalize()),
-      new Vector3(wide, along.length(), wide)));
+    this.bridles.setMatrixAt(k, between(from, new Vector3(...end), this.chosen === k ? 1.9 : 1));
   }
 
   /** Colour the bridles, and thicken the one that is chosen (-1: none). */
@@ -103,12 +119,20 @@ export class Mooring extends Group {
   }
 
   /** Take the theme's colours. */
-  dress({ collar, rope, buoy }) {
+  dress({ collar, rope, buoy, chosen }) {
     this.steel.color.set(collar);
     this.sinker.color.set(rope);
     this.buoys.material.color.set(buoy);
-    for (const one of [this.frame, this.posts]) one.material.color.set(rope);
+    for (const one of [this.frame, this.posts, this.anchors]) one.material.color.set(rope);
+    this.mark.material.color.set(chosen);
   }
+}
+
+/** Where a cylinder of unit length stands between two points, so many times as wide. */
+function between(from, to, wide) {
+  const along = to.clone().sub(from);
+  return new Matrix4().compose(from.clone().addScaledVector(along, 0.5),
+    new Quaternion().setFromUnitVectors(UP, along.clone().normalize()), new Vector3(wide, along.length(), wide));
 }
 
 function lines(points, opacity) {

@@ -1,6 +1,7 @@
 // What lies over the three-dimensional drawing, moved along with it.
 
-import { bearing, compass as compassPoint, withUnit } from "../panels/format.js";
+import { chosenLine } from "../lines.js";
+import { bearing, compass as compassPoint, known, withUnit } from "../panels/format.js";
 import { text } from "../texts/index.js";
 import { compass, Labels, scaleBar } from "./furniture.js";
 import { towards } from "./geometry.js";
@@ -27,7 +28,8 @@ export class Overlay {
     const halfView = Math.tan((view.camera.fov * Math.PI) / 360);
     this.compass.turn((azimuth * 180) / Math.PI);
     this.scale.show(view.canvas.clientHeight / (2 * distance * halfView));
-    const target = view.pointed ?? view.model.selection;
+    const { selection } = view.model;
+    const target = view.pointed ?? (chosenLine(selection) ? null : selection); // which has its own panel
     this.tip.show(wordsFor(target, view.topology, view.shown), target && view.screen.of(target));
   }
 
@@ -45,6 +47,7 @@ export class Overlay {
     pin("current", arrows.currents[0], arrows.currentLabel, water && text("scene.current",
       { speed: withUnit(water.current_speed_m_s, "m/s", 2), direction: bearing(water.current_to_deg) }));
     pin("waves", arrows.wave, arrows.waveLabel, water && text("scene.waves",
-      { height: withUnit(water.hs_m, "m"), direction: bearing(water.wave_from_deg) }));
+      { height: [withUnit(water.hs_m, "m"), known(water.tp_s) && withUnit(water.tp_s, "s")].filter(Boolean).join(", "),
+        direction: bearing(water.wave_from_deg) }));
   }
 }

@@ -7,19 +7,19 @@ const COARSE_PX = 24;
  * Find it.
  *
  * @param {[number, number]} pointer on the canvas [px]
- * @param {{sensors, bridles, nodes}} things on the screen: sensors [{name, at}], bridles
- *   [{name, from, to}], nodes [at]; `at` is [x, y, depth] in px, depth growing away, or null
+ * @param {{sensors, lines, nodes}} things on the screen: sensors [{name, at}], lines
+ *   [{selection, from, to}], nodes [at]; `at` is [x, y, depth] in px, depth growing away, or null
  *   where it is behind the eye
  * @param {boolean} coarse whether a finger points
  * @returns a selection for the model, or null
  */
-export function pick(pointer, { sensors, bridles, nodes }, coarse) {
+export function pick(pointer, { sensors, lines, nodes }, coarse) {
   const near = coarse ? COARSE_PX : FINE_PX;
   const sensor = nearest(sensors, ({ at }) => distance(pointer, at), near + 3);
   if (sensor) return { sensor: sensor.name };
-  const bridle = nearest(bridles, ({ from, to }) => toSegment(pointer, from, to), 0.65 * near);
+  const line = nearest(lines, ({ from, to }) => toSegment(pointer, from, to), 0.65 * near);
   const [node, off] = frontNode(pointer, nodes, near);
-  if (bridle && !(off < 4)) return { bridle: bridle.name };
+  if (line && !(off < 4)) return line.selection;
   return node === null ? null : { node };
 }
 

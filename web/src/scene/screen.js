@@ -19,15 +19,15 @@ export class Screen {
   }
 
   /** Where what a selection names is; null where it names nothing in sight. */
-  of({ bridle, sensor, node }) {
+  of({ bridle, line, sensor, node }) {
     if (node !== undefined) return this.at(this.#node(node));
     if (sensor !== undefined) {
       const found = this.marks.places.find(({ name }) => name === sensor);
       return found ? this.at(found.at) : null;
     }
-    const k = this.topology.bridle_names.indexOf(bridle);
-    if (k < 0) return null;
-    const [from, to] = this.#ends(k);
+    const found = this.#lines().find(({ selection }) => (selection.bridle ?? selection.line) === (bridle ?? line));
+    if (!found) return null;
+    const [from, to] = found.ends;
     return this.at(from.map((one, axis) => one + 0.45 * (to[axis] - one)));
   }
 
@@ -36,19 +36,22 @@ export class Screen {
     const box = this.canvas.getBoundingClientRect();
     const nodes = Array.from({ length: this.glide.position.length / 3 },
       (_, k) => this.at(this.#node(k)));
-    const bridles = this.topology.bridle_names.map((name, k) => {
-      const [from, to] = this.#ends(k).map((place) => this.at(place));
-      return { name, from, to };
+    const lines = this.#lines().map(({ selection, ends }) => {
+      const [from, to] = ends.map((place) => this.at(place));
+      return { selection, from, to };
     });
     const sensors = this.marks.places.map(({ name, at }) => ({ name, at: this.at(at) }));
-    return pick([clientX - box.left, clientY - box.top], { nodes, bridles, sensors },
+    return pick([clientX - box.left, clientY - box.top], { nodes, lines, sensors },
       pointerType === "touch");
   }
 
   #node = (k) => Array.from(this.glide.position.subarray(3 * k, 3 * k + 3));
 
-  #ends(k) {
-    const { bridle_nodes: nodes, bridle_corners: corners, corner_position_m: frame } = this.topology;
-    return [frame[corners[k]], this.#node(nodes[k])];
+  /** All lines with their ends [m]; the bridles' other ends move with the net. */
+  #lines() {
+    const { bridle_names: names, bridle_nodes: nodes, bridle_corners: corners, corner_position_m: frame,
+      lines = [] } = this.topology;
+    return [...names.map((bridle, k) => ({ selection: { bridle }, ends: [frame[corners[k]], this.#node(nodes[k])] })),
+      ...lines.map(({ name, ends_m: ends }) => ({ selection: { line: name }, ends }))];
   }
 }

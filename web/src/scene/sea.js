@@ -1,4 +1,4 @@
-// The sea around the net: its surface with the waves' crests, and the compass upon it.
+// The sea around the net: its surface with the waves on it, and the compass upon it.
 
 import {
   BufferAttribute, BufferGeometry, Color, DoubleSide, Group, LineBasicMaterial, LineSegments,
@@ -6,48 +6,53 @@ import {
 } from "three";
 
 import { towards } from "./geometry.js";
+import { wavesOf } from "./waves.js";
 
-const GRAVITY = 9.81;
 const VERTEX = `
 uniform vec2 along;
 uniform float number, height, phase;
 varying vec2 vAt;
-varying float vCrest;
 void main() {
   vAt = position.xy;
-  float at = dot(along, position.xy) * number - phase;
-  // A second, longer and slanting train keeps the crests from looking ruled.
-  vec2 askew = vec2(along.x * 0.95 - along.y * 0.31, along.x * 0.31 + along.y * 0.95);
-  float slant = dot(askew, position.xy);
-  vCrest = 0.8 * sin(at) + 0.2 * sin(0.6 * slant * number - 0.77 * phase);
-  gl_Position = projectionMatrix * modelViewMatrix * vec4(position.xy, 0.5 * height * vCrest, 1.0);
+  float rise = 0.5 * height * cos(number * dot(along, position.xy) - phase);
+  gl_Position = projectionMatrix * modelViewMatrix * vec4(position.xy, rise, 1.0);
 }`;
 const FRAGMENT = `
 uniform vec3 water, crest;
-uniform float radius, height, strength;
+uniform vec2 along;
+uniform float number, height, phase, radius, strength;
 varying vec2 vAt;
-varying float vCrest;
 void main() {
-  float away = length(vAt) / radius;
-  float fade = 1.0 - smoothstep(0.35, 1.0, away);
-  float rough = (0.35 + 0.65 * clamp(height, 0.0, 1.5)) * step(0.05, height);
-  float bright = rough * pow(0.5 + 0.5 * vCrest, 5.0);
+  float fade = 1.0 - smoothstep(0.35, 1.0, length(vAt) / radius);
+  float at = number * dot(along, vAt) - phase;
+  // Light on the crests, the more the higher; fine lines along them, sixteen to a wave, as engraved.
+  float wavy = step(0.001, height);
+  float up = 0.5 + 0.5 * cos(at);
+  float swell = wavy * clamp(0.3 + 0.3 * height, 0.0, 1.0) * up * up * up;
+  float turn = at * 2.5464791; // sixteen to 2 pi
+  float off = abs(fract(turn + 0.5) - 0.5) / max(fwidth(turn), 1e-4);
+  float line = wavy * (0.12 + 0.88 * up * up) * (1.0 - smoothstep(0.4, 1.3, off));
+  float bright = max(0.8 * swell, line);
   // A little of the crests' colour all over: still water has a surface too.
-  gl_FragColor = vec4(mix(water, crest, 0.3 + 0.5 * bright), strength * fade * (0.16 + 0.3 * bright));
+  gl_FragColor = vec4(mix(water, crest, 0.3 + 0.7 * bright), strength * fade * (0.13 + 0.5 * bright));
   #include <colorspace_fragment>
 }`;
+const CELL_M = 1.5; // a tenth of the shortest waves that are drawn well
 
-/** The surface; `reach` is the mooring's [m]. */
+/** The surface; `reach` is the mooring's and `depth` the water's [m]. */
 export class Sea extends Group {
-  constructor(reach) {
+  constructor(reach, depth) {
     super();
     const radius = 1.5 * reach;
+    const cells = Math.ceil((2 * radius) / CELL_M);
+    this.depth = depth;
+    this.frequency = 0;
     this.uniforms = {
-      along: { value: new Vector2(1, 0) }, number: { value: 0.2 }, height: { value: 0 },
+      along: { value: new Vector2(1, 0) }, number: { value: 0 }, height: { value: 0 },
       phase: { value: 0 }, water: { value: new Color() }, crest: { value: new Color() },
       radius: { value: radius }, strength: { value: 1 },
     };
-    this.surface = new Mesh(new PlaneGeometry(2 * radius, 2 * radius, 110, 110), new ShaderMaterial({
+    this.surface = new Mesh(new PlaneGeometry(2 * radius, 2 * radius, cells, cells), new ShaderMaterial({
       vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms: this.uniforms, transparent: true,
       depthWrite: false, side: DoubleSide,
     }));
@@ -57,26 +62,27 @@ export class Sea extends Group {
     this.add(this.surface, this.ring);
   }
 
-  /** Take the waves of a state's water; still without. */
+  /** Take the waves of a state's water, crest to trough as high as Hs; flat where they are not known. */
   follow(water) {
-    const hs = water?.hs_m ?? 0;
-    const period = water?.tp_s ?? 5 * Math.sqrt(Math.max(hs, 0.04));
-    const from = towards(water?.wave_from_deg ?? 0);
-    this.uniforms.height.value = water?.wave_from_deg === null ? 0 : hs;
-    this.uniforms.along.value.set(-from[0], -from[1]);
-    this.frequency = (2 * Math.PI) / Math.max(period, 2);
-    this.uniforms.number.value = this.frequency ** 2 / GRAVITY; // deep water
+    const { along, height, number } = this.uniforms;
+    const waves = wavesOf(water, this.depth);
+    height.value = waves?.height ?? 0;
+    if (!waves) return;
+    const [east, north] = towards(waves.from);
+    along.value.set(-east, -north);
+    number.value = waves.number;
+    this.frequency = waves.frequency;
   }
 
   /** Whether there are waves to move. */
   get rolls() {
-    return this.uniforms.height.value > 0.05;
+    return this.uniforms.height.value > 0;
   }
 
-  /** Let the waves run on. */
+  /** Let the waves run on, at their phase speed. */
   roll(seconds) {
     const { phase } = this.uniforms;
-    phase.value = (phase.value + seconds * this.frequency) % (200 * Math.PI);
+    phase.value = (phase.value + seconds * this.frequency) % (2 * Math.PI);
   }
 
   /** Take the theme's colours. */

@@ -5,6 +5,7 @@ import {
 } from "three";
 
 import { make, still } from "../dom.js";
+import { linesOf, selectionOf } from "../lines.js";
 import { text } from "../texts/index.js";
 import { onTheme, styled, theme } from "../theme.js";
 import { Arrows } from "./arrows.js";
@@ -87,7 +88,7 @@ export class View3d {
     this.mooring = new Mooring(topology);
     this.marks = new Marks(topology);
     this.arrows = new Arrows(size);
-    this.sea = new Sea(size.frame);
+    this.sea = new Sea(size.frame, topology.water_depth_m);
     this.screen = new Screen(this);
     this.parts = [this.net, this.mooring, this.marks, this.arrows, this.sea];
     this.scene.add(...this.parts);
@@ -148,7 +149,7 @@ export class View3d {
     const [twine, ghost, collar, rope, buoy] =
       ["--twine", "--ghost", "--collar", "--rope", "--buoy"].map(styled);
     this.net.dress({ twine, ghost, shell: styled("--envelope"), dark });
-    this.mooring.dress({ collar, rope, buoy });
+    this.mooring.dress({ collar, rope, buoy, chosen: styled("--focus") });
     this.arrows.dress({ water: styled("--water"), wave: styled("--wave") });
     this.sea.dress({ water: styled("--sea-0"), crest: styled("--crest"), ring: ghost, dark });
     this.sky.intensity = dark ? 1.9 : 2.4;
@@ -161,6 +162,7 @@ export class View3d {
     const pointed = this.pointed ?? this.model.selection ?? {};
     const bridle = topology.bridle_names.indexOf(pointed.bridle);
     this.mooring.paint(bridleColours(topology, view, options), bridle);
+    this.mooring.point(pointed.line);
     this.marks.paint((name) => sensorColour(view, name), pointed.sensor);
     this.net.paint(netColours(topology, tintOf(topology, view, options), options));
     this.mooring.follow(this.glide.position);
@@ -233,7 +235,7 @@ export class View3d {
     const step = { PageDown: 1, PageUp: -1 }[event.key];
     if (!step || !this.screen) return;
     event.preventDefault();
-    const all = [...this.topology.bridle_names.map((bridle) => ({ bridle })),
+    const all = [...linesOf(this.topology).map(({ name }) => selectionOf(this.topology, name)),
       ...this.marks.places.map(({ name }) => ({ sensor: name }))];
     const at = all.findIndex((one) => JSON.stringify(one) === JSON.stringify(this.model.selection));
     const next = at < 0 && step < 0 ? all.length - 1 : at + step;

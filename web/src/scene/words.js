@@ -1,7 +1,8 @@
 // Words on a node, a bridle or a sensor that the reader points at.
 
 import { knownLoad } from "../known-load.js";
-import { DASH, bearing, fixed, known, withUnit } from "../panels/format.js";
+import { lineIn } from "../lines.js";
+import { DASH, amount, bearing, fixed, known, plain, withUnit } from "../panels/format.js";
 import { text } from "../texts/index.js";
 import { bearingOf } from "./geometry.js";
 
@@ -18,6 +19,7 @@ export function lasting(seconds) {
 export function wordsFor(selection, topology, view) {
   if (!selection || !topology || !view) return null;
   if (selection.bridle !== undefined) return ofBridle(selection.bridle, topology, view.state);
+  if (selection.line !== undefined) return ofLine(selection.line, view.state);
   if (selection.sensor !== undefined) return ofSensor(selection.sensor, topology, view.state);
   return ofNode(selection.node, topology, view);
 }
@@ -30,7 +32,7 @@ function ofNode(node, { rest, rings, spokes }, { position, sigma, state }) {
   const title = tip ? text("tip.cone")
     : text("tip.node", { ring: Math.floor(node / spokes) + 1, rings, direction: side });
   const rows = [[text("tip.depth"), withUnit(-at[2], "m", 2)],
-    [text("tip.place"), `${fixed(at[0])}, ${withUnit(at[1], "m")}`]];
+    [text("tip.place"), `${amount(at[0], "m")}, ${withUnit(at[1], "m")}`]];
   if (!position) return { title, rows, note: text("tip.still") };
   rows.push([text("tip.moved"), withUnit(Math.hypot(...at.map((x, k) => x - still[k])), "m", 2)],
     [text("tip.sigma"), sigma ? withUnit(sigma[node], "m", 2) : text("number.notKnown")]);
@@ -54,6 +56,14 @@ function ofBridle(name, topology, state) {
   const shackle = topology.shackles.find((one) => one.bridle === k);
   if (shackle) rows.push([text("tip.measuredBy", { shackle: shackle.name }), withUnit(bridle.measured_kn, "kN")]);
   return { title: name, rows, note: level(bridle, state) };
+}
+
+function ofLine(name, state) {
+  const line = lineIn(state, name);
+  if (!line) return { title: plain(name), rows: [], note: state.lines_reason ?? "" };
+  const rows = [[text("lines.heads.mean"), withUnit(line.mean_kn, "kN")],
+    [text("mark.maximum"), withUnit(line.maximum_3h_kn.mean, "kN")]];
+  return { title: plain(name), rows, note: state.lines_reason ?? "" };
 }
 
 function ofSensor(name, topology, state) {
@@ -83,7 +93,7 @@ function interval({ level: number }, bounds, decimals, unit) {
   const { mean, lower, upper } = bounds;
   if (mean === null) return DASH;
   if (number <= 1 || !known(lower)) return text("number.notKnown");
-  return text("number.range", { lower: fixed(lower, decimals), upper: withUnit(upper, unit, decimals) });
+  return text("number.range", { lower: amount(lower, unit, decimals), upper: withUnit(upper, unit, decimals) });
 }
 
 function level({ level: number, in_domain: within = true, interval_reason: why }, state) {

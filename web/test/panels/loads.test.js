@@ -62,10 +62,10 @@ test("a row says what twin, simulation and shackle say of a bridle", () => {
 });
 
 test("the largest load expected in waves is on the rose and in its scale", () => {
-  const lines = [{ name: "bridle-2", utilisation: 0.7 }];
+  const lines = [{ name: "bridle-2", maximum_3h_kn: { mean: 140, lower: 120, upper: 170 } }];
   const [one, two] = loadRows(topology, { ...state, lines });
-  assert.deepEqual([one.maximum, two.maximum], [null, 0.7]);
-  assert.equal(largest([one, two]), 0.7);
+  assert.deepEqual([one.maximum, two.maximum, two.maximumLower, two.maximumUpper], [null, 0.7, 0.6, 0.85]);
+  assert.equal(largest([one, two]), 0.85);
 });
 
 test("the summary of all lines names the one that bears most, or why none is known", () => {
@@ -135,10 +135,10 @@ test("a bridle of level 2 without an interval shows none, and says why", () => {
 });
 
 test("a change has its sign, and none is shown where a side is not known", () => {
-  assert.equal(change(1, 3.04, 1), "+2.0");
-  assert.equal(change(3, 1, 1), "−2.0");
-  assert.equal(change(1, 1.01, 1), "no change");
-  assert.equal(change(null, 1, 1), "");
+  assert.equal(change(1, 3.04, "kN", 1), "+2.0");
+  assert.equal(change(3, 1, "kN", 1), "−2.0");
+  assert.equal(change(1, 1.01, "kN", 1), "no change");
+  assert.equal(change(null, 1, "kN", 1), "");
 });
 
 test("a farm is summed up in words", () => {

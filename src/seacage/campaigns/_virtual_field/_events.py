@@ -17,8 +17,8 @@ from seacage.conventions import InputError, parse_toml, read_text
 from seacage.dynamics import Damage
 from seacage.records import Record, instant
 
+# Of the kinds that have one: its key, with the unit, and what it is when left out
 _USUAL_SIZE = {"net-hole": ("panels", 2.0), "drift": ("m_per_day", 0.1)}
-"""Of the kinds that have one: its key, with the unit, and what it is when left out."""
 
 _ENDING = ("stuck", "silent")
 _KINDS = ("bridle-cut", *_USUAL_SIZE, *_ENDING)
@@ -170,10 +170,7 @@ def check_events(
 ) -> None:
     """Refuse an event that would meet nothing: no part, no stream, no time.
 
-    Raises
-    ------
-    InputError
-        At the first one.
+    Raises InputError: at the first one.
     """
     sensors = {
         "drift": tuple(sensor.name for sensor in cage.depth_sensors),

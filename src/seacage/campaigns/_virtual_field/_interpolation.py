@@ -12,24 +12,12 @@ from seacage.conventions import InputError
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Even:
-    """Values in even steps from second 0 on, straight between them.
+    """Values in even steps from second 0 on, straight between them."""
 
-    Parameters
-    ----------
-    step
-        Between rows [s].
-    values
-        Two rows at least.
-    first
-        Row of the whole that comes first here.
-    count
-        Rows of the whole; None where all are here.
-    """
-
-    step: float
-    values: Float[np.ndarray, "row value"]
-    first: int = 0
-    count: int | None = None
+    step: float  # between rows [s]
+    values: Float[np.ndarray, "row value"]  # two rows at least
+    first: int = 0  # row of the whole that comes first here
+    count: int | None = None  # rows of the whole; None where all are here
 
     def at(
         self, second: float | Float[np.ndarray, " t"], *, held: bool = True
@@ -39,10 +27,7 @@ class Even:
         Beyond the whole the end values are held, or go on as straight as the last step if not
         ``held``.
 
-        Raises
-        ------
-        InputError
-            A time of the whole that was cut off.
+        Raises InputError: a time of the whole that was cut off.
         """
         place = np.asarray(second / self.step - self.first)
         self._check(float(place.min()), float(place.max()))

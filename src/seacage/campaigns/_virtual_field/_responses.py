@@ -15,6 +15,9 @@ from seacage.conventions import Progress, Result, SeacageError, no_progress
 from seacage.ocean import SeaState
 from seacage.records import CampaignRecord, read_campaign
 
+CaseSensor = Float[np.ndarray, "case sensor"]
+PerT = Float[np.ndarray, " t"]
+
 _SPEEDS = (0.1, 0.2, 0.3, 0.42, 0.55, 0.7, 0.9, 1.1, 1.35, 1.6)
 _DIRECTIONS = tuple(22.5 * number for number in range(16))
 _GROWTHS = (0.0, 0.5, 1.0)
@@ -25,31 +28,16 @@ _WRAP = 4
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Responses:
-    """Error-free readings of every sensor of a cage, over currents and growths.
+    """Error-free readings of every sensor of a cage, over currents and growths."""
 
-    Parameters
-    ----------
-    sensor_names
-        As the cage names them.
-    speed
-        Grid of the current's speed, from 0 [m/s].
-    direction
-        Grid of where it goes: all round, evenly, an even number [rad], clockwise from north.
-    growth
-        Grid of the fouling's growth [-].
-    value
-        Depths [m] and tensions [kN].
-    """
-
-    sensor_names: tuple[str, ...]
-    speed: Float[np.ndarray, " speed"]
+    sensor_names: tuple[str, ...]  # as the cage names them
+    speed: Float[np.ndarray, " speed"]  # grid of the current's speed, from 0 [m/s]
+    # Grid of where it goes: all round, evenly, an even number [rad], clockwise from north
     direction: Float[np.ndarray, " direction"]
-    growth: Float[np.ndarray, " growth"]
-    value: Float[np.ndarray, "growth speed direction sensor"]
+    growth: Float[np.ndarray, " growth"]  # grid of the fouling's growth [-]
+    value: Float[np.ndarray, "growth speed direction sensor"]  # depths [m] and tensions [kN]
 
-    def at(
-        self, velocity: Float[np.ndarray, "t 2"], growth: Float[np.ndarray, " t"]
-    ) -> Float[np.ndarray, "t sensor"]:
+    def at(self, velocity: Float[np.ndarray, "t 2"], growth: PerT) -> Float[np.ndarray, "t sensor"]:
         """Answers to currents (east, north) [m/s] at given growths.
 
         Cubic in speed and direction, quadratic in growth. Speeds above the grid count as its
@@ -65,11 +53,8 @@ class Responses:
         return np.maximum(answers, 0.0)
 
     def _surface(
-        self,
-        value: Float[np.ndarray, "speed direction"],
-        speed: Float[np.ndarray, " t"],
-        direction: Float[np.ndarray, " t"],
-    ) -> Float[np.ndarray, " t"]:
+        self, value: Float[np.ndarray, "speed direction"], speed: PerT, direction: PerT
+    ) -> PerT:
         """A bicubic spline without a seam at north and without a corner at slack water."""
         from scipy.interpolate import RectBivariateSpline
 
@@ -95,7 +80,7 @@ def true_responses(
     store: Path,
     workers: int | None = None,
     progress: Progress | None = None,
-) -> tuple[Responses, Float[np.ndarray, "case sensor"]]:
+) -> tuple[Responses, CaseSensor]:
     """Settle the true cage on the grid, and at some currents between for the error.
 
     Parameters
@@ -130,7 +115,7 @@ def true_responses(
     def report_part(_stage: str, done: int, _part: int) -> None:
         report("virtual field", before + done, total)
 
-    answers: list[Float[np.ndarray, "case sensor"]] = []
+    answers: list[CaseSensor] = []
     for growth, plan in runs:
         truth = hidden.true_cage(cage, growth)
         out = store / campaign_key(truth, plan, by)
@@ -150,7 +135,7 @@ def true_responses(
     return responses, interpolated - settled[1:]
 
 
-def _readings(cage: Cage, campaign: CampaignRecord) -> Float[np.ndarray, "case sensor"]:
+def _readings(cage: Cage, campaign: CampaignRecord) -> CaseSensor:
     """Depths [m], then tensions [kN], as error-free sensors would read them.
 
     A shape that was not quite at rest when the solver gave up stands for the one at rest.
@@ -168,16 +153,14 @@ def _readings(cage: Cage, campaign: CampaignRecord) -> Float[np.ndarray, "case s
 
 
 def _on_grid(
-    still: Float[np.ndarray, " sensor"], moving: Float[np.ndarray, "case sensor"]
+    still: Float[np.ndarray, " sensor"], moving: CaseSensor
 ) -> Float[np.ndarray, "speed direction sensor"]:
     """Cases in the order of the grid's plan; still water looks the same in all directions."""
     by_speed = moving.reshape(len(_SPEEDS), len(_DIRECTIONS), len(still))
     return np.concatenate([np.broadcast_to(still, (1, *by_speed.shape[1:])), by_speed])
 
 
-def _lagrange(
-    grid: Float[np.ndarray, " growth"], at: Float[np.ndarray, " t"]
-) -> Float[np.ndarray, "growth t"]:
+def _lagrange(grid: Float[np.ndarray, " growth"], at: PerT) -> Float[np.ndarray, "growth t"]:
     """Weights of the polynomial through all grid values."""
     weights = np.ones((len(grid), len(at)))
     for i, own in enumerate(grid):

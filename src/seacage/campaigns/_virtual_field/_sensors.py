@@ -19,7 +19,6 @@ from seacage.records import Record, check_record
 
 _WEEK = 604800.0
 _WEATHER_STEP = 600.0  # within which the air pressure hardly changes
-
 Times = Shaped[np.ndarray, " t"]
 Values = Float[np.ndarray, " t"]
 
@@ -62,22 +61,12 @@ def sense(
     waves and weather for depth, has noise and drifts. Both get stuck, spike, lose single
     readings and fall silent; when, does not hang on the step between readings.
 
-    Parameters
-    ----------
-    truth
-        One error-free sensor; a depth is that below still water.
-    hidden
-        Sizes of the errors.
-    rng
-        Source of chance, this sensor's own.
-    wave_head
-        What the waves add to a depth sensor's pressure, as a depth [m]; None without waves.
-    pressure
-        Of the air, off its mean [hPa]; None for an even one. ``air_pressure`` makes it.
-    silence
-        When the radio is dead; None where it never is. ``radio_silence`` makes it.
-    events
-        Those that meet this sensor; others change nothing.
+    ``truth``: one error-free sensor; a depth is that below still water. ``hidden``: sizes of the
+    errors. ``rng``: source of chance, this sensor's own. ``wave_head``: what the waves add to a
+    depth sensor's pressure, as a depth [m]; None without waves. ``pressure``: of the air, off its
+    mean [hPa]; None for an even one. ``air_pressure`` makes it. ``silence``: when the radio is
+    dead; None where it never is. ``radio_silence`` makes it. ``events``: those that meet this
+    sensor; others change nothing.
     """
     ((key, exact),) = truth.values.items()
     noise, faults = rng.spawn(2)
@@ -108,12 +97,7 @@ def receive_buoy(
     It gets stuck, its speed spikes, single readings are lost, and it falls silent. It adds no
     noise: the buoy's own is in its record.
 
-    Parameters
-    ----------
-    buoy
-        What it measured.
-    hidden, rng, silence, events
-        As of ``sense``.
+    ``buoy``: what it measured. ``hidden``, ``rng``, ``silence``, ``events``: as of ``sense``.
     """
     sizes = {"current_speed_m_s": hidden.buoy.spike_m_s}
     sent = replace(buoy, flags={})

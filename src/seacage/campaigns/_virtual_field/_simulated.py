@@ -29,19 +29,12 @@ _WAVES = ("hs_m", "tp_s", "wave_from_deg")
 # No slots: the weather is made once and kept.
 @dataclass(frozen=True, kw_only=True)
 class FieldRequest:
-    """A virtual field to simulate, and all that its truth depends on.
+    """A virtual field to simulate, and all that its truth depends on."""
 
-    Parameters
-    ----------
-    cage, buoy, hidden, seed, waves, events, timetable
-        As for ``virtual_field``; the buoy's record takes up the waves.
-    time
-        Of the readings, in even steps.
-    """
-
+    # As for ``virtual_field``; the buoy's record takes up the waves
     cage: Cage
     buoy: Record
-    time: Shaped[np.ndarray, " reading"]
+    time: Shaped[np.ndarray, " reading"]  # of the readings, in even steps
     hidden: TruthParameters
     seed: int
     waves: Record | None
@@ -106,26 +99,14 @@ class FieldRequest:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Truth:
-    """Truth along a whole record; NaN where nothing was simulated.
+    """Truth along a whole record; NaN where nothing was simulated."""
 
-    Attributes
-    ----------
-    depth_position
-        Of the depth sensors [m].
-    bridle_tension
-        [N].
-    means
-        What no sensor sees.
-    wave_head
-        What the waves add to the pressure at each depth sensor [m].
-    lost
-        Stretches that left the finite numbers: gaps like those not simulated.
-    """
-
-    depth_position: Float[np.ndarray, "reading depth_sensor 3"]
-    bridle_tension: Float[np.ndarray, "reading bridle"]
+    depth_position: Float[np.ndarray, "reading depth_sensor 3"]  # of the depth sensors [m]
+    bridle_tension: Float[np.ndarray, "reading bridle"]  # [N]
+    # What the waves add to the pressure at each depth sensor [m]
     wave_head: Float[np.ndarray, "reading depth_sensor"]
-    means: TrueMeans
+    means: TrueMeans  # what no sensor sees
+    # Stretches that left the finite numbers: gaps like those not simulated
     lost: tuple[Stretch, ...]
 
     @property
@@ -150,18 +131,9 @@ def simulate_share(
 ) -> StretchStore:
     """Simulate every n-th stretch of a field into a folder, unless it is there.
 
-    Parameters
-    ----------
-    request
-        The field.
-    folder
-        Keeps the stretches, each as soon as it is done.
-    share
-        Which share, from 0, and of how many.
-    workers
-        Processes; None for one per available core.
-    progress
-        Called as ("virtual field, simulated hours", done, total), in whole hours.
+    ``request``: the field. ``folder``: keeps the stretches, each as soon as it is done. ``share``:
+    which share, from 0, and of how many. ``workers``: processes; None for one per available core.
+    ``progress``: called as ("virtual field, simulated hours", done, total), in whole hours.
     """
     kept = StretchStore.opened(folder, request.identity)
     which, shares = share
@@ -191,10 +163,7 @@ def simulate_share(
 def gather_truth(request: FieldRequest, kept: StretchStore) -> Truth:
     """The truth along the whole record, from its stretches.
 
-    Raises
-    ------
-    SeacageError
-        Not one stretch stayed finite.
+    Raises SeacageError: not one stretch stayed finite.
     """
     readings, cage = len(request.time), request.cage
     position = np.full((readings, len(cage.depth_sensors), 3), np.nan, np.float32)

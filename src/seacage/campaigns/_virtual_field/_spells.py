@@ -7,30 +7,22 @@ from typing import Self
 import numpy as np
 from jaxtyping import Bool, Float, Shaped
 
+AnyPerT = Shaped[np.ndarray, " t"]
+
 _HOUR, _WEEK = 3600.0, 604800.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Spells:
-    """Stretches of time, each from its start up to its end; they may overlap.
+    """Stretches of time, each from its start up to its end; they may overlap."""
 
-    Parameters
-    ----------
-    start, end
-        UTC, datetime64[us].
-    """
-
+    # UTC, datetime64[us]
     start: Shaped[np.ndarray, " spell"]
     end: Shaped[np.ndarray, " spell"]
 
     @classmethod
     def by_chance(
-        cls,
-        time: Shaped[np.ndarray, " t"],
-        rng: np.random.Generator,
-        *,
-        per_week: float,
-        mean_h: float = 0.0,
+        cls, time: AnyPerT, rng: np.random.Generator, *, per_week: float, mean_h: float = 0.0
     ) -> Self:
         """Spells that begin by chance between some times and last for exponential times."""
         span = _span(time)
@@ -38,15 +30,10 @@ class Spells:
         return cls._after(time[0], start, rng.exponential(mean_h * _HOUR, size=len(start)))
 
     @classmethod
-    def at_shares(
-        cls, time: Shaped[np.ndarray, " t"], windows: Sequence[tuple[float, float]]
-    ) -> Self:
+    def at_shares(cls, time: AnyPerT, windows: Sequence[tuple[float, float]]) -> Self:
         """Windows that begin at shares of the time between the first and the last of some times.
 
-        Parameters
-        ----------
-        windows
-            Share [-] and length [h] of each.
+        ``windows``: share [-] and length [h] of each.
         """
         start = np.array([share * _span(time) for share, _ in windows])
         length = np.array([hours * _HOUR for _, hours in windows])
@@ -65,12 +52,12 @@ class Spells:
         )
         return cls(start=begin, end=end)
 
-    def rows(self, time: Shaped[np.ndarray, " t"]) -> list[slice]:
+    def rows(self, time: AnyPerT) -> list[slice]:
         """Rows of ascending times within each spell that has any."""
         edges = np.searchsorted(time, np.array([self.start, self.end]))
         return [slice(first, last) for first, last in edges.T.tolist() if first < last]
 
-    def cover(self, time: Shaped[np.ndarray, " t"]) -> Bool[np.ndarray, " t"]:
+    def cover(self, time: AnyPerT) -> Bool[np.ndarray, " t"]:
         """Whether each of some ascending times lies in a spell."""
         covered = np.zeros(len(time), dtype=bool)
         for rows in self.rows(time):
@@ -78,5 +65,5 @@ class Spells:
         return covered
 
 
-def _span(time: Shaped[np.ndarray, " t"]) -> float:
+def _span(time: AnyPerT) -> float:
     return float((time[-1] - time[0]) / np.timedelta64(1, "s"))

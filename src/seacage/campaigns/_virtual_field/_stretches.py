@@ -24,28 +24,15 @@ _MANIFEST = "manifest.json"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrueCage:
-    """The cage that is followed, and where it is looked at.
+    """The cage that is followed, and where it is looked at."""
 
-    Parameters
-    ----------
-    toml
-        Of the true cage, on its finer mesh.
-    refined
-        How much finer it is than drawn.
-    law, stiffening
-        Of netting and ropes, as ``follow`` takes them.
-    watched
-        The depth sensors' nodes.
-    drawn
-        Nodes of the drawing's mesh.
-    """
-
-    toml: str
-    refined: int
+    toml: str  # of the true cage, on its finer mesh
+    refined: int  # how much finer it is than drawn
+    # Of netting and ropes, as ``follow`` takes them
     law: MovingLaw
     stiffening: tuple[float, float]
-    watched: tuple[int, ...]
-    drawn: tuple[int, ...]
+    watched: tuple[int, ...]  # the depth sensors' nodes
+    drawn: tuple[int, ...]  # nodes of the drawing's mesh
 
     @classmethod
     def of(cls, cage: Cage, hidden: TruthParameters) -> Self:
@@ -76,27 +63,14 @@ class Group:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Passed:
-    """Samples of the cage along one stretch, in single precision.
+    """Samples of the cage along one stretch, in single precision."""
 
-    Attributes
-    ----------
-    watched_position
-        [m].
-    wave_head
-        What the waves add to the pressure there, as a depth [m].
-    bridle_tension
-        [N].
-    shape
-        Mean positions of the drawn nodes [m].
-    lost
-        Whether the simulation left the finite numbers: then nothing of it counts.
-    """
-
-    watched_position: Float[np.ndarray, "reading watched 3"]
+    watched_position: Float[np.ndarray, "reading watched 3"]  # [m]
+    # What the waves add to the pressure there, as a depth [m]
     wave_head: Float[np.ndarray, "reading watched"]
-    bridle_tension: Float[np.ndarray, "reading bridle"]
-    shape: Float[np.ndarray, "mean node 3"]
-    lost: bool
+    bridle_tension: Float[np.ndarray, "reading bridle"]  # [N]
+    shape: Float[np.ndarray, "mean node 3"]  # mean positions of the drawn nodes [m]
+    lost: bool  # whether the simulation left the finite numbers: then nothing of it counts
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -113,10 +87,7 @@ class StretchStore:
     def opened(cls, folder: Path, identity: Mapping[str, object]) -> Self:
         """A folder for the stretches of the field with this identity, made if it is not there.
 
-        Raises
-        ------
-        InputError
-            It holds those of another field.
+        Raises InputError: it holds those of another field.
         """
         identity = {
             "schema": "seacage stretches 1",
@@ -153,10 +124,7 @@ class StretchStore:
     def read(self, stretch: Stretch) -> Passed:
         """Read a stretch that is done.
 
-        Raises
-        ------
-        RecordError
-            Its file is damaged.
+        Raises RecordError: its file is damaged.
         """
         from safetensors import SafetensorError
         from safetensors.numpy import load
@@ -189,20 +157,10 @@ def simulate_stretches(
 ) -> None:
     """Simulate those stretches that are not kept yet.
 
-    Parameters
-    ----------
-    stretches
-        All that are wanted.
-    kept
-        Where they go.
-    weather
-        Of the whole record.
-    cage, timetable, every
-        What is simulated and how, and the time between readings [s].
-    workers
-        Processes; None for one per available core.
-    report
-        Told how many stretches are done, first those there already; parts count.
+    ``stretches``: all that are wanted. ``kept``: where they go. ``weather``: of the whole record.
+    ``cage``, ``timetable``, ``every``: what is simulated and how, and the time between readings
+    [s]. ``workers``: processes; None for one per available core. ``report``: told how many
+    stretches are done, first those there already; parts count.
     """
     missing = [one for one in stretches if not kept.has(one)]
     groups = [

@@ -72,20 +72,12 @@ class Timetable:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stretch:
-    """A stretch of time, simulated in one go.
+    """A stretch of time, simulated in one go."""
 
-    Parameters
-    ----------
-    first
-        Number of its first reading in the record.
-    readings
-        How many count: fewer than were simulated where the record ends or something breaks.
-    damaged, breaking
-        What is broken when it begins, and what breaks then.
-    """
-
-    first: int
+    first: int  # number of its first reading in the record
+    # How many count: fewer than were simulated where the record ends or something breaks
     readings: int
+    # What is broken when it begins, and what breaks then
     damaged: tuple[Damage, ...] = ()
     breaking: tuple[Damage, ...] = ()
 
@@ -100,10 +92,7 @@ def reading_times(
 ) -> Shaped[np.ndarray, " t"]:
     """Even times over a buoy's record; a step of None is the usual one.
 
-    Raises
-    ------
-    InputError
-        A record or a step that leaves no two.
+    Raises InputError: a record or a step that leaves no two.
     """
     span, every_s = _span(buoy), usual_s if every_s is None else every_s
     if not 0.0 < every_s < span:
@@ -124,18 +113,9 @@ def cut(
 ) -> tuple[Stretch, ...]:
     """The stretches to simulate, in order of time.
 
-    Parameters
-    ----------
-    readings
-        Of the record.
-    each
-        Readings of a stretch.
-    one_in
-        Take one stretch in so many, the first and the last in any case.
-    always
-        Readings whose stretches are taken in any case.
-    breaks
-        Readings before which something breaks; a new stretch begins there.
+    ``readings``: of the record. ``each``: readings of a stretch. ``one_in``: take one stretch in so
+    many, the first and the last in any case. ``always``: readings whose stretches are taken in any
+    case. ``breaks``: readings before which something breaks; a new stretch begins there.
     """
     found: list[Stretch] = []
     broken: tuple[Damage, ...] = ()

@@ -21,8 +21,8 @@ from seacage.records import Record
 _START = datetime(2020, 1, 18, tzinfo=UTC)  # of the records; no tide here knows the year
 _DAYS = 50.0
 _EVERY_S = 60.0
+# Growth is rounded to this, so that many cases share a cage and settle together [-]
 _GROWTH_STEP = 0.25
-"""Growth is rounded to this, so that many cases share a cage and settle together [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

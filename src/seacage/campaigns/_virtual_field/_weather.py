@@ -29,35 +29,23 @@ from seacage.ocean import (
 )
 from seacage.records import Record
 
+PerPanel = Float[np.ndarray, " panel"]
+PerRow = Float[np.ndarray, " row"]
+PerT = Float[np.ndarray, " t"]
+
 _DAY = 86400.0
-
-_MINUTE = 60.0
-"""Step in which sea and profile change, and for which waves are good [s]."""
-
-_RIPPLE = 1.0
-"""Shortest peak period: a flat sea has a frequency too [s]."""
+_MINUTE = 60.0  # step in which sea and profile change, and for which waves are good [s]
+_RIPPLE = 1.0  # shortest peak period: a flat sea has a frequency too [s]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class TrueWaves:
-    """Waves that stay the same ones while their sea and the current change.
+    """Waves that stay the same ones while their sea and the current change."""
 
-    Parameters
-    ----------
-    draw
-        What chance decided about them.
-    sea
-        Hs [m], Tp [s] and, (east, north), where the waves go.
-    phase
-        Of each at the origin, never folded [rad].
-    depth
-        Of the water [m].
-    """
-
-    draw: WaveDraw
-    sea: Even
-    phase: Even
-    depth: float
+    draw: WaveDraw  # what chance decided about them
+    sea: Even  # hs [m], Tp [s] and, (east, north), where the waves go
+    phase: Even  # of each at the origin, never folded [rad]
+    depth: float  # of the water [m]
 
     def at(self, second: float) -> Waves:
         """Waves whose time 0 is then, and that meet those of a minute later."""
@@ -84,22 +72,12 @@ class Weather(AbstractWeather):
     """True weather at the cage, in seconds since the buoy's first time.
 
     Before that time and after the buoy's last, current and sea are as they are there.
-
-    Parameters
-    ----------
-    surface
-        Current near the surface, (east, north) [m/s].
-    swing
-        How far the profile's factor and turn are off, over their standard deviations [-].
-    sea
-        The waves.
-    profile, fouling
-        How the current changes with depth, and how growth adds solidity.
     """
 
-    surface: Even
-    swing: Even
-    sea: TrueWaves
+    surface: Even  # current near the surface, (east, north) [m/s]
+    swing: Even  # how far the profile's factor and turn are off, over their standard deviations [-]
+    sea: TrueWaves  # the waves
+    # How the current changes with depth, and how growth adds solidity
     profile: ProfileTruth
     fouling: FoulingTruth
 
@@ -126,24 +104,18 @@ class Weather(AbstractWeather):
         """For the minute from then on, whose time 0 is then."""
         return self.sea.at(second)
 
-    def netting(
-        self, second: float, depth: Float[np.ndarray, " panel"]
-    ) -> tuple[Float[np.ndarray, " panel"], Float[np.ndarray, " panel"]]:
+    def netting(self, second: float, depth: PerPanel) -> tuple[PerPanel, PerPanel]:
         """Solidity added by growth at some depths [m], and the drag factor of what grew [-]."""
         (growth,) = self.fouling.grown(np.array([max(second, 0.0) / _DAY]))
         return self.fouling.solidity_and_drag(float(growth), depth)
 
     def pressure_head(
-        self, second: Float[np.ndarray, " t"], position: Float[np.ndarray, "t *sensor 3"]
+        self, second: PerT, position: Float[np.ndarray, "t *sensor 3"]
     ) -> Float[np.ndarray, "t *sensor"]:
         """Wave pressure at places that move, as metres of water [m].
 
-        Parameters
-        ----------
-        second
-            Ascending [s].
-        position
-            Of one sensor or some at each time: east, north, up from still water [m].
+        ``second``: ascending [s]. ``position``: of one sensor or some at each time: east, north, up
+        from still water [m].
         """
         time = second.reshape(len(second), *(1,) * (position.ndim - 2))
         minutes, firsts = np.unique(np.floor(second / _MINUTE), return_index=True)
@@ -180,25 +152,12 @@ def true_weather(
     of waves count as seen from the moving water. Left out: what a current does to the waves'
     heights, and the shelter of the neighbour cages from waves.
 
-    Parameters
-    ----------
-    buoy
-        Its current, with an error of its own.
-    waves
-        As they are at the cage; None for a calm sea. Unusable rows are bridged.
-    hidden
-        How the truth differs.
-    seed
-        Of the buoy's error, eddies, profile and waves, each with a stream of its own.
-    every_s
-        Between the current's samples [s].
-    depth
-        Of the water [m].
+    ``buoy``: its current, with an error of its own. ``waves``: as they are at the cage; None for a
+    calm sea. Unusable rows are bridged. ``hidden``: how the truth differs. ``seed``: of the buoy's
+    error, eddies, profile and waves, each with a stream of its own. ``every_s``: between the
+    current's samples [s]. ``depth``: of the water [m].
 
-    Raises
-    ------
-    InputError
-        Fewer than two usable currents or waves.
+    Raises InputError: fewer than two usable currents or waves.
     """
     # the word keeps these streams apart from those of others who have the same seed
     water, deep, surface = np.random.default_rng([seed, *b"weather"]).spawn(3)
@@ -226,9 +185,7 @@ def true_weather(
     )
 
 
-def _sea(
-    waves: Record | None, start: np.datetime64, seconds: Float[np.ndarray, " row"]
-) -> Float[np.ndarray, "row 4"]:
+def _sea(waves: Record | None, start: np.datetime64, seconds: PerRow) -> Float[np.ndarray, "row 4"]:
     """Hs [m], Tp [s] and where the waves go, (east, north), at some seconds after a time."""
     if waves is None:
         return np.tile([0.0, _RIPPLE, 0.0, 1.0], (len(seconds), 1))
@@ -260,23 +217,15 @@ def _phase(
 
 
 def current_at_cage(
-    buoy: Record,
-    seconds: Float[np.ndarray, " t"],
-    *,
-    hidden: TruthParameters,
-    rng: np.random.Generator,
+    buoy: Record, seconds: PerT, *, hidden: TruthParameters, rng: np.random.Generator
 ) -> Float[np.ndarray, "t 2"]:
     """The true current at the cage (east, north) [m/s].
 
     What the buoy reported, less the buoy's own error, arrives later, slowed and turned by
     its direction, with eddies that the buoy does not see.
 
-    Parameters
-    ----------
-    buoy
-        Its unusable rows are bridged by its neighbours.
-    seconds
-        Since the buoy's first time, in even steps [s].
+    ``buoy``: its unusable rows are bridged by its neighbours. ``seconds``: since the buoy's first
+    time, in even steps [s].
     """
     there, reported = _buoy_series(buoy)
     speed = np.linalg.norm(reported, axis=1)
@@ -299,9 +248,7 @@ def current_at_cage(
     return _shelter(arrived, way) + eddies
 
 
-def _buoy_series(
-    buoy: Record,
-) -> tuple[Float[np.ndarray, " row"], Float[np.ndarray, "row 2"]]:
+def _buoy_series(buoy: Record) -> tuple[PerRow, Float[np.ndarray, "row 2"]]:
     """Times since the first row [s] and currents of the usable rows [m/s]."""
     usable = buoy.usable("current_speed_m_s") & buoy.usable("current_to_deg")
     if np.sum(usable) < 2:
@@ -315,9 +262,7 @@ def _buoy_series(
 
 
 def _between(
-    at: Float[np.ndarray, " t"],
-    seconds: Float[np.ndarray, " row"],
-    values: Float[np.ndarray, "row value"],
+    at: PerT, seconds: PerRow, values: Float[np.ndarray, "row value"]
 ) -> Float[np.ndarray, "t value"]:
     return np.column_stack([np.interp(at, seconds, column) for column in values.T])
 
@@ -330,9 +275,7 @@ def _shelter(velocity: Float[np.ndarray, "t 2"], way: CurrentTruth) -> Float[np.
     return towards(np.linalg.norm(velocity, axis=1) * factor, to + turn)
 
 
-def _swing(
-    to: Float[np.ndarray, " t"], least: float, most: float, most_to: float
-) -> Float[np.ndarray, " t"]:
+def _swing(to: PerT, least: float, most: float, most_to: float) -> PerT:
     """From least to most and back, once round the compass."""
     share = (1.0 + np.cos(np.deg2rad(to - most_to))) / 2.0
     return least + (most - least) * share

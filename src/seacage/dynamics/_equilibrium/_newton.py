@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float
 
-from seacage.dynamics._kernel import Balance, Balancing
-from seacage.dynamics._parts import Assembly, Bars, Bends, Cylinders, Panels
-from seacage.dynamics._physics import (
+from seacage.dynamics._kernel._balance import Balance, Balancing
+from seacage.dynamics._parts._assembly import Assembly, Bars, Bends, Cylinders, Panels
+from seacage.dynamics._physics._loads import (
     LEVEL,
     SteadyFlow,
     bar_force,
@@ -16,6 +16,8 @@ from seacage.dynamics._physics import (
     wet_share,
 )
 
+Node3 = Float[np.ndarray, "node 3"]
+PerBar = Float[np.ndarray, " bar"]
 Block = Float[np.ndarray, "part 3 3"]
 Entries = tuple[np.ndarray, np.ndarray, np.ndarray]
 
@@ -39,9 +41,7 @@ def nearer(assembly: Assembly, flow: SteadyFlow, state: Balancing, balance: Bala
     twentieth, and once steps are short that of a stretched bar is at least √m, from where it
     finds its place at once. Left out of K: part of the pipes' bending.
 
-    References
-    ----------
-    Garcea et al. (1998) on tensions as unknowns; Nocedal & Wright (2006), chapter 19, on
+    Source: Garcea et al. (1998) on tensions as unknowns; Nocedal & Wright (2006), chapter 19, on
     interior points.
     """
     residual = _residual(assembly, flow, state, balance)
@@ -83,9 +83,9 @@ class _LinearLaw:
     """Bars about the shape and the tensions at hand."""
 
     unit: Float[np.ndarray, "bar 3"]  # along the bar, from its first end
-    tension: Float[np.ndarray, " bar"]  # [N]
-    rate: Float[np.ndarray, " bar"]  # by the smooth law [N/m]
-    lack: Float[np.ndarray, " bar"]  # what the tension lacks to meet that law [N]
+    tension: PerBar  # [N]
+    rate: PerBar  # by the smooth law [N/m]
+    lack: PerBar  # what the tension lacks to meet that law [N]
 
 
 def _linear_law(bars: Bars, state: Balancing, balance: Balance) -> _LinearLaw:
@@ -125,17 +125,13 @@ def _residual(
     return np.array([np.linalg.norm(force[balance.free], axis=1).max()])
 
 
-def _directions(
-    bars: Bars, position: Float[np.ndarray, "node 3"]
-) -> tuple[Float[np.ndarray, "bar 3"], Float[np.ndarray, " bar"]]:
+def _directions(bars: Bars, position: Node3) -> tuple[Float[np.ndarray, "bar 3"], PerBar]:
     along = position[bars.ends[:, 1]] - position[bars.ends[:, 0]]
     length = np.linalg.norm(along, axis=1)
     return along / length[:, None], length
 
 
-def hooke(
-    bars: Bars, position: Float[np.ndarray, "node 3"]
-) -> tuple[Float[np.ndarray, " bar"], Float[np.ndarray, " bar"]]:
+def hooke(bars: Bars, position: Node3) -> tuple[PerBar, PerBar]:
     """Spring rate [N/m] and tension [N] of each bar by the true law; a slack one has neither."""
     rate = bars.stiffness / bars.length
     tension = rate * (_directions(bars, position)[1] - bars.length)
@@ -144,12 +140,7 @@ def hooke(
 
 
 def tangent(
-    assembly: Assembly,
-    flow: SteadyFlow,
-    position: Float[np.ndarray, "node 3"],
-    *,
-    rate: Float[np.ndarray, " bar"],
-    tension: Float[np.ndarray, " bar"],
+    assembly: Assembly, flow: SteadyFlow, position: Node3, *, rate: PerBar, tension: PerBar
 ) -> list[Entries]:
     """Tangent stiffness −df/dx, in blocks of two nodes [N/m]."""
     return [
@@ -178,12 +169,7 @@ def _between(i: np.ndarray, j: np.ndarray, block: Block) -> list[Entries]:
     return [(i, i, block), (j, j, block), (i, j, -block), (j, i, -block)]
 
 
-def _bars(
-    bars: Bars,
-    position: Float[np.ndarray, "node 3"],
-    rate: Float[np.ndarray, " bar"],
-    tension: Float[np.ndarray, " bar"],
-) -> list[Entries]:
+def _bars(bars: Bars, position: Node3, rate: PerBar, tension: PerBar) -> list[Entries]:
     unit, length = _directions(bars, position)
     across = tension / length
     axial = rate - across
@@ -191,7 +177,7 @@ def _bars(
     return _between(bars.ends[:, 0], bars.ends[:, 1], block)
 
 
-def _bends(bends: Bends, position: Float[np.ndarray, "node 3"]) -> list[Entries]:
+def _bends(bends: Bends, position: Node3) -> list[Entries]:
     """The turn's energy is nearly ½ k |t2 − t1|²; what is left out does not move the answer.
 
     In the horizontal plane it is ½ k (κ − κ0)², of which the slope of κ alone is taken.
@@ -215,9 +201,7 @@ def _bends(bends: Bends, position: Float[np.ndarray, "node 3"]) -> list[Entries]
     ]
 
 
-def _turn_slopes(
-    bends: Bends, position: Float[np.ndarray, "node 3"]
-) -> tuple[Float[np.ndarray, "bend 3"], ...]:
+def _turn_slopes(bends: Bends, position: Node3) -> tuple[Float[np.ndarray, "bend 3"], ...]:
     """How a joint's curvature about the vertical rises as each of its nodes moves [1/m]."""
     before, middle, after = np.moveaxis(position[bends.nodes], 1, 0)
     first, second = middle - before, after - middle
@@ -231,9 +215,7 @@ def _turn_slopes(
     return -by_first, by_first - by_second, by_second
 
 
-def _panels(
-    assembly: Assembly, flow: SteadyFlow, position: Float[np.ndarray, "node 3"]
-) -> list[Entries]:
+def _panels(assembly: Assembly, flow: SteadyFlow, position: Node3) -> list[Entries]:
     """Stiffness of a panel's load F = w q A ((C_D − L m·u) u + L m) as its corners move.
 
     A is the area as cut; m the normal times how open the panel is. Its wet share w falls as
@@ -281,7 +263,7 @@ def _panels(
 
 
 def _dry_slopes(
-    panels: Panels, position: Float[np.ndarray, "node 3"], load: Float[np.ndarray, "panel 3"]
+    panels: Panels, position: Node3, load: Float[np.ndarray, "panel 3"]
 ) -> list[Entries]:
     """Stiffness of the wet share of loads on panels that are all wet."""
     height = position[panels.corners, 2]
@@ -299,9 +281,7 @@ def _dry_slopes(
     return entries
 
 
-def _cylinders(
-    cylinders: Cylinders, flow: SteadyFlow, position: Float[np.ndarray, "node 3"]
-) -> list[Entries]:
+def _cylinders(cylinders: Cylinders, flow: SteadyFlow, position: Node3) -> list[Entries]:
     """Stiffness of a pipe's drag F = ½ q w l |v| v on either end, v = u − (u·t) t, as it turns."""
     i, j = cylinders.ends.T
     along = position[j] - position[i]
@@ -318,7 +298,7 @@ def _cylinders(
     return [(i, i, block), (i, j, -block), (j, i, block), (j, j, -block)]
 
 
-def _supports(assembly: Assembly, position: Float[np.ndarray, "node 3"]) -> list[Entries]:
+def _supports(assembly: Assembly, position: Node3) -> list[Entries]:
     floats, springs = assembly.floats, assembly.springs
     draft = floats.draft - position[floats.nodes, 2]
     wet = (draft > 0.0) & (draft < floats.height)

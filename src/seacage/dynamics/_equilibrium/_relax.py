@@ -7,21 +7,18 @@ from typing import TypeVar
 import numpy as np
 from jaxtyping import Float, Int
 
-from seacage.dynamics._kernel import Balancing, Relaxation, Relaxing, kernel
-from seacage.dynamics._parts import Assembly
-from seacage.dynamics._physics import SteadyFlow, total_net_force
+from seacage.dynamics._kernel._balance import Balancing
+from seacage.dynamics._kernel._library import Relaxation, Relaxing, kernel
+from seacage.dynamics._parts._assembly import Assembly
+from seacage.dynamics._physics._loads import SteadyFlow, total_net_force
 
+# Steps of a round of relaxation, rounds before the unfinished regroup, and regroupings
 STEPS, STRETCH, STRETCHES = 300, 10, 10
-"""Steps of a round of relaxation, rounds before the unfinished regroup, and regroupings."""
-
+# Soft spring rate of a twine over the rate with which the hung weight straightens it [-]
 SOFTNESS = 100.0
-"""Soft spring rate of a twine over the rate with which the hung weight straightens it [-]."""
 
-HOOP_SHARE = 0.25
-"""Soft spring rate of a pipe's hoop over its true one [-]."""
-
-LOST = 1e12
-"""No cage bears such a force: the case has left the finite numbers [N]."""
+HOOP_SHARE = 0.25  # soft spring rate of a pipe's hoop over its true one [-]
+LOST = 1e12  # no cage bears such a force: the case has left the finite numbers [N]
 
 
 def start_relaxing(assembly: Assembly, flow: SteadyFlow) -> Relaxing:

@@ -7,36 +7,26 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from seacage.conventions import Result
+from seacage.dynamics._equilibrium import _relax
 from seacage.dynamics._equilibrium._newton import hooke
-from seacage.dynamics._equilibrium._relax import (
-    LOST,
-    advance,
-    load_over_weight,
-    relax,
-    relaxation_of,
-    start_relaxing,
-)
-from seacage.dynamics._kernel import Balance, Balancing, kernel
-from seacage.dynamics._parts import Assembly
-from seacage.dynamics._physics import SteadyFlow
+from seacage.dynamics._kernel._balance import Balance, Balancing
+from seacage.dynamics._kernel._library import kernel
+from seacage.dynamics._parts._assembly import Assembly
+from seacage.dynamics._physics._loads import SteadyFlow
 
-TOLERANCE = 0.5
-"""Largest force left on any node of a settled cage [N]."""
-
+CaseNode3 = Float[np.ndarray, "case node 3"]
+PerCase = Float[np.ndarray, " case"]
+TOLERANCE = 0.5  # largest force left on any node of a settled cage [N]
+# Force left on a node at which Newton's method ends; it shrinks a hundredfold a step there [N]
 AIM = 1e-3
-"""Force left on a node at which Newton's method ends; it shrinks a hundredfold a step there [N]."""
-
+# Shapes in which no node is farther apart are one equilibrium, over the collar's radius [-]
 APART = 2e-3
-"""Shapes in which no node is farther apart are one equilibrium, over the collar's radius [-]."""
 
-STRETCH, MOST_ITERATIONS = 6, 240
-"""Newton iterations before the unfinished regroup, and in all."""
-
+STRETCH, MOST_ITERATIONS = 6, 240  # Newton iterations before the unfinished regroup, and in all
+# Times that relaxation and Newton's method take turns on a case that the latter did not finish
 ATTEMPTS = 4
-"""Times that relaxation and Newton's method take turns on a case that the latter did not finish."""
-
+# Swings of first shapes: much faster water's, other water's, and how far on the next is [rad]
 FLAT, ASIDE, GOLDEN = np.deg2rad([80.0, 45.0, 137.507764])
-"""Swings of first shapes: much faster water's, other water's, and how far on the next is [rad]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,11 +36,11 @@ class Equilibria:
     ``Response`` says what ``result``, ``number``, ``spread`` and ``unstable`` mean.
     """
 
-    position: Float[np.ndarray, "case node 3"]
-    residual: Float[np.ndarray, " case"]
+    position: CaseNode3
+    residual: PerCase
     result: Int[np.ndarray, " case"]
     number: Int[np.ndarray, " case"]
-    spread: Float[np.ndarray, " case"]
+    spread: PerCase
     unstable: Bool[np.ndarray, " case"]
 
 
@@ -82,7 +72,7 @@ def _first_shapes(
     By the angle that the load asks for; not at all; nearly flat; and then aside, each the
     golden angle on from the last.
     """
-    load = load_over_weight(assembly, flow)
+    load = _relax.load_over_weight(assembly, flow)
     still = np.all(flow.direction == 0.0, axis=1, keepdims=True)
     along = np.where(still, np.array([1.0, 0.0, 0.0]), flow.direction)
     shapes = []
@@ -96,11 +86,7 @@ def _first_shapes(
     return np.stack(shapes, axis=1).reshape(-1, *assembly.position.shape)
 
 
-def _swung(
-    assembly: Assembly,
-    angle: Float[np.ndarray, " case"],
-    ahead: Float[np.ndarray, "case 3"],
-) -> Float[np.ndarray, "case node 3"]:
+def _swung(assembly: Assembly, angle: PerCase, ahead: Float[np.ndarray, "case 3"]) -> CaseNode3:
     """What hangs in the design shape swung by an angle, each node round the surface above it."""
     hangs = np.zeros(len(assembly.position))
     net = slice(0, assembly.cage_nodes)
@@ -151,7 +137,7 @@ def _seek(
         )
 
     for _ in range(0, MOST_ITERATIONS, STRETCH):
-        advance(state, step, AIM, pool)
+        _relax.advance(state, step, AIM, pool)
 
 
 def _relax_the_rest(
@@ -168,14 +154,14 @@ def _relax_the_rest(
     if len(rest) == 0:
         return
     water = flow.rows(rest)
-    relaxing = start_relaxing(assembly, water)
-    relaxation = relaxation_of(assembly, tolerance=TOLERANCE)
+    relaxing = _relax.start_relaxing(assembly, water)
+    relaxation = _relax.relaxation_of(assembly, tolerance=TOLERANCE)
     found = Balancing.begun(
         relaxing.position, np.zeros_like(relaxing.carried), barrier=AIM, shift=balance.least_shift
     )
     for _ in range(ATTEMPTS):
-        relax(assembly, water, relaxing, relaxation, pool)
-        some = np.flatnonzero(~(found.residual <= TOLERANCE) & (relaxing.residual < LOST))
+        _relax.relax(assembly, water, relaxing, relaxation, pool)
+        some = np.flatnonzero(~(found.residual <= TOLERANCE) & (relaxing.residual < _relax.LOST))
         sharper = _near(assembly, relaxing.position[some], balance)
         _seek(assembly, water.rows(some), sharper, balance, pool)
         found.take(some, sharper)
@@ -186,9 +172,7 @@ def _relax_the_rest(
     state.take(rest * starts, found)
 
 
-def _near(
-    assembly: Assembly, position: Float[np.ndarray, "case node 3"], balance: Balance
-) -> Balancing:
+def _near(assembly: Assembly, position: CaseNode3, balance: Balance) -> Balancing:
     """Cases begun close to an equilibrium, with the tensions of their shapes."""
     bars = assembly.bars
     tension = [hooke(bars, shape)[1] for shape in position]
@@ -206,7 +190,7 @@ def _choose(assembly: Assembly, state: Balancing, starts: int) -> Equilibria:
     taken = np.argmax(2 * (found & ~unstable) + found, axis=1)
     each = np.arange(len(taken))
     position, left = shapes[each, taken], residual[each, taken]
-    lost = ~(left < LOST) | ~np.isfinite(position).all(axis=(1, 2))
+    lost = ~(left < _relax.LOST) | ~np.isfinite(position).all(axis=(1, 2))
     position[lost] = np.nan
     result = np.where(left <= TOLERANCE, Result.CONVERGED, Result.NOT_CONVERGED)
     number, spread = _distinct(
@@ -226,7 +210,7 @@ def _distinct(
     shapes: Float[np.ndarray, "case start node 3"],
     residual: Float[np.ndarray, "case start"],
     least: float,
-) -> tuple[Int[np.ndarray, " case"], Float[np.ndarray, " case"]]:
+) -> tuple[Int[np.ndarray, " case"], PerCase]:
     """Number of shapes at least so far apart among the converged, and their largest distance [m].
 
     Where half a newton is left, slack netting may still lie decimetres from its place.

@@ -13,57 +13,30 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.conventions import Rows, SeacageError
+from seacage.dynamics._kernel import _structs
 from seacage.dynamics._kernel._balance import Balance, Balancing
 from seacage.dynamics._kernel._sparsity import Pattern
-from seacage.dynamics._kernel._structs import (
-    STRUCTS,
-    AssemblyStruct,
-    BalanceStruct,
-    BalancingStruct,
-    BenchStruct,
-    FlowStruct,
-    PatternStruct,
-    RelaxationStruct,
-    RelaxingStruct,
-    Struct,
-    by_name,
-    check_layout,
-    pointer,
-)
-from seacage.dynamics._parts import Assembly
-from seacage.dynamics._physics import SteadyFlow
+from seacage.dynamics._parts._assembly import Assembly
+from seacage.dynamics._physics._loads import SteadyFlow
 
 SUFFIX = {"Darwin": ".dylib", "Windows": ".dll"}.get(platform.system(), ".so")
+# The kernels that the build can make, best first, and the level of processor that each needs
 LEVELS = {"native": 0, "x86-64-v4": 4, "x86-64-v3": 3, "x86-64-v2": 2}
-"""The kernels that the build can make, best first, and the level of processor that each needs."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Relaxation:
-    """Settings of dynamic relaxation; ``seacage_relax`` in the kernel defines the method.
+    """Settings of dynamic relaxation; ``seacage_relax`` in the kernel defines the method."""
 
-    Attributes
-    ----------
-    inverse_mass
-        Fictitious, of each node; 0 holds it [1/kg].
-    soft_rate
-        Spring rate of each bar while relaxing [N/m].
-    tolerance
-        Largest force left on a node of a case that is done [N].
-    progress, patience, most_damping
-        After ``patience`` rounds without a residual below ``progress`` times the best, a
-        case loses more of its velocity in each step, up to ``most_damping``.
-    steps
-        Steps of a round.
-    """
-
-    inverse_mass: Float[np.ndarray, " node"]
-    soft_rate: Float[np.ndarray, " bar"]
-    tolerance: float
+    inverse_mass: Float[np.ndarray, " node"]  # fictitious, of each node; 0 holds it [1/kg]
+    soft_rate: Float[np.ndarray, " bar"]  # spring rate of each bar while relaxing [N/m]
+    tolerance: float  # largest force left on a node of a case that is done [N]
+    # After ``patience`` rounds without a residual below ``progress`` times the best, a case loses
+    # more of its velocity in each step, up to ``most_damping``
     progress: float
     patience: int
     most_damping: float
-    steps: int
+    steps: int  # steps of a round
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -106,16 +79,13 @@ class Relaxing(Rows):
 class Kernel:
     """One loaded library; a call releases the interpreter, so threads run side by side.
 
-    Raises
-    ------
-    SeacageError
-        A library whose structs are not those of this version.
+    Raises SeacageError: a library whose structs are not those of this version.
     """
 
     def __init__(self, path: Path) -> None:
         self.library = ctypes.CDLL(str(path))
-        for struct in STRUCTS:
-            check_layout(self.library, struct)
+        for struct in _structs.STRUCTS:
+            _structs.check_layout(self.library, struct)
         self.lanes: int = self.library.seacage_lanes()
         for name in ("forces", "relax", "balance", "march", "march_forces", "march_water"):
             getattr(self.library, f"seacage_{name}").restype = None
@@ -130,13 +100,15 @@ class Kernel:
         rounds: int,
     ) -> Relaxing:
         """At most ``lanes`` cases, so many rounds nearer to rest."""
-        rate, laned = bar_rate(assembly), self._state(RelaxingStruct, state)
-        settings = RelaxationStruct.filled(**by_name(relaxation), true_rate=rate, rounds=rounds)
+        rate, laned = bar_rate(assembly), self._state(_structs.RelaxingStruct, state)
+        settings = _structs.RelaxationStruct.filled(
+            **_structs.by_name(relaxation), true_rate=rate, rounds=rounds
+        )
         self.library.seacage_relax(
             *self.problem(assembly, flow),
             *map(ctypes.byref, (settings, laned)),
-            pointer(np.empty((len(rate), self.lanes))),
-            pointer(np.empty_like(laned.arrays["position"])),
+            _structs.pointer(np.empty((len(rate), self.lanes))),
+            _structs.pointer(np.empty_like(laned.arrays["position"])),
         )
         return _cases(laned, state)
 
@@ -150,11 +122,11 @@ class Kernel:
         iterations: int,
     ) -> Balancing:
         """At most ``lanes`` cases, so many iterations of ``nearer`` further on."""
-        pattern, laned = Pattern.of(assembly), self._state(BalancingStruct, state)
+        pattern, laned = Pattern.of(assembly), self._state(_structs.BalancingStruct, state)
         structs = (
-            PatternStruct.filled(**by_name(pattern)),
-            BalanceStruct.cast(
-                **by_name(balance), true_rate=bar_rate(assembly), iterations=iterations
+            _structs.PatternStruct.filled(**_structs.by_name(pattern)),
+            _structs.BalanceStruct.cast(
+                **_structs.by_name(balance), true_rate=bar_rate(assembly), iterations=iterations
             ),
             laned,
             self.bench(len(assembly.position), len(assembly.bars.length), pattern),
@@ -162,14 +134,14 @@ class Kernel:
         self.library.seacage_balance(*self.problem(assembly, flow), *map(ctypes.byref, structs))
         return _cases(laned, state)
 
-    def bench(self, nodes: int, bars: int, pattern: Pattern) -> Struct:
+    def bench(self, nodes: int, bars: int, pattern: Pattern) -> _structs.Struct:
         """Room for Newton's method to work in."""
         shapes = dict.fromkeys(("truth", "force", "step"), (nodes, 3)) | {
             "tension": (bars,),
             "bar": (bars, 6),
             "blocks": (len(pattern.column), 9),
         }
-        return BenchStruct.filled(
+        return _structs.BenchStruct.filled(
             zero=np.zeros((bars, self.lanes)),
             place=np.empty((2, nodes), dtype=np.int32),
             **{name: np.empty((*shape, self.lanes)) for name, shape in shapes.items()},
@@ -182,16 +154,20 @@ class Kernel:
             axis=-1,
         )
         arrays = {"direction": flow.direction, "panel": panel, "pipe_pressure": flow.pipe_pressure}
-        structure = AssemblyStruct.cast(
+        structure = _structs.AssemblyStruct.cast(
             bar_stiffness=assembly.bars.stiffness,
             cylinder_width=assembly.cylinders.drag_width,
             **parts_of(assembly),
         )
-        water = FlowStruct.filled(**{name: self.to_lanes(each) for name, each in arrays.items()})
+        water = _structs.FlowStruct.filled(
+            **{name: self.to_lanes(each) for name, each in arrays.items()}
+        )
         return ctypes.byref(structure), ctypes.byref(water)
 
-    def _state(self, kind: type[Struct], state: Relaxing | Balancing) -> Struct:
-        return kind.filled(**{name: self.to_lanes(each) for name, each in by_name(state).items()})
+    def _state(self, kind: type[_structs.Struct], state: Relaxing | Balancing) -> _structs.Struct:
+        return kind.filled(
+            **{name: self.to_lanes(each) for name, each in _structs.by_name(state).items()}
+        )
 
     def to_lanes(
         self, values: Float[np.ndarray, "case *shape"]
@@ -204,7 +180,7 @@ class Kernel:
 State = TypeVar("State", Relaxing, Balancing)
 
 
-def _cases(laned: Struct, like: State) -> State:
+def _cases(laned: _structs.Struct, like: State) -> State:
     """The state that the kernel left, of as many cases as it began with."""
     cases = len(like.residual)
     return type(like)(
@@ -261,10 +237,7 @@ def kernel() -> Kernel:
 
     ``SEACAGE_KERNEL`` in the environment names another: ``x86-64-v2``, ``-v3`` or ``-v4``.
 
-    Raises
-    ------
-    SeacageError
-        Where none was built, or the named one is not to be had.
+    Raises SeacageError: where none was built, or the named one is not to be had.
     """
     name = choose(*available(), os.environ.get("SEACAGE_KERNEL", ""))
     return Kernel(library_of(name))
@@ -278,10 +251,7 @@ def library_of(name: str) -> Path:
 def available() -> tuple[list[str], int]:
     """Names of the kernels that were built, best first, and the level that the processor can run.
 
-    Raises
-    ------
-    SeacageError
-        Where none was built.
+    Raises SeacageError: where none was built.
     """
     built = [name for name in LEVELS if library_of(name).exists()]
     if not built:
@@ -296,19 +266,10 @@ def available() -> tuple[list[str], int]:
 def choose(built: Sequence[str], able: int, forced: str) -> str:
     """The name of the kernel to load.
 
-    Parameters
-    ----------
-    built
-        Names of the kernels that were built, best first.
-    able
-        The highest level that the processor can run, of `LEVELS`.
-    forced
-        Name of the kernel to force; empty for the best.
+    ``built``: names of the kernels that were built, best first. ``able``: the highest level that
+    the processor can run, of `LEVELS`. ``forced``: name of the kernel to force; empty for the best.
 
-    Raises
-    ------
-    SeacageError
-        Where the forced kernel is unknown, was not built or cannot be run.
+    Raises SeacageError: where the forced kernel is unknown, was not built or cannot be run.
     """
     runs = [name for name in built if LEVELS[name] <= able]
     if not forced or forced in runs:

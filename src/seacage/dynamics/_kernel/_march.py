@@ -19,42 +19,26 @@ from seacage.dynamics._kernel._march_inputs import (
     simulation_lanes,
     to_lanes,
 )
-from seacage.dynamics._kernel._structs import RecordStruct, ScheduleStruct, StateStruct
-from seacage.dynamics._parts import Assembly, Body
-from seacage.dynamics._physics import NetLaw, damped_tension
+from seacage.dynamics._kernel._structs import RecordStruct, ScheduleStruct, StateStruct, Struct
+from seacage.dynamics._parts._assembly import Assembly, Body
+from seacage.dynamics._physics._motion import NetLaw, damped_tension
 from seacage.ocean import Waves
 
-REFRESH = 0.1
-"""Between two looks at the water [s]."""
+REFRESH = 0.1  # between two looks at the water [s]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Steps:
-    """Time steps, refreshes and samples of a march.
+    """Time steps, refreshes and samples of a march."""
 
-    Attributes
-    ----------
-    time_step
-        [s].
-    each
-        Time steps between two looks at the water.
-    hold
-        Time steps through which the water's load is held, but for what drag changes.
-    ramp
-        Over which the waves rise [s].
-    spin_up, counted
-        Refreshes that do not count, and that do.
-    sample_every
-        Refreshes between samples; 0 for none.
-    """
-
-    time_step: float
-    each: int
-    hold: int
-    ramp: float
+    time_step: float  # [s]
+    each: int  # time steps between two looks at the water
+    hold: int  # time steps through which the water's load is held, but for what drag changes
+    ramp: float  # over which the waves rise [s]
+    # Refreshes that do not count, and that do
     spin_up: int
     counted: int
-    sample_every: int
+    sample_every: int  # refreshes between samples; 0 for none
 
     @property
     def whole(self) -> int:
@@ -225,7 +209,7 @@ def _counts(assembly: Assembly) -> str:
     return f"{nodes} nodes, {panels} panels, {floats} floats and {lines} lines"
 
 
-def motion_of(assembly: Assembly, position: Float[np.ndarray, "node 3 lane"]) -> StateStruct:
+def motion_of(assembly: Assembly, position: Float[np.ndarray, "node 3 lane"]) -> Struct:
     """Nodes at rest in still water, as the kernel keeps them."""
     lanes, nodes = simulation_lanes(), len(position)
     panels = len(assembly.panels.area)

@@ -11,48 +11,29 @@ from jaxtyping import Float, Int
 
 from seacage.conventions import WATER_VISCOSITY
 from seacage.dynamics._kernel._library import kernel, parts_of
-from seacage.dynamics._kernel._structs import BodyStruct, NettingStruct, SeaStruct
-from seacage.dynamics._parts import Assembly, Bars
-from seacage.dynamics._physics import (
-    CYLINDER,
-    DYNAMIC,
-    UNFELT,
-    NetLaw,
-    bar_damping,
-    facing,
-    wave_reach,
-)
+from seacage.dynamics._kernel._structs import BodyStruct, NettingStruct, SeaStruct, Struct
+from seacage.dynamics._parts._assembly import Assembly, Bars
+from seacage.dynamics._physics._loads import DYNAMIC
+from seacage.dynamics._physics._motion import NetLaw, bar_damping
+from seacage.dynamics._physics._node_waves import UNFELT, wave_reach
+from seacage.dynamics._physics._screens import CYLINDER, facing
 from seacage.ocean import Waves
 
-HELD = 1e20
-"""Mass of a node that is held in its place [kg]."""
-
+HELD = 1e20  # mass of a node that is held in its place [kg]
+# Least e^(−2kh) with which the bed changes a component where it is felt, in single precision
 NO_BED = 1e-12
-"""Least e^(−2kh) with which the bed changes a component where it is felt, in single precision."""
 
 _SCREENS, _TWINES = range(2)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ocean:
-    """Waves and currents of each case of a block.
+    """Waves and currents of each case of a block."""
 
-    Attributes
-    ----------
-    waves
-        Of each case.
-    current
-        Velocity at each level [m/s].
-    level_z
-        Of the levels, downwards [m].
-    depth
-        Of the water [m].
-    """
-
-    waves: Sequence[Waves]
-    current: Float[np.ndarray, "case level 2"]
-    level_z: Float[np.ndarray, " level"]
-    depth: float
+    waves: Sequence[Waves]  # of each case
+    current: Float[np.ndarray, "case level 2"]  # velocity at each level [m/s]
+    level_z: Float[np.ndarray, " level"]  # of the levels, downwards [m]
+    depth: float  # of the water [m]
 
 
 @lru_cache(maxsize=1)
@@ -85,7 +66,7 @@ def from_lanes(values: np.ndarray) -> np.ndarray:
     return np.moveaxis(values, -1, 0)
 
 
-def body_of(assembly: Assembly) -> BodyStruct:
+def body_of(assembly: Assembly) -> Struct:
     """The cage, its bars as their nodes lie in memory, which saves waiting for it."""
     assert np.all(np.diff(assembly.floats.nodes) > 0), "the kernel meets floats in the nodes' order"
     bars, new = _in_node_order(assembly.bars)
@@ -127,7 +108,7 @@ def _in_node_order(bars: Bars) -> tuple[Bars, Int[np.ndarray, " bar"]]:
     return bars.rows(order), np.argsort(order)
 
 
-def netting_of(assembly: Assembly, *laws: NetLaw) -> NettingStruct:
+def netting_of(assembly: Assembly, *laws: NetLaw) -> Struct:
     """The netting of all cases, each law's own after another's; twines go beside no screen."""
     twines = {law.name == "morison" for law in laws}
     assert len(twines) == 1, "screens and twines do not march together"
@@ -190,7 +171,7 @@ def _cylinder_series() -> Float[np.ndarray, " power"]:
     return Polynomial(CYLINDER)(Polynomial([9.0 * scale, scale])).coef
 
 
-def sea_tables(ocean: Ocean, *, now: float = 0.0) -> SeaStruct:
+def sea_tables(ocean: Ocean, *, now: float = 0.0) -> Struct:
     """Tables of the kernel's sea, for waves whose time 0 is ``now`` [s]."""
     tables = _wave_tables(ocean.waves)
     tables["turns"] += now * tables["turns_per_second"]

@@ -9,32 +9,22 @@ from jaxtyping import Int
 from scipy.sparse import coo_array, csc_array, eye_array
 from scipy.sparse.linalg import splu
 
-from seacage.dynamics._parts import Assembly
+from seacage.dynamics._parts._assembly import Assembly
 
+# Parts of an assembly that stiffen it, in the order of a pattern's fields
 PARTS = ("bars", "bends", "panels", "cylinders", "floats", "springs", "grounds")
-"""Parts of an assembly that stiffen it, in the order of a pattern's fields."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Pattern:
-    """Blocks of two nodes, row by row in the order of elimination, all that fill up included.
+    """Blocks of two nodes, row by row in the order of elimination, all that fill up included."""
 
-    Attributes
-    ----------
-    row, diagonal
-        Number of each row's first block, at the end that of all; and of its diagonal one.
-    column
-        Of each block.
-    order
-        Which node each row (and column) is of.
-    bars, bends, panels, cylinders, floats, springs, grounds
-        Which block takes what each part adds for each pair of its nodes.
-    """
-
+    # Number of each row's first block, at the end that of all; and of its diagonal one
     row: Int[np.ndarray, " row_and_end"]
     diagonal: Int[np.ndarray, " row"]
-    column: Int[np.ndarray, " block"]
-    order: Int[np.ndarray, " row"]
+    column: Int[np.ndarray, " block"]  # of each block
+    order: Int[np.ndarray, " row"]  # which node each row (and column) is of
+    # Which block takes what each part adds for each pair of its nodes
     bars: Int[np.ndarray, "bar 2 2"]
     bends: Int[np.ndarray, "bend 3 3"]
     panels: Int[np.ndarray, "panel 4 4"]

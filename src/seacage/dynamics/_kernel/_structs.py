@@ -82,10 +82,7 @@ class _Row(ctypes.Structure):
 def check_layout(library: ctypes.CDLL, struct: type[Struct]) -> None:
     """Refuse a library whose C lays a struct out otherwise than Python does.
 
-    Raises
-    ------
-    SeacageError
-        Another name, place or size of a field, or another size of the whole.
+    Raises SeacageError: another name, place or size of a field, or another size of the whole.
     """
     fields = [(name, getattr(struct, name)) for name, *_ in struct._fields_]
     rows = [(name.encode(), field.offset, field.size) for name, field in fields]
@@ -104,152 +101,105 @@ def check_layout(library: ctypes.CDLL, struct: type[Struct]) -> None:
             )
 
 
-def _each(kind: Any, names: str) -> tuple[tuple[str, Any], ...]:
-    """Fields of one kind, their names between spaces."""
-    return tuple((name, kind) for name in names.split())
+def _struct(c_name: str, *fields: tuple[Any, str]) -> type[Struct]:
+    """A struct of fields of one kind after another, their names between spaces."""
+    each = [(name, kind) for kind, names in fields for name in names.split()]
+    return type(c_name, (Struct,), {"c_name": c_name, "_fields_": each})
 
 
 # Equilibria: double precision
 
-
-class AssemblyStruct(Struct):
-    c_name = "assembly"
-    _fields_ = (
-        *_each(ctypes.c_int32, "nodes bars bends panels cylinders floats springs grounds"),
-        *_each(INTEGERS, "bar_ends bend_nodes panel_corners cylinder_ends float_nodes"),
-        *_each(INTEGERS, "spring_nodes ground_nodes"),
-        *_each(DOUBLES, "weight bar_length bar_stiffness bar_least"),
-        *_each(DOUBLES, "bend_stiffness bend_plane bend_turn panel_share panel_outline"),
-        *_each(DOUBLES, "cylinder_width float_stiffness float_draft float_height"),
-        *_each(DOUBLES, "spring_place spring_stiffness spring_preload ground_stiffness"),
-        ("ground_level", ctypes.c_double),
-    )
-
-
-class FlowStruct(Struct):
-    c_name = "flow"
-    _fields_ = _each(DOUBLES, "direction panel pipe_pressure")
-
-
-class RelaxationStruct(Struct):
-    c_name = "relaxation"
-    _fields_ = (
-        *_each(DOUBLES, "inverse_mass soft_rate true_rate"),
-        *_each(ctypes.c_double, "tolerance progress most_damping"),
-        *_each(ctypes.c_int32, "patience steps rounds"),
-    )
-
-
-class RelaxingStruct(Struct):
-    c_name = "relaxing"
-    _fields_ = _each(DOUBLES, "position velocity carried damping best stalled rounds residual")
-
-
-class PatternStruct(Struct):
-    c_name = "pattern"
-    _fields_ = (
-        *_each(INTEGERS, "row diagonal column order bars bends panels cylinders floats springs"),
-        ("grounds", INTEGERS),
-    )
-
-
-class BalanceStruct(Struct):
-    c_name = "balance"
-    _fields_ = (
-        *_each(DOUBLES, "free true_rate"),
-        *_each(ctypes.c_double, "tolerance reach least_barrier least_shift most_shift"),
-        ("iterations", ctypes.c_int32),
-    )
-
-
-class BalancingStruct(Struct):
-    c_name = "balancing"
-    _fields_ = _each(DOUBLES, "position tension barrier shift moved sign iterations residual")
-
-
-class BenchStruct(Struct):
-    c_name = "bench"
-    _fields_ = (*_each(DOUBLES, "truth force step zero tension bar blocks"), ("place", INTEGERS))
-
+AssemblyStruct = _struct(
+    "assembly",
+    (ctypes.c_int32, "nodes bars bends panels cylinders floats springs grounds"),
+    (INTEGERS, "bar_ends bend_nodes panel_corners cylinder_ends float_nodes"),
+    (INTEGERS, "spring_nodes ground_nodes"),
+    (DOUBLES, "weight bar_length bar_stiffness bar_least"),
+    (DOUBLES, "bend_stiffness bend_plane bend_turn panel_share panel_outline"),
+    (DOUBLES, "cylinder_width float_stiffness float_draft float_height"),
+    (DOUBLES, "spring_place spring_stiffness spring_preload ground_stiffness"),
+    (ctypes.c_double, "ground_level"),
+)
+FlowStruct = _struct("flow", (DOUBLES, "direction panel pipe_pressure"))
+RelaxationStruct = _struct(
+    "relaxation",
+    (DOUBLES, "inverse_mass soft_rate true_rate"),
+    (ctypes.c_double, "tolerance progress most_damping"),
+    (ctypes.c_int32, "patience steps rounds"),
+)
+RelaxingStruct = _struct(
+    "relaxing", (DOUBLES, "position velocity carried damping best stalled rounds residual")
+)
+PatternStruct = _struct(
+    "pattern",
+    (INTEGERS, "row diagonal column order bars bends panels cylinders floats springs grounds"),
+)
+BalanceStruct = _struct(
+    "balance",
+    (DOUBLES, "free true_rate"),
+    (ctypes.c_double, "tolerance reach least_barrier least_shift most_shift"),
+    (ctypes.c_int32, "iterations"),
+)
+BalancingStruct = _struct(
+    "balancing", (DOUBLES, "position tension barrier shift moved sign iterations residual")
+)
+BenchStruct = _struct(
+    "bench", (DOUBLES, "truth force step zero tension bar blocks"), (INTEGERS, "place")
+)
 
 # The march: single precision
 
+BodyStruct = _struct(
+    "body",
+    (ctypes.c_int32, "nodes bars bends panels cylinders floats springs grounds lines"),
+    (ctypes.c_int32, "buoys twines slenders cage_nodes"),
+    (INTEGERS, "bar_ends bend_nodes panel_corners cylinder_ends float_nodes"),
+    (INTEGERS, "spring_nodes ground_nodes line_bars line_floats slender_nodes"),
+    (INTEGERS, "cylinder_body twine_bars anchor_bars"),
+    (FLOATS, "weight mass water_mass place chord slender_tangent slender_mass"),
+    (FLOATS, "bar_length bar_rate bar_damping bar_least"),
+    (FLOATS, "bend_stiffness bend_plane bend_turn panel_share panel_outline panel_mass"),
+    (FLOATS, "cylinder_drag cylinder_skin"),
+    (FLOATS, "float_stiffness float_draft float_height"),
+    (FLOATS, "spring_place spring_stiffness spring_preload spring_damping"),
+    (FLOATS, "ground_stiffness cylinder_series"),
+    (ctypes.c_float, "ground_level"),
+)
+NettingStruct = _struct("netting", (ctypes.c_int32, "kind"), (FLOATS, "law drag_factor wake all"))
+SeaStruct = _struct(
+    "sea",
+    (ctypes.c_int32, "components levels spread"),
+    (INTEGERS, "shallow"),
+    (DOUBLES, "turns turns_per_second"),
+    (FLOATS, "number toward_x toward_y amplitude speed reach floor bounce"),
+    (FLOATS, "level_z current"),
+    (ctypes.c_float, "depth"),
+)
+ScheduleStruct = _struct(
+    "schedule",
+    (ctypes.c_double, "time_step ramp"),
+    (ctypes.c_int64, "first refreshes count_from sample_every"),
+    (ctypes.c_int32, "steps hold"),
+)
+StateStruct = _struct(
+    "state",
+    (FLOATS, "position rest velocity water slope current relative force base held"),
+    (FLOATS, "drag elevation rise panel_current panel_factor panel_drag panel_lift lost_at"),
+)
+RecordStruct = _struct(
+    "record",
+    (DOUBLES, "node_sum node_square"),
+    (FLOATS, "node_least node_most"),
+    (DOUBLES, "line_sum line_square"),
+    (FLOATS, "line_least line_most"),
+    (DOUBLES, "load_sum load_square"),
+    (FLOATS, "load_least load_most"),
+    (LONGS, "counted sampled"),
+    (DOUBLES, "twine_sum"),
+    (FLOATS, "twine_most twine_slack"),
+    (DOUBLES, "anchor_sum"),
+    (FLOATS, "uplift_most"),
+    (FLOATS, "positions elevations loads tensions"),
+)
 
-class BodyStruct(Struct):
-    c_name = "body"
-    _fields_ = (
-        *_each(ctypes.c_int32, "nodes bars bends panels cylinders floats springs grounds lines"),
-        *_each(ctypes.c_int32, "buoys twines slenders cage_nodes"),
-        *_each(INTEGERS, "bar_ends bend_nodes panel_corners cylinder_ends float_nodes"),
-        *_each(INTEGERS, "spring_nodes ground_nodes line_bars line_floats slender_nodes"),
-        *_each(INTEGERS, "cylinder_body twine_bars anchor_bars"),
-        *_each(FLOATS, "weight mass water_mass place chord slender_tangent slender_mass"),
-        *_each(FLOATS, "bar_length bar_rate bar_damping bar_least"),
-        *_each(FLOATS, "bend_stiffness bend_plane bend_turn panel_share panel_outline panel_mass"),
-        *_each(FLOATS, "cylinder_drag cylinder_skin"),
-        *_each(FLOATS, "float_stiffness float_draft float_height"),
-        *_each(FLOATS, "spring_place spring_stiffness spring_preload spring_damping"),
-        *_each(FLOATS, "ground_stiffness cylinder_series"),
-        ("ground_level", ctypes.c_float),
-    )
-
-
-class NettingStruct(Struct):
-    c_name = "netting"
-    _fields_ = (
-        ("kind", ctypes.c_int32),
-        *_each(FLOATS, "law drag_factor wake all"),
-    )
-
-
-class SeaStruct(Struct):
-    c_name = "sea"
-    _fields_ = (
-        *_each(ctypes.c_int32, "components levels spread"),
-        ("shallow", INTEGERS),
-        *_each(DOUBLES, "turns turns_per_second"),
-        *_each(FLOATS, "number toward_x toward_y amplitude speed reach floor bounce"),
-        *_each(FLOATS, "level_z current"),
-        ("depth", ctypes.c_float),
-    )
-
-
-class ScheduleStruct(Struct):
-    c_name = "schedule"
-    _fields_ = (
-        *_each(ctypes.c_double, "time_step ramp"),
-        *_each(ctypes.c_int64, "first refreshes count_from sample_every"),
-        *_each(ctypes.c_int32, "steps hold"),
-    )
-
-
-class StateStruct(Struct):
-    c_name = "state"
-    _fields_ = (
-        *_each(FLOATS, "position rest velocity water slope current relative force base held"),
-        *_each(
-            FLOATS, "drag elevation rise panel_current panel_factor panel_drag panel_lift lost_at"
-        ),
-    )
-
-
-class RecordStruct(Struct):
-    c_name = "record"
-    _fields_ = (
-        *_each(DOUBLES, "node_sum node_square"),
-        *_each(FLOATS, "node_least node_most"),
-        *_each(DOUBLES, "line_sum line_square"),
-        *_each(FLOATS, "line_least line_most"),
-        *_each(DOUBLES, "load_sum load_square"),
-        *_each(FLOATS, "load_least load_most"),
-        *_each(LONGS, "counted sampled"),
-        ("twine_sum", DOUBLES),
-        *_each(FLOATS, "twine_most twine_slack"),
-        ("anchor_sum", DOUBLES),
-        ("uplift_most", FLOATS),
-        *_each(FLOATS, "positions elevations loads tensions"),
-    )
-
-
-STRUCTS = tuple(Struct.__subclasses__())
-"""All structs that Python fills for the kernel."""
+STRUCTS = tuple(Struct.__subclasses__())  # all structs that Python fills for the kernel

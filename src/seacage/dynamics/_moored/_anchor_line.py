@@ -9,33 +9,23 @@ from jaxtyping import Bool, Float
 from seacage.cage import AnchorLines, Cage
 from seacage.conventions import GRAVITY, WATER_DENSITY, InputError
 
+# Lengths of a rope's segments from the corner down, over the longest
 ROPE_SHARES = (1.0,) * 7 + (0.6, 0.4, 0.3, 0.2, 0.2)
-"""Lengths of a rope's segments from the corner down, over the longest."""
 
-CHAIN_SEGMENTS = 4
-"""Of an anchor line's bottom chain."""
-
+CHAIN_SEGMENTS = 4  # of an anchor line's bottom chain
+# EA of the chain over the rope's: beyond, it costs time steps and changes nothing [-]
 STIFFEST_CHAIN = 10.0
-"""EA of the chain over the rope's: beyond, it costs time steps and changes nothing [-]."""
 
-STEEL_DENSITY = 7850.0
-"""Of a chain [kg/m3]."""
+STEEL_DENSITY = 7850.0  # of a chain [kg/m3]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LineShape:
-    """An anchor line in segments, from a corner down.
+    """An anchor line in segments, from a corner down."""
 
-    Attributes
-    ----------
-    position
-        Of its nodes, along it and up, the first at the origin [m].
-    tension
-        Of its segments [N].
-    """
-
+    # Of its nodes, along it and up, the first at the origin [m]
     position: Float[np.ndarray, "node 2"]
-    tension: Float[np.ndarray, " segment"]
+    tension: Float[np.ndarray, " segment"]  # of its segments [N]
 
 
 def segments(parts: AnchorLines) -> tuple[Float[np.ndarray, " s"], Float[np.ndarray, " s"]]:
@@ -82,10 +72,7 @@ def hung(parts: AnchorLines, horizontal: float, vertical: float) -> LineShape:
 def resting_line(cage: Cage) -> LineShape:
     """An anchor line in still water: its pretension at the corner, its end on the sea bed.
 
-    Raises
-    ------
-    InputError
-        A line too short to reach the sea bed, or without what holds it.
+    Raises InputError: a line too short to reach the sea bed, or without what holds it.
     """
     from scipy.optimize import root_scalar
 

@@ -6,7 +6,8 @@ from seacage.cage import Cage, Structure
 from seacage.conventions import InputError
 from seacage.dynamics._moored._mooring import anchor_assembly
 from seacage.dynamics._moored._pretension import assemble
-from seacage.dynamics._parts import Assembly, assemble_structure
+from seacage.dynamics._parts._assembly import Assembly
+from seacage.dynamics._parts._structure import assemble_structure
 
 Mooring = Literal["catenary", "springs"]
 
@@ -22,10 +23,7 @@ def moor(cage: Cage | Structure, mooring: Mooring) -> Assembly:
 
     A structure has lines and anchors of its own.
 
-    Raises
-    ------
-    InputError
-        Another mooring, and what the mooring asks of the cage that its file has not.
+    Raises InputError: another mooring, and what the mooring asks of the cage that its file has not.
     """
     if mooring not in get_args(Mooring):
         raise InputError(f"mooring = {mooring!r} is none of: {', '.join(get_args(Mooring))}.")

@@ -11,7 +11,11 @@ from seacage.conventions import WATER_DENSITY, InputError
 from seacage.dynamics._moored._anchor_line import is_rope
 from seacage.dynamics._moored._mooring import anchor_assembly
 from seacage.dynamics._moored._pretension import assemble
-from seacage.dynamics._parts import Assembly, Bars
+from seacage.dynamics._parts._assembly import Assembly, Bars
+
+BoolPerPanel = Bool[np.ndarray, " panel"]
+IntPartEnd = Int[np.ndarray, "part end"]
+IntPerSpoke = Int[np.ndarray, " spoke"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,10 +44,7 @@ def full_assembly(cage: Cage, *, stiffening: tuple[float, float]) -> Assembly:
     beyond a strain: beside each lies a second, longer one. ``bridles`` names the first ropes of
     all bridles, then the second.
 
-    Parameters
-    ----------
-    stiffening
-        The strain, and the stiffness that comes then, over the first [-].
+    ``stiffening``: the strain, and the stiffness that comes then, over the first [-].
     """
     hung = _tube_hung(cage, anchor_assembly(cage))
     return _stiffening(hung, _ropes(cage), *stiffening)
@@ -87,24 +88,16 @@ def _tube_hung(cage: Cage, base: Assembly) -> Assembly:
     )
 
 
-def _all_in(
-    nodes: Int[np.ndarray, "part end"], ring: Int[np.ndarray, " spoke"]
-) -> Bool[np.ndarray, " part"]:
+def _all_in(nodes: IntPartEnd, ring: IntPerSpoke) -> Bool[np.ndarray, " part"]:
     return np.asarray(np.isin(nodes, ring).all(axis=1))
 
 
-def _move(
-    nodes: Int[np.ndarray, "part end"],
-    ring: Int[np.ndarray, " spoke"],
-    moved: Int[np.ndarray, " node"],
-) -> Int[np.ndarray, "part end"]:
+def _move(nodes: IntPartEnd, ring: IntPerSpoke, moved: Int[np.ndarray, " node"]) -> IntPartEnd:
     return np.where(_all_in(nodes, ring)[:, None], moved[nodes], nodes)
 
 
 def _shift(
-    values: Float[np.ndarray, " node"],
-    ring: Int[np.ndarray, " spoke"],
-    share: Float[np.ndarray, " spoke"],
+    values: Float[np.ndarray, " node"], ring: IntPerSpoke, share: Float[np.ndarray, " spoke"]
 ) -> Float[np.ndarray, " more"]:
     """A share taken from the ring's nodes and given to as many new ones."""
     left = values.copy()
@@ -112,7 +105,7 @@ def _shift(
     return np.append(left, share)
 
 
-def _hangers(cage: Cage, ring: Int[np.ndarray, " spoke"], first: int) -> Bars:
+def _hangers(cage: Cage, ring: IntPerSpoke, first: int) -> Bars:
     length = cage.sinker_tube.hung_below
     if length <= 0.0 or cage.ropes.axial_stiffness <= 0.0:
         raise InputError(
@@ -148,18 +141,12 @@ def _stiffening(
 
 def broken(
     cage: Cage, assembly: Assembly, damages: tuple[Damage, ...], *, refined: int
-) -> tuple[Assembly, Bool[np.ndarray, " panel"]]:
+) -> tuple[Assembly, BoolPerPanel]:
     """A ``full_assembly`` cage after some damage, and which of its panels are still there.
 
-    Parameters
-    ----------
-    refined
-        Panels along a side of one panel that ``Damage`` counts in.
+    ``refined``: panels along a side of one panel that ``Damage`` counts in.
 
-    Raises
-    ------
-    InputError
-        Damage to what the cage has not.
+    Raises InputError: damage to what the cage has not.
     """
     stiffness = assembly.bars.stiffness.copy()
     whole = np.ones(len(assembly.panels.area), dtype=bool)
@@ -181,10 +168,7 @@ def _both_ropes(cage: Cage, assembly: Assembly, bridle: int) -> Int[np.ndarray, 
 
 
 def _tear(
-    cage: Cage,
-    hole: tuple[int, ...],
-    stiffness: Float[np.ndarray, " bar"],
-    whole: Bool[np.ndarray, " panel"],
+    cage: Cage, hole: tuple[int, ...], stiffness: Float[np.ndarray, " bar"], whole: BoolPerPanel
 ) -> None:
     """Take the netting out of a hole: its panels, and what its inner edges bear but ropes."""
     ring, spoke, size = hole

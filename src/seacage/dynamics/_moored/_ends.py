@@ -5,16 +5,11 @@ from jaxtyping import Float, Int
 
 from seacage.cage import Cage, Structure
 from seacage.conventions import Result, gravest
-from seacage.dynamics._parts import Assembly
+from seacage.dynamics._parts._assembly import Assembly
 
-COLLAR_UNDER = 2.0
-"""Depth of the collar's nodes in the mean beyond which a cage is drowned [m]."""
-
-BUOY_UNDER = 0.1
-"""Share of the time under water from which a buoy is drowned [-]."""
-
-SLACK = 0.01
-"""Tension over pretension below which a line is slack [-]."""
+COLLAR_UNDER = 2.0  # depth of the collar's nodes in the mean beyond which a cage is drowned [m]
+BUOY_UNDER = 0.1  # share of the time under water from which a buoy is drowned [-]
+SLACK = 0.01  # tension over pretension below which a line is slack [-]
 
 
 def mooring_result(

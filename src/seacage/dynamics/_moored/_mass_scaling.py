@@ -6,13 +6,10 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.conventions import InputError
-from seacage.dynamics._parts import Assembly
+from seacage.dynamics._parts._assembly import Assembly
 
-SAFETY = 0.9
-"""Share of the longest stable step that is used [-]."""
-
-MOST_ADDED = 4.0
-"""Mass lent to a node, over its own, beyond which a time step is refused [-]."""
+SAFETY = 0.9  # share of the longest stable step that is used [-]
+MOST_ADDED = 4.0  # mass lent to a node, over its own, beyond which a time step is refused [-]
 
 
 def scale_mass(assembly: Assembly, time_step: float) -> tuple[Assembly, Float[np.ndarray, " node"]]:
@@ -26,10 +23,7 @@ def scale_mass(assembly: Assembly, time_step: float) -> tuple[Assembly, Float[np
     is lighter, without the water's added mass; where it is too light for the step, it has as
     much of that along itself too as the step asks for.
 
-    Raises
-    ------
-    InputError
-        A node that would have to be lent more than ``MOST_ADDED`` times its mass.
+    Raises InputError: a node that would have to be lent more than ``MOST_ADDED`` times its mass.
     """
     bars = assembly.bars
     need, along = np.zeros(len(assembly.position)), _along_pipes(assembly)

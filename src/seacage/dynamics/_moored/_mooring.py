@@ -17,8 +17,7 @@ from seacage.dynamics._moored._anchor_line import (
     segments,
 )
 from seacage.dynamics._moored._pretension import assemble
-from seacage.dynamics._parts import (
-    SINKING,
+from seacage.dynamics._parts._assembly import (
     Assembly,
     Bars,
     Body,
@@ -28,9 +27,9 @@ from seacage.dynamics._parts import (
     Slender,
     Springs,
 )
+from seacage.dynamics._parts._structure import SINKING
 
-ROPE_DRAG = 1.2
-"""Cross-flow drag coefficient of a rope, a smooth cylinder's [-]."""
+ROPE_DRAG = 1.2  # cross-flow drag coefficient of a rope, a smooth cylinder's [-]
 
 
 @lru_cache(maxsize=16)
@@ -46,11 +45,8 @@ def anchor_assembly(cage: Cage) -> Assembly:
     A buoy line's tension is its buoy's lift. Left out: friction on the sea bed, the buoys' own
     sideways motion, drag on the bridles.
 
-    Raises
-    ------
-    InputError
-        A cage that cannot float, lines that do not reach the sea bed, and a buoy too small
-        for what hangs on it.
+    Raises InputError: a cage that cannot float, lines that do not reach the sea bed, and a buoy too
+    small for what hangs on it.
     """
     base = assemble(cage)
     shape = resting_line(cage)

@@ -6,10 +6,9 @@ from dataclasses import replace
 import numpy as np
 
 from seacage.conventions import InputError
-from seacage.dynamics._parts import Assembly
+from seacage.dynamics._parts._assembly import Assembly
 
-NOTHING = 1.0
-"""EA of a parted line: the solvers divide by it, and it bears less than a newton [N]."""
+NOTHING = 1.0  # EA of a parted line: the solvers divide by it, and it bears less than a newton [N]
 
 
 def part(assembly: Assembly, names: Sequence[str]) -> Assembly:
@@ -18,10 +17,7 @@ def part(assembly: Assembly, names: Sequence[str]) -> Assembly:
     Their weight, drag and mass stay, as if they hung from where they parted. An anchor line
     parts at its corner. A buoy whose line parts drifts off: its corner has no lift.
 
-    Raises
-    ------
-    InputError
-        A line that the mooring has not.
+    Raises InputError: a line that the mooring has not.
     """
     known = assembly.lines.names
     for name in names:

@@ -5,9 +5,9 @@ from functools import lru_cache
 import numpy as np
 
 from seacage.cage import Cage
-from seacage.dynamics._equilibrium import equilibria
-from seacage.dynamics._parts import Assembly
-from seacage.dynamics._physics import steady_flow
+from seacage.dynamics._equilibrium._search import equilibria
+from seacage.dynamics._parts._assembly import Assembly
+from seacage.dynamics._physics._flow import steady_flow
 
 
 @lru_cache(maxsize=16)

@@ -11,23 +11,30 @@ from seacage.cage import Cage, MooringLines, mooring_lines
 from seacage.conventions import GRAVITY, WATER_DENSITY, InputError, Rows
 from seacage.dynamics._parts._bracketed_pipes import bracket_stiffness
 
+IntPerBridle = Int[np.ndarray, " bridle"]
+IntPerSpoke = Int[np.ndarray, " spoke"]
+Node3 = Float[np.ndarray, "node 3"]
+PerBar = Float[np.ndarray, " bar"]
+PerNode = Float[np.ndarray, " node"]
+PerSpoke = Float[np.ndarray, " spoke"]
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Bars(Rows):
     """Straight elastic members; those that cannot be pushed go slack."""
 
     ends: Int[np.ndarray, "bar 2"]
-    length: Float[np.ndarray, " bar"]  # unstretched [m]
-    stiffness: Float[np.ndarray, " bar"]  # EA [N]
+    length: PerBar  # unstretched [m]
+    stiffness: PerBar  # EA [N]
     pushed: Bool[np.ndarray, " bar"]  # carries compression too
-    damping_ratio: Float[np.ndarray, " bar"]  # over pair-critical [-]
+    damping_ratio: PerBar  # over pair-critical [-]
 
     @classmethod
     def alike(
         cls,
         ends: Int[np.ndarray, "bar 2"],
-        length: Float[np.ndarray, " bar"] | float,
-        stiffness: Float[np.ndarray, " bar"] | float,
+        length: PerBar | float,
+        stiffness: PerBar | float,
         *,
         damping_ratio: float,
         pushed: bool = False,
@@ -55,11 +62,11 @@ class Bends(Rows):
     @classmethod
     def ring(
         cls,
-        around: Int[np.ndarray, " spoke"],
-        stiffness: float | Float[np.ndarray, " spoke"],
+        around: IntPerSpoke,
+        stiffness: float | PerSpoke,
         *,
-        plane_stiffness: float | Float[np.ndarray, " spoke"] = 0.0,
-        share: Float[np.ndarray, " spoke"] | None = None,
+        plane_stiffness: float | PerSpoke = 0.0,
+        share: PerSpoke | None = None,
     ) -> "Bends":
         """Joints of a pipe that closes on itself, counter-clockwise from above.
 
@@ -128,12 +135,7 @@ class Slender(Rows):
     added_mass: Float[np.ndarray, " slender"]  # A [kg]
 
     @classmethod
-    def ring(
-        cls,
-        around: Int[np.ndarray, " spoke"],
-        position: Float[np.ndarray, "node 3"],
-        added_mass: float | Float[np.ndarray, " spoke"],
-    ) -> "Slender":
+    def ring(cls, around: IntPerSpoke, position: Node3, added_mass: float | PerSpoke) -> "Slender":
         """Nodes of a pipe that closes on itself."""
         along = position[np.roll(around, -1)] - position[np.roll(around, 1)]
         return cls(
@@ -192,16 +194,16 @@ class Assembly:
 
     cage_nodes: int
     scales: Scales
-    collar: Int[np.ndarray, " spoke"]  # nodes of the uppermost ring
-    position: Float[np.ndarray, "node 3"]  # design [m]
-    weight: Float[np.ndarray, " node"]  # submerged, upwards negative [N]
-    mass: Float[np.ndarray, " node"]  # with the added mass of water, across a pipe [kg]
-    water_mass: Float[np.ndarray, " node"]  # displaced and added: what moving water pushes [kg]
+    collar: IntPerSpoke  # nodes of the uppermost ring
+    position: Node3  # design [m]
+    weight: PerNode  # submerged, upwards negative [N]
+    mass: PerNode  # with the added mass of water, across a pipe [kg]
+    water_mass: PerNode  # displaced and added: what moving water pushes [kg]
     slender: Slender  # what both lack along a pipe
     fixed: Bool[np.ndarray, " node"]  # held in its place
     chord: Float[np.ndarray, "node 2"]  # horizontal, over which its waves are averaged [m]
     bars: Bars
-    bridles: Int[np.ndarray, " bridle"]  # which bars are the bridles
+    bridles: IntPerBridle  # which bars are the bridles
     lines: MooringLines  # whose tension is reported
     line_bars: Int[np.ndarray, " first"]  # at which bar, of those that are bars
     line_floats: Int[np.ndarray, " last"]  # at which float, of the others: chains under buoys
@@ -216,13 +218,7 @@ class Assembly:
 
     @classmethod
     def of(cls, cage: Cage) -> "Assembly":
-        """Put a cage together.
-
-        Raises
-        ------
-        InputError
-            A cage that cannot float.
-        """
+        """Put a cage together. Raises InputError: a cage that cannot float."""
         position = np.vstack([cage.design_position, cage.corner_position])
         panels = _panels(cage)
         bars, bridles = _bars(cage, position)
@@ -269,7 +265,7 @@ class Assembly:
 
     def strung(
         self,
-        position: Float[np.ndarray, "node 3"],
+        position: Node3,
         tension: float,
         *,
         softness: float = 1.0,
@@ -296,9 +292,7 @@ def _scales(cage: Cage, bars: Bars) -> Scales:
     )
 
 
-def _bars(
-    cage: Cage, position: Float[np.ndarray, "node 3"]
-) -> tuple[Bars, Int[np.ndarray, " bridle"]]:
+def _bars(cage: Cage, position: Node3) -> tuple[Bars, IntPerBridle]:
     bars = Bars.joined(
         _net_bars(cage),
         _hoop(cage, 0, cage.collar.pipes * cage.collar.pipe_axial_stiffness),
@@ -331,7 +325,7 @@ def _hoop(cage: Cage, ring: int, stiffness: float) -> Bars:
     return Bars.alike(ends, length, stiffness, damping_ratio=damping_ratio, pushed=True)
 
 
-def _bridle_bars(cage: Cage, position: Float[np.ndarray, "node 3"]) -> Bars:
+def _bridle_bars(cage: Cage, position: Node3) -> Bars:
     """Rope and chain as one spring in series, with the pretension in the design shape."""
     line = cage.bridles
     ends = np.column_stack([cage.node_count + cage.bridle_corner, cage.bridle_nodes])
@@ -395,9 +389,7 @@ def _cylinders(cage: Cage) -> Cylinders:
     )
 
 
-def _weight(
-    cage: Cage, position: Float[np.ndarray, "node 3"], panels: Panels
-) -> Float[np.ndarray, " node"]:
+def _weight(cage: Cage, position: Node3, panels: Panels) -> PerNode:
     weight = np.zeros(len(position))
     submerged = (cage.netting.mass - cage.netting.displaced) * GRAVITY
     np.add.at(weight, panels.corners, -submerged * panels.area[:, None] * panels.share)
@@ -409,9 +401,7 @@ def _weight(
     return weight
 
 
-def _masses(
-    cage: Cage, position: Float[np.ndarray, "node 3"], panels: Panels
-) -> tuple[Float[np.ndarray, " node"], Float[np.ndarray, " node"]]:
+def _masses(cage: Cage, position: Node3, panels: Panels) -> tuple[PerNode, PerNode]:
     """Mass of each node with its added mass, and the water's share that follows the water [kg].
 
     Ropes on the meridians weigh nothing in water, so their mass is that of the water they
@@ -443,9 +433,7 @@ def _masses(
     return own + added, displaced + added
 
 
-def ring_chords(
-    position: Float[np.ndarray, "node 3"], rings: Sequence[Int[np.ndarray, " spoke"]]
-) -> Float[np.ndarray, "node 2"]:
+def ring_chords(position: Node3, rings: Sequence[IntPerSpoke]) -> Float[np.ndarray, "node 2"]:
     """Piece of a ring that each of its nodes stands for, horizontal; of other nodes zero [m]."""
     chord = np.zeros((len(position), 2))
     for ring in rings:
@@ -454,7 +442,7 @@ def ring_chords(
     return chord
 
 
-def _pipe_water(cage: Cage) -> tuple[Float[np.ndarray, " spoke"], Float[np.ndarray, " spoke"]]:
+def _pipe_water(cage: Cage) -> tuple[PerSpoke, PerSpoke]:
     """Mass of the water that collar and tube displace at each of their nodes [kg]."""
     collar = cage.collar
     wet = collar.pipes * collar.pipe_displaced * collar.submerged_fraction * _arc(cage, 0)
@@ -482,9 +470,7 @@ def corner_shares(corners: Int[np.ndarray, "panel 4"]) -> Float[np.ndarray, "pan
     return np.where(triangle[:, None], [1 / 3, 1 / 3, 1 / 6, 1 / 6], [1 / 4, 1 / 4, 1 / 4, 1 / 4])
 
 
-def panel_area(
-    position: Float[np.ndarray, "node 3"], corners: Int[np.ndarray, "panel 4"]
-) -> Float[np.ndarray, " panel"]:
+def panel_area(position: Node3, corners: Int[np.ndarray, "panel 4"]) -> Float[np.ndarray, " panel"]:
     """Area of each panel, a warped one's as seen along its mean normal [m2]."""
     a, b, c, d = np.moveaxis(position[corners], 1, 0)
     return np.linalg.norm(np.cross(c - a, d - b), axis=1) / 2.0
@@ -512,12 +498,7 @@ def _floats(cage: Cage, carried: float) -> Floats:
     )
 
 
-def _springs(
-    cage: Cage,
-    position: Float[np.ndarray, "node 3"],
-    bars: Bars,
-    bridles: Int[np.ndarray, " bridle"],
-) -> Springs:
+def _springs(cage: Cage, position: Node3, bars: Bars, bridles: IntPerBridle) -> Springs:
     """The corners' springs, loaded so that the pretensioned bridles keep them in place."""
     ends = bars.ends[bridles]
     along = position[ends[:, 1]] - position[ends[:, 0]]
@@ -541,14 +522,14 @@ def _around(cage: Cage, ring: int) -> Int[np.ndarray, "spoke 2"]:
     return np.column_stack([nodes, np.roll(nodes, -1)])
 
 
-def _chord(cage: Cage, ring: int) -> Float[np.ndarray, " spoke"]:
+def _chord(cage: Cage, ring: int) -> PerSpoke:
     """Straight length of ring that each node stands for [m]."""
     nodes = cage.design_position[cage.ring_nodes(ring)]
     beside = np.linalg.norm(np.roll(nodes, -1, axis=0) - nodes, axis=1)
     return (beside + np.roll(beside, 1)) / 2.0
 
 
-def _arc(cage: Cage, ring: int) -> Float[np.ndarray, " spoke"]:
+def _arc(cage: Cage, ring: int) -> PerSpoke:
     """True length of ring that each node stands for [m]."""
     radius = float(np.linalg.norm(cage.design_position[cage.node(ring, 0), :2]))
     return 2.0 * np.pi * radius * cage.spoke_share

@@ -4,8 +4,7 @@ import numpy as np
 
 from seacage.cage import Collar
 
-CORNERS = 4
-"""Wave number round the collar of the four frame corners' pull [-]."""
+CORNERS = 4  # wave number round the collar of the four frame corners' pull [-]
 
 
 def bracket_stiffness(collar: Collar, *, wave_number: int = CORNERS) -> float:
@@ -23,9 +22,7 @@ def bracket_stiffness(collar: Collar, *, wave_number: int = CORNERS) -> float:
     rigid brackets. Pipes that slide in their brackets (``brackets = 0``) are the other bound:
     nothing is added. A collar whose file has no brackets is computed so too.
 
-    References
-    ----------
-    Timoshenko & Gere (1961), section 2.18; EN 1993-1-1, 6.4.3.1, whose bound on S_v against
+    Source: Timoshenko & Gere (1961), section 2.18; EN 1993-1-1, 6.4.3.1, whose bound on S_v against
     buckling of the chords has no place here.
     """
     distance, brackets = collar.pipe_distance, collar.brackets

@@ -24,14 +24,9 @@ from seacage.dynamics._parts._assembly import (
     ring_chords,
 )
 
-SINKING = 0.01
-"""Depth to which a line's node sinks into the sea bed under its own weight [m]."""
-
-MOST_STRAIN = 0.1
-"""Of a tie or a line as built: beyond, the start would be an explosion [-]."""
-
-MOST_SOLIDITY = 0.9
-"""Beyond it a net is a wall, and no screen law is right [-]."""
+SINKING = 0.01  # depth to which a line's node sinks into the sea bed under its own weight [m]
+MOST_STRAIN = 0.1  # of a tie or a line as built: beyond, the start would be an explosion [-]
+MOST_SOLIDITY = 0.9  # beyond it a net is a wall, and no screen law is right [-]
 
 
 def assemble_structure(structure: Structure) -> Assembly:
@@ -45,11 +40,8 @@ def assemble_structure(structure: Structure) -> Assembly:
     ties, which follow them in ``lines``, it is the uppermost bar that is reported. Friction on
     the sea bed is left out.
 
-    Raises
-    ------
-    InputError
-        A structure whose pipes and buoys cannot carry its rings, nets and ties, one that is
-        built with a tie or line far too short, and one with a node that weighs nothing.
+    Raises InputError: a structure whose pipes and buoys cannot carry its rings, nets and ties, one
+    that is built with a tie or line far too short, and one with a node that weighs nothing.
     """
     _check_lengths(structure)
     members = _members(structure)

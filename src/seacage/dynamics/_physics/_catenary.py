@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from seacage.conventions import InputError
 
+# Horizontal tension over the line's weight below which the line hangs plumb [-]
 LEAST_SHARE = 1e-20
-"""Horizontal tension over the line's weight below which the line hangs plumb [-]."""
 
 
 def catenary(

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from jaxtyping import Float, Int
 
-from seacage.dynamics._parts import Assembly
+from seacage.dynamics._parts._assembly import Assembly
 from seacage.dynamics._physics._loads import DYNAMIC, SteadyFlow
 from seacage.dynamics._physics._screens import AS_PUBLISHED, Law, Screen, Tuning
 from seacage.dynamics._physics._wake import downstream, wake_factor
@@ -53,26 +53,14 @@ def steady_flow(
 ) -> SteadyFlow:
     """Steady flow on each panel in a uniform current and, if given, waves.
 
-    Parameters
-    ----------
-    current_velocity
-        East and north [m/s].
-    law
-        The screen law.
-    wake
-        Whether the down-stream half of the net meets slower water.
-    pipe_drag
-        Whether the current drags on collar and sinker tube.
-    wave_variance
-        Of the waves' horizontal velocity at each panel [m2/s2]. Their mean effect on a
-        net that stands still is taken as stochastic linearisation gives it, with
-        |u| raised to sqrt(|u|² + 8σ²/π). A net that follows the water feels less.
-    tuning
-        What is changed of the law.
+    ``current_velocity``: east and north [m/s]. ``law``: the screen law. ``wake``: whether the
+    down-stream half of the net meets slower water. ``pipe_drag``: whether the current drags on
+    collar and sinker tube. ``wave_variance``: of the waves' horizontal velocity at each panel
+    [m2/s2]. Their mean effect on a net that stands still is taken as stochastic linearisation gives
+    it, with |u| raised to sqrt(|u|² + 8σ²/π). A net that follows the water feels less. ``tuning``:
+    what is changed of the law.
 
-    References
-    ----------
-    Borgman (1967) for the linearised drag of a Gaussian sea.
+    Source: Borgman (1967) for the linearised drag of a Gaussian sea.
     """
     panels = assembly.panels
     screen = Screen(

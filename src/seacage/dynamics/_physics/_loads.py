@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.conventions import WATER_DENSITY, Rows
-from seacage.dynamics._parts import (
+from seacage.dynamics._parts._assembly import (
     Assembly,
     Bars,
     Bends,
@@ -22,17 +22,12 @@ from seacage.dynamics._parts import (
 )
 
 Nodal = Float[np.ndarray, "case node 3"]
-
-DYNAMIC = 0.5 * WATER_DENSITY
-"""½ρ [kg/m3]."""
-
+DYNAMIC = 0.5 * WATER_DENSITY  # ½ρ [kg/m3]
+# Sum of the corners' distances from the surface, over the root of the area, below which a panel
+# counts as lying in the surface [-]
 LEVEL = 0.4
-"""Sum of the corners' distances from the surface, over the root of the area, below which a panel
-counts as lying in the surface [-]."""
 
-FOLDED = 0.1
-"""Share of a panel's outline below which its normal says little of its twine [-]."""
-
+FOLDED = 0.1  # share of a panel's outline below which its normal says little of its twine [-]
 Values = Float[np.ndarray, "*case panel"]
 
 
@@ -43,30 +38,20 @@ class SteadyFlow(Rows):
     A net at rest in a steady current meets each panel with one fixed speed, so the
     law's dependence on speed is settled once for a case:
     C_D = max(0, a + b c + h cos3θ) and C_L = l sin2θ (1 + e cos2θ), with c = cosθ.
-
-    Attributes
-    ----------
-    direction
-        Unit vector of the current; zero in still water [-].
-    pressure
-        ½ ρ s |u| on each panel: |u| its current behind the wake, s the same or, with
-        waves, the larger root-mean-square speed [Pa].
-    constant, slope, third
-        a, b and h of each panel's drag [-].
-    lift, lift_second
-        l and e of each panel's lift [-].
-    pipe_pressure
-        ½ ρ |U|² on the pipes; 0 leaves their drag out [Pa].
     """
 
-    direction: Float[np.ndarray, "case 3"]
+    direction: Float[np.ndarray, "case 3"]  # unit vector of the current; zero in still water [-]
+    # ½ ρ s |u| on each panel: |u| its current behind the wake, s the same or, with waves, the
+    # larger root-mean-square speed [Pa]
     pressure: Float[np.ndarray, "case panel"]
+    # a, b and h of each panel's drag [-]
     constant: Float[np.ndarray, "case panel"]
     slope: Float[np.ndarray, "case panel"]
     third: Float[np.ndarray, "case panel"]
+    # l and e of each panel's lift [-]
     lift: Float[np.ndarray, "case panel"]
     lift_second: Float[np.ndarray, "case panel"]
-    pipe_pressure: Float[np.ndarray, " case"]
+    pipe_pressure: Float[np.ndarray, " case"]  # ½ ρ |U|² on the pipes; 0 leaves their drag out [Pa]
 
 
 def nodal_force(assembly: Assembly, flow: SteadyFlow, position: Nodal) -> Nodal:
@@ -111,9 +96,7 @@ def bend_force(bends: Bends, position: Nodal) -> Nodal:
     twist is not known; as the pair rests at κ0, a ring that a wave tilts by an angle bends
     only by its square.
 
-    References
-    ----------
-    Bergou et al. (2008), discrete elastic rods; Love (1927), section 293.
+    Source: Bergou et al. (2008), discrete elastic rods; Love (1927), section 293.
     """
     before, middle, after = np.moveaxis(position[:, bends.nodes], 2, 0)
     first, second = middle - before, after - middle

@@ -11,7 +11,15 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.conventions import WATER_VISCOSITY, InputError
-from seacage.dynamics._parts import Assembly, Bars, Cylinders, Ground, Panels, Slender, Springs
+from seacage.dynamics._parts._assembly import (
+    Assembly,
+    Bars,
+    Cylinders,
+    Ground,
+    Panels,
+    Slender,
+    Springs,
+)
 from seacage.dynamics._physics._loads import (
     DYNAMIC,
     Nodal,
@@ -32,55 +40,37 @@ from seacage.dynamics._physics._screens import (
     Tuning,
 )
 
+CasePanel = Float[np.ndarray, "*case panel"]
+CasePanel3 = Float[np.ndarray, "case panel 3"]
+PerNode = Float[np.ndarray, " node"]
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Water:
-    """The water at each node at one instant.
+    """The water at each node at one instant."""
 
-    Attributes
-    ----------
-    velocity, acceleration
-        Of the waves [m/s, m/s2].
-    elevation
-        Of the surface above still water [m].
-    current
-        [m/s].
-    """
-
+    # Of the waves [m/s, m/s2]
     velocity: Nodal
     acceleration: Nodal
-    elevation: Float[np.ndarray, "case node"]
-    current: Nodal
+    elevation: Float[np.ndarray, "case node"]  # of the surface above still water [m]
+    current: Nodal  # [m/s]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NetLaw:
-    """Law of the loads on the netting, with the wake and the growth that it meets.
+    """Law of the loads on the netting, with the wake and the growth that it meets."""
 
-    Attributes
-    ----------
-    name
-        A screen law, or "morison" for twine by twine.
-    wake
-        Share of the current that each panel meets [-].
-    twine_drag
-        Drag coefficients of a twine across and along the flow [-]; None takes that of a smooth
-        cylinder at its Reynolds number, after Choo and Casarella, and no skin friction.
-    solidity
-        Of each case's netting [-]; None for the assembly's.
-    drag_factor
-        On drag and lift of each case's netting, which soft growth loads less than a net as
-        solid [-]; None for 1. 0 is a hole.
-    tuning
-        What is changed of a screen law.
-    """
-
-    name: MovingLaw
-    wake: Float[np.ndarray, "case panel"]
+    name: MovingLaw  # a screen law, or "morison" for twine by twine
+    wake: Float[np.ndarray, "case panel"]  # share of the current that each panel meets [-]
+    # Drag coefficients of a twine across and along the flow [-]; None takes that of a smooth
+    # cylinder at its Reynolds number, after Choo and Casarella, and no skin friction
     twine_drag: tuple[float, float] | None = None
+    # Of each case's netting [-]; None for the assembly's
     solidity: Float[np.ndarray, "case panel"] | None = None
+    # On drag and lift of each case's netting, which soft growth loads less than a net as solid [-];
+    # None for 1; 0 is a hole
     drag_factor: Float[np.ndarray, "case panel"] | None = None
-    tuning: Tuning = AS_PUBLISHED
+    tuning: Tuning = AS_PUBLISHED  # what is changed of a screen law
 
     def __post_init__(self) -> None:
         if self.name not in MOVING_LAWS:
@@ -106,9 +96,7 @@ class NetLaw:
         solidity, diameter = self.netting(panels)
         return Screen(law=self.name, solidity=solidity, twine_diameter=diameter, tuning=self.tuning)
 
-    def netting(
-        self, panels: Panels
-    ) -> tuple[Float[np.ndarray, "*case panel"], Float[np.ndarray, "*case panel"]]:
+    def netting(self, panels: Panels) -> tuple[CasePanel, CasePanel]:
         """Solidity [-], and the twine's diameter [m] that alone gives it."""
         if self.solidity is None:
             return panels.solidity, panels.twine_diameter
@@ -175,12 +163,10 @@ def along_pipes(slender: Slender, motion: Nodal) -> Nodal:
     return _gather(motion, slender.nodes[:, None], share[:, :, None])
 
 
-def past_panels(
-    panels: Panels, law: NetLaw, water: Water, velocity: Nodal
-) -> Float[np.ndarray, "case panel 3"]:
+def past_panels(panels: Panels, law: NetLaw, water: Water, velocity: Nodal) -> CasePanel3:
     """The water's velocity past each panel: waves less the net's own, and the wake's current."""
 
-    def mean(nodal: Nodal) -> Float[np.ndarray, "case panel 3"]:
+    def mean(nodal: Nodal) -> CasePanel3:
         return np.einsum("npcx,pc->npx", nodal[:, panels.corners], panels.share)
 
     return mean(water.velocity - velocity) + law.wake[..., None] * mean(water.current)
@@ -188,7 +174,7 @@ def past_panels(
 
 def moving_net_load(
     panels: Panels, law: NetLaw, water: Water, position: Nodal, velocity: Nodal
-) -> Float[np.ndarray, "case panel 3"]:
+) -> CasePanel3:
     """The water's load on each panel; what is above the surface is dry [N]."""
     wet = wet_share(panels, position, water.elevation)
     return wet[..., None] * net_load_under_water(panels, law, water, position, velocity)
@@ -196,7 +182,7 @@ def moving_net_load(
 
 def net_load_under_water(
     panels: Panels, law: NetLaw, water: Water, position: Nodal, velocity: Nodal
-) -> Float[np.ndarray, "case panel 3"]:
+) -> CasePanel3:
     """The load on each panel if it were under water [N]."""
     past = past_panels(panels, law, water, velocity)
     if law.name == "morison":
@@ -212,19 +198,15 @@ def net_load_under_water(
     return law.factor[..., None] * screen_load(panels, position, unit, flow)
 
 
-def twine_load(
-    panels: Panels, law: NetLaw, position: Nodal, past: Float[np.ndarray, "case panel 3"]
-) -> Float[np.ndarray, "case panel 3"]:
+def twine_load(panels: Panels, law: NetLaw, position: Nodal, past: CasePanel3) -> CasePanel3:
     """Cross-flow drag and skin friction of two families of twines in each panel [N].
 
     The families run along the panel's edges, or along its diagonals where the mesh hangs as
     diamonds; their length is that of the panel as it was cut. Twines do not shelter each
     other, which overdoes the load of a panel along the flow.
 
-    References
-    ----------
-    Morison et al. (1950), drag term; Choo & Casarella (1971) for the coefficient, held below
-    Re = 30.
+    Source: Morison et al. (1950), drag term; Choo & Casarella (1971) for the coefficient, held
+    below Re = 30.
     """
     a, b, c, d = np.moveaxis(position[:, panels.corners], 2, 0)
     first, second = c - a, d - b
@@ -250,7 +232,7 @@ def twine_load(
     return load
 
 
-def bar_damping(bars: Bars, mass: Float[np.ndarray, " node"]) -> Float[np.ndarray, " bar"]:
+def bar_damping(bars: Bars, mass: PerNode) -> Float[np.ndarray, " bar"]:
     """Damping coefficient of each bar: a share of the critical one of its two ends [N s/m]."""
     i, j = bars.ends.T
     pair = mass[i] * mass[j] / (mass[i] + mass[j])
@@ -258,7 +240,7 @@ def bar_damping(bars: Bars, mass: Float[np.ndarray, " node"]) -> Float[np.ndarra
 
 
 def damped_tension(
-    bars: Bars, mass: Float[np.ndarray, " node"], position: Nodal, velocity: Nodal
+    bars: Bars, mass: PerNode, position: Nodal, velocity: Nodal
 ) -> Float[np.ndarray, "case bar"]:
     """Tension with structural damping; a slack bar has none [N]."""
     i, j = bars.ends.T
@@ -270,9 +252,7 @@ def damped_tension(
     return np.where(bars.pushed, bears, np.where(elastic > 0.0, np.maximum(bears, 0.0), 0.0))
 
 
-def damped_bar_force(
-    bars: Bars, mass: Float[np.ndarray, " node"], position: Nodal, velocity: Nodal
-) -> Nodal:
+def damped_bar_force(bars: Bars, mass: PerNode, position: Nodal, velocity: Nodal) -> Nodal:
     """Pull of the bars on their ends [N]."""
     along = position[:, bars.ends[:, 1]] - position[:, bars.ends[:, 0]]
     unit = along / np.linalg.norm(along, axis=-1, keepdims=True)
@@ -304,9 +284,7 @@ def _spring_damping(springs: Springs, velocity: Nodal) -> Nodal:
     return force
 
 
-def _ground_force(
-    ground: Ground, mass: Float[np.ndarray, " node"], position: Nodal, velocity: Nodal
-) -> Nodal:
+def _ground_force(ground: Ground, mass: PerNode, position: Nodal, velocity: Nodal) -> Nodal:
     """The sea bed carries what sinks into it and holds it by a tenth of critical damping [N].
 
     Left out: friction that holds a line at rest.

@@ -9,23 +9,21 @@ from jaxtyping import Bool, Float
 
 from seacage.conventions import WATER_VISCOSITY, InputError
 
+CasePanel = Float[np.ndarray, "case panel"]
+PerCase = Float[np.ndarray, " case"]
 Law = Literal["aarsnes", "loland", "kristiansen-faltinsen"]
 LAWS: tuple[Law, ...] = ("aarsnes", "loland", "kristiansen-faltinsen")
-
 MovingLaw = Literal["aarsnes", "loland", "kristiansen-faltinsen", "morison"]
 MOVING_LAWS: tuple[MovingLaw, ...] = (*LAWS, "morison")
 """Laws of a net that moves: "morison" loads it twine by twine."""
 
+# Drag coefficient of a smooth cylinder: coefficients of powers of log10 Re, from 0 up. Goldstein
+# (1965) as fitted by Kristiansen & Faltinsen (2012), for 10^1.5 <= Re <= 10^4.
 CYLINDER = (-78.46675, 254.73873, -327.8864, 223.64577, -87.92234, 20.00769, -2.44894, 0.12479)
-"""Drag coefficient of a smooth cylinder: coefficients of powers of log10 Re, from 0 up.
-
-Goldstein (1965) as fitted by Kristiansen & Faltinsen (2012), for 10^1.5 <= Re <= 10^4.
-"""
 
 REYNOLDS_RANGE = (32.0, 1.0e4)
-
+# C_D of a panel along the flow by each law as published [-]
 SKIN_FRICTION: dict[Law, float] = {"aarsnes": 0.04, "loland": 0.04, "kristiansen-faltinsen": 0.0}
-"""C_D of a panel along the flow by each law as published [-]."""
 
 Values = float | Float[np.ndarray, "*#n"]
 
@@ -34,24 +32,17 @@ Values = float | Float[np.ndarray, "*#n"]
 class Tuning:
     """Changes to a screen law as published, for what measurements part on.
 
-    Attributes
-    ----------
-    skin_friction
-        C_D of a panel along the flow; falls as 1 − cosθ, so that a facing panel keeps its drag
-        [-]. None takes the law's own: 0.04 of Aarsnes' and of Løland's, from towed panels, 0 of
-        Kristiansen and Faltinsen's, which knows cross-flow on twines alone.
-    lift_factor
-        On C_L [-]. Fits to flume tests have C_L/C_D(0) of 0.25 to 0.43 at 30° to 60°, the laws
-        0.11 to 0.24.
-
-    References
-    ----------
-    Aarsnes, Rudi & Løland (1990); Løland (1991). Xu et al. (2020) quote 0.3 of the facing
+    Source: Aarsnes, Rudi & Løland (1990); Løland (1991). Xu et al. (2020) quote 0.3 of the facing
     panel's drag along the flow, which is 0.08 to 0.1 for a solidity of 0.21. Lift: Lee et al.
     (2005), Bi et al. (2014), Tang et al. (2018).
     """
 
+    # C_D of a panel along the flow; falls as 1 − cosθ, so that a facing panel keeps its drag [-].
+    # None takes the law's own: 0.04 of Aarsnes' and of Løland's, from towed panels, 0 of
+    # Kristiansen and Faltinsen's, which knows cross-flow on twines alone.
     skin_friction: float | None = None
+    # On C_L [-]. Fits to flume tests have C_L/C_D(0) of 0.25 to 0.43 at 30° to 60°, the laws 0.11
+    # to 0.24.
     lift_factor: float = 1.0
 
     def __post_init__(self) -> None:
@@ -64,12 +55,11 @@ class Tuning:
                 )
 
 
+# Current above which Kristiansen and Faltinsen's law is warned of [m/s]. On the reference cage
+# Aarsnes' and Løland's give 1.6 times its load at 1 m/s, 1.9 times at 1.25 and 2.4 times at 2.
 FASTEST = 1.2
-"""Current above which Kristiansen and Faltinsen's law is warned of [m/s]. On the reference cage
-Aarsnes' and Løland's give 1.6 times its load at 1 m/s, 1.9 times at 1.25 and 2.4 times at 2."""
 
-AS_PUBLISHED = Tuning()
-"""No change."""
+AS_PUBLISHED = Tuning()  # no change
 
 
 def aarsnes(solidity: Values, cos_theta: Values) -> tuple[Values, Values]:
@@ -173,13 +163,7 @@ LawName = TypeVar("LawName", bound=str)
 
 
 def law_of_each(law: LawName | Sequence[LawName], cases: int) -> tuple[LawName, ...]:
-    """The law of each case.
-
-    Raises
-    ------
-    InputError
-        Another number of laws than of cases.
-    """
+    """The law of each case. Raises InputError: another number of laws than of cases."""
     if isinstance(law, str):
         return (law,) * cases  # pyright: ignore[reportReturnType]
     if len(law) != cases:
@@ -187,16 +171,12 @@ def law_of_each(law: LawName | Sequence[LawName], cases: int) -> tuple[LawName, 
     return tuple(law)
 
 
-def beyond_law(
-    laws: Sequence[MovingLaw], current_speed: Float[np.ndarray, " case"]
-) -> Bool[np.ndarray, " case"]:
+def beyond_law(laws: Sequence[MovingLaw], current_speed: PerCase) -> Bool[np.ndarray, " case"]:
     """Which cases meet a current [m/s] that their law is not known for."""
     return (np.array(laws) == "kristiansen-faltinsen") & (current_speed > FASTEST)
 
 
-def law_warnings(
-    laws: Sequence[MovingLaw], current_speed: Float[np.ndarray, " case"]
-) -> tuple[str, ...]:
+def law_warnings(laws: Sequence[MovingLaw], current_speed: PerCase) -> tuple[str, ...]:
     """What to know of the laws at the current's speeds [m/s], in sentences."""
     met = current_speed[[law == "kristiansen-faltinsen" for law in laws]]
     beyond = current_speed[beyond_law(laws, current_speed)]
@@ -223,23 +203,12 @@ class Screen:
 
     Every law has the form C_D = max(0, a + b cosθ + h cos3θ), C_L = l sin2θ (1 + e cos2θ).
     The solidity fixes its numbers, and with Kristiansen and Faltinsen the speed too.
-
-    Attributes
-    ----------
-    law
-        Which of ``LAWS``.
-    solidity
-        Of each panel [-].
-    twine_diameter
-        Of each panel, grown [m].
-    tuning
-        What is changed of the law.
     """
 
-    law: Law
-    solidity: Float[np.ndarray, "*case panel"]
-    twine_diameter: Float[np.ndarray, "*case panel"]
-    tuning: Tuning = AS_PUBLISHED
+    law: Law  # which of ``LAWS``
+    solidity: Float[np.ndarray, "*case panel"]  # of each panel [-]
+    twine_diameter: Float[np.ndarray, "*case panel"]  # of each panel, grown [m]
+    tuning: Tuning = AS_PUBLISHED  # what is changed of the law
 
     def __post_init__(self) -> None:
         if self.law not in LAWS:
@@ -251,9 +220,7 @@ class Screen:
         given = self.tuning.skin_friction
         return SKIN_FRICTION[self.law] if given is None else given
 
-    def terms(
-        self, speed: Float[np.ndarray, "case panel"]
-    ) -> dict[str, Float[np.ndarray, "case panel"]]:
+    def terms(self, speed: CasePanel) -> dict[str, CasePanel]:
         """The law's a, b, h, l and e at known speeds [m/s], as ``SteadyFlow`` names them [-]."""
         if self.law == "kristiansen-faltinsen":
             twine_reynolds = self.twine_diameter / (WATER_VISCOSITY * (1.0 - self.solidity))

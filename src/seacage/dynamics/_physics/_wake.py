@@ -7,18 +7,18 @@ and each panel behind the one before it where the net now is (``wake_in_sight``)
 import numpy as np
 from jaxtyping import Float
 
-from seacage.dynamics._parts import Assembly, Panels
+from seacage.dynamics._parts._assembly import Assembly, Panels
 from seacage.dynamics._physics._screens import MovingLaw, Screen, loland
 
+CasePanel = Float[np.ndarray, "case panel"]
+Panel2 = Float[np.ndarray, "panel 2"]
+PerPanel = Float[np.ndarray, " panel"]
 
-def wake_factor(
-    screen: Screen, speed: Float[np.ndarray, "case panel"]
-) -> Float[np.ndarray, "case panel"]:
+
+def wake_factor(screen: Screen, speed: CasePanel) -> CasePanel:
     """Speed behind a panel that faces the flow, over the speed before it [-].
 
-    References
-    ----------
-    Løland (1991): r = 1 − 0.46 C_D, here with the C_D of the law in use.
+    Source: Løland (1991): r = 1 − 0.46 C_D, here with the C_D of the law in use.
     """
     terms = screen.terms(speed)
     facing_drag = terms["constant"] + terms["slope"] + terms["third"]
@@ -27,7 +27,7 @@ def wake_factor(
 
 def wake_share(
     assembly: Assembly, law: MovingLaw, current: Float[np.ndarray, "case panel 2"]
-) -> Float[np.ndarray, "case panel"]:
+) -> CasePanel:
     """Share of the current left for each panel: less on the down-stream half [-].
 
     Set by the current alone: waves are too quick to build a wake behind the whole net. Twine
@@ -44,9 +44,7 @@ def wake_share(
     return 1.0 - (1.0 - wake_factor(screen, speed)) * downstream(panels, unit)
 
 
-def downstream(
-    panels: Panels, unit: Float[np.ndarray, "case #panel 2"]
-) -> Float[np.ndarray, "case panel"]:
+def downstream(panels: Panels, unit: Float[np.ndarray, "case #panel 2"]) -> CasePanel:
     """Share of each panel on the down-stream half of the design shape, 0 to 1.
 
     The half's edge cuts a panel where it falls, so that turning the current moves the
@@ -63,30 +61,23 @@ def wake_in_sight(
     position: Float[np.ndarray, "case node 3"],
     current: Float[np.ndarray, "case 2"],
     *,
-    solidity: Float[np.ndarray, "case panel"],
-    drag_factor: Float[np.ndarray, "case panel"],
+    solidity: CasePanel,
+    drag_factor: CasePanel,
     own_too: bool = False,
-) -> Float[np.ndarray, "case panel"]:
+) -> CasePanel:
     """Share of the current left for each panel where the net now is [-].
 
     Water that leaves the net through a panel came in through the one before it, on a line along
     the current: the panel facing the current that is nearest as seen along it. That one's drag,
     at its own angle and growth, slows what follows as momentum asks.
 
-    Parameters
-    ----------
-    current
-        Mean over the net's depth; its direction alone counts [m/s].
-    solidity, drag_factor
-        Of each panel; a panel that is gone has factor 0 and casts no wake.
-    own_too
-        Whether a panel's own drag slows the water that it meets, for a law that asks for the
-        velocity between its twines; screen laws ask for that before the panel.
+    ``current``: mean over the net's depth; its direction alone counts [m/s]. ``solidity``,
+    ``drag_factor``: of each panel; a panel that is gone has factor 0 and casts no wake.
+    ``own_too``: whether a panel's own drag slows the water that it meets, for a law that asks for
+    the velocity between its twines; screen laws ask for that before the panel.
 
-    References
-    ----------
-    Drag of a panel after Løland (1991). Through the net U = 2 U∞ / (1 + √(1 + C_D)), by momentum;
-    far behind it the loss is twice as large (Froude's actuator disc).
+    Source: drag of a panel after Løland (1991). Through the net U = 2 U∞ / (1 + √(1 + C_D)), by
+    momentum; far behind it the loss is twice as large (Froude's actuator disc).
     """
     share = np.ones((len(position), len(panels.area)))
     for case, shape in enumerate(position):
@@ -103,7 +94,7 @@ def wake_in_sight(
 
 def _view(
     panels: Panels, shape: Float[np.ndarray, "node 3"], unit: Float[np.ndarray, "2"]
-) -> tuple[Float[np.ndarray, " panel"], Float[np.ndarray, "panel 2"]]:
+) -> tuple[PerPanel, Panel2]:
     """Cosine of each panel's outward normal and the current, and its place as seen along it."""
     corner = shape[panels.corners]
     normal = np.cross(corner[:, 2] - corner[:, 0], corner[:, 3] - corner[:, 1])
@@ -112,11 +103,7 @@ def _view(
     return facing, np.column_stack([centre[:, :2] @ np.array([-unit[1], unit[0]]), centre[:, 2]])
 
 
-def _flow_left(
-    facing: Float[np.ndarray, " panel"],
-    seen: Float[np.ndarray, "panel 2"],
-    root: Float[np.ndarray, " panel"],
-) -> Float[np.ndarray, " panel"]:
+def _flow_left(facing: PerPanel, seen: Panel2, root: PerPanel) -> PerPanel:
     """Share of the current that panels leave to those behind them, by momentum."""
     from scipy.spatial import KDTree
 

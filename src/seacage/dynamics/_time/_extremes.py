@@ -6,41 +6,22 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float, Int
 
-TAIL = 0.8
-"""Share of the peaks below the fifth that a Weibull line is drawn through [-]."""
-
-LEAST_TIME = 600.0
-"""Simulated time below which there is no estimate [s]."""
-
-LEAST_PEAKS = 50
-"""Peaks below which there is no estimate."""
-
-BLOCK = 300.0
-"""Length of the blocks that the bootstrap draws [s]."""
-
-DRAWS = 50
-"""Of the bootstrap."""
-
-_SHARES = (np.arange(200) + 0.5) / 200
-"""Of the distribution of the largest peak, for its mean."""
+TAIL = 0.8  # share of the peaks below the fifth that a Weibull line is drawn through [-]
+LEAST_TIME = 600.0  # simulated time below which there is no estimate [s]
+LEAST_PEAKS = 50  # peaks below which there is no estimate
+BLOCK = 300.0  # length of the blocks that the bootstrap draws [s]
+DRAWS = 50  # of the bootstrap
+_SHARES = (np.arange(200) + 0.5) / 200  # of the distribution of the largest peak, for its mean
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Extremes:
-    """Largest tensions of a time of ``hours``; NaN where there are too few peaks.
+    """Largest tensions of a time of ``hours``; NaN where there are too few peaks."""
 
-    Attributes
-    ----------
-    mpm
-        Most probable maximum: the tension that one peak of that time exceeds on average [N].
-    expected
-        Mean of the largest peak [N].
-    mpm_std, expected_std
-        Their standard deviations, by a bootstrap over blocks of five minutes [N].
-    """
-
+    # Most probable maximum: the tension that one peak of that time exceeds on average [N]
     mpm: Float[np.ndarray, "*case line"]
-    expected: Float[np.ndarray, "*case line"]
+    expected: Float[np.ndarray, "*case line"]  # mean of the largest peak [N]
+    # Their standard deviations, by a bootstrap over blocks of five minutes [N]
     mpm_std: Float[np.ndarray, "*case line"]
     expected_std: Float[np.ndarray, "*case line"]
 

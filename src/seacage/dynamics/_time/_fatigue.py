@@ -5,8 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from jaxtyping import Float
 
-FREQUENCY = 1.0
-"""Of the equivalent load's cycles [Hz]."""
+FREQUENCY = 1.0  # of the equivalent load's cycles [Hz]
 
 
 def damage_equivalent_load(

@@ -9,35 +9,24 @@ from jaxtyping import Float, Int
 
 from seacage.cage import Cage
 from seacage.conventions import InputError, Progress, count_times
-from seacage.dynamics._kernel import REFRESH, simulation_lanes
-from seacage.dynamics._moored import Damage
-from seacage.dynamics._physics import MovingLaw
+from seacage.dynamics._kernel._march import REFRESH
+from seacage.dynamics._kernel._march_inputs import simulation_lanes
+from seacage.dynamics._moored._detailed import Damage
+from seacage.dynamics._physics._screens import MovingLaw
 from seacage.dynamics._time._segments import Build, Course, SegmentBatch
 from seacage.dynamics._time._weather import AbstractWeather
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Followed:
-    """A cage along some stretches of time.
+    """A cage along some stretches of time."""
 
-    Attributes
-    ----------
-    time
-        Of the samples [s].
-    watched_position
-        Of the nodes that were watched [m].
-    bridle_tension
-        [N].
-    shape
-        Mean positions over each ``shape_every`` [m].
-    lost_at
-        When a stretch left the finite numbers, NaN where all is well [s].
-    """
-
-    time: Float[np.ndarray, "stretch sample"]
+    time: Float[np.ndarray, "stretch sample"]  # of the samples [s]
+    # Of the nodes that were watched [m]
     watched_position: Float[np.ndarray, "stretch sample watched 3"]
-    bridle_tension: Float[np.ndarray, "stretch sample bridle"]
-    shape: Float[np.ndarray, "stretch mean node 3"]
+    bridle_tension: Float[np.ndarray, "stretch sample bridle"]  # [N]
+    shape: Float[np.ndarray, "stretch mean node 3"]  # mean positions over each ``shape_every`` [m]
+    # When a stretch left the finite numbers, NaN where all is well [s]
     lost_at: Float[np.ndarray, " stretch"]
 
 

@@ -7,19 +7,20 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from seacage.conventions import InputError
-from seacage.dynamics._kernel import Ocean
-from seacage.dynamics._parts import Assembly
-from seacage.dynamics._physics import MovingLaw, wake_share
+from seacage.dynamics._kernel._march_inputs import Ocean
+from seacage.dynamics._parts._assembly import Assembly
+from seacage.dynamics._physics._screens import MovingLaw
+from seacage.dynamics._physics._wake import wake_share
 from seacage.ocean import CurrentProfile, SeaState, Waves, sample_waves
 
+# Components of the waves of a case at most: the kernel keeps their phases on a thread's stack
 MOST_COMPONENTS = 1000
-"""Components of the waves of a case at most: the kernel keeps their phases on a thread's stack."""
 
+# Shortest wave over the floating pipe's diameter for which Morison's equation holds [-]
 LEAST_LENGTH = 8.0
-"""Shortest wave over the floating pipe's diameter for which Morison's equation holds [-]."""
 
+# Share of Hs in shorter waves, beyond which an answer is outside the loads' validity [-]
 MOST_LEFT_OUT = 0.05
-"""Share of Hs in shorter waves, beyond which an answer is outside the loads' validity [-]."""
 
 
 def draw_waves(

@@ -6,7 +6,8 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from seacage.cage import MooringLines
-from seacage.dynamics._moored import SLACK
+from seacage.conventions import YEAR
+from seacage.dynamics._moored._ends import SLACK
 from seacage.dynamics._time._extremes import Extremes, extremes
 from seacage.dynamics._time._fatigue import damage_equivalent_load
 from seacage.dynamics._time._statistics import Statistics
@@ -14,45 +15,30 @@ from seacage.dynamics._time._statistics import Statistics
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class LineLoads:
-    """Tensions of all ropes and chains that the model has; an anchor line's at its corner.
+    """Tensions of all ropes and chains that the model has; an anchor line's at its corner."""
 
-    Attributes
-    ----------
-    names, kinds
-        The bridles first; "bridle", "frame line", "anchor line", "buoy line", or a structure's
-        "line".
-    capacity
-        Breaking load over material factor; NaN where the file gives none [N].
-    tension
-        Over all time steps, the quantiles from samples [N].
-    extremes
-        Of three hours, from tensions every 0.1 s; a buoy line's are no more than its buoy's
-        buoyancy [N].
-    slack_share
-        Share of the time below a hundredth of the pretension; NaN where that is not known [-].
-    snaps
-        Times that a slack line was pulled taut, beyond its mean tension; NaN as above.
-    anchor_pull
-        Mean pull of an anchor line on its anchor, east, north and up; NaN for other lines [N].
-    uplift_maximum
-        Largest pull up on the anchor; NaN as above [N].
-    damage_equivalent
-        Range of cycles at 1 Hz that wear the line as much, for ``tn_slope`` [N].
-    tn_slope
-        m of the line's T–N curve; NaN where the file gives none [-].
-    """
-
+    # The bridles first; "bridle", "frame line", "anchor line", "buoy line", or a structure's "line"
     names: tuple[str, ...]
     kinds: tuple[str, ...]
+    # Breaking load over material factor; NaN where the file gives none [N]
     capacity: Float[np.ndarray, " line"]
+    # m of the line's T–N curve; NaN where the file gives none [-]
     tn_slope: Float[np.ndarray, " line"]
-    tension: Statistics
+    tension: Statistics  # over all time steps, the quantiles from samples [N]
+    # Of three hours [N], from tensions every 0.1 s; a buoy line's are no more than its buoyancy
     extremes: Extremes
+    # Share of the time below a hundredth of the pretension; NaN where that is not known [-]
     slack_share: Float[np.ndarray, "*case line"]
+    # Times that a slack line was pulled taut, beyond its mean tension; NaN as above
     snaps: Float[np.ndarray, "*case line"]
+    # Mean pull of an anchor line on its anchor, east, north and up; NaN for other lines [N]
     anchor_pull: Float[np.ndarray, "*case line 3"]
+    # Largest pull up on the anchor; NaN as above [N]
     uplift_maximum: Float[np.ndarray, "*case line"]
+    # Range of cycles at 1 Hz that wear the line as much, for ``tn_slope`` [N]
     damage_equivalent: Float[np.ndarray, "*case line"]
+    # Share of the T–N life that a year of such a sea uses up; NaN without an intercept [1/a]
+    damage_per_year: Float[np.ndarray, "*case line"]
 
     @property
     def columns(self) -> dict[str, Float[np.ndarray, "*case line"]]:
@@ -70,6 +56,7 @@ class LineLoads:
             "uplift_mean": self.anchor_pull[..., 2],
             "uplift_maximum": self.uplift_maximum,
             "damage_equivalent": self.damage_equivalent,
+            "damage_per_year": self.damage_per_year,
             "tn_slope": self.tn_slope,
         }
 
@@ -98,6 +85,7 @@ def line_loads(
     known = np.isfinite(lines.pretension)
     snaps = [_snaps(slack[:, line], tension[:, line]) for line in range(len(known))]
     tail = extremes([tension], every=every, has_waves=waves)
+    equivalent = damage_equivalent_load([tension], lines.tn_slope, every=every)
     mpm, expected = np.minimum(tail.mpm, most), np.minimum(tail.expected, most)
     return LineLoads(
         names=lines.names,
@@ -110,7 +98,8 @@ def line_loads(
         snaps=np.where(known, snaps, np.nan),
         anchor_pull=anchor_pull,
         uplift_maximum=uplift,
-        damage_equivalent=damage_equivalent_load([tension], lines.tn_slope, every=every),
+        damage_equivalent=equivalent,
+        damage_per_year=YEAR * lines.damage_rate(equivalent),
     )
 
 

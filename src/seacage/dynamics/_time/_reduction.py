@@ -8,23 +8,23 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.conventions import Result
-from seacage.dynamics._kernel import REFRESH, March
-from seacage.dynamics._moored import mooring_result
-from seacage.dynamics._parts import Assembly, Body
+from seacage.dynamics._kernel._march import REFRESH, March
+from seacage.dynamics._moored._ends import mooring_result
+from seacage.dynamics._parts._assembly import Assembly, Body
 from seacage.dynamics._time._history import History, Statistics
 from seacage.dynamics._time._line_loads import line_loads
 from seacage.dynamics._time._simulation import Simulation
 from seacage.dynamics._time._twines import panel_twines
 from seacage.dynamics._time._water_load import WaterLoad
 
-VOLUMES = 360
-"""At most so many samples give the volume's statistics: it changes slowly, and costs."""
-
+Node3 = Float[np.ndarray, "node 3"]
+PerQuantile = Float[np.ndarray, " quantile"]
+VOLUMES = 360  # at most so many samples give the volume's statistics: it changes slowly, and costs
 _SHARED = ("time", "nodes", "quantile_levels", "names", "kinds", "capacity", "tn_slope", "warnings")
 
 
 def histories(
-    simulation: Simulation, assembly: Assembly, march: March, rest: Float[np.ndarray, "node 3"]
+    simulation: Simulation, assembly: Assembly, march: March, rest: Node3
 ) -> list[History]:
     """One for each case of a march that has ended, or one for all its pieces of a single case."""
     if simulation.pieces > 1:
@@ -33,11 +33,7 @@ def histories(
 
 
 def _history(
-    simulation: Simulation,
-    assembly: Assembly,
-    march: March,
-    rest: Float[np.ndarray, "node 3"],
-    lanes: Sequence[int],
+    simulation: Simulation, assembly: Assembly, march: March, rest: Node3, lanes: Sequence[int]
 ) -> History:
     """Of one case, whose pieces lie in some lanes in the order of time."""
     cage, steps, levels = simulation.cage, march.steps, simulation.quantile_levels
@@ -153,9 +149,7 @@ def _second_moment(
     return (moved.T @ moved).astype(np.float64) / len(net)
 
 
-def _plain_statistics(
-    sample: Float[np.ndarray, " t"], levels: Float[np.ndarray, " quantile"]
-) -> Statistics:
+def _plain_statistics(sample: Float[np.ndarray, " t"], levels: PerQuantile) -> Statistics:
     return Statistics(
         mean=np.asarray(sample.mean()),
         std=np.asarray(sample.std()),
@@ -166,7 +160,7 @@ def _plain_statistics(
 
 
 def _quantiles(
-    sample: Float[np.ndarray, "t *shape"], levels: Float[np.ndarray, " quantile"]
+    sample: Float[np.ndarray, "t *shape"], levels: PerQuantile
 ) -> Float[np.ndarray, "quantile *shape"]:
     """Linear between order statistics; sorting rows is several times quicker than columns."""
     rows = np.sort(np.ascontiguousarray(np.moveaxis(sample, 0, -1)), axis=-1)

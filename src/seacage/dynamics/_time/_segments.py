@@ -7,52 +7,42 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from seacage.cage import Cage
-from seacage.dynamics._equilibrium import equilibria
-from seacage.dynamics._kernel import REFRESH, March, Ocean, Steps
-from seacage.dynamics._moored import Damage, broken, full_assembly, moor, scale_mass
-from seacage.dynamics._parts import Assembly
-from seacage.dynamics._physics import MovingLaw, NetLaw, steady_flow, wake_in_sight
+from seacage.dynamics._equilibrium._search import equilibria
+from seacage.dynamics._kernel._march import REFRESH, March, Steps
+from seacage.dynamics._kernel._march_inputs import Ocean
+from seacage.dynamics._moored._choice import moor
+from seacage.dynamics._moored._detailed import Damage, broken, full_assembly
+from seacage.dynamics._moored._mass_scaling import scale_mass
+from seacage.dynamics._parts._assembly import Assembly
+from seacage.dynamics._physics._flow import steady_flow
+from seacage.dynamics._physics._motion import NetLaw
+from seacage.dynamics._physics._screens import MovingLaw
+from seacage.dynamics._physics._wake import wake_in_sight
 from seacage.dynamics._time._forcing import morison_waves
 from seacage.dynamics._time._weather import AbstractWeather
 from seacage.ocean import MAX_CURRENT_SPEED, Waves
 
-HOLD = 8
-"""Time steps through which the water's load is held."""
-
-RAMP = 60.0
-"""Over which the waves rise when a stretch begins [s]."""
-
-WAVES_EVERY = 60.0
-"""Between two looks at how the sea state has changed [s]."""
-
-WAKE_EVERY = 30.0
-"""Between two looks at what shelters what, and at the growth [s]."""
+PerStretch = Float[np.ndarray, " stretch"]
+Stretch2 = Float[np.ndarray, "stretch 2"]
+StretchNode3 = Float[np.ndarray, "stretch node 3"]
+StretchPanel = Float[np.ndarray, "stretch panel"]
+HOLD = 8  # time steps through which the water's load is held
+RAMP = 60.0  # over which the waves rise when a stretch begins [s]
+WAVES_EVERY = 60.0  # between two looks at how the sea state has changed [s]
+WAKE_EVERY = 30.0  # between two looks at what shelters what, and at the growth [s]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Course:
-    """Samples, refreshes and steps of a stretch.
+    """Samples, refreshes and steps of a stretch."""
 
-    Attributes
-    ----------
-    every
-        Between samples [s].
-    refreshes
-        Looks at the water between samples.
-    spin_up, samples
-        Samples' times before counting, and counted.
-    shape_samples
-        Of a mean of the shape.
-    steps
-        Of time between two looks at the water.
-    """
-
-    every: float
-    refreshes: int
+    every: float  # between samples [s]
+    refreshes: int  # looks at the water between samples
+    # Samples' times before counting, and counted
     spin_up: int
     samples: int
-    shape_samples: int
-    steps: int
+    shape_samples: int  # of a mean of the shape
+    steps: int  # of time between two looks at the water
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -80,7 +70,7 @@ class SegmentBatch:
         self,
         build: Build,
         weathers: Sequence[AbstractWeather],
-        starts: Float[np.ndarray, " stretch"],
+        starts: PerStretch,
         course: Course,
         damaged: tuple[Damage, ...],
     ) -> None:
@@ -131,17 +121,15 @@ class SegmentBatch:
         both = self.march.tension
         return both.reshape(len(both), 2, -1).sum(axis=1)
 
-    def _current(self, at: Float[np.ndarray, " stretch"]) -> Float[np.ndarray, "stretch level 2"]:
+    def _current(self, at: PerStretch) -> Float[np.ndarray, "stretch level 2"]:
         return np.array([w.current(t) for w, t in zip(self._weathers, at, strict=True)])
 
-    def _waves(self, at: Float[np.ndarray, " stretch"]) -> list[Waves]:
+    def _waves(self, at: PerStretch) -> list[Waves]:
         """Waves that the pipes do not disturb, as in ``simulate``."""
         waves = [w.waves(t) for w, t in zip(self._weathers, at, strict=True)]
         return morison_waves(waves, self.cage.pipe_diameter)[0]
 
-    def _netting(
-        self, at: Float[np.ndarray, " stretch"]
-    ) -> tuple[Float[np.ndarray, "stretch panel"], Float[np.ndarray, "stretch panel"]]:
+    def _netting(self, at: PerStretch) -> tuple[StretchPanel, StretchPanel]:
         """Solidity, and drag factor: that of what grew there, and none where netting is gone."""
         panels = self.assembly.panels
         grown = [w.netting(t, panels.depth) for w, t in zip(self._weathers, at, strict=True)]
@@ -156,11 +144,7 @@ class SegmentBatch:
             drag_factor=self._drag_factor,
         )
 
-    def _in_sight(
-        self,
-        net: Float[np.ndarray, "stretch node 3"],
-        current: Float[np.ndarray, "stretch 2"],
-    ) -> Float[np.ndarray, "stretch panel"]:
+    def _in_sight(self, net: StretchNode3, current: Stretch2) -> StretchPanel:
         return wake_in_sight(
             self.assembly.panels,
             net,
@@ -170,7 +154,7 @@ class SegmentBatch:
             own_too=self._build.law == "morison",
         )
 
-    def _relax_wake(self, current: Float[np.ndarray, "stretch 2"]) -> None:
+    def _relax_wake(self, current: Stretch2) -> None:
         """A wake follows what casts it as fast as the water crosses the cage."""
         net = self.march.position[:, : self.cage.node_count]
         across = 2.0 * self.cage.collar.radius
@@ -195,9 +179,7 @@ def _steps(course: Course, time_step: float) -> Steps:
     )
 
 
-def _start(
-    cage: Cage, assembly: Assembly, current: Float[np.ndarray, "stretch 2"]
-) -> Float[np.ndarray, "stretch node 3"]:
+def _start(cage: Cage, assembly: Assembly, current: Stretch2) -> StretchNode3:
     """The cage's equilibria with the tube on its ring, then hung below: near enough to begin."""
     speed = np.linalg.norm(current, axis=1, keepdims=True)
     bounded = current * np.minimum(1.0, MAX_CURRENT_SPEED / np.maximum(speed, 1e-9))

@@ -11,10 +11,11 @@ from jaxtyping import Float, Int
 
 from seacage.cage import Cage, Structure
 from seacage.conventions import InputError, Progress, Result, gravest
-from seacage.dynamics._kernel import REFRESH, March, Ocean, Steps, has_long_crests, simulation_lanes
-from seacage.dynamics._moored import Mooring
-from seacage.dynamics._parts import Assembly
-from seacage.dynamics._physics import (
+from seacage.dynamics._kernel._march import REFRESH, March, Steps
+from seacage.dynamics._kernel._march_inputs import Ocean, has_long_crests, simulation_lanes
+from seacage.dynamics._moored._choice import Mooring
+from seacage.dynamics._parts._assembly import Assembly
+from seacage.dynamics._physics._screens import (
     AS_PUBLISHED,
     MOVING_LAWS,
     MovingLaw,
@@ -29,17 +30,10 @@ from seacage.dynamics._time._reduction import histories, stack
 from seacage.dynamics._time._simulation import Simulation
 from seacage.ocean import CurrentProfile, SeaState, Waves
 
-HOLD = 4
-"""Time steps through which the water's load is held."""
-
-CHUNK = 100
-"""Refreshes between two reports of progress."""
-
-MOST_ROOM = 16.0
-"""For the samples of the cases that travel together [GB]."""
-
-STATISTICS_EVERY = 1.0
-"""Between samples for quantiles and moments where no series is requested [s]."""
+HOLD = 4  # time steps through which the water's load is held
+CHUNK = 100  # refreshes between two reports of progress
+MOST_ROOM = 16.0  # for the samples of the cases that travel together [GB]
+STATISTICS_EVERY = 1.0  # between samples for quantiles and moments where no series is requested [s]
 
 
 def simulate(

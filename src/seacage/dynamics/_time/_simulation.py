@@ -8,11 +8,16 @@ from jaxtyping import Float, Int
 
 from seacage.cage import Cage, Structure
 from seacage.conventions import Result
-from seacage.dynamics._equilibrium import equilibria
-from seacage.dynamics._kernel import Ocean, Steps
-from seacage.dynamics._moored import Mooring, moor, part, scale_mass
-from seacage.dynamics._parts import Assembly
-from seacage.dynamics._physics import MovingLaw, NetLaw, Tuning, flow_of_laws
+from seacage.dynamics._equilibrium._search import equilibria
+from seacage.dynamics._kernel._march import Steps
+from seacage.dynamics._kernel._march_inputs import Ocean
+from seacage.dynamics._moored._choice import Mooring, moor
+from seacage.dynamics._moored._mass_scaling import scale_mass
+from seacage.dynamics._moored._parted import part
+from seacage.dynamics._parts._assembly import Assembly
+from seacage.dynamics._physics._flow import flow_of_laws
+from seacage.dynamics._physics._motion import NetLaw
+from seacage.dynamics._physics._screens import MovingLaw, Tuning
 from seacage.dynamics._settle import rest_shape
 from seacage.dynamics._time._forcing import wakes
 from seacage.ocean import SeaState
@@ -20,17 +25,7 @@ from seacage.ocean import SeaState
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Simulation:
-    """Settings of a simulation; ``simulate`` explains those that are not below.
-
-    Attributes
-    ----------
-    steps
-        Time steps, refreshes and samples.
-    nodes, series
-        Nodes of the series, and whether there are any series.
-    pieces
-        That each case is cut into, simulated side by side; ``steps`` are those of a piece.
-    """
+    """Settings of a simulation; ``simulate`` explains those that are not below."""
 
     cage: Cage | Structure
     twine_drag: tuple[float, float] | None
@@ -40,11 +35,13 @@ class Simulation:
     hold_collar: bool
     collar_drag: bool
     parted: tuple[str, ...]
-    steps: Steps
+    steps: Steps  # time steps, refreshes and samples
+    # Nodes of the series, and whether there are any series
     nodes: Int[np.ndarray, " kept"]
     series: bool
     quantile_levels: Float[np.ndarray, " quantile"]
     second_moment: bool
+    # That each case is cut into, simulated side by side; ``steps`` are those of a piece
     pieces: int
 
     def assembly(self) -> Assembly:

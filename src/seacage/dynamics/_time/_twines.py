@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.cage import Cage, Structure
-from seacage.dynamics._parts import Assembly
+from seacage.dynamics._parts._assembly import Assembly
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -17,17 +17,12 @@ class PanelTwines:
     triangle's round the cage that of its upper edge. Ropes on the meridians bear their own share.
     Left out: what one mesh bears more than its neighbours at a seam or a knot. A ``Structure``
     has none.
-
-    Attributes
-    ----------
-    mean, maximum
-        Of one twine; the largest of the panel's edges [N].
-    slack_share
-        Share of the time without tension, a mean over the edges [-].
     """
 
+    # Of one twine; the largest of the panel's edges [N]
     mean: Float[np.ndarray, "*case panel 2"]
     maximum: Float[np.ndarray, "*case panel 2"]
+    # Share of the time without tension, a mean over the edges [-]
     slack_share: Float[np.ndarray, "*case panel 2"]
 
 

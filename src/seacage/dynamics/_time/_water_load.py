@@ -17,13 +17,9 @@ class WaterLoad:
     submerged pipes are its "sinker tube"); the last is the push of the waves' acceleration on
     the cage's own and added water. Their sum, the weights and the lines' pull are what moves the
     cage; over a long time they balance.
-
-    Attributes
-    ----------
-    mean, std, minimum, maximum
-        East, north and up [N].
     """
 
+    # East, north and up [N]
     mean: Float[np.ndarray, "*case body 3"]
     std: Float[np.ndarray, "*case body 3"]
     minimum: Float[np.ndarray, "*case body 3"]

@@ -3,14 +3,18 @@
 The kinds of test and their flags follow the QARTOD manuals of IOOS for real-time quality
 control of in-situ currents, of surface waves and of water levels: gross range (fail, suspect),
 climatology, time gap, spike, rate of change, flat line and attenuated signal. The manuals leave
-the numbers to the operator; these are for a moored cage, and a site may give its own.
+the numbers to the operator; those of ``limits.toml`` are for a moored cage, and a site may give
+its own in a file like it.
 """
 
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cache
+from importlib.resources import files
+from typing import Any
 
-from seacage.ocean import MAX_CURRENT_SPEED
+from seacage.conventions import parse_toml
 
 GROUPS: Mapping[str, tuple[str, ...]] = {
     "current": ("current_speed_m_s", "current_to_deg"),
@@ -93,77 +97,22 @@ class Season:
     range: Range
 
 
+@cache
+def _defaults() -> Mapping[str, Any]:
+    file = files("seacage.records") / "limits.toml"
+    return parse_toml(file.read_text(encoding="utf-8"), file.name)
+
+
 def _ranges() -> dict[str, Range]:
-    compass = Range(fail=(0.0, 360.0), suspect=(0.0, 360.0))
+    table = _defaults()["ranges"]
     return {
-        "current_speed_m_s": Range(fail=(0.0, MAX_CURRENT_SPEED), suspect=(0.0, 2.0)),
-        "current_to_deg": compass,
-        "hs_m": Range(fail=(0.0, 20.0), suspect=(0.0, 12.0)),
-        "tp_s": Range(fail=(0.0, 30.0), suspect=(0.0, 25.0)),
-        "wave_from_deg": compass,
-        # A slack bridle reads a little below zero by its shackle's bias; a deep sensor above
-        # water by a swing of the air pressure.
-        "tension_kn": Range(fail=(-5.0, 1000.0), suspect=(-1.0, 400.0)),
-        "depth_m": Range(fail=(-2.0, 200.0), suspect=(-0.5, 100.0)),
+        key: Range(fail=tuple(one["fail"]), suspect=tuple(one["suspect"]))
+        for key, one in table.items()
     }
 
 
 def _steadiness() -> dict[str, Steadiness]:
-    hour = 3600.0
-    return {
-        "current": Steadiness(
-            jump=0.3,
-            rate=3e-4,
-            gap_s=3 * hour,
-            flat_suspect_s=hour,
-            flat_fail_s=3 * hour,
-            spike_suspect=0.8,
-            spike_fail=1.5,
-            attenuated_s=12 * hour,
-            attenuated_suspect=0.02,
-            attenuated_fail=0.005,
-        ),
-        "waves": Steadiness(
-            jump=1.0,
-            rate=6e-4,
-            gap_s=3 * hour,
-            flat_suspect_s=12 * hour,
-            flat_fail_s=36 * hour,
-            spike_suspect=2.0,
-            spike_fail=5.0,
-            attenuated_s=72 * hour,
-            attenuated_suspect=0.05,
-        ),
-        "tension": Steadiness(
-            # At Hs 3 m readings of a simulated bridle 2 s apart differ by up to 42 kN: a wrong one
-            # that is nearer hides among the waves' loads.
-            jump=45.0,
-            rate=0.02,
-            gap_s=hour,
-            flat_suspect_s=0.5 * hour,
-            flat_fail_s=2 * hour,
-            # Waves load and slacken a bridle between two readings, so only the absurd fails.
-            spike_suspect=60.0,
-            spike_fail=200.0,
-            attenuated_s=2 * hour,
-            attenuated_suspect=0.01,
-            attenuated_fail=0.001,
-        ),
-        "depth": Steadiness(
-            # The net follows the surface: at Hs 3 m simulated sensors change by up to 1.7 m, and
-            # stand out by up to 1.3 m.
-            jump=2.0,
-            rate=0.01,
-            gap_s=hour,
-            flat_suspect_s=0.5 * hour,
-            flat_fail_s=2 * hour,
-            spike_suspect=2.0,
-            spike_fail=3.0,
-            attenuated_s=2 * hour,
-            attenuated_suspect=0.002,
-            attenuated_fail=0.0005,
-        ),
-    }
+    return {group: Steadiness(**one) for group, one in _defaults()["steadiness"].items()}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

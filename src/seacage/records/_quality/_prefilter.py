@@ -11,18 +11,11 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from seacage.conventions import GRAVITY, Flag, towards
+from seacage.records._quality import _tests
 from seacage.records._quality._limits import GROUPS, Limits, Range, Steadiness
-from seacage.records._quality._tests import (
-    BUCKETS,
-    FLAT_FAIL_COUNT,
-    FLAT_SUSPECT_COUNT,
-    SECOND,
-    evaluate_alone,
-)
 
 _HAIR = 1e-6  # far above what two ways of rounding differ by, as a share of the numbers
 _GENTLEST = 1.0 / 25.0  # no sea that steep or less is refused, whatever its period
-
 Rows = Int[np.ndarray, " row"]
 Columns = Mapping[str, Float[np.ndarray, " t"]]
 
@@ -111,14 +104,14 @@ def _chain(
     compared = np.ones(len(time), dtype=bool)
     for row in alone.tolist():
         values = {key: float(column[row]) for key, column in columns.items()}
-        findings = evaluate_alone(group, int(time[row]), values, limits)
+        findings = _tests.evaluate_alone(group, int(time[row]), values, limits)
         compared[row] = all(finding.flag < Flag.FAIL for finding in findings)
     rows = np.flatnonzero(compared)
     kept = {key: column[rows] for key, column in columns.items()}
     return _Chain(
         row=rows,
         time=time[rows],
-        joined=np.diff(time[rows]) <= limits.steadiness[group].gap_s * SECOND,
+        joined=np.diff(time[rows]) <= limits.steadiness[group].gap_s * _tests.SECOND,
         value=np.array(list(kept.values())),
         point=_points(group, kept),
     )
@@ -135,7 +128,7 @@ def _points(group: str, columns: Columns) -> Float[np.ndarray, "axis t"]:
 
 def _changing(chain: _Chain, limits: Steadiness) -> _Span:
     """Readings after a gap, after a large change, or after what may have been a spike."""
-    seconds = np.diff(chain.time) / SECOND
+    seconds = np.diff(chain.time) / _tests.SECOND
     change = np.sqrt(np.sum(np.diff(chain.point) ** 2, axis=0))
     size = np.sqrt(np.sum(chain.point**2, axis=0))
     most = change + _HAIR * (1.0 + size[1:] + size[:-1])
@@ -152,10 +145,10 @@ def _still(chain: _Chain, limits: Steadiness) -> _Span:
     moved[1:] = ~chain.joined | np.any(chain.value[:, 1:] != chain.value[:, :-1], axis=0)
     since = np.maximum.accumulate(np.where(moved, np.arange(len(moved)), 0))
     count = 1 + np.arange(len(moved)) - since
-    seconds = (chain.time - chain.time[since]) / SECOND
+    seconds = (chain.time - chain.time[since]) / _tests.SECOND
     reading = np.flatnonzero(
         (seconds >= min(limits.flat_suspect_s, limits.flat_fail_s))
-        & (count >= min(FLAT_SUSPECT_COUNT, FLAT_FAIL_COUNT))
+        & (count >= min(_tests.FLAT_SUSPECT_COUNT, _tests.FLAT_FAIL_COUNT))
     )
     return _Span(since[reading], reading)
 
@@ -165,12 +158,12 @@ def _faint(chain: _Chain, limits: Steadiness) -> _Span:
 
     Within a bucket the range only grows: where it is large at first no reading may be flagged.
     """
-    window = limits.attenuated_s * SECOND
+    window = limits.attenuated_s * _tests.SECOND
     limit = max(limits.attenuated_suspect, limits.attenuated_fail)
     nothing = np.empty(0, dtype=np.int64)
     if not (len(chain.row) and len(chain.point) and np.isfinite(window) and limit > 0.0):
         return _Span(nothing, nothing)
-    number = np.floor(chain.time / (window / BUCKETS))
+    number = np.floor(chain.time / (window / _tests.BUCKETS))
     opens = np.concatenate([[0], 1 + np.flatnonzero(~chain.joined | (np.diff(number) != 0.0))])
     last = np.append(opens[1:], len(number)) - 1
     gap = np.concatenate([[0], 1 + np.flatnonzero(~chain.joined)])

@@ -14,7 +14,6 @@ FLAT_SUSPECT_COUNT, FLAT_FAIL_COUNT = 3, 5
 BUCKETS = 64
 ATTENUATED = "attenuated signal"
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
-
 Point = tuple[float, ...]
 """Where a group is, so that distances are changes: a current in east and north, waves in hs."""
 

@@ -15,15 +15,9 @@ import numpy as np
 from jaxtyping import Float, Shaped
 
 from seacage.conventions import Origin, RecordError, parse_toml
+from seacage.records._keys import NO_MEAN_PERIOD, is_mean_period
 from seacage.records._netcdf_file import NETCDF_TROUBLE, check_netcdf
-from seacage.records._readers._column_map import (
-    Column,
-    check_components,
-    parse_column,
-    parse_origin,
-    parse_zone,
-    vectors_joined,
-)
+from seacage.records._readers import _column_map
 from seacage.records._readers._csv import in_order
 from seacage.records._record import Record
 from seacage.records._toml import check_filled, check_names, number_of, table_of, text_of
@@ -129,11 +123,11 @@ class NetcdfMap:
     depth_m: float | None = None
     range_m: float | None = None
     at: Mapping[str, int] = field(default_factory=dict[str, int])
-    columns: tuple[Column, ...] = ()
+    columns: tuple[_column_map.Column, ...] = ()
 
     def __post_init__(self) -> None:
         if self.time_zone is not None:
-            parse_zone(self.time_zone)
+            _column_map.parse_zone(self.time_zone)
 
     @classmethod
     def from_toml(cls, text: str, *, where: str = "NetCDF map") -> Self:
@@ -148,12 +142,12 @@ class NetcdfMap:
         columns, at = (table_of(table, name, where=where, default={}) for name in ("columns", "at"))
         return cls(
             title=text_of(table, "title", where=where, default="NetCDF file"),
-            origin=parse_origin(text_of(table, "origin", where=where), where),
+            origin=_column_map.parse_origin(text_of(table, "origin", where=where), where),
             time_zone=text_of(table, "time_zone", where=where) if "time_zone" in table else None,
             depth_m=number_of(table, "depth_m", where=where),
             range_m=number_of(table, "range_m", where=where),
             at={name: int(number_of(at, name, where=where) or 0) for name in at},
-            columns=tuple(parse_column(columns, name, where) for name in columns),
+            columns=tuple(_column_map.parse_column(columns, name, where) for name in columns),
         )
 
 
@@ -223,12 +217,14 @@ def _record(path: Path, dataset: "xarray.Dataset", choice: NetcdfMap, *, stream:
         for name, one in _series(path, dataset, variable, time_name, choice)
     }
     columns = choice.columns or _recognise(path, series)
-    check_components((column.key for column in columns), where=str(path))
+    _column_map.check_components((column.key for column in columns), where=str(path))
     values: dict[str, np.ndarray] = {}
     notes: list[str] = []
     for column in columns:
         one = _find(path, series, column.name)
         _check_unit(path, one, column)
+        if column.quantity == "tp" and is_mean_period(one.standard.replace("_", " ")):
+            raise RecordError(f"{path}: {column.name} is {one.standard}. {NO_MEAN_PERIOD}")
         values[column.key] = column.convert(one.numbers)
         sense = f", {column.sense}" if column.sense else ""
         notes.append(
@@ -238,7 +234,7 @@ def _record(path: Path, dataset: "xarray.Dataset", choice: NetcdfMap, *, stream:
         notes.append(
             "Nothing in the file says which north its compass means; it is taken for true."
         )
-    record = in_order(time, vectors_joined(values), stream=stream, origin=choice.origin)
+    record = in_order(time, _column_map.vectors_joined(values), stream=stream, origin=choice.origin)
     return replace(record, notes=(*notes, *record.notes))
 
 
@@ -283,7 +279,7 @@ def _start(path: Path, text: str, zone: str) -> datetime:
     except ValueError as error:
         raise RecordError(f"{path}: its times count since {text!r}, which is no date.") from error
     if start.tzinfo is None:
-        start = start.replace(tzinfo=parse_zone(zone) or UTC)
+        start = start.replace(tzinfo=_column_map.parse_zone(zone) or UTC)
     return start.astimezone(UTC).replace(tzinfo=None)
 
 
@@ -405,9 +401,9 @@ def vertical_of(dataset: "xarray.Dataset", dim: str) -> str:
     return "range" if in_metres and "range" in description else ""
 
 
-def _recognise(path: Path, series: Mapping[str, _Series]) -> tuple[Column, ...]:
+def _recognise(path: Path, series: Mapping[str, _Series]) -> tuple[_column_map.Column, ...]:
     """A column for each quantity that a standard name or a compass component tells."""
-    columns: dict[str, Column] = {}
+    columns: dict[str, _column_map.Column] = {}
     for name, one in series.items():
         quantity, sense = STANDARD_NAMES.get(one.standard, (one.direction, ""))
         if not quantity:
@@ -423,7 +419,7 @@ def _recognise(path: Path, series: Mapping[str, _Series]) -> tuple[Column, ...]:
                 f"{path}: {name} has the units {one.units!r}, so its {quantity} cannot be read. "
                 "Declare the variable, with its unit, under [columns] of a map."
             )
-        columns[quantity] = Column(name=name, quantity=quantity, unit=unit, sense=sense)
+        columns[quantity] = _column_map.Column(name=name, quantity=quantity, unit=unit, sense=sense)
     if not columns:
         raise RecordError(
             f"{path}: no variable has a standard name that is read, such as "
@@ -441,7 +437,7 @@ def _find(path: Path, series: Mapping[str, _Series], name: str) -> _Series:
     return series[name]
 
 
-def _check_unit(path: Path, one: _Series, column: Column) -> None:
+def _check_unit(path: Path, one: _Series, column: _column_map.Column) -> None:
     declared = _UNITS.get(one.units)
     if declared is not None and declared != column.unit:
         raise RecordError(

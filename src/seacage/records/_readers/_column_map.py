@@ -12,16 +12,8 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.conventions import Origin, RecordError, parse_toml, read_text
-from seacage.records._toml import (
-    Table,
-    check_filled,
-    check_names,
-    number_of,
-    numbers_of,
-    table_of,
-    text_of,
-    texts_of,
-)
+from seacage.records import _toml
+from seacage.records._keys import NO_MEAN_PERIOD, is_mean_period
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,7 +32,6 @@ _FORCE = {"kN": 1.0, "N": 0.001, "MN": 1000.0, "kgf": 0.00980665, "tf": 9.80665}
 _ANGLE = {"deg": 1.0, "rad": 180.0 / np.pi}
 _COMPONENTS = ("current_east_m_s", "current_north_m_s")
 _CURRENT = ("current_speed_m_s", "current_to_deg")
-
 ENCODINGS = ("utf-8", "utf-16", "latin-1", "cp1252")  # of text, as a column map may declare them
 
 _QUANTITIES: Mapping[str, _Quantity] = {
@@ -94,6 +85,8 @@ class Column:
                 f"{where}: the quantity {self.quantity!r} is unknown. "
                 f"Say one of {', '.join(_QUANTITIES)}, or list the column as ignored."
             )
+        if self.quantity == "tp" and is_mean_period(self.name):
+            raise RecordError(f"{where}: {NO_MEAN_PERIOD}")
         quantity = _QUANTITIES[self.quantity]
         if self.unit not in quantity.units:
             got = f"the unit {self.unit!r} is unknown" if self.unit else "its unit is missing"
@@ -239,30 +232,30 @@ class ColumnMap:
             Of the text, for messages.
         """
         table = parse_toml(text, where, refusal=RecordError)
-        check_filled(table, where=where)
+        _toml.check_filled(table, where=where)
         of_text = ("delimiter", "decimal", "encoding", "skip_lines")
         known = ("title", "origin", "time", "columns", "ignored", "depth_m", *of_text)
-        check_names(table, known, where=where)
-        columns = table_of(table, "columns", where=where)
-        time, in_time = table_of(table, "time", where=where), f"{where}, [time]"
-        check_names(time, ("column", "format", "zone"), where=in_time)
+        _toml.check_names(table, known, where=where)
+        columns = _toml.table_of(table, "columns", where=where)
+        time, in_time = _toml.table_of(table, "time", where=where), f"{where}, [time]"
+        _toml.check_names(time, ("column", "format", "zone"), where=in_time)
         return cls(
-            title=text_of(table, "title", where=where),
-            origin=parse_origin(text_of(table, "origin", where=where), where),
+            title=_toml.text_of(table, "title", where=where),
+            origin=parse_origin(_toml.text_of(table, "origin", where=where), where),
             time_column=(
-                texts_of(time, "column", where=in_time)
+                _toml.texts_of(time, "column", where=in_time)
                 if isinstance(time.get("column"), list)
-                else text_of(time, "column", where=in_time)
+                else _toml.text_of(time, "column", where=in_time)
             ),
-            time_format=text_of(time, "format", where=in_time),
-            time_zone=text_of(time, "zone", where=in_time),
+            time_format=_toml.text_of(time, "format", where=in_time),
+            time_zone=_toml.text_of(time, "zone", where=in_time),
             columns=tuple(parse_column(columns, name, where) for name in columns),
-            ignored=texts_of(table, "ignored", where=where),
-            delimiter=text_of(table, "delimiter", where=where, default=","),
-            depth_m=number_of(table, "depth_m", where=where),
-            decimal=text_of(table, "decimal", where=where, default="."),
-            encoding=text_of(table, "encoding", where=where, default="utf-8"),
-            skip_lines=int(number_of(table, "skip_lines", where=where) or 0),
+            ignored=_toml.texts_of(table, "ignored", where=where),
+            delimiter=_toml.text_of(table, "delimiter", where=where, default=","),
+            depth_m=_toml.number_of(table, "depth_m", where=where),
+            decimal=_toml.text_of(table, "decimal", where=where, default="."),
+            encoding=_toml.text_of(table, "encoding", where=where, default="utf-8"),
+            skip_lines=int(_toml.number_of(table, "skip_lines", where=where) or 0),
         )
 
     @classmethod
@@ -368,32 +361,29 @@ def parse_time(text: str, form: str) -> datetime:
     return datetime.fromisoformat(text) if form == "iso" else datetime.strptime(text, form)  # noqa: DTZ007
 
 
-def parse_column(columns: Table, name: str, file: str) -> Column:
+def parse_column(columns: _toml.Table, name: str, file: str) -> Column:
     """A column as its table in a map declares it.
 
     Raises RecordError: a misspelt key or a refused value, said with the file's name.
     """
     where = f"[columns.{name}]"
-    table = table_of(columns, name, where=file)
+    table = _toml.table_of(columns, name, where=file)
     try:
-        check_names(table, ("quantity", "unit", "sense", "depth_m", "missing"), where=where)
+        _toml.check_names(table, ("quantity", "unit", "sense", "depth_m", "missing"), where=where)
         return Column(
             name=name,
-            quantity=text_of(table, "quantity", where=where),
-            unit=text_of(table, "unit", where=where, default=""),
-            sense=text_of(table, "sense", where=where, default=""),
-            depth_m=number_of(table, "depth_m", where=where),
-            missing=numbers_of(table, "missing", where=where),
+            quantity=_toml.text_of(table, "quantity", where=where),
+            unit=_toml.text_of(table, "unit", where=where, default=""),
+            sense=_toml.text_of(table, "sense", where=where, default=""),
+            depth_m=_toml.number_of(table, "depth_m", where=where),
+            missing=_toml.numbers_of(table, "missing", where=where),
         )
     except RecordError as error:
         raise RecordError(f"{file}: {error}") from error
 
 
 def parse_origin(text: str, where: str) -> Origin:
-    """How numbers were made, as a map says it.
-
-    Raises RecordError: an unknown word.
-    """
+    """How numbers were made, as a map says it. Raises RecordError: an unknown word."""
     try:
         return Origin(text)
     except ValueError as error:

@@ -9,13 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from seacage.records._readers._cf import (
-    STANDARD_NAMES,
-    is_compass,
-    open_foreign,
-    vertical_of,
-    zone_conflict,
-)
+from seacage.records._readers import _cf
 
 if TYPE_CHECKING:
     import xarray
@@ -26,7 +20,7 @@ def inspect_netcdf(path: Path) -> tuple[tuple[str, ...], str]:
 
     Raises RecordError: no NetCDF file.
     """
-    with open_foreign(path) as dataset:
+    with _cf.open_foreign(path) as dataset:
         return _find(path, dataset)
 
 
@@ -38,7 +32,7 @@ def _find(path: Path, dataset: "xarray.Dataset") -> tuple[tuple[str, ...], str]:
         f"title = {json.dumps(path.stem, ensure_ascii=False)}",
         'origin = "?"  # "measured" or "computed"',
     ]
-    if conflict := zone_conflict(dataset):
+    if conflict := _cf.zone_conflict(dataset):
         findings.append(f"Suspicious: {conflict.reason}.")
         lines.append(f'time_zone = "?"  # {conflict.choices}')
     read = [name for name in map(str, dataset.data_vars) if _tells(dataset, name)]
@@ -47,9 +41,9 @@ def _find(path: Path, dataset: "xarray.Dataset") -> tuple[tuple[str, ...], str]:
     at: list[str] = []
     for dim in sorted(dims):
         size = dataset.sizes[dim]
-        if size == 1 or dim == "time" or is_compass(dataset, dim):
+        if size == 1 or dim == "time" or _cf.is_compass(dataset, dim):
             continue
-        if kind := vertical_of(dataset, dim):
+        if kind := _cf.vertical_of(dataset, dim):
             places = np.asarray(dataset[dim].values, dtype=np.float64)
             lines.append(f'{kind}_m = "?"  # one of {", ".join(f"{p:g}" for p in places)}')
         else:
@@ -70,8 +64,8 @@ def _find(path: Path, dataset: "xarray.Dataset") -> tuple[tuple[str, ...], str]:
 def _tells(dataset: "xarray.Dataset", name: str) -> bool:
     array = dataset[name]
     velocity = str(array.attrs.get("units", "")).startswith(("m s", "m/s", "cm s", "cm/s"))
-    split = any(is_compass(dataset, dim) for dim in array.dims)
-    return array.attrs.get("standard_name") in STANDARD_NAMES or (velocity and split)
+    split = any(_cf.is_compass(dataset, dim) for dim in array.dims)
+    return array.attrs.get("standard_name") in _cf.STANDARD_NAMES or (velocity and split)
 
 
 def _sentence(dataset: "xarray.Dataset", name: str) -> str:

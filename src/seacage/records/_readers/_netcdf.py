@@ -10,14 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from seacage.conventions import Flag, Origin, RecordError, read_bytes
+from seacage.records import _netcdf_file
 from seacage.records._keys import KEYS
-from seacage.records._netcdf_file import (
-    NETCDF_TROUBLE,
-    decode_times,
-    encode_times,
-    open_netcdf,
-    write_netcdf,
-)
 from seacage.records._record import Record
 
 if TYPE_CHECKING:
@@ -37,7 +31,7 @@ def write_record(record: Record, path: Path | str) -> None:
     ``record``: origin and notes are kept too. ``path``: ends in ``.nc``. What is there is replaced
     at once, by the whole file.
     """
-    write_netcdf(_dataset(record), Path(path), finish=_seal)
+    _netcdf_file.write_netcdf(_dataset(record), Path(path), finish=_seal)
 
 
 def read_netcdf(path: Path) -> Record:
@@ -47,9 +41,9 @@ def read_netcdf(path: Path) -> Record:
     """
     try:
         _check_seal(path)
-        with open_netcdf(path, _SCHEMA) as dataset:
+        with _netcdf_file.open_netcdf(path, _SCHEMA) as dataset:
             return _record(dataset)
-    except NETCDF_TROUBLE as error:
+    except _netcdf_file.NETCDF_TROUBLE as error:
         raise RecordError(
             f"{path}: this is no stream that seacage wrote ({error}). If it is another's, say how "
             "its numbers were made, measured or computed (--origin); `seacage field import FILE "
@@ -84,7 +78,7 @@ def _dataset(record: Record) -> "xarray.Dataset":
         variables[key + _FLAG] = ("time", record.flags[key], _flag_attributes(key))
     return xarray.Dataset(
         variables,
-        coords={"time": encode_times(record.time, "time of the source, UTC")},
+        coords={"time": _netcdf_file.encode_times(record.time, "time of the source, UTC")},
         attrs={
             "Conventions": "CF-1.11, ACDD-1.3",
             "title": f"Stream {record.stream}, {record.origin}",
@@ -127,7 +121,7 @@ def _record(dataset: "xarray.Dataset") -> Record:
     comment = str(attributes["comment"])
     return Record(
         stream=str(attributes["stream"]),
-        time=decode_times(dataset),
+        time=_netcdf_file.decode_times(dataset),
         values={key: np.asarray(dataset[key].values, dtype=np.float64) for key in keys},
         flags={key: np.asarray(dataset[key + _FLAG].values) for key in keys},
         origin=Origin(attributes["origin"]),

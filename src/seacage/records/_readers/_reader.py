@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from seacage.conventions import Flag, RecordError, read_text
-from seacage.records._quality import DEFAULT_LIMITS, Limits, check_record
+from seacage.records._quality._check import check_record
+from seacage.records._quality._limits import DEFAULT_LIMITS, Limits
 from seacage.records._readers._cf import NetcdfMap, is_netcdf, read_cf
 from seacage.records._readers._column_map import ColumnMap
 from seacage.records._readers._csv import read_csv, split_table

@@ -15,12 +15,11 @@ if TYPE_CHECKING:
     from seacage.records._readers._column_map import ColumnMap
 
 WHITESPACE = "whitespace"  # the delimiter of tables whose cells any number of blanks part
-
+# Most of a JSON answer, whose smallest parts take 30 times as much in memory
 _JSON_BYTES = 16 << 20
-"""Most of a JSON answer, whose smallest parts take 30 times as much in memory."""
 
+# Most cells of a Parquet file, whose size says nothing of them; as text they take 2 GB
 _MOST_CELLS = 10_000_000
-"""Most cells of a Parquet file, whose size says nothing of them; as text they take 2 GB."""
 
 _COOPS_NAMES = {"t": "Date Time", "s": "Speed", "d": "Direction", "b": "Bin"}
 
@@ -111,10 +110,7 @@ def text_table(path: Path, text: str, *, delimiter: str, skip_lines: int = 0) ->
 def make_table(
     path: Path, rows: Sequence[tuple[str, ...]], lines: Sequence[int], *, cut: bool = False
 ) -> Table:
-    """Make a table of rows whose first is the header.
-
-    Raises RecordError: as ``text_table``.
-    """
+    """Make a table of rows whose first is the header. Raises RecordError: as ``text_table``."""
     header = tuple(cell.strip() for cell in rows[0])
     twice = [name for name, count in Counter(header).items() if count > 1]
     if twice:

@@ -25,14 +25,11 @@ from seacage.service._live._metrics import Metrics
 COOKIE = "seacage_session"  # name of the cookie of a session
 CSRF_HEADER = "x-csrf-token"  # what a write by cookie repeats from the session
 READING = {"GET", "HEAD", "OPTIONS"}  # methods that change nothing
-
 _FORWARDED = {"forwarded", "x-forwarded-for", "x-real-ip"}
-
 _bearer = HTTPBearer(auto_error=False, description="A token from `seacage token new`.")
 _cookie = APIKeyCookie(
     name=COOKIE, auto_error=False, description="A session of the page; writes need X-CSRF-Token."
 )
-
 Credentials = Annotated[HTTPAuthorizationCredentials | None, Depends(_bearer)]
 Cookie = Annotated[str | None, Depends(_cookie)]
 
@@ -76,10 +73,7 @@ class Gate:
         return None if found is None else (found[1], found[0])
 
     def admit(self, connection: HTTPConnection) -> tuple[Grant, Session | None]:
-        """Find who asks, by what the headers carry.
-
-        Raises HTTPException: as for ``refuse``.
-        """
+        """Find who asks, by what the headers carry. Raises HTTPException: as for ``refuse``."""
         scheme, sent = get_authorization_scheme_param(connection.headers.get("authorization"))
         token = sent if sent and scheme.lower() == "bearer" else None
         cookie = connection.cookies.get(COOKIE)
@@ -90,10 +84,7 @@ class Gate:
         return found
 
     def pace(self, grant: Grant) -> None:
-        """Hold up whoever asks too often.
-
-        Raises HTTPException: 429, with the time to wait.
-        """
+        """Hold up whoever asks too often. Raises HTTPException: 429, with the time to wait."""
         _hold_up(self._asked.wait_s(grant.id, time.monotonic()), "This token asks too often.")
 
     def refuse(self, source: str, *, sent: bool) -> NoReturn:

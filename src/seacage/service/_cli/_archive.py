@@ -7,19 +7,9 @@ from typing import Annotated
 
 import typer
 
-from seacage.service._cli._console import (
-    Exit,
-    exit_with,
-    guard,
-    progress_bar,
-    refusal,
-    report,
-    wants_json,
-    without_nan,
-)
+from seacage.service._cli import _console
 
 group = typer.Typer(help="Whole days of samples as Parquet files: write, read and check them.")
-
 Folder = Annotated[Path, typer.Argument(file_okay=False, help="Folder of the archive.")]
 Day = Annotated[
     datetime | None, typer.Option(formats=["%Y-%m-%d"], help="UTC. [default: no bound]")
@@ -27,7 +17,7 @@ Day = Annotated[
 
 
 @group.command()
-@guard
+@_console.guard
 def write(
     folder: Folder,
     *,
@@ -55,7 +45,7 @@ def write(
 
     until = microseconds((before or datetime.now(UTC)).replace(tzinfo=UTC))
     archive, count = Archive(folder), 0
-    with look_into(store) as session, progress_bar() as progress:
+    with look_into(store) as session, _console.progress_bar() as progress:
         days = [
             (name, stream, day)
             for name in ([cage] if cage else cages(session))
@@ -66,14 +56,14 @@ def write(
             archive.write(name, stream, moment_of(day).date(), samples)
             count += len(samples)
             progress("archive", done, len(days))
-    report(
+    _console.report(
         {"folder": str(folder), "files": len(days), "samples": count},
         rows=[("Archive", str(folder)), ("Files", str(len(days))), ("Samples", str(count))],
     )
 
 
 @group.command()
-@guard
+@_console.guard
 def read(
     folder: Folder, *, cage: str, stream: str | None = None, start: Day = None, end: Day = None
 ) -> None:
@@ -93,28 +83,28 @@ def read(
     archive = Archive(folder)
     if cage not in archive.cages():
         there = ", ".join(archive.cages()) or "none"
-        raise refusal(f"{folder} has no samples of cage {cage!r}. It has: {there}.")
+        raise _console.refusal(f"{folder} has no samples of cage {cage!r}. It has: {there}.")
     bounds = Bounds(start=start and start.replace(tzinfo=UTC), end=end and end.replace(tzinfo=UTC))
     rows = (
         {
             "stream": one.stream,
             "t": one.t.isoformat(),
             "seq": one.seq,
-            "values": without_nan(one.values),
+            "values": _console.without_nan(one.values),
             "flags": {key: int(flag) for key, flag in one.flags.items()},
             "remarks": list(one.remarks),
         }
         for one in read_archive_between(archive, cage, stream, bounds)
     )
-    if wants_json():
-        report({"samples": list(rows)})
+    if _console.wants_json():
+        _console.report({"samples": list(rows)})
         return
     for line in rows:
         typer.echo(json.dumps(line))
 
 
 @group.command()
-@guard
+@_console.guard
 def check(folder: Folder) -> None:
     """Read every file and compare it with what was written; ends with 3 at any fault.
 
@@ -124,12 +114,14 @@ def check(folder: Folder) -> None:
     from seacage.service._store._archive import Archive
 
     if not folder.is_dir():
-        raise refusal(f"{folder} is no folder. Name the folder of the archive.")
+        raise _console.refusal(f"{folder} is no folder. Name the folder of the archive.")
     looked = list(Archive(folder).faults())
     faults = [fault for _, fault in looked if fault]
-    report(
+    _console.report(
         {"folder": str(folder), "files": len(looked), "faults": faults},
         rows=[("Files", str(len(looked))), *(("Fault", fault) for fault in faults)],
     )
     if faults:
-        raise exit_with(f"{len(faults)} of {len(looked)} files are at fault.", Exit.FAILED)
+        raise _console.exit_with(
+            f"{len(faults)} of {len(looked)} files are at fault.", _console.Exit.FAILED
+        )

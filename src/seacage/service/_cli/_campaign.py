@@ -2,51 +2,26 @@
 
 import math
 import shlex
-from dataclasses import asdict, fields
+from dataclasses import asdict, fields, replace
+from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
+from seacage.service._cli import _options
 from seacage.service._cli._console import Exit, exit_with, guard, progress_bar, report, wants_json
-from seacage.service._cli._options import (
-    CageName,
-    Law,
-    Mooring,
-    SpinUp,
-    Workers,
-    read_cage_or_structure,
-    read_share,
-    warn_of,
-)
 from seacage.service._cli._plans import PlanOptions
 
 if TYPE_CHECKING:
-    from seacage.campaigns import CampaignStatus
+    from seacage.cage import Cage, Structure
+    from seacage.campaigns import CampaignStatus, Simulator
 
 group = typer.Typer(
     help="Many simulations: run them here or on a cluster, see how far they are, export them."
 )
-
 Store = Annotated[Path, typer.Argument(help="The campaign's folder, a Zarr store.")]
-
 _FAILURES_SHOWN = 20
-
-_SCRIPT = """\
-#!/bin/bash
-# {cases} sea states in {tasks} tasks, by `seacage campaign slurm`. Hand it to sbatch where the
-# paths below are right and `seacage` is on the PATH; add time and partition as your cluster
-# wants them. Handed in again it goes on where it stopped. The last task to end sums up; should
-# it be lost there: seacage campaign finish {store}
-#SBATCH --job-name=seacage
-#SBATCH --array=0-{last}
-#SBATCH --ntasks=1
-#SBATCH --cpus-per-task={workers}
-#SBATCH --mem-per-cpu=1G
-set -euo pipefail
-export OMP_NUM_THREADS=1
-exec {command} --share "$SLURM_ARRAY_TASK_ID/{tasks}"
-"""
 
 
 @group.command()
@@ -55,16 +30,18 @@ def run(
     store: Store,
     *,
     plan: PlanOptions,
-    cage: CageName = "ace",
+    cage: _options.CageName = "ace",
     method: Literal["simulate", "settle"] = "simulate",
-    law: Law = "kristiansen-faltinsen",
-    mooring: Mooring = "catenary",
+    law: _options.Law = "kristiansen-faltinsen",
+    mooring: _options.Mooring = "catenary",
     ramp: float = 60.0,
-    spin_up: SpinUp = 300.0,
+    spin_up: _options.SpinUp = 300.0,
     time_step: float = 0.002,
     second_moment: bool = True,
     draw_mooring: bool = False,
-    workers: Workers = None,
+    without: _options.Without = None,
+    parted_lines: bool = False,
+    workers: _options.Workers = None,
     cluster: Annotated[str | None, typer.Option(metavar="ADDRESS")] = None,
     share: Annotated[str | None, typer.Option(metavar="I/N")] = None,
 ) -> None:
@@ -82,13 +59,15 @@ def run(
         time_step: s
         second_moment: Keep the second moment of all node coordinates.
         draw_mooring: Draw each case a mooring from the uncertainty that the cage file states.
+        parted_lines: One campaign without each line that the cage's symmetry tells apart, in a
+            folder of STORE by the line's name, for `seacage train --parted STORE`.
         cluster: Of a Dask scheduler you trust: tcp://host:8786.
         share: Only the I-th of N shares, from 0; others run the rest.
     """
     from seacage.campaigns import Simulator, campaign_status, run_share
 
-    chosen = plan.read()
-    warn_of(mooring)
+    chosen, subject = plan.read(), _options.read_cage_or_structure(cage)
+    _options.warn_of(mooring)
     by = Simulator(
         method=method,
         law=law,
@@ -98,21 +77,27 @@ def run(
         time_step=time_step,
         second_moment=second_moment,
         draw_mooring=draw_mooring,
+        parted=tuple(without or ()),
     )
+    stores = _stores_without(store, subject, by) if parted_lines else {store: by}
     with progress_bar() as progress:
-        run_share(
-            read_cage_or_structure(cage),
-            chosen,
-            store,
-            by=by,
-            share=read_share(share),
-            workers=workers,
-            cluster=cluster,
-            progress=progress,
-        )
-    reached = campaign_status(store)
-    _report_status(store, reached)
-    if reached.finished and not reached.answers:
+        for each, simulator in stores.items():
+            run_share(
+                subject,
+                chosen,
+                each,
+                by=simulator,
+                share=_options.read_share(share),
+                workers=workers,
+                cluster=cluster,
+                progress=progress,
+            )
+    reached = {each: campaign_status(each) for each in stores}
+    if parted_lines:
+        _report_stores(reached)
+    else:
+        _report_status(store, reached[store])
+    if all(one.finished and not one.answers for one in reached.values()):
         raise exit_with("campaign run: no case converged. Check the cage's file.", Exit.FAILED)
 
 
@@ -198,10 +183,11 @@ def slurm(
             "campaign slurm: it makes the shares. Leave --share and --cluster out.", Exit.USAGE
         )
     chosen = PlanOptions(**{one.name: given[one.name] for one in fields(PlanOptions)}).read()
-    read_cage_or_structure(given["cage"])
+    _options.read_cage_or_structure(given["cage"])
     blocks = -(-len(chosen) // Simulator(method=given["method"]).block)
     alone = [] if given["workers"] else ["--workers", "1"]
-    script = _SCRIPT.format(
+    template = files("seacage.service._cli").joinpath("slurm.sh").read_text("utf-8")
+    script = template.format(
         cases=len(chosen),
         tasks=min(tasks, blocks),
         last=min(tasks, blocks) - 1,
@@ -220,6 +206,39 @@ def _parse_options(words: list[str]) -> dict[str, Any]:
     command: Any = typer.main.get_command(group)
     with command.commands["run"].make_context("seacage campaign run", [*words]) as context:
         return {name: None if one == () else one for name, one in context.params.items()}
+
+
+def _stores_without(
+    store: Path, cage: "Cage | Structure", by: "Simulator"
+) -> "dict[Path, Simulator]":
+    """A store, and what fills it, for each line that is unlike the others."""
+    from seacage.cage import Cage
+    from seacage.conventions import InputError
+    from seacage.twin import representative_lines
+
+    if by.parted or not isinstance(cage, Cage):
+        raise InputError(
+            "campaign run: --parted-lines takes the lines of a whole cage one by one. Give it "
+            f"{'without --without' if by.parted else 'a cage that is no structure'}."
+        )
+    lines = representative_lines(cage, mooring=by.mooring)
+    return {store / line: replace(by, parted=(line,)) for line in lines}
+
+
+def _report_stores(reached: "dict[Path, CampaignStatus]") -> None:
+    report(
+        {
+            "stores": [
+                {"store": str(store), "parted": store.name, "answers": one.answers}
+                | {"done": one.done, "total": one.total, "finished": one.finished}
+                for store, one in reached.items()
+            ]
+        },
+        rows=[
+            (store.name, f"{one.done} of {one.total} done, {one.answers} to learn from")
+            for store, one in reached.items()
+        ],
+    )
 
 
 def _report_status(store: Path, reached: "CampaignStatus") -> None:

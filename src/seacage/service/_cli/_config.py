@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from seacage.service._settings import Settings
 
 group = typer.Typer(help="Settings of the service.")
-
 Config = Annotated[
     Path | None, typer.Option(exists=True, dir_okay=False, help="The file of settings, TOML.")
 ]

@@ -25,12 +25,10 @@ if TYPE_CHECKING:
     from seacage.conventions import Progress
 
 R = TypeVar("R")
-
 Json = Annotated[
     bool, typer.Option("--json", help="Print one JSON object on stdout, for programs.")
 ]
-_SECTION = re.compile(r"\n\n(?:Options:|Parameters\n-+)\n")
-_MEANING = re.compile(r"^(\w+):?\s+(.+(?:\n {4}.+)*)", re.MULTILINE)  # of an option
+_MEANING = re.compile(r"^(\w+): (.+(?:\n {4}.+)*)", re.MULTILINE)  # of an option
 _LINE_EVERY_S = 5.0  # of progress in a log
 _wants_json = ContextVar("_wants_json", default=False)
 
@@ -102,8 +100,8 @@ def guard(command: Callable[..., R]) -> Callable[..., R]:
 
 def _split_docstring(docstring: str | None) -> tuple[str, dict[str, str]]:
     """The text of a docstring, and the meanings of its options."""
-    text, *section = _SECTION.split(inspect.cleandoc(docstring or ""))
-    found = _MEANING.findall(textwrap.dedent("".join(section)))
+    text, _, section = inspect.cleandoc(docstring or "").partition("\n\nOptions:\n")
+    found = _MEANING.findall(textwrap.dedent(section))
     return text, {name: " ".join(meaning.split()) for name, meaning in found}
 
 

@@ -7,25 +7,14 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
+from seacage.service._cli import _options
 from seacage.service._cli._console import guard, progress_bar, refusal, report
-from seacage.service._cli._options import (
-    CageName,
-    Columns,
-    InFile,
-    OutFile,
-    Seed,
-    Workers,
-    read_cage,
-    read_share,
-    read_streams,
-)
 
 if TYPE_CHECKING:
     from seacage.campaigns import Event, TruthParameters
     from seacage.records import ColumnMap, FieldRecord, Limits, NetcdfMap, Record
 
 group = typer.Typer(help="Records of buoys and sensors: make, read and check them.")
-
 _FLAG_WORDS = {1: "good", 2: "not evaluated", 3: "suspect", 4: "fail", 9: "missing"}
 
 
@@ -41,18 +30,18 @@ def virtual(
     out: Annotated[Path, typer.Argument(file_okay=False)],
     *,
     method: Literal["simulate", "settle"] = "simulate",
-    record: InFile = None,
+    record: _options.InFile = None,
     days: Annotated[float | None, typer.Option(min=0.01, max=400.0)] = None,
     start: Annotated[datetime, typer.Option(formats=["%Y-%m-%d"])] = datetime(2020, 1, 18),  # noqa: DTZ001
-    waves: InFile = None,
+    waves: _options.InFile = None,
     calm: Annotated[bool, typer.Option("--calm")] = False,
     one_in: Annotated[int, typer.Option(min=1)] = 1,
     event: list[str] | None = None,
-    events: InFile = None,
-    seed: Seed = 0,
-    hidden: InFile = None,
-    cage: CageName = "ace",
-    workers: Workers = None,
+    events: _options.InFile = None,
+    seed: _options.Seed = 0,
+    hidden: _options.InFile = None,
+    cage: _options.CageName = "ace",
+    workers: _options.Workers = None,
     share: Annotated[str | None, typer.Option(metavar="I/N")] = None,
 ) -> None:
     """Make a virtual field: sensors on a cage that differs from its drawing.
@@ -100,11 +89,15 @@ def virtual(
     with progress_bar() as progress:
         if share is not None:
             virtual_field_share(
-                read_cage(cage), buoy, share=read_share(share), progress=progress, **options
+                _options.read_cage(cage),
+                buoy,
+                share=_options.read_share(share),
+                progress=progress,
+                **options,
             )
             report({"share": share}, rows=[("Simulated", f"share {share}")])
             return
-        made = virtual_field(read_cage(cage), buoy, progress=progress, **options)
+        made = virtual_field(_options.read_cage(cage), buoy, progress=progress, **options)
     made.write(out)
     _report_field(made.record, out)
 
@@ -187,7 +180,7 @@ class MapOptions:
         range_m: Which bin of a profile, from the instrument.
     """
 
-    columns: Columns = None
+    columns: _options.Columns = None
     origin: str | None = None
     zone: str | None = None
     depth_m: float | None = None
@@ -280,7 +273,7 @@ def _limits(path: Path | None) -> "Limits":
 def check(
     path: Annotated[Path, typer.Argument(exists=True)],
     *,
-    report: OutFile = None,
+    report: _options.OutFile = None,
     limits: LimitsFile = None,
 ) -> None:
     """Count what the quality checks say of a record, with the first of each kind.
@@ -298,7 +291,7 @@ def check(
     from seacage.records import check_record
 
     used = _limits(limits)
-    records = read_streams(path, limits=used)
+    records = _options.read_streams(path, limits=used)
     if limits is not None:
         records = [check_record(one, used) for one in records]
     if report is not None:

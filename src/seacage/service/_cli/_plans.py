@@ -12,6 +12,7 @@ from seacage.service._cli._console import refusal
 if TYPE_CHECKING:
     from seacage.campaigns import Plan
 
+# What can have a range or stand on a grid, as people write it; the ratio is Tp / (5 √Hs)
 _AXES = {
     "current_speed_m_s": "current_speed",
     "current_to_deg": "current_to",
@@ -19,7 +20,6 @@ _AXES = {
     "period_ratio": "period_ratio",
     "wave_from_deg": "wave_from",
 }
-"""What can have a range or stand on a grid, as people write it; the ratio is Tp / (5 √Hs)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,4 +1,4 @@
-"""``seacage score``: a twin against a record that did not teach it."""
+"""``seacage score`` and ``seacage if-parted``: how good a twin is, and what it says of damage."""
 
 from collections.abc import Iterable
 from dataclasses import asdict
@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from seacage.service._cli._console import guard, report
-from seacage.service._cli._options import OutFolder, Seed
+from seacage.service._cli._console import Exit, exit_with, guard, report
+from seacage.service._cli._options import OutFolder, SeaOptions, Seed
 
 if TYPE_CHECKING:
+    from seacage.service._schemas._cages import LineLoad, PartedLine
     from seacage.studies import SensorScore
 
 
@@ -62,3 +63,52 @@ def error_rows(scores: "Iterable[SensorScore]") -> list[tuple[str, str]]:
         )
         for score in scores
     ]
+
+
+@guard
+def if_parted(
+    *, sea: SeaOptions, twin: Annotated[Path, typer.Option(exists=True, file_okay=False)]
+) -> None:
+    """Say what the other lines would bear if each line parted, the worst first.
+
+    Once the transient has died, by level 1. The twin must have been trained with --parted.
+
+    Example:
+        seacage if-parted --twin twin --current-speed 0.5 --current-to 90 --hs 2 --tp 7
+
+    Options:
+        twin: Folder of the twin.
+    """
+    from datetime import UTC, datetime
+
+    from seacage.service._live._answers import what_if_parted
+    from seacage.twin import Answered, Metocean, Twin
+
+    read, water = Twin.read(twin), Metocean.of(sea.state())
+    answered = Answered(
+        t=datetime.now(UTC), answer=read.predict(water), metocean=water, input_age_s=0.0
+    )
+    found = what_if_parted(read.cage.name, read, answered)
+    if not found.lines:
+        raise exit_with(f"if-parted: {found.reason}", Exit.FAILED)
+    about = found.model_dump(mode="json", include={"level", "lines"})
+    report(
+        {"twin": str(twin), "origin": str(read.origin), **about},
+        rows=[(f"Without {line.parted}", _sentence(line)) for line in found.lines],
+    )
+
+
+def _sentence(line: "PartedLine") -> str:
+    share, second = line.utilisation, line.second_would_part
+    return "; ".join(
+        (
+            f"mean {_load(line.largest_mean)}, 3 h {_load(line.largest_maximum_3h)}",
+            "capacity not known" if share is None else f"{share:.0%} of a capacity",
+            f"a second {'may part' if second is None else 'parts' if second else 'holds'}",
+            f"volume {line.volume_share}, {line.clearance_m} m clear, drift {line.drift_m} m",
+        )
+    )
+
+
+def _load(one: "LineLoad | None") -> str:
+    return "not known" if one is None else f"{one.kn:.0f} kN ({one.line})"

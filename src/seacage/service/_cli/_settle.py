@@ -4,18 +4,8 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
+from seacage.service._cli import _options
 from seacage.service._cli._console import guard, report_case
-from seacage.service._cli._options import (
-    CageName,
-    LawOptions,
-    Mooring,
-    OutFile,
-    SeaOptions,
-    Without,
-    read_cage_or_structure,
-    warn,
-    warn_of,
-)
 
 if TYPE_CHECKING:
     from seacage.cage import Cage, Structure
@@ -25,14 +15,14 @@ if TYPE_CHECKING:
 @guard
 def settle(
     *,
-    sea: SeaOptions,
+    sea: _options.SeaOptions,
     mean_waves: Annotated[bool, typer.Option("--mean-waves")] = False,
-    cage: CageName = "ace",
+    cage: _options.CageName = "ace",
     law: Literal["kristiansen-faltinsen", "loland", "aarsnes"] = "kristiansen-faltinsen",
-    net: LawOptions,
-    mooring: Mooring = "catenary",
-    without: Without = None,
-    out: OutFile = None,
+    net: _options.LawOptions,
+    mooring: _options.Mooring = "catenary",
+    without: _options.Without = None,
+    out: _options.OutFile = None,
 ) -> None:
     """Settle one sea state: shape and loads.
 
@@ -51,9 +41,9 @@ def settle(
     from seacage.dynamics import settle as settled
 
     net.check_files(out)
-    state, subject = sea.state(), read_cage_or_structure(cage)
+    state, subject = sea.state(), _options.read_cage_or_structure(cage)
     parted = without or []
-    warnings = [*subject.warnings, *warn_of(mooring)]
+    warnings = [*subject.warnings, *_options.warn_of(mooring)]
     laws = (law,) if net.laws is None else LAWS
     response = settled(
         subject,
@@ -65,7 +55,7 @@ def settle(
         mean_waves=mean_waves,
         parted=parted,
     )
-    warn(response.warnings)
+    _options.warn(response.warnings)
     warnings += response.warnings
     about: dict[str, object] = {"mooring": mooring, "warnings": warnings, **net.changes}
     about |= {"without": parted} if parted else {}

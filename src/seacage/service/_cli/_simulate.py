@@ -4,22 +4,8 @@ from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from seacage.service._cli import _options
 from seacage.service._cli._console import Exit, exit_with, guard, progress_bar, report_case
-from seacage.service._cli._options import (
-    CageName,
-    Law,
-    LawOptions,
-    Mooring,
-    OutFile,
-    SeaOptions,
-    Seed,
-    SpinUp,
-    Without,
-    read_cage,
-    read_cage_or_structure,
-    warn,
-    warn_of,
-)
 
 if TYPE_CHECKING:
     import numpy as np
@@ -29,27 +15,26 @@ if TYPE_CHECKING:
     from seacage.figures import Motion
     from seacage.ocean import SeaState, Waves
 
-_SMOOTH = 0.5
-"""Between samples that an animation can follow waves by [s]."""
+_SMOOTH = 0.5  # between samples that an animation can follow waves by [s]
 
 
 @guard
 def simulate(
     *,
-    sea: SeaOptions,
+    sea: _options.SeaOptions,
     duration: float = 1800.0,
-    spin_up: SpinUp = 300.0,
-    seed: Seed = 0,
-    cage: CageName = "ace",
-    law: Law = "kristiansen-faltinsen",
-    net: LawOptions,
-    mooring: Mooring = "catenary",
-    without: Without = None,
+    spin_up: _options.SpinUp = 300.0,
+    seed: _options.Seed = 0,
+    cage: _options.CageName = "ace",
+    law: _options.Law = "kristiansen-faltinsen",
+    net: _options.LawOptions,
+    mooring: _options.Mooring = "catenary",
+    without: _options.Without = None,
     mooring_draws: int = 0,
     sample_every: float = 0.5,
     pieces: int | None = None,
-    out: OutFile = None,
-    animation: OutFile = None,
+    out: _options.OutFile = None,
+    animation: _options.OutFile = None,
 ) -> None:
     """Simulate one sea state in time: shape and loads in waves.
 
@@ -59,24 +44,16 @@ def simulate(
     Example: half an hour in a current towards east, with waves from west.
         seacage simulate --current-speed 0.5 --current-to 90 --hs 2 --wave-from 270 --out sea.nc
 
-    Parameters
-    ----------
-    duration
-        That counts, s.
-    seed
-        Of the waves.
-    mooring_draws
-        Simulate so many moorings more, drawn from the uncertainty that the cage file states, in
-        the same waves, and answer each line's band over them.
-    sample_every
-        Between samples of the series, s: whole tenths.
-    pieces
-        That the time is cut into, simulated side by side: 16 take a quarter of the time of 1.
-        Series leap a little where one begins. As many as last a minute each, up to 16.
-    out
-        Write series and statistics as CF-NetCDF.
-    animation
-        Write the first minute as a GIF.
+    Options:
+        duration: That counts, s.
+        seed: Of the waves.
+        mooring_draws: Simulate so many moorings more, drawn from the uncertainty that the cage
+            file states, in the same waves, and answer each line's band over them.
+        sample_every: Between samples of the series, s: whole tenths.
+        pieces: That the time is cut into, simulated side by side: 16 take a quarter of the time of
+            1. Series leap a little where one begins. As many as last a minute each, up to 16.
+        out: Write series and statistics as CF-NetCDF.
+        animation: Write the first minute as a GIF.
     """
     from seacage.cage import Cage
     from seacage.conventions import InputError
@@ -97,9 +74,9 @@ def simulate(
             f"Give --sample-every {_SMOOTH:g} or less."
         )
     pieces = max(1, min(16, int(duration // 60.0))) if pieces is None else pieces
-    read = read_cage if mooring_draws or animation else read_cage_or_structure
+    read = _options.read_cage if mooring_draws or animation else _options.read_cage_or_structure
     subject, state = read(cage), sea.state()
-    warnings = [*subject.warnings, *warn_of(mooring)]
+    warnings = [*subject.warnings, *_options.warn_of(mooring)]
     waves = sample_waves(state, seed=seed, depth=subject.site.water_depth)
     given: dict[str, Any] = {
         "duration": duration,
@@ -126,7 +103,7 @@ def simulate(
         )
         others = [simulated(one, state, law=law, sample_every=None, **given) for one in drawn]
     remarks = [*history.warnings, *(() if net.laws else _remarks(history))]
-    warn(remarks)
+    _options.warn(remarks)
     warnings += remarks
     settings = {
         "law": net.laws or law,
@@ -246,7 +223,8 @@ def _lines(history: "History") -> dict[str, dict[str, object]]:
 
     def one(index: int) -> dict[str, object]:
         each = {key: float(values[index]) for key, values in columns.items()}
-        return {key: round(v, 3) if isfinite(v) else None for key, v in each.items()}
+        digits = {key: 9 if key == "damage_per_year" else 3 for key in each}
+        return {key: round(v, digits[key]) if isfinite(v) else None for key, v in each.items()}
 
     return {
         name: {"kind": lines.kinds[index], **one(index)} for index, name in enumerate(lines.names)
@@ -323,7 +301,9 @@ def _beyond(lines: "LineLoads", index: int) -> str:
     share, extremes = lines.utilisation[index], lines.extremes
     of_capacity = f", {share:.0%} of capacity at most" if isfinite(share) else ""
     mpm, spread = extremes.mpm[index] / 1e3, extremes.mpm_std[index] / 1e3
-    return of_capacity + (f"; 3 h MPM {mpm:.1f} ± {spread:.1f} kN" if isfinite(mpm) else "")
+    damage = lines.damage_per_year[index]
+    most = f"; 3 h MPM {mpm:.1f} ± {spread:.1f} kN" if isfinite(mpm) else ""
+    return of_capacity + most + (f"; damage {damage:.2g} a year" if isfinite(damage) else "")
 
 
 def _line(statistics: "Statistics", scale: float, place: int | tuple[int, ...]) -> str:

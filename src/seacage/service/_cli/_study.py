@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from seacage.studies import BenchmarkStudy, FidelityStudy, PaperStudy, ShapeScore
 
 ReportFolder = Annotated[Path, typer.Option(file_okay=False, help="Folder of the report.")]
-
 group = typer.Typer(help="Whole experiments, from simulations to one HTML report.")
 
 

@@ -1,5 +1,6 @@
 """``seacage train``: from simulations and sensors to a twin."""
 
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -20,6 +21,9 @@ def train(
     campaign: InFolder = None,
     base: InFolder = None,
     field: InFolder = None,
+    parted: Annotated[
+        list[Path] | None, typer.Option(exists=True, file_okay=False, metavar="DIR")
+    ] = None,
     out: Annotated[Path, typer.Option(file_okay=False)],
     cage: str | None = None,
     inputs: Literal["current", "current,waves"] = "current",
@@ -43,6 +47,8 @@ def train(
         base: A twin whose level 1 is taken, instead of --campaign: only sensors that moved, or are
             new, are trained at level 2.
         field: A field record; else level 1 alone.
+        parted: What `campaign run --parted-lines` left, or a campaign without one line, in seas of
+            --campaign: what would be left if a line parted is learned too. Again for each.
         out: Folder of the twin.
         cage: Where sensors have moved: a TOML file. [default: as simulated]
         inputs: What the twin is asked with.
@@ -53,7 +59,7 @@ def train(
         sign: Sign the twin with this key.
     """
     from seacage.conventions import NonsenseError
-    from seacage.records import FieldRecord
+    from seacage.records import FieldRecord, read_campaign
     from seacage.twin import Training, read_key
     from seacage.twin import train as trained
 
@@ -72,6 +78,7 @@ def train(
                 read_cage(cage) if cage else drawn,
                 simulated,
                 FieldRecord.read(field) if field else None,
+                parted=[read_campaign(store) for store in _stores(parted or [])],
                 base=begun,
                 training=training,
                 progress=progress,
@@ -83,16 +90,37 @@ def train(
     windows = twin.provenance.training_windows
     levels = {name: 2 if name in windows else 1 for name in twin.sensor_names}
     counts = {name: windows[name].points if name in windows else 0 for name in levels}
+    kinds = twin.models.parted.kinds if twin.models.parted else ()
+    lines = twin.models.line_upper
     report(
         {"written": str(out), "origin": str(twin.origin), "cases": twin.provenance.cases}
         | {"level": levels, "points": counts}
-        | {"calibrated": {name: window.calibrated for name, window in windows.items()}},
+        | {"calibrated": {name: window.calibrated for name, window in windows.items()}}
+        | {"parted": {one.line: [one.learned, one.simulated] for one in kinds}}
+        | {"line_loads": {name: asdict(one) for name, one in lines.items()}},
         rows=[
             ("Written", f"{out} ({twin.origin})"),
             ("Level 1", f"{twin.provenance.cases} simulations, {twin.provenance.law}"),
+            *(
+                (f"Without {one.line}", f"{one.learned} of {one.simulated} simulations")
+                for one in kinds
+            ),
             *((name, f"level {level}, {counts[name]} readings") for name, level in levels.items()),
+            *(
+                (f"{name}, its line", f"level 2, {one.windows} windows, {one.rate}")
+                for name, one in lines.items()
+            ),
         ],
     )
+
+
+def _stores(folders: list[Path]) -> list[Path]:
+    """Stores of campaigns: the folders themselves, or what is in them."""
+    return [
+        store
+        for folder in folders
+        for store in ([folder] if (folder / "zarr.json").exists() else sorted(folder.glob("[!.]*")))
+    ]
 
 
 def _level_one(

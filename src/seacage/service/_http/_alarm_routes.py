@@ -17,13 +17,12 @@ from seacage.service._http._dependencies import (
     may_read,
 )
 from seacage.service._schemas._alarms import Alarms, AlarmState, Handling, Journal, Kpi, alarm_state
+from seacage.service._schemas._state import LineState
 from seacage.twin import alarm_kpi
 
 _WATCH = timedelta(days=7)
 _LINES = 10_000  # of the journal, counted back from the end of the span
-
 alarms = APIRouter(prefix="/api/v1/cages/{cage}", tags=["alarms"])
-
 How = Literal["acknowledge", "comment", "shelve", "unshelve", "out-of-service", "in-service"]
 
 Id = Annotated[
@@ -34,6 +33,12 @@ Id = Annotated[
         description="Kind and source.",
         examples=["load.bridle-3"],
     ),
+]
+
+
+Line = Annotated[
+    str,
+    Path(max_length=64, pattern=r"^[A-Za-z0-9][A-Za-z0-9_.\\-]*$", examples=["anchor-3"]),
 ]
 
 
@@ -57,6 +62,18 @@ async def handle_alarm(live: Live, id: Id, how: How, body: Handling, who: Who) -
         raise HTTPException(404, f"No alarm is called {id!r} here, or it was never assessed.")
     alarm = await live.handle(id, how, who=who, why=body.why, seconds=body.seconds)
     return alarm_state(alarm, live.desk.policy)
+
+
+@alarms.post("/lines/{line}/damage/reset", dependencies=may_acknowledge, responses=WRITE)
+async def reset_damage(live: Live, line: Line, body: Handling, who: Who) -> LineState:
+    """Count a line's damage anew, as when it was replaced; the journal says who, when and why.
+
+    The journal's line has what the damage had come to. The answer comes when it is on disk.
+    """
+    if line not in live.live.damage.lines:
+        raise HTTPException(404, f"No damage of a line {line!r} is counted here.")
+    state = await live.reset_damage(line, who=who, why=body.why)
+    return next(one for one in state.lines if one.name == line)
 
 
 @alarms.get("/journal", dependencies=may_read, responses=READ)

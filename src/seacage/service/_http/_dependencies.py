@@ -27,6 +27,7 @@ def body_of(media_type: str, description: str, **content: Any) -> Responses:
     return {200: {"content": {media_type: content}, "description": description}}
 
 
+# What any call may answer that takes a token
 REFUSED: Responses = {
     **refusal(401, "No token, or one that is not known.", "Send a token as 'Authorization: …'."),
     **refusal(403, "The token lacks the scope.", "This token does not have the scope ack."),
@@ -36,20 +37,19 @@ REFUSED: Responses = {
         "headers": {"Retry-After": {"schema": {"type": "integer"}, "description": "Seconds."}},
     },
 }
-"""What any call may answer that takes a token."""
 
+# What a call may answer that reads of a cage
 READ: Responses = {
     **REFUSED,
     **refusal(404, "No cage of this name.", "No cage is called 'ice'. There are ace."),
     **refusal(503, "The store cannot be read.", "The store cannot be read (disk I/O error)."),
 }
-"""What a call may answer that reads of a cage."""
 
+# What a call may answer that takes a body
 BODY: Responses = {
     **refusal(400, "The body is not JSON.", "There was an error parsing the body"),
     **refusal(413, "The body is too long.", "A request may have 1000000 bytes. Send less at once."),
 }
-"""What a call may answer that takes a body."""
 
 WRITE: Responses = {**READ, **BODY}  # what a call may answer that takes a body for a cage
 
@@ -74,7 +74,6 @@ def _cage(request: Request, cage: Annotated[str, Path(max_length=64)]) -> LiveCa
 
 _NAME = r"^[A-Za-z0-9][A-Za-z0-9_.\-]*$"
 _WHEN = "2018-01-26T23:08:00Z"
-
 Live = Annotated[LiveCage, Depends(_cage)]
 At = Annotated[
     Reach | None,
@@ -87,7 +86,6 @@ To = Annotated[
     Reach | None, Query(alias="to", description="Last time, left out.", examples=[_WHEN])
 ]
 MOST_ROWS = 10_000  # of an answer
-
 Limit = Annotated[int, Query(ge=1, le=MOST_ROWS, description="At most so many.", examples=[1000])]
 Stream = Annotated[
     str | None,
@@ -101,7 +99,6 @@ Width = Annotated[
 ]
 
 may_read, may_ingest = [Depends(Permit("read"))], [Depends(Permit("ingest"))]
-
 PAGE = 2000  # samples that an answer without an end holds at a time
 
 
@@ -113,7 +110,7 @@ async def _costs(request: Request) -> None:
     request.state.reading = token, rows  # given back by the shield
 
 
+# For calls whose answers are long: they take their rows out of a budget while they are made
 may_read_rows = [*may_read, Depends(_costs)]
-"""For calls whose answers are long: they take their rows out of a budget while they are made."""
 
 may_acknowledge = [Depends(Permit("ack"))]

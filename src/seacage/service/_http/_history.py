@@ -19,8 +19,8 @@ from seacage.service._store._aggregates import WIDTHS_S
 from seacage.service._store._store import Store
 from seacage.twin import Answer, Twin
 
+# Readings that one history looks at one by one; of more, spans of minutes are looked at
 READ_LIMIT = 10_000
-"""Readings that one history looks at one by one; of more, spans of minutes are looked at."""
 
 _PAGE = 10_000  # aggregates read at once
 _ORIGIN = datetime(1970, 1, 1, tzinfo=UTC)  # of every span

@@ -6,18 +6,17 @@ from fastapi import APIRouter, Response
 
 from seacage.ocean import SeaState
 from seacage.service._http._cage_routes import FRAME
-from seacage.service._http._dependencies import READ, WRITE, Live, may_read
-from seacage.service._live._answers import state_of
+from seacage.service._http._dependencies import READ, WRITE, At, Live, may_read
+from seacage.service._live._answers import state_of, what_if_parted
 from seacage.service._live._frame import MEDIA_TYPE, Flags, frame_of
-from seacage.service._schemas._cages import Learned, LearnedInput, WhatIf
+from seacage.service._schemas._cages import Learned, LearnedInput, WhatIf, WhatIfParted
 from seacage.service._schemas._state import Water
 from seacage.twin import Answered, Metocean, Twin
 
+# Strength and direction of each kind of input, in the order of the twin's edges
 _KEYS = {"current": ("current_speed_m_s", "current_to_deg"), "waves": ("hs_m", "wave_from_deg")}
-"""Strength and direction of each kind of input, in the order of the twin's edges."""
 
 _WAVES = ("hs_m", "tp_s", "wave_from_deg")
-
 what_if = APIRouter(prefix="/api/v1/cages", tags=["cages"])
 
 
@@ -53,6 +52,12 @@ def ask_what_if(live: Live, body: WhatIf) -> Response:
         state = state.model_copy(update={"water": effective_water(state.water, sea, twin)})
     frame = frame_of(state, answered, live.rest_position, about=Flags.WHAT_IF)
     return Response(frame, media_type=MEDIA_TYPE)
+
+
+@what_if.get("/{cage}/what-if-parted", dependencies=may_read, responses=READ)
+def get_what_if_parted(live: Live, at: At = None) -> WhatIfParted:
+    """Say what the other lines would bear if each line parted in the water of now, or of then."""
+    return what_if_parted(live.name, live.twin, live.snapshot_at(at).answered)
 
 
 def training_domain_of(twin: Twin) -> Learned:

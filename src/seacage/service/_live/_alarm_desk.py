@@ -36,13 +36,13 @@ from seacage.twin import (
     unshelve,
 )
 
+# What the tests remember is kept so often; what happens to an alarm is kept at once
 _KEPT_EVERY = timedelta(minutes=1)
-"""What the tests remember is kept so often; what happens to an alarm is kept at once."""
 
 _WAITING = 10_000  # lines for a disk that takes none; then the oldest are lost
-
 _log = structlog.get_logger(__name__)
 
+# What people can do with an alarm
 HANDLES: Mapping[str, Callable[..., Changed]] = {
     "acknowledge": acknowledge,
     "comment": remark,
@@ -51,7 +51,6 @@ HANDLES: Mapping[str, Callable[..., Changed]] = {
     "out-of-service": take_out_of_service,
     "in-service": put_in_service,
 }
-"""What people can do with an alarm."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

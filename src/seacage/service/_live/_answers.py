@@ -5,16 +5,28 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 from datetime import UTC, datetime
+from types import MappingProxyType
 
 import numpy as np
 from jaxtyping import Float
 
 from seacage.cage import Cage, mooring_lines
 from seacage.conventions import Flag, compass
+from seacage.dynamics import line_ends
 from seacage.ocean import SeaState
 from seacage.records import Record, Sample
 from seacage.service._export import Output, bridle_outputs, sensor_outputs
-from seacage.service._schemas._cages import CageSummary, Position, ShacklePlace, Topology
+from seacage.service._live._damage import LineDamage
+from seacage.service._schemas._cages import (
+    CageSummary,
+    LineLoad,
+    LinePlace,
+    PartedLine,
+    Position,
+    ShacklePlace,
+    Topology,
+    WhatIfParted,
+)
 from seacage.service._schemas._history import History, Measured, Series
 from seacage.service._schemas._samples import SampleOut
 from seacage.service._schemas._state import (
@@ -28,19 +40,32 @@ from seacage.service._schemas._state import (
     State,
     Water,
 )
-from seacage.twin import Answer, Answered, Metocean, Twin, TwinState, interval_reason, shackle_loads
+from seacage.twin import (
+    NO_PARTED_LINES,
+    Answer,
+    Answered,
+    IfParted,
+    Metocean,
+    Twin,
+    TwinState,
+    interval_reason,
+    shackle_loads,
+)
 
 _UNUSABLE = (Flag.FAIL, Flag.MISSING)
-_PERIOD = "tp_s"
 _ID_DIGITS = 16  # of the hash of a topology: enough that two never meet by chance
 _DECIMALS = 3  # a newton, a millimetre: below what any sensor here resolves
 
 
-def state_of(name: str, twin: Twin, answered: Answered, memory: TwinState) -> State:
-    """Say what a cage does at one time.
-
-    ``name``: of the cage. ``memory``: what the twin remembers of its streams.
-    """
+def state_of(
+    name: str,  # of the cage
+    twin: Twin,
+    answered: Answered,
+    memory: TwinState,  # what the twin remembers of its streams
+    *,
+    damage: Mapping[str, LineDamage] = MappingProxyType({}),  # of the lines, as far as counted
+) -> State:
+    """Say what a cage does at one time."""
     answer = answered.answer
     return State(
         cage=name,
@@ -50,10 +75,11 @@ def state_of(name: str, twin: Twin, answered: Answered, memory: TwinState) -> St
         in_domain=bool(answer.in_domain[0]),
         reason=answer.reason[0],
         origin=str(twin.origin),
-        water=_water(answered.metocean, _period(memory, twin.buoy, answered.t)),
+        water=_water(answered.metocean),
         bridles=_bridles(twin.cage, answer, shackle_loads(twin, memory, answered.t)),
-        lines=_lines(twin.cage, answer),
+        lines=_lines(twin, answer, damage),
         lines_reason=answer.line_reason[0],
+        tp_assumed=bool(answer.line_tp_assumed[0]),
         sensors=_sensors(answer, memory, answered.t, twin.timeouts.sensor_silent_after_s),
         shape_level=answer.shape_level,
         shape=_shape_state(answer),
@@ -117,27 +143,88 @@ def _bridles(cage: Cage, answer: Answer, measured: Mapping[int, float]) -> list[
     ]
 
 
-def _lines(cage: Cage, answer: Answer) -> list[LineState]:
+def _lines(twin: Twin, answer: Answer, counted: Mapping[str, LineDamage]) -> list[LineState]:
     """Say how all lines are loaded in waves; nothing where the sea was never learned."""
     if answer.line is None:
         return []
-    mean, std, largest = (
-        np.where(answer.line_in_domain[0], one.mean[0], np.nan) / 1e3
-        for one in (answer.line.mean, answer.line.std, answer.line.maximum_3h)
+    loads, capacity = answer.line, twin.models.lines.capacity / 1e3
+    mean, std, largest = (one.mean[0] / 1e3 for one in (loads.mean, loads.std, loads.maximum_3h))
+    spread = np.where(np.isnan(std), loads.mean.std[0] / 1e3, np.nan)
+    damage = (
+        np.full(len(capacity), np.nan)
+        if loads.damage_per_year is None
+        else loads.damage_per_year[0]
     )
-    capacity = mooring_lines(cage, anchored=True).capacity / 1e3
+    known = answer.line_in_domain[0]
+    lower, upper = (np.where(known, one[0], np.nan) / 1e3 for one in answer.maximum_interval())
     return [
         LineState(
             name=name,
             kind=answer.line_kinds[k],
-            level=1,
+            level=int(answer.line_level[k]),
             mean_kn=_number(mean[k]),
+            mean_spread_kn=_number(spread[k]),
             std_kn=_number(std[k]),
-            maximum_3h_kn=Interval(mean=_number(largest[k]), lower=None, upper=None),
+            maximum_3h_kn=Interval(
+                mean=_number(largest[k]), lower=_number(lower[k]), upper=_number(upper[k])
+            ),
             utilisation=_number(largest[k] / capacity[k], 4),
+            damage_per_year=_number(damage[k], 9),
+            **(asdict(counted[name]) if name in counted else {}),
         )
         for k, name in enumerate(answer.line_names)
     ]
+
+
+def what_if_parted(name: str, twin: Twin, answered: Answered) -> WhatIfParted:
+    """Say what would be left in the water of an answer if each line parted, the worst first."""
+    water, reason = answered.metocean, answered.answer.reason[0]
+    lines = list[PartedLine]()
+    if twin.models.parted is None:
+        reason = NO_PARTED_LINES
+    elif water is not None and answered.answer.valid[0]:
+        found = twin.if_parted(water)
+        reason = found.reason[0]
+        lines = _lines_if_parted(found) if np.isfinite(found.mean[0]).any() else []
+    return WhatIfParted(
+        cage=name,
+        time=answered.t,
+        level=1,
+        reason=reason or None,
+        lines=sorted(lines, key=_badness, reverse=True),
+    )
+
+
+def _lines_if_parted(found: IfParted) -> list[PartedLine]:
+    second = found.second_would_part[0]
+    return [
+        PartedLine(
+            parted=parted,
+            kind=found.kinds[row],
+            in_domain=bool(found.in_domain[0, row]),
+            largest_mean=_load_on(found, found.mean[0, row], int(found.largest_mean[0, row])),
+            largest_maximum_3h=_load_on(
+                found, found.maximum_3h[0, row], int(found.largest_maximum_3h[0, row])
+            ),
+            utilisation=_number(found.utilisation[0, row], 4),
+            second_would_part=bool(second[row]) if math.isfinite(second[row]) else None,
+            volume_share=_number(found.volume_share[0, row], 4),
+            clearance_m=_number(found.clearance[0, row], 1),
+            drift_m=_number(found.drift[0, row], 1),
+        )
+        for row, parted in enumerate(found.parted)
+    ]
+
+
+def _load_on(found: IfParted, load: Float[np.ndarray, " line"], line: int) -> LineLoad | None:
+    if (kn := _number(load[line] / 1e3)) is None:
+        return None
+    return LineLoad(line=found.line_names[line], kn=kn)
+
+
+def _badness(line: PartedLine) -> tuple[bool, float, float]:
+    load = line.largest_maximum_3h or line.largest_mean
+    return bool(line.second_would_part), line.utilisation or 0.0, load.kn if load else 0.0
 
 
 def _sensors(
@@ -213,11 +300,26 @@ def topology_of(name: str, twin: Twin, *, speed: float) -> Topology:
         bridle_capacity_kn=(cage.bridle_capacity / 1e3).round(_DECIMALS).tolist(),
         depth_sensors=[Position(name=one.name, node=one.node) for one in cage.depth_sensors],
         shackles=[ShacklePlace(name=one.name, bridle=one.bridle) for one in cage.shackles],
+        lines=_line_places(cage, rest.line_names),
+        water_depth_m=cage.site.water_depth,
         stale_after_s=twin.timeouts.stale_after_s,
         speed=speed,
     )
     digest = hashlib.sha256(topology.model_dump_json().encode()).hexdigest()
     return topology.model_copy(update={"topology_id": digest[:_ID_DIGITS]})
+
+
+def _line_places(cage: Cage, known: tuple[str, ...]) -> list[LinePlace]:
+    """Say where the lines besides the bridles run whose loads are known."""
+    every = mooring_lines(cage, anchored=True)
+    if set(known) <= set(cage.bridle_names) or not set(known) <= set(every.names):
+        return []
+    ends = line_ends(cage).round(_DECIMALS).tolist()
+    return [
+        LinePlace(name=name, kind=kind, ends_m=its)
+        for name, kind, its in zip(every.names, every.kinds, ends, strict=True)
+        if name in known and name not in cage.bridle_names
+    ]
 
 
 def history_of(
@@ -261,15 +363,7 @@ def sample_of(sample: Sample) -> SampleOut:
     return SampleOut.model_validate(sample)
 
 
-def _period(memory: TwinState, buoy: str, now: datetime) -> float | None:
-    """The buoy's newest period, however old; None where it failed."""
-    sample = memory.newest(buoy, now).get(_PERIOD)
-    if sample is None or sample.flags[_PERIOD] in _UNUSABLE:
-        return None
-    return sample.values[_PERIOD]
-
-
-def _water(metocean: Metocean | None, tp_s: float | None) -> Water | None:
+def _water(metocean: Metocean | None) -> Water | None:
     if metocean is None:
         return None
     velocity = metocean.current_velocity[0]
@@ -277,7 +371,7 @@ def _water(metocean: Metocean | None, tp_s: float | None) -> Water | None:
         current_speed_m_s=_number(float(np.hypot(*velocity))),
         current_to_deg=_number(float(compass(velocity)), 1),
         hs_m=_number(metocean.hs[0], 2),
-        tp_s=_number(tp_s, 2),
+        tp_s=_number(metocean.tp[0] or None, 2),  # 0 in a sea without waves
         wave_from_deg=_number(float(compass(-metocean.wave_direction[0])), 1),
     )
 

@@ -42,8 +42,8 @@ from seacage.twin import (
 
 _GATHERED_S = 0.1  # what comes within so long is stepped through together, and shown once [s]
 
+# Samples that may wait to be stepped through, some 20 MB; who sends more is made to wait
 MOST_WAITING = 20_000
-"""Samples that may wait to be stepped through, some 20 MB; who sends more is made to wait."""
 
 _log = structlog.get_logger(__name__)
 
@@ -134,7 +134,8 @@ class LiveCage:
         self, answered: Answered, memory: TwinState, *, alarms: Sequence[AlarmBrief] = ()
     ) -> State:
         """Say what the cage does at one time, and what of it is not well."""
-        state = state_of(self.name, self.twin, answered, memory)
+        damage = self.live.damage.at(answered.t)
+        state = state_of(self.name, self.twin, answered, memory, damage=damage)
         policy, least = self.desk.policy, self._least_volume
         concerns = concerns_of(state, memory, policy=policy, least_volume=least)
         return state.model_copy(update={"alarms": list(alarms), "concerns": list(concerns)})
@@ -211,6 +212,18 @@ class LiveCage:
             self._publish(self.snapshot.answered)
         await asyncio.wrap_future(kept)
         return after
+
+    async def reset_damage(self, line: str, *, who: str, why: str) -> State:
+        """Count a line's damage anew, as the journal says; returns when that is on disk.
+
+        Raises InputError: no damage of such a line is counted.
+        Raises StoreError: the disk did not take it.
+        """
+        async with self._stepping:
+            counter, now = self.live.damage, self.clock.now()
+            await asyncio.wrap_future(counter.reset(line, who=who, why=why, now=now))
+            self._publish(self.snapshot.answered)
+        return self.snapshot.state
 
     @contextmanager
     def subscribe(self) -> Generator[Mailbox]:

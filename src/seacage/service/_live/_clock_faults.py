@@ -6,8 +6,8 @@ from datetime import datetime, timedelta
 from seacage.conventions import duration_text
 from seacage.service._live._clock import Clock
 
+# What a clock may be set by, between two looks, without being said to have stepped [s]
 STEP_S = 5.0
-"""What a clock may be set by, between two looks, without being said to have stepped [s]."""
 
 _LASTS_S = 600.0  # an alarm stands so long after the last sign of a fault
 

@@ -10,7 +10,6 @@ from seacage.service._schemas._state import State
 from seacage.twin import Answered
 
 MEDIA_TYPE = "application/vnd.seacage.frame"  # of a frame in an HTTP answer
-
 _HEADER = struct.Struct("<4sHHdIIff")
 _MAGIC, _VERSION, _ALIGNED = b"SCFR", 2, 8
 _FINEST = 1e-6  # a unit of nothing would divide by nothing [m]

@@ -9,6 +9,7 @@ import structlog
 from seacage.service._live._alarm_desk import AlarmDesk
 from seacage.service._live._clock import Clock
 from seacage.service._live._clock_faults import ClockFaults, Step
+from seacage.service._live._damage import DamageCounter
 from seacage.service._live._past import Past, answer_in, streams_of
 from seacage.service._store._adaptations import Adaptation, Refold
 from seacage.service._store._database._session import StoreError
@@ -49,6 +50,7 @@ class LiveTwin:
         self._name, self._twin, self._store, self._clock = name, twin, store, clock
         self._desk, self._past = desk, Past(twin, store, name)
         self._period = timedelta(seconds=tick_s * clock.speed)
+        self.damage = DamageCounter(name=name, twin=twin, store=store)
         self.clocks = ClockFaults(clock, streams=len(streams_of(twin)))
         self._went_back: list[tuple[Step, float]] = []  # and how far from there it is now [s]
         self._withdrawing: list[tuple[Step, str]] = []
@@ -65,6 +67,8 @@ class LiveTwin:
         kept = self._adapt_until(now)
         self.state, self.answered = self._past.state_at(now, kept=kept)
         self._kept_until = self.state.adapted_until
+        self.damage.load()
+        self.damage.advance(now)
         return self.answered
 
     def step(
@@ -89,6 +93,8 @@ class LiveTwin:
         if any(stored.late for stored in arrived):
             self._refold, self._folded = self._store.refold(self._name), None
         self._adapt_anew(now)
+        changed = [*samples, *amendments]
+        self.damage.advance(now, [one.t for one in changed if one.stream == self._twin.buoy])
         self._look(now, ticked=ticked)
         self.state, events = self._twin.step(self.state, None, now)
         self.answered = answer_in(events)
@@ -185,6 +191,8 @@ class LiveTwin:
     def _follow_clock(self, step: Step) -> None:
         _log.error("the clock was set", cage=self._name, by_s=step.by_s, now=str(step.now))
         streams = streams_of(self._twin)
+        if step.by_s < 0.0:
+            self.damage.rewind(step.now)
         self.begin()
         # What was withdrawn by a clock that has come back to where it had been was right.
         off_s = [(one, by_s + step.by_s) for one, by_s in self._went_back]

@@ -15,7 +15,6 @@ from seacage.conventions import InputError
 
 _PORTS = {"mqtt": 1883, "mqtts": 8883}
 _LARGEST_PACKET = 1 << 20  # bytes; the broker keeps longer ones to itself
-
 KEEPALIVE_S = 30  # a connection on which nothing came for so long is dead
 
 

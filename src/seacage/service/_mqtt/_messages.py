@@ -113,10 +113,7 @@ def acknowledgement_text(settled: Sequence[Settled]) -> bytes:
 
 
 def read_settled(stream: str, payload: bytes) -> tuple[Settled, ...]:
-    """Read acknowledgements.
-
-    Raises InputError: the message holds none.
-    """
+    """Read acknowledgements. Raises InputError: the message holds none."""
     try:
         read = _SETTLED.validate_json(_as_list(payload))
     except ValidationError as error:

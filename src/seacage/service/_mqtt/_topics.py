@@ -10,9 +10,8 @@ from seacage.conventions import InputError
 
 _LEVEL = r"[A-Za-z0-9][A-Za-z0-9_.\-]{0,63}"
 _OBSERVED = re.compile(r"seacage/v1/([^/+#]+)/([^/+#]+)/([^/+#]+)/(obs|ack)")
-
+# Of a site, a cage, a worker: it becomes part of addresses and topics
 Name = Annotated[str, Field(pattern=f"^{_LEVEL}$")]
-"""Of a site, a cage, a worker: it becomes part of addresses and topics."""
 
 
 class Address(NamedTuple):

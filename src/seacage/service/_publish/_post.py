@@ -13,9 +13,8 @@ from seacage.conventions import InputError
 from seacage.service._mqtt._topics import Name
 
 _KINDS = {"http": http.client.HTTPConnection, "https": http.client.HTTPSConnection}
-
+# What ``post`` raises where nobody answers, or not in HTTP
 POST_FAILED = (OSError, http.client.HTTPException)
-"""What ``post`` raises where nobody answers, or not in HTTP."""
 
 
 def post(

@@ -7,6 +7,7 @@ from collections.abc import Callable, Generator, Sequence
 from contextlib import contextmanager
 from datetime import UTC, datetime, timedelta
 from functools import partial
+from importlib.resources import files
 from math import nan
 from pathlib import Path
 from typing import Any
@@ -20,28 +21,6 @@ from seacage.service._store._database._rows import microseconds
 
 _NO_SEQ = -1
 _TOGETHER = 1000  # samples that are set aside in one transaction
-
-_SCHEMA = """
-CREATE TABLE IF NOT EXISTS sample (
-    id INTEGER PRIMARY KEY AUTOINCREMENT,  -- in the order in which they were read
-    stream TEXT NOT NULL,
-    t INTEGER NOT NULL,                    -- microseconds since 1970 UTC
-    seq INTEGER NOT NULL,                  -- -1 where it does not count
-    said TEXT NOT NULL,
-    UNIQUE (stream, t, seq)
-) STRICT;
-CREATE TABLE IF NOT EXISTS ahead (         -- refused, as their time has not come
-    t INTEGER NOT NULL,
-    stream TEXT NOT NULL,
-    seq INTEGER NOT NULL,
-    said TEXT NOT NULL,
-    since INTEGER NOT NULL,                -- when first refused
-    reason TEXT NOT NULL,
-    PRIMARY KEY (t, stream, seq)
-) STRICT, WITHOUT ROWID;
-CREATE INDEX IF NOT EXISTS ahead_since ON ahead (since);
-CREATE TABLE IF NOT EXISTS place (source TEXT PRIMARY KEY, place TEXT NOT NULL) STRICT;
-"""
 
 _INSERT = """
 INSERT INTO sample (stream, t, seq, said) SELECT ?1, ?2, ?3, ?4
@@ -252,7 +231,9 @@ def _open(path: Path) -> sqlite3.Connection:
         connection.execute("PRAGMA locking_mode = EXCLUSIVE")
         connection.execute("PRAGMA journal_mode = WAL")
         connection.execute("PRAGMA synchronous = FULL")
-        connection.executescript(_SCHEMA)
+        connection.executescript(
+            files("seacage.service._publish").joinpath("spool.sql").read_text("utf-8")
+        )
     except sqlite3.Error:
         connection.close()
         raise

@@ -93,10 +93,7 @@ class MqttTransport:
         client.loop_start()
 
     def send(self, samples: Sequence[Sample]) -> list[Settled]:
-        """See ``Transport``.
-
-        Raises InputError: the broker refuses the client.
-        """
+        """See ``Transport``. Raises InputError: the broker refuses the client."""
         with self._changed:
             self._changed.wait_for(lambda: self._listening or self._refused, _ANSWER_S)
             if self._refused:

@@ -20,7 +20,6 @@ _PATIENCE_S = (1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 60.0, 60.0, 60.0)
 _LOOK_S = 0.5
 _WAITING = 1000  # messages to one hook; the oldest is dropped, for the newest say how it stands
 _TIMEOUT_S = 10.0
-
 _log = structlog.get_logger(__name__)
 
 

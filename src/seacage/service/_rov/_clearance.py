@@ -22,7 +22,6 @@ from seacage.twin import Clearance, InspectionPath, PredictedNet, inspection_pat
 
 _STATED = 1.0  # the distance that every answer is about [m]
 _DECIMALS = 4  # of metres and probabilities: a tenth of a millimetre
-
 Points = Float[np.ndarray, "point 3"]
 
 

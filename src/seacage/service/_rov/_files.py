@@ -11,9 +11,7 @@ from seacage.twin import InspectionPath, PredictedNet
 
 MCAP = "application/octet-stream"
 GEOJSON = "application/geo+json"
-
 _DEGREE_DECIMALS = 8  # about a millimetre
-
 Points = Float[np.ndarray, "point 3"]
 
 

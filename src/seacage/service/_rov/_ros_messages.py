@@ -12,12 +12,10 @@ from jaxtyping import Float, Int
 from seacage.conventions import InputError, SeacageError
 
 FRAME_ID = "seacage_enu"  # of all messages: metres east, north and up of the cage's centre
-
 TRIANGLE_LIST = 11
 _POINT_FLOAT = 7
 _LAST_NS = 2**31 * 10**9
 _COLOUR = {"r": 0.2, "g": 0.6, "b": 0.8, "a": 0.5}
-
 Points = Float[np.ndarray, "point 3"]
 
 

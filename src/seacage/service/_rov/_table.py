@@ -15,12 +15,12 @@ from seacage.service._schemas._clearance import (
     InspectionAnswer,
 )
 
+# Columns of each frame; others beside them are left alone
 HEADS: dict[FrameName, tuple[str, str, str]] = {
     "enu": ("east_m", "north_m", "up_m"),
     "ned": ("north_m", "east_m", "down_m"),
     "wgs84": ("latitude_deg", "longitude_deg", "depth_m"),
 }
-"""Columns of each frame; others beside them are left alone."""
 
 Row = tuple[float, float, float]
 

@@ -6,7 +6,6 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
 Name = Annotated[str, Field(min_length=1, max_length=64)]  # of a cage, a stream, a sensor
-
 _YEARS = range(1900, 2200)
 
 
@@ -29,13 +28,13 @@ def _of_our_time(t: datetime) -> datetime:
     return t
 
 
+# With its zone
 Time = Annotated[
     datetime,
     BeforeValidator(_require_text),
     AfterValidator(_with_zone),
     AfterValidator(_of_our_time),
 ]
-"""With its zone."""
 
 
 _FIRST, _LAST = datetime(1900, 1, 1, tzinfo=UTC), datetime(2200, 1, 1, tzinfo=UTC)
@@ -45,8 +44,8 @@ def _reachable(t: datetime) -> datetime:
     return min(max(_with_zone(t), _FIRST), _LAST)
 
 
+# A time that something is asked of: far away from all that is stored, one is as good as any
 Reach = Annotated[datetime, BeforeValidator(_require_text), AfterValidator(_reachable)]
-"""A time that something is asked of: far away from all that is stored, one is as good as any."""
 
 
 class AbstractRequest(BaseModel):

@@ -29,12 +29,20 @@ class ShacklePlace(AbstractAnswer):
     bridle: int
 
 
+class LinePlace(AbstractAnswer):
+    """Where a line other than a bridle runs at rest, from its frame corner; the upper part."""
+
+    name: str
+    kind: str
+    ends_m: list[list[float]]
+
+
 class Topology(AbstractAnswer):
     """What does not change: the graph of the net, its mooring, sensors and limits.
 
     Edges join nodes; a bridle runs from a frame corner to a collar node. Positions are x east,
-    y north, z up, and ``rest_position_m`` is the shape in still water. ``topology_id`` is a hash
-    of all the rest.
+    y north, z up, and ``rest_position_m`` is the shape in still water. ``lines`` are those
+    besides the bridles whose loads the twin knows. ``topology_id`` is a hash of all the rest.
     """
 
     model_config = example(
@@ -54,6 +62,14 @@ class Topology(AbstractAnswer):
             "bridle_capacity_kn": [160.0],
             "depth_sensors": [{"name": "depth-1", "node": 1}],
             "shackles": [{"name": "shackle-1", "bridle": 0}],
+            "lines": [
+                {
+                    "name": "frame-1",
+                    "kind": "frame line",
+                    "ends_m": [[50.0, 50.0, -8.0], [-50.0, 50.0, -8.0]],
+                }
+            ],
+            "water_depth_m": 191.0,
             "stale_after_s": 10800.0,
             "speed": 1.0,
         }
@@ -74,6 +90,8 @@ class Topology(AbstractAnswer):
     bridle_capacity_kn: list[float]
     depth_sensors: list[Position]
     shackles: list[ShacklePlace]
+    lines: list[LinePlace] = Field(default=[])
+    water_depth_m: float
     stale_after_s: float
     speed: Annotated[float, Field(description="Seconds at the cage per second here.")]
 
@@ -166,3 +184,67 @@ class Learned(AbstractAnswer):
 
     inputs: list[LearnedInput]
     unknown: list[str]
+
+
+class LineLoad(AbstractAnswer):
+    """A line and its load."""
+
+    line: str
+    kn: float
+
+
+class PartedLine(AbstractAnswer):
+    """What the others would bear if a line had parted and the transient had died.
+
+    ``largest_mean`` and ``largest_maximum_3h`` (expected) name the line that would bear most, buoy
+    lines aside. ``utilisation`` is the largest share of a capacity, of the expected maximum, or of
+    the mean where no waves are known. ``second_would_part`` says whether one of these reaches a
+    breaking load; null where the cage's file does not give them all. ``volume_share`` is over the
+    whole cage's in still water, ``clearance_m`` the least height of the net above the sea bed,
+    ``drift_m`` how far the collar's centre would be from its place in still water. All are null
+    where ``in_domain`` is false: the sea is outside what was learned of this line.
+    """
+
+    parted: str
+    kind: str
+    in_domain: bool
+    largest_mean: LineLoad | None
+    largest_maximum_3h: LineLoad | None
+    utilisation: float | None
+    second_would_part: bool | None
+    volume_share: float | None
+    clearance_m: float | None
+    drift_m: float | None
+
+
+class WhatIfParted(AbstractAnswer):
+    """Each line that could part, the worst first; ``reason`` says what is not known, and why."""
+
+    model_config = example(
+        {
+            "cage": "ace",
+            "time": EXAMPLE_T,
+            "level": 1,
+            "reason": None,
+            "lines": [
+                {
+                    "parted": "anchor-3",
+                    "kind": "anchor line",
+                    "in_domain": True,
+                    "largest_mean": {"line": "anchor-4", "kn": 131.2},
+                    "largest_maximum_3h": {"line": "anchor-4", "kn": 152.8},
+                    "utilisation": 0.7311,
+                    "second_would_part": False,
+                    "volume_share": 0.8613,
+                    "clearance_m": 161.2,
+                    "drift_m": 21.4,
+                }
+            ],
+        }
+    )
+
+    cage: str
+    time: datetime
+    level: int
+    reason: str | None
+    lines: list[PartedLine]

@@ -9,8 +9,8 @@ from seacage.service._schemas._base import EXAMPLE_T, AbstractAnswer, AbstractRe
 
 POINT_LIMIT = 10_000  # points in one request
 
+# Metres east, north, up of the cage's centre; north, east, down; or latitude and longitude
 FrameName = Literal["enu", "ned", "wgs84"]
-"""Metres east, north, up of the cage's centre; north, east, down; or latitude and longitude."""
 
 Metres = Annotated[float, Field(ge=-1e5, le=1e5, allow_inf_nan=False)]
 Triple = Annotated[list[Metres], Field(min_length=3, max_length=3)]

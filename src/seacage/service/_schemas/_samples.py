@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, Field, JsonValue, TypeAdapter, ValidationE
 from pydantic.config import JsonDict
 
 from seacage.conventions import InputError
-from seacage.records import Sample
+from seacage.records import NO_MEAN_PERIOD, Sample, is_mean_period
 from seacage.service._schemas._base import (
     EXAMPLE_T,
     EXAMPLE_WATER,
@@ -22,13 +22,9 @@ from seacage.service._schemas._base import (
 
 _LARGEST = 1.7e308
 _EARLIEST = datetime(1970, 1, 1, tzinfo=UTC)
-
 _TIME = TypeAdapter[datetime](Time)
-
 BUOY_KEYS = ("current_speed_m_s", "current_to_deg", "hs_m", "tp_s", "wave_from_deg")
-
 BATCH_LIMIT = 1000  # samples in one request
-
 _T: JsonDict = {"anyOf": [{"type": "string", "format": "date-time"}, {}]}
 
 
@@ -180,7 +176,8 @@ def _sample(one: SampleIn, streams: Mapping[str, tuple[str, ...]], until: dateti
     for key in one.values:
         if key not in streams[one.stream]:
             carried = ", ".join(streams[one.stream])
-            raise InputError(f"{one.stream} has no quantity {key!r}. It carries {carried}.")
+            hint = f" {NO_MEAN_PERIOD}" if is_mean_period(key) and "tp_s" in carried else ""
+            raise InputError(f"{one.stream} has no quantity {key!r}. It carries {carried}.{hint}")
     t = time_of(one)
     if t < _EARLIEST:
         raise InputError(

@@ -39,22 +39,51 @@ class BridleState(AbstractAnswer):
     measured_by: str | None = None
 
 
+_LINE = {
+    "name": "anchor-3",
+    "kind": "anchor line",
+    "level": 1,
+    "mean_kn": 61.3,
+    "mean_spread_kn": None,
+    "std_kn": 4.8,
+    "maximum_3h_kn": {"mean": 84.2, "lower": None, "upper": None},
+    "utilisation": 0.4029,
+    "damage_per_year": 0.0213,
+    "damage": 0.0041,
+    "damage_since": EXAMPLE_T,
+    "damage_valid_h": 2210.5,
+    "damage_missing_h": 61.0,
+}
+
+
 class LineState(AbstractAnswer):
     """A line's load over half an hour of this sea, and its largest in three hours of it.
 
     ``mean`` of ``maximum_3h_kn`` is the expected one; ``utilisation`` is its share of the line's
-    capacity, null where the cage's file gives none. All numbers are null where a wave's height,
-    direction or period is not known, or where the sea is outside what the loads were learned in;
-    ``lines_reason`` says which.
+    capacity, null where the cage's file gives none. Where the waves' height or direction is not
+    known the mean alone is a number, over the site's waves, about which it has the standard
+    deviation ``mean_spread_kn``. Where the sea is outside what the loads were learned in they are
+    extrapolated. ``lines_reason`` says either. ``damage_per_year`` is the share of the line's life
+    that a year of this sea uses up, null where a number of the waves is not known, outside what
+    was learned, and without a T-N curve. ``damage`` is what was used up since its count began,
+    over the hours with an answer; hours without one are not filled.
     """
+
+    model_config = example(_LINE)
 
     name: str
     kind: str
     level: int
     mean_kn: float | None
+    mean_spread_kn: float | None = None
     std_kn: float | None
     maximum_3h_kn: Interval
     utilisation: float | None
+    damage_per_year: float | None = None
+    damage: float | None = None
+    damage_since: datetime | None = None
+    damage_valid_h: float | None = None
+    damage_missing_h: float | None = None
 
 
 class SensorState(AbstractAnswer):
@@ -150,6 +179,8 @@ class State(AbstractAnswer):
     Without valid input ``valid`` is false, ``reason`` says why, and every computed number is
     null. ``in_domain`` false means extrapolating beyond what level 1 was trained on.
     ``age_s`` is the age of the input. ``origin`` says how the sensors' numbers were made.
+    ``tp_assumed`` says that the period of the waves is not known, and that the loads of lines are
+    over its distribution at the same height.
     ``amended`` holds the readings of the last minutes whose flags grew worse after they came.
     """
 
@@ -175,17 +206,10 @@ class State(AbstractAnswer):
                 }
             ],
             "lines": [
-                {
-                    "name": "anchor-3",
-                    "kind": "anchor line",
-                    "level": 1,
-                    "mean_kn": 61.3,
-                    "std_kn": 4.8,
-                    "maximum_3h_kn": {"mean": 84.2, "lower": None, "upper": None},
-                    "utilisation": None,
-                }
+                _LINE,
             ],
             "lines_reason": "",
+            "tp_assumed": False,
             "sensors": [
                 {
                     "name": "depth-1",
@@ -222,6 +246,7 @@ class State(AbstractAnswer):
     bridles: list[BridleState]
     lines: list[LineState] = Field(default=[])
     lines_reason: str = ""
+    tp_assumed: bool = False
     sensors: list[SensorState]
     shape_level: int
     shape: ShapeState

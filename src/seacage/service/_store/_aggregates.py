@@ -19,38 +19,25 @@ from seacage.service._store._database._session import AbstractSession
 from seacage.service._store._integrity._tally import recount
 
 WIDTHS_S = (60, 600)  # of the spans; each divides the next, and the last divides a day
-
 WIDEST_US = WIDTHS_S[-1] * 1_000_000
-
 _SPEED, _TO = "current_speed_m_s", "current_to_deg"
 _EAST, _NORTH = "current_east_m_s", "current_north_m_s"
-
 _DIRECTIONS = frozenset(name for name, key in KEYS.items() if key.unit == "deg")
-
+# What is aggregated: every key but the directions, whose mean would mean nothing
 QUANTITIES = (*(key for key in KEYS if key not in _DIRECTIONS), _EAST, _NORTH)
-"""What is aggregated: every key but the directions, whose mean would mean nothing."""
 
 _USELESS = (Flag.FAIL, Flag.MISSING)
-
+# Quantity, width [s], t [µs], n, mean, least, most
 Summary = tuple[str, int, int, int, float, float, float]
-"""Quantity, width [s], t [µs], n, mean, least, most."""
 
 RESTED = timedelta(seconds=30)  # a span is summed up when nothing has come for it for so long
-
 _AT_ONCE = 20  # spans in one transaction: ten minutes at 2 s are 300 samples each
-
 _MARKED = "SELECT cage, stream, t FROM mark WHERE touched < ? ORDER BY touched LIMIT ?"
-
 _MARKED_IN = "SELECT t, touched, crc FROM mark WHERE cage = ? AND stream = ? AND t >= ? AND t < ?"
-
 _SEALED_IN = "SELECT t, crc FROM sealed WHERE cage = ? AND stream = ? AND t >= ? AND t < ?"
-
 _UNMARK = "DELETE FROM mark WHERE cage = ? AND stream = ? AND t = ?"
-
 _SAMPLES = f"{SAMPLES} AND stream = ? AND t >= ? AND t < ?"
-
 _CLEAR = "DELETE FROM aggregate WHERE cage = ? AND stream = ? AND t >= ? AND t < ?"
-
 _KEEP = "INSERT INTO aggregate VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"
 
 _KEPT = """

@@ -24,7 +24,7 @@ def keep_alarms(
 ) -> None:
     """Replace the book of a cage and add lines to its journal."""
     session.rows(_KEEP_BOOK, with_checksum("alarm_book", cage, book))
-    keep_lines(session, [(cage, microseconds(one.t), _line(one)) for one in journal])
+    keep_lines(session, [(cage, microseconds(one.t), line_of(one)) for one in journal])
 
 
 def keep_lines(session: AbstractSession, lines: Sequence[tuple[str, int, str]]) -> None:
@@ -48,7 +48,8 @@ def journal_between(session: AbstractSession, cage: str, bounds: Bounds) -> list
     return [_event(t, line) for t, line in (reversed(rows) if bounds.newest else rows)]
 
 
-def _line(one: AlarmEvent) -> str:
+def line_of(one: AlarmEvent) -> str:
+    """Write a line of the journal as JSON."""
     return json.dumps({key: getattr(one, key) for key in _KEYS})
 
 

@@ -19,9 +19,8 @@ from seacage.service._store._database._session import StoreError
 
 _MANIFEST = "manifest.json"
 _ALL = Bounds()
-
+# By UTC day: ``file``, ``sha256`` and how many ``samples``
 Manifest = Mapping[date, Mapping[str, Any]]
-"""By UTC day: ``file``, ``sha256`` and how many ``samples``."""
 
 
 class Archive:

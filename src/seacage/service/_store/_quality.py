@@ -45,14 +45,13 @@ from seacage.service._store._database._session import AbstractSession, DamageErr
 if TYPE_CHECKING:
     from pydantic import TypeAdapter
 
+# Samples between two checkpoints: a start, or a late sample, checks about so many again
 EVERY = 256
-"""Samples between two checkpoints: a start, or a late sample, checks about so many again."""
 
 _AT_ONCE = 1000
 _HELD = 4 * _AT_ONCE  # entries of a long walk that wait to be written
 _LONGEST_S = 7 * 86_400.0
 _SECOND = 1_000_000
-
 _SAMPLES = f"{SAMPLES} AND stream = ?"
 _FROM = f"{_SAMPLES} AND (t > ? OR (t = ? AND seq > ?)) ORDER BY t, seq LIMIT ?"
 _AT = f"{_SAMPLES} AND t = ? ORDER BY seq"
@@ -74,12 +73,9 @@ _CUT = "DELETE FROM quality WHERE cage = ? AND stream = ? AND t > ?"
 _RETIRE = """
 DELETE FROM quality WHERE cage = ? AND stream = ? AND t < (
     SELECT max(t) FROM quality WHERE cage = ? AND stream = ? AND t < ?)"""
-
 _SEALED = "SELECT t, crc FROM sealed WHERE cage = ? AND stream = ? AND t >= ? AND t <= ?"
-
 Key = tuple[int, int]  # time [us] and number: what a sample is known by in its stream
 Of = tuple[str, str]  # cage and stream
-
 _FIRST: Key = (-(2**62), -1)
 _END: Key = (2**62, 2**62)
 

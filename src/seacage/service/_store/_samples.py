@@ -8,21 +8,8 @@ from seacage.conventions import SeacageError
 from seacage.records import AHEAD, DEFAULT_LIMITS, Amendment, Limits, Sample
 from seacage.service._store._adaptations import Refold, ask_refold, cut_adaptations
 from seacage.service._store._aggregates import WIDEST_US
+from seacage.service._store._database import _rows
 from seacage.service._store._database._checksum import checksum, with_checksum
-from seacage.service._store._database._rows import (
-    DAY_US,
-    MICROSECOND,
-    SAMPLES,
-    Bounds,
-    Row,
-    SampleRow,
-    amendments_of_row,
-    key_of,
-    microseconds,
-    moment_of,
-    row_of,
-    sample_of_row,
-)
 from seacage.service._store._database._session import AbstractSession
 from seacage.service._store._integrity._tally import count_new
 from seacage.service._store._quality import Checked, Key, Of, QualityControl, withdrawn_samples
@@ -37,11 +24,12 @@ INSERT INTO mark SELECT ?, ?, ?, ?, ? WHERE NOT EXISTS (
 _REPLACE = """
 UPDATE sample SET readings = ?, remarks = ?, t_ingest = ?, crc = ?
 WHERE cage = ? AND stream = ? AND t = ? AND seq = ?"""
+_ONE = f"{_rows.SAMPLES} AND stream = ? AND t = ? AND seq = ?"
+_REMARKED = (
+    f"{_rows.SAMPLES} AND stream = ? AND t > ? AND t <= ? AND remarks <> '[]' ORDER BY t, seq"
+)
 
-_ONE = f"{SAMPLES} AND stream = ? AND t = ? AND seq = ?"
-
-_REMARKED = f"{SAMPLES} AND stream = ? AND t > ? AND t <= ? AND remarks <> '[]' ORDER BY t, seq"
-
+# Goes down the index from stream to stream: a DISTINCT would read every sample
 STREAMS = """
 WITH RECURSIVE named(stream) AS (
     SELECT min(stream) FROM sample WHERE cage = ?
@@ -49,7 +37,6 @@ WITH RECURSIVE named(stream) AS (
     SELECT (SELECT min(stream) FROM sample WHERE cage = ? AND stream > named.stream)
     FROM named WHERE named.stream IS NOT NULL
 )"""
-"""Goes down the index from stream to stream: a DISTINCT would read every sample."""
 
 # In each stream to its newest: no scan of the samples. In SQLite's words, and in those that
 # PostgreSQL plans well.
@@ -103,11 +90,11 @@ def append_all(
     """Store the samples of many who asked at once."""
     streams = _by_stream(works)
     checked = {of: _check(session, control, of, one) for of, one in sorted(streams.items())}
-    rows = list[Row]()
+    rows = list[_rows.Row]()
     for of, result in checked.items():
         ingested = streams[of].ingested
         fresh = {
-            key: row_of(of[0], sample, ingested[key], result.amended.get(key, {}))
+            key: _rows.row_of(of[0], sample, ingested[key], result.amended.get(key, {}))
             for key, sample in result.fresh.items()
         }
         rows += [row for key, row in fresh.items() if key not in result.again]
@@ -141,7 +128,7 @@ def _by_stream(works: Sequence[Append]) -> dict[Of, _Incoming]:
     for work in works:
         for sample in work.samples:
             of = streams.setdefault((work.cage, sample.stream), _Incoming(work.limits, {}, {}))
-            key = key_of(sample)
+            key = _rows.key_of(sample)
             of.samples.setdefault(key, sample)
             of.ingested.setdefault(key, work.ingested)
     return streams
@@ -160,7 +147,7 @@ def _times_changed(checked: Mapping[Of, Checked]) -> set[tuple[str, str, int]]:
     return {
         (*of, t)
         for of, one in checked.items()
-        for t in (*(t for t, _ in one.fresh), *(microseconds(a.t) for a in one.amendments))
+        for t in (*(t for t, _ in one.fresh), *(_rows.microseconds(a.t) for a in one.amendments))
     }
 
 
@@ -170,7 +157,7 @@ def _outcome(work: Append, checked: Mapping[Of, Checked], *, late: bool) -> Stor
         of = work.cage, sample.stream
         streams[of] = None
         # Of two that ask for the same sample the first gets it, as it is taken out here.
-        fresh = checked[of].fresh.pop(key_of(sample), None)
+        fresh = checked[of].fresh.pop(_rows.key_of(sample), None)
         new.append(fresh is not None)
         samples.append(sample if fresh is None else fresh)
     amendments = tuple(one for of in streams for one in checked[of].amendments)
@@ -190,12 +177,12 @@ def _mark_refold(
     late = dict[str, tuple[int, int]]()
     for of, incoming in streams.items():
         for key in checked[of].fresh:
-            due, now = adapted_at_us(key[0]), microseconds(incoming.ingested[key])
+            due, now = adapted_at_us(key[0]), _rows.microseconds(incoming.ingested[key])
             if incoming.limits is not None and due <= now:
                 first, last = late.get(of[0], (due, now))
                 late[of[0]] = min(first, due), max(last, now)
     for cage, (t, touched) in sorted(late.items()):
-        ask_refold(session, cage, Refold(t=moment_of(t), touched=moment_of(touched)))
+        ask_refold(session, cage, Refold(t=_rows.moment_of(t), touched=_rows.moment_of(touched)))
     return set(late)
 
 
@@ -204,10 +191,10 @@ def withdraw_samples(
 ) -> int:
     """Withdraw samples of a stream after a time, as ``Store.withdraw`` says; how many."""
     cut_adaptations(session, of[0], after)
-    until = microseconds(after)
+    until = _rows.microseconds(after)
     checked = control.withdraw(session, of, clock=clock, after=until, limits=DEFAULT_LIMITS)
     changed = _times_changed({of: checked})
-    mark(session, changed, microseconds(clock))
+    mark(session, changed, _rows.microseconds(clock))
     return len(changed)
 
 
@@ -215,14 +202,14 @@ def reinstate_samples(
     session: AbstractSession, control: QualityControl, of: Of, *, clock: datetime, until: datetime
 ) -> int:
     """Take back that samples of a stream were withdrawn, as ``Store.reinstate`` says; how many."""
-    samples = withdrawn_samples(session, of, clock=clock, until=microseconds(until))
+    samples = withdrawn_samples(session, of, clock=clock, until=_rows.microseconds(until))
     checked = {of: control.check(session, of, samples, DEFAULT_LIMITS)}
     rows = [
-        row_of(of[0], sample, until, checked[of].amended.get(key, {}))
+        _rows.row_of(of[0], sample, until, checked[of].amended.get(key, {}))
         for key, sample in checked[of].fresh.items()
     ]
     _replace(session, rows)
-    mark(session, _times_changed(checked), microseconds(until))
+    mark(session, _times_changed(checked), _rows.microseconds(until))
     incoming = _Incoming(DEFAULT_LIMITS, samples, dict.fromkeys(samples, until))
     _mark_refold(session, {of: incoming}, checked)
     return len(rows)
@@ -241,14 +228,14 @@ def samples_at(
 def samples_between(
     session: AbstractSession,
     cage: str,
-    bounds: Bounds,
+    bounds: _rows.Bounds,
     *,
     stream: str | None,
     withdrawn: bool,
     known_at: datetime | None = None,
 ) -> list[Sample]:
     """Read samples in time order, as ``Store.samples`` says."""
-    sql, values = f"{SAMPLES} AND t >= ? AND t < ?", (cage, *bounds.us)
+    sql, values = f"{_rows.SAMPLES} AND t >= ? AND t < ?", (cage, *bounds.us)
     if stream is not None:
         sql, values = f"{sql} AND stream = ?", (*values, stream)
     if not withdrawn:
@@ -268,16 +255,16 @@ def amendments_since(
     session: AbstractSession, of: Of, start: datetime, *, known_at: datetime
 ) -> tuple[Amendment, ...]:
     """Read what later samples, until a time, have made worse, as ``Store.amendments`` says."""
-    first, last = microseconds(start), microseconds(known_at)
+    first, last = _rows.microseconds(start), _rows.microseconds(known_at)
     rows = session.intact("sample", _REMARKED, (*of, first, last), of[:1])
-    return tuple(one for row in rows for one in amendments_of_row(row, until=last))
+    return tuple(one for row in rows for one in _rows.amendments_of_row(row, until=last))
 
 
 def latest_samples(
     session: AbstractSession, cage: str, *, at: datetime | None
 ) -> dict[str, Sample]:
     """Read the newest sample of each stream until a time, it included; none that is withdrawn."""
-    until = microseconds(at) if at else Bounds().us[1]
+    until = _rows.microseconds(at) if at else _rows.Bounds().us[1]
     query = STREAMS + _LATEST + _NEWEST[session.lateral]
     found = session.rows(query, (cage, cage, cage, until, f"%{AHEAD}%"))
     samples = list[Sample]()
@@ -286,7 +273,7 @@ def latest_samples(
         samples += _read(session, cage, good) or samples_between(
             session,
             cage,
-            Bounds(end=at and at + MICROSECOND, limit=1, newest=True),
+            _rows.Bounds(end=at and at + _rows.MICROSECOND, limit=1, newest=True),
             stream=row[0],
             withdrawn=False,
         )
@@ -294,22 +281,25 @@ def latest_samples(
 
 
 def _read(
-    session: AbstractSession, cage: str, rows: Iterable[SampleRow], known_at: datetime | None = None
+    session: AbstractSession,
+    cage: str,
+    rows: Iterable[_rows.SampleRow],
+    known_at: datetime | None = None,
 ) -> list[Sample]:
     found = list[Sample]()
     for row in rows:
         try:
-            found.append(sample_of_row(row, at=known_at and microseconds(known_at)))
+            found.append(_rows.sample_of_row(row, at=known_at and _rows.microseconds(known_at)))
         except (ValueError, TypeError, OverflowError, AttributeError, SeacageError):
             session.damage.note("sample", (cage, *row))
     return found
 
 
-def _one(session: AbstractSession, key: tuple[object, ...]) -> list[SampleRow]:
+def _one(session: AbstractSession, key: tuple[object, ...]) -> list[_rows.SampleRow]:
     return session.intact("sample", _ONE, key, key[:1])
 
 
-def _replace(session: AbstractSession, rows: Iterable[Row]) -> None:
+def _replace(session: AbstractSession, rows: Iterable[_rows.Row]) -> None:
     session.each(_REPLACE, [(*row[4:], checksum("sample", row), *row[:4]) for row in rows])
 
 
@@ -320,7 +310,7 @@ def mark(session: AbstractSession, changed: set[tuple[str, str, int]], touched: 
     session.each(
         _MARK,
         [
-            (*with_checksum("mark", *span, touched), *span[:2], span[2] - span[2] % DAY_US)
+            (*with_checksum("mark", *span, touched), *span[:2], span[2] - span[2] % _rows.DAY_US)
             for span in spans
         ],
     )

@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from contextlib import suppress
-from datetime import datetime, timedelta
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import TypeVar
 
@@ -22,9 +22,16 @@ from seacage.service._store._alarms import alarm_book, journal_between, keep_ala
 from seacage.service._store._archive import Archive
 from seacage.service._store._archive_reads import latest_of, with_archive
 from seacage.service._store._caretaker import Caretaker
+from seacage.service._store._damage import (
+    Stretch,
+    begin_damage,
+    cut_begins,
+    damage_of,
+    keep_damage,
+)
 from seacage.service._store._database._checksum import CHECKED, Damage
 from seacage.service._store._database._open import database_at, look_into
-from seacage.service._store._database._rows import Bounds, check_seq, microseconds
+from seacage.service._store._database._rows import DAY_US, Bounds, check_seq, microseconds
 from seacage.service._store._database._session import AbstractSession, DamageError, StoreError
 from seacage.service._store._days import retire_days
 from seacage.service._store._quality import newest_keys
@@ -42,9 +49,7 @@ from seacage.service._store._write_queue import Writer
 from seacage.twin import AlarmEvent
 
 __all__ = ["Store", "StoreError", "look_into", "open_store"]
-
 T = TypeVar("T")
-
 _PATIENCE_S = 5.0  # a server may take a moment to see that a process was killed
 _LOOK_S = 0.2
 _AHEAD = timedelta(seconds=60)  # so far a source's clock may be ahead
@@ -286,6 +291,43 @@ class Store:
     def refold(self, cage: str) -> Refold | None:
         """Read what has to be adapted anew as samples came late; None where nothing has."""
         return self._read("refold", lambda session: refold_of(session, cage))
+
+    def line_damage(self, cage: str) -> tuple[list[Stretch], list[tuple[str, datetime]]]:
+        """Read what stretches of time did to lines, and from when on each line is counted."""
+        return self._read("damage", lambda session: damage_of(session, cage))
+
+    def keep_damage(
+        self, cage: str, span: tuple[datetime, datetime], rows: Sequence[Stretch]
+    ) -> "Future[None]":
+        """Keep what stretches of a span did to lines, in place of those that were there."""
+        return self._writer.ask(lambda session: keep_damage(session, cage, span, rows))
+
+    def begin_damage(
+        self, cage: str, lines: Sequence[str], t: datetime, journal: Sequence[AlarmEvent]
+    ) -> "Future[None]":
+        """Count lines' damage from a time on; with the journal's lines, both or neither."""
+        return self._writer.ask(
+            lambda session: begin_damage(session, cage, lines, t, journal), vital=True
+        )
+
+    def rewind_damage(
+        self, cage: str, hour: datetime, t: datetime, lines: Sequence[str]
+    ) -> "Future[None]":
+        """Forget stretches from an hour on; lines that began after a time begin then."""
+
+        def rewind(session: AbstractSession) -> None:
+            keep_damage(session, cage, (hour, datetime.max.replace(tzinfo=UTC)), ())
+            cut_begins(session, cage, t)
+            begin_damage(session, cage, lines, t, ())
+
+        return self._writer.ask(rewind)
+
+    def is_retired(self, cage: str, stream: str, start: datetime, end: datetime) -> bool:
+        """Whether samples of a span have left the store, and are in no archive."""
+        sealed = "SELECT count(*) FROM sealed WHERE cage = ? AND stream = ? AND t > ? AND t < ?"
+        span = microseconds(start) - DAY_US, microseconds(end)
+        rows = self._read("sealed", lambda session: session.rows(sealed, (cage, stream, *span)))
+        return self._archive is None and rows[0][0] > 0
 
     def journal(
         self,

@@ -12,18 +12,11 @@ from typing import Any
 import structlog
 
 from seacage.service._store._aggregates import renew_rested
-from seacage.service._store._database._session import (
-    AbstractDatabase,
-    AbstractSession,
-    DamageError,
-    FullError,
-    StoreError,
-)
+from seacage.service._store._database import _session
 from seacage.service._store._quality import QualityControl
 from seacage.service._store._samples import Append, append_all
 
-Work = Append | Callable[[AbstractSession], Any]
-
+Work = Append | Callable[[_session.AbstractSession], Any]
 _CHORE_S = 1.0
 _log = structlog.get_logger(__name__)
 _TRIAL = "INSERT INTO trial VALUES (1, ?) ON CONFLICT (id) DO UPDATE SET t = excluded.t"
@@ -48,7 +41,7 @@ class Writer:
     About every second, between two transactions, it renews aggregates.
     """
 
-    def __init__(self, database: AbstractDatabase) -> None:
+    def __init__(self, database: _session.AbstractDatabase) -> None:
         self._database = database
         self.control = QualityControl()  # to be used in a transaction alone
         self._next_chore = time.monotonic() + _CHORE_S
@@ -66,14 +59,14 @@ class Writer:
         job.done.set_running_or_notify_cancel()  # what was asked is done, whoever still waits
         with self._closing:
             if self._closed:
-                raise StoreError("The store is closed; nothing more can be written to it.")
+                raise _session.StoreError("The store is closed; nothing more can be written to it.")
             self._queue.put(job)
         return job.done
 
     def claim(self, cage: str) -> "Future[bool]":
         """Be the one process that serves a cage; False where another is."""
 
-        def claim_cage(session: AbstractSession) -> bool:
+        def claim_cage(session: _session.AbstractSession) -> bool:
             self._next_chore = 0.0  # from here on there is a reserve to hold, before anything else
             return self._database.claim(session, cage)
 
@@ -96,7 +89,7 @@ class Writer:
                 self._closed = True
             while not self._queue.empty():
                 if job := self._queue.get():
-                    job.done.set_exception(StoreError("The store's writer has stopped."))
+                    job.done.set_exception(_session.StoreError("The store's writer has stopped."))
 
     def _serve(self) -> None:
         going = True
@@ -136,7 +129,7 @@ class Writer:
                 return
             for job in batch:
                 job.done.set_exception(error)
-            if not isinstance(error, StoreError):
+            if not isinstance(error, _session.StoreError):
                 raise
         else:
             self.fault = self.fault if self._full else None
@@ -147,12 +140,12 @@ class Writer:
         """What the reserve is for; the rest is refused."""
         for job in batch:
             if not job.vital:
-                job.done.set_exception(FullError(self.fault))
+                job.done.set_exception(_session.FullError(self.fault))
         return [job for job in batch if job.vital]
 
     def _note(self, error: BaseException) -> None:
         self.fault = str(error)
-        if isinstance(error, FullError):
+        if isinstance(error, _session.FullError):
             self._database.give_up_reserve()
             if not self._full:
                 self._full = True
@@ -161,7 +154,7 @@ class Writer:
     def _commit(self, works: Sequence[Work]) -> list[Any]:
         try:
             return self._write(works)
-        except DamageError as error:
+        except _session.DamageError as error:
             self.control.forget()
             self._database.renew(error)
             return self._write(works)
@@ -186,7 +179,7 @@ class Writer:
                 if self.fault:
                     session.rows(_TRIAL, (time.time_ns() // 1000,))
                 renew_rested(session, now_us=time.time_ns() // 1000)
-        except StoreError as error:
+        except _session.StoreError as error:
             self._note(error)
         else:
             if self._full:

@@ -8,14 +8,13 @@ from jaxtyping import Float
 
 Rows = Float[np.ndarray, "row feature"]
 Answers = Float[np.ndarray, " row"]
-
 _HARTMANN_WIDTH = np.array([[3.0, 10.0, 30.0], [0.1, 10.0, 35.0]] * 2)
 _HARTMANN_CENTRE = 1e-4 * np.array(
     [[3689, 1170, 2673], [4699, 4387, 7470], [1091, 8732, 5547], [381, 5743, 8828]]
 )
 _HARTMANN_DEPTH = np.array([1.0, 1.2, 3.0, 3.2])
+# What one step down in fidelity adds to each depth
 _HARTMANN_STEP = np.array([0.01, -0.01, -0.1, 0.1])
-"""What one step down in fidelity adds to each depth."""
 
 
 def pedagogical_low(x: Rows) -> Answers:

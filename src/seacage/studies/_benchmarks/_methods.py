@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from functools import cache
 from importlib import resources
 from pathlib import Path
+from typing import Any
 
-from seacage.conventions import InputError
+from seacage.conventions import InputError, parse_toml
 from seacage.surrogates import AR1, NARGP, GaussianProcess
 
 OURS = "nargp"  # the method that the verdicts are about
@@ -49,23 +50,9 @@ def harness() -> Path:
 
 def own_methods() -> tuple[Method, ...]:
     """Ours and the baselines, run by the interpreter that runs this."""
-    rows = (
-        (OURS, "NARGP", "as it comes"),
-        ("nargp-published", "NARGP, published kernel", "without the linear term"),
-        ("ar1", "AR1", "each level is a constant times the one below, plus a Gaussian process"),
-        (HIGH_ONLY, "High fidelity only", "a Gaussian process of the highest fidelity alone"),
-    )
-    return tuple(
-        Method(
-            name=name,
-            title=title,
-            maker="seacage",
-            settings=settings,
-            python=Path(sys.executable),
-            script=_own("_ours.py"),
-        )
-        for name, title, settings in rows
-    )
+    python, script = Path(sys.executable), _own("_ours.py")
+    own = _methods_of("own")
+    return tuple(Method(maker="seacage", python=python, script=script, **one) for one in own)
 
 
 def peer_methods(environment: str | Path) -> tuple[Method, ...]:
@@ -80,70 +67,17 @@ def peer_methods(environment: str | Path) -> tuple[Method, ...]:
             f"study benchmarks: {environment} is no environment of peers: it lacks bin/python or "
             "scripts. Make one with `make bench-peers`."
         )
+    # Not resolved: the link itself is what makes it this environment's interpreter.
+    python, folder = python.absolute(), scripts.resolve()
     return tuple(
-        Method(
-            name=name,
-            title=title,
-            maker=maker,
-            settings=settings,
-            # Not resolved: the link itself is what makes it this environment's interpreter.
-            python=python.absolute(),
-            script=scripts.resolve() / script,
-        )
-        for name, title, maker, settings, script in _PEERS
+        Method(python=python, script=folder / script, **one)
+        for one in _methods_of("peer")
+        for script in (one.pop("script"),)
     )
 
 
-_PEERS = (
-    (
-        EMUKIT,
-        "Emukit NARGP",
-        "emukit",
-        (
-            "on GPy; squared exponentials with a length per input, 10 restarts, 100 samples of the "
-            "level below; inputs and outputs standardised before, as GPy scales nothing"
-        ),
-        "emukit_nargp.py",
-    ),
-    (
-        SMT,
-        "SMT MFK",
-        "smt",
-        (
-            "defaults: squared exponentials, constant trend and ratio, 10 starts; noise is learned "
-            "where there is some"
-        ),
-        "smt_mfk.py",
-    ),
-    (
-        "botorch-multifidelity",
-        "BoTorch multifidelity",
-        "botorch",
-        (
-            "SingleTaskMultiFidelityGP, linear truncated kernel, fidelities from 0.5 to 1, inputs "
-            "in the unit box, standardised outputs"
-        ),
-        "botorch_gp.py",
-    ),
-    (
-        "botorch-multitask",
-        "BoTorch multi-task",
-        "botorch",
-        "MultiTaskGP, a task per fidelity, inputs in the unit box, outputs standardised by task",
-        "botorch_gp.py",
-    ),
-    (
-        "sklearn-stacked",
-        "scikit-learn, stacked",
-        "scikit-learn",
-        (
-            "a process per level on the mean of the one below; squared exponential with a length "
-            "per input and white noise, 3 restarts, standardised inputs and outputs"
-        ),
-        "sklearn_stacked.py",
-    ),
-)
-"""Name, title, maker, settings and script."""
+def _methods_of(kind: str) -> list[dict[str, Any]]:
+    return parse_toml(_own("methods.toml").read_text("utf-8"), "methods.toml")[kind]
 
 
 @cache  # what this process runs is what it has loaded, whatever is edited meanwhile
@@ -155,7 +89,8 @@ def _learners() -> tuple[Path, ...]:
         module = ahead.pop()
         reached[module] = _source(module)
         text = reached[module].read_text("utf-8")
-        ahead |= set(re.findall(r"from (seacage\.surrogates\.[\w.]+) import", text)) - set(reached)
+        found = re.findall(r"from (seacage\.surrogates(?:\.[\w.]+| import _\w+))", text)
+        ahead |= {one.replace(" import ", ".") for one in found} - set(reached)
     return tuple(path for _, path in sorted(reached.items()))
 
 

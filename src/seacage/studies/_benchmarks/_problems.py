@@ -1,16 +1,16 @@
 """The problems that multifidelity learners are compared on."""
 
 import zlib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from importlib import resources
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float
 
-from seacage.conventions import InputError
+from seacage.conventions import InputError, parse_toml
 from seacage.studies._benchmarks import _functions as functions
-
-SIZES_SOURCE = "sizes and designs of Cutajar et al. (2019), arXiv:1903.07320"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -80,78 +80,15 @@ class Problem:
         return np.column_stack([speed * np.cos(angle), speed * np.sin(angle)])
 
 
-PROBLEMS = (
-    Problem(
-        name="pedagogical",
-        title="Pedagogical",
-        source="Perdikaris et al. (2017), section 3(a): functions and sizes",
-        lower=(0.0,),
-        upper=(1.0,),
-        functions=(functions.pedagogical_low, functions.pedagogical_high),
-        sizes=(50, 14),
-    ),
-    Problem(
-        name="branin-3",
-        title="Branin, 3 levels",
-        source=f"Perdikaris et al. (2017), section 3(b); {SIZES_SOURCE}",
-        lower=(-5.0, 0.0),
-        upper=(10.0, 15.0),
-        functions=(functions.branin_low, functions.branin_middle, functions.branin_high),
-        sizes=(80, 30, 10),
-    ),
-    Problem(
-        name="currin",
-        title="Currin",
-        source=f"Currin et al. (1988); Xiong, Qian & Wu (2013); {SIZES_SOURCE}",
-        lower=(0.0,) * 2,
-        upper=(1.0,) * 2,
-        functions=(functions.currin_low, functions.currin_high),
-        sizes=(12, 5),
-    ),
-    Problem(
-        name="park",
-        title="Park",
-        source=f"Park (1991); Xiong, Qian & Wu (2013); {SIZES_SOURCE}",
-        lower=(0.0,) * 4,
-        upper=(1.0,) * 4,
-        functions=(functions.park_low, functions.park_high),
-        sizes=(30, 5),
-    ),
-    Problem(
-        name="borehole",
-        title="Borehole",
-        source="Morris, Mitchell & Ylvisaker (1993); Xiong, Qian & Wu (2013); "
-        f"{SIZES_SOURCE}, without its noise",
-        lower=(0.05, 100.0, 63070.0, 990.0, 63.1, 700.0, 1120.0, 9855.0),
-        upper=(0.15, 50000.0, 115600.0, 1110.0, 116.0, 820.0, 1680.0, 12045.0),
-        functions=(functions.borehole_low, functions.borehole_high),
-        sizes=(60, 5),
-    ),
-    Problem(
-        name="hartmann-3",
-        title="Hartmann-3, 3 levels",
-        source=f"Hartmann (1973); {SIZES_SOURCE}",
-        lower=(0.0,) * 3,
-        upper=(1.0,) * 3,
-        functions=(functions.hartmann_low, functions.hartmann_middle, functions.hartmann_high),
-        sizes=(80, 40, 20),
-    ),
-)
-"""The published ones."""
+def _read() -> Iterator[Problem]:
+    text = (resources.files("seacage.studies._benchmarks") / "problems.toml").read_text("utf-8")
+    for table in parse_toml(text, "problems.toml")["problem"]:
+        table["functions"] = [getattr(functions, name) for name in table["functions"]]
+        given: dict[str, Any] = {k: tuple(v) if type(v) is list else v for k, v in table.items()}
+        yield Problem(**given)
 
-CAGE_SIZE = Problem(
-    name="cage-size",
-    title="Cage size",
-    source="Made here: formulas for a bridle's tension [kN] as large as a cage's training set",
-    lower=(0.0, 0.0),
-    upper=(1.0, 2.0 * np.pi),
-    functions=(functions.cage_low, functions.cage_high),
-    sizes=(1000, 300),
-    noise=0.8,
-    tests=2000,
-    polar=True,
-)
-"""As many cases as a twin learns a sensor from, the few of them noisy."""
+
+*PROBLEMS, CAGE_SIZE = _read()  # the published ones, and one as large as a cage's
 
 
 def problem_named(name: str) -> Problem:

@@ -14,8 +14,8 @@ from jaxtyping import Float
 from seacage.studies._benchmarks._methods import Method, harness
 from seacage.studies._benchmarks._problems import Problem, Sample
 
+# So that the processor's time is what a single core would take
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-"""So that the processor's time is what a single core would take."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -9,11 +9,9 @@ from jaxtyping import Float
 from seacage.studies._benchmarks._runs import Run
 from seacage.surrogates import coverage, crps, mnll, rmse
 
+# Share of the truth's standard deviation that a predicted one counts as at least. A likelihood does
+# not exist at zero, which some peers answer at their training points.
 NARROWEST = 1e-6
-"""Share of the truth's standard deviation that a predicted one counts as at least.
-
-A likelihood does not exist at zero, which some peers answer at their training points.
-"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -16,9 +16,7 @@ from seacage.studies._page import write_report
 from seacage.studies._text import join_names
 
 TUNING_SEEDS = range(5)  # settings may be chosen by these, so they decide no verdict
-
 SEEDS = range(10)
-
 _NO_PEERS = (
     "No other package was run: no environment of peers was named. `make bench-peers` makes one."
 )

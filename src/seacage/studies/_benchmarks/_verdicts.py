@@ -8,18 +8,18 @@ from seacage.studies._benchmarks._scores import Summary
 from seacage.studies._claim import Claim
 from seacage.studies._text import join_names, number, percent
 
+# Our mean RMSE over that of Emukit's NARGP, at most
 RATIOS = {"pedagogical": 1.0, "branin-3": 0.7, "park": 0.5, "borehole": 0.3}
-"""Our mean RMSE over that of Emukit's NARGP, at most."""
 
 SLACK = 1.1  # our mean RMSE over that of the best rival, at most
 COVERAGE = (0.85, 1.0)  # of 95 % intervals, on every problem
 
+# On the cage-size problem, Emukit's time over ours, at least
 SPEEDS = {
     "fit_s": ("A fit", 5.0),
     "predict_s": ("The prediction of all test points", 15.0),
     "tick_s": ("The prediction of one", 3.0),
 }
-"""On the cage-size problem, Emukit's time over ours, at least."""
 
 Summaries = Mapping[tuple[str, str], Summary]  # by problem and method
 

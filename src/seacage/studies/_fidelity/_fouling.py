@@ -16,7 +16,6 @@ from seacage.studies._stages import Stages
 
 SPEEDS = (0.3, 0.5, 0.7)  # of the currents that the gap is settled in [m/s]
 GROWTHS = (0.0, 0.25, 0.5, 0.75, 1.0)  # shares of the whole growth [-]
-
 _DAY = np.timedelta64(1, "D")
 _BINS = 5
 _LEAST = 8

@@ -9,8 +9,8 @@ from seacage.conventions import compass
 from seacage.studies._fidelity._windows import Windows
 from seacage.studies._interval import Interval, by_day
 
+# Eighths of the compass, each centred on its name
 SECTORS = ("N", "NE", "E", "SE", "S", "SW", "W", "NW")
-"""Eighths of the compass, each centred on its name."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

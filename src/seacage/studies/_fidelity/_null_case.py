@@ -16,7 +16,6 @@ LEAST = 20  # least number of readings to train on, and to score on
 _SHORT_S = 60.0  # means of this length where a sensor lives too shortly for 10-minute means [s]
 _MOST = 6.0  # errors beyond so many times the usual one are faults and no noise [-]
 _RESTARTS = 3  # of each search for hyperparameters, as a twin makes them
-
 Series = Float[np.ndarray, " reading"]
 
 
@@ -69,8 +68,8 @@ class Gain:
         )
 
 
+# A sensor's gain in the mean and reading by reading, and the readings it was scored on
 ScoredSensor = tuple[Gain, Float[np.ndarray, " _"], SensorTrial]
-"""A sensor's gain in the mean and reading by reading, and the readings it was scored on."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

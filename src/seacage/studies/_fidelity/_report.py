@@ -15,7 +15,6 @@ from seacage.studies._fidelity._rescaling import LEAST_LEFT, Rescalings
 from seacage.studies._page import embed
 
 ORIGIN = Origin.VIRTUAL_FIELD  # of every truth and every reading here
-
 _QUANTITIES = {"m": "Rise", "kN": "Tension"}
 
 

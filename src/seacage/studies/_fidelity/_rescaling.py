@@ -18,22 +18,17 @@ if TYPE_CHECKING:
     from scipy.interpolate import RectBivariateSpline
 
 LEAST_LEFT = 0.10  # share of the low fidelity's error that no rescaling may remove
-
+# Factors of the current's speed [-] and turns, clockwise [deg], that are tried first
 _FACTORS = np.arange(0.2, 2.01, 0.1)
 _TURNS = np.arange(-90.0, 91.0, 10.0)
-"""Factors of the current's speed [-] and turns, clockwise [deg], that are tried first."""
-
 _FINER = 5  # around the best, so many times finer steps are tried
-
+# Settled currents that the change of an answer is learned from, up to this speed [m/s]
 _CURRENTS = 400
 _FASTEST = 1.8
-"""Settled currents that the change of an answer is learned from, up to this speed [m/s]."""
-
+# East and north components at which what was learned is tabled, to be asked often [m/s]
 _TABLE = np.linspace(-_FASTEST, _FASTEST, 73)
-"""East and north components at which what was learned is tabled, to be asked often [m/s]."""
 
 _REWEIGHINGS = 30
-
 Columns = Float[np.ndarray, "window sensor"]
 
 

@@ -17,13 +17,14 @@ from seacage.studies._sensor_scores import MEAN_S
 from seacage.studies._stages import Stages
 from seacage.twin import Metocean, StreamTimeouts
 
+BoolPerWindow = Bool[np.ndarray, " window"]
+PerReading = Float[np.ndarray, " reading"]
 _EVERY_S = 2.0  # interval at which the buoy's held sample enters a window's mean [s]
 _LEAST_SHARE = 0.9  # share of a window in which the buoy's sample must be sound and fresh
-
 _LONGEST_GAP_S = 200.0
 _LEAST = 40
+# Of a sea up to 8 s; a measured pair of height and period may be steeper by its noise
 _STEEPEST = 1.0 / 15.0
-"""Of a sea up to 8 s; a measured pair of height and period may be steeper by its noise."""
 
 Responses = Float[np.ndarray, "window sensor"]
 
@@ -57,9 +58,7 @@ class Sensors:
         """Of the responses."""
         return ("m",) * len(self.cage.depth_sensors) + ("kN",) * len(self.cage.shackles)
 
-    def response(
-        self, sensor: int, value: Float[np.ndarray, " reading"]
-    ) -> Float[np.ndarray, " reading"]:
+    def response(self, sensor: int, value: PerReading) -> PerReading:
         """Response that a depth [m] or a tension [kN] stands for."""
         return self.rest[sensor] - value if self.units[sensor] == "m" else value
 
@@ -82,7 +81,7 @@ class Windows(Rows):
     water: Metocean  # means of what the buoy reports to the twin
     # Windows that are spread evenly over the days; the others are those in which a shackle lives
     # besides
-    surveyed: Bool[np.ndarray, " window"]
+    surveyed: BoolPerWindow
     # Mean responses without any sensor's error: of the virtual field, and of the low fidelity in
     # the water reported; NaN before it is computed
     truth: Responses
@@ -230,12 +229,8 @@ def _mean(
 
 
 def _spread(
-    day: Shaped[np.ndarray, " window"],
-    usable: Bool[np.ndarray, " window"],
-    *,
-    count: int,
-    seed: int,
-) -> Bool[np.ndarray, " window"]:
+    day: Shaped[np.ndarray, " window"], usable: BoolPerWindow, *, count: int, seed: int
+) -> BoolPerWindow:
     """Mark windows: as many of each day, each from its own share of that day's."""
     rng = np.random.default_rng(seed)
     days = np.unique(day[usable])

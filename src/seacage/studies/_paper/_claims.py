@@ -16,7 +16,6 @@ from seacage.studies._text import join_names, number, percent
 
 ROV_M = 1.0  # the distance that the paper would have an ROV keep from the net [m]
 PAPER_VARIANCE = 0.93  # what the paper's three modes hold at least
-
 Verdict = Literal["reproduced", "partly", "not reproduced", "not evaluated"]
 
 

@@ -32,7 +32,6 @@ from seacage.studies._paper._trainings import HEARING, ScoredWays, WayScore
 _SHOWN_SPEED = 0.6  # of the current that the net is drawn in [m/s]
 _NOMINAL = 0.95  # coverage of the intervals
 _SHOWN_LOADS = ("shackle-1", "shackle-2", "shackle-5")  # the bridles that the paper shows
-
 _DRAWN_MODELS = (PCA_PAPER, GCN_PAPER, GCN_OURS, SHAPE_CURRENT)
 _NETS = (PCA_PAPER, GCN_PAPER)
 

@@ -8,33 +8,31 @@ from typing import Any, Literal
 from seacage.cage import Cage
 from seacage.surrogates import PcaGP, ShapeGP, Symmetry
 
+# As a twin's, and "degrees" for the paper's own: the current's speed and its compass direction
 Input = Literal["current", "waves", "degrees"]
-"""As a twin's, and "degrees" for the paper's own: the current's speed and its compass direction."""
 
 Need = Literal["over_time", "rest_position", "progress"]
-
 CURRENT: tuple[Input, ...] = ("current",)
 ALL: tuple[Input, ...] = ("current", "waves")
 DEGREES: tuple[Input, ...] = ("degrees",)
 
+# How people call the inputs
 WORDS: Mapping[tuple[Input, ...], str] = {
     CURRENT: "current",
     ALL: "current and waves",
     DEGREES: "current in degrees",
 }
-"""How people call the inputs."""
 
+# Settings that the cage makes, which the simulations name already
 _OF_CAGE = ("cage", "edges", "rest_position", "node_weight", "symmetry")
-"""Settings that the cage makes, which the simulations name already."""
 
 PCA_PAPER, PCA_DEGREES = "PCA-GP, 3 modes", "PCA-GP, 3 modes, degrees"
 PCA_LITERAL, PCA_WAVES = "PCA-GP, 3 modes, not centred", "PCA-GP, 3 modes, waves"
 GCN_PAPER, GCN_DEGREES = "GCN, the paper's", "GCN, the paper's, degrees"
 GCN_OURS = "GCN, ours"
 SHAPE_CURRENT, SHAPE, SHAPE_FOLDED = "ShapeGP, current", "ShapeGP", "ShapeGP, folded"
-
+# Of the folded process: a frame with four corners, and what compression may move a node by [m]
 _FOLD, _TOLERANCE = 4, 0.02
-"""Of the folded process: a frame with four corners, and what compression may move a node by [m]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -28,9 +28,8 @@ from seacage.studies._stages import Stages
 from seacage.surrogates import OverTime, Prediction, metocean_features
 
 _ROOMS = ("conventions", "surrogates")  # whose code makes a model's answers, its features included
-
+# Quantiles of the test cases' current speeds that the two nets drawn are taken at
 _HARSH, _MILD = 0.95, 0.2
-"""Quantiles of the test cases' current speeds that the two nets drawn are taken at."""
 
 _TIMED = 20  # shapes asked for one by one to say what one takes
 

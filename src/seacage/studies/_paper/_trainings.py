@@ -12,12 +12,12 @@ from seacage.studies._sensor_scores import Readings, SensorScore, compare, score
 from seacage.studies._split import split
 from seacage.twin import Training, Twin
 
+# Names of the ways: the page's own, the paper's minutes read as a row, and one with waves
 SPREAD, IN_A_ROW, HEARING = (
     "Current, spread",
     "Current, minutes in a row",
     "Current and waves, spread",
 )
-"""Names of the ways: the page's own, the paper's minutes read as a row, and one with waves."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -9,7 +9,6 @@ from jaxtyping import Bool, Float
 from seacage.conventions import InputError
 
 Series = Float[np.ndarray, " n"]
-
 FAR = 16.0  # a squared error counts as at most so many variances, lest one reading rule the search
 LEAST = 1e-6  # share of the squared errors' size that is expected anywhere, at least
 ROUNDS = 8  # of reweighting; the shares settle in four or five

@@ -11,13 +11,12 @@ from numpy.typing import ArrayLike
 from seacage.conventions import InputError
 from seacage.surrogates._prediction import Prediction
 
+# Prior standard deviation of the logarithm of each size, about the residual's own size
 SD_PRIOR_SD = 2.0
-"""Prior standard deviation of the logarithm of each size, about the residual's own size."""
 
 NOISE_SHARE = 0.3  # prior median of the noise's scale, as a share of the residual's size
 REACH = 4.0  # half-width of the search, in prior standard deviations
 SETTLED = 1e-3  # largest change of a weight at which the reweighting ends
-
 Series = Float[np.ndarray, " t"]
 
 

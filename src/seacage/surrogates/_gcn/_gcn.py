@@ -18,14 +18,13 @@ from seacage.surrogates._gcn._recipe import Recipe, recipe_of
 from seacage.surrogates._gcn._spread import Spread
 from seacage.surrogates._prediction import Prediction, check_inputs, check_shapes
 from seacage.surrogates._scaling import Scaling
-from seacage.surrogates._shape import all_modes
+from seacage.surrogates._shape._pca import all_modes
 
+CaseNode3 = Float[np.ndarray, "case node 3"]
 MODES = 48  # most modes of the modal network
 HELD_OUT = 0.1  # default share of held-out cases
-
 FEWEST_HELD_OUT, FEWEST_TRAINING = 2, 2
-
-Cases = tuple[Float[np.ndarray, "case feature"], Float[np.ndarray, "case node 3"]]
+Cases = tuple[Float[np.ndarray, "case feature"], CaseNode3]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -189,9 +188,7 @@ class GCN:
             )
         return weight / np.mean(weight)
 
-    def _first(
-        self, features: int, target: Float[np.ndarray, "case node 3"], seed: int
-    ) -> dict[str, np.ndarray]:
+    def _first(self, features: int, target: CaseNode3, seed: int) -> dict[str, np.ndarray]:
         modes = _leading_modes(target)
         shapes = parameter_shapes(
             self.kind,
@@ -261,9 +258,7 @@ def _training() -> ModuleType:
 
 def _cases(
     x: np.ndarray, node_position: np.ndarray, graph: Graph, validation: object, seed: int
-) -> tuple[
-    Float[np.ndarray, "case feature"], Float[np.ndarray, "case node 3"], Int[np.ndarray, " held"]
-]:
+) -> tuple[Float[np.ndarray, "case feature"], CaseNode3, Int[np.ndarray, " held"]]:
     """All cases, and which of them are held out."""
     x, shape = _check_cases(x, node_position, graph, what="GCN.fit")
     if isinstance(validation, tuple) and len(validation) == 2:
@@ -306,9 +301,7 @@ def _draw_held_out(cases: int, validation: object, seed: int) -> Int[np.ndarray,
     return np.sort(np.random.default_rng(seed).permutation(cases)[:count])
 
 
-def _units(
-    shape: Float[np.ndarray, "case node 3"], kind: Kind
-) -> tuple[Float[np.ndarray, "node 3"], float]:
+def _units(shape: CaseNode3, kind: Kind) -> tuple[Float[np.ndarray, "node 3"], float]:
     """What an answer of 0 means and what 1 adds: coordinates for the paper, else displacements."""
     centre = shape.mean(axis=0)
     if kind == "paper":
@@ -317,7 +310,7 @@ def _units(
     return centre, float(np.std(shape - centre)) or 1.0
 
 
-def _leading_modes(target: Float[np.ndarray, "case node 3"]) -> Float[np.ndarray, "mode _"]:
+def _leading_modes(target: CaseNode3) -> Float[np.ndarray, "mode _"]:
     """Principal components, each as large as it is in a typical case."""
     modes, _ = all_modes(target.reshape(len(target), -1))
     score = modes.encode(target.reshape(len(target), -1))

@@ -10,8 +10,8 @@ from jaxtyping import Float, Int
 
 from seacage.conventions import InputError
 
+# Passes the nodes' channels (row, node, channel) to their neighbours, in NumPy or in JAX
 Propagate = Callable[[Any], Any]
-"""Passes the nodes' channels (row, node, channel) to their neighbours, in NumPy or in JAX."""
 
 
 # No slots here: the propagation is computed once and kept.

@@ -9,10 +9,8 @@ from jaxtyping import Float
 from seacage.surrogates._gcn._graph import Propagate
 
 Kind = Literal["paper", "modal"]
-
 Numbers = Any  # an array of NumPy, or of JAX while it trains
 Parameters = dict[str, np.ndarray]  # what training changes, by name
-
 Shape = tuple[int, ...]
 
 

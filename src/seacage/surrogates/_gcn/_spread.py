@@ -12,6 +12,9 @@ from jaxtyping import Float, Int
 from seacage.conventions import ModelError
 from seacage.surrogates._arrays import Arrays, array
 
+CaseFeature = Float[np.ndarray, "case feature"]
+PerRow = Float[np.ndarray, " row"]
+RowFeature = Float[np.ndarray, "row feature"]
 NEIGHBOURS = 10  # held-out cases whose misses make the size of a miss at a place
 TWO_SIGMA = 1.959963984540054  # standard deviations that hold 95 % of a Gaussian
 NOISE_SHARE = (0.01, 0.98)  # least and largest share of the variance that may be called noise
@@ -39,7 +42,7 @@ class Spread:
     @classmethod
     def of(
         cls,
-        x: Float[np.ndarray, "case feature"],  # standardised features of all cases
+        x: CaseFeature,  # standardised features of all cases
         residual: Float[np.ndarray, "case node 3"],  # truth less the network's answer [m]
         *,
         # Which cases are which
@@ -68,7 +71,7 @@ class Spread:
 
     def std(
         self,
-        x: Float[np.ndarray, "row feature"],  # one row per case
+        x: RowFeature,  # one row per case
         *,
         # Of a case as it was learned from; otherwise without what differs between neighbours
         noisy: bool,
@@ -113,34 +116,26 @@ class Spread:
         )
 
 
-def _distances(
-    x: Float[np.ndarray, "row feature"], cases: Float[np.ndarray, "case feature"]
-) -> Float[np.ndarray, "row case"]:
+def _distances(x: RowFeature, cases: CaseFeature) -> Float[np.ndarray, "row case"]:
     from scipy.spatial.distance import cdist
 
     return cdist(x, cases)
 
 
-def _nearest(
-    x: Float[np.ndarray, "row feature"], cases: Float[np.ndarray, "case feature"]
-) -> Float[np.ndarray, " row"]:
+def _nearest(x: RowFeature, cases: CaseFeature) -> PerRow:
     return _distances(x, cases).min(axis=1)
 
 
 def _nearest_mean(
-    x: Float[np.ndarray, "row feature"],
-    cases: Float[np.ndarray, "case feature"],
-    values: Float[np.ndarray, " case"],
-    *,
-    skip: int = 0,
-) -> Float[np.ndarray, " row"]:
+    x: RowFeature, cases: CaseFeature, values: Float[np.ndarray, " case"], *, skip: int = 0
+) -> PerRow:
     """Mean over the nearest cases, but for so many of the very nearest."""
     order = np.argsort(_distances(x, cases), axis=1, kind="stable")
     return values[order[:, skip : skip + NEIGHBOURS]].mean(axis=1)
 
 
 def _roughness(
-    x: Float[np.ndarray, "case feature"], residual: Float[np.ndarray, "case node 3"]
+    x: CaseFeature, residual: Float[np.ndarray, "case node 3"]
 ) -> Float[np.ndarray, "node 3"]:
     """Variance of what neighbours do not share: half the mean square of their difference."""
     beside = np.argsort(_distances(x, x), axis=1, kind="stable")[:, 1]

@@ -15,8 +15,8 @@ from seacage.conventions import Progress
 from seacage.surrogates._gcn._layers import NETWORKS, Kind, Parameters
 from seacage.surrogates._gcn._recipe import FEWEST_BATCHES, LARGEST_BATCH, Recipe
 
+# Share of the averaged weights that a step keeps: an average over about the last fifty steps
 REMEMBERED = 0.98
-"""Share of the averaged weights that a step keeps: an average over about the last fifty steps."""
 
 ADAM = optax.chain(optax.clip_by_global_norm(1.0), optax.scale_by_adam())
 

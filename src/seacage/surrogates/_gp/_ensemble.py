@@ -9,17 +9,14 @@ from jaxtyping import Float
 from seacage.surrogates._gp._hyperparameters import Evidence, Mode
 
 Ensemble = Literal["auto", "always", "never"]
-
 FEW = 40  # up to so many observations ``"auto"`` draws an ensemble; more leave little open
 MEMBERS = 16  # draws that are kept
 WARM_UP, THINNING = 24, 3  # trajectories before the first draw, and from one draw to the next
 LEAPS, LENGTH = 6, 1.2  # leapfrog steps of a trajectory, and its length in standard deviations
-
+# Share of the trajectories to be accepted, which the step is adapted to in the warm-up
 ACCEPTED = 0.8
-"""Share of the trajectories to be accepted, which the step is adapted to in the warm-up."""
 
 STEP = 1e-3  # of the differences of gradients that give the curvature at the mode
-
 Parameters = Float[np.ndarray, " parameter"]
 
 

@@ -10,8 +10,8 @@ from jaxtyping import Float
 
 from seacage.conventions import InputError
 
+# Shares of each variance added to the diagonal, the first that gives a factor in float64
 JITTERS = (1e-9, 1e-8, 1e-7, 1e-6)
-"""Shares of each variance added to the diagonal, the first that gives a factor in float64."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -55,7 +55,11 @@ class Cholesky:
 
     def precision(self) -> Float[np.ndarray, "n 1"]:
         """Diagonal of the inverse."""
-        return np.diag(inverse(self.lower))[:, None]
+        return np.diag(self.inverse())[:, None]
+
+    def inverse(self) -> Float[np.ndarray, "n n"]:
+        """Of the covariance with noise."""
+        return inverse(self.lower)
 
     def extended(
         self,

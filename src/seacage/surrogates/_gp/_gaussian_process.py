@@ -22,6 +22,8 @@ from seacage.surrogates._gp._posterior import Posterior, Process
 from seacage.surrogates._prediction import Moments, Prediction, check_inputs, check_outputs
 from seacage.surrogates._scaling import Scaling
 
+RowFeature = Float[np.ndarray, "row feature"]
+RowOutput = Float[np.ndarray, "row output"]
 MANY_OUTPUTS = 16  # more outputs than this are condensed before the kernel is fitted to them
 CONDENSED = 1e-6  # share of the outputs' variance that condensing may leave out
 SHARED_POINTS = 5.0  # weight of the shared variance against each output's own roughness, in points
@@ -134,11 +136,11 @@ class FittedGaussianProcess:
         """
         return self._noise(self.posterior.x).mean(axis=0)
 
-    def noise_at(self, x: Float[np.ndarray, "row feature"]) -> Float[np.ndarray, "row *output"]:
+    def noise_at(self, x: RowFeature) -> Float[np.ndarray, "row *output"]:
         """Variance of the noise of a new observation at each row, in its unit squared."""
         return self._reshape(self._noise(self._standardise(x, what="noise_at")))
 
-    def predict(self, x: Float[np.ndarray, "row feature"], *, noisy: bool = False) -> Prediction:
+    def predict(self, x: RowFeature, *, noisy: bool = False) -> Prediction:
         """Answer at each row of features.
 
         Parameters
@@ -154,21 +156,19 @@ class FittedGaussianProcess:
             variance = variance + self._noise(x)
         return self._answer(mean, variance)
 
-    def mean(self, x: Float[np.ndarray, "row feature"]) -> Float[np.ndarray, "row *output"]:
+    def mean(self, x: RowFeature) -> Float[np.ndarray, "row *output"]:
         """The mean of ``predict`` alone, at a fraction of its cost."""
         x = self._standardise(x, what="mean")
         means = [member.mean(x) for member in self.members]
         return self._reshape(self._average(means) + self._trend(x))
 
-    def jacobian(
-        self, x: Float[np.ndarray, "row feature"]
-    ) -> Float[np.ndarray, "row *output feature"]:
+    def jacobian(self, x: RowFeature) -> Float[np.ndarray, "row *output feature"]:
         """Change of the mean per change of each feature, at each row."""
         x = self._standardise(x, what="jacobian")
         slope = self._average([member.mean_slope(x) for member in self.members]) + self.line.T
         return self._reshape(slope / self.inputs.unit)
 
-    def moments(self, x: Float[np.ndarray, "row feature"]) -> Moments:
+    def moments(self, x: RowFeature) -> Moments:
         """Mean and variance of the one output with their gradients, for what builds on it."""
         if not self.single:
             raise InputError(
@@ -249,7 +249,17 @@ class FittedGaussianProcess:
         ----------
         Rasmussen & Williams (2006), eqs. (5.10)-(5.12).
         """
-        left_out = [member.leave_one_out() for member in self.members]
+        return self._from_residuals([member.leave_one_out() for member in self.members])
+
+    def leave_groups_out(self, group: Float[np.ndarray, " n"]) -> Prediction:
+        """``leave_one_out`` with all training cases of a group left out together.
+
+        ``group``: a number for each training case.
+        """
+        return self._from_residuals([member.leave_groups_out(group) for member in self.members])
+
+    def _from_residuals(self, left_out: Sequence[tuple[np.ndarray, np.ndarray]]) -> Prediction:
+        """From each member's residuals and their variances."""
         answers = [
             (member.observations() - residual, variance)
             for member, (residual, variance) in zip(self.members, left_out, strict=True)
@@ -348,13 +358,11 @@ class FittedGaussianProcess:
             else np.zeros((width, outputs)),
         )
 
-    def _standardise(
-        self, x: Float[np.ndarray, "row feature"], *, what: str
-    ) -> Float[np.ndarray, "row feature"]:
+    def _standardise(self, x: RowFeature, *, what: str) -> RowFeature:
         x = check_inputs(x, what=what, width=len(self.inputs.centre))
         return self.inputs.standardise(x)
 
-    def _noise(self, x: Float[np.ndarray, "row feature"]) -> Float[np.ndarray, "row output"]:
+    def _noise(self, x: RowFeature) -> RowOutput:
         shares = self._average([member.noise_at(x) for member in self.members])
         return shares * self.amplitude**2
 
@@ -364,9 +372,7 @@ class FittedGaussianProcess:
             return parts[0]
         return np.tensordot(self.share, np.stack(parts), axes=1)
 
-    def _mix(
-        self, x: Float[np.ndarray, "row feature"], answers: Sequence[Answer]
-    ) -> tuple[Float[np.ndarray, "row output"], Float[np.ndarray, "row output"]]:
+    def _mix(self, x: RowFeature, answers: Sequence[Answer]) -> tuple[RowOutput, RowOutput]:
         """Mean and variance of the outputs, by the law of total variance over the members."""
         means = [mean for mean, _ in answers]
         mean = self._average(means)
@@ -375,13 +381,11 @@ class FittedGaussianProcess:
             variance = variance + self._average([(one - mean) ** 2 for one in means])
         return mean + self._trend(x), variance
 
-    def _trend(self, x: Float[np.ndarray, "row feature"]) -> Float[np.ndarray, "row output"]:
+    def _trend(self, x: RowFeature) -> RowOutput:
         """What the members are about, at standardised inputs."""
         return self.centre + x @ self.line
 
-    def _answer(
-        self, mean: Float[np.ndarray, "row output"], variance: Float[np.ndarray, "row output"]
-    ) -> Prediction:
+    def _answer(self, mean: RowOutput, variance: RowOutput) -> Prediction:
         return Prediction(mean=self._reshape(mean), std=self._reshape(np.sqrt(variance)))
 
     def _reshape(

@@ -20,24 +20,21 @@ from seacage.surrogates._gp._noise import (
 )
 from seacage.surrogates._gp._posterior import Process
 
+PerKernel = Float[np.ndarray, " kernel"]
+PerNoise = Float[np.ndarray, " noise"]
+PerParameter = Float[np.ndarray, " parameter"]
 SUBSET = 250  # points that the hyperparameters are first learned from
 POLISH = 12  # L-BFGS steps on all points from there; without them coverage falls far below nominal
 REACH = 4.0  # sd of the prior either way that the kernel's hyperparameters may lie in
-
+# Logarithms of the noise's share of the outputs' unit variance
 NOISE_STARTS = (math.log(1e-3), math.log(0.1))
-"""Logarithms of the noise's share of the outputs' unit variance."""
-
+# Sd of the prior from its mean at which one start begins, the first variance aside. From lengths
+# longer than the waves in the points the search often ends at taking them for noise.
 SHORT = -2.0
-"""Sd of the prior from its mean at which one start begins, the first variance aside.
-
-From lengths longer than the waves in the points the search often ends at taking them for noise.
-"""
-
+# Up to so many points, whose loss has more modes and costs little, so many times the restarts
 SMALL, MORE = 40, 4
-"""Up to so many points, whose loss has more modes and costs little, so many times the restarts."""
-
+# Rounds of noise factors and search with Student's t, on the subset and then on all points
 ROUNDS, ROUNDS_ALL = 25, 6
-"""Rounds of noise factors and search with Student's t, on the subset and then on all points."""
 
 ROUND = 4  # L-BFGS steps in each of them
 
@@ -75,21 +72,17 @@ class Evidence(Rows):
         bounds[count : count + self.noise.sizes] = NOISE_BOUNDS
         return bounds
 
-    def split(
-        self, log_parameters: Float[np.ndarray, " parameter"]
-    ) -> tuple[Float[np.ndarray, " kernel"], Float[np.ndarray, " noise"]]:
+    def split(self, log_parameters: PerParameter) -> tuple[PerKernel, PerNoise]:
         """Those of the kernel, and those of the noise."""
         count = self.kernel.size(self.x.shape[1])
         return log_parameters[:count], log_parameters[count:]
 
-    def process(self, log_parameters: Float[np.ndarray, " parameter"]) -> Process:
+    def process(self, log_parameters: PerParameter) -> Process:
         """The process with these hyperparameters."""
         own, noise = self.split(log_parameters)
         return Process(kernel=self.kernel, log_parameters=own, noise=self.noise, log_noise=noise)
 
-    def loss(
-        self, log_parameters: Float[np.ndarray, " parameter"]
-    ) -> tuple[float, Float[np.ndarray, " parameter"]]:
+    def loss(self, log_parameters: PerParameter) -> tuple[float, PerParameter]:
         """Negative log posterior of the hyperparameters, and its gradient.
 
         The likelihood is summed over the outputs; constants are left out.
@@ -104,9 +97,7 @@ class Evidence(Rows):
         offset = (log_parameters - self.prior.mean) / self.prior.sd
         return float(value + 0.5 * offset @ offset), gradient + offset / self.prior.sd
 
-    def _misfit(
-        self, kernel: Float[np.ndarray, " kernel"], noise: Float[np.ndarray, " noise"]
-    ) -> tuple[float, Float[np.ndarray, " parameter"]]:
+    def _misfit(self, kernel: PerKernel, noise: PerNoise) -> tuple[float, PerParameter]:
         outputs = self.y.shape[1]
         covariance = self.kernel.evaluate(kernel, self.x, self.x)
         scale, pull_noise = self.noise.with_pullback(noise, self.x)
@@ -120,9 +111,7 @@ class Evidence(Rows):
         adjoint[np.diag_indices_from(adjoint)] *= 1.0 + JITTERS[0]
         return float(value), np.append(covariance.pull(adjoint), of_noise)
 
-    def _misfit_per_output(
-        self, kernel: Float[np.ndarray, " kernel"], noise: Float[np.ndarray, " noise"]
-    ) -> tuple[float, Float[np.ndarray, " parameter"]]:
+    def _misfit_per_output(self, kernel: PerKernel, noise: PerNoise) -> tuple[float, PerParameter]:
         covariance = self.kernel.evaluate(kernel, self.x, self.x)
         spectrum = Spectrum.of(covariance.value, np.exp(noise))
         inverse_value = spectrum.inverse_value
@@ -136,7 +125,7 @@ class Evidence(Rows):
         of_noise = 0.5 * np.exp(noise) * np.sum(inverse_value - turned_weights**2, axis=0)
         return float(value), np.append(covariance.pull(adjoint), of_noise)
 
-    def reweighted(self, log_parameters: Float[np.ndarray, " parameter"]) -> Self:
+    def reweighted(self, log_parameters: PerParameter) -> Self:
         """With the noise factor that each point has under these hyperparameters.
 
         Source: Tipping & Lawrence (2005), the update of the noise's precisions.
@@ -157,7 +146,7 @@ class Evidence(Rows):
 class Mode:
     """Hyperparameters that no small change makes more probable."""
 
-    log_parameters: Float[np.ndarray, " parameter"]  # of the kernel, then of the noise
+    log_parameters: PerParameter  # of the kernel, then of the noise
     loss: float  # negative log posterior there
     evidence: Evidence  # all points, with the noise factors that were found
 
@@ -195,11 +184,25 @@ def most_probable(
             best = replace(best, evidence=evidence.reweighted(best.log_parameters))
             best = _alternate(best, rounds=ROUNDS_ALL)
     elif not few:
-        best = improve(evidence, best.log_parameters, steps=POLISH)
+        start = min(best.log_parameters, _noisier(best), key=lambda one: evidence.loss(one)[0])
+        best = improve(evidence, start, steps=POLISH)
     return best
 
 
-def improve(evidence: Evidence, start: Float[np.ndarray, " parameter"], *, steps: int) -> Mode:
+def _noisier(mode: Mode) -> PerParameter:
+    """The same with the noise of a start, where that is more.
+
+    A subset may be fitted without any noise, as one that has few images of the same case. From
+    there the search on all points leaves the mode, and takes everything for noise.
+    """
+    evidence, found = mode.evidence, mode.log_parameters.copy()
+    first = evidence.kernel.size(evidence.x.shape[1])
+    noise = slice(first, first + evidence.noise.sizes)
+    found[noise] = np.maximum(found[noise], NOISE_STARTS[0])
+    return found
+
+
+def improve(evidence: Evidence, start: PerParameter, *, steps: int) -> Mode:
     """The nearest mode, or what so many steps come to."""
     from scipy.optimize import minimize
 
@@ -224,7 +227,7 @@ def _alternate(mode: Mode, *, rounds: int) -> Mode:
 
 def _starts(
     evidence: Evidence, restarts: int, random: np.random.Generator
-) -> Iterator[Float[np.ndarray, " parameter"]]:
+) -> Iterator[PerParameter]:
     kernel, noise = evidence.kernel.prior(evidence.x.shape[1]), evidence.noise.prior()
     for draw in range(1 + restarts):
         scatter = random.standard_normal(len(kernel.mean)) if draw else np.zeros(len(kernel.mean))

@@ -11,31 +11,33 @@ from jaxtyping import Float
 
 from seacage.conventions import ModelError
 
+BatchNFeature = Float[np.ndarray, "*batch n feature"]
+BatchParameter = Float[np.ndarray, "*batch parameter"]
+BatchRowN = Float[np.ndarray, "*batch row n"]
+NFeature = Float[np.ndarray, "n feature"]
+PerParameter = Float[np.ndarray, " parameter"]
+RowFeature = Float[np.ndarray, "row feature"]
 KernelName = Literal["squared-exponential", "matern-5/2", "matern-3/2"]
-
 PUBLIC: tuple[KernelName, ...] = get_args(KernelName)
-
 Normal = tuple[float, float]  # mean and standard deviation of a log hyperparameter
 VARIANCE_PRIOR: Normal = (0.0, 2.0)  # of a log variance: the outputs have unit variance
 
+# Of a log length in spreads of a feature, which is about 3.5 across. The median grows with the root
+# of the number of features, as distances do: without that a prior over many inputs would make every
+# case independent of the next.
 LENGTH_PRIOR: Normal = (math.log(3.0), 1.5)
-"""Of a log length in spreads of a feature, which is about 3.5 across.
-
-The median grows with the root of the number of features, as distances do: without that a
-prior over many inputs would make every case independent of the next.
-"""
 
 
+# Of the variance that rows of a case have in common, as of noise
 CASE_PRIOR: Normal = (math.log(1e-3), 2.5)
-"""Of the variance that rows of a case have in common, as of noise."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Prior:
     """Independent log-normal priors, so normal in the logarithms."""
 
-    mean: Float[np.ndarray, " parameter"]
-    sd: Float[np.ndarray, " parameter"]
+    mean: PerParameter
+    sd: PerParameter
 
     @classmethod
     def of(cls, *parameters: Normal) -> "Prior":
@@ -81,8 +83,8 @@ class Evaluation:
         )
 
 
+# Function of inputs: their covariances with some points
 Covariances = Callable[[np.ndarray], Evaluation]
-"""Function of inputs: their covariances with some points."""
 
 Leaf = Callable[..., Any]  # function of inputs whose results add and multiply
 
@@ -104,11 +106,7 @@ class AbstractKernel(ABC):
         """Number of its hyperparameters, for inputs with so many features."""
 
     @abstractmethod
-    def at(
-        self,
-        log_parameters: Float[np.ndarray, "*batch parameter"],
-        z: Float[np.ndarray, "*batch n feature"],
-    ) -> Covariances:
+    def at(self, log_parameters: BatchParameter, z: BatchNFeature) -> Covariances:
         """Covariance with points: a function of the other inputs.
 
         What depends on the points alone is evaluated once. Only values are for batches; gradients
@@ -117,26 +115,16 @@ class AbstractKernel(ABC):
 
     @abstractmethod
     def diagonal(
-        self,
-        log_parameters: Float[np.ndarray, "*batch parameter"],
-        x: Float[np.ndarray, "*batch row feature"],
+        self, log_parameters: BatchParameter, x: Float[np.ndarray, "*batch row feature"]
     ) -> Evaluation:
         """Variance of each row."""
 
-    def evaluate(
-        self,
-        log_parameters: Float[np.ndarray, " parameter"],
-        x: Float[np.ndarray, "row feature"],
-        z: Float[np.ndarray, "n feature"],
-    ) -> Evaluation:
+    def evaluate(self, log_parameters: PerParameter, x: RowFeature, z: NFeature) -> Evaluation:
         """Covariance between the rows of two sets of inputs."""
         return self.at(log_parameters, z)(x)
 
     def covariance(
-        self,
-        log_parameters: Float[np.ndarray, " parameter"],
-        x: Float[np.ndarray, "row feature"],
-        z: Float[np.ndarray, "n feature"],
+        self, log_parameters: PerParameter, x: RowFeature, z: NFeature
     ) -> Float[np.ndarray, "row n"]:
         """The value of ``evaluate`` alone, which keeps nothing for gradients."""
 
@@ -348,8 +336,8 @@ class Product(AbstractComposition):
         return one * other if isinstance(one, Evaluation) else _join_values(np.multiply, one, other)
 
 
+# By the name under which a saved model finds its kernel again
 _SAVED: dict[str, AbstractKernel] = {name: StationaryKernel(name) for name in PUBLIC}
-"""By the name under which a saved model finds its kernel again."""
 
 
 def register_kernels(*kernels: AbstractKernel) -> None:
@@ -365,10 +353,8 @@ def restore_kernel(name: str) -> AbstractKernel:
 
 
 def _covariance(
-    name: KernelName,
-    squared: Float[np.ndarray, "*batch row n"],
-    variance: Float[np.ndarray, "*batch 1 1"] | None,
-) -> tuple[Float[np.ndarray, "*batch row n"], Float[np.ndarray, "*batch row n"]]:
+    name: KernelName, squared: BatchRowN, variance: Float[np.ndarray, "*batch 1 1"] | None
+) -> tuple[BatchRowN, BatchRowN]:
     """At a squared distance, which is overwritten, and minus twice its derivative there."""
     if name == "squared-exponential":
         squared *= -0.5
@@ -385,9 +371,7 @@ def _covariance(
     return (1.0 + far + 5.0 / 3.0 * squared) * decay, 5.0 / 3.0 * (1.0 + far) * decay
 
 
-def _distance_squared(
-    z: Float[np.ndarray, "*batch n feature"],
-) -> Callable[[np.ndarray], np.ndarray]:
+def _distance_squared(z: BatchNFeature) -> Callable[[np.ndarray], np.ndarray]:
     """From points to a function of other inputs: (row, n)."""
     columns = np.swapaxes(z, -1, -2)
     if z.shape[-1] == 1:

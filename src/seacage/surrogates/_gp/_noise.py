@@ -12,19 +12,21 @@ from jaxtyping import Float
 from seacage.conventions import ModelError
 from seacage.surrogates._gp._kernels import Prior, StationaryKernel
 
+NFeature = Float[np.ndarray, "n feature"]
+PerN = Float[np.ndarray, " n"]
+PerParameter = Float[np.ndarray, " parameter"]
+RowFeature = Float[np.ndarray, "row feature"]
+RowOutput = Float[np.ndarray, "row output"]
 NoiseName = Literal["white", "per-output", "by-input", "student-t"]
-
+# Of the logarithm of the noise's share of the outputs' unit variance
 NOISE_PRIOR = (math.log(1e-5), 2.5)
 NOISE_BOUNDS = (math.log(1e-6), math.log(10.0))
-"""Of the logarithm of the noise's share of the outputs' unit variance."""
-
 FREEDOM = 4.0  # degrees of freedom of Student's t: outliers are common, and the variance exists
 SETTLING = 50  # steps of the fixed-point iteration for a case's noise factor
 ANCHORS = 20  # places that noise by input is learned at, at most
 SWING = 1.5  # prior sd of the log variance of noise by input, about its mean
-
-PullDiagonal = Callable[[Float[np.ndarray, " n"]], Float[np.ndarray, " parameter"]]
-"""From the loss's gradient in each case's noise to its gradient in each log parameter."""
+# From the loss's gradient in each case's noise to its gradient in each log parameter
+PullDiagonal = Callable[[PerN], PerParameter]
 
 
 class AbstractNoise(ABC):
@@ -37,15 +39,11 @@ class AbstractNoise(ABC):
         """Of its log parameters."""
 
     @abstractmethod
-    def variance(
-        self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "row feature"]
-    ) -> Float[np.ndarray, "row output"]:
+    def variance(self, log_parameters: PerParameter, x: RowFeature) -> RowOutput:
         """Of a new measurement at each row; one column stands for all outputs alike."""
 
     @abstractmethod
-    def with_pullback(
-        self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "n feature"]
-    ) -> tuple[Float[np.ndarray, " n"], PullDiagonal]:
+    def with_pullback(self, log_parameters: PerParameter, x: NFeature) -> tuple[PerN, PullDiagonal]:
         """Scale of each training case's noise, before its noise factor, and the pullback."""
 
     @property
@@ -68,14 +66,10 @@ class WhiteNoise(AbstractNoise):
     def prior(self) -> Prior:
         return Prior.of(NOISE_PRIOR)
 
-    def variance(
-        self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "row feature"]
-    ) -> Float[np.ndarray, "row output"]:
+    def variance(self, log_parameters: PerParameter, x: RowFeature) -> RowOutput:
         return np.full((len(x), 1), np.exp(log_parameters[0]))
 
-    def with_pullback(
-        self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "n feature"]
-    ) -> tuple[Float[np.ndarray, " n"], PullDiagonal]:
+    def with_pullback(self, log_parameters: PerParameter, x: NFeature) -> tuple[PerN, PullDiagonal]:
         noise = np.full(len(x), np.exp(log_parameters[0]))
         return noise, lambda adjoint: np.array([adjoint @ noise])
 
@@ -93,9 +87,7 @@ class StudentNoise(WhiteNoise):
 
     name: ClassVar[NoiseName] = "student-t"
 
-    def variance(
-        self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "row feature"]
-    ) -> Float[np.ndarray, "row output"]:
+    def variance(self, log_parameters: PerParameter, x: RowFeature) -> RowOutput:
         return np.full((len(x), 1), np.exp(log_parameters[0]) * FREEDOM / (FREEDOM - 2.0))
 
 
@@ -114,14 +106,10 @@ class NoisePerOutput(AbstractNoise):
     def prior(self) -> Prior:
         return Prior.of(*[NOISE_PRIOR] * self.outputs)
 
-    def variance(
-        self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "row feature"]
-    ) -> Float[np.ndarray, "row output"]:
+    def variance(self, log_parameters: PerParameter, x: RowFeature) -> RowOutput:
         return np.broadcast_to(np.exp(log_parameters), (len(x), len(log_parameters)))
 
-    def with_pullback(
-        self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "n feature"]
-    ) -> tuple[Float[np.ndarray, " n"], PullDiagonal]:
+    def with_pullback(self, log_parameters: PerParameter, x: NFeature) -> tuple[PerN, PullDiagonal]:
         raise NotImplementedError("Noise per output has no diagonal that all outputs share.")
 
 
@@ -147,19 +135,15 @@ class NoiseByInput(AbstractNoise):
     def prior(self) -> Prior:
         return Prior.of(NOISE_PRIOR, *[(0.0, 1.0)] * len(self.places))
 
-    def variance(
-        self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "row feature"]
-    ) -> Float[np.ndarray, "row output"]:
+    def variance(self, log_parameters: PerParameter, x: RowFeature) -> RowOutput:
         return np.exp(self._basis(x) @ log_parameters)[:, None]
 
-    def with_pullback(
-        self, log_parameters: Float[np.ndarray, " parameter"], x: Float[np.ndarray, "n feature"]
-    ) -> tuple[Float[np.ndarray, " n"], PullDiagonal]:
+    def with_pullback(self, log_parameters: PerParameter, x: NFeature) -> tuple[PerN, PullDiagonal]:
         basis = self._basis(x)
         noise = np.exp(basis @ log_parameters)
         return noise, lambda adjoint: (adjoint * noise) @ basis
 
-    def _basis(self, x: Float[np.ndarray, "row feature"]) -> Float[np.ndarray, "row parameter"]:
+    def _basis(self, x: RowFeature) -> Float[np.ndarray, "row parameter"]:
         from scipy.linalg import cholesky, solve_triangular
 
         kernel = StationaryKernel("squared-exponential")
@@ -174,7 +158,7 @@ class NoiseByInput(AbstractNoise):
         return np.column_stack([np.ones(len(x)), smooth])
 
 
-def noise_named(name: str, x: Float[np.ndarray, "n feature"], *, outputs: int) -> AbstractNoise:
+def noise_named(name: str, x: NFeature, *, outputs: int) -> AbstractNoise:
     """Noise that a user asks for by name, for these standardised inputs."""
     if name == "per-output" and outputs > 1:
         return NoisePerOutput(outputs)
@@ -234,7 +218,7 @@ def noise_factor_of_new(
     return noise_factor
 
 
-def _spread_out(x: Float[np.ndarray, "n feature"]) -> Float[np.ndarray, "anchor feature"]:
+def _spread_out(x: NFeature) -> Float[np.ndarray, "anchor feature"]:
     """A few inputs, each the farthest from those chosen before; no two alike."""
     chosen = [int(np.argmin(np.sum(x**2, axis=1)))]
     apart = np.sum((x - x[chosen[0]]) ** 2, axis=1)

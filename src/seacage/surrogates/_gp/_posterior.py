@@ -17,6 +17,14 @@ from seacage.surrogates._gp._noise import (
 )
 from seacage.surrogates._prediction import Moments
 
+NFeature = Float[np.ndarray, "n feature"]
+NOutput = Float[np.ndarray, "n output"]
+NewFeature = Float[np.ndarray, "new feature"]
+PerN = Float[np.ndarray, " n"]
+PerNew = Float[np.ndarray, " new"]
+RowFeature = Float[np.ndarray, "row feature"]
+RowOutput = Float[np.ndarray, "row output"]
+RowShared = Float[np.ndarray, "row shared"]
 CHUNK = 2**22  # covariances held at once while predicting: 32 MiB whatever the number of rows
 
 
@@ -31,13 +39,7 @@ class Process:
     noise: AbstractNoise
     log_noise: Float[np.ndarray, " noise"]
 
-    def condition(
-        self,
-        x: Float[np.ndarray, "n feature"],
-        y: Float[np.ndarray, "n output"],
-        *,
-        noise_factor: Float[np.ndarray, " n"],
-    ) -> "Posterior":
+    def condition(self, x: NFeature, y: NOutput, *, noise_factor: PerN) -> "Posterior":
         """Condition on outputs of zero mean; a posterior forgets the points that it had.
 
         Raises InputError: the covariance has no factor in float64.
@@ -54,12 +56,7 @@ class Process:
         return self._posterior(x, noise_factor, factor.solve(y), factor)
 
     def restore(
-        self,
-        x: Float[np.ndarray, "n feature"],
-        weights: Float[np.ndarray, "n output"],
-        *,
-        noise_factor: Float[np.ndarray, " n"],
-        later: bool = False,
+        self, x: NFeature, weights: NOutput, *, noise_factor: PerN, later: bool = False
     ) -> "Posterior":
         """The posterior that was saved; the factor is cheaper to make than to store.
 
@@ -85,9 +82,7 @@ class Process:
             raise ModelError(broken)
         return self._posterior(x, noise_factor, weights, factor)
 
-    def _factorise(
-        self, x: Float[np.ndarray, "n feature"], noise_factor: Float[np.ndarray, " n"]
-    ) -> Factor:
+    def _factorise(self, x: NFeature, noise_factor: PerN) -> Factor:
         """Of the covariance of points with noise."""
         covariance = self.kernel.covariance(self.log_parameters, x, x)
         if isinstance(self.noise, NoisePerOutput):
@@ -97,11 +92,7 @@ class Process:
         )
 
     def _posterior(
-        self,
-        x: Float[np.ndarray, "n feature"],
-        noise_factor: Float[np.ndarray, " n"],
-        weights: Float[np.ndarray, "n output"],
-        factor: Factor,
+        self, x: NFeature, noise_factor: PerN, weights: NOutput, factor: Factor
     ) -> "Posterior":
         return Posterior(
             kernel=self.kernel,
@@ -119,23 +110,21 @@ class Process:
 class Posterior(Process):
     """The process conditioned on standardised points."""
 
-    x: Float[np.ndarray, "n feature"]  # standardised inputs
+    x: NFeature  # standardised inputs
     # Factor on the noise of each point; other than 1 for Student's t alone
-    noise_factor: Float[np.ndarray, " n"]
+    noise_factor: PerN
     # Inverse covariance times outputs, so that the mean is one product
-    weights: Float[np.ndarray, "n output"]
+    weights: NOutput
     factor: Factor  # of the covariance with noise
 
-    def noise_at(self, x: Float[np.ndarray, "row feature"]) -> Float[np.ndarray, "row output"]:
+    def noise_at(self, x: RowFeature) -> RowOutput:
         """Variance of the noise of a new measurement; one column stands for all outputs."""
         variance = self.noise.variance(self.log_noise, x)
         if isinstance(self.factor, Spectrum) and self.factor.mixture is not None:
             return variance @ self.factor.mixture[:, None]
         return variance
 
-    def predict(
-        self, x: Float[np.ndarray, "row feature"]
-    ) -> tuple[Float[np.ndarray, "row output"], Float[np.ndarray, "row shared"]]:
+    def predict(self, x: RowFeature) -> tuple[RowOutput, RowShared]:
         """Mean of each output, and the variance without noise, in one column if all share it."""
         if len(x) * len(self.x) <= CHUNK:
             return self._predict(x)
@@ -143,37 +132,33 @@ class Posterior(Process):
         mean, variance = zip(*parts, strict=True)
         return np.concatenate(mean), np.concatenate(variance)
 
-    def mean(self, x: Float[np.ndarray, "row feature"]) -> Float[np.ndarray, "row output"]:
+    def mean(self, x: RowFeature) -> RowOutput:
         """The mean of ``predict`` alone, which asks nothing of the factor."""
         if len(x) * len(self.x) <= CHUNK:
             return self.cross(x) @ self.weights
         pieces = chunks(len(x), CHUNK // len(self.x))
         return np.concatenate([self.cross(x[rows]) @ self.weights for rows in pieces])
 
-    def _predict(
-        self, x: Float[np.ndarray, "row feature"]
-    ) -> tuple[Float[np.ndarray, "row output"], Float[np.ndarray, "row shared"]]:
+    def _predict(self, x: RowFeature) -> tuple[RowOutput, RowShared]:
         return self._moments(self.kernel.diagonal(self.log_parameters, x).value, self.cross(x))
 
     def _moments(
         self, prior: Float[np.ndarray, " row"], cross: Float[np.ndarray, "row n"]
-    ) -> tuple[Float[np.ndarray, "row output"], Float[np.ndarray, "row shared"]]:
+    ) -> tuple[RowOutput, RowShared]:
         # Rounding can explain a hair more than there is.
         variance = np.maximum(prior[:, None] - self.factor.variance_reduction(cross), 0.0)
         return cross @ self.weights, variance
 
-    def cross(self, x: Float[np.ndarray, "row feature"]) -> Float[np.ndarray, "row n"]:
+    def cross(self, x: RowFeature) -> Float[np.ndarray, "row n"]:
         """Covariance of rows with the points."""
         return self.kernel.covariance(self.log_parameters, x, self.x)
 
-    def mean_slope(
-        self, x: Float[np.ndarray, "row feature"]
-    ) -> Float[np.ndarray, "row output feature"]:
+    def mean_slope(self, x: RowFeature) -> Float[np.ndarray, "row output feature"]:
         """Jacobian of the mean."""
         cross = self.kernel.evaluate(self.log_parameters, x, self.x)
         return np.stack([cross.slope(weight[None]) for weight in self.weights.T], axis=1)
 
-    def moments(self, x: Float[np.ndarray, "row feature"]) -> Moments:
+    def moments(self, x: RowFeature) -> Moments:
         """Mean and variance without noise of the one output, with their gradients."""
         prior = self.kernel.diagonal(self.log_parameters, x)
         cross = self.kernel.evaluate(self.log_parameters, x, self.x)
@@ -186,7 +171,7 @@ class Posterior(Process):
             variance_slope=prior.slope(np.ones(len(x))) - 2.0 * cross.slope(share),
         )
 
-    def leave_one_out(self) -> tuple[Float[np.ndarray, "n output"], Float[np.ndarray, "n shared"]]:
+    def leave_one_out(self) -> tuple[NOutput, Float[np.ndarray, "n shared"]]:
         """Residual of each point against all the others, and its variance with noise.
 
         Source: Rasmussen & Williams (2006), eqs. (5.10)-(5.12).
@@ -194,14 +179,30 @@ class Posterior(Process):
         precision = self.factor.precision()
         return self.weights / precision, 1.0 / precision
 
-    def observations(self) -> Float[np.ndarray, "n output"]:
+    def leave_groups_out(self, group: PerN) -> tuple[NOutput, Float[np.ndarray, "n 1"]]:
+        """Residual of each point against those of all other groups, and its variance with noise.
+
+        ``group``: number of each point's group. Noise has to be alike in all outputs.
+        """
+        if isinstance(self.factor, Spectrum):
+            raise TypeError("Outputs with unlike noise have no covariance in common.")
+        precision = self.factor.inverse()
+        residual, variance = np.empty_like(self.weights), np.empty((len(group), 1))
+        for number in np.unique(group):
+            rows = np.flatnonzero(group == number)
+            covariance = np.linalg.inv(precision[np.ix_(rows, rows)])
+            residual[rows] = covariance @ self.weights[rows]
+            variance[rows, 0] = np.diag(covariance)
+        return residual, variance
+
+    def observations(self) -> NOutput:
         """The outputs that it was conditioned on."""
         return self.factor.observations(self.weights)
 
     def updated(
         self,
         # The new points
-        x: Float[np.ndarray, "new feature"],
+        x: NewFeature,
         y: Float[np.ndarray, "new output"],
         *,
         # Standard deviation of each output that the kernel's is a share of
@@ -221,9 +222,7 @@ class Posterior(Process):
             self, x=all_x, noise_factor=noise_factor, weights=factor.solve(all_y), factor=factor
         )
 
-    def _extend(
-        self, x: Float[np.ndarray, "new feature"], noise_factor: Float[np.ndarray, " new"]
-    ) -> Cholesky | None:
+    def _extend(self, x: NewFeature, noise_factor: PerNew) -> Cholesky | None:
         from scipy.linalg import LinAlgError
 
         if not isinstance(self.factor, Cholesky):
@@ -257,10 +256,10 @@ class Posterior(Process):
 
     def _new_noise_factors(
         self,
-        x: Float[np.ndarray, "new feature"],
+        x: NewFeature,
         y: Float[np.ndarray, "new output"],
         amplitude: Float[np.ndarray, " output"],
-    ) -> Float[np.ndarray, " new"]:
+    ) -> PerNew:
         """Noise factor of new points, each from its prediction by the old ones."""
         if not isinstance(self.noise, StudentNoise):
             return np.ones(len(x))

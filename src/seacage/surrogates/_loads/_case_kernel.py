@@ -6,41 +6,82 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from seacage.surrogates._gp import Columns, SameCase, StationaryKernel, Sum, register_kernels
+from seacage.surrogates._gp import (
+    AbstractKernel,
+    Columns,
+    SameCase,
+    StationaryKernel,
+    Sum,
+    register_kernels,
+)
 
-LENGTHS = (0, 1, 1, 2, 3, 3, 4)
-"""Which length each of ``sea_features`` has: a vector's components have one."""
-
-NEW = -1.0
-"""Number of a case that was not simulated."""
+NEW = -1.0  # number of a case that was not simulated
 
 
 @dataclass(frozen=True, slots=True)
 class CaseKernel(Sum):
-    """Smooth in the sea, plus what the waves of a case have in common in all its images.
+    """Of the sea, plus what the waves of a case have in common in all its images.
 
-    The last feature is the number of the case.
+    ``other`` has one hyperparameter, the last one.
     """
+
+    saved_as: str
 
     @property
     def name(self) -> str:
-        return "load-cases"
+        return self.saved_as
 
 
-KERNEL = CaseKernel(
-    Columns(StationaryKernel("matern-5/2", alike=LENGTHS), slice(0, -1)),
-    Columns(SameCase(), slice(-1, None)),
+def _with_case(of_sea: AbstractKernel, saved_as: str) -> CaseKernel:
+    return CaseKernel(of_sea, Columns(SameCase(), slice(-1, None)), saved_as)
+
+
+# Columns of ``case_inputs``, and of each the number of its length: a vector's components have one,
+# so that a turn changes no distance
+CURRENT, CURRENT_LENGTHS = slice(1, 4), (0, 1, 1)
+SEA, SEA_LENGTHS = slice(0, 7), (0, 1, 2, 2, 3, 3, 4)
+ROUGH_SEA, ROUGH_SEA_LENGTHS = slice(1, 9), (0, 1, 1, 2, 2, 3, 4, 5)
+
+# The mean goes by the current nearly alone, smoothly but for the speeds at which lines fall slack
+MEAN = _with_case(
+    Columns(
+        StationaryKernel("squared-exponential", alike=SEA_LENGTHS)
+        + StationaryKernel("matern-3/2", alike=SEA_LENGTHS),
+        SEA,
+    )
+    + Columns(StationaryKernel("matern-3/2", alike=CURRENT_LENGTHS), CURRENT),
+    "mean-load-of-cases",
 )
-"""Of the loads of lines; lines going slack put kinks in them."""
 
-register_kernels(KERNEL)
+# What waves do. Loads per wave height change faster in low waves, so the root of Hs is taken. The
+# current along the waves counts beside its components, as drag goes by the sum of both velocities
+WAVE_EFFECT = _with_case(
+    Columns(
+        StationaryKernel("matern-5/2", alike=ROUGH_SEA_LENGTHS)
+        + StationaryKernel("matern-3/2", alike=ROUGH_SEA_LENGTHS),
+        ROUGH_SEA,
+    ),
+    "wave-loads-of-cases",
+)
+register_kernels(MEAN, WAVE_EFFECT)
 
 
-def with_number(
-    x: Float[np.ndarray, "row feature"], number: Float[np.ndarray, " row"] | float = NEW
-) -> Float[np.ndarray, "row wider"]:
-    """Features with the number of each row's case."""
-    return np.column_stack([x, np.broadcast_to(number, len(x))])
+def case_inputs(
+    x: Float[np.ndarray, "row 7"], number: Float[np.ndarray, " row"] | float = NEW
+) -> Float[np.ndarray, "row 10"]:
+    """Inputs of the kernels: Hs, the other features, current along the waves, root of Hs, number.
+
+    Parameters
+    ----------
+    x
+        From ``sea_features``.
+    number
+        Of each row's case.
+    """
+    current, hs, wave, log_tp = np.split(x, (3, 4, 6), axis=1)
+    along = np.sum(current[:, 1:] * wave, axis=1)
+    numbers = np.broadcast_to(number, len(x))
+    return np.column_stack([hs, current, wave, log_tp, along, np.sqrt(hs), numbers])
 
 
 def case_variance(log_parameters: Float[np.ndarray, " parameter"]) -> float:

@@ -17,25 +17,28 @@ from seacage.surrogates._gp import (
     processes_to_arrays,
     select_likelihood_outputs,
 )
-from seacage.surrogates._loads._case_kernel import KERNEL, case_variance, with_number
+from seacage.surrogates._loads._case_kernel import (
+    MEAN,
+    WAVE_EFFECT,
+    case_inputs,
+    case_variance,
+)
 from seacage.surrogates._loads._loads import EULER, LoadCases, LoadPrediction, Loads
 from seacage.surrogates._prediction import Prediction, check_inputs
-from seacage.surrogates._shape import Symmetry
+from seacage.surrogates._shape._symmetry import Symmetry
 
-HEIGHT = 3
-"""Feature of ``sea_features`` that holds Hs."""
+HEIGHT = 3  # feature of ``sea_features`` that holds Hs
+OFFSET = 0.05  # added before a logarithm is taken, over the statistic's median [-]
 
-OFFSET = 0.02
-"""Added before a logarithm is taken, over the statistic's median [-]."""
-
+# Of all cases together, as memory grows with their square; each case has as many
 MOST_IMAGES = 4000
-"""Of all cases together, as memory grows with their square; each case has as many."""
 
+# Images that hyperparameters are learned from; all others count in the answer alone
 MOST_POINTS = 1500
-"""Images that hyperparameters are learned from; all others count in the answer alone."""
 
-LEAST_HS = 1e-3
-"""Of the training [m]."""
+LEAST_HS = 1e-3  # of the training [m]
+
+HELD = 0.95  # share of left-out cases that intervals of this level hold
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -96,26 +99,63 @@ class LoadGP:
         outputs = {"mean": loads.mean} | {
             name: np.log((one + offset[name]) / x[:, [HEIGHT]]) for name, one in above.items()
         }
-        numbered = with_number(x, np.arange(len(x), dtype=float))
-        images, tables = _images(self.symmetry, numbered, outputs, seed=seed)
+        images, tables = draw_images(self.symmetry, x, outputs, seed=seed)
+        processes = fit_tables(images, tables, restarts=self.restarts, seed=seed)
         return FittedLoadGP(
-            processes={
-                name: fit_process(
-                    KERNEL,
-                    images,
-                    table,
-                    likelihood_outputs=select_likelihood_outputs(table),
-                    restarts=self.restarts,
-                    seed=seed,
-                    most=MOST_POINTS,
-                )
-                for name, table in tables.items()
+            processes=processes,
+            widening={
+                name: _widening(process, tables[name], images[:, -1])
+                for name, process in processes.items()
             },
             offset=offset,
             scatter=_largest_scatter(self.symmetry, loads),
             wears=np.array(np.isfinite(loads.damage_equivalent).any(axis=0), dtype=np.float64),
             duration=duration,
         )
+
+
+def fit_tables(
+    x: Float[np.ndarray, "row input"],  # ``case_inputs`` of the images
+    tables: Mapping[str, Float[np.ndarray, "row output"]],
+    *,
+    restarts: int,
+    seed: int,
+) -> dict[str, FittedGaussianProcess]:
+    """Fit a process to each table of outputs at the images of cases; "mean" is one of means."""
+    return {
+        name: fit_process(
+            MEAN if name == "mean" else WAVE_EFFECT,
+            x,
+            table,
+            likelihood_outputs=select_likelihood_outputs(table),
+            restarts=restarts,
+            seed=seed,
+            most=MOST_POINTS,
+        )
+        for name, table in tables.items()
+    }
+
+
+def _widening(
+    process: FittedGaussianProcess,
+    table: Float[np.ndarray, "row line"],
+    case: Float[np.ndarray, " row"],
+) -> Float[np.ndarray, " line"]:
+    """Factor on standard deviations by which intervals hold the cases that were left out.
+
+    Where a line's loads have kinks that the process smooths, more than 5 % of cases are beyond
+    1.96 standard deviations. The level of the quantile is that of conformal prediction, for as
+    many cases. A line whose loads never vary has 1.
+    """
+    from scipy.special import ndtri
+
+    left_out = process.leave_groups_out(case)
+    count = len(np.unique(case))
+    level = min(1.0, HELD * (1.0 + 1.0 / count))
+    known = left_out.std > 0.0
+    deviate = np.where(known, np.abs(table - left_out.mean), 0.0) / np.where(known, left_out.std, 1)
+    widening = np.quantile(deviate, level, axis=0) / ndtri(0.5 + 0.5 * HELD)
+    return np.where(widening > 0.0, widening, 1.0)
 
 
 def _offset(values: Float[np.ndarray, "case line"]) -> float:
@@ -125,8 +165,7 @@ def _offset(values: Float[np.ndarray, "case line"]) -> float:
 
 def _above_mean(loads: LoadCases) -> dict[str, Float[np.ndarray, "case line"]]:
     """Statistics that grow with the waves, the largest above the mean [N]."""
-    largest = np.where(np.isfinite(loads.expected), loads.expected, loads.largest)
-    found = {"std": loads.std, "maximum": np.maximum(largest - loads.mean, 0.0)}
+    found = {"std": loads.std, "maximum": loads.above_mean}
     if np.isfinite(loads.damage_equivalent).any():
         found["damage"] = np.nan_to_num(loads.damage_equivalent)
     return found
@@ -142,21 +181,25 @@ def _largest_scatter(symmetry: Symmetry | None, loads: LoadCases) -> Float[np.nd
     return np.where(known, np.nanmedian(np.where(known, share, 0.0), axis=0), 0.0)
 
 
-def _images(
+def draw_images(
     symmetry: Symmetry | None,
     x: Float[np.ndarray, "n feature"],
     outputs: Mapping[str, Float[np.ndarray, "n line"]],
     *,
     seed: int,
-) -> tuple[Float[np.ndarray, "row feature"], dict[str, Float[np.ndarray, "row line"]]]:
-    """All images of each case, image by image, or as many as there may be, drawn at random."""
+) -> tuple[Float[np.ndarray, "row input"], dict[str, Float[np.ndarray, "row line"]]]:
+    """All images of each case, image by image, or as many as there may be, drawn at random.
+
+    Returns their ``case_inputs``, with the number of the case, and their outputs.
+    """
+    number = np.arange(len(x), dtype=float)
     if symmetry is None:
-        return x, dict(outputs)
+        return case_inputs(x, number), dict(outputs)
     each = min(len(symmetry), max(1, MOST_IMAGES // len(x)))
     order = np.random.default_rng(seed).random((len(x), len(symmetry))).argsort(axis=1)
     cases = [np.flatnonzero(np.any(order[:, :each] == n, axis=1)) for n in range(len(symmetry))]
     turned = [
-        with_number(symmetry.turned(x[some, :-1], image), x[some, -1])
+        case_inputs(symmetry.turned(x[some], image), number[some])
         for image, some in enumerate(cases)
     ]
     return np.concatenate(turned), {
@@ -176,6 +219,8 @@ class FittedLoadGP:
     processes
         By statistic: "mean" [N], and the logarithms of "std", "maximum" (above the mean) and,
         where any line has a T-N curve, "damage", over Hs.
+    widening
+        By the same names, factor on each line's standard deviation, from cases left out [-].
     offset
         Added to a statistic before its logarithm was taken [N].
     scatter
@@ -189,6 +234,7 @@ class FittedLoadGP:
     MODEL: ClassVar[str] = "loads"
 
     processes: Mapping[str, FittedGaussianProcess]
+    widening: Mapping[str, Float[np.ndarray, " line"]]
     offset: Mapping[str, float]
     scatter: Float[np.ndarray, " line"]
     wears: Float[np.ndarray, " line"]
@@ -253,20 +299,22 @@ class FittedLoadGP:
 
         ``noise``: None for means alone.
         """
-        process, x = self.processes[name], with_number(x)
+        process, x = self.processes[name], case_inputs(x)
         if noise is None:
             mean = process.mean(x)
             return mean, np.full_like(mean, np.nan)
         found = process.predict(x)
         of_case = case_variance(process.posterior.log_parameters) * process.amplitude**2
         behind = np.maximum(found.std**2 - of_case, 0.0)
-        return found.mean, np.sqrt(behind + noise * (of_case + process.noise_at(x)))
+        std = np.sqrt(behind + noise * (of_case + process.noise_at(x)))
+        return found.mean, self.widening[name] * std
 
     def to_arrays(self) -> tuple[Settings, Arrays]:
         """Everything that ``from_arrays`` needs."""
         settings, arrays = processes_to_arrays(list(self.processes.values()))
         own = {"model": self.MODEL, "statistics": list(self.processes), "processes": settings}
         return own, arrays | {
+            "widening": np.stack(list(self.widening.values())),
             "offset": np.array(list(self.offset.values())),
             "scatter": self.scatter,
             "wears": self.wears,
@@ -286,8 +334,10 @@ class FittedLoadGP:
         processes = processes_from_arrays(settings, "processes", arrays, later=True)
         lines = len(processes[0].centre)
         offset = array(arrays, "offset", len(names) - 1).tolist()
+        widening = array(arrays, "widening", len(names), lines)
         return cls(
             processes=dict(zip(names, processes, strict=True)),
+            widening=dict(zip(names, widening, strict=True)),
             offset=dict(zip(names[1:], offset, strict=True)),
             scatter=array(arrays, "scatter", lines),
             wears=array(arrays, "wears", lines),

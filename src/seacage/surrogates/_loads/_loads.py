@@ -5,19 +5,16 @@ from dataclasses import dataclass, fields, replace
 from typing import Any, Self
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Bool, Float, Int
 
 from seacage.conventions import Rows
 from seacage.surrogates._prediction import Prediction, interval_ends
 
-EULER = 0.5772156649015329
-"""Mean of a standard Gumbel variable."""
+EULER = 0.5772156649015329  # mean of a standard Gumbel variable
+HALVINGS = 40  # of the bracket of a quantile
 
-HALVINGS = 40
-"""Of the bracket of a quantile."""
-
+# Of the quadrature over a logarithm's normal distribution
 NODES, WEIGHTS = np.polynomial.hermite_e.hermegauss(9)
-"""Of the quadrature over a logarithm's normal distribution."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -44,6 +41,12 @@ class LoadCases(Rows):
     expected: Float[np.ndarray, "case line"]
     largest: Float[np.ndarray, "case line"]
     damage_equivalent: Float[np.ndarray, "case line"]
+
+    @property
+    def above_mean(self) -> Float[np.ndarray, "case line"]:
+        """Expected largest tension of three hours above the mean [N]."""
+        largest = np.where(np.isfinite(self.expected), self.expected, self.largest)
+        return np.maximum(largest - self.mean, 0.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -94,6 +97,51 @@ class LoadPrediction(Rows):
         lower, upper = (self._quantile(end) for end in interval_ends(level))
         return lower, upper
 
+    def lines(self, some: Int[np.ndarray, " line"]) -> Self:
+        """The loads of some lines."""
+        names = ("base", "size", "log_std", "gumbel")
+        return replace(self, **{name: getattr(self, name)[:, some] for name in names})
+
+    def pooled(self, share: float) -> Self:
+        """Largest load of a time in which the cases follow one another, as one row.
+
+        The largest of all is taken to be Gumbel distributed, with the mode and the decay that the
+        product of the cases' distributions has there.
+
+        Parameters
+        ----------
+        share
+            Length of each case, over the three hours that its own largest is of [-].
+        """
+        scale = np.maximum(self.gumbel * self.size, 1e-6)
+        mode = self.base + self.size - EULER * scale - self.offset
+        crossing = np.empty((2, mode.shape[1]))
+        for row, rate in enumerate((1.0, math.exp(-1.0))):
+            least, most = (mode - 40.0 * scale).min(axis=0), (mode + 40.0 * scale).max(axis=0)
+            for _ in range(2 * HALVINGS):
+                middle = 0.5 * (least + most)
+                exceeded = share * np.exp(np.minimum((mode - middle) / scale, 600.0)).sum(axis=0)
+                most, least = (
+                    np.where(exceeded > rate, most, middle),
+                    np.where(exceeded > rate, middle, least),
+                )
+            crossing[row] = most
+        decay, base = crossing[1] - crossing[0], self.base.mean(axis=0)
+        size = np.maximum(crossing[0] + EULER * decay - base, 0.0) + self.offset
+        return replace(
+            self,
+            base=base[None],
+            size=size[None],
+            log_std=self.log_std.mean(axis=0, keepdims=True),
+            gumbel=(decay / np.maximum(size, 1e-9))[None],
+        )
+
+    def widened(self, edge: Self, rows: Bool[np.ndarray, " case"]) -> Self:
+        """The same, in some rows with the ratio to other loads added to the logarithm's spread."""
+        sizes = (np.log(np.maximum(one.size, 1e-9)) for one in (self, edge))
+        moved = np.where(rows[:, None], np.subtract(*sizes), 0.0)
+        return replace(self, log_std=np.hypot(self.log_std, moved))
+
     def _load(self, above: Float[np.ndarray, "case line"]) -> Float[np.ndarray, "case line"]:
         return self.base + np.maximum(above - self.offset, 0.0)
 
@@ -134,20 +182,39 @@ class Loads(Rows):
     damage_equivalent
         Range of cycles at 1 Hz that wear the line as much; NaN for a line without a T-N
         curve [N].
+    damage_per_year
+        Share of the life that a year of this sea uses up; NaN for a line without an intercept of
+        its curve, outside the training domain and where Tp is not known; None before lines' curves
+        are known [1/a].
     """
 
     mean: Prediction
     std: LoadPrediction
     maximum_3h: LoadPrediction
     damage_equivalent: LoadPrediction
+    damage_per_year: Float[np.ndarray, "case line"] | None = None
 
     def known(self, rows: Bool[np.ndarray, " case"]) -> Self:
         """The same with NaN in all other rows."""
         parts = {one.name: getattr(self, one.name) for one in fields(self)}
-        return replace(self, **{name: _where(rows, part) for name, part in parts.items()})
+        found = {name: part for name, part in parts.items() if isinstance(part, Rows)}
+        return replace(self, **{name: _where(rows, part) for name, part in found.items()})
+
+    def widened(self, edge: Self, rows: Bool[np.ndarray, " case"]) -> Self:
+        """The same, in some rows with how far the loads are from others added in quadrature."""
+        mean, there = self.mean, edge.mean.mean
+        moved = np.where(rows[:, None], mean.mean - there, 0.0)
+        return replace(
+            self,
+            mean=replace(mean, std=np.hypot(mean.std, moved)),
+            **{
+                name: getattr(self, name).widened(getattr(edge, name), rows)
+                for name in ("std", "maximum_3h", "damage_equivalent")
+            },
+        )
 
 
-def _where(rows: Bool[np.ndarray, " case"], part: Prediction | LoadPrediction) -> Any:
+def _where(rows: Bool[np.ndarray, " case"], part: Any) -> Any:
     arrays = {one.name: getattr(part, one.name) for one in fields(part)}
     return replace(
         part,

@@ -12,22 +12,14 @@ from typing import Self
 import numpy as np
 from jaxtyping import Float, Int
 
-from seacage.surrogates._gp import (
-    AbstractKernel,
-    Columns,
-    Evaluation,
-    FittedGaussianProcess,
-    Leaf,
-    Posterior,
-    chunks,
-)
+from seacage.surrogates import _gp
 from seacage.surrogates._multifidelity._kernel import LOCAL, bend_of
 from seacage.surrogates._multifidelity._quadrature import node_counts, rule, total_moments
 from seacage.surrogates._prediction import Prediction, check_inputs
 from seacage.surrogates._scaling import Scaling
 
+# Covariances held at once, of all levels together: 1 MiB, which stays near the processor
 CELLS = 2**17
-"""Covariances held at once, of all levels together: 1 MiB, which stays near the processor."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -46,18 +38,18 @@ class BatchedLinks:
     variance: Callable[[np.ndarray, np.ndarray], np.ndarray]
 
     @classmethod
-    def of(cls, members: Sequence[Posterior], *, most: int) -> Self:
+    def of(cls, members: Sequence[_gp.Posterior], *, most: int) -> Self:
         """Of members with one kernel; those with fewer points than the most get some at 0."""
         padded = [np.pad(one.x, ((0, most - len(one.x)), (0, 0))) for one in members]
         points = np.stack(padded)
         log_parameters = np.stack([one.log_parameters for one in members])
 
-        def covariance(leaf: AbstractKernel, own: np.ndarray) -> Leaf:
-            assert isinstance(leaf, Columns)
+        def covariance(leaf: _gp.AbstractKernel, own: np.ndarray) -> _gp.Leaf:
+            assert isinstance(leaf, _gp.Columns)
             return _nest(leaf, leaf.part.at(own, points[..., leaf.columns]))
 
-        def variance(leaf: AbstractKernel, own: np.ndarray) -> Leaf:
-            assert isinstance(leaf, Columns)
+        def variance(leaf: _gp.AbstractKernel, own: np.ndarray) -> _gp.Leaf:
+            assert isinstance(leaf, _gp.Columns)
             return _nest(leaf, partial(leaf.part.diagonal, own))
 
         kernel, width = members[0].kernel, points.shape[-1]
@@ -68,7 +60,7 @@ class BatchedLinks:
         )
 
 
-def _nest(leaf: Columns, evaluate: Callable[[np.ndarray], Evaluation]) -> Leaf:
+def _nest(leaf: _gp.Columns, evaluate: Callable[[np.ndarray], _gp.Evaluation]) -> _gp.Leaf:
     """Value of a leaf of the features, or of the level below, with an axis for the nodes."""
     if leaf.columns == LOCAL:
         return lambda local, _: np.expand_dims(evaluate(local).value, 2)
@@ -84,9 +76,9 @@ def _nest(leaf: Columns, evaluate: Callable[[np.ndarray], Evaluation]) -> Leaf:
 class BatchedLevels:
     """Processes of the same features, each with a level below of its own as the last input."""
 
-    levels: tuple[FittedGaussianProcess, ...]  # the processes, such as ``FittedNARGP.upper`` holds
+    levels: tuple[_gp.FittedGaussianProcess, ...]  # such as ``FittedNARGP.upper`` holds
     # Of all their ensembles, one after the other, and whose each is
-    members: tuple[Posterior, ...]
+    members: tuple[_gp.Posterior, ...]
     owner: Int[np.ndarray, " member"]
     # Probability of each member within its level, 0 in the others
     share: Float[np.ndarray, "level member"]
@@ -104,7 +96,7 @@ class BatchedLevels:
     bend: Float[np.ndarray, " level"]
 
     @classmethod
-    def of(cls, levels: Sequence[FittedGaussianProcess]) -> Self:
+    def of(cls, levels: Sequence[_gp.FittedGaussianProcess]) -> Self:
         """Put together; each has one output and a link kernel."""
         order = sorted(range(len(levels)), key=lambda level: levels[level].posterior.kernel.name)
         members = tuple(member for level in order for member in levels[level].members)
@@ -153,7 +145,7 @@ class BatchedLevels:
             rows, levels = (np.flatnonzero(same_rule.any(axis=axis)) for axis in (1, 0))
             every = len(levels) == len(self.levels)
             some = self if every else self.of([self.levels[level] for level in levels])
-            for piece in chunks(len(rows), CELLS // (count * some.weights.size)):
+            for piece in _gp.chunks(len(rows), CELLS // (count * some.weights.size)):
                 at = np.ix_(rows[piece], levels)
                 values = below.mean[at].T[..., None] + below.std[at].T[..., None] * node
                 at_nodes = some._moments(x[rows[piece]], values)  # noqa: SLF001

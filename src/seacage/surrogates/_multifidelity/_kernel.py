@@ -5,58 +5,38 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from seacage.surrogates._gp import (
-    VARIANCE_PRIOR,
-    AbstractKernel,
-    Columns,
-    Covariances,
-    Evaluation,
-    FittedGaussianProcess,
-    Normal,
-    Prior,
-    StationaryKernel,
-    Sum,
-    register_kernels,
-)
+from seacage.surrogates import _gp
 
 BELL = "squared-exponential"
-
 LOCAL, BELOW = slice(None, -1), slice(-1, None)  # columns of the features, and of the level below
 RANGE = 3.5  # spreads that the level below goes through, about
-
+# Mean and sd of a log variance, the outputs having unit variance. With a held bend rho's is that of
+# a slope: the same at the link's median length of 6 spreads.
 RHO_VARIANCE = (0.0, 4.0)
 RHO_SLOPE = (-3.6, 4.0)
 DELTA_VARIANCE = (-5.5, 3.0)
-"""Mean and sd of a log variance, the outputs having unit variance.
-
-With a held bend rho's is that of a slope: the same at the link's median length of 6 spreads.
-"""
-
 # Mean and sd of a log length in spreads, for one feature
 RHO_LENGTH = (math.log(8.0), 1.1)
 DELTA_LENGTH = (math.log(3.0), 1.1)
 LINK_LENGTH = (math.log(6.0), 0.9)
-
+# Mean and sd of the line's log variance about a ratio of 1, in spreads of both levels
 ALIKE_LINE = (-4.0, 2.0)
-"""Mean and sd of the line's log variance about a ratio of 1, in spreads of both levels."""
 
+# Mean and sd of delta's log length less that of the lowest level, where that is known and short. A
+# level that turns fast with a feature leaves something that does so too. One that hardly follows a
+# feature may do so wrongly: of the remainder there, a long length says nothing.
 KNOWN_LENGTH = (0.2, 0.5)
-"""Mean and sd of delta's log length less that of the lowest level, where that is known and short.
 
-A level that turns fast with a feature leaves something that does so too. One that hardly follows
-a feature may do so wrongly: of the remainder there, a long length says nothing.
-"""
-
+# A log length of the lowest level counts as known only so far below delta's general one
 STRANGE = 2.5
-"""A log length of the lowest level counts as known only so far below delta's general one."""
 
 
-FREE = StationaryKernel(BELL, variance=None, length=LINK_LENGTH)
-"""The bend of the published kernel: any smooth curve of the level below, alike everywhere."""
+# The bend of the published kernel: any smooth curve of the level below, alike everywhere
+FREE = _gp.StationaryKernel(BELL, variance=None, length=LINK_LENGTH)
 
 
 @dataclass(frozen=True, slots=True)
-class HeldBend(AbstractKernel):
+class HeldBend(_gp.AbstractKernel):
     """A smooth curve held to nothing at the mean of the level below, and an offset.
 
     l^2 (k(f, f') - k(f, 0) k(0, f')) + RANGE^2, k the squared exponential of length l: the curve
@@ -68,17 +48,17 @@ class HeldBend(AbstractKernel):
     Source: Rasmussen & Williams (2006), eq. (2.19), for a process that is known at a point.
     """
 
-    def prior(self, width: int) -> Prior:
+    def prior(self, width: int) -> _gp.Prior:
         return FREE.prior(width)
 
     def size(self, width: int) -> int:
         return FREE.size(width)
 
-    def at(self, log_parameters: np.ndarray, z: np.ndarray) -> Covariances:
+    def at(self, log_parameters: np.ndarray, z: np.ndarray) -> _gp.Covariances:
         square = np.exp(2.0 * log_parameters)
         free_at, z_to_mean = FREE.at(log_parameters, z), _to_mean(z, square)
 
-        def evaluate(x: np.ndarray) -> Evaluation:
+        def evaluate(x: np.ndarray) -> _gp.Evaluation:
             free, to_mean = free_at(x), _to_mean(x, square)
             value = to_mean[..., None] * z_to_mean[..., None, :]
             np.subtract(free.value, value, out=value)
@@ -95,39 +75,39 @@ class HeldBend(AbstractKernel):
                 of_square = 2.0 * np.sum(adjoint * (value - RANGE**2))
                 return square * free.pull(adjoint) + of_square - of_known
 
-            return Evaluation(value, slope, pull)
+            return _gp.Evaluation(value, slope, pull)
 
         return evaluate
 
-    def diagonal(self, log_parameters: np.ndarray, x: np.ndarray) -> Evaluation:
+    def diagonal(self, log_parameters: np.ndarray, x: np.ndarray) -> _gp.Evaluation:
         square = np.exp(2.0 * log_parameters)
         known = _to_mean(x, square) ** 2
-        return Evaluation(
+        return _gp.Evaluation(
             square * (1.0 - known) + RANGE**2, lambda share: 2.0 * x * (share * known)[:, None]
         )
 
 
 @dataclass(frozen=True, slots=True)
-class LinearKernel(AbstractKernel):
+class LinearKernel(_gp.AbstractKernel):
     """s (offset + x x'): a straight line through 0, or at random height."""
 
     offset: float = 0.0  # variance at 0, as a share of that of the slope
-    variance: Normal = VARIANCE_PRIOR  # prior of s
+    variance: _gp.Normal = _gp.VARIANCE_PRIOR  # prior of s
 
-    def prior(self, width: int) -> Prior:  # noqa: ARG002
-        return Prior.of(self.variance)
+    def prior(self, width: int) -> _gp.Prior:  # noqa: ARG002
+        return _gp.Prior.of(self.variance)
 
     def size(self, width: int) -> int:  # noqa: ARG002
         return 1
 
-    def at(self, log_parameters: np.ndarray, z: np.ndarray) -> Covariances:
+    def at(self, log_parameters: np.ndarray, z: np.ndarray) -> _gp.Covariances:
         variance = np.exp(log_parameters)[..., None]
         scaled_z = variance * z
 
-        def evaluate(x: np.ndarray) -> Evaluation:
+        def evaluate(x: np.ndarray) -> _gp.Evaluation:
             value = x @ np.swapaxes(scaled_z, -1, -2)
             value += self.offset * variance
-            return Evaluation(
+            return _gp.Evaluation(
                 value,
                 lambda share: np.broadcast_to(share @ scaled_z, x.shape),
                 lambda adjoint: np.sum(adjoint * value),
@@ -135,16 +115,16 @@ class LinearKernel(AbstractKernel):
 
         return evaluate
 
-    def diagonal(self, log_parameters: np.ndarray, x: np.ndarray) -> Evaluation:
+    def diagonal(self, log_parameters: np.ndarray, x: np.ndarray) -> _gp.Evaluation:
         variance = np.exp(log_parameters)
-        return Evaluation(
+        return _gp.Evaluation(
             variance * (self.offset + np.sum(x**2, axis=-1)),
             lambda share: 2.0 * variance * x * share[:, None],
         )
 
 
 @dataclass(frozen=True, slots=True)
-class LinkKernel(Sum):
+class LinkKernel(_gp.Sum):
     """Covariance of a level over (x, f), f being the level below: the last feature."""
 
     kind: str  # name under which a saved model finds it again
@@ -182,19 +162,21 @@ def autoregressive(
 
     Source: Perdikaris et al. (2017), eq. (2.14), for the kernel without ``linear``.
     """
-    rho = StationaryKernel(BELL, variance=RHO_SLOPE if linear else RHO_VARIANCE, length=RHO_LENGTH)
-    delta = StationaryKernel(
+    rho = _gp.StationaryKernel(
+        BELL, variance=RHO_SLOPE if linear else RHO_VARIANCE, length=RHO_LENGTH
+    )
+    delta = _gp.StationaryKernel(
         BELL,
         variance=DELTA_VARIANCE,
         length=DELTA_LENGTH,
         lengths=tuple(_delta_length(known, features=len(lengths)) for known in lengths),
     )
     bend = HeldBend() if linear else FREE
-    curve, rest = Columns(rho, LOCAL) * Columns(bend, BELOW), Columns(delta, LOCAL)
+    curve, rest = _gp.Columns(rho, LOCAL) * _gp.Columns(bend, BELOW), _gp.Columns(delta, LOCAL)
     if not linear:
         return LinkKernel(curve, rest, "autoregressive")
-    line = LinearKernel(offset=1.0, variance=ALIKE_LINE if alike else VARIANCE_PRIOR)
-    return LinkKernel(curve + rest, Columns(line, BELOW), "line-and-bend", ratio=float(alike))
+    line = LinearKernel(offset=1.0, variance=ALIKE_LINE if alike else _gp.VARIANCE_PRIOR)
+    return LinkKernel(curve + rest, _gp.Columns(line, BELOW), "line-and-bend", ratio=float(alike))
 
 
 def straight() -> LinkKernel:
@@ -206,11 +188,11 @@ def straight() -> LinkKernel:
     Source: Kennedy & O'Hagan (2000), Biometrika 87:1-13, eq. (1), the ratio being integrated out
     under a Gaussian prior; one level at a time as in Le Gratiet & Garnier (2014).
     """
-    line, rest = Columns(LinearKernel(), BELOW), Columns(StationaryKernel(BELL), LOCAL)
+    line, rest = _gp.Columns(LinearKernel(), BELOW), _gp.Columns(_gp.StationaryKernel(BELL), LOCAL)
     return LinkKernel(line, rest, "straight", bends=False)
 
 
-def bend_of(level: FittedGaussianProcess) -> float:
+def bend_of(level: _gp.FittedGaussianProcess) -> float:
     """Least length over which a level bends with the one below, in that one's unit."""
     kernel, width = level.posterior.kernel, len(level.inputs.centre)
     assert isinstance(kernel, LinkKernel)
@@ -225,7 +207,7 @@ def _to_mean(x: np.ndarray, square: np.ndarray) -> np.ndarray:
     return np.exp(-0.5 * x[..., 0] ** 2 / square)
 
 
-def _delta_length(known: float, *, features: int) -> Normal:
+def _delta_length(known: float, *, features: int) -> _gp.Normal:
     """Prior of delta's log length of a feature, given that of the lowest level."""
     # Distances grow with the root of the number of features.
     general = DELTA_LENGTH[0] + 0.5 * math.log(features), DELTA_LENGTH[1]
@@ -234,4 +216,4 @@ def _delta_length(known: float, *, features: int) -> Normal:
     return (expected, sd) if expected < general[0] else general
 
 
-register_kernels(autoregressive(linear=True), autoregressive(linear=False), straight())
+_gp.register_kernels(autoregressive(linear=True), autoregressive(linear=False), straight())

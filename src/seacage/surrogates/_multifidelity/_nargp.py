@@ -10,18 +10,8 @@ from jaxtyping import Float
 from numpy.typing import ArrayLike
 
 from seacage.conventions import InputError, ModelError
+from seacage.surrogates import _gp
 from seacage.surrogates._arrays import Arrays, Settings, setting
-from seacage.surrogates._gp import (
-    AbstractKernel,
-    Ensemble,
-    FittedGaussianProcess,
-    NoiseName,
-    StationaryKernel,
-    check_options,
-    fit_process,
-    processes_from_arrays,
-    processes_to_arrays,
-)
 from seacage.surrogates._multifidelity._kernel import LinkKernel, autoregressive, bend_of, straight
 from seacage.surrogates._multifidelity._quadrature import propagate_moments, propagate_slope
 from seacage.surrogates._prediction import (
@@ -33,27 +23,31 @@ from seacage.surrogates._prediction import (
 )
 from seacage.surrogates._scaling import Scaling
 
+NFeature = Float[np.ndarray, "n feature"]
+PerFeature = Float[np.ndarray, " feature"]
+PerRow = Float[np.ndarray, " row"]
+RowFeature = Float[np.ndarray, "row feature"]
+# Step of central differences, in spreads of a feature; their error falls with its square
 DIFFERENCE = 1e-4
-"""Step of central differences, in spreads of a feature; their error falls with its square."""
 
+# Two levels are taken for the same quantity where their difference has less than this share of the
+# upper one's spread
 ALIKE = 0.5
-"""Two levels are taken for the same quantity where their difference has less than this share of
-the upper one's spread."""
 
+# Inputs (n, features) and outputs (n,) of one fidelity
 Cases = tuple[Float[np.ndarray, "_ _"], Float[np.ndarray, " _"]]
-"""Inputs (n, features) and outputs (n,) of one fidelity."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AbstractMultifidelity(ABC):
     """Levels of fidelity learned one after the other, each on the one below; not yet fitted."""
 
-    noise: NoiseName = "white"
-    ensemble: Ensemble = "auto"
+    noise: _gp.NoiseName = "white"
+    ensemble: _gp.Ensemble = "auto"
     restarts: int = 3
 
     def __post_init__(self) -> None:
-        check_options(noise=self.noise, ensemble=self.ensemble, restarts=self.restarts)
+        _gp.check_options(noise=self.noise, ensemble=self.ensemble, restarts=self.restarts)
 
     @abstractmethod
     def link(self, lengths: tuple[float, ...], *, alike: bool) -> LinkKernel:
@@ -91,7 +85,7 @@ class AbstractMultifidelity(ABC):
         seeds = np.random.SeedSequence(seed).generate_state(len(cases)).tolist()
         fitted = FittedNARGP(own=(), lent=lower, nested=nested)
         for index, (x, y) in enumerate(cases):
-            kernel: AbstractKernel = StationaryKernel("squared-exponential")
+            kernel: _gp.AbstractKernel = _gp.StationaryKernel("squared-exponential")
             inputs, slope = x, np.zeros(x.shape[1])
             if fitted.levels:
                 if nested:
@@ -107,16 +101,16 @@ class AbstractMultifidelity(ABC):
 
     def _process(
         self,
-        kernel: AbstractKernel,
-        x: Float[np.ndarray, "n feature"],
+        kernel: _gp.AbstractKernel,
+        x: NFeature,
         y: Float[np.ndarray, "n 1"],
         *,
-        slope: Float[np.ndarray, " feature"],
+        slope: PerFeature,
         seed: int,
-    ) -> FittedGaussianProcess:
+    ) -> _gp.FittedGaussianProcess:
         rest = y - x @ slope[:, None]
         rest = rest - rest.mean(axis=0)
-        return fit_process(
+        return _gp.fit_process(
             kernel,
             x,
             y,
@@ -193,7 +187,7 @@ class FittedNARGP:
     MODEL: ClassVar[str] = "nargp"
 
     # The levels learned here: from level 1, or from level 2 where level 1 is lent
-    own: tuple[FittedGaussianProcess, ...]
+    own: tuple[_gp.FittedGaussianProcess, ...]
     # Level 1 where another model serves as it; it is not saved with this one
     lent: Predicts | None = None
     # Whether each level was fitted at the observations of the level below, not at its mean
@@ -210,13 +204,13 @@ class FittedNARGP:
         return self.own[0] if self.lent is None else self.lent
 
     @property
-    def upper(self) -> tuple[FittedGaussianProcess, ...]:
+    def upper(self) -> tuple[_gp.FittedGaussianProcess, ...]:
         """Level 2 and above, each a process of the inputs and of the level below."""
         return self.own[1:] if self.lent is None else self.own
 
     def predict(
         self,
-        x: Float[np.ndarray, "row feature"],
+        x: RowFeature,
         *,
         level: int | None = None,
         noisy: bool = False,
@@ -253,9 +247,7 @@ class FittedNARGP:
             variance += self.upper[level - 2].noise_at(np.column_stack([x, at.mean]))
         return Prediction(mean=mean, std=np.sqrt(variance))
 
-    def jacobian(
-        self, x: Float[np.ndarray, "row feature"], *, level: int | None = None
-    ) -> Float[np.ndarray, "row feature"]:
+    def jacobian(self, x: RowFeature, *, level: int | None = None) -> RowFeature:
         """Change of the mean per change of each feature, at each row, through all levels.
 
         A lent level 1 that is no Gaussian process is differentiated by central differences.
@@ -305,7 +297,7 @@ class FittedNARGP:
                 fitted = fitted._replaced(above, upper_process.moved(np.column_stack([x, below])))  # noqa: SLF001
         return fitted
 
-    def _replaced(self, level: int, process: FittedGaussianProcess) -> Self:
+    def _replaced(self, level: int, process: _gp.FittedGaussianProcess) -> Self:
         own = list(self.own)
         own[level - 1 - (self.lent is not None)] = process
         return replace(self, own=tuple(own))
@@ -329,12 +321,12 @@ class FittedNARGP:
     def _steps(self, level: int) -> "list[_Step]":
         return [_Step(process) for process in self.upper[: level - 1]]
 
-    def _lowest_moments(self, x: Float[np.ndarray, "row feature"]) -> Moments:
-        if isinstance(self.lower, FittedGaussianProcess):
+    def _lowest_moments(self, x: RowFeature) -> Moments:
+        if isinstance(self.lower, _gp.FittedGaussianProcess):
             return self.lower.moments(x)
         return _central_differences(self.lower, x, step=DIFFERENCE * self.upper[0].inputs.unit[:-1])
 
-    def _lowest(self, x: Float[np.ndarray, "row feature"], *, noisy: bool) -> Prediction:
+    def _lowest(self, x: RowFeature, *, noisy: bool) -> Prediction:
         if self.lent is None:
             return self.own[0].predict(x, noisy=noisy)
         if noisy:
@@ -346,7 +338,7 @@ class FittedNARGP:
 
     def to_arrays(self) -> tuple[Settings, Arrays]:
         """Everything that ``from_arrays`` needs; a lent level 1 is left out."""
-        levels, arrays = processes_to_arrays(self.own)
+        levels, arrays = _gp.processes_to_arrays(self.own)
         settings: Settings = {
             "model": self.MODEL,
             "lent": self.lent is not None,
@@ -379,7 +371,7 @@ class FittedNARGP:
         if lent != (lower is not None):
             need = "needs its level 1 given" if lent else "has its own level 1"
             raise ModelError(f"The saved NARGP {need}. Check what is passed as `lower`.")
-        own = processes_from_arrays(settings, "levels", arrays)
+        own = _gp.processes_from_arrays(settings, "levels", arrays)
         fitted = cls(own=own, lent=lower, nested=setting(settings, "nested", bool))
         _check_chain(fitted)
         return fitted
@@ -389,21 +381,17 @@ class FittedNARGP:
 class _Step:
     """An upper level, as the quadrature sees it."""
 
-    process: FittedGaussianProcess
+    process: _gp.FittedGaussianProcess
 
     @property
     def bend(self) -> float:
         return bend_of(self.process)
 
-    def moments(
-        self, x: Float[np.ndarray, "row feature"], below: Float[np.ndarray, " row"]
-    ) -> tuple[Float[np.ndarray, " row"], Float[np.ndarray, " row"]]:
+    def moments(self, x: RowFeature, below: PerRow) -> tuple[PerRow, PerRow]:
         answer = self.process.predict(np.column_stack([x, below]))
         return answer.mean, answer.std**2
 
-    def moments_with_slopes(
-        self, x: Float[np.ndarray, "row feature"], below: Float[np.ndarray, " row"]
-    ) -> Moments:
+    def moments_with_slopes(self, x: RowFeature, below: PerRow) -> Moments:
         return self.process.moments(np.column_stack([x, below]))
 
 
@@ -421,7 +409,7 @@ def _check_cases(
 
 
 def _observations_below(
-    x: Float[np.ndarray, "n feature"], below: Cases, *, level: int, what: str
+    x: NFeature, below: Cases, *, level: int, what: str
 ) -> Float[np.ndarray, " n"]:
     """What the level below observed at the same inputs."""
     found = {row.tobytes(): value for row, value in zip(*below, strict=True)}
@@ -436,7 +424,7 @@ def _observations_below(
     return np.array(values)
 
 
-def _lengths_below(fitted: FittedNARGP, x: Float[np.ndarray, "n feature"]) -> tuple[float, ...]:
+def _lengths_below(fitted: FittedNARGP, x: NFeature) -> tuple[float, ...]:
     """Log lengths of the lowest level in spreads of these inputs, where it was learned here."""
     if fitted.lent is not None:
         return ()
@@ -454,9 +442,7 @@ def _one_per_row(mean: Float[np.ndarray, "n *rest"], *, what: str) -> Float[np.n
     return mean
 
 
-def _central_differences(
-    lower: Predicts, x: Float[np.ndarray, "row feature"], *, step: Float[np.ndarray, " feature"]
-) -> Moments:
+def _central_differences(lower: Predicts, x: RowFeature, *, step: PerFeature) -> Moments:
     """Mean and variance of a lent level, and their gradients by central differences."""
     here = lower.predict(x)
     mean_slope, variance_slope = np.empty_like(x), np.empty_like(x)

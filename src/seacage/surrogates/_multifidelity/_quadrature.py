@@ -10,14 +10,15 @@ from jaxtyping import Float, Int
 from seacage.surrogates._gp import chunks
 from seacage.surrogates._prediction import Moments
 
+PerRest = Float[np.ndarray, "*rest"]
+PerRow = Float[np.ndarray, " row"]
+RestNode = Float[np.ndarray, "*rest node"]
+RowFeature = Float[np.ndarray, "row feature"]
+# Nodes enough up to a ratio of the level below's sd to the length over which this one bends. On
+# random levels the mean is then within 0.005 sd and the sd within 0.5 % of a dense rule.
 RULES = ((0.1, 3), (0.25, 5), (0.45, 8), (0.8, 13), (1.8, 24), (3.2, 40), (np.inf, 64))
-"""Nodes enough up to a ratio of the level below's sd to the length over which this one bends.
-
-On random levels the mean is then within 0.005 sd and the sd within 0.5 % of a dense rule.
-"""
-
+# Above it even spacing needs fewer nodes: Gauss-Hermite puts many where there is no weight
 GAUSS_HERMITE_UP_TO = 13
-"""Above it even spacing needs fewer nodes: Gauss-Hermite puts many where there is no weight."""
 
 CHUNK = 2**18  # nodes held at once by each level, whatever the number of rows
 REACH = 5.0  # of the evenly spaced nodes, in sd either way
@@ -32,9 +33,7 @@ class Level(Protocol):
         """Length over which its answer bends with the value below, in that value's unit."""
         ...
 
-    def moments(
-        self, x: Float[np.ndarray, "row feature"], below: Float[np.ndarray, " row"]
-    ) -> tuple[Float[np.ndarray, " row"], Float[np.ndarray, " row"]]:
+    def moments(self, x: RowFeature, below: PerRow) -> tuple[PerRow, PerRow]:
         """Mean and variance where the value below is known."""
         ...
 
@@ -43,20 +42,18 @@ class Level(Protocol):
 class SlopedLevel(Level, Protocol):
     """One that knows its gradients too."""
 
-    def moments_with_slopes(
-        self, x: Float[np.ndarray, "row feature"], below: Float[np.ndarray, " row"]
-    ) -> Moments:
+    def moments_with_slopes(self, x: RowFeature, below: PerRow) -> Moments:
         """The same with their gradients in the features and, last, in the value below."""
         ...
 
 
 def propagate_moments(
     levels: Sequence[Level],  # from the lowest to the last
-    x: Float[np.ndarray, "row feature"],
+    x: RowFeature,
     # Of the value below the first level
-    mean: Float[np.ndarray, " row"],
-    variance: Float[np.ndarray, " row"],
-) -> tuple[Float[np.ndarray, " row"], Float[np.ndarray, " row"]]:
+    mean: PerRow,
+    variance: PerRow,
+) -> tuple[PerRow, PerRow]:
     """Mean and variance of the last level, the value below the first being Gaussian.
 
     Nested quadrature, one rule inside the other, so that no level's answer is taken for
@@ -82,9 +79,9 @@ def propagate_moments(
 def propagate_slope(
     # As there
     levels: Sequence[SlopedLevel],
-    x: Float[np.ndarray, "row feature"],
+    x: RowFeature,
     below: Moments,  # of the value below the first level, with their gradients
-) -> Float[np.ndarray, "row feature"]:
+) -> RowFeature:
     """Gradient in each row of the mean that ``carried`` gives there."""
     slope = np.empty_like(x)
     for count, rows in _by_rule(levels, x, below.mean, below.variance):
@@ -98,10 +95,7 @@ def propagate_slope(
 
 
 def _by_rule(
-    levels: Sequence[Level],
-    x: Float[np.ndarray, "row feature"],
-    mean: Float[np.ndarray, " row"],
-    variance: Float[np.ndarray, " row"],
+    levels: Sequence[Level], x: RowFeature, mean: PerRow, variance: PerRow
 ) -> Iterator[tuple[int, Int[np.ndarray, " chosen"]]]:
     """How many nodes, and for which rows, a piece at a time."""
     counts = node_counts(_largest_ratio(levels, x, mean, variance))
@@ -112,11 +106,8 @@ def _by_rule(
 
 
 def _largest_ratio(
-    levels: Sequence[Level],
-    x: Float[np.ndarray, "row feature"],
-    mean: Float[np.ndarray, " row"],
-    variance: Float[np.ndarray, " row"],
-) -> Float[np.ndarray, " row"]:
+    levels: Sequence[Level], x: RowFeature, mean: PerRow, variance: PerRow
+) -> PerRow:
     """Largest sd per bend on the way up, each level's answer taken for Gaussian.
 
     A straight level hands its uncertainty on to a bent one, so the first rule has to be fine
@@ -136,10 +127,8 @@ def node_counts(ratio: Float[np.ndarray, "row *rest"]) -> Int[np.ndarray, "row *
 
 
 def total_moments(
-    mean: Float[np.ndarray, "*rest node"],
-    variance: Float[np.ndarray, "*rest node"],
-    weight: Float[np.ndarray, " node"],
-) -> tuple[Float[np.ndarray, "*rest"], Float[np.ndarray, "*rest"]]:
+    mean: RestNode, variance: RestNode, weight: Float[np.ndarray, " node"]
+) -> tuple[PerRest, PerRest]:
     """Mean and variance of all nodes together."""
     total = mean @ weight
     return total, (variance + (mean - total[..., None]) ** 2) @ weight

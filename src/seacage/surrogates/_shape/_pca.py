@@ -8,17 +8,8 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.conventions import InputError
+from seacage.surrogates import _gp
 from seacage.surrogates._arrays import Arrays, Settings, array, setting
-from seacage.surrogates._gp import (
-    FittedGaussianProcess,
-    KernelName,
-    StationaryKernel,
-    check_options,
-    fit_process,
-    processes_from_arrays,
-    processes_to_arrays,
-    select_likelihood_outputs,
-)
 from seacage.surrogates._prediction import Prediction, check_inputs, check_outputs, check_shapes
 
 PAPER_VARIANCE = 0.93  # share of the variance that the paper keeps, in three modes
@@ -188,11 +179,11 @@ class PcaGP:
     modes: int | None = None
     variance: float | None = None
     centred: bool = True
-    kernel: KernelName = "squared-exponential"
+    kernel: _gp.KernelName = "squared-exponential"
     restarts: int = 3
 
     def __post_init__(self) -> None:
-        check_options(kernel=self.kernel, restarts=self.restarts)
+        _gp.check_options(kernel=self.kernel, restarts=self.restarts)
         if self.modes is not None and self.variance is not None:
             raise InputError("PcaGP: both modes and variance are given. Choose one of them.")
         if self.modes is not None and self.modes < 1:
@@ -242,11 +233,11 @@ class PcaGP:
         count = self._count(share)
         modes = modes.truncated(shape, count)
         scores = tuple(
-            fit_process(
-                StationaryKernel(self.kernel),
+            _gp.fit_process(
+                _gp.StationaryKernel(self.kernel),
                 x,
                 score[:, None],
-                likelihood_outputs=select_likelihood_outputs(score[:, None]),
+                likelihood_outputs=_gp.select_likelihood_outputs(score[:, None]),
                 restarts=self.restarts,
                 seed=seed + mode,
             )
@@ -287,7 +278,7 @@ class FittedPcaGP:
     MODEL: ClassVar[str] = "pca-gp"
 
     basis: Modes  # the modes kept
-    scores: tuple[FittedGaussianProcess, ...]  # one process per mode
+    scores: tuple[_gp.FittedGaussianProcess, ...]  # one process per mode
     explained_variance: float  # share of the training variance that the modes hold
 
     @property
@@ -324,7 +315,7 @@ class FittedPcaGP:
 
     def to_arrays(self) -> tuple[Settings, Arrays]:
         """Everything that ``from_arrays`` needs, as plain values and float64 arrays."""
-        scores, arrays = processes_to_arrays(self.scores)
+        scores, arrays = _gp.processes_to_arrays(self.scores)
         settings: Settings = {
             "model": self.MODEL,
             "explained_variance": self.explained_variance,
@@ -335,7 +326,7 @@ class FittedPcaGP:
     @classmethod
     def from_arrays(cls, settings: Mapping[str, object], arrays: Mapping[str, np.ndarray]) -> Self:
         """The model that ``to_arrays`` described; ``ModelError`` where it is damaged."""
-        scores = processes_from_arrays(settings, "scores", arrays)
+        scores = _gp.processes_from_arrays(settings, "scores", arrays)
         return cls(
             basis=modes_from_arrays(arrays, modes=len(scores)),
             scores=scores,
@@ -353,10 +344,7 @@ def modes_to_arrays(modes: Modes) -> Arrays:
 
 
 def modes_from_arrays(arrays: Mapping[str, np.ndarray], *, modes: int) -> Modes:
-    """The other way.
-
-    Raises ModelError: an array is missing, of another shape, or not finite.
-    """
+    """The other way. Raises ModelError: an array is missing, of another shape, or not finite."""
     direction = array(arrays, "direction", modes, None)
     coordinates = direction.shape[1]
     return Modes(

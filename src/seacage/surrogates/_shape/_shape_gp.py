@@ -8,30 +8,25 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.conventions import InputError, ModelError
+from seacage.surrogates import _gp
 from seacage.surrogates._arrays import Arrays, Settings, array, setting
 from seacage.surrogates._features import check_turnable
-from seacage.surrogates._gp import (
-    FittedGaussianProcess,
-    KernelName,
-    StationaryKernel,
-    check_options,
-    condense,
-    fit_process,
-    processes_from_arrays,
-    processes_to_arrays,
-)
 from seacage.surrogates._prediction import Prediction, check_inputs, check_shapes
 from seacage.surrogates._shape._pca import Modes, modes_from_arrays, modes_to_arrays, modes_within
 from seacage.surrogates._shape._symmetry import Symmetry
 from seacage.surrogates._shape._symmetry_check import check_symmetry
 
+NFeature = Float[np.ndarray, "n feature"]
+NNode3 = Float[np.ndarray, "n node 3"]
+Row4Node = Float[np.ndarray, "row 4 node"]
+RowFeature = Float[np.ndarray, "row feature"]
+RowMode = Float[np.ndarray, "row mode"]
+RowNode3 = Float[np.ndarray, "row node 3"]
+# Share of the cases that an interval of so many standard deviations is to cover
 LEVEL, DEVIATIONS = 0.95, 1.959964
-"""Share of the cases that an interval of so many standard deviations is to cover."""
 
 Nodes = slice | Int[np.ndarray, " node"]  # some nodes: a slice, or their numbers
-
 EVERY = slice(None)
-
 BLOCK = 4096  # rows of one coordinate that are answered at a time
 
 
@@ -58,14 +53,14 @@ class ShapeGP:
         Largest that ``check_symmetry`` may find in the training [m].
     """
 
-    kernel: KernelName = "matern-5/2"
+    kernel: _gp.KernelName = "matern-5/2"
     tolerance: float = 1e-3
     restarts: int = 3
     symmetry: Symmetry | None = None
     asymmetry: float = 0.05
 
     def __post_init__(self) -> None:
-        check_options(kernel=self.kernel, restarts=self.restarts)
+        _gp.check_options(kernel=self.kernel, restarts=self.restarts)
         for name in ("tolerance", "asymmetry"):
             if not getattr(self, name) > 0.0:
                 raise InputError(
@@ -73,13 +68,7 @@ class ShapeGP:
                     "Give the distance that a node may be off by, e.g. 0.001 m."
                 )
 
-    def fit(
-        self,
-        x: Float[np.ndarray, "n feature"],
-        node_position: Float[np.ndarray, "n node 3"],
-        *,
-        seed: int = 0,
-    ) -> "FittedShapeGP":
+    def fit(self, x: NFeature, node_position: NNode3, *, seed: int = 0) -> "FittedShapeGP":
         """Learn from features and shapes.
 
         Parameters
@@ -99,11 +88,11 @@ class ShapeGP:
         displacement = (shape - centre).reshape(len(x), -1)
         modes = modes_within(displacement, self.tolerance)
         scores = modes.encode(displacement)
-        process = fit_process(
-            StationaryKernel(self.kernel),
+        process = _gp.fit_process(
+            _gp.StationaryKernel(self.kernel),
             x,
             scores,
-            likelihood_outputs=condense(scores),
+            likelihood_outputs=_gp.condense(scores),
             restarts=self.restarts,
             seed=seed,
         )
@@ -131,7 +120,7 @@ class FittedShapeGP:
     MODEL: ClassVar[str] = "shape-gp"
 
     basis: Modes  # the modes kept, of displacements from the mean shape
-    scores: FittedGaussianProcess  # one process with an output per mode
+    scores: _gp.FittedGaussianProcess  # one process with an output per mode
     centre: Float[np.ndarray, "node 3"]  # the mean shape [m]
     # Root mean square over the training cases of what the modes leave out [m]
     left_out: Float[np.ndarray, "node 3"]
@@ -163,7 +152,7 @@ class FittedShapeGP:
         """Largest root mean square distance that compression moves a node by [m]."""
         return float(np.sqrt(np.max(np.sum(self.left_out**2, axis=1))))
 
-    def predict(self, x: Float[np.ndarray, "row feature"], *, noisy: bool = False) -> Prediction:
+    def predict(self, x: RowFeature, *, noisy: bool = False) -> Prediction:
         """Shape at each row of features [m].
 
         Parameters
@@ -176,9 +165,7 @@ class FittedShapeGP:
         """
         return self.predict_nodes(x, EVERY, noisy=noisy)
 
-    def predict_nodes(
-        self, x: Float[np.ndarray, "row feature"], nodes: Nodes, *, noisy: bool = False
-    ) -> Prediction:
+    def predict_nodes(self, x: RowFeature, nodes: Nodes, *, noisy: bool = False) -> Prediction:
         """These nodes alone at each row of features [m].
 
         Parameters
@@ -201,9 +188,7 @@ class FittedShapeGP:
                 std[rows] += shares[rows, None, None] * own.std
         return Prediction(mean=mean, std=std)
 
-    def mean_of_nodes(
-        self, x: Float[np.ndarray, "row feature"], nodes: Nodes
-    ) -> Float[np.ndarray, "row node 3"]:
+    def mean_of_nodes(self, x: RowFeature, nodes: Nodes) -> RowNode3:
         """The mean of ``predict_nodes`` alone [m], at a fraction of its cost without symmetry."""
         if self.symmetry is not None:
             return self.predict_nodes(x, nodes).mean
@@ -228,17 +213,13 @@ class FittedShapeGP:
             )
         return FittedCoordinate(shape=self, node=node, axis=axis)
 
-    def render(
-        self, score: Float[np.ndarray, "row mode"], nodes: Nodes = EVERY
-    ) -> Float[np.ndarray, "row node 3"]:
+    def render(self, score: RowMode, nodes: Nodes = EVERY) -> RowNode3:
         """Shapes of scores [m], at home in the sector of the symmetry, if there is one."""
         direction = self.basis.direction.reshape(self.modes, -1, 3)[:, nodes]
         centre = self.basis.centre.reshape(-1, 3)[nodes]
         return self.centre[nodes] + (centre + np.tensordot(score, direction, axes=1))
 
-    def variance(
-        self, score_std: Float[np.ndarray, "row mode"], nodes: Nodes
-    ) -> Float[np.ndarray, "row 4 node"]:
+    def variance(self, score_std: RowMode, nodes: Nodes) -> Row4Node:
         """Of x, y and z of each node, and the covariance of x with y, at home [m2]."""
         moments = self._moments(score_std**2, nodes)
         scale = self.scale[nodes].T
@@ -247,7 +228,7 @@ class FittedShapeGP:
 
     def to_arrays(self) -> tuple[Settings, Arrays]:
         """Everything that ``from_arrays`` needs, as plain values and float64 arrays."""
-        scores, arrays = processes_to_arrays([self.scores])
+        scores, arrays = _gp.processes_to_arrays([self.scores])
         settings: Settings = {
             "model": self.MODEL,
             "frame": "earth",
@@ -262,7 +243,7 @@ class FittedShapeGP:
     @classmethod
     def from_arrays(cls, settings: Mapping[str, object], arrays: Mapping[str, np.ndarray]) -> Self:
         """The model that ``to_arrays`` described; ``ModelError`` where it is damaged."""
-        processes = processes_from_arrays(settings, "scores", arrays)
+        processes = _gp.processes_from_arrays(settings, "scores", arrays)
         if len(processes) != 1:
             raise ModelError(f"The saved ShapeGP holds {len(processes)} processes; expected 1.")
         scores = processes[0]
@@ -291,13 +272,7 @@ class FittedShapeGP:
         )
 
     def _by_image(
-        self,
-        symmetry: Symmetry,
-        image: int,
-        x: Float[np.ndarray, "row feature"],
-        nodes: Nodes,
-        *,
-        noisy: bool,
+        self, symmetry: Symmetry, image: int, x: RowFeature, nodes: Nodes, *, noisy: bool
     ) -> Prediction:
         """Answer to an image of each sea state, moved back."""
         undo = symmetry.back(image)
@@ -312,23 +287,19 @@ class FittedShapeGP:
         mean[..., :2] = symmetry.centre + (mean[..., :2] - symmetry.centre) @ turn.T
         return Prediction(mean=mean, std=np.sqrt(_turn_variance(moments, turn)))
 
-    def _check(self, x: Float[np.ndarray, "row feature"], *, what: str) -> Float[np.ndarray, "_ _"]:
+    def _check(self, x: RowFeature, *, what: str) -> Float[np.ndarray, "_ _"]:
         x = check_inputs(x, what=what, width=self.features)
         if self.symmetry is not None:
             check_turnable(x, what=what)
         return x
 
-    def _in_sector(
-        self, x: Float[np.ndarray, "row feature"], nodes: Nodes, *, noisy: bool
-    ) -> tuple[Float[np.ndarray, "row node 3"], Float[np.ndarray, "row 4 node"]]:
+    def _in_sector(self, x: RowFeature, nodes: Nodes, *, noisy: bool) -> tuple[RowNode3, Row4Node]:
         score = self.scores.predict(x, noisy=noisy)
         rows = (len(x), self.modes)
         mean = self.render(score.mean.reshape(rows), nodes)
         return mean, self.variance(score.std.reshape(rows), nodes)
 
-    def _moments(
-        self, power: Float[np.ndarray, "row mode"], nodes: Nodes
-    ) -> Float[np.ndarray, "row product node"]:
+    def _moments(self, power: RowMode, nodes: Nodes) -> Float[np.ndarray, "row product node"]:
         """Second moments of the nodes from those of the scores."""
         prior = self.scores.amplitude**2
         share = power.sum(axis=1) / max(float(prior.sum()), np.finfo(float).tiny)
@@ -347,7 +318,7 @@ class FittedCoordinate:
     node: int
     axis: int
 
-    def predict(self, x: Float[np.ndarray, "row feature"], *, noisy: bool = False) -> Prediction:
+    def predict(self, x: RowFeature, *, noisy: bool = False) -> Prediction:
         """The coordinate at each row of features, as the whole shape would answer [m]."""
         x = check_inputs(x, what="predict", width=self.shape.features)
         nodes = np.array([self.node])
@@ -361,11 +332,7 @@ class FittedCoordinate:
         )
 
 
-def _fold_cases(
-    symmetry: Symmetry,
-    x: Float[np.ndarray, "n feature"],
-    node_position: Float[np.ndarray, "n node 3"],
-) -> tuple[Float[np.ndarray, "n feature"], Float[np.ndarray, "n node 3"]]:
+def _fold_cases(symmetry: Symmetry, x: NFeature, node_position: NNode3) -> tuple[NFeature, NNode3]:
     """Each case as its image in the sector."""
     home_x, home_position = np.empty_like(x), np.empty_like(node_position)
     image_of = symmetry.home(x)
@@ -376,9 +343,7 @@ def _fold_cases(
     return home_x, home_position
 
 
-def _turn_variance(
-    moments: Float[np.ndarray, "row 4 node"], turn: Float[np.ndarray, "2 2"]
-) -> Float[np.ndarray, "row node 3"]:
+def _turn_variance(moments: Row4Node, turn: Float[np.ndarray, "2 2"]) -> RowNode3:
     """Variances of x, y and z after a turn."""
     x, y, z, both = np.moveaxis(moments, 1, 0)
     horizontal = [a * a * x + 2.0 * a * b * both + b * b * y for a, b in turn]
@@ -387,7 +352,7 @@ def _turn_variance(
 
 
 def _interval_scale(
-    fitted: FittedShapeGP, x: Float[np.ndarray, "n feature"], shape: Float[np.ndarray, "n node 3"]
+    fitted: FittedShapeGP, x: NFeature, shape: NNode3
 ) -> Float[np.ndarray, "node 3"]:
     """The scale that makes intervals of each coordinate cover what they should.
 

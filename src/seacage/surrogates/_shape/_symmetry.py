@@ -12,8 +12,10 @@ from seacage.conventions import InputError, ModelError
 from seacage.surrogates._arrays import Arrays, array
 from seacage.surrogates._features import vector_columns
 
+Node3 = Float[np.ndarray, "node 3"]
+RowNode3 = Float[np.ndarray, "row node 3"]
+# Half the width over which neighbouring sectors pass into one another [rad]
 BAND = math.radians(3.0)
-"""Half the width over which neighbouring sectors pass into one another [rad]."""
 
 SLACK_SPEED = 0.02  # below this the current's direction fades, and all images have a share [m/s]
 COINCIDE = 0.01  # how far a node's image may lie from a node [m]
@@ -39,9 +41,7 @@ class Symmetry:
     half: float
 
     @classmethod
-    def of(
-        cls, rest_position: Float[np.ndarray, "node 3"], *, fold: int, mirror: float | None = None
-    ) -> Self:
+    def of(cls, rest_position: Node3, *, fold: int, mirror: float | None = None) -> Self:
         """Find which node falls on which, or refuse where one falls on none.
 
         Parameters
@@ -81,9 +81,7 @@ class Symmetry:
             turned[:, at] = x[:, at] @ self.turn[image].T
         return turned
 
-    def moved(
-        self, node_position: Float[np.ndarray, "row node 3"], image: int
-    ) -> Float[np.ndarray, "row node 3"]:
+    def moved(self, node_position: RowNode3, image: int) -> RowNode3:
         """An image of each shape [m]."""
         moved = node_position[:, self.source[image]]
         moved[..., :2] = self.centre + (moved[..., :2] - self.centre) @ self.turn[image].T
@@ -159,9 +157,7 @@ def _operations(fold: int, plane: float | None) -> Float[np.ndarray, "image 2 2"
 
 
 def _match(
-    position: Float[np.ndarray, "node 3"],
-    centre: Float[np.ndarray, "2"],
-    turn: Float[np.ndarray, "2 2"],
+    position: Node3, centre: Float[np.ndarray, "2"], turn: Float[np.ndarray, "2 2"]
 ) -> Int[np.ndarray, " node"]:
     """Which node falls on each node."""
     from scipy.spatial import KDTree

@@ -10,8 +10,8 @@ from seacage.surrogates._prediction import check_shapes
 from seacage.surrogates._shape._pca import modes_within
 from seacage.surrogates._shape._symmetry import Symmetry
 
+# Cases that the trial model learns from, and cases that it is asked about, at most
 TEACH, JUDGE = 400, 100
-"""Cases that the trial model learns from, and cases that it is asked about, at most."""
 
 COMPRESSION = 0.01  # of the trial model [m]
 FEW = 20  # least number of cases that can show an asymmetry

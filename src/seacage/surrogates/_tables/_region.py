@@ -50,10 +50,7 @@ class AbstractRegion(ABC):
     def check_places(
         self, x: Float[np.ndarray, "row feature"], *, what: str
     ) -> Float[np.ndarray, "row axis"]:
-        """Place of each input, all of them inside.
-
-        Raises InputError: an input lies outside.
-        """
+        """Place of each input, all of them inside. Raises InputError: an input lies outside."""
         place = self.places(x)
         outside = np.flatnonzero(~_inside(place))
         if len(outside):

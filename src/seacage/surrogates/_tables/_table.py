@@ -19,13 +19,12 @@ START = 12  # nodes along each axis of the first grid
 CHECKS = 2000  # random inputs at which a grid is held against the model, each round anew
 PROBES = 250  # random inputs on the grid's lines along one axis, to see which axis is too coarse
 GROWTH = (1.25, 3.0)  # least and most that an axis grows from one round to the next
-
+# Share of the answers' size that a standard deviation has to reach to be worth following
 ROUNDING = 1e-9
-"""Share of the answers' size that a standard deviation has to reach to be worth following."""
 
 
+# Answers of a model without and with noise; twice the same one where noise is not asked for
 Query = Callable[[Float[np.ndarray, "row feature"]], tuple[Prediction, Prediction]]
-"""Answers of a model without and with noise; twice the same one where noise is not asked for."""
 
 
 @runtime_checkable

@@ -21,6 +21,7 @@ class Action(StrEnum):
     UNSHELVED = "unshelved"
     OUT_OF_SERVICE = "out of service"
     IN_SERVICE = "in service"
+    RESET = "reset"  # a line's count of damage
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -10,7 +10,6 @@ from seacage.conventions import InputError
 from seacage.twin._alarms._alarm import Action, AlarmEvent
 
 CHATTERING = 3  # an alarm that is raised so often within an hour chatters
-
 _HOUR = timedelta(hours=1)
 _DAY = timedelta(days=1)
 

@@ -7,8 +7,8 @@ from typing import Any
 from seacage.conventions import InputError
 from seacage.twin._alarms._alarm import Action, Alarm, Changed, Limit
 
+# Longest time to shelve an alarm for [s]; take it out of service for longer
 LONGEST_SHELF_S = 7 * 86400.0
-"""Longest time to shelve an alarm for [s]; take it out of service for longer."""
 
 
 def evaluate(alarm: Alarm, value: float | None, limit: Limit, now: datetime) -> Changed:

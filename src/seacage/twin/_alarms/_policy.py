@@ -1,59 +1,28 @@
-"""Limits of a cage's alarms: the defaults, and those of the settings."""
+"""Limits of a cage's alarms: the defaults of ``limits.toml``, and those of the settings."""
 
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
+from functools import cache
+from importlib.resources import files
 from typing import Any, Self, cast
 
-from seacage.cage import Cage
-from seacage.conventions import InputError
+from seacage.cage import Cage, mooring_lines
+from seacage.conventions import InputError, parse_toml
 from seacage.twin._alarms._alarm import Limit
 from seacage.twin._settings import StreamTimeouts
 
-DEFAULT_LIMITS: Mapping[str, Limit] = {
-    # Of the capacity, which the material factor has divided already: reached, the line has used
-    # up what its designer allowed. A fifth below it there is time to act.
-    "load": Limit(
-        raise_at=0.8,
-        clear_at=0.7,
-        on_delay_s=60.0,
-        off_delay_s=300.0,
-        repeat_after_s=1800.0,
-        severity=700,
-    ),
-    # Of the volume in still water. It comes and goes with every tide: a net like cage ``ace``'s
-    # loses half of it in 1 m/s, so only more than that counts, and only what lasts.
-    "volume": Limit(
-        raise_at=0.6,
-        clear_at=0.5,
-        on_delay_s=1200.0,
-        off_delay_s=1200.0,
-        repeat_after_s=7200.0,
-        severity=600,
-    ),
-    # Age of a stream's last sample [s]; the limits are set by the twin's timeouts.
-    "silent": Limit(raise_at=900.0, clear_at=600.0, on_delay_s=60.0, severity=500),
-    # One bad sample of a buoy that sends every quarter of an hour is not worth a call.
-    "input": Limit(
-        raise_at=1.0, clear_at=0.0, on_delay_s=1800.0, repeat_after_s=7200.0, severity=600
-    ),
-    "domain": Limit(raise_at=1.0, clear_at=0.0, on_delay_s=600.0, off_delay_s=1800.0, severity=400),
-    # Over the fault detector's own limit; the detector averages, so there is no delay.
-    "irregular": Limit(raise_at=1.0, clear_at=0.5, severity=500),
-    # No bridle mends itself: it clears after a whole tide.
-    "bridle": Limit(
-        raise_at=1.0, clear_at=0.5, off_delay_s=43200.0, repeat_after_s=600.0, severity=900
-    ),
-    "net": Limit(raise_at=1.0, clear_at=0.5, repeat_after_s=600.0, severity=900),
-    "history": Limit(raise_at=1.0, clear_at=0.0, repeat_after_s=3600.0, severity=800),
-    "clock": Limit(raise_at=1.0, clear_at=0.0, repeat_after_s=7200.0, severity=600),
-}
-"""Default limit of each kind of alarm."""
-
 FAULT = "history"  # kind whose limit serves for faults of the service that have none of their own
-
 _WHOLE = ("severity",)
 _KEYS = tuple(one.name for one in fields(Limit))
+
+
+@cache
+def default_limits() -> Mapping[str, Limit]:
+    """Of each kind of alarm."""
+    file = files("seacage.twin._alarms") / "limits.toml"
+    tables = parse_toml(file.read_text(encoding="utf-8"), file.name)
+    return {kind: Limit(**table) for kind, table in tables.items()}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -97,7 +66,7 @@ class AlarmPolicy:
             Timeouts of the streams; None for the defaults.
         """
         timeouts = StreamTimeouts() if timeouts is None else timeouts
-        limits = dict(DEFAULT_LIMITS)
+        limits = dict(default_limits())
         limits["silent"] = _silence(limits["silent"], timeouts.sensor_silent_after_s)
         limits[f"silent.{buoy}"] = _silence(
             replace(limits["silent"], severity=600), timeouts.stale_after_s
@@ -140,8 +109,10 @@ class AlarmPolicy:
 
 def alarm_names(cage: Cage, buoy: str) -> frozenset[str]:
     """Return the names of all alarms of a cage."""
+    lines = mooring_lines(cage, anchored=True)
+    strong = zip(lines.names, lines.capacity.tolist(), strict=True)
     by_kind = {
-        "load": cage.bridle_names,
+        "load": tuple(name for name, capacity in strong if math.isfinite(capacity)),
         "bridle": cage.bridle_names,
         "volume": ("net",),
         "net": ("net",),
@@ -186,9 +157,10 @@ def _with_table(limit: Limit, entry: object, name: str) -> Limit:
 
 def _check_name(name: str, names: frozenset[str]) -> None:
     kind, dot, _ = name.partition(".")
-    if kind not in DEFAULT_LIMITS:
+    kinds = default_limits()
+    if kind not in kinds:
         raise InputError(
-            f"alarms: there is no kind of alarm {kind!r}. There are: {', '.join(DEFAULT_LIMITS)}."
+            f"alarms: there is no kind of alarm {kind!r}. There are: {', '.join(kinds)}."
         )
     if dot and names and name not in names:
         others = sorted(one for one in names if one.startswith(f"{kind}."))

@@ -27,8 +27,8 @@ class Evidence:
     __pydantic_config__ = json_keys(cusum="evidence")
 
 
+# By the hypothesis' name; those with a sum of zero are left out
 EvidenceByName = Mapping[str, Evidence]
-"""By the hypothesis' name; those with a sum of zero are left out."""
 
 
 def update_evidence(

@@ -6,7 +6,7 @@ from datetime import datetime
 from typing import Self
 
 from seacage.cage import Cage
-from seacage.twin._alarms import AlarmInput
+from seacage.twin._alarms._alarm import AlarmInput
 from seacage.twin._events import Answered
 from seacage.twin._faults._baseline import Baseline
 from seacage.twin._faults._cusum import Evidence, EvidenceByName, shifts_of_active, update_evidence

@@ -11,11 +11,12 @@ from seacage.conventions import InputError, compass
 from seacage.twin._rov._clearance import Clearance
 from seacage.twin._rov._predicted_net import PredictedNet
 
+PerWaypoint = Float[np.ndarray, " waypoint"]
+RingSpoke3 = Float[np.ndarray, "ring spoke 3"]
+
 Side = Literal["inside", "outside"]
 Pattern = Literal["rows", "spiral"]
-
 MOST_WAYPOINTS = 10_000  # waypoints at most
-
 _ROUNDS = 8  # of moving waypoints to their stand-off; in a corner of the net each helps a little
 _TOO_NEAR = 0.9  # least distance over the stand-off; a waypoint with less is left out
 _STRIDES = 3.0  # largest distance of two neighbours of a part, in steps or rows
@@ -41,12 +42,12 @@ class InspectionPath:
         return len(self.position)
 
     @property
-    def heading(self) -> Float[np.ndarray, " waypoint"]:
+    def heading(self) -> PerWaypoint:
         """Heading of the camera, clockwise from true north [deg]."""
         return compass(self.facing[:, :2])
 
     @property
-    def pitch(self) -> Float[np.ndarray, " waypoint"]:
+    def pitch(self) -> PerWaypoint:
         """Pitch of the camera, upwards [deg]."""
         return np.rad2deg(np.arcsin(np.clip(self.facing[:, 2], -1.0, 1.0)))
 
@@ -126,14 +127,8 @@ def _check(**sizes: float) -> None:
 
 
 def _course(
-    rings: Float[np.ndarray, "ring spoke 3"],
-    pattern: Pattern,
-    row_spacing: float,
-    step: float,
-    top: float,
-) -> tuple[
-    Float[np.ndarray, " waypoint"], Float[np.ndarray, " waypoint"], Int[np.ndarray, " waypoint"]
-]:
+    rings: RingSpoke3, pattern: Pattern, row_spacing: float, step: float, top: float
+) -> tuple[PerWaypoint, PerWaypoint, Int[np.ndarray, " waypoint"]]:
     """Position of each waypoint on the net, in rings down and spokes round, and its row."""
     middle = rings.mean(axis=1)
     down = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(rings, axis=0), axis=2).mean(axis=1)))
@@ -159,7 +154,7 @@ def _course(
     return turn, rings.shape[1] * share, row
 
 
-def _rings(net: PredictedNet) -> Float[np.ndarray, "ring spoke 3"]:
+def _rings(net: PredictedNet) -> RingSpoke3:
     """Every ring's expected nodes, and the tip as a ring of its own."""
     cage, shape = net.cage, net.expected_position
     rings = shape[: cage.bottom_node].reshape(cage.rings, cage.spokes, 3)
@@ -168,9 +163,7 @@ def _rings(net: PredictedNet) -> Float[np.ndarray, "ring spoke 3"]:
 
 
 def _on_net(
-    rings: Float[np.ndarray, "ring spoke 3"],
-    turn: Float[np.ndarray, " waypoint"],
-    spoke: Float[np.ndarray, " waypoint"],
+    rings: RingSpoke3, turn: PerWaypoint, spoke: PerWaypoint
 ) -> Float[np.ndarray, "waypoint 3"]:
     """Points of the net between its nodes, bilinearly."""
     last_ring, spokes = len(rings) - 1, rings.shape[1]

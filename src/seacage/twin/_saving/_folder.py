@@ -23,7 +23,6 @@ SETTINGS = "model.json"
 ARRAYS = "arrays.safetensors"
 MANIFEST = "manifest.json"
 SIGNATURE = "manifest.hmac"
-
 _MOST_BYTES = {SETTINGS: TEXT_BYTES, ARRAYS: TABLE_BYTES, MANIFEST: 4096, SIGNATURE: 4096}
 _LEAST, _MOST = 16, 4096  # bytes of a key
 

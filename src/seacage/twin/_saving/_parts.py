@@ -17,33 +17,52 @@ from seacage.surrogates import (
     FittedLoadGP,
     FittedNARGP,
     FittedShapeGP,
+    LoadChange,
     Predicts,
+    Symmetry,
     decode,
     encode,
 )
 from seacage.twin._correction import Correction, Spread
 from seacage.twin._discrepancy import Discrepancy
 from seacage.twin._json_keys import json_keys
-from seacage.twin._line_loads import LineLoads
+from seacage.twin._lines._line_correction import LineCorrection
+from seacage.twin._lines._line_loads import LineLoads
+from seacage.twin._lines._site_waves import SiteWaves
 from seacage.twin._metocean import Input
 from seacage.twin._models import Models
+from seacage.twin._parted import PartedKind, PartedLines
 from seacage.twin._provenance import Provenance
 from seacage.twin._settings import FaultDetectorSettings, StreamTimeouts
 
 FORMAT = "seacage twin"
 VERSION = 2
+# With a fault detector of other settings, which version 0.1.0 would ignore: it refuses these
 TUNED_VERSION = 3
-"""With a fault detector of other settings, which version 0.1.0 would ignore: it refuses these."""
 
 UPPER = "upper/"  # before the sensor's name, in the names of level 2's parts
+PARTED = "parted/"  # before the line's name, in the names of what is left without it
 DISCREPANCY = "discrepancy:"  # before the names of the arrays of the shapes' errors
-
 _ERRORS = ("current_velocity", "ring", "rest")
 # Fields that the header has as they are
 _OF_TWIN = ("provenance", "buoy", "timeouts", "fault_detector")
-_OF_MODELS = ("inputs", "edge", "still_volume")
-
+_OF_PARTED = ("line", "learned", "simulated", "campaign_sha256")
+_CHANGES = ("mean", "maximum", "state")  # processes of a ``LoadChange``
+_OF_MODELS = ("inputs", "edge", "still_volume", "line_upper")
 Kind = TypeVar("Kind", FittedGaussianProcess, FittedLoadGP, FittedNARGP, FittedShapeGP)
+Box = tuple[tuple[float, ...], tuple[float, ...]]
+"""Lower and upper ends of a domain."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PartedHeader:
+    """All of a line that could part but its fitted processes."""
+
+    line: str
+    domain: Box
+    learned: int
+    simulated: int
+    campaign_sha256: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,7 +73,7 @@ class Header:
     version: int
     cage_toml: str
     inputs: tuple[Input, ...]
-    domain: tuple[tuple[float, ...], tuple[float, ...]]
+    domain: Box
     edge: tuple[float, float]
     still_volume: float
     gains: Mapping[str, float]
@@ -65,7 +84,11 @@ class Header:
     # Twins of 0.1.0 have none of these.
     fault_detector: FaultDetectorSettings = field(default_factory=FaultDetectorSettings)
     lines: tuple[tuple[str, str], ...] = ()
-    line_domain: tuple[tuple[float, ...], tuple[float, ...]] = ((), ())
+    line_domain: Box = ((), ())
+    line_upper: Mapping[str, LineCorrection] = field(default_factory=dict[str, LineCorrection])
+    parted: tuple[PartedHeader, ...] = ()
+    line_waves: tuple[tuple[float, ...], ...] = ()
+    line_waves_of: str = ""
 
     __pydantic_config__ = json_keys(timeouts="watch")
 
@@ -80,8 +103,9 @@ def to_parts(
         format=FORMAT,
         version=VERSION if others["fault_detector"] == FaultDetectorSettings() else TUNED_VERSION,
         cage_toml=models.cage.to_toml(),
-        domain=(tuple(models.domain.lower.tolist()), tuple(models.domain.upper.tolist())),
+        domain=_box(models.domain),
         **_of_loads(models.loads),
+        parted=tuple(_of_parted(one) for one in models.parted.kinds) if models.parted else (),
         gains={name: model.gain for name, model in models.upper.items()},
         spreads={name: model.spread for name, model in models.upper.items()},
         **{name: getattr(models, name) for name in _OF_MODELS},
@@ -91,6 +115,12 @@ def to_parts(
     parts: dict[str, Fitted] = {"bridles": models.bridles, "shape": models.shape}
     if models.loads is not None:
         parts["loads"] = models.loads.surrogate
+    if models.parted is not None:
+        parts |= {
+            f"{PARTED}{one.line}/{name}": getattr(one.surrogate, name)
+            for one in models.parted.kinds
+            for name in _CHANGES
+        }
     parts |= {f"{UPPER}{name}": model.rest for name, model in models.upper.items()}
     encoded = {name: encode(part) for name, part in parts.items()}
     settings["models"] = {name: part for name, (part, _) in encoded.items()}
@@ -99,6 +129,9 @@ def to_parts(
         for name, (_, arrays) in encoded.items()
         for key, values in arrays.items()
     }
+    if models.parted is not None and models.parted.symmetry is not None:
+        turns = models.parted.symmetry.to_arrays()
+        arrays |= {f"{PARTED}:{key}": values for key, values in turns.items()}
     if discrepancy is not None:
         settings["discrepancy"] = {"origin": str(discrepancy.origin)}
         arrays |= {f"{DISCREPANCY}{key}": getattr(discrepancy, key) for key in _ERRORS}
@@ -108,8 +141,25 @@ def to_parts(
 def _of_loads(loads: LineLoads | None) -> dict[str, Any]:
     if loads is None:
         return {}
-    ends = tuple(tuple(one.tolist()) for one in (loads.domain.lower, loads.domain.upper))
-    return {"lines": tuple(zip(loads.names, loads.kinds, strict=True)), "line_domain": ends}
+    lines = tuple(zip(loads.names, loads.kinds, strict=True))
+    own = {"lines": lines, "line_domain": _box(loads.domain)}
+    if loads.waves is None:
+        return own
+    rows = tuple(tuple(one) for one in loads.waves.table.tolist())
+    return own | {"line_waves": rows, "line_waves_of": loads.waves.origin}
+
+
+def _of_parted(kind: PartedKind) -> PartedHeader:
+    own = {name: getattr(kind, name) for name in _OF_PARTED}
+    return PartedHeader(domain=_box(kind.domain), **own)
+
+
+def _box(domain: Domain) -> Box:
+    return tuple(domain.lower.tolist()), tuple(domain.upper.tolist())
+
+
+def _domain(box: Box) -> Domain:
+    return Domain(lower=np.array(box[0]), upper=np.array(box[1]))
 
 
 def from_parts(
@@ -156,6 +206,12 @@ def _discrepancy(
     return Discrepancy(origin=Origin(settings["origin"]), **own)
 
 
+def _symmetry(arrays: Mapping[str, np.ndarray], *, lines: int) -> Symmetry | None:
+    start = f"{PARTED}:"
+    own = {key.removeprefix(start): each for key, each in arrays.items() if key.startswith(start)}
+    return Symmetry.from_arrays(own, nodes=lines) if own else None
+
+
 def _models(
     header: Header, settings: Mapping[str, Any], arrays: Mapping[str, np.ndarray]
 ) -> Models:
@@ -172,18 +228,37 @@ def _models(
 
     models = Models(
         cage=Cage.from_toml(header.cage_toml),
-        domain=Domain(lower=np.array(header.domain[0]), upper=np.array(header.domain[1])),
+        domain=_domain(header.domain),
         bridles=part("bridles", FittedGaussianProcess),
         shape=part("shape", FittedShapeGP),
         loads=LineLoads(
             names=tuple(name for name, _ in header.lines),
             kinds=tuple(kind for _, kind in header.lines),
             surrogate=part("loads", FittedLoadGP),
-            domain=Domain(
-                lower=np.array(header.line_domain[0]), upper=np.array(header.line_domain[1])
-            ),
+            domain=_domain(header.line_domain),
+            waves=SiteWaves(table=np.array(header.line_waves), origin=header.line_waves_of)
+            if header.line_waves
+            else None,
         )
         if header.lines
+        else None,
+        parted=PartedLines(
+            kinds=tuple(
+                PartedKind(
+                    surrogate=LoadChange(
+                        **{
+                            name: part(f"{PARTED}{one.line}/{name}", FittedGaussianProcess)
+                            for name in _CHANGES
+                        },
+                    ),
+                    domain=_domain(one.domain),
+                    **{name: getattr(one, name) for name in _OF_PARTED},
+                )
+                for one in header.parted
+            ),
+            symmetry=_symmetry(arrays, lines=len(header.lines)),
+        )
+        if header.parted
         else None,
         **{name: getattr(header, name) for name in _OF_MODELS},
     )

@@ -35,6 +35,9 @@ class Training:
         A longer silence of a sensor ends its training window [s].
     mean_s
         Time over which readings are averaged [s]; the intervals are of such means.
+    noise_sd
+        Standard deviation of the instrument's noise by sensor, which is taken off the standard
+        deviation of its readings in waves [N] or [m]; estimated for a sensor that is not named.
     restarts
         Random starts of each search for hyperparameters, beside the deterministic one.
     seed
@@ -47,6 +50,7 @@ class Training:
     days: float = 25.0
     pause_s: float = 86400.0
     mean_s: float = 60.0
+    noise_sd: Mapping[str, float] = field(default_factory=dict[str, float])
     restarts: int = 3
     seed: int = 0
 

@@ -11,18 +11,18 @@ from seacage.twin._pairs import Pairs
 
 DAY, QUARTER_TIDE = 86400.0, 10800.0  # [s]
 
+# Readings over so long are counted by days, over a shorter time by quarters of a tide [s]
 LONG = 8.0 * DAY
-"""Readings over so long are counted by days, over a shorter time by quarters of a tide [s]."""
 
 FOLDS = 10  # parts of a training window that are held out in turn, without a gap in any
 
+# Least time between a training window and held-out readings [s]: closer ones are too alike
 MARGIN = 0.5 * DAY
-"""Least time between a training window and held-out readings [s]: closer ones are too alike."""
 
 MOST_READINGS = 1500  # held-out readings at most, evenly taken: more say the same again
 
+# Runs of readings that separate the instrument's noise from slower errors, and their length
 STRETCHES, STRETCH_READINGS = 8, 50
-"""Runs of readings that separate the instrument's noise from slower errors, and their length."""
 
 Series = Float[np.ndarray, " pair"]
 

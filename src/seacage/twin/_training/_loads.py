@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
+from jaxtyping import Bool
 
 from seacage.cage import Cage, mooring_lines
 from seacage.conventions import InputError, compass
@@ -10,23 +11,23 @@ from seacage.dynamics import Mooring, line_places, settle
 from seacage.ocean import SeaState
 from seacage.records import CampaignRecord
 from seacage.surrogates import LoadCases, LoadGP, Symmetry
-from seacage.twin._line_loads import LineLoads, load_features, period_span, sea_domain
+from seacage.twin._lines._line_loads import LineLoads, load_features, period_span, sea_domain
+from seacage.twin._lines._site_waves import SiteWaves
 from seacage.twin._metocean import Metocean
 
-LEAST_CASES = 20
-"""With waves, that converged."""
+LEAST_CASES = 20  # with waves, that converged
 
+# Lower waves move no line by more than rounding, and would weigh as much as any [m]
 LEAST_HS = 0.05
-"""Lower waves move no line by more than rounding, and would weigh as much as any [m]."""
 
+# Of Tp / (5 sqrt(Hs)), largest over least: below, a campaign cannot tell height from period
 LEAST_SPAN = 1.5
-"""Of Tp / (5 sqrt(Hs)), largest over least: below, a campaign cannot tell height from period."""
 
+# Largest difference of a line's tension from its image's, over the largest of all lines [-]
 ASYMMETRY = 0.01
-"""Largest difference of a line's tension from its image's, over the largest of all lines [-]."""
 
+# Speed [m/s] and angle from the cage's axis [deg] of the current that a symmetry is tried in
 TRIAL = 0.4, 25.0
-"""Speed [m/s] and angle from the cage's axis [deg] of the current that a symmetry is tried in."""
 
 
 def train_line_loads(
@@ -36,30 +37,57 @@ def train_line_loads(
 
     It has where it was simulated in time, in waves whose period varies beside their height.
     """
-    wavy = campaign.converged & np.array([sea.hs >= LEAST_HS for sea in campaign.seas])
+    wavy = in_waves(campaign)
     if not campaign.line_names or wavy.sum() < LEAST_CASES:
         return None
     water = Metocean.of(campaign.seas).rows(wavy)
     if period_span(water) < LEAST_SPAN:
         return None
-    loads = {name: np.asarray(values, dtype=np.float64) for name, values in campaign.lines.items()}
-    cases = LoadCases(
-        mean=loads["mean"],
-        std=loads["std"],
-        most_probable=loads["mpm_3h"],
-        expected=loads["expected_3h"],
-        largest=loads["maximum"],
-        damage_equivalent=loads["damage_equivalent"],
-    )
     symmetry = line_symmetry(cage, campaign.line_names)
     surrogate = LoadGP(symmetry=symmetry, restarts=restarts).fit(
-        load_features(water), cases.rows(wavy), duration=campaign.duration, seed=seed
+        load_features(water), load_cases(campaign, wavy), duration=campaign.duration, seed=seed
     )
     return LineLoads(
         names=campaign.line_names,
         kinds=campaign.line_kinds,
         surrogate=surrogate,
         domain=sea_domain(water),
+        waves=SiteWaves.of(water, "the waves of the training campaign"),
+    )
+
+
+def in_waves(campaign: CampaignRecord) -> Bool[np.ndarray, " case"]:
+    """Cases whose loads in waves can be learned from."""
+    return campaign.converged & np.array([sea.hs >= LEAST_HS for sea in campaign.seas])
+
+
+def load_cases(campaign: CampaignRecord, some: np.ndarray) -> LoadCases:
+    """Loads of some cases of a campaign."""
+    loads = {name: np.asarray(values, dtype=np.float64) for name, values in campaign.lines.items()}
+    return LoadCases(
+        mean=loads["mean"],
+        std=loads["std"],
+        most_probable=loads["mpm_3h"],
+        expected=loads["expected_3h"],
+        largest=loads["maximum"],
+        damage_equivalent=loads["damage_equivalent"],
+    ).rows(some)
+
+
+def representative_lines(cage: Cage, *, mooring: Mooring = "catenary") -> tuple[str, ...]:
+    """One line of each kind that a cage's symmetry tells apart, which stands for its images.
+
+    Of an uneven cage every line stands for itself. Buoy lines are left out: a buoy whose line has
+    parted drifts off, and its corner hangs from the lines that are left.
+    """
+    lines = mooring_lines(cage, anchored=mooring == "catenary")
+    symmetry = line_symmetry(cage, lines.names)
+    own = np.arange(len(lines.names))
+    first = own if symmetry is None else symmetry.source.min(axis=0)
+    return tuple(
+        name
+        for name, kind, place, at in zip(lines.names, lines.kinds, first, own, strict=True)
+        if place == at and kind != "buoy line"
     )
 
 

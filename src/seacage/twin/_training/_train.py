@@ -1,7 +1,7 @@
 """Training: level 1 is fitted to simulations, level 2 of each sensor to its readings."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from datetime import timedelta
 from importlib.metadata import version
@@ -21,25 +21,28 @@ from seacage.surrogates import (
     window_design,
 )
 from seacage.twin._correction import Correction
+from seacage.twin._lines._site_waves import SiteWaves
 from seacage.twin._metocean import Input, Metocean, input_keys
 from seacage.twin._models import Models
 from seacage.twin._pairs import Pairs, align, spread_out, training_window
 from seacage.twin._provenance import Provenance, TrainingWindow
 from seacage.twin._training._calibration import calibrate
 from seacage.twin._training._data import CageTraining, SensorTraining, Training
+from seacage.twin._training._line_levels import train_line_level_2
 from seacage.twin._training._loads import train_line_loads
+from seacage.twin._training._parted import train_parted_lines
+from seacage.twin._training._windows import sensor_windows
 from seacage.twin._twin import Twin
 
+# For the bridles: the one with kinks, as of lines going slack, and the smooth one
 KERNELS = ("matern-5/2", "squared-exponential")
-"""For the bridles: the one with kinks, as of lines going slack, and the smooth one."""
 
 LEAST_CASES = 20  # of a campaign, converged
 LEAST_PAIRS = 20  # readings of a sensor
-
 PAPER_WINDOW_S = {"depth_m": 300.0, "tension_kn": 10.0}
+# The paper's "few minutes" of a depth sensor and "few seconds" of a shackle [s], whose readings it
+# does not count; and the least consecutive readings of slow sensors
 PAPER_LEAST = 5
-"""The paper's "few minutes" of a depth sensor and "few seconds" of a shackle [s], whose readings it
-does not count; and the least consecutive readings of slow sensors."""
 
 
 def train(
@@ -47,6 +50,7 @@ def train(
     campaign: CampaignRecord | None,
     field: FieldRecord | None = None,
     *,
+    parted: Sequence[CampaignRecord] = (),
     base: Twin | None = None,
     training: Training | None = None,
     progress: Progress | None = None,
@@ -70,6 +74,9 @@ def train(
         Of the low fidelity; None with a base.
     field
         None trains level 1 alone.
+    parted
+        Campaigns of the cage without one line each, in seas and waves of the campaign: what is
+        left if a line parts is learned from the pairs.
     base
         A twin of the same cage whose level 1 is taken as it is, and level 2 of every sensor
         that has not moved: only sensors that moved, or are new, are trained.
@@ -86,10 +93,12 @@ def train(
         (progress or no_progress)(f"train {stage}", done, 2 + len(sensors))
 
     if campaign is not None and base is None:
-        level_1 = _level_one(cage, campaign, training, report)
+        level_1 = _level_one(cage, campaign, parted, training, report)
     elif base is not None and campaign is None:
         report("bridles", 1)
         report("shape", 2)
+        if parted:
+            raise InputError("train: a base has its level 1 already. Give parted with a campaign.")
         level_1 = _from_base(cage, base, training)
     else:
         raise InputError(
@@ -97,7 +106,7 @@ def train(
         )
     if field is None:
         return level_1
-    models, provenance = level_1.models, level_1.provenance
+    models, provenance = _with_waves(level_1.models, field), level_1.provenance
     found = {name: _sensor_training(field, name, training) for name in sensors}
     data = CageTraining(
         models=models,
@@ -109,6 +118,8 @@ def train(
         if name not in level_1.models.upper and (model := _fit_level_2(data, name)) is not None:
             models = models.with_level_2(name, model)
             windows[name] = replace(data.sensors[name].window, calibrated=model.spread.by)
+        if name not in level_1.models.line_upper:
+            models = _with_line_level_2(models, data, field, name)
         report(name, done)
     provenance = replace(
         provenance,
@@ -120,9 +131,23 @@ def train(
     return replace(level_1, models=models, provenance=provenance, buoy=buoy)
 
 
+def _with_waves(models: Models, field: FieldRecord) -> Models:
+    """Models whose loads of lines have the site's waves from its record, if it has any."""
+    origin = f"the waves in the record of {field.buoy.stream}"
+    waves = SiteWaves.of(Metocean.of_record(field.buoy), origin)
+    if models.loads is None or waves is None:
+        return models
+    return replace(models, loads=replace(models.loads, waves=waves))
+
+
 def _check_inputs(
     campaign: CampaignRecord | None, field: FieldRecord | None, training: Training
 ) -> None:
+    if campaign is not None and campaign.parted:
+        raise InputError(
+            f"train: the campaign is of a cage without {', '.join(campaign.parted)}. Give that of "
+            "the whole cage, and this one as parted."
+        )
     for key in input_keys(training.inputs):
         if field and not (key in field.buoy.values and np.any(field.buoy.usable(key))):
             raise NonsenseError(
@@ -191,7 +216,12 @@ def _from_base(cage: Cage, base: Twin, training: Training) -> Twin:
     return replace(
         base,
         models=replace(
-            base.models, cage=cage, upper={name: base.models.upper[name] for name in stay}
+            base.models,
+            cage=cage,
+            upper={name: base.models.upper[name] for name in stay},
+            line_upper={
+                name: one for name, one in base.models.line_upper.items() if name in unmoved
+            },
         ),
         provenance=replace(
             base.provenance,
@@ -203,7 +233,11 @@ def _from_base(cage: Cage, base: Twin, training: Training) -> Twin:
 
 
 def _level_one(
-    cage: Cage, campaign: CampaignRecord, training: Training, report: Callable[[str, int], None]
+    cage: Cage,
+    campaign: CampaignRecord,
+    parted: Sequence[CampaignRecord],
+    training: Training,
+    report: Callable[[str, int], None],
 ) -> Twin:
     """Fit level 1 to the cases of a campaign that converged."""
     rows = np.flatnonzero(campaign.converged)
@@ -226,17 +260,27 @@ def _level_one(
     )
     report("shape", 2)
     still = shape.predict(np.zeros((1, x.shape[1])))
+    still_volume = float(cage.volume(still.mean)[0])
+    searches = {"restarts": min(training.restarts, 1), "seed": training.seed}
+    loads = train_line_loads(cage, campaign, **searches)
+    damaged = None
+    if parted:
+        if loads is None:
+            raise InputError(
+                "train: the campaign teaches no loads in waves, so what changes in them if a line "
+                "parts cannot be learned. Simulate it by `--plan loads`."
+            )
+        damaged = train_parted_lines(cage, campaign, parted, still_volume=still_volume, **searches)
     models = Models(
         cage=cage,
         inputs=training.inputs,
         domain=Domain.of(x),
         edge=_edge(water),
-        still_volume=float(cage.volume(still.mean)[0]),
+        still_volume=still_volume,
         bridles=bridles,
         shape=shape,
-        loads=train_line_loads(
-            cage, campaign, restarts=min(training.restarts, 1), seed=training.seed
-        ),
+        loads=loads,
+        parted=damaged,
     )
     provenance = Provenance(
         version=version("seacage"),
@@ -312,3 +356,31 @@ def _fit_level_2(data: CageTraining, sensor: str) -> Correction | None:
     if not model.beats_level_1(own.selected, level_1.mean):
         return None
     return calibrate(model, data, sensor) if own.calibrates else model
+
+
+def _with_line_level_2(
+    models: Models, data: CageTraining, field: FieldRecord, sensor: str
+) -> Models:
+    """Return models with level 2 of the loads in waves of a shackle's line, if it shows a gain."""
+    own, bridles = data.sensors.get(sensor), {one.name: one.bridle for one in models.cage.shackles}
+    if models.loads is None or own is None or sensor not in bridles:
+        return models
+    windows = sensor_windows(
+        align(field, sensor, start=own.window.start, end=own.window.end),
+        noise_sd=data.training.noise_sd.get(sensor),
+        tn_slope=models.cage.bridles.tn_slope or math.nan,
+    )
+    if windows is None:
+        return models
+    windows = windows.rows(windows.metocean.known(models.inputs))
+    found = train_line_level_2(
+        models.loads,
+        bridles[sensor],
+        windows,
+        model=models.upper.get(sensor),
+        selected=own.selected,
+        x=windows.metocean.features(models.inputs),
+    )
+    if found is None:
+        return models
+    return replace(models, line_upper={**models.line_upper, sensor: found})

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from seacage.conventions import SeacageError
-from seacage.dynamics._kernel import kernel
+from seacage.dynamics._kernel._library import kernel
 from seacage.dynamics._kernel._structs import (
     DOUBLES,
     FLOATS,

@@ -6,7 +6,9 @@ import pytest
 from seacage.cage import Cage
 from seacage.conventions import Result
 from seacage.dynamics import settle, simulate
-from seacage.dynamics._moored import moor, mooring_result, part
+from seacage.dynamics._moored._choice import moor
+from seacage.dynamics._moored._ends import mooring_result
+from seacage.dynamics._moored._parted import part
 from seacage.ocean import SeaState
 
 SMALL = Cage.named("ace").altered(mesh={"spokes": 12})

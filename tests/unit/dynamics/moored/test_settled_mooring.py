@@ -6,7 +6,7 @@ import pytest
 from seacage.cage import Cage
 from seacage.conventions import Result, has_answer
 from seacage.dynamics import LAWS, rest_shape, settle, simulate
-from seacage.dynamics._equilibrium import equilibria
+from seacage.dynamics._equilibrium._search import equilibria
 from seacage.dynamics._moored._mooring import anchor_assembly
 from seacage.dynamics._physics._flow import steady_flow
 from seacage.dynamics._physics._loads import (

@@ -5,7 +5,7 @@ import pytest
 
 from seacage.cage import Cage, Collar
 from seacage.conventions import InputError
-from seacage.dynamics._parts import Assembly
+from seacage.dynamics._parts._assembly import Assembly
 from seacage.dynamics._parts._bracketed_pipes import bracket_stiffness
 
 ACE = Cage.named("ace")

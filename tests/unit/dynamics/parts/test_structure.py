@@ -9,7 +9,7 @@ from seacage.cage import Anchor as AnchorPoint
 from seacage.cage import Line, Net, Point, Ring, Section, Site, Structure, Tie, Twine
 from seacage.conventions import GRAVITY, WATER_DENSITY, InputError, Result
 from seacage.dynamics import net_load, rest_shape, settle, simulate
-from seacage.dynamics._equilibrium import equilibria
+from seacage.dynamics._equilibrium._search import equilibria
 from seacage.dynamics._parts._structure import assemble_structure, wet_share
 from seacage.dynamics._physics._loads import bar_tension
 from seacage.dynamics._physics._motion import NetLaw, Water, moving_net_load

@@ -27,7 +27,8 @@ def test_a_whole_mooring_has_its_frame_ropes_and_anchor_lines(moored):
     assert len(set(lines.names)) == 28
     assert lines.names[:12] == ACE.bridle_names
     assert np.all(lines.tension.mean[12:] > 0.0)
-    assert np.isnan(lines.capacity[12:]).all()
+    np.testing.assert_allclose(lines.capacity[12:24], 209e3)
+    assert np.isnan(lines.capacity[24:]).all()
 
 
 def test_a_buoy_line_bears_its_buoy_s_lift_as_the_surface_passes(moored):
@@ -73,8 +74,22 @@ def test_the_bridles_are_the_first_lines(moored):
 
 
 def test_wear_is_given_where_a_slope_is(moored):
-    assert np.all(moored.lines.damage_equivalent[:12] > 0.0)
-    assert np.isnan(moored.lines.damage_equivalent[12:]).all()
+    bare = MooringLines.alike(("line-1",), "line")
+    assert np.isnan(bare.damage_rate(np.array([1e3]))).all()
+    assert np.all(moored.lines.damage_equivalent[:24] > 0.0)
+    assert np.isnan(moored.lines.damage_equivalent[24:]).all()
+
+
+def test_constant_cycles_use_up_their_share_of_the_curve(moored):
+    # K / R^m cycles are a life: 178 / 0.1^3 of a tenth of the breaking load, one a second
+    curve = {"tn_slope": 3.0, "tn_intercept": 178.0, "breaking_load": 480e3}
+    line = MooringLines.alike(("line-1",), "line", **curve)
+    np.testing.assert_allclose(1.0 / line.damage_rate(np.array([48e3])), 178e3)
+    rate = mooring_lines(ACE, anchored=True).damage_rate(moored.lines.damage_equivalent)
+    np.testing.assert_allclose(moored.lines.damage_per_year[12:24], 31_557_600.0 * rate[12:24])
+    # the bridles of ``moored`` have a slope of their own
+    wear = (moored.lines.damage_equivalent[:12] / 480e3) ** 4.0 / 178.0
+    np.testing.assert_allclose(moored.lines.damage_per_year[:12], 31_557_600.0 * wear)
 
 
 def test_extremes_want_ten_minutes(moored):

@@ -1,6 +1,7 @@
 """Foreign formats: NDBC, CO-OPS, Parquet and CF-NetCDF, each refused where it leaves a doubt."""
 
 import json
+from importlib.resources import files
 
 import numpy as np
 import pyarrow as pa
@@ -8,7 +9,9 @@ import pytest
 from pyarrow import parquet
 
 from seacage.conventions import Flag, Origin, RecordError
+from seacage.ocean import MAX_CURRENT_SPEED
 from seacage.records import (
+    DEFAULT_LIMITS,
     Column,
     ColumnMap,
     NetcdfMap,
@@ -415,6 +418,12 @@ def test_a_map_of_the_other_kind_is_refused(tmp_path):
 def test_limits_that_cannot_be_meant_are_refused(tmp_path, text, sentence):
     with pytest.raises(RecordError, match=sentence):
         read_limits(written(tmp_path / "limits.toml", text))
+
+
+def test_the_shipped_limits_are_a_file_that_a_site_may_begin_with():
+    shipped = files("seacage.records") / "limits.toml"
+    assert read_limits(str(shipped)) == DEFAULT_LIMITS
+    assert DEFAULT_LIMITS.ranges["current_speed_m_s"].fail[1] == MAX_CURRENT_SPEED
 
 
 def test_a_sites_limits_change_what_they_name_alone(tmp_path):

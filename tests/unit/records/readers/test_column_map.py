@@ -155,3 +155,16 @@ def test_every_shipped_map_has_a_header_of_its_own():
     # but for CO-OPS, whose answers are alike in either unit: nobody but the user can tell
     headers = [columns.names for name, columns in shipped_maps().items() if "coops" not in name]
     assert len(set(headers)) == len(headers) == 4
+
+
+@pytest.mark.parametrize(
+    "name", ["APD", "Tz", "tz_s", "Tm02", "tm-10", "mwp", "Mean wave period [s]", "VTM02", "Te"]
+)
+def test_a_mean_period_is_no_peak_period(name):
+    with pytest.raises(RecordError, match=r"mean period, and tp_s is the peak period.*leave"):
+        Column(name=name, quantity="tp", unit="s")
+
+
+@pytest.mark.parametrize("name", ["Tp", "tp", "DPD", "VTPK", "Peak period", "time", "T", "tmp"])
+def test_other_names_may_be_of_a_peak_period(name):
+    assert Column(name=name, quantity="tp", unit="s").key == "tp_s"

@@ -8,6 +8,7 @@ import pytest
 from typer.testing import CliRunner
 
 from seacage.campaigns import CampaignStatus, Plan
+from seacage.records import read_campaign
 from seacage.service._cli._app import app
 from seacage.service._cli._plans import PlanOptions
 
@@ -153,3 +154,22 @@ def test_a_job_array_that_could_not_run_is_refused_now(words, code):
     result = run("campaign", "slurm", "--tasks", 2, "a.zarr", *words)
     assert result.exit_code == code
     assert "#!/bin/bash" not in result.stdout
+
+
+CALM = ("--grid", "current_speed_m_s=0.4", "--grid", "current_to_deg=90", "--method", "settle")
+SPRINGS = ("--mooring", "springs", "--workers", 1)
+
+
+def test_one_command_runs_a_campaign_without_each_line_that_is_unlike_the_others(tmp_path: Path):
+    words = ("campaign", "run", tmp_path / "parted", *CALM, *SPRINGS, "--parted-lines", "--json")
+    stores = json.loads(run(*words).stdout)["stores"]
+    assert [(one["parted"], one["answers"]) for one in stores] == [("bridle-1", 1), ("bridle-2", 1)]
+    for line in ("bridle-1", "bridle-2"):
+        assert read_campaign(tmp_path / "parted" / line).parted == (line,)
+
+
+def test_two_lines_are_parted_by_name_alone(tmp_path: Path):
+    both = ("--without", "bridle-1", "--without", "bridle-2")
+    run("campaign", "run", tmp_path / "two", *CALM, *SPRINGS, *both)
+    assert read_campaign(tmp_path / "two").parted == ("bridle-1", "bridle-2")
+    assert "--parted-lines" in refusal(*CALM, *both, "--parted-lines")

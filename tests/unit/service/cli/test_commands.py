@@ -35,6 +35,7 @@ COMMANDS = [
     "field import",
     "field check",
     "train",
+    "if-parted",
     "score",
     "study paper",
     "study benchmarks",

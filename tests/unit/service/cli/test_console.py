@@ -56,11 +56,9 @@ def test_numbers_that_json_does_not_have_become_null():
 class Colours:
     """Two colours.
 
-    Parameters
-    ----------
-    left
-        On the left, of a name that
-        goes over two lines.
+    Options:
+        left: On the left, of a name that
+            goes over two lines.
     """
 
     left: str
@@ -78,15 +76,13 @@ def test_a_dataclass_becomes_options_with_the_help_of_its_docstring():
         Example:
             paint 3
 
-        Parameters
-        ----------
-        size
-            In metres.
+        Options:
+            size: In metres.
         """
         report({"size": size, "colours": [colours.left, colours.right], "fast": fast})
 
     said = CliRunner().invoke(app, ["--help"]).stdout
-    assert "Parameters" not in said
+    assert "size:" not in said
     for words in ("Paint a net.", "paint 3", "In metres.", "two lines.", "On the right."):
         assert words in said
     said = CliRunner().invoke(app, ["3", "--left", "red", "--json"]).stdout

@@ -58,7 +58,9 @@ def test_every_line_of_a_whole_mooring_is_reported(small_cage, tmp_path):
     assert {"bridle-12", "frame-4", "anchor-8", "buoy-4"} < set(lines)
     assert lines["buoy-1"]["kind"] == "buoy line"
     assert lines["anchor-1"]["kind"] == "anchor line"
-    assert lines["anchor-1"]["capacity_kn"] is None
+    assert lines["buoy-1"]["capacity_kn"] is lines["buoy-1"]["damage_per_year"] is None
+    assert lines["anchor-1"]["capacity_kn"] == 209.0
+    assert lines["bridle-6"]["damage_per_year"] > 0.0
     assert lines["bridle-1"]["capacity_kn"] == 160.0
     # ten minutes are wanted, and got are six seconds
     assert lines["bridle-6"]["mpm_3h_kn"] is None

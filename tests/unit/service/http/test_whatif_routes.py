@@ -1,4 +1,5 @@
 from dataclasses import replace
+from datetime import UTC, datetime
 
 import pytest
 
@@ -6,10 +7,13 @@ from page_frames import decode_frame
 from running_service import Running
 from seacage.ocean import SeaState
 from seacage.service._http._whatif_routes import effective_water, training_domain_of
+from seacage.service._live._answers import topology_of, what_if_parted
 from seacage.service._schemas._state import Water
 from seacage.testing import stand_in_twin
-from wavy import wavy_twin
+from seacage.twin import Answered, Metocean
+from wavy import twin_of_damage, wavy_twin
 
+SEA = {"current_speed": 0.4, "current_to": 40.0, "hs": 1.5, "tp": 7.0, "wave_from": 200.0}
 WAVES = {"hs_m": 1.0, "wave_from_deg": 270.0}
 
 
@@ -82,3 +86,58 @@ def test_a_twin_that_learned_loads_in_waves_names_their_height_and_period():
     )
     sea = SeaState(current_speed=0.5, current_to=90.0, hs=1.0, wave_from=270.0)
     assert effective_water(water, sea, twin) == water.model_copy(update={"tp_s": 5.0})
+
+
+def test_the_topology_says_where_the_lines_run_whose_loads_are_known(twin):
+    topology = topology_of("ace", wavy_twin(), speed=1.0)
+    assert topology.water_depth_m == 191.0
+    ends = {one.name: one.ends_m for one in topology.lines}
+    kinds = {one.kind for one in topology.lines}
+    assert (len(ends), kinds) == (16, {"frame line", "anchor line", "buoy line"})
+    north_east = topology.corner_position_m[0]
+    assert ends["frame-1"] == [north_east, topology.corner_position_m[1]]
+    assert ends["anchor-1"][0] == north_east  # from there on along the frame's side, and down
+    assert ends["anchor-1"][1][0] > 60.0
+    assert ends["anchor-1"][1][2] < -8.0
+    assert ends["buoy-1"] == [north_east, [*north_east[:2], 0.0]]
+    assert topology_of("ace", twin, speed=1.0).lines == []
+
+
+def test_a_twin_that_learned_no_parted_lines_says_how_it_could(idle: Running):
+    answer = idle.reader.get("/api/v1/cages/ace/what-if-parted")
+    assert answer.status_code == 200
+    assert answer.json()["lines"] == []
+    assert "--parted-lines" in answer.json()["reason"]
+
+
+def parted_in(**sea):
+    twin, water = twin_of_damage(), Metocean.of(SeaState(**SEA | sea))
+    now = datetime(2020, 1, 18, tzinfo=UTC)
+    answered = Answered(t=now, answer=twin.predict(water), metocean=water, input_age_s=0.0)
+    return what_if_parted("ace", twin, answered)
+
+
+def test_each_line_that_could_part_is_ranked_by_what_it_leaves_to_the_others():
+    told, found = parted_in(), twin_of_damage().if_parted(SeaState(**SEA))
+    assert (told.reason, told.level, len(told.lines)) == (None, 1, 24)
+    shares = [one.utilisation for one in told.lines]
+    assert None not in shares
+    assert shares == sorted(shares, reverse=True)
+    worst = told.lines[0]
+    row = found.parted.index(worst.parted)
+    assert worst.utilisation == pytest.approx(found.utilisation[0, row], abs=1e-4)
+    assert worst.largest_maximum_3h is not None
+    assert worst.largest_mean is not None
+    line = found.line_names.index(worst.largest_maximum_3h.line)
+    assert worst.largest_maximum_3h.kn == pytest.approx(
+        found.maximum_3h[0, row, line] / 1e3, abs=1e-3
+    )
+    assert worst.largest_maximum_3h.kn > worst.largest_mean.kn
+    assert worst.second_would_part is False
+
+
+def test_outside_what_was_learned_no_line_has_a_number():
+    told = parted_in(hs=4.0, tp=11.0)
+    assert told.lines == []
+    assert told.reason is not None
+    assert told.reason.startswith("Outside")

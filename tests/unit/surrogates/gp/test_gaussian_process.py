@@ -1,5 +1,7 @@
 """Gaussian process regression as its users see it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -132,6 +134,21 @@ def test_leaving_one_out_is_a_fair_test_of_itself() -> None:
     assert scores.mean.shape == scores.std.shape == (100,)
     assert 0.88 < coverage(y, scores.mean, scores.std) <= 1.0
     assert rmse(y, scores.mean) == pytest.approx(0.055, rel=0.3)
+
+
+def test_groups_left_out_are_answered_as_by_a_process_that_never_saw_them() -> None:
+    random = np.random.default_rng(3)
+    x = np.sort(random.uniform(size=(30, 1)), axis=0)
+    y = np.sin(7.0 * x) + 0.1 * random.standard_normal((30, 2))
+    fitted, group = GaussianProcess(restarts=0).fit(x, y), np.arange(30.0) // 3
+    answer = fitted.leave_groups_out(group)
+    whole, out = fitted.posterior, group == 4
+    rest = whole.condition(
+        whole.x[~out], whole.observations()[~out], noise_factor=whole.noise_factor[~out]
+    )
+    unseen = replace(fitted, members=(rest,)).predict(x[out], noisy=True)
+    np.testing.assert_allclose(answer.mean[out], unseen.mean, rtol=1e-6)
+    np.testing.assert_allclose(answer.std[out], unseen.std, rtol=1e-6)
 
 
 def test_condensed_outputs_have_the_same_products_between_cases() -> None:

@@ -139,3 +139,19 @@ def test_waves_shorter_than_believed_are_not_taken_for_noise() -> None:
         of = Evidence.of(SMOOTH, WhiteNoise(), (x - x.mean()) / x.std(), y / y.std())
         mode = most_probable(of, restarts=1, seed=seed)
         assert np.exp(mode.log_parameters[-1]) < 1e-3
+
+
+def test_a_subset_that_needs_no_noise_leads_the_search_on_all_points_not_astray(monkeypatch):
+    starts, improve = [], _hyperparameters.improve
+
+    def exact_on_a_subset(some: Evidence, start: np.ndarray, *, steps: int):
+        starts.append(start)
+        mode = improve(some, start, steps=steps)
+        if len(some.x) < 300:
+            mode.log_parameters[-1] = -13.8
+        return mode
+
+    monkeypatch.setattr(_hyperparameters, "improve", exact_on_a_subset)
+    mode = most_probable(evidence(rows=300), restarts=0, seed=0)
+    assert starts[-1][-1] == pytest.approx(np.log(1e-3))
+    assert np.exp(mode.log_parameters[-1]) == pytest.approx(0.01, rel=0.6)  # of unit variance

@@ -46,10 +46,7 @@ class NetOptions:
     def asker(self) -> "AbstractAsker":
         """Answers from the twin's folder, or from the service.
 
-        Raises
-        ------
-        InputError
-            Both or neither was named, or the twin without a current.
+        Raises InputError: both or neither was named, or the twin without a current.
         """
         from seacage.service._rov._client import LocalAsker, ServiceAsker
 

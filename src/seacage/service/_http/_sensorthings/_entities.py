@@ -12,7 +12,6 @@ from seacage.service._live._cage import LiveCage
 ROOT = "/sta/v1.1"
 _UNDEFINED = "http://www.opengis.net/def/nil/OGC/0/unknown"
 _TYPE = "http://www.opengis.net/def/observationType/OGC-OM/2.0/OM_Measurement"
-
 Entity = dict[str, Any]
 Cages = Mapping[str, LiveCage]
 
@@ -63,6 +62,7 @@ def _datastreams(cages: Cages) -> Iterator[Entity]:
                 )
 
 
+# The sets of entities; Observations are found by their Datastream alone
 SETS: Mapping[str, Callable[[Cages], Iterator[Entity]]] = {
     "Things": _things,
     "Locations": _locations,
@@ -70,13 +70,13 @@ SETS: Mapping[str, Callable[[Cages], Iterator[Entity]]] = {
     "ObservedProperties": _properties,
     "Datastreams": _datastreams,
 }
-"""The sets of entities; Observations are found by their Datastream alone."""
 
 OBSERVATIONS = "Observations"
+# The properties of an Observation
 OBSERVED = ("@iot.id", "phenomenonTime", "resultTime", "result", "resultQuality")
-"""The properties of an Observation."""
 
 
+# The set that a relation of a set leads to; one named as the set leads to several entities
 RELATIONS: Mapping[str, Mapping[str, str]] = {
     "Things": {"Locations": "Locations", "Datastreams": "Datastreams"},
     "Locations": {"Things": "Things"},
@@ -88,7 +88,6 @@ RELATIONS: Mapping[str, Mapping[str, str]] = {
         "ObservedProperty": "ObservedProperties",
     },
 }
-"""The set that a relation of a set leads to; one named as the set leads to several entities."""
 
 
 def _are_related(of: str, id: str, to: str, other: str) -> bool:  # noqa: A002

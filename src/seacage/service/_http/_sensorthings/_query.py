@@ -12,7 +12,6 @@ from seacage.service._schemas._base import Reach
 
 MOST = 1000
 FARTHEST = 10_000
-
 _USUAL = "100"
 _DEEPEST = 3
 _OPTIONS = ("$top", "$skip", "$count", "$select", "$orderby", "$filter", "$expand")
@@ -21,8 +20,8 @@ _ORDER = re.compile(r"([A-Za-z@.]+)( asc| desc)?")
 _TERM = re.compile(r"(resultTime|phenomenonTime) (eq|ge|gt|le|lt) (\S+)")
 _TICK = timedelta(microseconds=1)
 
+# First time, included, and last, left out; open where None
 Span = tuple[datetime | None, datetime | None]
-"""First time, included, and last, left out; open where None."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -33,15 +33,11 @@ from seacage.service._http._sensorthings._query import (
 from seacage.service._schemas._base import AbstractAnswer, example
 
 _AT_ONCE = 30_000  # entities told and samples looked at, in one answer: expansions multiply
-
 _TIMES = ("phenomenonTime", "resultTime")
 _CONFORMS = "http://www.opengis.net/spec/iot_sensing/1.1/req/"
 _KEPT = ("datamodel", *(f"request-data/{one}" for one in ("select", "expand", "top", "skip")))
-
 _PLAIN = ":/'()@"  # of a path: what it may hold as it is
-
 things = APIRouter(prefix=ROOT, tags=["SensorThings"], dependencies=may_read)
-
 Top = Annotated[int, Query(alias="$top", ge=1, le=MOST, description="At most so many.")]
 Skip = Annotated[int, Query(alias="$skip", ge=0, le=FARTHEST, description="Leave out the first.")]
 Count = Annotated[bool, Query(alias="$count", description="Say how many there are in all.")]

@@ -5,9 +5,10 @@ from zlib import crc32
 
 import structlog
 
+# In place of a checksum, in rows of 0.1.0; no row that was written since has it, and none NULL
 UNVERIFIED = -1
-"""In place of a checksum, in rows of 0.1.0; no row that was written since has it, and none NULL."""
 
+# Tables whose rows have a checksum, and what orders their rows
 CHECKED = {
     "sample": "cage, stream, t, seq",
     "aggregate": "cage, stream, quantity, width, t",
@@ -19,8 +20,9 @@ CHECKED = {
     "adapted": "cage",
     "refold": "cage",
     "alarm_book": "cage",
+    "damage": "cage, t",
+    "damage_begin": "cage, line, t",
 }
-"""Tables whose rows have a checksum, and what orders their rows."""
 
 _FORMAT = 1
 _LOGGED = 20

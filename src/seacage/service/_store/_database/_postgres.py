@@ -6,17 +6,11 @@ from contextlib import contextmanager
 from datetime import MAXYEAR, UTC, datetime
 from typing import TYPE_CHECKING, Any
 
+from seacage.service._store._database import _session
 from seacage.service._store._database._checksum import Damage, checksum
 from seacage.service._store._database._pool import Pool
 from seacage.service._store._database._rows import Row, microseconds, moment_of
 from seacage.service._store._database._schema import tables, upgrade
-from seacage.service._store._database._session import (
-    AbstractDatabase,
-    AbstractSession,
-    Answer,
-    DamageError,
-    StoreError,
-)
 
 if TYPE_CHECKING:
     from psycopg import Connection
@@ -53,13 +47,10 @@ _WITH_CHECKSUM = """
 SELECT relname FROM pg_class c JOIN pg_attribute a ON a.attrelid = c.oid
 WHERE relnamespace = current_schema()::regnamespace AND attname = 'crc'"""
 _BRIN = "CREATE INDEX IF NOT EXISTS sample_t ON sample USING brin (t)"
-
 _EARLY = "sample_early"
 _FIRST_MONTH = datetime(2000, 1, 1, tzinfo=UTC)
-
 # Whoever makes tables or partitions holds this, lest two make the same one.
 _LOCK = "SELECT pg_advisory_xact_lock(hashtext('seacage:' || current_schema()))"
-
 # It lasts as long as the connection that writes, so who has lost the one can write no more.
 _CLAIM = """
 SELECT pg_try_advisory_lock(hashtextextended('seacage:' || current_schema() || ':' || ?, 0))"""
@@ -70,12 +61,11 @@ _KEEPALIVE = (
 )
 
 _DAMAGED = {"XX001", "XX002"}  # data or an index that is corrupted
-
 _AGAIN_S = 1.0  # between two attempts to reach a server that does not answer
 _PATIENCE_S = 5
 
 
-class PostgresSession(AbstractSession):
+class PostgresSession(_session.AbstractSession):
     """A transaction of one connection."""
 
     passing = " FOR UPDATE SKIP LOCKED"
@@ -86,7 +76,7 @@ class PostgresSession(AbstractSession):
     ) -> None:
         self._connection, self._database, self.damage = connection, database, database.damage
 
-    def rows(self, sql: str, values: Sequence[object] = ()) -> Answer:
+    def rows(self, sql: str, values: Sequence[object] = ()) -> _session.Answer:
         """Run one statement."""
         cursor = self._connection.execute(_spelt(sql), values)
         return cursor.fetchall() if cursor.description else []
@@ -116,7 +106,7 @@ class PostgresSession(AbstractSession):
         return tuple(parts)
 
 
-class PostgresDatabase(AbstractDatabase):
+class PostgresDatabase(_session.AbstractDatabase):
     """A database on a server, its samples parted by month.
 
     ``url``: ``postgresql://user@host/name``; the tables lie in the first schema of its search path.
@@ -129,7 +119,7 @@ class PostgresDatabase(AbstractDatabase):
             import psycopg
             from psycopg.conninfo import conninfo_to_dict
         except ImportError as error:
-            raise StoreError(
+            raise _session.StoreError(
                 "The store is on PostgreSQL, and its driver psycopg is not installed. "
                 "Install it: pip install 'seacage[postgres]'."
             ) from error
@@ -149,7 +139,7 @@ class PostgresDatabase(AbstractDatabase):
         self._tried = 0.0
 
     @contextmanager
-    def writing(self) -> Generator[AbstractSession]:
+    def writing(self) -> Generator[_session.AbstractSession]:
         """Write; the block's end is the commit."""
         with self._translate_errors("takes no samples"):
             if self._writer.closed:
@@ -158,7 +148,7 @@ class PostgresDatabase(AbstractDatabase):
                 yield PostgresSession(self._writer, self)
 
     @contextmanager
-    def reading(self) -> Generator[AbstractSession]:
+    def reading(self) -> Generator[_session.AbstractSession]:
         """Read one moment of the database."""
         with (
             self._translate_errors("cannot be read"),
@@ -169,7 +159,7 @@ class PostgresDatabase(AbstractDatabase):
 
     shared = True
 
-    def renew(self, error: DamageError) -> None:
+    def renew(self, error: _session.DamageError) -> None:
         """A server's files are its own affair."""
         raise error
 
@@ -178,7 +168,7 @@ class PostgresDatabase(AbstractDatabase):
         self._readers.close()
         self._writer.close()
 
-    def claim(self, session: AbstractSession, cage: str) -> bool:
+    def claim(self, session: _session.AbstractSession, cage: str) -> bool:
         """Claim one cage: others may be another worker's."""
         ((had,),) = session.rows(_CLAIM, (cage,))
         if had:
@@ -224,7 +214,7 @@ class PostgresDatabase(AbstractDatabase):
             session = PostgresSession(connection, self)
             gone = [cage for cage in sorted(self._claimed) if not self.claim(session, cage)]
             if gone:
-                raise StoreError(
+                raise _session.StoreError(
                     f"{gone[0]} went to another process while {self._place} was away. "
                     "Stop one of the two."
                 )
@@ -261,7 +251,7 @@ class PostgresDatabase(AbstractDatabase):
             yield
         except self._psycopg.Error as error:
             place = getattr(self, "_place", "The address of the store")
-            kind = DamageError if error.sqlstate in _DAMAGED else StoreError
+            kind = _session.DamageError if error.sqlstate in _DAMAGED else _session.StoreError
             raise kind(
                 f"{place} {what} ({' '.join(str(error).split())}). "
                 "Check the server, its disk and its rights."

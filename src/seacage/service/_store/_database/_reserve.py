@@ -10,7 +10,6 @@ import structlog
 from seacage.service._store._database._session import FullError
 
 SIZE = 8 << 20  # twice what SQLite's log takes before it is copied into its file [bytes]
-
 _NO_ROOM = {errno.ENOSPC, errno.EDQUOT}
 _log = structlog.get_logger(__name__)
 

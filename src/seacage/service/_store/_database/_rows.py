@@ -14,19 +14,15 @@ _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 MICROSECOND = timedelta(microseconds=1)
 _NO_SEQ = -1
 _SEQS = range(2**63)
-
 _ALL = 2**62
-
+# Begins what selects samples of a cage, each a whole row but for the cage
 SAMPLES = "SELECT stream, t, seq, readings, remarks, t_ingest, crc FROM sample WHERE cage = ?"
-"""Begins what selects samples of a cage, each a whole row but for the cage."""
-
+# Cage, stream, t, seq, readings, remarks, t_ingest: as in the schema
 Row = tuple[str, str, int, int, str, str, int]
-"""Cage, stream, t, seq, readings, remarks, t_ingest: as in the schema."""
 
 SampleRow = tuple[Any, ...]  # stream, t, seq, readings, remarks and t_ingest
-
+# The flag that a value got from its own check, and when the sample came that amended it [us]
 Own = tuple[int, int]
-"""The flag that a value got from its own check, and when the sample came that amended it [us]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

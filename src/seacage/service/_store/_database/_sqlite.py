@@ -11,19 +11,12 @@ from pathlib import Path
 from typing import TextIO
 
 from seacage.service._small_files import keep_private
+from seacage.service._store._database import _session
 from seacage.service._store._database._checksum import CHECKED, UNVERIFIED, Damage, checksum
 from seacage.service._store._database._pool import Pool
 from seacage.service._store._database._reserve import Reserve
 from seacage.service._store._database._rows import Row
 from seacage.service._store._database._schema import tables, upgrade
-from seacage.service._store._database._session import (
-    AbstractDatabase,
-    AbstractSession,
-    Answer,
-    DamageError,
-    FullError,
-    StoreError,
-)
 
 _WORDS = {
     "integer": "INTEGER",
@@ -35,9 +28,7 @@ _WORDS = {
 }
 
 _INSERT = "INSERT INTO sample VALUES (?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING"
-
 _HEADER = b"SQLite format 3\0"
-
 _VERSION = 2  # 1: rows without a checksum
 
 _NO_CHECKSUM = """
@@ -56,7 +47,6 @@ _FULL = {
 }
 
 _LOOK_S = 2.0
-
 _text = partial(str, encoding="utf-8", errors="replace")  # a flipped bit must not stop a query
 
 
@@ -74,7 +64,7 @@ def _lock_file(path: Path) -> TextIO | None:
     return file
 
 
-class SqliteSession(AbstractSession):
+class SqliteSession(_session.AbstractSession):
     """A transaction of one connection."""
 
     ordered = True
@@ -82,7 +72,7 @@ class SqliteSession(AbstractSession):
     def __init__(self, connection: sqlite3.Connection, damage: Damage) -> None:
         self._connection, self.damage = connection, damage
 
-    def rows(self, sql: str, values: Sequence[object] = ()) -> Answer:
+    def rows(self, sql: str, values: Sequence[object] = ()) -> _session.Answer:
         """Run one statement."""
         return self._connection.execute(sql, values).fetchall()  # pyright: ignore[reportArgumentType]
 
@@ -106,7 +96,7 @@ class SqliteSession(AbstractSession):
         return new
 
 
-class SqliteDatabase(AbstractDatabase):
+class SqliteDatabase(_session.AbstractDatabase):
     """One file with its write-ahead log.
 
     The writing connection is the only one that writes or checkpoints, which keeps clear of a
@@ -132,11 +122,11 @@ class SqliteDatabase(AbstractDatabase):
         try:
             with _translate_errors(path, "does not open as the store of samples"):
                 self._writer = _open(path)
-        except DamageError as error:
+        except _session.DamageError as error:
             self._begin_anew(error)
 
     @contextmanager
-    def writing(self) -> Generator[AbstractSession]:
+    def writing(self) -> Generator[_session.AbstractSession]:
         """Write; the block's end is the commit, which has reached the disk."""
         connection = self._writer
         with _translate_errors(self._path, "takes no samples"):
@@ -150,20 +140,20 @@ class SqliteDatabase(AbstractDatabase):
                 raise
 
     @contextmanager
-    def reading(self) -> Generator[AbstractSession]:
+    def reading(self) -> Generator[_session.AbstractSession]:
         """Read one moment of the file."""
         with _translate_errors(self._path, "cannot be read"), self._readers.lend() as connection:
             connection.execute("BEGIN")
             yield SqliteSession(connection, self.damage)
             connection.execute("COMMIT")
 
-    def renew(self, error: DamageError) -> None:
+    def renew(self, error: _session.DamageError) -> None:
         """Move the damaged file aside, also while others read."""
         self._writer.close()
         self._readers.close()
         self._begin_anew(error)
 
-    def claim(self, session: AbstractSession, cage: str) -> bool:
+    def claim(self, session: _session.AbstractSession, cage: str) -> bool:
         """Claim the whole file: it has one writer."""
         del session, cage
         with _translate_errors(self._path, "cannot be locked"):
@@ -190,7 +180,7 @@ class SqliteDatabase(AbstractDatabase):
             self._claim.close()
             self._claim = None
 
-    def _begin_anew(self, error: DamageError) -> None:
+    def _begin_anew(self, error: _session.DamageError) -> None:
         aside = _move_aside(self._path)
         with _translate_errors(self._path, "does not open as the store of samples"):
             self._writer = _open(self._path)
@@ -204,7 +194,7 @@ class SqliteDatabase(AbstractDatabase):
 
 
 @contextmanager
-def sqlite_look(path: Path) -> Generator[AbstractSession]:
+def sqlite_look(path: Path) -> Generator[_session.AbstractSession]:
     """Read one moment of a file that another process may be writing."""
     with _translate_errors(path, "cannot be read"), closing(_reading(path)) as connection:
         _complete(connection)
@@ -262,7 +252,7 @@ def _check_header(path: Path) -> None:
         with path.open("rb") as file:
             begins = file.read(len(_HEADER))
         if begins not in {b"", _HEADER}:
-            raise DamageError(f"{path} is damaged.") from sqlite3.DatabaseError(
+            raise _session.DamageError(f"{path} is damaged.") from sqlite3.DatabaseError(
                 "file is not a database"
             )
 
@@ -280,7 +270,9 @@ def _look_through(connection: sqlite3.Connection) -> None:
     finally:
         connection.set_progress_handler(None, 0)
     if found != ["ok"]:
-        raise DamageError("The store's file is damaged.") from sqlite3.DatabaseError(found[0])
+        raise _session.DamageError("The store's file is damaged.") from sqlite3.DatabaseError(
+            found[0]
+        )
 
 
 def _make_tables(connection: sqlite3.Connection) -> None:
@@ -312,11 +304,11 @@ def _version(connection: sqlite3.Connection, path: Path) -> int:
     (version,) = connection.execute("PRAGMA user_version").fetchone()
     (seal,) = connection.execute("PRAGMA application_id").fetchone()
     if (version == _VERSION) != (seal == _seal(connection)):
-        raise DamageError(f"{path} is damaged.") from sqlite3.DatabaseError(
+        raise _session.DamageError(f"{path} is damaged.") from sqlite3.DatabaseError(
             "the description of its tables is not what was written"
         )
     if version > _VERSION:
-        raise StoreError(
+        raise _session.StoreError(
             f"{path} was written by a newer seacage (tables of version {version}, known up to "
             f"{_VERSION}). Install that version, or name another file."
         )
@@ -332,7 +324,7 @@ def _move_aside(path: Path) -> Path:
             if part.exists():
                 part.replace(aside.with_name(aside.name + end))
     except OSError as error:
-        raise StoreError(
+        raise _session.StoreError(
             f"{path} is damaged and cannot be moved aside ({error.strerror}). "
             "Give the service the right to write in its folder, or move the file yourself."
         ) from error
@@ -349,13 +341,13 @@ def _translate_errors(path: Path, what: str) -> Generator[None]:
             f"{path} {what} ({error}). Check the disk, its space and its rights."
         ) from error
     except OSError as error:
-        raise StoreError(f"{path} {what} ({error.strerror}). Check the disk.") from error
+        raise _session.StoreError(f"{path} {what} ({error.strerror}). Check the disk.") from error
 
 
-def _kind(error: Exception) -> type[StoreError]:
+def _kind(error: Exception) -> type[_session.StoreError]:
     code = getattr(error, "sqlite_errorcode", 0)
     if code in _FULL:
-        return FullError
+        return _session.FullError
     # An extended code carries the plain one in its lowest byte.
     damaged = code & 0xFF in _DAMAGED or isinstance(error, UnicodeDecodeError)
-    return DamageError if damaged else StoreError
+    return _session.DamageError if damaged else _session.StoreError

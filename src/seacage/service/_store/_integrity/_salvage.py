@@ -20,9 +20,8 @@ _FRAME = 24
 _WHOLE = {1: 1, 2: 2, 3: 3, 4: 4, 5: 6, 6: 8}  # bytes of whole numbers
 _OLD = {"ttiittiN": "sample", "tttiiirrrN": "aggregate", "ttiN": "sealed", "ntitN": "journal"}
 _LETTERS = {str: "t", int: "i", float: "r", type(None): "n"}
-
+# Table and row, its checksum last; of the journal without the number of the line
 Found = tuple[str, tuple[Any, ...]]
-"""Table and row, its checksum last; of the journal without the number of the line."""
 
 
 def intact_rows(path: Path) -> Iterator[Found]:

@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from seacage.service._store._database._rows import DAY_US
 from seacage.service._store._database._session import AbstractSession
 
+# Cage, stream and where a UTC day begins [us]; lines of the journal have the stream ''
 Day = tuple[str, str, int]
-"""Cage, stream and where a UTC day begins [us]; lines of the journal have the stream ''."""
 
 _ADD = """
 INSERT INTO tally VALUES (?, ?, ?, ?, ?)

@@ -13,24 +13,19 @@ from seacage.service._store._integrity._tally import missing
 AT_ONCE = 500
 _DAYS_AT_ONCE = 20
 _TALLY = "cage, kind, stream, t"
-
 T = TypeVar("T")
+# Does a transaction that reads; its name comes first
 Read = Callable[[str, Callable[[AbstractSession], T]], T]
-"""Does a transaction that reads; its name comes first."""
 
 
 def verify(read: Read[Answer], cages: Sequence[str] = ()) -> Iterator[tuple[int, int]]:
-    """Verify every row and count the rows of every day.
+    """Verify every row and count the rows of every day; yields how many rows were read, and how
+    many of them have no checksum.
 
     ``read``: its sessions count what is damaged or missing. ``cages``: only their rows; all where
     there are none.
 
     Raises DamageError: the rows are out of their order: none can be found by its key.
-
-    Yields
-    ------
-    rows, unverified
-        How many were read, and how many of them have no checksum.
     """
     after: Answer = []
     while after := read("tally", partial(_days, cages=cages, after=after[-1:])):

@@ -1,0 +1,71 @@
+"""Damage of a cage's lines in the store: by stretches of time, and since when each counts."""
+
+import json
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+
+from seacage.service._store._alarms import keep_lines, line_of
+from seacage.service._store._database._checksum import with_checksum
+from seacage.service._store._database._rows import microseconds, moment_of
+from seacage.service._store._database._session import AbstractSession
+from seacage.twin import AlarmEvent
+
+_KEEP = """
+INSERT INTO damage VALUES (?, ?, ?, ?)
+ON CONFLICT (cage, t) DO UPDATE SET sums = excluded.sums, crc = excluded.crc"""
+_BEGIN = "INSERT INTO damage_begin VALUES (?, ?, ?, ?) ON CONFLICT (cage, line, t) DO NOTHING"
+_CUT = "DELETE FROM damage WHERE cage = ? AND t >= ? AND t < ?"
+_AHEAD = "DELETE FROM damage_begin WHERE cage = ? AND t > ?"
+_ROWS = "SELECT t, sums, crc FROM damage WHERE cage = ? ORDER BY t"
+_BEGINS = "SELECT line, t, crc FROM damage_begin WHERE cage = ? ORDER BY t"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stretch:
+    """What a stretch of time did to the lines of a cage."""
+
+    t: datetime  # when it began
+    damage: dict[str, float]  # share of each line's life [-]
+    valid: int  # minutes with an answer
+    missing: int  # minutes without
+
+
+def keep_damage(
+    session: AbstractSession, cage: str, span: tuple[datetime, datetime], rows: Sequence[Stretch]
+) -> None:
+    """Keep the stretches of a span in place of those that were there."""
+    session.rows(_CUT, (cage, *map(microseconds, span)))
+    sums = [json.dumps([one.damage, one.valid, one.missing]) for one in rows]
+    values = zip((microseconds(one.t) for one in rows), sums, strict=True)
+    session.each(_KEEP, [with_checksum("damage", cage, *one) for one in values])
+
+
+def begin_damage(
+    session: AbstractSession,
+    cage: str,
+    lines: Iterable[str],
+    t: datetime,
+    journal: Sequence[AlarmEvent],
+) -> None:
+    """Have lines' damage counted from a time on, and say in the journal why; both or neither."""
+    rows = [with_checksum("damage_begin", cage, line, microseconds(t)) for line in lines]
+    session.each(_BEGIN, rows)
+    keep_lines(session, [(cage, microseconds(one.t), line_of(one)) for one in journal])
+
+
+def cut_begins(session: AbstractSession, cage: str, after: datetime) -> None:
+    """Delete the begins after a time, where the clock went back."""
+    session.rows(_AHEAD, (cage, microseconds(after)))
+
+
+def damage_of(
+    session: AbstractSession, cage: str
+) -> tuple[list[Stretch], list[tuple[str, datetime]]]:
+    """Read all stretches of a cage, and from when on its lines were counted, in time order."""
+    rows = list[Stretch]()
+    for t, sums in session.intact("damage", _ROWS, (cage,), (cage,)):
+        damage, valid, missing = json.loads(sums)
+        rows.append(Stretch(t=moment_of(t), damage=damage, valid=valid, missing=missing))
+    begins = session.intact("damage_begin", _BEGINS, (cage,), (cage,))
+    return rows, [(line, moment_of(t)) for line, t in begins]
