@@ -34,7 +34,7 @@ from seacage.service._live._frame import MEDIA_TYPE
 from seacage.service._live._metrics import Metrics
 from seacage.service._rov._files import MCAP
 from seacage.service._rov._ros_messages import NoRosbagsError
-from seacage.service._schemas._base import with_nulls
+from seacage.service._schemas._base import with_examples
 from seacage.service._store._store import Store, StoreError
 from seacage.twin import StaleError
 
@@ -150,7 +150,7 @@ def create_app(service: Service) -> FastAPI:
     for router in (around, sessions, cages, alarms, what_if, downloads, rov, things, sockets):
         app.include_router(router)
     described = app.openapi
-    app.openapi = lambda: with_nulls(described())
+    app.openapi = lambda: with_examples(described())
     if PAGE.is_dir():
         app.mount("/page", PageFiles(directory=PAGE), name="page")
     app.add_api_route("/", _page, include_in_schema=False)

@@ -6,25 +6,10 @@ from typing import Annotated
 
 from pydantic import Field
 
-from seacage.service._schemas._base import EXAMPLE_T, AbstractAnswer, AbstractRequest, example
-from seacage.service._schemas._state import EXAMPLE_ALARM_BRIEF
+from seacage.service._schemas._base import AbstractAnswer, AbstractRequest
 from seacage.twin import Alarm, AlarmPolicy, alarm_text
 
 LONGEST_WORDS = 500  # of a reason or a comment [characters]
-
-_ALARM = EXAMPLE_ALARM_BRIEF | {
-    "kind": "load",
-    "source": "bridle-3",
-    "advice": "Look at the mooring before the next tide.",
-    "unit": "%",
-    "value": 82.0,
-    "worst": 84.5,
-    "raise_at": 80.0,
-    "clear_at": 75.0,
-    "shelved_until": None,
-    "in_service": True,
-    "comment": "",
-}
 
 
 class AlarmState(AbstractAnswer):
@@ -33,8 +18,6 @@ class AlarmState(AbstractAnswer):
     ``value``, ``worst``, ``raise_at`` and ``clear_at`` are in ``unit``; ``severity`` runs from 1
     to 1000, critical from 800 on.
     """
-
-    model_config = example(_ALARM)
 
     id: str
     kind: str
@@ -60,15 +43,11 @@ class AlarmState(AbstractAnswer):
 class Alarms(AbstractAnswer):
     """All alarms of a cage that were ever assessed, the worst first."""
 
-    model_config = example({"alarms": [_ALARM]})
-
     alarms: list[AlarmState]
 
 
 class Handling(AbstractRequest):
     """Why somebody does something with an alarm, and for how long it is to be shelved."""
-
-    model_config = example({"why": "Seen; the boat is on its way."})
 
     why: Annotated[str, Field(max_length=LONGEST_WORDS)] = ""
     seconds: Annotated[
@@ -97,22 +76,6 @@ class JournalLine(AbstractAnswer):
 class Journal(AbstractAnswer):
     """Lines in time order."""
 
-    model_config = example(
-        {
-            "lines": [
-                {
-                    "alarm": "load.bridle-3",
-                    "action": "acknowledged",
-                    "t": EXAMPLE_T,
-                    "value": 82.0,
-                    "who": "Night shift",
-                    "why": "Seen; the boat is on its way.",
-                    "quiet": False,
-                }
-            ]
-        }
-    )
-
     lines: list[JournalLine]
 
 
@@ -123,21 +86,6 @@ class Kpi(AbstractAnswer):
     woke nobody. ``standing`` says since when; ``chattering`` names those raised three times or
     more within an hour; ``to_acknowledge_s`` is the median.
     """
-
-    model_config = example(
-        {
-            "start": "2018-01-19T23:08:00Z",
-            "end": EXAMPLE_T,
-            "raised": {"load.bridle-3": 2},
-            "per_day": 0.29,
-            "most_in_an_hour": 1,
-            "standing": {},
-            "longest_s": {"load.bridle-3": 1440.0},
-            "chattering": [],
-            "to_acknowledge_s": 95.0,
-            "unacknowledged": 0,
-        }
-    )
 
     start: datetime
     end: datetime

@@ -1,6 +1,8 @@
 """What the JSON bodies share: names, times, and how strictly a body is read."""
 
+import json
 from datetime import UTC, datetime
+from importlib.resources import files
 from typing import Annotated, Any
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
@@ -61,27 +63,12 @@ class AbstractAnswer(BaseModel):
 
 
 EXAMPLE_T = "2018-01-26T23:08:00Z"
-EXAMPLE_WATER = {
-    "current_speed_m_s": 0.5,
-    "current_to_deg": 90.0,
-    "hs_m": 1.2,
-    "tp_s": 5.5,
-    "wave_from_deg": 270.0,
-}
 
 
-def example(body: dict[str, Any]) -> ConfigDict:
-    """Give the description of a body an example."""
-    return ConfigDict(json_schema_extra={"examples": [body]})
-
-
-def with_nulls(described: dict[str, Any]) -> dict[str, Any]:
-    """Put the nulls of the examples back into a description, as FastAPI leaves them out."""
+def with_examples(described: dict[str, Any]) -> dict[str, Any]:
+    """Give each body of a description its example, with the nulls that FastAPI would leave out."""
     bodies = described["components"]["schemas"]
-    models = [AbstractRequest, AbstractAnswer]
-    for model in models:
-        models += model.__subclasses__()
-        extra = model.model_config.get("json_schema_extra")
-        if model.__name__ in bodies and isinstance(extra, dict):
-            bodies[model.__name__] |= extra
+    file = files("seacage.service._schemas") / "examples.json"
+    for name, example in json.loads(file.read_text(encoding="utf-8")).items():
+        bodies[name]["examples"] = [example]
     return described

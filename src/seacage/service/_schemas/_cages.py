@@ -6,11 +6,8 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from seacage.service._schemas._base import (
-    EXAMPLE_T,
-    EXAMPLE_WATER,
     AbstractAnswer,
     AbstractRequest,
-    example,
 )
 from seacage.service._schemas._state import Concern
 
@@ -44,36 +41,6 @@ class Topology(AbstractAnswer):
     y north, z up, and ``rest_position_m`` is the shape in still water. ``lines`` are those
     besides the bridles whose loads the twin knows. ``topology_id`` is a hash of all the rest.
     """
-
-    model_config = example(
-        {
-            "kind": "topology",
-            "topology_id": "0f3a6c1d9b2e4875",
-            "cage": "ace",
-            "origin": "virtual field",
-            "spokes": 32,
-            "rings": 10,
-            "edges": [[0, 1]],
-            "rest_position_m": [[25.0, 0.0, 0.0], [24.5, 4.9, 0.0]],
-            "corner_position_m": [[50.0, 50.0, -8.0]],
-            "bridle_names": ["bridle-1"],
-            "bridle_nodes": [0],
-            "bridle_corners": [0],
-            "bridle_capacity_kn": [160.0],
-            "depth_sensors": [{"name": "depth-1", "node": 1}],
-            "shackles": [{"name": "shackle-1", "bridle": 0}],
-            "lines": [
-                {
-                    "name": "frame-1",
-                    "kind": "frame line",
-                    "ends_m": [[50.0, 50.0, -8.0], [-50.0, 50.0, -8.0]],
-                }
-            ],
-            "water_depth_m": 191.0,
-            "stale_after_s": 10800.0,
-            "speed": 1.0,
-        }
-    )
 
     kind: Literal["topology"] = "topology"
     topology_id: str = ""
@@ -121,36 +88,14 @@ class CageSummary(AbstractAnswer):
     concerns: list[Concern] = Field(default=[])
 
 
-_SUMMARY = {
-    "name": "ace",
-    "origin": "virtual field",
-    "valid": True,
-    "in_domain": True,
-    "t": EXAMPLE_T,
-    "age_s": 12.0,
-    "reason": "",
-    "max_utilisation": 0.82,
-    "volume_fraction": 0.87,
-    "current_speed_m_s": 0.5,
-    "current_to_deg": 90.0,
-    "waiting": 1,
-    "worst_severity": 800,
-    "worst_title": "Bridle 3 is heavily loaded",
-}
-
-
 class Cages(AbstractAnswer):
     """The cages of this service."""
-
-    model_config = example({"cages": [_SUMMARY]})
 
     cages: list[CageSummary]
 
 
 class WhatIf(AbstractRequest):
     """Water that is only imagined; ``tp_s`` null takes the steepest sea of the height."""
-
-    model_config = example(EXAMPLE_WATER | {"current_speed_m_s": 0.8, "hs_m": 1.5, "tp_s": None})
 
     current_speed_m_s: Annotated[float, Field(ge=0.0, le=3.0)]
     current_to_deg: Annotated[float, Field(ge=0.0, le=360.0)]
@@ -171,16 +116,6 @@ class Learned(AbstractAnswer):
 
     ``unknown`` are the keys of a what-if that change nothing, for the twin knows nothing of them.
     """
-
-    model_config = example(
-        {
-            "inputs": [
-                {"key": "current_speed_m_s", "most": 1.03},
-                {"key": "current_to_deg", "most": None},
-            ],
-            "unknown": ["hs_m", "tp_s", "wave_from_deg"],
-        }
-    )
 
     inputs: list[LearnedInput]
     unknown: list[str]
@@ -219,29 +154,6 @@ class PartedLine(AbstractAnswer):
 
 class WhatIfParted(AbstractAnswer):
     """Each line that could part, the worst first; ``reason`` says what is not known, and why."""
-
-    model_config = example(
-        {
-            "cage": "ace",
-            "time": EXAMPLE_T,
-            "level": 1,
-            "reason": None,
-            "lines": [
-                {
-                    "parted": "anchor-3",
-                    "kind": "anchor line",
-                    "in_domain": True,
-                    "largest_mean": {"line": "anchor-4", "kn": 131.2},
-                    "largest_maximum_3h": {"line": "anchor-4", "kn": 152.8},
-                    "utilisation": 0.7311,
-                    "second_would_part": False,
-                    "volume_share": 0.8613,
-                    "clearance_m": 161.2,
-                    "drift_m": 21.4,
-                }
-            ],
-        }
-    )
 
     cage: str
     time: datetime

@@ -5,7 +5,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from seacage.service._schemas._base import EXAMPLE_T, AbstractAnswer, AbstractRequest, example
+from seacage.service._schemas._base import AbstractAnswer, AbstractRequest
 
 POINT_LIMIT = 10_000  # points in one request
 
@@ -28,51 +28,12 @@ class Place(AbstractRequest):
     depth_m: Metres
 
 
-_NET = {
-    "t": EXAMPLE_T,
-    "frame": "enu",
-    "in_domain": True,
-    "state_age_s": 12.0,
-    "shape_error": "virtual field",
-    "below_m": 1.5,
-}
-
-_CLEAR = {
-    "distance_m": 4.82,
-    "inside": True,
-    "nearest_m": [24.8, 0.1, -5.3],
-    "nearest_place": None,
-    "normal": [0.99, 0.0, -0.06],
-    "expected_m": 4.6,
-    "sigma_m": 0.31,
-    "p_below_1m": 0.0,
-    "p_below": 0.0,
-    "p_through": 0.0,
-    "state_age_s": 12.0,
-}
-
-_WAYPOINT = {
-    "position_m": [22.9, 0.1, -1.0],
-    "place": None,
-    "heading_deg": 90.0,
-    "pitch_deg": 0.0,
-    "row": 0,
-    "part": 0,
-    "distance_m": 2.0,
-    "expected_m": 1.9,
-    "sigma_m": 0.12,
-    "p_below": 0.0004,
-}
-
-
 class ClearanceQuery(AbstractRequest):
     """Points, or the corners of a path, in one of three frames.
 
     ``points_m`` goes with ``"enu"`` and ``"ned"``, ``places`` with ``"wgs84"``, which needs a
     cage whose file says where it lies.
     """
-
-    model_config = example({"frame": "enu", "points_m": [[20.0, 0.0, -5.0]], "below_m": 1.5})
 
     frame: FrameName = "enu"
     points_m: Annotated[list[Triple] | None, Field(min_length=1, max_length=POINT_LIMIT)] = None
@@ -154,16 +115,12 @@ class _NetAnswer(AbstractAnswer):
 class ClearanceAnswer(_NetAnswer):
     """Clearances in the order of the points, and of the path where one was asked for."""
 
-    model_config = example(_NET | {"points": [_CLEAR], "path": None})
-
     points: list[PointClearance]
     path: PathAnswer | None
 
 
 class InspectionQuery(AbstractRequest):
     """A way along the net."""
-
-    model_config = example({"stand_off_m": 2.0, "side": "inside", "pattern": "rows"})
 
     frame: FrameName = "enu"
     stand_off_m: Annotated[float, Field(ge=0.1, le=50.0)] = 2.0
@@ -194,8 +151,6 @@ class Waypoint(AbstractAnswer):
 
 class InspectionAnswer(_NetAnswer):
     """Waypoints from the top down; between two of a part the way is straight and free."""
-
-    model_config = example(_NET | {"waypoints": [_WAYPOINT], "parts": 1, "left_out": 0})
 
     waypoints: list[Waypoint]
     parts: int

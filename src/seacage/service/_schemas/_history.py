@@ -2,7 +2,7 @@
 
 from datetime import datetime
 
-from seacage.service._schemas._base import EXAMPLE_T, AbstractAnswer, example
+from seacage.service._schemas._base import AbstractAnswer
 
 
 class Series(AbstractAnswer):
@@ -50,21 +50,6 @@ class History(AbstractAnswer):
     ``thinned`` says that there were more readings than were asked for: these are the first, the
     last, and the calmest and the fastest water of equal parts between. Intervals are as trained.
     """
-
-    model_config = example(
-        {
-            "t": [EXAMPLE_T],
-            "valid": [True],
-            "in_domain": [True],
-            "current_speed_m_s": [0.5],
-            "current_to_deg": [90.0],
-            "bridles": {"bridle-7": _SERIES},
-            "sensors": {"shackle-1": _SERIES},
-            "measured": {"shackle-1": {"t": [EXAMPLE_T], "value": [42.0], "width_s": None}},
-            "volume_fraction": [0.87],
-            "thinned": False,
-        }
-    )
 
     t: list[datetime]
     valid: list[bool]

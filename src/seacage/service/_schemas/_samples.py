@@ -11,13 +11,10 @@ from pydantic.config import JsonDict
 from seacage.conventions import InputError
 from seacage.records import NO_MEAN_PERIOD, Sample, is_mean_period
 from seacage.service._schemas._base import (
-    EXAMPLE_T,
-    EXAMPLE_WATER,
     AbstractAnswer,
     AbstractRequest,
     Name,
     Time,
-    example,
 )
 
 _LARGEST = 1.7e308
@@ -42,13 +39,8 @@ class SampleIn(AbstractRequest):
     values: Annotated[dict[str, JsonValue], Field(min_length=1, max_length=16)]
 
 
-_SAMPLE = {"stream": "buoy-1", "t": EXAMPLE_T, "seq": 1, "values": EXAMPLE_WATER}
-
-
 class SamplesIn(AbstractRequest):
     """Readings of one cage, in any order."""
-
-    model_config = example({"samples": [_SAMPLE]})
 
     samples: Annotated[list[SampleIn], Field(min_length=1, max_length=BATCH_LIMIT)]
 
@@ -66,14 +58,6 @@ class Rejection(AbstractAnswer):
 
 class Receipt(AbstractAnswer):
     """What became of the samples; those accepted are on disk."""
-
-    model_config = example(
-        {
-            "accepted": 1,
-            "duplicates": 0,
-            "rejected": [{"index": 1, "reason": "No stream is called 'buoy-9'.", "retry": False}],
-        }
-    )
 
     accepted: int
     duplicates: int
@@ -97,8 +81,6 @@ class SampleOut(AbstractAnswer):
 class SamplesOut(AbstractAnswer):
     """Stored samples in time order."""
 
-    model_config = example({"samples": [_SAMPLE | {"flags": dict.fromkeys(EXAMPLE_WATER, 1)}]})
-
     samples: list[SampleOut]
 
 
@@ -116,17 +98,6 @@ class AggregateOut(AbstractAnswer):
 
 class AggregatesOut(AbstractAnswer):
     """The spans that had readings, in time order."""
-
-    model_config = example(
-        {
-            "stream": "depth-1",
-            "key": "depth_m",
-            "width_s": 600,
-            "aggregates": [
-                {"t": EXAMPLE_T, "count": 300, "mean": 14.1, "least": 13.6, "most": 14.5}
-            ],
-        }
-    )
 
     stream: str
     key: str

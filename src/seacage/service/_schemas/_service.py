@@ -5,28 +5,17 @@ from typing import Annotated
 
 from pydantic import Field
 
-from seacage.service._schemas._base import EXAMPLE_T, AbstractAnswer, AbstractRequest, example
+from seacage.service._schemas._base import AbstractAnswer, AbstractRequest
 
 
 class SignIn(AbstractRequest):
     """A token, given once for a session."""
-
-    model_config = example({"token": "as-seacage-token-new-printed-it"})
 
     token: Annotated[str, Field(min_length=1, max_length=200)]
 
 
 class SessionOut(AbstractAnswer):
     """Who is signed in, and what a write has to repeat in the header X-CSRF-Token."""
-
-    model_config = example(
-        {
-            "who": "Night shift",
-            "scopes": ["read", "ack"],
-            "csrf": "repeat-me-in-X-CSRF-Token",
-            "expires": EXAMPLE_T,
-        }
-    )
 
     who: str
     scopes: list[str]
@@ -42,7 +31,5 @@ class Problem(AbstractAnswer):
 
 class Health(AbstractAnswer):
     """Whether the service lives, and whether it can do its work."""
-
-    model_config = example({"status": "ready"})
 
     status: str

@@ -5,8 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from seacage.service._schemas._base import EXAMPLE_T, EXAMPLE_WATER, AbstractAnswer, example
-from seacage.twin import interval_reason
+from seacage.service._schemas._base import AbstractAnswer
 
 
 class Interval(AbstractAnswer):
@@ -39,23 +38,6 @@ class BridleState(AbstractAnswer):
     measured_by: str | None = None
 
 
-_LINE = {
-    "name": "anchor-3",
-    "kind": "anchor line",
-    "level": 1,
-    "mean_kn": 61.3,
-    "mean_spread_kn": None,
-    "std_kn": 4.8,
-    "maximum_3h_kn": {"mean": 84.2, "lower": None, "upper": None},
-    "utilisation": 0.4029,
-    "damage_per_year": 0.0213,
-    "damage": 0.0041,
-    "damage_since": EXAMPLE_T,
-    "damage_valid_h": 2210.5,
-    "damage_missing_h": 61.0,
-}
-
-
 class LineState(AbstractAnswer):
     """A line's load over half an hour of this sea, and its largest in three hours of it.
 
@@ -68,8 +50,6 @@ class LineState(AbstractAnswer):
     was learned, and without a T-N curve. ``damage`` is what was used up since its count began,
     over the hours with an answer; hours without one are not filled.
     """
-
-    model_config = example(_LINE)
 
     name: str
     kind: str
@@ -158,19 +138,7 @@ class Concern(AbstractAnswer):
     message: str
 
 
-_NO_INTERVAL = interval_reason(1)
 _INTERVAL = {"mean": 41.2, "lower": 36.9, "upper": 45.5}
-
-EXAMPLE_ALARM_BRIEF = {
-    "id": "load.bridle-3",
-    "severity": 800,
-    "title": "Bridle 3 is heavily loaded",
-    "message": "Bridle 3 carries 131 kN of its 160 kN.",
-    "active": True,
-    "acknowledged": False,
-    "shelved": False,
-    "since": EXAMPLE_T,
-}
 
 
 class State(AbstractAnswer):
@@ -183,57 +151,6 @@ class State(AbstractAnswer):
     over its distribution at the same height.
     ``amended`` holds the readings of the last minutes whose flags grew worse after they came.
     """
-
-    model_config = example(
-        {
-            "cage": "ace",
-            "t": EXAMPLE_T,
-            "age_s": 12.0,
-            "valid": True,
-            "in_domain": True,
-            "reason": "",
-            "origin": "virtual field",
-            "water": EXAMPLE_WATER,
-            "bridles": [
-                {
-                    "name": "bridle-7",
-                    "level": 2,
-                    "in_domain": True,
-                    "tension_kn": _INTERVAL,
-                    "interval_reason": None,
-                    "low_fidelity_kn": 38.7,
-                    "utilisation": 0.2575,
-                }
-            ],
-            "lines": [
-                _LINE,
-            ],
-            "lines_reason": "",
-            "tp_assumed": False,
-            "sensors": [
-                {
-                    "name": "depth-1",
-                    "unit": "m",
-                    "level": 2,
-                    "in_domain": True,
-                    "low_fidelity": 14.4,
-                    "mean": 14.1,
-                    "lower": 13.8,
-                    "upper": 14.4,
-                    "interval_reason": None,
-                    "measured": 14.2,
-                    "measured_age_s": 2.0,
-                }
-            ],
-            "shape_level": 1,
-            "shape": {"level": 1, "in_domain": True, "interval_reason": _NO_INTERVAL},
-            "volume_fraction": 0.87,
-            "silent": [],
-            "amended": [],
-            "alarms": [EXAMPLE_ALARM_BRIEF],
-            "concerns": [],
-        }
-    )
 
     cage: str
     t: datetime
@@ -262,18 +179,6 @@ class Shape(ShapeState):
 
     ``sigma_m`` is null where no standard deviation is known, and ``interval_reason`` says why.
     """
-
-    model_config = example(
-        {
-            "t": EXAMPLE_T,
-            "valid": True,
-            "level": 1,
-            "in_domain": True,
-            "node_position_m": [[25.4, 0.1, 0.0]],
-            "sigma_m": None,
-            "interval_reason": _NO_INTERVAL,
-        }
-    )
 
     t: datetime
     valid: bool

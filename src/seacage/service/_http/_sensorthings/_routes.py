@@ -30,7 +30,7 @@ from seacage.service._http._sensorthings._query import (
     from_or_until,
     read_query,
 )
-from seacage.service._schemas._base import AbstractAnswer, example
+from seacage.service._schemas._base import AbstractAnswer
 
 _AT_ONCE = 30_000  # entities told and samples looked at, in one answer: expansions multiply
 _TIMES = ("phenomenonTime", "resultTime")
@@ -94,10 +94,6 @@ def _one_of(name: str) -> Responses:
 class Entities(AbstractAnswer):
     """A set of entities, as SensorThings says it; the links and the count where they belong."""
 
-    model_config = example(
-        {"value": [_ENTITY], "@iot.count": 2, "@iot.nextLink": f"{_ADDRESS}/Things?$top=1&$skip=1"}
-    )
-
     value: list[Entity]
     count: int = Field(default=0, alias="@iot.count")
     next_link: str = Field(default="", alias="@iot.nextLink")
@@ -105,13 +101,6 @@ class Entities(AbstractAnswer):
 
 class Root(AbstractAnswer):
     """The sets there are, and what of the standard is kept."""
-
-    model_config = example(
-        {
-            "value": [{"name": "Things", "url": "/sta/v1.1/Things"}],
-            "serverSettings": {"conformance": []},
-        }
-    )
 
     value: list[dict[str, str]]
     serverSettings: dict[str, Any]  # noqa: N815 (the standard's word)
