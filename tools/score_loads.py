@@ -21,7 +21,8 @@ from seacage.campaigns import Plan
 from seacage.dynamics import extremes, simulate
 from seacage.ocean import SeaState
 from seacage.records import CampaignRecord, read_campaign
-from seacage.twin import Metocean, Training, train
+from seacage.twin import Metocean
+from seacage.twin._training._loads import train_line_loads
 
 HALF_HOUR, SPIN_UP, EVERY = 1800.0, 300.0, 0.1
 AT_ONCE = 8
@@ -92,7 +93,7 @@ def _report(
     campaign: CampaignRecord,
     single: Mapping[str, np.ndarray],
 ) -> None:
-    loads = train(cage, campaign, training=Training(restarts=1)).emulator
+    loads = train_line_loads(cage, campaign, restarts=1, seed=0)
     if loads is None:
         raise SystemExit("The campaign teaches no loads in waves.")
     water = Metocean.of(seas)

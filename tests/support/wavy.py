@@ -40,6 +40,7 @@ def wavy_campaign(
         duration=900.0,
         parted=tuple(parted),
         node_position_minimum=still.node_position - LOWER,
+        node_position_std=true_motion(cage, seas),
         line_names=lines.names,
         line_kinds=lines.kinds,
         lines={
@@ -77,6 +78,14 @@ def true_loads(cage: Cage, seas: tuple[SeaState, ...]) -> tuple[np.ndarray, np.n
     mean = 4e4 - 2e4 * np.linalg.norm(current, axis=1, keepdims=True) * (current @ outward.T)
     height = np.linalg.norm(waves, axis=1, keepdims=True)
     return mean, 800.0 * (1.5 * height - waves @ outward.T) / period[:, None] ** 0.3
+
+
+def true_motion(cage: Cage, seas: tuple[SeaState, ...]) -> np.ndarray:
+    """Standard deviation of each node's place, the less the deeper, most along the waves [m]."""
+    hs, along = np.array([sea.hs for sea in seas]), np.array([sea.wave_direction for sea in seas])
+    of_node = np.exp(cage.design_position[:, 2] / 20.0)
+    axes = np.column_stack([np.abs(along), np.ones(len(seas))])
+    return 0.25 * (hs[:, None] * axes)[:, None, :] * of_node[:, None]
 
 
 def gaussian_series(

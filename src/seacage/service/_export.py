@@ -35,6 +35,7 @@ _SAME_IN_ALL_ROWS = {
     "sensor_units",
     "sensor_level",
     "shape_level",
+    "depth_std_level",
     "line_names",
     "line_kinds",
     "line_level",

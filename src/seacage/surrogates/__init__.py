@@ -21,6 +21,7 @@ from seacage.surrogates._loads._load_change import LoadChange
 from seacage.surrogates._loads._load_gp import FittedLoadGP, LoadGP
 from seacage.surrogates._loads._load_ratio import LoadRatio, is_gain
 from seacage.surrogates._loads._loads import LoadCases, LoadPrediction, Loads
+from seacage.surrogates._loads._motion_gp import FittedMotionGP
 from seacage.surrogates._multifidelity._batch import BatchedLevels
 from seacage.surrogates._multifidelity._nargp import AR1, NARGP, FittedNARGP
 from seacage.surrogates._prediction import Prediction, Predicts
@@ -57,6 +58,7 @@ __all__ = [
     "FittedGCN",
     "FittedGaussianProcess",
     "FittedLoadGP",
+    "FittedMotionGP",
     "FittedNARGP",
     "FittedPcaGP",
     "FittedResidual",

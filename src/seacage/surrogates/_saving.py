@@ -10,6 +10,7 @@ from seacage.surrogates._arrays import Arrays, Settings, setting
 from seacage.surrogates._gcn._gcn import FittedGCN
 from seacage.surrogates._gp import FittedGaussianProcess
 from seacage.surrogates._loads._load_gp import FittedLoadGP
+from seacage.surrogates._loads._motion_gp import FittedMotionGP
 from seacage.surrogates._multifidelity._nargp import FittedNARGP
 from seacage.surrogates._prediction import Predicts
 from seacage.surrogates._shape._pca import FittedPcaGP
@@ -20,6 +21,7 @@ Fitted = (
     FittedGaussianProcess
     | FittedGCN
     | FittedLoadGP
+    | FittedMotionGP
     | FittedNARGP
     | FittedPcaGP
     | FittedShapeGP

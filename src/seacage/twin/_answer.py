@@ -67,6 +67,13 @@ class Answer:
         are none or they are extrapolated, else "".
     line_tp_assumed
         Whether Tp was not known, and the loads are over its distribution at the same Hs.
+    node_motion
+        Standard deviations of each node's place in waves, horizontally (of both axes together)
+        and upwards, of half an hour, at level 1 [m]; NaN as ``line`` where the waves are not
+        known, None where they were not learned.
+    depth_std, depth_std_level
+        Standard deviation of each depth sensor's depth in waves [m], and 2 where its windows
+        correct it, else 1.
     """
 
     valid: Bool[np.ndarray, " case"]
@@ -94,6 +101,9 @@ class Answer:
     line_in_domain: Bool[np.ndarray, " case"]
     line_reason: tuple[str, ...]
     line_tp_assumed: Bool[np.ndarray, " case"]
+    node_motion: Float[np.ndarray, "case node 2"] | None
+    depth_std: Float[np.ndarray, "case depth"]
+    depth_std_level: Int[np.ndarray, " depth"]
 
     def __len__(self) -> int:
         return len(self.valid)

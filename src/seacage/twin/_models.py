@@ -11,10 +11,17 @@ from jaxtyping import Bool, Float
 
 from seacage.cage import Cage, MooringLines, mooring_lines
 from seacage.conventions import YEAR
-from seacage.surrogates import Domain, FittedGaussianProcess, FittedShapeGP, Prediction, Predicts
+from seacage.surrogates import (
+    Domain,
+    FittedGaussianProcess,
+    FittedShapeGP,
+    LoadRatio,
+    Prediction,
+    Predicts,
+)
 from seacage.twin._answer import Answer
 from seacage.twin._correction import Correction, Corrections
-from seacage.twin._lines._line_correction import LineCorrection, correct_lines
+from seacage.twin._lines._line_correction import LineCorrection, correct_lines, load_variables
 from seacage.twin._lines._line_loads import LineLoads
 from seacage.twin._metocean import Input, Metocean, nearest_inside
 from seacage.twin._parted import PartedLines
@@ -58,6 +65,8 @@ class Models:
     upper: Mapping[str, Correction] = field(default_factory=dict[str, Correction])
     # Level 2 of lines' loads in waves, by the name of the shackle
     line_upper: Mapping[str, LineCorrection] = field(default_factory=dict[str, LineCorrection])
+    # And of the standard deviation of depths, by the name of the sensor
+    depth_ratio: Mapping[str, LoadRatio] = field(default_factory=dict[str, LoadRatio])
 
     @cached_property
     def corrections(self) -> Mapping[int, Correction]:
@@ -141,8 +150,12 @@ class Models:
         self, water: Metocean, valid: Bool[np.ndarray, " case"], bridle: Prediction
     ) -> dict[str, Any]:
         """Predict the loads of lines: the fields of an answer about them."""
+        sensors = self.cage.depth_sensors
         if self.loads is None:
             return {
+                "node_motion": None,
+                "depth_std": np.full((len(valid), len(sensors)), np.nan),
+                "depth_std_level": np.ones(len(sensors), dtype=int),
                 "line_names": (),
                 "line_kinds": (),
                 "line": None,
@@ -153,6 +166,7 @@ class Models:
             }
         known = Metocean.from_table(np.where(valid[:, None], water.table, np.nan))
         loads, inside, reason = self.loads.predict(known, spread=False)
+        motion = self.loads.node_motion(known)
         shackles = {one.name: one.bridle for one in self.cage.shackles}
         upper = {shackles[name]: one for name, one in self.line_upper.items()}
         level = np.ones(len(self.loads.names), dtype=int)
@@ -162,6 +176,9 @@ class Models:
         assumed = self.loads.assumes_tp(known)
         counts = (inside & ~assumed)[:, None]
         return {
+            "node_motion": motion,
+            "depth_std": self.depth_std(known, motion),
+            "depth_std_level": 1 + np.array([one.name in self.depth_ratio for one in sensors], int),
             "line_names": self.loads.names,
             "line_kinds": self.loads.kinds,
             "line": replace(loads, damage_per_year=np.where(counts, YEAR * rate, np.nan)),
@@ -170,6 +187,23 @@ class Models:
             "line_reason": reason,
             "line_tp_assumed": assumed,
         }
+
+    def depth_std(
+        self, water: Metocean, motion: Float[np.ndarray, "case node 2"] | None
+    ) -> Float[np.ndarray, "case depth"]:
+        """Standard deviation of each depth sensor's depth by its best level [m].
+
+        ``motion``: of the nodes, at level 1.
+        """
+        sensors = self.cage.depth_sensors
+        if motion is None:
+            return np.full((len(water), len(sensors)), np.nan)
+        std = motion[:, [one.node for one in sensors], 1]
+        for column, one in enumerate(sensors):
+            if one.name in self.depth_ratio:
+                variables = load_variables(water, std[:, column])
+                std[:, column] *= np.exp(self.depth_ratio[one.name].log(variables, len(water)))
+        return std
 
     @cached_property
     def lines(self) -> MooringLines:

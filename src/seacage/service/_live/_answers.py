@@ -231,7 +231,9 @@ def _sensors(
     answer: Answer, memory: TwinState, now: datetime, silent_after_s: float
 ) -> list[SensorState]:
     states = list[SensorState]()
-    for one in sensor_outputs(answer):
+    depths = answer.depth_std_level.tolist()
+    for column, one in enumerate(sensor_outputs(answer)):
+        std = _number(answer.depth_std[0, column]) if column < len(depths) else None
         sample = memory.latest(one.name, now)
         measured = usable_value(sample) if sample else None
         age = (now - sample.t).total_seconds() if sample and measured is not None else None
@@ -246,6 +248,8 @@ def _sensors(
                 mean=_number(one.mean[0]),
                 lower=_number(one.lower[0]),
                 upper=_number(one.upper[0]),
+                std=std,
+                std_level=None if std is None else depths[column],
                 interval_reason=interval_reason(one.level),
                 measured=_number(measured) if fresh else None,
                 measured_age_s=_number(age) if fresh else None,

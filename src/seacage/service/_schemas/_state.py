@@ -69,7 +69,9 @@ class LineState(AbstractAnswer):
 class SensorState(AbstractAnswer):
     """What a sensor should read now, by simulation alone and as trained, and what it does read.
 
-    ``level``, ``in_domain`` and ``interval_reason`` are as for a bridle.
+    ``level``, ``in_domain`` and ``interval_reason`` are as for a bridle. ``std`` is the standard
+    deviation of a depth in these waves over half an hour, ``std_level`` the level that gave it;
+    null where the waves are not known, and of a shackle, whose line has it.
     """
 
     name: str
@@ -80,6 +82,8 @@ class SensorState(AbstractAnswer):
     mean: float | None
     lower: float | None
     upper: float | None
+    std: float | None = None
+    std_level: int | None = None
     interval_reason: str | None
     measured: float | None
     measured_age_s: float | None

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
@@ -73,6 +73,10 @@ class Symmetry:
 
     def __len__(self) -> int:
         return len(self.turn)
+
+    def at(self, position: Node3) -> Self:
+        """The same turns and mirrorings, of other places [m]."""
+        return replace(self, source=np.stack([_match(position, self.centre, t) for t in self.turn]))
 
     def turned(self, x: Float[np.ndarray, "row feature"], image: int) -> Float[np.ndarray, "_ _"]:
         """Features of an image of each sea state."""

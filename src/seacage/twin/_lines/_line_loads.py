@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Bool, Float
 
-from seacage.surrogates import Domain, FittedLoadGP, Loads, Prediction, sea_features
+from seacage.surrogates import Domain, FittedLoadGP, FittedMotionGP, Loads, Prediction, sea_features
 from seacage.twin._lines._site_waves import SiteWaves, mix
 from seacage.twin._metocean import Metocean
 
@@ -44,6 +44,8 @@ class LineLoads:
         trained on.
     waves
         Of the site, for buoys that do not measure all of them; None in twins of before.
+    motion
+        Surrogate of the nodes' motion in the same seas; None where it was not learned.
     """
 
     names: tuple[str, ...]
@@ -51,6 +53,7 @@ class LineLoads:
     surrogate: FittedLoadGP
     domain: Domain
     waves: SiteWaves | None = None
+    motion: FittedMotionGP | None = None
 
     def predict(
         self, water: Metocean, *, duration: float = 1800.0, spread: bool = True
@@ -81,6 +84,27 @@ class LineLoads:
             reason = np.where(no_tp, ANY_TP.format(self.waves.origin), reason)
         reason = np.where(inside | (reason == NO_WAVES), reason, NOT_TRAINED)
         return loads, inside, tuple(reason.tolist())
+
+    def node_motion(self, water: Metocean) -> Float[np.ndarray, "case node 2"] | None:
+        """Standard deviations of the nodes' places, horizontally and upwards [m]; None without.
+
+        NaN where height or direction of the waves is not known; over the distribution of Tp
+        where that is not.
+        """
+        if self.motion is None:
+            return None
+        row, seas = np.arange(len(water)), self.hold(water)
+        if self.waves is not None and np.any(self.waves.gaps(water)[1]):
+            members, row = self.waves.members(water)
+            seas = self.hold(members)
+        variance = self.motion.mean(seas.x, hs=seas.hs) ** 2
+        start = np.flatnonzero(np.diff(row, prepend=-1))
+        count = np.diff(start, append=len(row))[:, None, None]
+        motion = np.sqrt(np.add.reduceat(variance, start, axis=0) / count)
+        motion[~np.isfinite(water.table[:, :5]).all(axis=1)] = np.nan
+        if self.waves is None:
+            motion[~np.isfinite(water.tp)] = np.nan
+        return motion
 
     def assumes_tp(self, water: Metocean) -> Bool[np.ndarray, " case"]:
         """Rows whose period is not known and is taken from the site's waves."""

@@ -15,9 +15,11 @@ from seacage.surrogates import (
     Fitted,
     FittedGaussianProcess,
     FittedLoadGP,
+    FittedMotionGP,
     FittedNARGP,
     FittedShapeGP,
     LoadChange,
+    LoadRatio,
     Predicts,
     Symmetry,
     decode,
@@ -48,8 +50,10 @@ _ERRORS = ("current_velocity", "ring", "rest")
 _OF_TWIN = ("provenance", "buoy", "timeouts", "fault_detector")
 _OF_PARTED = ("line", "learned", "simulated", "campaign_sha256")
 _CHANGES = ("mean", "maximum", "state")  # processes of a ``LoadChange``
-_OF_MODELS = ("inputs", "edge", "still_volume", "line_upper")
-Kind = TypeVar("Kind", FittedGaussianProcess, FittedLoadGP, FittedNARGP, FittedShapeGP)
+_OF_MODELS = ("inputs", "edge", "still_volume", "line_upper", "depth_ratio")
+Kind = TypeVar(
+    "Kind", FittedGaussianProcess, FittedLoadGP, FittedMotionGP, FittedNARGP, FittedShapeGP
+)
 Box = tuple[tuple[float, ...], tuple[float, ...]]
 """Lower and upper ends of a domain."""
 
@@ -86,6 +90,7 @@ class Header:
     lines: tuple[tuple[str, str], ...] = ()
     line_domain: Box = ((), ())
     line_upper: Mapping[str, LineCorrection] = field(default_factory=dict[str, LineCorrection])
+    depth_ratio: Mapping[str, LoadRatio] = field(default_factory=dict[str, LoadRatio])
     parted: tuple[PartedHeader, ...] = ()
     line_waves: tuple[tuple[float, ...], ...] = ()
     line_waves_of: str = ""
@@ -115,6 +120,8 @@ def to_parts(
     parts: dict[str, Fitted] = {"bridles": models.bridles, "shape": models.shape}
     if models.loads is not None:
         parts["loads"] = models.loads.surrogate
+    if models.loads is not None and models.loads.motion is not None:
+        parts["motion"] = models.loads.motion
     if models.parted is not None:
         parts |= {
             f"{PARTED}{one.line}/{name}": getattr(one.surrogate, name)
@@ -235,6 +242,7 @@ def _models(
             names=tuple(name for name, _ in header.lines),
             kinds=tuple(kind for _, kind in header.lines),
             surrogate=part("loads", FittedLoadGP),
+            motion=part("motion", FittedMotionGP) if "motion" in settings else None,
             domain=_domain(header.line_domain),
             waves=SiteWaves(table=np.array(header.line_waves), origin=header.line_waves_of)
             if header.line_waves

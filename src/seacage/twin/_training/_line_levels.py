@@ -1,4 +1,4 @@
-"""Training of level 2 of lines' loads in waves, from the windows of their shackles."""
+"""Training of level 2 in waves, of lines' loads and of depths, from their sensors' windows."""
 
 import math
 from dataclasses import replace
@@ -77,6 +77,19 @@ def train_line_level_2(
         damage=damage,
         maximum_log_sd=_maximum_spread(windows, largest, mean, np.exp(of_peak), error),
     )
+
+
+def train_depth_ratio(low: Series, windows: Windows) -> LoadRatio | None:
+    """Ratio of the standard deviation of a sensor's depth to level 1's, ``low`` [m].
+
+    None where no held-out window shows a gain.
+    """
+    usable = low > 0.0
+    low, windows = low[usable], windows.rows(usable)
+    block = windows.number // BLOCK_WINDOWS
+    variables = load_variables(windows.metocean, low)
+    ratio, _ = LoadRatio.fit(np.log(windows.std / low), block, variables)
+    return None if ratio == LoadRatio() else ratio
 
 
 def _follow(

@@ -3,14 +3,14 @@
 from collections.abc import Sequence
 
 import numpy as np
-from jaxtyping import Bool
+from jaxtyping import Bool, Float
 
 from seacage.cage import Cage, mooring_lines
 from seacage.conventions import InputError, compass
 from seacage.dynamics import Mooring, line_places, settle
 from seacage.ocean import SeaState
 from seacage.records import CampaignRecord
-from seacage.surrogates import LoadCases, LoadGP, Symmetry
+from seacage.surrogates import FittedMotionGP, LoadCases, LoadGP, Symmetry
 from seacage.twin._lines._line_loads import LineLoads, load_features, period_span, sea_domain
 from seacage.twin._lines._site_waves import SiteWaves
 from seacage.twin._metocean import Metocean
@@ -43,17 +43,37 @@ def train_line_loads(
     water = Metocean.of(campaign.seas).rows(wavy)
     if period_span(water) < LEAST_SPAN:
         return None
-    symmetry = line_symmetry(cage, campaign.line_names)
+    symmetry, x = line_symmetry(cage, campaign.line_names), load_features(water)
     surrogate = LoadGP(symmetry=symmetry, restarts=restarts).fit(
-        load_features(water), load_cases(campaign, wavy), duration=campaign.duration, seed=seed
+        x, load_cases(campaign, wavy), duration=campaign.duration, seed=seed
     )
     return LineLoads(
+        motion=_node_motion(cage, campaign, wavy, x, symmetry, seed),
         names=campaign.line_names,
         kinds=campaign.line_kinds,
         surrogate=surrogate,
         domain=sea_domain(water),
         waves=SiteWaves.of(water, "the waves of the training campaign"),
     )
+
+
+def _node_motion(
+    cage: Cage,
+    campaign: CampaignRecord,
+    wavy: Bool[np.ndarray, " case"],
+    x: Float[np.ndarray, "n feature"],
+    symmetry: Symmetry | None,
+    seed: int,
+) -> FittedMotionGP | None:
+    """Surrogate of the nodes' motion, from cases with waves; None where none was kept."""
+    if campaign.node_position_std is None:
+        return None
+    std = np.asarray(campaign.node_position_std[wavy], dtype=np.float64)
+    try:
+        turns = None if symmetry is None else symmetry.at(cage.design_position)
+    except InputError:  # lines that coincide with their images do not make a mesh do so
+        turns = None
+    return FittedMotionGP.fit(x, std, symmetry=turns, restarts=0, seed=seed)
 
 
 def in_waves(campaign: CampaignRecord) -> Bool[np.ndarray, " case"]:

@@ -28,7 +28,7 @@ from seacage.twin._pairs import Pairs, align, spread_out, training_window
 from seacage.twin._provenance import Provenance, TrainingWindow
 from seacage.twin._training._calibration import calibrate
 from seacage.twin._training._data import CageTraining, SensorTraining, Training
-from seacage.twin._training._line_levels import train_line_level_2
+from seacage.twin._training._line_levels import train_depth_ratio, train_line_level_2
 from seacage.twin._training._loads import train_line_loads
 from seacage.twin._training._parted import train_parted_lines
 from seacage.twin._training._windows import sensor_windows
@@ -118,8 +118,8 @@ def train(
         if name not in level_1.models.upper and (model := _fit_level_2(data, name)) is not None:
             models = models.with_level_2(name, model)
             windows[name] = replace(data.sensors[name].window, calibrated=model.spread.by)
-        if name not in level_1.models.line_upper:
-            models = _with_line_level_2(models, data, field, name)
+        if name not in {**level_1.models.line_upper, **level_1.models.depth_ratio}:
+            models = _with_level_2_in_waves(models, data, field, name)
         report(name, done)
     provenance = replace(
         provenance,
@@ -221,6 +221,9 @@ def _from_base(cage: Cage, base: Twin, training: Training) -> Twin:
             upper={name: base.models.upper[name] for name in stay},
             line_upper={
                 name: one for name, one in base.models.line_upper.items() if name in unmoved
+            },
+            depth_ratio={
+                name: one for name, one in base.models.depth_ratio.items() if name in unmoved
             },
         ),
         provenance=replace(
@@ -358,12 +361,12 @@ def _fit_level_2(data: CageTraining, sensor: str) -> Correction | None:
     return calibrate(model, data, sensor) if own.calibrates else model
 
 
-def _with_line_level_2(
+def _with_level_2_in_waves(
     models: Models, data: CageTraining, field: FieldRecord, sensor: str
 ) -> Models:
-    """Return models with level 2 of the loads in waves of a shackle's line, if it shows a gain."""
+    """Return models with level 2 in waves, if it shows a gain: of a shackle's line, or a depth."""
     own, bridles = data.sensors.get(sensor), {one.name: one.bridle for one in models.cage.shackles}
-    if models.loads is None or own is None or sensor not in bridles:
+    if models.loads is None or own is None:
         return models
     windows = sensor_windows(
         align(field, sensor, start=own.window.start, end=own.window.end),
@@ -373,6 +376,12 @@ def _with_line_level_2(
     if windows is None:
         return models
     windows = windows.rows(windows.metocean.known(models.inputs))
+    if sensor not in bridles:
+        windows = windows.rows(models.loads.hold(windows.metocean).inside)
+        low = models.depth_std(windows.metocean, models.loads.node_motion(windows.metocean))
+        ratio = train_depth_ratio(low[:, models.cage.sensor_names.index(sensor)], windows)
+        own_ratio = {} if ratio is None else {sensor: ratio}
+        return replace(models, depth_ratio={**models.depth_ratio, **own_ratio})
     found = train_line_level_2(
         models.loads,
         bridles[sensor],
